@@ -1,0 +1,58 @@
+#include "kinematic_kalman.h"
+
+#include <math.h>
+
+double sh_measurement_variance(const sh_filter_parameters *filter, double x_dot, double w_s)
+{
+    const double speed = fabs(x_dot);
+    double relative;
+
+    if (!(w_s > 0.0))
+        return filter->V_min;
+    relative = filter->weighting == SH_WEIGHTING_NORMALIZED ? speed / w_s : speed * w_s;
+    /* (11); exp may overflow to infinity, which makes R the minimum as it should. */
+    return (filter->V_max - filter->V_min) / (1.0 + exp((relative - 1.0) * filter->alpha)) +
+           filter->V_min;
+}
+
+void sh_kinematic_kalman_start(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
+                               double z)
+{
+    kalman->x = z;
+    kalman->x_dot = 0.0;
+    kalman->P11 = filter->P_0;
+    kalman->P12 = 0.0;
+    kalman->P22 = filter->P_0;
+}
+
+void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
+                              double z, double dt, double w_s)
+{
+    double x, P11, P12, P22, R, S, innovation;
+
+    if (filter->kind == SH_FILTER_FINITE_DIFFERENCE) {
+        kalman->x_dot = (z - kalman->x) / dt;
+        kalman->x = z;
+        return;
+    }
+
+    /* (9): xi = A xi, P = A P A' + V_a Gamma Gamma', Gamma = (dt^2/2, dt)' */
+    x = kalman->x + dt * kalman->x_dot;
+    P11 = kalman->P11 + dt * (2.0 * kalman->P12 + dt * kalman->P22) +
+          filter->V_a * (dt * dt) * (dt * dt) / 4.0;
+    P12 = kalman->P12 + dt * kalman->P22 + filter->V_a * (dt * dt) * dt / 2.0;
+    P22 = kalman->P22 + filter->V_a * (dt * dt);
+
+    R = filter->kind == SH_FILTER_KALMAN ? filter->R
+                                         : sh_measurement_variance(filter, kalman->x_dot, w_s);
+
+    /* (10): K = P H' / S, xi += K (z - H xi), P -= K H P with H = (1 0) */
+    S = P11 + R;
+    innovation = z - x;
+    kalman->x = x + P11 / S * innovation;
+    kalman->x_dot += P12 / S * innovation;
+    /* P11 - P11^2/S without the subtraction, which would lose digits where P11 >> R */
+    kalman->P11 = P11 * (R / S);
+    kalman->P12 = P12 * (R / S);
+    kalman->P22 = P22 - P12 * (P12 / S);
+}

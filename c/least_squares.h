@@ -1,0 +1,79 @@
+/* Recursive least squares, standard (14), enhanced (25)-(27) and with constant
+ * factor, as one weighted recursion in UD factors.
+ *
+ * With the weight w(k) of a sample, the recursion minimises
+ *
+ *     |eta - eta_0|^2 / P_0 + sum_k w(k) (y(k) - F(k)' eta)^2 .
+ *
+ * The three kinds differ in the weight alone: a / (1 + rho - a rho), which is 1
+ * for (14) and exactly c for (27). P = U D U' is never formed; its diagonal
+ * factor D stays positive by construction, so P stays positive definite
+ * whatever the data (Bierman 1977, Factorization Methods for Discrete
+ * Sequential Estimation, chapter V).
+ */
+#ifndef SH_LEAST_SQUARES_H
+#define SH_LEAST_SQUARES_H
+
+#include "torque_basis.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    SH_RLS_ENHANCED = 1,       /* a(k) of (27) */
+    SH_RLS_STANDARD = 2,       /* a = 1, (14) */
+    SH_RLS_CONSTANT_FACTOR = 3 /* a as given, in (25) */
+};
+
+enum { SH_MAX_TRIANGLE = SH_MAX_PARAMETERS * (SH_MAX_PARAMETERS - 1) / 2 };
+
+/* State of the recursion. */
+typedef struct {
+    int size;                     /* number of parameters, 1..SH_MAX_PARAMETERS */
+    double eta[SH_MAX_PARAMETERS];/* estimate */
+    double D[SH_MAX_PARAMETERS];  /* diagonal factor of P, > 0 */
+    double U[SH_MAX_TRIANGLE];    /* unit upper triangular factor of P without its
+                                     diagonal, by columns: U[j (j-1)/2 + i], i < j */
+} sh_least_squares;
+
+/* What one sample did, all of it from before the update. */
+typedef struct {
+    double epsilon; /* prediction error, (14), in the unit of y */
+    double rho;     /* F' P F, (14) */
+    double a;       /* stability factor a(k), (27) */
+} sh_innovation;
+
+/* Starts the recursion.
+ *
+ * size   number of parameters, 1..SH_MAX_PARAMETERS
+ * eta_0  [size: size] initial estimate, NULL for zero
+ * P_0    initial covariance, every diagonal entry, > 0
+ */
+void sh_least_squares_start(sh_least_squares *rls, int size, const double *eta_0, double P_0);
+
+/* Takes one sample, (25).
+ *
+ * kind    SH_RLS_*
+ * factor  c of (27) for SH_RLS_ENHANCED, > 0; a for SH_RLS_CONSTANT_FACTOR, in
+ *         (0, 1]; unused for SH_RLS_STANDARD
+ * F       [size: size] regressor
+ * y       torque that F' eta is to meet [N.m]
+ *
+ * Returns 1, and fills innovation. Returns 0 and leaves state and innovation
+ * as they were if the sample is not finite or so large that the update would
+ * overflow.
+ */
+int sh_least_squares_update(sh_least_squares *rls, int kind, double factor, const double *F,
+                            double y, sh_innovation *innovation);
+
+/* F' P F [unit of y squared over noise variance] for a vector F [size: size]. */
+double sh_least_squares_variance(const sh_least_squares *rls, const double *F);
+
+/* Entry (i, j) of P, 0 <= i, j < size. */
+double sh_least_squares_covariance(const sh_least_squares *rls, int i, int j);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

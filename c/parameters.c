@@ -1,0 +1,145 @@
+/* Start values and ranges of the parameters of the stiffness estimator. */
+#include <math.h>
+#include <stddef.h>
+
+#include "stiffness_estimator.h"
+
+static const double PI = 3.14159265358979323846;
+
+void sh_parameters_default(sh_parameters *p)
+{
+    static const sh_parameters zero;
+
+    *p = zero;
+    p->samplePeriod = 1e-3;
+    p->modality = SH_MODALITY_RESIDUAL;
+    p->deformation = SH_DEFORMATION_RAW;
+    p->motor.B = 2.3e-5;
+    p->motor.D_theta = 1e-3;
+    p->motor.gamma = 50.0;
+    p->residual.K_I = 300.0;
+    p->filter.kind = SH_FILTER_MODIFIED_KALMAN;
+    p->filter.weighting = SH_WEIGHTING_NORMALIZED;
+    p->filter.V_a = 3e9;
+    p->filter.V_max = 10.0;
+    p->filter.V_min = 0.1;
+    p->filter.alpha = 6.0;
+    p->filter.R = 10.0;
+    p->filter.P_0 = 1.0;
+    p->encoder.theta = 40000.0;
+    p->encoder.q = 40000.0;
+    p->encoder.theta_c = 1024.0;
+    p->setPoint.offset = 100.0;
+    p->setPoint.scale = -0.0025 / (2.0 * PI) * 1000.0;
+    p->rls.kind = SH_RLS_ENHANCED;
+    p->rls.n = 6;
+    p->rls.m = 3;
+    p->rls.P_0 = 1e20;
+    p->rls.c = 1e-20;
+    p->rls.a = 0.1;
+    p->model.k_s = 14220.0;
+    p->model.r_0 = 0.1;
+    p->model.b = 0.0025 / (2.0 * PI);
+}
+
+/* Range of one parameter. */
+typedef struct {
+    const char *name;
+    size_t offset; /* in sh_parameters */
+    const char *range;
+    double min, max;
+    int min_open; /* 1: min itself is not allowed */
+} real_range;
+
+typedef struct {
+    const char *name;
+    size_t offset;
+    const char *range;
+    int min, max;
+} integer_range;
+
+#define AT(designator) #designator, offsetof(sh_parameters, designator)
+
+static const real_range REALS[] = {
+    {AT(samplePeriod), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(motor.B), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(motor.D_theta), ">= 0", 0.0, HUGE_VAL, 0},
+    {AT(motor.gamma), "finite and not 0", -HUGE_VAL, HUGE_VAL, 0},
+    {AT(residual.K_I), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(filter.V_a), ">= 0", 0.0, HUGE_VAL, 0},
+    {AT(filter.V_max), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(filter.V_min), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(filter.alpha), ">= 0", 0.0, HUGE_VAL, 0},
+    {AT(filter.R), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(filter.P_0), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(encoder.theta), ">= 0 (0: no quantisation)", 0.0, HUGE_VAL, 0},
+    {AT(encoder.q), ">= 0 (0: no quantisation)", 0.0, HUGE_VAL, 0},
+    {AT(encoder.theta_c), ">= 0 (0: no quantisation)", 0.0, HUGE_VAL, 0},
+    {AT(setPoint.offset), "finite", -HUGE_VAL, HUGE_VAL, 0},
+    {AT(setPoint.scale), "finite", -HUGE_VAL, HUGE_VAL, 0},
+    {AT(rls.P_0), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(rls.c), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(rls.a), "> 0 and <= 1", 0.0, 1.0, 1},
+    {AT(model.k_s), ">= 0", 0.0, HUGE_VAL, 0},
+    {AT(model.r_0), "finite", -HUGE_VAL, HUGE_VAL, 0},
+    {AT(model.b), "finite", -HUGE_VAL, HUGE_VAL, 0},
+};
+
+static const integer_range INTEGERS[] = {
+    {AT(modality), "1 (Residual), 2 (Sensor) or 3 (Model)", SH_MODALITY_RESIDUAL,
+     SH_MODALITY_MODEL},
+    {AT(deformation), "1 (Raw) or 2 (Filtered)", SH_DEFORMATION_RAW, SH_DEFORMATION_FILTERED},
+    {AT(filter.kind), "1 (ModifiedKalman), 2 (Kalman) or 3 (FiniteDifference)",
+     SH_FILTER_MODIFIED_KALMAN, SH_FILTER_FINITE_DIFFERENCE},
+    {AT(filter.weighting), "1 (Normalized) or 2 (AsPrinted)", SH_WEIGHTING_NORMALIZED,
+     SH_WEIGHTING_AS_PRINTED},
+    {AT(rls.kind), "1 (Enhanced), 2 (Standard) or 3 (ConstantFactor)", SH_RLS_ENHANCED,
+     SH_RLS_CONSTANT_FACTOR},
+    {AT(rls.n), "1 to 8", 1, SH_MAX_N},
+    {AT(rls.m), "1 to 5", 1, SH_MAX_M},
+};
+
+enum {
+    REAL_COUNT = sizeof REALS / sizeof REALS[0],
+    INTEGER_COUNT = sizeof INTEGERS / sizeof INTEGERS[0]
+};
+
+static int violates(sh_violation *violation, const char *name, double value, const char *range)
+{
+    violation->name = name;
+    violation->value = value;
+    violation->range = range;
+    return 1;
+}
+
+int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
+{
+    const char *bytes = (const char *)p;
+    int i, j;
+
+    for (i = 0; i < REAL_COUNT; ++i) {
+        const real_range *r = &REALS[i];
+        const double value = *(const double *)(const void *)(bytes + r->offset);
+        const int above = r->min_open ? value > r->min : value >= r->min;
+        if (!isfinite(value) || !above || value > r->max)
+            return violates(violation, r->name, value, r->range);
+    }
+    for (i = 0; i < INTEGER_COUNT; ++i) {
+        const integer_range *r = &INTEGERS[i];
+        const int value = *(const int *)(const void *)(bytes + r->offset);
+        if (value < r->min || value > r->max)
+            return violates(violation, r->name, value, r->range);
+    }
+    for (i = 0; i < SH_MAX_N; ++i)
+        for (j = 0; j < SH_MAX_M; ++j)
+            if (!isfinite(p->rls.eta_0[i][j]))
+                return violates(violation, "rls.eta_0", p->rls.eta_0[i][j], "finite");
+    if (!(p->motor.gamma > 0.0) && !(p->motor.gamma < 0.0))
+        return violates(violation, "motor.gamma", p->motor.gamma, "finite and not 0");
+    if (p->filter.V_min > p->filter.V_max)
+        return violates(violation, "filter.V_min", p->filter.V_min, "> 0 and <= filter.V_max");
+    if (p->residual.K_I * p->samplePeriod >= 2.0)
+        return violates(violation, "residual.K_I", p->residual.K_I,
+                        "> 0 and < 2 / samplePeriod");
+    return 0;
+}

@@ -1,0 +1,143 @@
+/* Stiffness estimator: one tick from measured positions and torque to the
+ * stiffness of the transmission, the paper's Fig. 1.
+ *
+ * The caller owns every struct; the library keeps no memory of its own, does no
+ * input or output and may run any number of estimators in any number of threads.
+ *
+ *     sh_parameters p;
+ *     sh_estimator estimator;
+ *     sh_estimate estimate;
+ *     sh_parameters_default(&p);
+ *     if (sh_parameters_check(&p, &violation)) ...
+ *     sh_estimator_start(&estimator, &p, &estimate);
+ *     every p.samplePeriod seconds:
+ *         sh_estimator_tick(&estimator, &p, &measurement, &estimate);
+ *
+ * Names of parameters and signals are those of the FMU (modelDescription/),
+ * whose variables live in these structs.
+ */
+#ifndef SH_STIFFNESS_ESTIMATOR_H
+#define SH_STIFFNESS_ESTIMATOR_H
+
+#include "kinematic_kalman.h"
+#include "least_squares.h"
+#include "torque_basis.h"
+#include "torque_residual.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What feeds the regression, section VI.B. */
+enum {
+    SH_MODALITY_RESIDUAL = 1, /* gamma r_e of (8) */
+    SH_MODALITY_SENSOR = 2,   /* a torque sensor */
+    SH_MODALITY_MODEL = 3     /* the nominal torque (28) at the measured positions */
+};
+
+/* Which deformation enters the regression. */
+enum {
+    SH_DEFORMATION_RAW = 1,     /* q - theta as measured */
+    SH_DEFORMATION_FILTERED = 2 /* both positions through the filter */
+};
+
+/* Parameters. Those marked "fixed" are read by sh_estimator_start alone or must
+ * not change after it; every other may change between ticks and takes effect at
+ * the next one.
+ */
+typedef struct {
+    double samplePeriod; /* T [s], > 0, fixed */
+    int modality;        /* SH_MODALITY_* */
+    int deformation;     /* SH_DEFORMATION_*, fixed */
+    sh_motor_parameters motor;
+    struct {
+        double K_I; /* bandwidth of the residual [1/s], > 0, K_I T < 2 */
+    } residual;
+    sh_filter_parameters filter; /* kind, weighting and P_0 fixed */
+    struct {
+        double theta, q, theta_c; /* resolution [counts/turn], >= 0; 0: no quantisation; fixed */
+    } encoder;
+    struct {
+        double offset, scale; /* set-point = offset + scale theta_c [1, 1/rad], fixed */
+    } setPoint;
+    struct {
+        int kind;                          /* SH_RLS_*, fixed */
+        int n, m;                          /* 1..SH_MAX_N, 1..SH_MAX_M, fixed */
+        double P_0;                        /* initial covariance, > 0, fixed */
+        double c;                          /* (27), > 0, fixed */
+        double a;                          /* constant stability factor, (0, 1], fixed */
+        double eta_0[SH_MAX_N][SH_MAX_M];  /* initial estimate, fixed */
+    } rls;
+    struct {
+        double k_s; /* stiffness of the springs, (28) [N/m], >= 0 */
+        double r_0; /* lever arm at theta_c = 0, (30) [m] */
+        double b;   /* lead of the ball screw, (30) [m/rad] */
+    } model;        /* for SH_MODALITY_MODEL */
+} sh_parameters;
+
+/* One sample of the measurements. */
+typedef struct {
+    double theta, q, theta_c; /* positions: principal motor after its gear, link,
+                                 secondary motor [rad] */
+    double tau;               /* torque of the principal motor, on its axis [N.m] */
+    double tau_e_sensor;      /* flexibility torque from a sensor, SH_MODALITY_SENSOR [N.m] */
+} sh_measurement;
+
+/* What a tick gives. */
+typedef struct {
+    double sigma;                  /* stiffness, (23) [N.m/rad] */
+    double tau_e;                  /* flexibility torque of the fitted model, (21) [N.m] */
+    double tau_e_residual;         /* gamma r_e, (8) [N.m] */
+    double theta_dot;              /* motor velocity used by the residual [rad/s] */
+    double phi;                    /* deformation [rad] */
+    double setPoint;               /* set-point [1] */
+    double a, rho, epsilon;        /* (27) [1], (14) [1], (14) [N.m] */
+    double eta[SH_MAX_N][SH_MAX_M];/* eta[i][j]: coefficient of setPoint^j phi^(2i+1), (21) */
+    int valid;                     /* 0 while the last tick was skipped, see sh_estimator_tick */
+} sh_estimate;
+
+/* State between ticks. Holds no pointer: copy it by assignment. */
+typedef struct {
+    sh_kinematic_kalman theta;
+    sh_kinematic_kalman q;
+    sh_torque_residual residual;
+    sh_least_squares rls;
+    int started;    /* a good sample has been seen */
+    double skipped; /* ticks skipped since the last good sample */
+} sh_estimator;
+
+/* A parameter outside its range. */
+typedef struct {
+    const char *name;  /* as in the FMU, "residual.K_I" */
+    double value;      /* what came */
+    const char *range; /* what is allowed, "K_I samplePeriod < 2" */
+} sh_violation;
+
+/* Sets the parameters of the AwAS, section VI.A, and of the FMU's start values. */
+void sh_parameters_default(sh_parameters *p);
+
+/* Returns 0 if every parameter is in its range; else 1, and says in violation
+ * which is the first that is not. Its strings live as long as the program.
+ */
+int sh_parameters_check(const sh_parameters *p, sh_violation *violation);
+
+/* Starts the estimator from parameters that pass sh_parameters_check, and sets
+ * the estimate of the initial state: eta_0 at phi = 0 and theta_c = 0.
+ */
+void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate);
+
+/* Runs one tick.
+ *
+ * Returns 1 and the new estimate. If any measurement is not finite or beyond
+ * 1e12, or the regressor overflows, the tick is skipped: returns 0, sets
+ * estimate->valid to 0 and leaves all else as it was. The next good sample is
+ * filtered over the time that has passed; the residual goes on from its last
+ * value.
+ */
+int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
+                      sh_estimate *estimate);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

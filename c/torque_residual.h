@@ -1,0 +1,56 @@
+/* Residual for the flexibility torque of one motor, (6)-(8).
+ *
+ * r_e is the flexibility torque divided by the gear ratio behind a first-order
+ * low pass of bandwidth K_I, (7): no torque sensor and no acceleration needed.
+ */
+#ifndef SH_TORQUE_RESIDUAL_H
+#define SH_TORQUE_RESIDUAL_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Data of the motor, (3). */
+typedef struct {
+    double B;       /* rotor inertia [kg.m2], > 0 */
+    double D_theta; /* viscous friction [N.m.s/rad], >= 0 */
+    double gamma;   /* gear ratio [1], not 0 */
+} sh_motor_parameters;
+
+/* State of the residual: the sample before, and r_e. */
+typedef struct {
+    double r_e;       /* [N.m], on the motor axis */
+    double theta;     /* position [rad] */
+    double theta_dot; /* velocity [rad/s] */
+    double tau;       /* motor torque [N.m] */
+} sh_torque_residual;
+
+/* Starts the residual at a sample: r_e = 0 and I_tau = 0. */
+void sh_torque_residual_start(sh_torque_residual *residual, double theta, double theta_dot,
+                              double tau);
+
+/* Makes a sample the one before without integrating over the time since the
+ * last: r_e stays. For use after samples were lost.
+ */
+void sh_torque_residual_resume(sh_torque_residual *residual, double theta, double theta_dot,
+                               double tau);
+
+/* Advances the residual by one sample, (8), and returns the estimate gamma r_e
+ * of the flexibility torque [N.m].
+ *
+ * theta      motor position after the gear [rad]
+ * theta_dot  its velocity [rad/s]
+ * tau        motor torque on the motor axis [N.m]
+ * K_I        bandwidth [1/s], > 0, K_I T < 2
+ * T          sample period [s], > 0
+ *
+ * (8) is taken in differences, r(k) - r(k-1), so that neither I_tau nor theta
+ * can grow out of the range of the numbers, however long the run.
+ */
+double sh_torque_residual_step(sh_torque_residual *residual, const sh_motor_parameters *motor,
+                               double theta, double theta_dot, double tau, double K_I, double T);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

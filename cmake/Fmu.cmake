@@ -1,0 +1,62 @@
+# sigmahat_add_fmu(NAME STRUCT type [ARRAYS] SOURCES file...)
+#
+# Adds a target NAME that builds NAME.fmu from modelDescription/NAME.xml, the FMI shell and
+# the given sources. STRUCT is the C type that holds the variables; ARRAYS says that it holds
+# them in the arrays p, u and y of a plant.
+function(sigmahat_add_fmu name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "ARRAYS" "STRUCT" "SOURCES")
+  set(source_dir ${PROJECT_SOURCE_DIR})
+  set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
+  set(template ${source_dir}/modelDescription/${name}.xml)
+  file(GLOB shared ${source_dir}/modelDescription/*.xml ${source_dir}/harness/sigmahat/export/*.py)
+
+  set(storage "")
+  if(arg_ARRAYS)
+    set(storage --arrays)
+  endif()
+  add_custom_command(
+    OUTPUT ${dir}/modelDescription.xml ${dir}/variables.h
+    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export describe ${template} ${dir}
+            --version ${PROJECT_VERSION} --struct ${arg_STRUCT} ${storage}
+    DEPENDS ${shared}
+    COMMENT "Model description of ${name}" VERBATIM)
+
+  add_library(${name}_binary MODULE $<TARGET_OBJECTS:sigmahat_shell> ${arg_SOURCES}
+              ${dir}/variables.h)
+  target_include_directories(${name}_binary PRIVATE ${dir} ${source_dir}/fmu_src
+                                                    ${source_dir}/c)
+  target_include_directories(${name}_binary SYSTEM PRIVATE ${SIGMAHAT_FMI_HEADERS})
+  set_target_properties(
+    ${name}_binary PROPERTIES OUTPUT_NAME ${name} PREFIX "" C_VISIBILITY_PRESET hidden
+                              LIBRARY_OUTPUT_DIRECTORY ${dir}/binary)
+  if(APPLE)
+    set_target_properties(${name}_binary PROPERTIES SUFFIX ".dylib")
+  endif()
+  target_link_libraries(${name}_binary PRIVATE ${SIGMAHAT_MATH})
+
+  set(fmu ${SIGMAHAT_VENV}/share/sigmahat/${name}.fmu)
+  add_custom_command(
+    OUTPUT ${fmu}
+    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export pack ${fmu}
+            --description ${dir}/modelDescription.xml --binary $<TARGET_FILE:${name}_binary>
+            --licence ${source_dir}/LICENSE
+    DEPENDS ${name}_binary ${dir}/modelDescription.xml ${source_dir}/LICENSE ${shared}
+    COMMENT "Packing ${name}.fmu" VERBATIM)
+  add_custom_target(${name} ALL DEPENDS ${fmu})
+endfunction()
+
+# sigmahat_add_plant(NAME): the FMU of the plant written in harness/sigmahat/plants.
+function(sigmahat_add_plant name)
+  set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
+  file(GLOB equations ${PROJECT_SOURCE_DIR}/harness/sigmahat/plants/*.py
+       ${PROJECT_SOURCE_DIR}/harness/sigmahat/export/*.py)
+  add_custom_command(
+    OUTPUT ${dir}/plant_functions.c ${dir}/plant_functions.h
+    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export.plant_codegen ${name} ${dir}
+    DEPENDS ${equations} ${PROJECT_SOURCE_DIR}/modelDescription/${name}.xml
+            ${PROJECT_SOURCE_DIR}/modelDescription/units.xml
+    COMMENT "Equations of ${name}" VERBATIM)
+  sigmahat_add_fmu(${name} ARRAYS STRUCT sh_plant SOURCES
+                   fmu_src/plant.c fmu_src/radau.c fmu_src/noise.c
+                   ${dir}/plant_functions.c ${dir}/plant_functions.h)
+endfunction()

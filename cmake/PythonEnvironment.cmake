@@ -1,0 +1,49 @@
+# A Python environment of our own inside the build tree, from the pinned requirements.
+#
+# Sets SIGMAHAT_VENV (folder), SIGMAHAT_PYTHON (interpreter) and SIGMAHAT_NINJA.
+
+find_program(SIGMAHAT_HOST_PYTHON NAMES python3 python REQUIRED)
+execute_process(
+  COMMAND ${SIGMAHAT_HOST_PYTHON} -c "import sys; sys.exit(sys.version_info < (3, 10))"
+  RESULT_VARIABLE too_old)
+if(too_old)
+  message(FATAL_ERROR "${SIGMAHAT_HOST_PYTHON} is older than Python 3.10. Install a newer one, "
+                      "or name it: -D SIGMAHAT_HOST_PYTHON=/path/to/python3.")
+endif()
+
+set(SIGMAHAT_VENV ${CMAKE_CURRENT_BINARY_DIR}/venv)
+if(CMAKE_HOST_WIN32)
+  set(SIGMAHAT_PYTHON ${SIGMAHAT_VENV}/Scripts/python.exe)
+  set(SIGMAHAT_NINJA ${SIGMAHAT_VENV}/Scripts/ninja.exe)
+else()
+  set(SIGMAHAT_PYTHON ${SIGMAHAT_VENV}/bin/python)
+  set(SIGMAHAT_NINJA ${SIGMAHAT_VENV}/bin/ninja)
+endif()
+
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS requirements.txt pyproject.toml)
+file(SHA256 requirements.txt wanted)
+file(SHA256 pyproject.toml pyproject_hash)
+string(APPEND wanted ${pyproject_hash})
+set(stamp ${SIGMAHAT_VENV}/sigmahat-requirements)
+set(installed "")
+if(EXISTS ${stamp})
+  file(READ ${stamp} installed)
+endif()
+if(NOT installed STREQUAL wanted)
+  message(STATUS "Setting up Python in ${SIGMAHAT_VENV}")
+  execute_process(COMMAND ${SIGMAHAT_HOST_PYTHON} -m venv ${SIGMAHAT_VENV} RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR "${SIGMAHAT_HOST_PYTHON} cannot make a virtual environment. "
+                        "On Debian and Ubuntu: apt-get install python3-venv.")
+  endif()
+  foreach(arguments "-r;requirements.txt" "--no-deps;--no-build-isolation;-e;.")
+    execute_process(
+      COMMAND ${SIGMAHAT_PYTHON} -m pip install --quiet --disable-pip-version-check ${arguments}
+      WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
+      RESULT_VARIABLE failed)
+    if(failed)
+      message(FATAL_ERROR "pip could not install ${arguments}; see its message above.")
+    endif()
+  endforeach()
+  file(WRITE ${stamp} ${wanted})
+endif()

@@ -1,0 +1,180 @@
+#include "instance.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static unsigned category_of(fmi2Status status)
+{
+    if (status == fmi2OK)
+        return SH_LOG_EVENTS;
+    return status == fmi2Warning ? SH_LOG_WARNING : SH_LOG_ERROR;
+}
+
+static const char *category_name(unsigned category)
+{
+    if (category == SH_LOG_EVENTS)
+        return "logEvents";
+    return category == SH_LOG_WARNING ? "logStatusWarning" : "logStatusError";
+}
+
+void sh_log(sh_instance *instance, fmi2Status status, const char *format, ...)
+{
+    const unsigned category = category_of(status);
+    char text[512], escaped[2 * sizeof text];
+    size_t length = 0, i;
+    va_list arguments;
+
+    if (instance->callbacks.logger == NULL || !(instance->categories & category))
+        return;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    /* The logger takes the message for a format: a % must not start a conversion. */
+    for (i = 0; text[i] != '\0'; ++i) {
+        if (text[i] == '%')
+            escaped[length++] = '%';
+        escaped[length++] = text[i];
+    }
+    escaped[length] = '\0';
+    instance->callbacks.logger(instance->callbacks.componentEnvironment, instance->name, status,
+                               category_name(category), escaped);
+}
+
+static const char *state_name(sh_state state)
+{
+    switch (state) {
+    case SH_INSTANTIATED:
+        return "before initialisation";
+    case SH_INITIALIZATION:
+        return "in initialisation mode";
+    case SH_STEP:
+        return "between steps";
+    default:
+        return "after termination";
+    }
+}
+
+sh_instance *sh_enter(fmi2Component c, unsigned allowed_states, const char *function)
+{
+    sh_instance *instance = c;
+
+    if (instance == NULL)
+        return NULL; /* nobody to tell */
+    if (!((unsigned)instance->state & allowed_states)) {
+        sh_log(instance, fmi2Error, "%s: not allowed %s.", function,
+               state_name(instance->state));
+        return NULL;
+    }
+    return instance;
+}
+
+int sh_has(sh_instance *instance, const void *pointer, const char *function,
+           const char *argument)
+{
+    if (pointer != NULL)
+        return 1;
+    sh_log(instance, fmi2Error, "%s: argument %s is NULL.", function, argument);
+    return 0;
+}
+
+/* Both or none: memory must go back where it came from. */
+static int importer_allocates(const fmi2CallbackFunctions *callbacks)
+{
+    return callbacks->allocateMemory != NULL && callbacks->freeMemory != NULL;
+}
+
+void *sh_allocate(const fmi2CallbackFunctions *callbacks, size_t size)
+{
+    void *memory =
+        importer_allocates(callbacks) ? callbacks->allocateMemory(1, size) : malloc(size);
+
+    if (memory != NULL)
+        memset(memory, 0, size);
+    return memory;
+}
+
+void sh_release(const fmi2CallbackFunctions *callbacks, void *memory)
+{
+    if (memory == NULL)
+        return;
+    if (importer_allocates(callbacks))
+        callbacks->freeMemory(memory);
+    else
+        free(memory);
+}
+
+void sh_set_start_values(sh_instance *instance)
+{
+    char *bytes = instance->model;
+    size_t i;
+
+    memset(bytes, 0, sh_fmu_model.size);
+    for (i = 0; i < sh_fmu_model.count; ++i) {
+        const sh_variable *variable = &sh_fmu_model.variables[i];
+        void *place = bytes + variable->offset;
+        if (variable->type == SH_TYPE_REAL)
+            *(double *)place = variable->start;
+        else
+            *(int *)place = (int)variable->start;
+    }
+    instance->outputs_stale = 1;
+    instance->parameters_unchecked = 1;
+}
+
+/* Writes the allowed range of a variable, "(0, 1]" or "(-inf, inf)". */
+static void write_range(char *text, size_t size, const sh_variable *variable)
+{
+    snprintf(text, size, "%c%.9g, %.9g%c",
+             variable->min_open || !isfinite(variable->min) ? '(' : '[', variable->min,
+             variable->max, variable->max_open || !isfinite(variable->max) ? ')' : ']');
+}
+
+static int in_range(const sh_variable *variable, double value)
+{
+    return isfinite(value) && (variable->min_open ? value > variable->min
+                                                  : value >= variable->min) &&
+           (variable->max_open ? value < variable->max : value <= variable->max);
+}
+
+fmi2Status sh_check_parameters(sh_instance *instance)
+{
+    const char *bytes = instance->model;
+    char range[64];
+    size_t i;
+
+    if (!instance->parameters_unchecked)
+        return fmi2OK;
+    for (i = 0; i < sh_fmu_model.count; ++i) {
+        const sh_variable *variable = &sh_fmu_model.variables[i];
+        const void *place = bytes + variable->offset;
+        const double value = variable->type == SH_TYPE_REAL ? *(const double *)place
+                                                            : (double)*(const int *)place;
+        if (variable->role != SH_ROLE_FIXED && variable->role != SH_ROLE_TUNABLE)
+            continue;
+        if (!in_range(variable, value)) {
+            write_range(range, sizeof range, variable);
+            sh_log(instance, fmi2Error, "Parameter %s = %.9g is out of its range %s.",
+                   variable->name, value, range);
+            return fmi2Error;
+        }
+    }
+    if (sh_fmu_model.check != NULL &&
+        sh_fmu_model.check(instance->model, instance) != fmi2OK)
+        return fmi2Error;
+    instance->parameters_unchecked = 0;
+    return fmi2OK;
+}
+
+fmi2Status sh_initialize(sh_instance *instance)
+{
+    if (!instance->outputs_stale)
+        return fmi2OK;
+    if (sh_check_parameters(instance) != fmi2OK)
+        return fmi2Error;
+    sh_fmu_model.initialize(instance->model, instance->start_time);
+    instance->outputs_stale = 0;
+    return fmi2OK;
+}

@@ -1,0 +1,62 @@
+/* What a model gives to the FMI shell (fmi2.c): one constant of type sh_model.
+ *
+ * A model is one plain struct without pointers that holds parameters, inputs,
+ * outputs and state. The shell allocates it, reaches its variables through the
+ * table generated from the model description, and copies it as a whole to save
+ * and restore the state of the FMU.
+ */
+#ifndef SH_MODEL_H
+#define SH_MODEL_H
+
+#include <stddef.h>
+
+#include "fmi2FunctionTypes.h"
+
+typedef enum { SH_TYPE_REAL, SH_TYPE_INTEGER, SH_TYPE_BOOLEAN } sh_type;
+
+typedef enum {
+    SH_ROLE_INPUT,
+    SH_ROLE_OUTPUT,
+    SH_ROLE_GUESS,  /* output with a start value, which the model overwrites */
+    SH_ROLE_FIXED,  /* parameter, settable until the end of initialisation */
+    SH_ROLE_TUNABLE /* parameter, settable between steps too */
+} sh_role;
+
+/* One variable. Its value reference is its place in the table. */
+typedef struct {
+    const char *name;
+    size_t offset; /* in the model's struct, of a double (Real) or an int */
+    sh_type type;
+    sh_role role;
+    double start;
+    double min, max;        /* allowed range, infinite where there is none */
+    int min_open, max_open; /* 1: the limit itself is not allowed */
+} sh_variable;
+
+/* Says something to the user through the importer's logger; format as printf. */
+typedef struct sh_instance sh_instance;
+void sh_log(sh_instance *instance, fmi2Status status, const char *format, ...);
+
+typedef struct {
+    const char *identifier; /* modelIdentifier */
+    const char *guid;
+    size_t size; /* of the model's struct */
+    const sh_variable *variables;
+    size_t count;
+    /* The time derivative of the input at offset o is at o + derivative_offset. */
+    size_t derivative_offset;
+    /* Constraints between parameters; ranges of single ones were checked before.
+     * Logs what is wrong and returns fmi2Error, or returns fmi2OK.
+     */
+    fmi2Status (*check)(const void *model, sh_instance *log);
+    /* Sets state and outputs from parameters and inputs. May be called again. */
+    void (*initialize)(void *model, double start_time);
+    /* Advances the model from t to t + h. Inputs are u + du/dt (s - t) for s in
+     * [t, t + h]. Returns fmi2OK, fmi2Warning or fmi2Error, and logs unless fmi2OK.
+     */
+    fmi2Status (*step)(void *model, double t, double h, sh_instance *log);
+} sh_model;
+
+extern const sh_model sh_fmu_model;
+
+#endif

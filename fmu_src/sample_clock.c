@@ -1,0 +1,24 @@
+#include "sample_clock.h"
+
+#include <math.h>
+
+void sh_sample_clock_start(sh_sample_clock *clock)
+{
+    clock->ahead = 0.0;
+}
+
+int sh_sample_clock_tick(sh_sample_clock *clock, double h, double T, double *after)
+{
+    const double step = h / T;
+    const double tolerance = fmin(1e-6, step / 2.0); /* a tiny step is not nothing */
+
+    if (clock->ahead < step - tolerance) {
+        *after = clock->ahead * T;
+        clock->ahead += 1.0;
+        return 1;
+    }
+    clock->ahead -= step;
+    if (fabs(clock->ahead) <= tolerance)
+        clock->ahead = 0.0;
+    return 0;
+}

@@ -1,0 +1,182 @@
+"""Model description of an FMU from its template, and the C table that goes with it.
+
+A template in ``modelDescription/`` is Jinja2 that renders to FMI 2.0 XML without what
+follows from the rest: value references, model structure and GUID are added here. The
+attribute ``open`` of a Real says which of its limits is itself not allowed; FMI has no
+such attribute, so it goes into the C table only.
+"""
+
+import hashlib
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import jinja2
+from lxml import etree
+
+Element = etree._Element
+
+_TYPES = {
+    "Real": "SH_TYPE_REAL",
+    "Integer": "SH_TYPE_INTEGER",
+    "Enumeration": "SH_TYPE_INTEGER",
+    "Boolean": "SH_TYPE_BOOLEAN",
+}
+
+
+def render(template: Path, version: str) -> Element:
+    """Render a template to the root element of its XML.
+
+    Raises ``jinja2.TemplateError`` or ``lxml.etree.XMLSyntaxError`` for a damaged template.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(template.parent), undefined=jinja2.StrictUndefined
+    )
+    text = environment.get_template(template.name).render(version=version, pi=math.pi)
+    parser = etree.XMLParser(remove_blank_text=True, remove_comments=True)
+    return etree.fromstring(text.encode(), parser)
+
+
+def variables(root: Element) -> list[Element]:
+    """The ``ScalarVariable`` elements in the order of their value references."""
+    return root.findall("ModelVariables/ScalarVariable")
+
+
+def storage_in_structs(root: Element) -> dict[str, str]:
+    """Place of every variable in a struct whose fields carry the variables' names.
+
+    ``motor.B`` is ``parameters.motor.B``, ``eta[1,2]`` is ``output.eta[1][2]``.
+    """
+    part = {"input": "input", "output": "output", "parameter": "parameters"}
+    return {
+        variable.attrib["name"]: f"{part[variable.attrib['causality']]}."
+        + variable.attrib["name"].replace(",", "][")
+        for variable in variables(root)
+    }
+
+
+def storage_in_arrays(root: Element) -> dict[str, str]:
+    """Place of every variable of a plant: arrays p, u and y in the order of the template.
+
+    The one Integer, ``noise.seed``, is the field ``seed``.
+    """
+    array = {"input": "u", "output": "y", "parameter": "p"}
+    count = dict.fromkeys(array.values(), 0)
+    places = {}
+    for variable in variables(root):
+        if variable.find("Real") is None:
+            places[variable.attrib["name"]] = "seed"
+            continue
+        name = array[variable.attrib["causality"]]
+        places[variable.attrib["name"]] = f"{name}[{count[name]}]"
+        count[name] += 1
+    return places
+
+
+def _role(variable: Element) -> str:
+    causality = variable.attrib["causality"]
+    if causality == "input":
+        return "SH_ROLE_INPUT"
+    if causality == "output":
+        return "SH_ROLE_GUESS" if variable[0].get("start") is not None else "SH_ROLE_OUTPUT"
+    fixed = variable.attrib["variability"] == "fixed"
+    return "SH_ROLE_FIXED" if fixed else "SH_ROLE_TUNABLE"
+
+
+def _limits(root: Element, kind: Element) -> tuple[str, str, int, int]:
+    if kind.tag == "Enumeration":
+        name = kind.attrib["declaredType"]
+        items = root.findall(f"TypeDefinitions/SimpleType[@name='{name}']/Enumeration/Item")
+        values = [int(item.attrib["value"]) for item in items]
+        return str(min(values)), str(max(values)), 0, 0
+    opened = kind.get("open", "").split()
+    return (
+        kind.get("min", "-HUGE_VAL"),
+        kind.get("max", "HUGE_VAL"),
+        int("min" in opened),
+        int("max" in opened),
+    )
+
+
+def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> str:
+    """C header with identifier, GUID and the table of variables (``fmu_src/model.h``).
+
+    ``struct`` is the type that holds the variables at ``places``, which the including file
+    must have defined.
+    """
+    identifier = root.find("CoSimulation").attrib["modelIdentifier"]
+    rows = []
+    for variable in variables(root):
+        kind, name = variable[0], variable.attrib["name"]
+        low, high, low_open, high_open = _limits(root, kind)
+        rows.append(
+            f'    {{"{name}", offsetof({struct}, {places[name]}), {_TYPES[kind.tag]}, '
+            f"{_role(variable)}, {kind.get('start', '0')}, "
+            f"{low}, {high}, {low_open}, {high_open}}},"
+        )
+    return "\n".join(
+        [
+            "/* Generated from the model description; do not edit. */",
+            f'#define SH_IDENTIFIER "{identifier}"',
+            f'#define SH_GUID "{guid}"',
+            "",
+            "static const sh_variable VARIABLES[] = {",
+            *rows,
+            "};",
+            "",
+        ]
+    )
+
+
+def _add_model_structure(root: Element) -> None:
+    """Outputs, and which of them are computed at initialisation.
+
+    No output depends on an input of the same communication point: both estimators and
+    plants compute outputs in fmi2DoStep alone.
+    """
+    structure = etree.SubElement(root, "ModelStructure")
+    outputs = [
+        (index, variable)
+        for index, variable in enumerate(variables(root), start=1)
+        if variable.attrib["causality"] == "output"
+    ]
+    listed = etree.SubElement(structure, "Outputs")
+    for index, _ in outputs:
+        etree.SubElement(listed, "Unknown", index=str(index), dependencies="")
+    unknowns = etree.SubElement(structure, "InitialUnknowns")
+    for index, variable in outputs:
+        if variable.attrib["initial"] in ("approx", "calculated"):
+            etree.SubElement(unknowns, "Unknown", index=str(index))
+
+
+def complete(root: Element) -> str:
+    """Turn a rendered template into a model description; returns its GUID.
+
+    The GUID is a hash of everything in the description, so that another description never
+    has the same one.
+    """
+    for reference, variable in enumerate(variables(root)):
+        variable.set("valueReference", str(reference))
+        variable[0].attrib.pop("open", None)
+    _add_model_structure(root)
+    digest = hashlib.sha256(etree.tostring(root, method="c14n")).hexdigest()
+    guid = "{" + "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32])) + "}"
+    root.set("guid", guid)
+    return guid
+
+
+def write(
+    template: Path,
+    out: Path,
+    version: str,
+    struct: str,
+    storage: Callable[[Element], dict[str, str]],
+) -> None:
+    """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder."""
+    out.mkdir(parents=True, exist_ok=True)
+    root = render(template, version)
+    guid = complete(render_copy := render(template, version))
+    (out / "variables.h").write_text(c_table(root, struct, storage(root), guid), encoding="utf-8")
+    (out / "modelDescription.xml").write_bytes(
+        etree.tostring(render_copy, xml_declaration=True, encoding="UTF-8", pretty_print=True)
+    )

@@ -1,0 +1,110 @@
+"""The main job: runs of a scenario over seeds, and the mean of their performance indices."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any
+
+from sigmahat.cosimulation import Recording, simulate
+from sigmahat.metrics import Indices, indices
+from sigmahat.scenarios import Scenario, T
+
+Progress = Callable[[int], object]
+
+
+@dataclass(frozen=True)
+class Result:
+    """Runs of one scenario."""
+
+    scenario: Scenario
+    seeds: Sequence[int]
+    recording: Recording
+    """Run of the first seed, with the variants that only the figures need."""
+    indices: Sequence[dict[str, Indices]]
+    """For each seed, by modality."""
+
+
+def work(scenario: Scenario, seeds: Sequence[int]) -> int:
+    """Length of the job in the units that reproduce() reports: runs, or the steps of a single run.
+
+    seeds must not be empty.
+    """
+    return len(seeds) if len(seeds) > 1 else scenario.steps
+
+
+def reproduce(
+    scenario: Scenario,
+    seeds: Sequence[int],
+    processes: int | None = None,
+    progress: Progress = lambda done: None,
+) -> Result:
+    """Runs the scenario once for each seed of the plant's noise.
+
+    seeds      one or more; several are spread over processes, by default one per processor.
+               The result does not depend on their number
+    progress   called now and then with the amount of work done since the last call, see work()
+
+    Raises what simulate() raises.
+    """
+    if len(seeds) == 1:
+        recording = run(scenario, seeds[0], variants=True, progress=progress)
+        return Result(scenario, seeds, recording, [_indices(scenario, recording)])
+
+    workers = min(len(seeds), processes or os.cpu_count() or 1)
+    context = multiprocessing.get_context("spawn")
+    executor = ProcessPoolExecutor(workers, mp_context=context)
+    try:
+        with _interrupts_for_the_parent_alone():
+            first = executor.submit(run, scenario, seeds[0], variants=True)
+            others = [executor.submit(_run_indices, scenario, seed) for seed in seeds[1:]]
+        futures: list[Future[Any]] = [first, *others]
+        for future in as_completed(futures):
+            future.result()
+            progress(1)
+        every = [_indices(scenario, first.result()), *(future.result() for future in others)]
+        return Result(scenario, seeds, first.result(), every)
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+def run(
+    scenario: Scenario,
+    seed: int,
+    variants: bool = False,
+    progress: Progress = lambda steps: None,
+) -> Recording:
+    """Runs the scenario once; with or without the estimators that only the figures need."""
+    plant = replace(scenario.plant, start={**scenario.plant.start, "noise.seed": seed})
+    estimators = {**scenario.estimators, **(scenario.variants if variants else {})}
+    return simulate(plant, estimators, T, scenario.steps, progress)
+
+
+def _run_indices(scenario: Scenario, seed: int) -> dict[str, Indices]:
+    return _indices(scenario, run(scenario, seed))
+
+
+def _indices(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
+    return {
+        name: indices(recording.t, recording.plant["sigma"], recording.estimators[name]["sigma"])
+        for name in scenario.estimators
+    }
+
+
+@contextmanager
+def _interrupts_for_the_parent_alone() -> Iterator[None]:
+    """Processes started inside ignore Ctrl-C, which a terminal sends to them too."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread may change how signals are handled
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,26 @@
+"""Where the tests find what the build made."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+import sigmahat
+
+
+@pytest.fixture(scope="session")
+def build() -> Path:
+    """Build tree, from SIGMAHAT_BUILD or ``build`` in the checkout."""
+    return Path(os.environ.get("SIGMAHAT_BUILD", Path(__file__).parent.parent / "build"))
+
+
+@pytest.fixture(scope="session")
+def estimator_fmu() -> Path:
+    """Path of StiffnessEstimator.fmu."""
+    return sigmahat.fmu("StiffnessEstimator")
+
+
+@pytest.fixture(scope="session")
+def plant_fmu() -> Path:
+    """Path of AwasPlant.fmu."""
+    return sigmahat.fmu("AwasPlant")

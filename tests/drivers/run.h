@@ -1,0 +1,17 @@
+/* Many ticks in one call, for tests that need millions of them. */
+#ifndef SH_TEST_RUN_H
+#define SH_TEST_RUN_H
+
+#include "stiffness_estimator.h"
+
+/* Runs ticks over the samples z [size: samples], again from the first when they end.
+ *
+ * estimate  in and out, as for sh_estimator_tick
+ * record    [size: ticks] the estimate of every tick, or NULL
+ *
+ * Returns how many ticks were not skipped.
+ */
+long test_run(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
+              long samples, long ticks, sh_estimate *estimate, sh_estimate *record);
+
+#endif

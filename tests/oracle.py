@@ -1,0 +1,301 @@
+"""The estimator in numpy, written from the paper: what the C is compared with.
+
+The formulas stand here as printed, also where the C computes them otherwise: (8) with its integral
+I_tau and r(k), (14) and (25) with K and P - a K F'P. That form loses P in doubles, so every number
+is a multiple-precision one (an mpfr in arrays of dtype object), with DIGITS far beyond what the
+worst case cancels. Numbers come in as doubles and are taken as exact.
+
+Parameters are a flat mapping from the names of the FMU to values.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+
+import gmpy2
+import numpy as np
+from numpy.typing import NDArray
+
+Exact = NDArray[np.object_]  # of gmpy2.mpfr
+Array = NDArray[np.float64]
+Value = float | int
+Parameters = Mapping[str, Value]
+
+DIGITS = 120
+gmpy2.get_context().precision = math.ceil(DIGITS / math.log10(2))
+
+MODIFIED_KALMAN, KALMAN, FINITE_DIFFERENCE = 1, 2, 3
+NORMALIZED, AS_PRINTED = 1, 2
+RAW, FILTERED = 1, 2
+ENHANCED, STANDARD, CONSTANT_FACTOR = 1, 2, 3
+RESIDUAL, SENSOR, MODEL = 1, 2, 3
+
+# Start values of the FMU: section VI.A and VI.B.
+DEFAULTS: Parameters = {
+    "samplePeriod": 1e-3,
+    "modality": RESIDUAL,
+    "deformation": RAW,
+    "motor.B": 2.3e-5,
+    "motor.D_theta": 1e-3,
+    "motor.gamma": 50.0,
+    "residual.K_I": 300.0,
+    "filter.kind": MODIFIED_KALMAN,
+    "filter.weighting": NORMALIZED,
+    "filter.V_a": 2e8,
+    "filter.V_max": 10.0,
+    "filter.V_min": 0.1,
+    "filter.alpha": 6.0,
+    "filter.R": 10.0,
+    "filter.P_0": 1.0,
+    "encoder.theta": 40000.0,
+    "encoder.q": 40000.0,
+    "encoder.theta_c": 1024.0,
+    "setPoint.offset": 100.0,
+    "setPoint.scale": -0.0025 / (2 * math.pi) * 1000,
+    "rls.kind": ENHANCED,
+    "rls.n": 6,
+    "rls.m": 3,
+    "rls.P_0": 1e20,
+    "rls.c": 1e-20,
+    "rls.a": 0.1,
+    "model.k_s": 14220.0,
+    "model.r_0": 0.1,
+    "model.b": 0.0025 / (2 * math.pi),
+}
+
+
+def exact(values: Array | list[float] | float) -> Exact:
+    """Doubles as multiple-precision numbers, of the same shape."""
+    doubles = np.asarray(values, dtype=float)
+    numbers = np.empty(doubles.shape, dtype=object)
+    numbers.flat = [gmpy2.mpfr(float(x)) for x in doubles.flat]
+    return numbers
+
+
+def rounded(numbers: Exact) -> Array:
+    """The nearest doubles."""
+    return numbers.astype(float)
+
+
+def measurement_variance(p: Parameters, x_dot: float, w_s: float) -> float:
+    """R at a velocity, (11) [rad2]."""
+    if w_s == 0:
+        return p["filter.V_min"]
+    velocity = abs(x_dot) / w_s if p["filter.weighting"] == NORMALIZED else abs(x_dot) * w_s
+    spread = gmpy2.mpfr(p["filter.V_max"]) - p["filter.V_min"]
+    variance: float = (
+        spread / (1 + gmpy2.exp((velocity - 1) * p["filter.alpha"])) + p["filter.V_min"]
+    )
+    return variance
+
+
+def velocity_filter(p: Parameters, measured: Array, counts: float) -> tuple[Exact, Exact]:
+    """Position and velocity of one axis, (9)-(11) [size: ticks, ticks]."""
+    z = exact(measured)
+    T = gmpy2.mpfr(p["samplePeriod"])
+    if p["filter.kind"] == FINITE_DIFFERENCE:
+        return z, np.concatenate([[gmpy2.mpfr(0)], np.diff(z) / T])
+
+    w_s = 2 * gmpy2.const_pi() / counts / T if counts else 0.0
+    A = np.array([[1, T], [0, 1]], dtype=object)
+    C = np.array([1, 0], dtype=object)
+    Gamma = np.array([T * T / 2, T], dtype=object)
+    Q = p["filter.V_a"] * np.outer(Gamma, Gamma)
+    xi = np.array([z[0], gmpy2.mpfr(0)], dtype=object)
+    P = gmpy2.mpfr(p["filter.P_0"]) * np.eye(2, dtype=int)
+    states = [xi]
+    for z_k in z[1:]:
+        xi = A @ xi
+        P = A @ P @ A.T + Q
+        R = (
+            p["filter.R"]
+            if p["filter.kind"] == KALMAN
+            else measurement_variance(p, xi[1], w_s)
+        )
+        K = P @ C / (C @ P @ C + R)
+        xi = xi + K * (z_k - C @ xi)
+        P = P - np.outer(K, C @ P)
+        states.append(xi)
+    x, x_dot = np.array(states).T
+    return x, x_dot
+
+
+def residual_torque(p: Parameters, theta: Exact, theta_dot: Exact, tau: Array) -> Exact:
+    """gamma r_e, (8) [N.m, size: ticks]."""
+    T, K_I = gmpy2.mpfr(p["samplePeriod"]), gmpy2.mpfr(p["residual.K_I"])
+    B, D, gamma = (gmpy2.mpfr(p["motor." + name]) for name in ("B", "D_theta", "gamma"))
+    torque = exact(tau)
+    r_e = [gmpy2.mpfr(0)]
+    I_tau = gmpy2.mpfr(0)
+    r = K_I * (B * gamma * theta_dot[0] + D * gamma * theta[0] - I_tau)
+    for k in range(1, len(torque)):
+        I_tau = I_tau + (torque[k] + torque[k - 1]) / 2 * T
+        before, r = r, K_I * (B * gamma * theta_dot[k] + D * gamma * theta[k] - I_tau)
+        r_e.append((2 - T * K_I) / (2 + T * K_I) * r_e[-1] + 2 * (r - before) / (2 + T * K_I))
+    return gamma * np.array(r_e)
+
+
+def basis(n: int, m: int, set_point: Exact, phi: Exact) -> tuple[Exact, Exact]:
+    """F of (22) and dF/dphi of (23), row by row [size: ticks x n m, ticks x n m]."""
+    F = [set_point**j * phi ** (2 * i + 1) for j in range(m) for i in range(n)]
+    dF = [(2 * i + 1) * set_point**j * phi ** (2 * i) for j in range(m) for i in range(n)]
+    return np.array(F).T, np.array(dF).T
+
+
+@dataclass(frozen=True)
+class Regression:
+    """What the recursion gives at every tick; columns of y side by side, see `least_squares`."""
+
+    eta: Exact  # [size: ticks x parameters x columns] after the update
+    epsilon: Exact  # [size: ticks x columns], this and the next from before the update
+    rho: Exact  # [size: ticks]
+    a: Exact  # [size: ticks]
+    P: Exact  # [size: parameters x parameters] after the last tick
+
+    @property
+    def weight(self) -> Exact:
+        """a / (1 + rho - a rho): what (26) bounds [size: ticks]."""
+        weight: Exact = self.a / (1 + self.rho - self.a * self.rho)
+        return weight
+
+
+def least_squares(
+    kind: int, factor: float, P_0: float, eta_0: Array, F: Exact, y: Exact
+) -> Regression:
+    """The recursion (14) with (25), and (27) for the enhanced kind.
+
+    kind    ENHANCED with factor = c, STANDARD, or CONSTANT_FACTOR with factor = a
+    eta_0   [size: parameters]
+    F       [size: ticks x parameters]
+    y       [size: ticks x columns], independent right-hand sides under one P
+    """
+    factor = gmpy2.mpfr(factor)
+    P = gmpy2.mpfr(P_0) * np.eye(F.shape[1], dtype=int)
+    eta = np.repeat(exact(eta_0)[:, None], y.shape[1], axis=1)
+    etas, epsilons, rhos, stability = [], [], [], []
+    for F_k, y_k in zip(F, y, strict=True):
+        epsilon = y_k - F_k @ eta
+        PF = P @ F_k
+        rho = F_k @ PF
+        K = PF / (1 + rho)
+        if kind == ENHANCED:
+            a = (factor + factor * rho) / (1 + factor * rho)
+        else:
+            a = factor if kind == CONSTANT_FACTOR else gmpy2.mpfr(1)
+        eta = eta + a * np.outer(K, epsilon)
+        P = P - a * np.outer(K, PF)
+        etas.append(eta)
+        epsilons.append(epsilon)
+        rhos.append(rho)
+        stability.append(a)
+    return Regression(
+        np.array(etas), np.array(epsilons), np.array(rhos), np.array(stability), P
+    )
+
+
+def ridge(weight: Exact, P_0: float, eta_0: Array, F: Exact, y: Exact) -> Exact:
+    """argmin |eta - eta_0|^2 / P_0 + sum_k w(k) (y(k) - F(k)' eta)^2 [size: parameters x columns].
+
+    Shapes as in `least_squares`, weight [size: ticks].
+    """
+    information = np.eye(F.shape[1], dtype=int) / gmpy2.mpfr(P_0) + F.T @ (weight[:, None] * F)
+    offset = y - F @ np.repeat(exact(eta_0)[:, None], y.shape[1], axis=1)
+    change = solve(information, F.T @ (weight[:, None] * offset))
+    solution: Exact = exact(eta_0)[:, None] + change
+    return solution
+
+
+def solve(matrix: Exact, right: Exact) -> Exact:
+    """Solution of a symmetric positive definite system, by elimination."""
+    A, b = matrix.copy(), right.copy()
+    size = len(A)
+    for j in range(size):
+        factors = A[j + 1 :, j] / A[j, j]
+        A[j + 1 :] -= np.outer(factors, A[j])
+        b[j + 1 :] -= np.outer(factors, b[j])
+    for j in reversed(range(size)):
+        b[j] = (b[j] - A[j, j + 1 :] @ b[j + 1 :]) / A[j, j]
+    return b
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Outputs of every tick, [size: ticks]; eta [size: ticks x n x m]."""
+
+    sigma: Array
+    tau_e: Array
+    tau_e_residual: Array
+    theta_dot: Array
+    phi: Array
+    setPoint: Array
+    a: Array
+    rho: Array
+    epsilon: Array
+    eta: Array
+
+    @classmethod
+    def names(cls) -> list[str]:
+        return [field.name for field in fields(cls)]
+
+
+def estimator(
+    p: Parameters, measurements: Array, variants: list[Parameters], eta_0: Array | None = None
+) -> list[Estimate]:
+    """The whole estimator, one Estimate for each of `variants`.
+
+    p             parameters
+    measurements  [size: ticks x 5] theta, q, theta_c, tau, tau_e_sensor
+    variants      changes to p; they may differ in modality and in filter, but must agree in what P
+                  depends on, because they share one recursion of P
+    eta_0         [size: n x m], zero if None
+    """
+    theta, q, theta_c, tau, sensor = measurements.T
+    n, m = int(p["rls.n"]), int(p["rls.m"])
+    set_point = p["setPoint.offset"] + p["setPoint.scale"] * exact(theta_c)
+    phi = exact(q) - exact(theta)
+    velocities, residuals, torques = [], [], []
+    filters: dict[tuple[Value, ...], tuple[Exact, Exact, Exact]] = {}
+    for variant in variants:
+        v = {**p, **variant}
+        key = tuple(v[name] for name in v if name.startswith(("filter.", "motor.", "residual.")))
+        if key not in filters:
+            x, x_dot = velocity_filter(v, theta, v["encoder.theta"])
+            filters[key] = x, x_dot, residual_torque(v, x, x_dot, tau)
+        x, x_dot, residual = filters[key]
+        if v["modality"] == RESIDUAL:
+            torque = residual
+        elif v["modality"] == SENSOR:
+            torque = exact(sensor)
+        else:
+            r = v["model.r_0"] - v["model.b"] * exact(theta_c)  # (30)
+            sine = np.array([gmpy2.sin(2 * angle) for angle in exact(q) - exact(theta)])
+            torque = v["model.k_s"] * r**2 * sine  # (28)
+        if v["deformation"] == FILTERED:
+            phi = velocity_filter(v, q, v["encoder.q"])[0] - x
+        velocities.append(x_dot)
+        residuals.append(residual)
+        torques.append(torque)
+
+    F, dF = basis(n, m, set_point, phi)
+    factor = p["rls.a"] if p["rls.kind"] == CONSTANT_FACTOR else p["rls.c"]
+    flat = np.zeros(n * m) if eta_0 is None else eta_0.T.ravel()
+    regression = least_squares(
+        int(p["rls.kind"]), factor, p["rls.P_0"], flat, F, np.array(torques).T
+    )
+    return [
+        Estimate(
+            sigma=rounded((dF * regression.eta[:, :, i]).sum(axis=1)),
+            tau_e=rounded((F * regression.eta[:, :, i]).sum(axis=1)),
+            tau_e_residual=rounded(residuals[i]),
+            theta_dot=rounded(velocities[i]),
+            phi=rounded(phi),
+            setPoint=rounded(set_point),
+            a=rounded(regression.a),
+            rho=rounded(regression.rho),
+            epsilon=rounded(regression.epsilon[:, i]),
+            eta=rounded(regression.eta[:, :, i]).reshape(-1, m, n).transpose(0, 2, 1),
+        )
+        for i in range(len(variants))
+    ]
