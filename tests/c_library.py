@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -30,15 +32,21 @@ def declarations(header: Path) -> str:
     return re.sub(r"^#.*$", "", text, flags=re.MULTILINE)
 
 
+@cache
+def load(build: Path) -> Library:
+    """The library of a build tree."""
+    return Library(build)
+
+
 class Library:
-    """The estimator library and the test driver, which is linked with it."""
+    """The estimator library with the loops of `drivers/` beside it."""
 
     def __init__(self, build: Path) -> None:
         self.ffi = cffi.FFI()
         for header in HEADERS:
             self.ffi.cdef(declarations(header))
-        self.lib: Any = self.ffi.dlopen(str(build / "libsigmahat_test_driver.so"))
-        self.driver = self.lib
+        suffix = ".dylib" if sys.platform == "darwin" else ".so"
+        self.lib: Any = self.ffi.dlopen(str(build / f"libsigmahat_test_driver{suffix}"))
 
     def new(self, struct: str, **values: Any) -> Any:
         """A struct, zero but for the given fields."""
@@ -127,7 +135,7 @@ class Estimator:
         z = np.zeros(len(measurements), self.library.dtype("sh_measurement"))
         for i, name in enumerate(MEASUREMENTS):
             z[name] = measurements[:, i]
-        good: int = self.library.driver.test_run(
+        good: int = self.library.lib.test_run(
             self.state,
             self.parameters,
             ffi.cast("sh_measurement *", ffi.from_buffer(z)),

@@ -23,8 +23,15 @@ Array = NDArray[np.float64]
 Value = float | int
 Parameters = Mapping[str, Value]
 
-DIGITS = 120
-gmpy2.get_context().precision = math.ceil(DIGITS / math.log10(2))
+DIGITS = 60
+
+
+def bits(digits: int) -> int:
+    """Precision of a number of so many decimal digits."""
+    return math.ceil(digits / math.log10(2))
+
+
+gmpy2.get_context().precision = bits(DIGITS)
 
 MODIFIED_KALMAN, KALMAN, FINITE_DIFFERENCE = 1, 2, 3
 NORMALIZED, AS_PRINTED = 1, 2
@@ -218,6 +225,19 @@ def solve(matrix: Exact, right: Exact) -> Exact:
     for j in reversed(range(size)):
         b[j] = (b[j] - A[j, j + 1 :] @ b[j + 1 :]) / A[j, j]
     return b
+
+
+def relative_error(got: Array, want: Array, scale: float | Array | None = None) -> float:
+    """Largest relative error over the ticks, where values below 1e-6 of the signal's range count
+    as that much.
+
+    got, want  [size: ticks x ...], each of the trailing entries a signal with a range of its own
+    scale      taken for the range if given
+    """
+    span = np.ptp(want, axis=0) if scale is None else np.asarray(scale)
+    floor = np.maximum(np.abs(want), 1e-6 * span)
+    error = np.abs(got - want)
+    return float(np.max(error / np.where(floor > 0, floor, np.finfo(float).tiny)))
 
 
 @dataclass(frozen=True)

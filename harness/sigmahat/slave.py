@@ -92,7 +92,9 @@ class Fmu:
         for name, variable in self.variables.items():
             if variable.causality != "parameter":
                 continue
-            value: Value = self.number(name, start.get(name, float(variable.start)))
+            boolean = variable.type == "Boolean"
+            default = variable.start == "true" if boolean else float(variable.start)
+            value: Value = self.number(name, start.get(name, default))
             if variable.type == "Enumeration":
                 items = variable.declaredType.items
                 value = next(item.name for item in items if int(item.value) == value)

@@ -10,11 +10,10 @@ import hashlib
 import math
 from collections.abc import Callable
 from pathlib import Path
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
 
 import jinja2
-from lxml import etree
-
-Element = etree._Element
 
 _TYPES = {
     "Real": "SH_TYPE_REAL",
@@ -27,14 +26,13 @@ _TYPES = {
 def render(template: Path, version: str) -> Element:
     """Render a template to the root element of its XML.
 
-    Raises ``jinja2.TemplateError`` or ``lxml.etree.XMLSyntaxError`` for a damaged template.
+    Raises ``jinja2.TemplateError`` or ``ElementTree.ParseError`` for a damaged template.
     """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(template.parent), undefined=jinja2.StrictUndefined
     )
     text = environment.get_template(template.name).render(version=version, pi=math.pi)
-    parser = etree.XMLParser(remove_blank_text=True, remove_comments=True)
-    return etree.fromstring(text.encode(), parser)
+    return ElementTree.fromstring(text)
 
 
 def variables(root: Element) -> list[Element]:
@@ -104,7 +102,7 @@ def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> st
     ``struct`` is the type that holds the variables at ``places``, which the including file
     must have defined.
     """
-    identifier = root.find("CoSimulation").attrib["modelIdentifier"]
+    identifier = root.findall("CoSimulation")[0].attrib["modelIdentifier"]
     rows = []
     for variable in variables(root):
         kind, name = variable[0], variable.attrib["name"]
@@ -134,19 +132,19 @@ def _add_model_structure(root: Element) -> None:
     No output depends on an input of the same communication point: both estimators and
     plants compute outputs in fmi2DoStep alone.
     """
-    structure = etree.SubElement(root, "ModelStructure")
+    structure = ElementTree.SubElement(root, "ModelStructure")
     outputs = [
         (index, variable)
         for index, variable in enumerate(variables(root), start=1)
         if variable.attrib["causality"] == "output"
     ]
-    listed = etree.SubElement(structure, "Outputs")
+    listed = ElementTree.SubElement(structure, "Outputs")
     for index, _ in outputs:
-        etree.SubElement(listed, "Unknown", index=str(index), dependencies="")
-    unknowns = etree.SubElement(structure, "InitialUnknowns")
+        ElementTree.SubElement(listed, "Unknown", index=str(index), dependencies="")
+    unknowns = ElementTree.SubElement(structure, "InitialUnknowns")
     for index, variable in outputs:
         if variable.attrib["initial"] in ("approx", "calculated"):
-            etree.SubElement(unknowns, "Unknown", index=str(index))
+            ElementTree.SubElement(unknowns, "Unknown", index=str(index))
 
 
 def complete(root: Element) -> str:
@@ -159,8 +157,11 @@ def complete(root: Element) -> str:
         variable.set("valueReference", str(reference))
         variable[0].attrib.pop("open", None)
     _add_model_structure(root)
-    digest = hashlib.sha256(etree.tostring(root, method="c14n")).hexdigest()
-    guid = "{" + "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32])) + "}"
+    ElementTree.indent(root)
+    canonical = ElementTree.canonicalize(ElementTree.tostring(root, encoding="unicode"))
+    digest = hashlib.sha256(canonical.encode()).hexdigest()
+    parts = (digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32])
+    guid = "{" + "-".join(parts) + "}"
     root.set("guid", guid)
     return guid
 
@@ -174,9 +175,8 @@ def write(
 ) -> None:
     """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder."""
     out.mkdir(parents=True, exist_ok=True)
-    root = render(template, version)
-    guid = complete(render_copy := render(template, version))
+    root, delivered = render(template, version), render(template, version)
+    guid = complete(delivered)
     (out / "variables.h").write_text(c_table(root, struct, storage(root), guid), encoding="utf-8")
-    (out / "modelDescription.xml").write_bytes(
-        etree.tostring(render_copy, xml_declaration=True, encoding="UTF-8", pretty_print=True)
-    )
+    tree = ElementTree.ElementTree(delivered)
+    tree.write(out / "modelDescription.xml", encoding="UTF-8", xml_declaration=True)

@@ -28,19 +28,20 @@ k_s = plant.parameter("spring.k_s")
 r_0 = plant.parameter("spring.r_0")
 b = plant.parameter("spring.b")
 
-# Scales: a deformation of some 0.01 rad carries the torque, (28).
+# A deformation of some 0.01 rad carries the torque, (28). The velocity of the secondary motor
+# follows its torque within 10 us; how exactly is of no consequence.
 q = plant.state("q", plant.parameter("initial.q"), scale=0.01)
 theta = plant.state("theta", plant.parameter("initial.theta"), scale=0.01)
 theta_c = plant.state("theta_c", plant.parameter("initial.theta_c"), scale=1.0)
 q_dot = plant.state("q_dot", plant.parameter("initial.q_dot"), scale=1.0)
 theta_dot = plant.state("theta_dot", plant.parameter("initial.theta_dot"), scale=1.0)
-theta_c_dot = plant.state("theta_c_dot", plant.parameter("initial.theta_c_dot"), scale=1.0)
+theta_c_dot = plant.state("theta_c_dot", plant.parameter("initial.theta_c_dot"), scale=100.0)
 
 phi = q - theta
 r = r_0 - b * theta_c  # (30)
 tau_e = k_s * r**2 * ca.sin(2 * phi)  # (28)
 sigma = 2 * k_s * r**2 * ca.cos(2 * phi)  # (29)
-psi_e = -k_s * b * r * (1 - ca.cos(2 * phi))  # (31): 2 sin^2 phi = 1 - cos 2 phi
+psi_e = -2 * k_s * b * r * ca.sin(phi) ** 2  # (31)
 friction = D_theta * gamma * theta_dot + tau_coulomb * ca.tanh(theta_dot / COULOMB_VELOCITY)
 
 # (5), with g(q) = mgl sin q. Torques are the derivatives of the potential k_s r^2 sin^2 phi

@@ -1,0 +1,23 @@
+/* A plant FMU: the struct of the FMI shell's model for any plant whose equations
+ * were generated to C.
+ */
+#ifndef SH_PLANT_H
+#define SH_PLANT_H
+
+#include <stdint.h>
+
+#include "plant_functions.h"
+
+/* Arrays are in the order of the model description. */
+typedef struct {
+    double p[SH_PLANT_PARAMETERS];
+    double u[SH_PLANT_INPUTS];
+    double du[SH_PLANT_INPUTS]; /* time derivatives of u */
+    double y[SH_PLANT_OUTPUTS];
+    double x[SH_PLANT_STATES];
+    double h;        /* internal step that suits the motion [s] */
+    uint64_t sample; /* number of the noise sample in y */
+    int seed;        /* of the noise */
+} sh_plant;
+
+#endif

@@ -1,0 +1,213 @@
+#include "radau.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "plant_functions.h"
+
+enum { STATES = SH_PLANT_STATES, INPUTS = SH_PLANT_INPUTS, STAGES = 3, NEWTON_ITERATIONS = 10 };
+
+static const double SCALE[STATES] = SH_PLANT_SCALES;
+static const double ERROR_TOLERANCE = 1e-8;
+/* What is left of the error of Newton's iteration adds up over steps, and the
+ * last iteration usually undercuts this by orders of magnitude.
+ */
+static const double NEWTON_TOLERANCE = 1e-12;
+
+/* Nodes (4 -+ sqrt(6)) / 10 and 1. */
+static const double NODE[STAGES] = {0.15505102572168219, 0.64494897427831781, 1.0};
+
+/* The inverse of the Runge-Kutta matrix is T diag(REAL, [RE -IM; IM RE]) T^-1. */
+static const double REAL = 3.6378342527444957, RE = 2.6810828736277521, IM = 3.0504301992474105;
+static const double T[STAGES][STAGES] = {
+    {0.091232394870892943, -0.14125529502095421, -0.030029194105147424},
+    {0.24171793270710702, 0.20412935229379993, 0.38294211275726194},
+    {0.96604818261509294, 1.0, 0.0}};
+static const double T_INVERSE[STAGES][STAGES] = {
+    {4.3255798900631553, 0.33919925181580987, 0.54177053993587488},
+    {-4.1787185915519047, -0.32768282076106239, 0.47662355450055045},
+    {-0.50287263494578688, 2.5719269498556054, -0.59603920482822493}};
+
+/* Weights of the stages in the error estimate, (-13 -+ 7 sqrt(6)) / 3 and -1/3. */
+static const double DEFECT[STAGES] = {-10.048809399827416, 1.3821427331607489,
+                                      -0.33333333333333333};
+
+/* f(x, u, p) */
+static void evaluate(const double *x, const double *u, const double *p, double *f)
+{
+    const double *arguments[] = {x, u, p};
+
+    sh_plant_xdot(arguments, &f, NULL, NULL, 0);
+}
+
+/* Factors of REAL/h - J and of (RE + i IM)/h - J, where J = df/dx. */
+static void factorize(const double *x, const double *u, const double *p, double h,
+                      double *factors)
+{
+    const double shifts[] = {REAL / h, RE / h, IM / h};
+    const double *arguments[] = {x, u, p, shifts};
+
+    sh_plant_factorize(arguments, &factors, NULL, NULL, 0);
+}
+
+/* b becomes (REAL/h - J)^-1 b. */
+static void solve_real(const double *factors, double *b)
+{
+    const double *arguments[] = {factors, b};
+
+    sh_plant_solve_real(arguments, &b, NULL, NULL, 0);
+}
+
+/* re + i im becomes ((RE + i IM)/h - J)^-1 (re + i im). */
+static void solve_complex(const double *factors, double *re, double *im)
+{
+    const double *arguments[] = {factors, re, im};
+    double *results[] = {re, im};
+
+    sh_plant_solve_complex(arguments, results, NULL, NULL, 0);
+}
+
+/* Largest |v| / (scale + |x|); not a number if one of v is not. */
+static double norm(const double *v, const double *x)
+{
+    double largest = 0.0;
+    int j;
+
+    for (j = 0; j < STATES; ++j) {
+        const double size = fabs(v[j]) / (SCALE[j] + fabs(x[j]));
+        if (isnan(size))
+            return size;
+        largest = fmax(largest, size);
+    }
+    return largest;
+}
+
+/* to = matrix from */
+static void transform(const double (*matrix)[STAGES], double (*from)[STATES],
+                      double (*to)[STATES])
+{
+    int i, j;
+
+    for (i = 0; i < STAGES; ++i)
+        for (j = 0; j < STATES; ++j)
+            to[i][j] = matrix[i][0] * from[0][j] + matrix[i][1] * from[1][j] +
+                       matrix[i][2] * from[2][j];
+}
+
+/* Finds Z with Z_i = h sum_k a_ik f(x + Z_k) by Newton's iteration with the one
+ * Jacobian at x, in the variables W = T^-1 Z, in which it falls apart into a real
+ * and a complex system. Returns 0 if it does not converge.
+ */
+static int solve_stages(const double *x, const double *u, const double *du, const double *p,
+                        double h, const double *factors, double (*Z)[STATES])
+{
+    double W[STAGES][STATES] = {{0.0}}, F[STAGES][STATES], dW[STAGES][STATES];
+    double change = INFINITY;
+    int iteration, i, j;
+
+    transform(T, W, Z);
+    for (iteration = 0; iteration < NEWTON_ITERATIONS; ++iteration) {
+        const double previous = change;
+
+        for (i = 0; i < STAGES; ++i) {
+            double x_i[STATES], u_i[INPUTS];
+            for (j = 0; j < STATES; ++j)
+                x_i[j] = x[j] + Z[i][j];
+            for (j = 0; j < INPUTS; ++j)
+                u_i[j] = u[j] + du[j] * (NODE[i] * h);
+            evaluate(x_i, u_i, p, F[i]);
+        }
+        transform(T_INVERSE, F, dW);
+        for (j = 0; j < STATES; ++j) {
+            dW[0][j] -= REAL * W[0][j] / h;
+            dW[1][j] -= (RE * W[1][j] - IM * W[2][j]) / h;
+            dW[2][j] -= (IM * W[1][j] + RE * W[2][j]) / h;
+        }
+        solve_real(factors, dW[0]);
+        solve_complex(factors, dW[1], dW[2]);
+        for (i = 0; i < STAGES; ++i)
+            for (j = 0; j < STATES; ++j)
+                W[i][j] += dW[i][j];
+        transform(T, W, Z);
+
+        change = norm(dW[0], x) + norm(dW[1], x) + norm(dW[2], x);
+        if (change <= NEWTON_TOLERANCE)
+            return 1;
+        /* Changes shrink by a constant factor; their sum is what is left. */
+        if (iteration > 0) {
+            const double rate = change / previous;
+            if (!(rate < 1.0))
+                return 0;
+            if (rate / (1.0 - rate) * change <= NEWTON_TOLERANCE)
+                return 1;
+        }
+    }
+    return 0;
+}
+
+double sh_radau_step(const double *x, const double *u, const double *du, const double *p,
+                     double h, double *x_new)
+{
+    double factors[SH_PLANT_FACTORS], Z[STAGES][STATES], defect[STATES], error[STATES], size;
+    int j;
+
+    factorize(x, u, p, h, factors);
+    if (!solve_stages(x, u, du, p, h, factors, Z))
+        return INFINITY;
+    for (j = 0; j < STATES; ++j) {
+        x_new[j] = x[j] + Z[STAGES - 1][j];
+        defect[j] = (DEFECT[0] * Z[0][j] + DEFECT[1] * Z[1][j] + DEFECT[2] * Z[2][j]) / h;
+    }
+
+    /* error = (REAL/h - J)^-1 (f(x) + defect) */
+    evaluate(x, u, p, error);
+    for (j = 0; j < STATES; ++j)
+        error[j] += defect[j];
+    solve_real(factors, error);
+    size = norm(error, x) / ERROR_TOLERANCE;
+    if (size > 1.0) {
+        /* Fast modes, which the step damps, count in it as if they stayed. Taken
+         * again at x + error, they count as what is left of them.
+         */
+        double x_error[STATES];
+        for (j = 0; j < STATES; ++j)
+            x_error[j] = x[j] + error[j];
+        evaluate(x_error, u, p, error);
+        for (j = 0; j < STATES; ++j)
+            error[j] += defect[j];
+        solve_real(factors, error);
+        size = norm(error, x) / ERROR_TOLERANCE;
+    }
+    return size;
+}
+
+int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
+                       double duration, double *h)
+{
+    /* Far below any time constant, far above the rounding of the time. */
+    const double shortest = 1e-12 * (1.0 + duration);
+    double elapsed = 0.0;
+    int steps = 0, j;
+
+    while (elapsed < duration) {
+        const double left = duration - elapsed;
+        const double pieces = left > *h ? ceil(left / *h) : 1.0;
+        const double step = left / pieces;
+        double u_now[INPUTS], x_new[STATES], error;
+
+        for (j = 0; j < INPUTS; ++j)
+            u_now[j] = u[j] + du[j] * elapsed;
+        error = sh_radau_step(x, u_now, du, p, step, x_new);
+        /* The estimate falls with the fourth power of the step. */
+        *h = step * fmin(8.0, fmax(0.2, 0.9 * pow(error, -0.25)));
+        if (error <= 1.0) {
+            for (j = 0; j < STATES; ++j)
+                x[j] = x_new[j];
+            elapsed = pieces > 1.0 ? elapsed + step : duration;
+            ++steps;
+        } else if (step <= shortest) {
+            return 0;
+        }
+    }
+    return steps;
+}

@@ -1,0 +1,159 @@
+"""C code of a plant from its equations: ``plant_functions.c`` and ``plant_functions.h``.
+
+``python -m sigmahat.export.plant_codegen AwasPlant FOLDER``
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Sequence
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
+
+import casadi as ca
+
+import sigmahat.plants
+from sigmahat.export import description
+from sigmahat.export.elimination import Elimination
+from sigmahat.plants.plant import Plant
+
+_TEMPLATES = Path(__file__).parents[3] / "modelDescription"
+
+# CasADi keeps truth values in doubles, and all its functions have the same arguments.
+_QUIET = """\
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC diagnostic ignored "-Wfloat-conversion"
+#endif
+"""
+
+
+def find(name: str) -> Plant:
+    """The plant of this name among the files of ``sigmahat.plants``.
+
+    Raises LookupError if there is none.
+    """
+    names = []
+    for module in iter_modules(sigmahat.plants.__path__, "sigmahat.plants."):
+        plant = getattr(import_module(module.name), "plant", None)
+        if isinstance(plant, Plant):
+            if plant.name == name:
+                return plant
+            names.append(plant.name)
+    raise LookupError(f"no plant {name}; there are {', '.join(names)}")
+
+
+def functions(
+    plant: Plant, parameters: Sequence[str], inputs: Sequence[str], outputs: Sequence[str]
+) -> list[ca.Function]:
+    """The functions that ``fmu_src/plant.c`` and ``fmu_src/radau.c`` call.
+
+    Vectors p, u and y are in the order given, which must name each variable of the plant once.
+    Raises ValueError if it does not, or if the equations of the plant are not complete.
+    """
+    _compare(plant, "parameter", plant.parameters, parameters)
+    _compare(plant, "input", plant.inputs, inputs)
+    _compare(plant, "output", plant.outputs, outputs)
+    _compare(plant, "derivative of state", plant.derivatives, plant.states)
+    x = ca.vertcat(*(state.symbol for state in plant.states.values()))
+    u = ca.vertcat(*(plant.inputs[name] for name in inputs))
+    p = ca.vertcat(*(plant.parameters[name] for name in parameters))
+    normals = ca.vertcat(*plant.normals)
+    start = ca.vertcat(*(state.start for state in plant.states.values()))
+    xdot = ca.vertcat(*(plant.derivatives[name] for name in plant.states))
+    y = ca.vertcat(*(plant.outputs[name] for name in outputs))
+
+    # Newton's iteration of Radau IIA: (REAL/h - J) and ((RE + i IM)/h - J), the latter as a real
+    # system of twice the size.
+    size = x.size1()
+    J = ca.jacobian(xdot, x)
+    one = ca.SX.eye(size)
+    shifts = ca.SX.sym("shifts", 3)
+    real, re, im = ca.vertsplit(shifts)
+    real_system = Elimination(real * one - J)
+    complex_system = Elimination(ca.blockcat([[re * one - J, -im * one], [im * one, re * one - J]]))
+    made = ca.vertcat(real_system.factors, complex_system.factors)
+    factors = ca.SX.sym("factors", made.size1())
+    of_real, of_complex = ca.vertsplit(factors, [0, real_system.factors.size1(), factors.size1()])
+    b = ca.SX.sym("b", size)
+    b_im = ca.SX.sym("b_im", size)
+    z_real = real_system.solve(of_real, b)
+    z_complex = complex_system.solve(of_complex, ca.vertcat(b, b_im))
+    return [
+        ca.Function("sh_plant_start", [p], [ca.densify(start)]),
+        ca.Function("sh_plant_xdot", [x, u, p], [ca.densify(xdot)]),
+        ca.Function("sh_plant_outputs", [x, u, p, normals], [ca.densify(y)]),
+        ca.Function("sh_plant_factorize", [x, u, p, shifts], [made]),
+        ca.Function("sh_plant_solve_real", [factors, b], [z_real]),
+        ca.Function("sh_plant_solve_complex", [factors, b, b_im], ca.vertsplit(z_complex, size)),
+    ]
+
+
+def write(
+    plant: Plant,
+    parameters: Sequence[str],
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    folder: Path,
+) -> None:
+    """Write the C code of a plant into a folder; variables as in `functions`."""
+    generated = functions(plant, parameters, inputs, outputs)
+    by_name = {function.name(): function for function in generated}
+    generator = ca.CodeGenerator(
+        "plant_functions", {"casadi_int": "int", "with_export": False, "verbose": False}
+    )
+    for function in generated:
+        generator.add(function)
+    sizes = {
+        "PARAMETERS": len(parameters),
+        "INPUTS": len(inputs),
+        "OUTPUTS": len(outputs),
+        "STATES": len(plant.states),
+        "NORMALS": len(plant.normals),
+        "FACTORS": by_name["sh_plant_factorize"].numel_out(0),
+    }
+    scales = ", ".join(repr(state.scale) for state in plant.states.values())
+    header = [
+        f"/* Generated from the equations of {plant.name}; do not edit. */",
+        "#ifndef SH_PLANT_FUNCTIONS_H",
+        "#define SH_PLANT_FUNCTIONS_H",
+        "",
+        *(f"#define SH_PLANT_{name} {size}" for name, size in sizes.items()),
+        f"#define SH_PLANT_SCALES {{{scales}}} /* of the states */",
+        "",
+        *(
+            f"int {name}(const double **arg, double **res, int *iw, double *w, int mem);"
+            for name in by_name
+        ),
+        "",
+        "#endif",
+        "",
+    ]
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "plant_functions.h").write_text("\n".join(header), encoding="utf-8")
+    (folder / "plant_functions.c").write_text(_QUIET + generator.dump(), encoding="utf-8")
+
+
+def _compare(plant: Plant, kind: str, own: Iterable[str], wanted: Iterable[str]) -> None:
+    """Raises ValueError unless the equations of the plant have exactly the names wanted."""
+    own, wanted = set(own), set(wanted)
+    if not own:
+        raise ValueError(f"{plant.name}: expected at least one {kind}, came none")
+    for name in sorted(wanted - own):
+        raise ValueError(f"{plant.name}: the equations have no {kind} {name}")
+    for name in sorted(own - wanted):
+        raise ValueError(f"{plant.name}: the model description has no {kind} {name}")
+
+
+def main(name: str, folder: str) -> None:
+    """Write the code of a plant of this package, variables in the order of its template."""
+    plant = find(name)
+    root = description.render(_TEMPLATES / f"{name}.xml", version="")
+    places = description.storage_in_arrays(root)
+    p, u, y = ([name for name, place in places.items() if place[0] == array] for array in "puy")
+    write(plant, p, u, y, Path(folder))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

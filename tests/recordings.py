@@ -1,0 +1,14 @@
+"""Runs that several tests look at, each made once."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from sigmahat.reproduce import Result, reproduce
+from sigmahat.scenarios import scenario
+
+
+@cache
+def one_seed(name: str) -> Result:
+    """A scenario with seed 1."""
+    return reproduce(scenario(name), [1])

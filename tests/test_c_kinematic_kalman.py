@@ -1,0 +1,178 @@
+"""The kinematic Kalman filter, (9)-(11), against closed forms and physics."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import oracle
+import pytest
+from c_library import Array, Library, load
+from reference_plant import round_to_counts, table1_recording
+from scipy.linalg import solve_discrete_are
+
+T = 1e-3
+COUNTS = 40000.0
+COUNT = 2 * math.pi / COUNTS  # rad
+W_S = COUNT / T  # rad/s
+PAPER = {"kind": 1, "weighting": 1, "V_max": 10.0, "V_min": 0.1, "alpha": 6.0, "R": 10.0}
+SETTINGS: dict[str, Any] = {**PAPER, "V_a": 3e9, "P_0": 1.0}
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+def variance(c: Library, x_dot: float, w_s: float = W_S, **settings: Any) -> float:
+    p = c.new("sh_filter_parameters", **{**SETTINGS, **settings})
+    R: float = c.lib.sh_measurement_variance(p, x_dot, w_s)
+    return R
+
+
+def run(c: Library, z: Array, w_s: float = W_S, dt: float = T, **settings: Any) -> Array:
+    """Position and velocity at every sample [size: samples x 2]."""
+    p = c.new("sh_filter_parameters", **{**SETTINGS, **settings})
+    kalman = c.new("sh_kinematic_kalman")
+    c.lib.sh_kinematic_kalman_start(kalman, p, z[0])
+    track = [(kalman.x, kalman.x_dot)]
+    for z_k in z[1:]:
+        c.lib.sh_kinematic_kalman_step(kalman, p, z_k, dt, w_s)
+        track.append((kalman.x, kalman.x_dot))
+    return np.array(track)
+
+
+def test_starts_at_the_measurement_at_rest(c: Library) -> None:
+    p = c.new("sh_filter_parameters", **{**SETTINGS, "P_0": 7.0})
+    kalman = c.new("sh_kinematic_kalman", x=1.0, x_dot=2.0, P12=3.0)
+    c.lib.sh_kinematic_kalman_start(kalman, p, -0.25)
+    assert (kalman.x, kalman.x_dot) == (-0.25, 0.0)
+    assert (kalman.P11, kalman.P12, kalman.P22) == (7.0, 0.0, 7.0)
+
+
+@pytest.mark.parametrize("kind", [1, 2, 3])
+def test_a_motor_at_rest_has_no_velocity(c: Library, kind: int) -> None:
+    # GIVEN a motor at rest WHEN it is filtered THEN it stays where it is, without velocity
+    track = run(c, np.full(200, 18.0), kind=kind)
+    assert np.all(track == [18.0, 0.0])
+
+
+@pytest.mark.parametrize("kind", [1, 2, 3])
+@pytest.mark.parametrize("slope", [-4.0, 0.05, 12.0])
+def test_a_ramp_is_followed_without_error(c: Library, kind: int, slope: float) -> None:
+    # GIVEN constant velocity, which (9) models exactly WHEN the filter has settled
+    # THEN position and velocity have no error left
+    z = 3.0 + slope * T * np.arange(2000)
+    track = run(c, z, kind=kind)
+    assert track[-1, 0] == pytest.approx(z[-1], rel=1e-12)
+    assert track[-1, 1] == pytest.approx(slope, rel=1e-9)
+
+
+@pytest.mark.parametrize("counts_per_sample", [0.3, 1.7])
+def test_quantisation_is_smoothed(c: Library, counts_per_sample: float) -> None:
+    # GIVEN a quantised ramp WHEN it is differenced THEN the velocity jumps by whole counts per
+    # sample; WHEN it is filtered THEN the mean is the same and the jumps are smaller
+    slope = counts_per_sample * W_S
+    z = round_to_counts(slope * T * np.arange(3000), COUNTS)
+    differenced = run(c, z, kind=3)[1000:, 1]
+    filtered = run(c, z, kind=1)[1000:, 1]
+    assert np.allclose(differenced / W_S, np.round(differenced / W_S), atol=1e-9)
+    assert filtered.mean() == pytest.approx(slope, rel=1e-2)
+    assert np.std(filtered - slope) < 0.7 * np.std(differenced - slope)
+
+
+def test_a_slower_filter_is_smoother(c: Library) -> None:
+    z = round_to_counts(0.3 * W_S * T * np.arange(3000), COUNTS)
+    spread = [run(c, z, V_a=V_a)[1000:, 1].std() for V_a in (1e6, 1e8, 1e10)]
+    assert spread[0] < spread[1] < spread[2]
+
+
+def test_finite_difference(c: Library) -> None:
+    z = np.array([1.0, 1.25, 0.75, 0.75])
+    track = run(c, z, kind=3, dt=0.5)
+    assert track.tolist() == [[1.0, 0.0], [1.25, 0.5], [0.75, -1.0], [0.75, 0.0]]
+
+
+def test_one_count_per_sample_is_half_way(c: Library) -> None:
+    # (11): the exponent is 0 where the velocity is one count per sample
+    assert variance(c, W_S) == pytest.approx((10.0 + 0.1) / 2, rel=1e-14)
+    assert variance(c, -W_S) == variance(c, W_S)
+    assert variance(c, 1 / W_S, weighting=2) == pytest.approx((10.0 + 0.1) / 2, rel=1e-14)
+
+
+def test_variance_falls_from_rest_to_fast_motion(c: Library) -> None:
+    at_rest = 9.9 / (1 + math.exp(-6)) + 0.1
+    assert variance(c, 0.0) == pytest.approx(at_rest, rel=1e-14)
+    speeds = np.linspace(0, 4 * W_S, 50)
+    values = [variance(c, speed) for speed in speeds]
+    assert np.all(np.diff(values) < 0)
+    assert variance(c, 1e6) == 0.1
+    assert variance(c, 1e300) == 0.1  # where the exponential overflows
+
+
+@pytest.mark.parametrize("weighting", [1, 2])
+def test_no_quantisation_means_the_smallest_variance(c: Library, weighting: int) -> None:
+    assert variance(c, 0.0, w_s=0.0, weighting=weighting) == 0.1
+
+
+def test_covariance_settles_at_the_riccati_solution(c: Library) -> None:
+    # GIVEN constant R WHEN the filter has settled THEN P solves the algebraic Riccati equation
+    V_a, R = 3e9, 10.0
+    A = np.array([[1, T], [0, 1]])
+    C = np.array([[1.0, 0.0]])
+    Gamma = np.array([[T * T / 2], [T]])
+    predicted = solve_discrete_are(A.T, C.T, V_a * Gamma @ Gamma.T, np.array([[R]]))
+    K = predicted @ C.T / (C @ predicted @ C.T + R)
+    settled = predicted - K @ C @ predicted
+
+    p = c.new("sh_filter_parameters", **{**SETTINGS, "kind": 2, "V_a": V_a, "R": R})
+    kalman = c.new("sh_kinematic_kalman")
+    c.lib.sh_kinematic_kalman_start(kalman, p, 0.0)
+    for _ in range(2000):
+        c.lib.sh_kinematic_kalman_step(kalman, p, 0.0, T, W_S)
+    P = [kalman.P11, kalman.P12, kalman.P22]
+    assert P == pytest.approx([settled[0, 0], settled[0, 1], settled[1, 1]], rel=1e-8)
+
+
+@pytest.mark.parametrize("V_a", [0.0, 1.0, 3e9, 1e15])
+def test_covariance_stays_positive_definite(c: Library, V_a: float) -> None:
+    p = c.new("sh_filter_parameters", **{**SETTINGS, "V_a": V_a})
+    kalman = c.new("sh_kinematic_kalman")
+    c.lib.sh_kinematic_kalman_start(kalman, p, 0.0)
+    for k in range(20000):
+        c.lib.sh_kinematic_kalman_step(kalman, p, COUNT * (k % 7), T, W_S)
+        assert kalman.P11 > 0
+        assert kalman.P22 > 0
+        assert kalman.P12**2 <= kalman.P11 * kalman.P22 * (1 + 1e-12)
+
+
+def test_a_sample_that_comes_late_does_not_disturb(c: Library) -> None:
+    # GIVEN a settled filter on a ramp WHEN ten samples are missing and the time since is told
+    # THEN position and velocity go on undisturbed
+    p = c.new("sh_filter_parameters", **SETTINGS)
+    kalman = c.new("sh_kinematic_kalman")
+    c.lib.sh_kinematic_kalman_start(kalman, p, 0.0)
+    for k in range(1, 1001):
+        c.lib.sh_kinematic_kalman_step(kalman, p, 5.0 * T * k, T, W_S)
+    c.lib.sh_kinematic_kalman_step(kalman, p, 5.0 * T * 1011, 11 * T, W_S)
+    assert kalman.x == pytest.approx(5.0 * T * 1011, rel=1e-12)
+    assert kalman.x_dot == pytest.approx(5.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("weighting", [1, 2])
+@pytest.mark.parametrize("counts", [40000.0, 0.0])
+@pytest.mark.parametrize("kind", [1, 2, 3])
+def test_against_the_oracle(c: Library, kind: int, weighting: int, counts: float) -> None:
+    z = table1_recording().theta[:2000]
+    values = {
+        **oracle.DEFAULTS,
+        **{f"filter.{name}": value for name, value in SETTINGS.items()},
+        "filter.kind": kind,
+        "filter.weighting": weighting,
+    }
+    want = [oracle.rounded(signal) for signal in oracle.velocity_filter(values, z, counts)]
+    got = run(c, z, w_s=W_S if counts else 0.0, kind=kind, weighting=weighting)
+    assert oracle.relative_error(got[:, 0], want[0]) < 1e-9
+    assert oracle.relative_error(got[:, 1], want[1]) < 1e-9

@@ -1,0 +1,255 @@
+"""The recursion in UD factors, against the textbook and against what it minimises."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import oracle
+import pytest
+from c_library import Array, Library, load
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
+from reference_plant import table1_recording
+
+KINDS = {  # kind: factor and P_0 of the paper, and of the plain and the constant kind
+    ENHANCED: (1e-20, 1e20),
+    STANDARD: (1.0, 1.0),
+    CONSTANT_FACTOR: (0.1, 1.0),
+}
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+class Recursion:
+    """The C recursion over numpy arrays."""
+
+    def __init__(
+        self, c: Library, kind: int, factor: float, P_0: float, eta_0: Array
+    ) -> None:
+        self.c, self.kind, self.factor = c, kind, factor
+        self.state = c.new("sh_least_squares")
+        self.innovation = c.new("sh_innovation")
+        c.lib.sh_least_squares_start(self.state, len(eta_0), c.pointer(eta_0), P_0)
+
+    def update(self, F: Array, y: float) -> bool:
+        F = np.ascontiguousarray(F)
+        taken = self.c.lib.sh_least_squares_update(
+            self.state, self.kind, self.factor, self.c.pointer(F), y, self.innovation
+        )
+        return bool(taken)
+
+    @property
+    def eta(self) -> Array:
+        return np.array(list(self.state.eta)[: self.state.size])
+
+    @property
+    def diagonal(self) -> Array:
+        """Diagonal factor D of P."""
+        return np.array(list(self.state.D)[: self.state.size])
+
+    @property
+    def covariance(self) -> Array:
+        size = range(self.state.size)
+        at = self.c.lib.sh_least_squares_covariance
+        return np.array([[at(self.state, i, j) for j in size] for i in size])
+
+    def bytes(self) -> bytes:
+        return bytes(self.c.ffi.buffer(self.state)) + bytes(self.c.ffi.buffer(self.innovation))
+
+
+def error(got: Array, want: oracle.Exact) -> float:
+    """Largest error of the entries, relative to the largest entry."""
+    wanted = oracle.rounded(want)
+    return float(np.max(np.abs(got - wanted)) / np.max(np.abs(wanted)))
+
+
+def table1_data() -> tuple[Array, Array]:
+    """Regressors and sensed torque of Table I [size: ticks x 18, ticks]."""
+    recording = table1_recording()
+    set_point = 100.0 + oracle.DEFAULTS["setPoint.scale"] * recording.theta_c
+    phi = recording.q - recording.theta
+    F, _ = oracle.basis(6, 3, oracle.exact(set_point), oracle.exact(phi))
+    return oracle.rounded(F), recording.tau_e_sensor
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("size", [1, 2, 3, 5, 8, 18, 40])
+def test_every_sample_against_the_textbook(c: Library, kind: int, size: int) -> None:
+    factor, P_0 = KINDS[kind]
+    rng = np.random.default_rng(100 * kind + size)
+    F, y, eta_0 = rng.normal(size=(60, size)), rng.normal(size=60), rng.normal(size=size)
+    want = oracle.least_squares(
+        kind, factor, P_0, eta_0, oracle.exact(F), oracle.exact(y)[:, None]
+    )
+    recursion = Recursion(c, kind, factor, P_0, eta_0)
+    for k in range(60):
+        assert recursion.update(F[k], y[k])
+        innovation = recursion.innovation
+        assert innovation.rho == pytest.approx(float(want.rho[k]), rel=1e-9)
+        assert innovation.a == pytest.approx(float(want.a[k]), rel=1e-9)
+        assert innovation.epsilon == pytest.approx(float(want.epsilon[k, 0]), rel=1e-9, abs=1e-12)
+        assert error(recursion.eta, want.eta[k, :, 0]) < 1e-9
+    assert error(recursion.covariance, want.P) < 1e-9
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_many_sizes_against_the_ridge(c: Library, kind: int) -> None:
+    # Fewer and more samples than parameters, columns of unlike scale, any P_0
+    rng = np.random.default_rng(kind)
+    for size in range(1, 41):
+        factor, _ = KINDS[kind]
+        P_0 = 10.0 ** rng.uniform(-3, 3) / (factor if kind == ENHANCED else 1.0)
+        samples = int(rng.integers(1, 80))
+        F = rng.normal(size=(samples, size)) * 10.0 ** rng.uniform(-2, 2, size)
+        y, eta_0 = rng.normal(size=samples), rng.normal(size=size)
+        recursion = Recursion(c, kind, factor, P_0, eta_0)
+        for k in range(samples):
+            assert recursion.update(F[k], y[k])
+        exact_F, exact_y = oracle.exact(F), oracle.exact(y)[:, None]
+        weight = oracle.least_squares(kind, factor, P_0, eta_0, exact_F, exact_y).weight
+        want = oracle.ridge(weight, P_0, eta_0, exact_F, exact_y)
+        assert error(recursion.eta, want[:, 0]) < 1e-9
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_table1_against_the_ridge(c: Library, kind: int) -> None:
+    # The recursion over the whole run, and the closed form of what it minimises
+    factor, P_0 = KINDS[kind]
+    F, y = table1_data()
+    recursion = Recursion(c, kind, factor, P_0, np.zeros(18))
+    weight = np.empty(len(y))
+    for k in range(len(y)):
+        assert recursion.update(F[k], y[k])
+        a, rho = recursion.innovation.a, recursion.innovation.rho
+        weight[k] = factor if kind == ENHANCED else a / (1 + rho - a * rho)
+    want = oracle.ridge(
+        oracle.exact(weight), P_0, np.zeros(18), oracle.exact(F), oracle.exact(y)[:, None]
+    )
+    assert recursion.eta == pytest.approx(oracle.rounded(want[:, 0]), rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", [STANDARD, CONSTANT_FACTOR])
+def test_a_large_prior_loses_no_definiteness(c: Library, kind: int) -> None:
+    # GIVEN P_0 = 1e20, where the textbook recursion breaks in doubles
+    # WHEN it runs over Table I THEN P is finite and positive definite, and the right one
+    F, y = table1_data()
+    recursion = Recursion(c, kind, 0.1, 1e20, np.zeros(18))
+    weight = np.empty(len(y))
+    for k in range(len(y)):
+        assert recursion.update(F[k], y[k])
+        a, rho = recursion.innovation.a, recursion.innovation.rho
+        weight[k] = a / (1 + (1 - a) * rho)
+    D, P = recursion.diagonal, recursion.covariance
+    assert np.all(np.isfinite(P))
+    assert np.all(D > 0)
+    assert np.all(D <= 1e20)
+    exact_F = oracle.exact(F)
+    information = exact_F.T @ (oracle.exact(weight)[:, None] * exact_F)
+    information += np.eye(18, dtype=int) / oracle.exact(1e20)
+    want = oracle.rounded(oracle.solve(information, oracle.exact(np.eye(18))))
+    assert np.diag(P) == pytest.approx(np.diag(want), rel=1e-6)
+
+
+def test_textbook_breaks_where_the_factors_do_not() -> None:
+    # What the test above guards against: (14) in doubles loses the sign of F' P F on this data
+    F, _ = table1_data()
+    P = 1e20 * np.eye(18)
+    lowest = math.inf
+    for F_k in F[:3000]:
+        PF = P @ F_k
+        rho = float(F_k @ PF)
+        lowest = min(lowest, rho)
+        P = P - np.outer(PF, PF) / (1 + rho)
+    assert not lowest >= 0
+
+
+def test_enhanced_factor_is_the_bound_of_26(c: Library) -> None:
+    # (26) with equality: a / (1 + rho - a rho) = c, here with a c that doubles can resolve
+    rng = np.random.default_rng(3)
+    recursion = Recursion(c, ENHANCED, 0.25, 10.0, np.zeros(4))
+    for F, y in zip(rng.normal(size=(50, 4)), rng.normal(size=50), strict=True):
+        recursion.update(F, y)
+        a, rho = recursion.innovation.a, recursion.innovation.rho
+        assert 0.25 <= a < 1
+        assert a / (1 + rho - a * rho) == pytest.approx(0.25, rel=1e-12)
+
+
+def test_start(c: Library) -> None:
+    recursion = Recursion(c, STANDARD, 1.0, 3.0, np.array([1.0, -2.0]))
+    assert recursion.eta.tolist() == [1.0, -2.0]
+    assert recursion.covariance.tolist() == [[3.0, 0.0], [0.0, 3.0]]
+    c.lib.sh_least_squares_start(recursion.state, 3, c.ffi.NULL, 5.0)
+    assert recursion.eta.tolist() == [0.0, 0.0, 0.0]
+    assert recursion.covariance.tolist() == (5.0 * np.eye(3)).tolist()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_excitation_teaches_nothing(c: Library, kind: int) -> None:
+    factor, P_0 = KINDS[kind]
+    recursion = Recursion(c, kind, factor, P_0, np.array([1.0, 2.0, 3.0]))
+    recursion.update(np.array([1.0, 0.5, -1.0]), 4.0)
+    eta, P = recursion.eta, recursion.covariance
+    assert recursion.update(np.zeros(3), 7.0)
+    assert recursion.innovation.rho == 0.0
+    assert recursion.innovation.epsilon == 7.0
+    assert np.all(recursion.eta == eta)
+    assert np.all(recursion.covariance == P)
+
+
+def test_variance_of_a_direction(c: Library) -> None:
+    rng = np.random.default_rng(4)
+    recursion = Recursion(c, STANDARD, 1.0, 2.0, np.zeros(5))
+    for F in rng.normal(size=(20, 5)):
+        recursion.update(F, 1.0)
+    F = rng.normal(size=5)
+    P = recursion.covariance
+    assert np.all(P == P.T)
+    want = float(F @ P @ F)
+    assert c.lib.sh_least_squares_variance(recursion.state, c.pointer(F)) == pytest.approx(want)
+    recursion.update(F, 1.0)
+    assert recursion.innovation.rho == pytest.approx(want)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("bad", [math.inf, -math.inf, math.nan, 1e300, -1e300])
+@pytest.mark.parametrize("where", [0, 2, "y"])
+def test_a_bad_sample_leaves_no_trace(c: Library, kind: int, bad: float, where: Any) -> None:
+    factor, P_0 = KINDS[kind]
+    recursion = Recursion(c, kind, factor, P_0, np.zeros(3))
+    recursion.update(np.array([1.0, 2.0, 3.0]), 4.0)
+    before = recursion.bytes()
+    F, y = np.array([0.5, -1.0, 2.0]), 1.0
+    if where == "y":
+        y = bad
+    else:
+        F[where] = bad
+    assert not recursion.update(F, y)
+    assert recursion.bytes() == before
+
+
+ANY = st.floats(allow_nan=True, allow_infinity=True, width=64)
+
+
+@given(
+    kind=st.sampled_from(list(KINDS)),
+    P_0=st.floats(1e-20, 1e20),
+    samples=st.lists(st.tuples(ANY, ANY, ANY, ANY), max_size=30),
+)
+@settings(max_examples=300, deadline=None, derandomize=True)
+def test_whatever_comes_P_stays_positive(  # noqa: N802
+    build: Path, kind: int, P_0: float, samples: list[tuple[float, ...]]
+) -> None:
+    recursion = Recursion(load(build), kind, KINDS[kind][0], P_0, np.zeros(3))
+    for *F, y in samples:
+        recursion.update(np.array(F), y)
+        assert np.all(recursion.diagonal > 0)
+        assert np.all(np.isfinite(recursion.diagonal))
+        assert np.all(np.isfinite(recursion.eta))
+        assert np.all(np.isfinite(recursion.covariance))

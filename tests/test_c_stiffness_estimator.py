@@ -1,0 +1,444 @@
+"""The whole estimator: parameters, bad samples, long runs, and every tick against the oracle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import gmpy2
+import numpy as np
+import oracle
+import pytest
+from c_library import MEASUREMENTS, Array, Estimator, Library, load
+from oracle import (
+    CONSTANT_FACTOR,
+    DEFAULTS,
+    ENHANCED,
+    FILTERED,
+    FINITE_DIFFERENCE,
+    KALMAN,
+    MODEL,
+    MODIFIED_KALMAN,
+    RESIDUAL,
+    SENSOR,
+    STANDARD,
+)
+from reference_plant import table1_recording
+
+TINY = 5e-324
+HUGE = 1.7976931348623157e308
+MODALITIES = (RESIDUAL, SENSOR, MODEL)
+FILTERS = (MODIFIED_KALMAN, KALMAN, FINITE_DIFFERENCE)
+RLS: dict[int, Mapping[str, float]] = {
+    ENHANCED: {"rls.kind": ENHANCED},
+    STANDARD: {"rls.kind": STANDARD, "rls.P_0": 1.0},
+    CONSTANT_FACTOR: {"rls.kind": CONSTANT_FACTOR, "rls.P_0": 1.0},
+}
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+def relative(estimates: np.ndarray[Any, Any], truth: Array) -> Array:
+    """Relative error of the stiffness."""
+    error: Array = np.abs(estimates["sigma"] - truth) / truth
+    return error
+
+
+# Parameters
+
+
+def test_defaults_are_those_of_the_paper_and_pass(c: Library) -> None:
+    p = c.parameters({})
+    assert c.violation(p) is None
+    for name, value in DEFAULTS.items():
+        at = p
+        for part in name.split("."):
+            at = getattr(at, part)
+        assert at == pytest.approx(value, rel=1e-15), name
+    assert all(entry == 0 for row in p.rls.eta_0 for entry in row)
+
+
+POSITIVE = [
+    "samplePeriod",
+    "motor.B",
+    "residual.K_I",
+    "filter.V_max",
+    "filter.V_min",
+    "filter.R",
+    "filter.P_0",
+    "rls.P_0",
+    "rls.c",
+    "rls.a",
+]
+NOT_NEGATIVE = [
+    "motor.D_theta",
+    "filter.V_a",
+    "filter.alpha",
+    "encoder.theta",
+    "encoder.q",
+    "encoder.theta_c",
+    "model.k_s",
+]
+ANY_FINITE = ["motor.gamma", "setPoint.offset", "setPoint.scale", "model.r_0", "model.b"]
+CHOICES = {
+    "modality": 3,
+    "deformation": 2,
+    "filter.kind": 3,
+    "filter.weighting": 2,
+    "rls.kind": 3,
+    "rls.n": 8,
+    "rls.m": 5,
+}
+OUTSIDE: list[tuple[str, float]] = [
+    *((name, bad) for name in POSITIVE for bad in (0.0, -0.0, -TINY, -1.0)),
+    *((name, bad) for name in NOT_NEGATIVE for bad in (-TINY, -1.0)),
+    *(
+        (name, bad)
+        for name in POSITIVE + NOT_NEGATIVE + ANY_FINITE
+        for bad in (math.nan, math.inf, -math.inf)
+    ),
+    ("motor.gamma", 0.0),
+    ("rls.a", math.nextafter(1.0, 2.0)),
+    ("residual.K_I", 2000.0),  # K_I T = 2
+    *((name, bad) for name, last in CHOICES.items() for bad in (0, -1, last + 1, 2**31 - 1)),
+]
+
+
+@pytest.mark.parametrize(("name", "value"), OUTSIDE)
+def test_outside_its_range_a_parameter_is_named(c: Library, name: str, value: float) -> None:
+    problem = c.violation(c.parameters({name: value}))
+    assert problem is not None
+    named, came, allowed = problem
+    assert named == name
+    assert came == value or (math.isnan(came) and math.isnan(value))
+    assert allowed
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        *((name, TINY) for name in POSITIVE if name not in ("filter.V_max", "samplePeriod")),
+        *((name, 0.0) for name in NOT_NEGATIVE),
+        *((name, -1.0) for name in ANY_FINITE),
+        ("rls.a", 1.0),
+        ("residual.K_I", math.nextafter(2000.0, 0.0)),
+        ("filter.V_min", 10.0),  # V_max
+        *((name, last) for name, last in CHOICES.items()),
+        *((name, 1) for name in CHOICES),
+    ],
+)
+def test_at_its_limit_a_parameter_passes(c: Library, name: str, value: float) -> None:
+    assert c.violation(c.parameters({name: value})) is None
+
+
+def test_parameters_that_contradict_each_other(c: Library) -> None:
+    problem = c.violation(c.parameters({"filter.V_min": 10.1}))
+    assert problem is not None
+    assert problem[0] in ("filter.V_min", "filter.V_max")
+    assert "V_m" in problem[2]
+    problem = c.violation(c.parameters({"samplePeriod": 0.01, "residual.K_I": 300.0}))
+    assert problem is not None
+    assert problem[0] in ("residual.K_I", "samplePeriod")
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_initial_estimate_must_be_finite(c: Library, bad: float) -> None:
+    p = c.parameters({})
+    p.rls.eta_0[7][4] = bad
+    problem = c.violation(p)
+    assert problem is not None
+    assert problem[0].startswith("rls.eta_0")
+
+
+# First tick and structure
+
+
+def test_state_before_the_first_tick(c: Library) -> None:
+    # eta_0 at phi = 0 and theta_c = 0: sigma = sum_j eta_0j offset^j
+    eta_0 = np.zeros((8, 5))
+    eta_0[0, :3], eta_0[1, 0] = [1.0, 2.0, 3.0], 9.0
+    estimate = Estimator(c, {"rls.eta_0": eta_0.tolist(), "setPoint.offset": 10.0}).estimate
+    assert estimate.sigma == 1.0 + 20.0 + 300.0
+    assert (estimate.setPoint, estimate.phi, estimate.tau_e) == (10.0, 0.0, 0.0)
+    assert np.all(np.array([list(row) for row in estimate.eta])[:6, :3] == eta_0[:6, :3])
+
+
+def test_first_tick_starts_the_filters_and_the_residual(c: Library) -> None:
+    # GIVEN a motor far from zero under torque WHEN the first sample comes
+    # THEN there is no velocity and no residual, and the regression learns from torque zero
+    estimator = Estimator(c, {})
+    assert estimator.tick([18.0, 18.01, 3.0, 0.5, 0.0])
+    estimate = estimator.estimate
+    assert (estimate.theta_dot, estimate.tau_e_residual, estimate.epsilon) == (0.0, 0.0, 0.0)
+    assert estimate.phi == pytest.approx(0.01)
+    assert estimate.setPoint == pytest.approx(100 - 3.0 * 2.5 / (2 * math.pi))
+    assert estimate.rho > 0
+    assert estimate.valid
+
+
+def test_unused_coefficients_are_zero(c: Library) -> None:
+    estimator = Estimator(c, {"rls.n": 2, "rls.m": 4})
+    estimator.run(table1_recording().measurements()[:500])
+    eta = np.array([list(row) for row in estimator.estimate.eta])
+    assert np.all(eta[:2, :4] != 0)
+    assert np.all(eta[2:] == 0)
+    assert np.all(eta[:, 4:] == 0)
+
+
+def test_a_mirrored_motion_has_the_same_stiffness(c: Library) -> None:
+    # (16): with theta, q and the torques negated, torques change sign and the stiffness does not
+    z = table1_recording().measurements()[:2000]
+    one = Estimator(c, {}).run(z)
+    other = Estimator(c, {}).run(z * [-1, -1, 1, -1, -1])
+    assert np.all(other["sigma"] == one["sigma"])
+    assert np.all(other["tau_e"] == -one["tau_e"])
+
+
+def test_a_copied_estimator_goes_on_like_the_original(c: Library) -> None:
+    z = table1_recording().measurements()
+    original = Estimator(c, {})
+    original.run(z[:1000])
+    copy = Estimator(c, {})
+    copy.state[0] = original.state[0]
+    copy.estimate[0] = original.estimate[0]
+    assert original.run(z[1000:1500]).tobytes() == copy.run(z[1000:1500]).tobytes()
+
+
+# The AwAS as a physical system
+
+
+@pytest.mark.parametrize("modality", MODALITIES)
+def test_stiffness_of_the_AwAS_is_found(c: Library, modality: int) -> None:  # noqa: N802
+    # GIVEN the motion of Table I WHEN a second has passed
+    # THEN the mean square relative error is far below the paper's 0.12 %
+    recording = table1_recording()
+    estimates = Estimator(c, {"modality": modality}).run(recording.measurements())
+    after = relative(estimates, recording.true_sigma)[1000:]
+    assert 100 * np.mean(after**2) < 0.01
+
+
+def test_residual_follows_the_flexibility_torque(c: Library) -> None:
+    recording = table1_recording()
+    estimates = Estimator(c, {}).run(recording.measurements())
+    error = estimates["tau_e_residual"] - recording.true_tau_e
+    assert np.corrcoef(estimates["tau_e_residual"], recording.true_tau_e)[0, 1] > 0.95
+    assert abs(np.mean(error)) < 0.01 * np.ptp(recording.true_tau_e)
+
+
+def test_filtered_velocity_is_nearer_than_the_difference(c: Library) -> None:
+    recording = table1_recording()
+    rms = {}
+    for kind in FILTERS:
+        estimates = Estimator(c, {"filter.kind": kind}).run(recording.measurements())
+        error = estimates["theta_dot"] - recording.true_theta_dot
+        rms[kind] = np.sqrt(np.mean(error**2))
+    assert rms[MODIFIED_KALMAN] < 0.5 * rms[FINITE_DIFFERENCE]
+    assert rms[KALMAN] < 0.5 * rms[FINITE_DIFFERENCE]
+
+
+def test_modality_can_change_between_ticks(c: Library) -> None:
+    # The regression goes on, with another torque
+    z = table1_recording().measurements()[:600]
+    estimator = Estimator(c, {"modality": MODEL})
+    first = estimator.run(z[:300])
+    c.set(estimator.parameters, "modality", SENSOR)
+    second = estimator.run(z[300:])
+    # By hand: a sensor that shows the model's torque until the change
+    mixed = z.copy()
+    model = first["epsilon"] + _fitted_before(first)
+    mixed[:300, 4] = model
+    want = Estimator(c, {"modality": SENSOR}).run(mixed)
+    assert second["sigma"] == pytest.approx(want["sigma"][300:], rel=1e-9)
+    alone = Estimator(c, {"modality": MODEL}).run(z)
+    assert not np.allclose(second["sigma"], alone["sigma"][300:], rtol=1e-6)
+
+
+def _fitted_before(estimates: np.ndarray[Any, Any]) -> Array:
+    """F(k)' eta(k-1): what epsilon is the difference to."""
+    phi, set_point = estimates["phi"], estimates["setPoint"]
+    eta = np.concatenate([np.zeros((1, 8, 5)), estimates["eta"][:-1]])
+    odd = phi[:, None] ** (2 * np.arange(8) + 1)
+    powers = set_point[:, None] ** np.arange(5)
+    fitted: Array = np.einsum("ki,kij,kj->k", odd, eta, powers)
+    return fitted
+
+
+# Samples that are not finite
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e300])
+@pytest.mark.parametrize("name", MEASUREMENTS)
+def test_a_bad_sample_is_skipped(c: Library, name: str, bad: float) -> None:
+    z = table1_recording().measurements()
+    estimator = Estimator(c, {})
+    estimator.run(z[:500])
+    before = c.ffi.new("sh_estimate *", estimator.estimate[0])
+    broken = z[500].copy()
+    broken[MEASUREMENTS.index(name)] = bad
+    assert not estimator.tick(broken)
+    assert estimator.estimate.valid == 0
+    before.valid = 0
+    assert bytes(c.ffi.buffer(before)) == bytes(c.ffi.buffer(estimator.estimate))
+    assert estimator.tick(z[501])
+    assert estimator.estimate.valid == 1
+
+
+def test_start_waits_for_the_first_good_sample(c: Library) -> None:
+    # GIVEN bad samples from the start WHEN a good one comes THEN that one is the first
+    z = table1_recording().measurements()[:1000]
+    late = Estimator(c, {})
+    for _ in range(3):
+        assert not late.tick([math.nan] * 5)
+        assert (late.estimate.valid, late.estimate.sigma) == (0, 0.0)
+    assert late.run(z).tobytes() == Estimator(c, {}).run(z).tobytes()
+
+
+@pytest.mark.parametrize("modality", MODALITIES)
+@pytest.mark.parametrize("gap", [1, 10, 1000])
+def test_recovery_is_clean(c: Library, gap: int, modality: int) -> None:
+    # GIVEN two seconds of Table I WHEN samples are missing
+    # THEN the estimate is kept, and over the ten time constants of the residual after the gap the
+    # stiffness is within 5 % of the truth (within 1.5 % without a gap): what is learned from the
+    # first samples after a gap does not throw away what was learned before
+    recording = table1_recording()
+    z = recording.measurements()
+    z[2000 : 2000 + gap, 0] = math.nan
+    estimates = Estimator(c, {"modality": modality}).run(z)
+    assert np.all(estimates["sigma"][2000 : 2000 + gap] == estimates["sigma"][1999])
+    assert np.all(estimates["valid"] == np.isfinite(z[:, 0]))
+    after = slice(2000 + gap, 2000 + gap + 34)
+    assert np.max(relative(estimates, recording.true_sigma)[after]) < 0.05
+
+
+# Long runs
+
+
+@pytest.mark.parametrize(
+    "values",
+    [RLS[ENHANCED], {"rls.kind": STANDARD, "rls.P_0": 1e20}, {"rls.kind": CONSTANT_FACTOR}],
+    ids=["enhanced", "standard 1e20", "constant 1e20"],
+)
+def test_covariance_survives_ten_million_ticks_without_excitation(
+    c: Library, values: Mapping[str, float]
+) -> None:
+    # GIVEN a fitted estimator WHEN the joint rests, deformed, for 1e7 ticks (almost three hours)
+    # THEN P is still positive definite, and the stiffness stays finite
+    z = table1_recording().measurements()
+    estimator = Estimator(c, values)
+    estimator.run(z)
+    assert estimator.repeat(z[-1:], 10_000_000) == 10_000_000
+    D = np.array(list(estimator.state.rls.D)[:18])
+    assert np.all(D > 0)
+    assert np.all(np.isfinite(estimator.covariance()))
+    assert np.all(np.isfinite(np.array([list(row) for row in estimator.estimate.eta])))
+
+
+# Every output of every tick
+
+
+@cache
+def oracle_of(kind: int) -> dict[tuple[int, int], oracle.Estimate]:
+    """Table I as the paper's formulas have it, by modality and filter."""
+    combinations = [(modality, kind) for modality in MODALITIES for kind in FILTERS]
+    variants = [{"modality": modality, "filter.kind": kind} for modality, kind in combinations]
+    z = table1_recording().measurements()
+    estimates = oracle.estimator({**DEFAULTS, **RLS[kind]}, z, variants)
+    return dict(zip(combinations, estimates, strict=True))
+
+
+def compare(got: np.ndarray[Any, Any], want: oracle.Estimate, torque: Array) -> dict[str, float]:
+    """Largest relative error of every output, see `oracle.relative_error`.
+
+    Two signals cannot be had that exactly from doubles where they cross zero, and are taken with
+    what they consist of: epsilon is the difference of two torques, so the range is that of the
+    torque; eta is compared as the vector that it is, in the ranges of its entries.
+    """
+    n, m = want.eta.shape[1:]
+    errors = {
+        name: oracle.relative_error(got[name], getattr(want, name))
+        for name in oracle.Estimate.names()
+        if name not in ("epsilon", "eta")
+    }
+    errors["epsilon"] = oracle.relative_error(
+        got["epsilon"], want.epsilon, scale=float(np.ptp(torque))
+    )
+    span = np.ptp(want.eta, axis=0)
+    error = np.max(np.abs(got["eta"][:, :n, :m] - want.eta) / span, axis=(1, 2))
+    size = np.max(np.abs(want.eta) / span, axis=(1, 2))
+    errors["eta"] = float(np.max(error / np.maximum(size, 1e-6)))
+    return errors
+
+
+@pytest.mark.parametrize("filter_kind", FILTERS)
+@pytest.mark.parametrize("modality", MODALITIES)
+@pytest.mark.parametrize("rls_kind", RLS)
+def test_table1_against_the_oracle(
+    c: Library, rls_kind: int, modality: int, filter_kind: int
+) -> None:
+    recording = table1_recording()
+    want = oracle_of(rls_kind)[modality, filter_kind]
+    values = {"modality": modality, "filter.kind": filter_kind, **RLS[rls_kind]}
+    got = Estimator(c, {**DEFAULTS, **values}).run(recording.measurements())
+    torque = {
+        RESIDUAL: want.tau_e_residual,
+        SENSOR: recording.tau_e_sensor,
+        MODEL: recording.true_tau_e,
+    }[modality]
+    errors = compare(got, want, torque)
+    assert max(errors.values()) < 1e-9, errors
+
+
+@pytest.mark.parametrize("filter_kind", FILTERS)
+def test_filtered_deformation_against_the_oracle(c: Library, filter_kind: int) -> None:
+    z = table1_recording().measurements()[:3000]
+    values = {**DEFAULTS, "filter.kind": filter_kind, "deformation": FILTERED, "modality": SENSOR}
+    want = oracle.estimator(values, z, [{}])[0]
+    errors = compare(Estimator(c, values).run(z), want, z[:, 4])
+    assert max(errors.values()) < 1e-9, errors
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"filter.weighting": oracle.AS_PRINTED},
+        {"encoder.theta": 0.0},
+        {"rls.n": 1, "rls.m": 1},
+        {"rls.n": 8, "rls.m": 5},
+        {"samplePeriod": 2e-3, "residual.K_I": 100.0, "motor.gamma": -20.0},
+        {"setPoint.offset": 0.0, "setPoint.scale": 0.01},
+    ],
+    ids=str,
+)
+def test_other_parameters_against_the_oracle(c: Library, changes: Mapping[str, float]) -> None:
+    z = table1_recording().measurements()[:1000]
+    values = {**DEFAULTS, **changes}
+    want = oracle.estimator(values, z, [{}])[0]
+    errors = compare(Estimator(c, values).run(z), want, want.tau_e_residual)
+    assert max(errors.values()) < 1e-9, errors
+
+
+def test_initial_estimate_against_the_oracle(c: Library) -> None:
+    z = table1_recording().measurements()[:300]
+    eta_0 = np.zeros((8, 5))
+    eta_0[:6, :3] = np.random.default_rng(5).normal(size=(6, 3))
+    want = oracle.estimator(DEFAULTS, z, [{}], eta_0[:6, :3])[0]
+    got = Estimator(c, {**DEFAULTS, "rls.eta_0": eta_0.tolist()}).run(z)
+    errors = compare(got, want, want.tau_e_residual)
+    assert max(errors.values()) < 1e-9, errors
+
+
+def test_the_oracle_has_digits_to_spare() -> None:
+    # The hardest case, P from 1e20 down to below one, gives the same doubles with twice the digits
+    z = table1_recording().measurements()[:1500]
+    values = {**DEFAULTS, "rls.kind": STANDARD}
+    usual = oracle.estimator(values, z, [{}])[0]
+    with gmpy2.context(gmpy2.get_context(), precision=oracle.bits(2 * oracle.DIGITS)):
+        twice = oracle.estimator(values, z, [{}])[0]
+    for name in oracle.Estimate.names():
+        assert np.all(getattr(usual, name) == getattr(twice, name)), name

@@ -1,0 +1,126 @@
+"""The residual, (6)-(8), against closed forms and physics."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import oracle
+import pytest
+from c_library import Array, Library, load
+
+B, D_THETA, GAMMA = 2.3e-5, 1e-3, 50.0
+T, K_I = 1e-4, 200.0
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+def run(
+    c: Library, theta: Array, theta_dot: Array, tau: Array, T: float = T, K_I: float = K_I
+) -> Array:
+    """gamma r_e at every sample [size: samples]."""
+    motor = c.new("sh_motor_parameters", B=B, D_theta=D_THETA, gamma=GAMMA)
+    residual = c.new("sh_torque_residual", r_e=5.0)
+    c.lib.sh_torque_residual_start(residual, theta[0], theta_dot[0], tau[0])
+    estimate = [0.0]
+    for k in range(1, len(theta)):
+        estimate.append(
+            c.lib.sh_torque_residual_step(
+                residual, motor, theta[k], theta_dot[k], tau[k], K_I, T
+            )
+        )
+    assert residual.r_e * GAMMA == estimate[-1]
+    return np.array(estimate)
+
+
+def test_a_held_motor_shows_its_torque(c: Library) -> None:
+    # GIVEN a motor held still, so that by (3) the transmission carries -gamma tau
+    # WHEN the torque is on for 1 / K_I THEN the residual has reached 63 % of it
+    zero = np.zeros(1000)
+    estimate = run(c, zero, zero, np.full(1000, 0.2))
+    reached = estimate[round(1 / (K_I * T))] / (-GAMMA * 0.2)
+    assert reached == pytest.approx(1 - math.exp(-1), rel=1e-3)
+    assert estimate[-1] == pytest.approx(-GAMMA * 0.2, rel=1e-6)
+
+
+def test_step_in_closed_form(c: Library) -> None:
+    # The trapezoidal rule answers a step with 1 - pole^k
+    zero = np.zeros(300)
+    pole = (2 - T * K_I) / (2 + T * K_I)
+    estimate = run(c, zero, zero, np.full(300, 0.2))
+    assert estimate == pytest.approx(-GAMMA * 0.2 * (1 - pole ** np.arange(300)), rel=1e-12)
+
+
+def test_a_pushed_motor_shows_the_push(c: Library) -> None:
+    # GIVEN no motor torque and a constant flexibility torque, which by (3) turns the motor with
+    # theta_dot = tau_e / (gamma^2 D) (1 - exp(-t D / B))
+    # WHEN the residual has settled THEN it is that torque, with its sign
+    tau_e = 1.5
+    t = T * np.arange(2000)
+    steady, lag = tau_e / (GAMMA**2 * D_THETA), B / D_THETA
+    theta_dot = steady * (1 - np.exp(-t / lag))
+    theta = steady * (t - lag * (1 - np.exp(-t / lag)))
+    estimate = run(c, theta, theta_dot, np.zeros(len(t)))
+    assert estimate[-1] == pytest.approx(tau_e, rel=1e-3)
+
+
+def test_friction_and_inertia_alone_show_nothing(c: Library) -> None:
+    # GIVEN a motor without transmission, tau = B gamma theta'' + D gamma theta'
+    # WHEN it swings THEN the residual stays near zero, far below the torque it explains
+    w = 2 * math.pi * 3
+    t = T * np.arange(5000)
+    tau = -B * GAMMA * w**2 * np.sin(w * t) + D_THETA * GAMMA * w * np.cos(w * t)
+    estimate = run(c, np.sin(w * t), w * np.cos(w * t), tau)
+    assert np.max(np.abs(estimate)) < 1e-4 * GAMMA * np.max(np.abs(tau))
+
+
+def test_bandwidth_is_K_I(c: Library) -> None:  # noqa: N802
+    # GIVEN a flexibility torque at the frequency K_I WHEN it has settled THEN the residual has
+    # 1 / sqrt(2) of the amplitude, 45 degrees late
+    t = T * np.arange(4000)
+    zero = np.zeros(len(t))
+    estimate = run(c, zero, zero, -np.sin(K_I * t) / GAMMA)[2000:]
+    wave = np.exp(-1j * K_I * t[2000:])
+    period = round(2 * math.pi / (K_I * T))
+    last = len(wave) // period * period
+    response = 2j * np.mean((estimate * wave)[:last])
+    assert abs(response) == pytest.approx(1 / math.sqrt(2), rel=1e-2)
+    assert math.degrees(np.angle(response)) == pytest.approx(-45, abs=1)
+
+
+def test_position_has_no_origin(c: Library) -> None:
+    rng = np.random.default_rng(1)
+    theta, theta_dot, tau = rng.normal(size=(3, 200))
+    assert run(c, theta + 2.0, theta_dot, tau) == pytest.approx(
+        run(c, theta, theta_dot, tau), rel=1e-9, abs=1e-9
+    )
+
+
+def test_after_lost_samples_it_goes_on_from_its_last_value(c: Library) -> None:
+    # GIVEN a settled residual WHEN samples were lost and it resumes elsewhere
+    # THEN it holds, and goes on to hold under the same load
+    motor = c.new("sh_motor_parameters", B=B, D_theta=D_THETA, gamma=GAMMA)
+    residual = c.new("sh_torque_residual")
+    step = c.lib.sh_torque_residual_step
+    c.lib.sh_torque_residual_start(residual, 0.0, 0.0, 0.2)
+    for _ in range(2000):
+        step(residual, motor, 0.0, 0.0, 0.2, K_I, T)
+    before = residual.r_e
+    c.lib.sh_torque_residual_resume(residual, 3.0, 0.0, 0.2)
+    assert residual.r_e == before
+    assert step(residual, motor, 3.0, 0.0, 0.2, K_I, T) == pytest.approx(GAMMA * before, rel=1e-6)
+
+
+@pytest.mark.parametrize(("T", "K_I"), [(1e-3, 300.0), (1e-4, 10.0), (1e-2, 199.0)])
+def test_against_the_printed_form(c: Library, T: float, K_I: float) -> None:  # noqa: N803
+    # (8) with I_tau and r(k) against its differences in C
+    rng = np.random.default_rng(2)
+    theta, theta_dot, tau = rng.normal(size=(3, 1000))
+    p = {**oracle.DEFAULTS, "samplePeriod": T, "residual.K_I": K_I}
+    want = oracle.residual_torque(p, oracle.exact(theta), oracle.exact(theta_dot), tau)
+    got = run(c, theta, theta_dot, tau, T=T, K_I=K_I)
+    assert oracle.relative_error(got, oracle.rounded(want)) < 1e-9

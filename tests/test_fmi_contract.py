@@ -1,0 +1,184 @@
+"""Names, causalities, units and start values that masters rely on, against the contract."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import pytest
+from c_library import Library
+from fmi_instance import Instance
+
+B = 0.0025 / (2 * math.pi)
+# name: causality, variability (None: any), unit, start (None: any)
+INPUTS = {
+    "theta": "rad",
+    "q": "rad",
+    "theta_c": "rad",
+    "tau": "N.m",
+    "tau_e_sensor": "N.m",
+}
+OUTPUTS = {
+    "sigma": "N.m/rad",
+    "tau_e": "N.m",
+    "tau_e_residual": "N.m",
+    "theta_dot": "rad/s",
+    "phi": "rad",
+    "setPoint": "1",
+    "a": "1",
+    "rho": "1",
+    "epsilon": "N.m",
+}
+PARAMETERS = {
+    "samplePeriod": ("fixed", "s", 1e-3),
+    "modality": ("tunable", None, 1),
+    "motor.B": ("tunable", "kg.m2", 2.3e-5),
+    "motor.D_theta": ("tunable", "N.m.s/rad", 1e-3),
+    "motor.gamma": ("tunable", "1", 50),
+    "residual.K_I": ("tunable", "1/s", 300),
+    "filter.kind": ("fixed", None, 1),
+    "filter.weighting": ("fixed", None, 1),
+    "filter.V_a": ("tunable", None, None),
+    "filter.V_max": ("tunable", None, 10),
+    "filter.V_min": ("tunable", None, 0.1),
+    "filter.alpha": ("tunable", None, 6),
+    "filter.R": ("tunable", None, 10),
+    "filter.P_0": ("fixed", None, 1),
+    "encoder.theta": ("fixed", "1", 40000),
+    "encoder.q": ("fixed", "1", 40000),
+    "encoder.theta_c": ("fixed", "1", 1024),
+    "deformation": ("fixed", None, 1),
+    "setPoint.offset": ("fixed", "1", 100),
+    "setPoint.scale": ("fixed", "1/rad", -B * 1000),
+    "rls.kind": ("fixed", None, 1),
+    "rls.n": ("fixed", None, 6),
+    "rls.m": ("fixed", None, 3),
+    "rls.P_0": ("fixed", "1", 1e20),
+    "rls.c": ("fixed", "1", 1e-20),
+    "rls.a": ("fixed", "1", 0.1),
+    "model.k_s": ("tunable", "N/m", 14220),
+    "model.r_0": ("tunable", "m", 0.1),
+    "model.b": ("tunable", "m/rad", B),
+}
+ITEMS = {
+    "modality": ["Residual", "Sensor", "Model"],
+    "filter.kind": ["ModifiedKalman", "Kalman", "FiniteDifference"],
+    "filter.weighting": ["Normalized", "AsPrinted"],
+    "deformation": ["Raw", "Filtered"],
+    "rls.kind": ["Enhanced", "Standard", "ConstantFactor"],
+}
+
+
+@pytest.fixture(scope="module")
+def description(estimator_fmu: Path) -> Any:
+    return fmpy.read_model_description(str(estimator_fmu))
+
+
+@pytest.fixture(scope="module")
+def variables(description: Any) -> dict[str, Any]:
+    return {v.name: v for v in description.modelVariables}
+
+
+@pytest.mark.parametrize("fmu", ["estimator_fmu", "plant_fmu"])
+def test_fmpy_finds_no_problem(fmu: str, request: pytest.FixtureRequest) -> None:
+    from fmpy.validation import validate_fmu
+
+    assert validate_fmu(str(request.getfixturevalue(fmu))) == []
+
+
+@pytest.mark.parametrize("fmu", ["estimator_fmu", "plant_fmu"])
+def test_runs_with_start_values_untouched(fmu: str, request: pytest.FixtureRequest) -> None:
+    path = request.getfixturevalue(fmu)
+    outputs = [
+        v.name
+        for v in fmpy.read_model_description(str(path)).modelVariables
+        if v.causality == "output"
+    ]
+    result = fmpy.simulate_fmu(str(path), stop_time=1.0, output_interval=1e-3, output=outputs)
+    assert len(result) == 1001
+    assert all(math.isfinite(result[name].astype(float).sum()) for name in outputs)
+
+
+@pytest.mark.parametrize("fmu", ["estimator_fmu", "plant_fmu"])
+def test_every_real_has_a_unit_and_everything_a_description(
+    fmu: str, request: pytest.FixtureRequest
+) -> None:
+    description: Any = fmpy.read_model_description(str(request.getfixturevalue(fmu)))
+    units = {unit.name for unit in description.unitDefinitions}
+    assert description.variableNamingConvention == "structured"
+    for variable in description.modelVariables:
+        assert variable.description
+        assert variable.type != "Real" or variable.unit in units
+
+
+def test_inputs_and_outputs(variables: dict[str, Any]) -> None:
+    for name, unit in INPUTS.items():
+        variable = variables[name]
+        assert (variable.causality, variable.unit, float(variable.start)) == ("input", unit, 0.0)
+    for name, unit in OUTPUTS.items():
+        assert (variables[name].causality, variables[name].unit) == ("output", unit)
+    for name in ("sigma", "tau_e", "tau_e_residual", "theta_dot"):
+        assert float(variables[name].start) == 0.0
+    for i in range(8):
+        for j in range(5):
+            assert variables[f"eta[{i},{j}]"].causality == "output"
+            assert variables[f"rls.eta_0[{i},{j}]"].variability == "fixed"
+            assert float(variables[f"rls.eta_0[{i},{j}]"].start) == 0.0
+    assert (variables["valid"].type, variables["valid"].causality) == ("Boolean", "output")
+
+
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_parameter(name: str, variables: dict[str, Any], build: Path) -> None:
+    variability, unit, start = PARAMETERS[name]
+    variable = variables[name]
+    assert (variable.causality, variable.variability) == ("parameter", variability)
+    assert unit is None or variable.unit == unit
+    assert start is None or float(variable.start) == pytest.approx(start, rel=1e-15)
+    # The library has the same start values.
+    value: Any = Library(build).parameters({})
+    for part in name.split("."):
+        value = getattr(value, part)
+    assert float(variable.start) == value
+
+
+@pytest.mark.parametrize("name", ITEMS)
+def test_enumeration(name: str, variables: dict[str, Any]) -> None:
+    items = variables[name].declaredType.items
+    assert [item.name for item in items] == ITEMS[name]
+    assert [int(item.value) for item in items] == list(range(1, len(items) + 1))
+    assert all(item.description for item in items)
+
+
+def test_limits_in_the_description_are_those_of_the_library(
+    variables: dict[str, Any], build: Path
+) -> None:
+    """A value on a limit passes both, or is refused by both; beyond it neither takes it."""
+    library = Library(build)
+    violation = library.ffi.new("sh_violation *")
+    checked = 0
+    for name in PARAMETERS:
+        variable = variables[name]
+        for limit, outward in ((variable.min, -1.0), (variable.max, 1.0)):
+            if limit is None:
+                continue
+            beyond = float(limit) + outward
+            parameters = library.parameters({})
+            if variable.type == "Real":
+                library.set(parameters, name, beyond)
+            else:
+                library.set(parameters, name, int(beyond))
+            assert library.lib.sh_parameters_check(parameters, violation) == 1, name
+            assert library.ffi.string(violation.name).decode() == name
+            checked += 1
+    assert checked > 20
+
+
+def test_initial_outputs_follow_the_initial_estimate(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise({"rls.eta_0[0,0]": 5.0, "rls.eta_0[0,2]": 0.01})
+        assert fmu.get("sigma") == pytest.approx(5.0 + 0.01 * 100.0**2, rel=1e-15)
+        assert fmu.get("eta[0,2]") == 0.01
+        assert fmu.get("setPoint") == 100.0
+        assert fmu.get("valid") == 1

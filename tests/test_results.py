@@ -1,0 +1,110 @@
+"""The table and the CSV files."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from recordings import one_seed
+from sigmahat import results
+from sigmahat.metrics import Indices
+
+
+def test_series_file_has_units_and_the_exact_values(tmp_path: Path) -> None:
+    recording = one_seed("table1").recording
+    results.write_series(recording, "RESIDUAL", tmp_path / "series.csv")
+    with (tmp_path / "series.csv").open(newline="") as file:
+        head, *rows = csv.reader(file)
+    assert head[0] == "t [s]"
+    assert {"plant.sigma [N.m/rad]", "sigma [N.m/rad]", "a [1]", "valid"} < set(head)
+    assert len(head) == len(set(head))
+    assert len(rows) == 15001
+    table = np.array(rows, dtype=float)
+    for title, values in (
+        ("t [s]", recording.t),
+        ("plant.theta_measured [rad]", recording.plant["theta_measured"]),
+        ("plant.sigma [N.m/rad]", recording.plant["sigma"]),
+        ("sigma [N.m/rad]", recording.estimators["RESIDUAL"]["sigma"]),
+        ("epsilon [N.m]", recording.estimators["RESIDUAL"]["epsilon"]),
+        ("valid", recording.estimators["RESIDUAL"]["valid"]),
+    ):
+        np.testing.assert_array_equal(table[:, head.index(title)], values)
+
+
+def test_table_file_of_one_seed(tmp_path: Path) -> None:
+    result = one_seed("table1")
+    results.write_table(result, tmp_path / "table.csv")
+    with (tmp_path / "table.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["estimation"] for row in rows] == ["MODEL", "SENSOR", "RESIDUAL"]
+    for row in rows:
+        expected = result.indices[0][row["estimation"]]
+        assert float(row["MSE [(N.m/rad)2]"]) == expected.mse
+        assert float(row["MSREP [%]"]) == expected.msrep
+        assert float(row["MSREP after 1 s [%]"]) == expected.msrep_settled
+        assert row["MSE 95 % half width [(N.m/rad)2]"] == ""
+        assert row["seeds"] == "1"
+    assert float(rows[2]["MSE of the paper [(N.m/rad)2]"]) == 128.1614
+    assert float(rows[2]["MSREP of the paper [%]"]) == 0.58
+
+
+def test_mean_and_interval_over_seeds(tmp_path: Path) -> None:
+    each = [
+        {name: Indices(x, x / 100, x / 1000) for name in ("MODEL", "SENSOR", "RESIDUAL")}
+        for x in (1.0, 2.0, 3.0)
+    ]
+    result = replace(one_seed("table1"), seeds=[1, 2, 3], indices=each)
+    results.write_table(result, tmp_path / "table.csv")
+    with (tmp_path / "table.csv").open(newline="") as file:
+        row = next(csv.DictReader(file))
+    assert float(row["MSE [(N.m/rad)2]"]) == 2.0
+    assert float(row["MSE 95 % half width [(N.m/rad)2]"]) == pytest.approx(2.48414, rel=1e-5)
+    assert row["seeds"] == "3"
+    assert "2.00 +- 2.48" in results.table(result)
+    assert "3 seeds" in results.conditions(result)
+
+
+def test_printed_table_stands_beside_the_papers() -> None:
+    result = one_seed("table1")
+    head, *rows = (line.split() for line in results.table(result).splitlines())
+    assert head.count("paper") == 2
+    for name, mse, paper_mse, msrep, paper_msrep, settled in rows:
+        indices = result.indices[0][name]
+        assert float(mse) == pytest.approx(indices.mse, abs=0.005)
+        assert float(msrep) == pytest.approx(indices.msrep, abs=0.0005)
+        assert float(settled) == pytest.approx(indices.msrep_settled, abs=0.000005)
+        paper = result.scenario.paper[name]
+        assert (float(paper_mse), float(paper_msrep)) == pytest.approx(paper, abs=0.005)
+    assert [row[0] for row in rows] == ["MODEL", "SENSOR", "RESIDUAL"]
+
+
+def test_conditions_name_what_the_run_depends_on() -> None:
+    line = results.conditions(one_seed("table1"))
+    assert "15 s" in line
+    assert "T = 1 ms" in line
+    assert "V_a = " in line
+    assert "seed 1" in line
+
+
+def test_folder_appears_filled_or_not_at_all(tmp_path: Path) -> None:
+    out = tmp_path / "a" / "b"
+    with pytest.raises(RuntimeError), results.folder(out) as unfinished:
+        (unfinished / "half.csv").write_text("")
+        raise RuntimeError
+    assert list(tmp_path.iterdir()) == []
+    with results.folder(out) as unfinished:
+        (unfinished / "whole.csv").write_text("1")
+        assert not (out / "whole.csv").exists()
+    assert [path.name for path in out.iterdir()] == ["whole.csv"]
+
+
+def test_failure_keeps_earlier_results(tmp_path: Path) -> None:
+    (tmp_path / "table.csv").write_text("earlier")
+    with pytest.raises(RuntimeError), results.folder(tmp_path) as unfinished:
+        (unfinished / "table.csv").write_text("half")
+        raise RuntimeError
+    assert [path.name for path in tmp_path.iterdir()] == ["table.csv"]
+    assert (tmp_path / "table.csv").read_text() == "earlier"
