@@ -5,7 +5,8 @@
 
 #include "plant_functions.h"
 
-enum { STATES = SH_PLANT_STATES, INPUTS = SH_PLANT_INPUTS, STAGES = 3, NEWTON_ITERATIONS = 10 };
+enum { STATES = SH_PLANT_STATES, INPUTS = SH_PLANT_INPUTS, STAGES = 3 };
+enum { MAX_NEWTON_ITERATIONS = 10, MAX_ATTEMPTS = 10000000 };
 
 static const double SCALE[STATES] = SH_PLANT_SCALES;
 static const double ERROR_TOLERANCE = 1e-8;
@@ -106,7 +107,7 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     int iteration, i, j;
 
     transform(T, W, Z);
-    for (iteration = 0; iteration < NEWTON_ITERATIONS; ++iteration) {
+    for (iteration = 0; iteration < MAX_NEWTON_ITERATIONS; ++iteration) {
         const double previous = change;
 
         for (i = 0; i < STAGES; ++i) {
@@ -187,9 +188,9 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
     /* Far below any time constant, far above the rounding of the time. */
     const double shortest = 1e-12 * (1.0 + duration);
     double elapsed = 0.0;
-    int steps = 0, j;
+    int attempt, steps = 0, j;
 
-    while (elapsed < duration) {
+    for (attempt = 0; attempt < MAX_ATTEMPTS; ++attempt) {
         const double left = duration - elapsed;
         const double pieces = left > *h ? ceil(left / *h) : 1.0;
         const double step = left / pieces;
@@ -203,11 +204,13 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
         if (error <= 1.0) {
             for (j = 0; j < STATES; ++j)
                 x[j] = x_new[j];
-            elapsed = pieces > 1.0 ? elapsed + step : duration;
+            elapsed += step;
             ++steps;
+            if (pieces <= 1.0)
+                return steps;
         } else if (step <= shortest) {
             return 0;
         }
     }
-    return steps;
+    return 0;
 }

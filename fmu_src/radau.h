@@ -20,8 +20,9 @@ double sh_radau_step(const double *x, const double *u, const double *du, const d
 /* Advances x by duration > 0 in steps that keep to the allowed error.
  *
  * *h is the step to try first and, after it, the step that suits what follows;
- * infinite if nothing is known. Returns the number of steps; 0 if there is none
- * that keeps to the error, however short, and x is then where that was.
+ * infinite if nothing is known. Returns the number of steps; 0 if even a
+ * negligible step does not keep to the error, or after ten million attempts, and
+ * x is then where that was.
  */
 int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
                        double duration, double *h);

@@ -69,9 +69,7 @@ class Library:
             formats.append(({"double": "f8", "int": "i4"}[item.cname], tuple(shape)))
             offsets.append(field.offset)
         size = self.ffi.sizeof(struct)
-        return np.dtype(
-            {"names": names, "formats": formats, "offsets": offsets, "itemsize": size}
-        )
+        return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
 
     def parameters(self, values: Mapping[str, Any]) -> Any:
         """A `sh_parameters *`: the defaults, then `values` by their dotted names."""

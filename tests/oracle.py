@@ -11,7 +11,7 @@ Parameters are a flat mapping from the names of the FMU to values.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 
 import gmpy2
@@ -50,7 +50,7 @@ DEFAULTS: Parameters = {
     "residual.K_I": 300.0,
     "filter.kind": MODIFIED_KALMAN,
     "filter.weighting": NORMALIZED,
-    "filter.V_a": 2e8,
+    "filter.V_a": 3e9,
     "filter.V_max": 10.0,
     "filter.V_min": 0.1,
     "filter.alpha": 6.0,
@@ -76,9 +76,8 @@ DEFAULTS: Parameters = {
 def exact(values: Array | list[float] | float) -> Exact:
     """Doubles as multiple-precision numbers, of the same shape."""
     doubles = np.asarray(values, dtype=float)
-    numbers = np.empty(doubles.shape, dtype=object)
-    numbers.flat = [gmpy2.mpfr(float(x)) for x in doubles.flat]
-    return numbers
+    numbers = np.array([gmpy2.mpfr(float(x)) for x in doubles.flat], dtype=object)
+    return numbers.reshape(doubles.shape)
 
 
 def rounded(numbers: Exact) -> Array:
@@ -116,11 +115,7 @@ def velocity_filter(p: Parameters, measured: Array, counts: float) -> tuple[Exac
     for z_k in z[1:]:
         xi = A @ xi
         P = A @ P @ A.T + Q
-        R = (
-            p["filter.R"]
-            if p["filter.kind"] == KALMAN
-            else measurement_variance(p, xi[1], w_s)
-        )
+        R = p["filter.R"] if p["filter.kind"] == KALMAN else measurement_variance(p, xi[1], w_s)
         K = P @ C / (C @ P @ C + R)
         xi = xi + K * (z_k - C @ xi)
         P = P - np.outer(K, C @ P)
@@ -141,7 +136,8 @@ def residual_torque(p: Parameters, theta: Exact, theta_dot: Exact, tau: Array) -
         I_tau = I_tau + (torque[k] + torque[k - 1]) / 2 * T
         before, r = r, K_I * (B * gamma * theta_dot[k] + D * gamma * theta[k] - I_tau)
         r_e.append((2 - T * K_I) / (2 + T * K_I) * r_e[-1] + 2 * (r - before) / (2 + T * K_I))
-    return gamma * np.array(r_e)
+    estimate: Exact = gamma * np.array(r_e)
+    return estimate
 
 
 def basis(n: int, m: int, set_point: Exact, phi: Exact) -> tuple[Exact, Exact]:
@@ -197,9 +193,7 @@ def least_squares(
         epsilons.append(epsilon)
         rhos.append(rho)
         stability.append(a)
-    return Regression(
-        np.array(etas), np.array(epsilons), np.array(rhos), np.array(stability), P
-    )
+    return Regression(np.array(etas), np.array(epsilons), np.array(rhos), np.array(stability), P)
 
 
 def ridge(weight: Exact, P_0: float, eta_0: Array, F: Exact, y: Exact) -> Exact:
@@ -216,7 +210,8 @@ def ridge(weight: Exact, P_0: float, eta_0: Array, F: Exact, y: Exact) -> Exact:
 
 def solve(matrix: Exact, right: Exact) -> Exact:
     """Solution of a symmetric positive definite system, by elimination."""
-    A, b = matrix.copy(), right.copy()
+    A: Exact = matrix.copy()
+    b: Exact = right.copy()
     size = len(A)
     for j in range(size):
         factors = A[j + 1 :, j] / A[j, j]
@@ -261,7 +256,7 @@ class Estimate:
 
 
 def estimator(
-    p: Parameters, measurements: Array, variants: list[Parameters], eta_0: Array | None = None
+    p: Parameters, measurements: Array, variants: Sequence[Parameters], eta_0: Array | None = None
 ) -> list[Estimate]:
     """The whole estimator, one Estimate for each of `variants`.
 

@@ -71,8 +71,12 @@ class Awas:
                 (tau_ext - self.link_D_q * q_dot - tau_e - self.link_mgl * math.sin(q))
                 / self.link_M,
                 (tau - friction + tau_e / self.motor_gamma) / (self.motor_B * self.motor_gamma),
-                (tau_c - self.motor_c_D * self.motor_c_gamma * theta_c_dot
-                 - psi_e / self.motor_c_gamma) / (self.motor_c_B * self.motor_c_gamma),
+                (
+                    tau_c
+                    - self.motor_c_D * self.motor_c_gamma * theta_c_dot
+                    - psi_e / self.motor_c_gamma
+                )
+                / (self.motor_c_B * self.motor_c_gamma),
             ]
         )
 
@@ -138,7 +142,7 @@ def record(
     plant: Awas, states: Callable[[Array], Array], tau: Torque, samples: int, T: float, seed: int
 ) -> Recording:
     """Measures a solution with the paper's encoders and noise, (32), (33)."""
-    t = T * np.arange(samples)
+    t: Array = T * np.arange(samples, dtype=float)
     q, theta, theta_c, _, theta_dot, _ = states(t)
     noise = np.random.default_rng(seed)
     phi = q - theta

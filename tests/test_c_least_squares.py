@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import oracle
 import pytest
-from c_library import Array, Library, load
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+import oracle
+from c_library import Array, Library, load
 from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
 from reference_plant import table1_recording
 
@@ -30,9 +31,7 @@ def c(build: Path) -> Library:
 class Recursion:
     """The C recursion over numpy arrays."""
 
-    def __init__(
-        self, c: Library, kind: int, factor: float, P_0: float, eta_0: Array
-    ) -> None:
+    def __init__(self, c: Library, kind: int, factor: float, P_0: float, eta_0: Array) -> None:
         self.c, self.kind, self.factor = c, kind, factor
         self.state = c.new("sh_least_squares")
         self.innovation = c.new("sh_innovation")
@@ -85,9 +84,7 @@ def test_every_sample_against_the_textbook(c: Library, kind: int, size: int) -> 
     factor, P_0 = KINDS[kind]
     rng = np.random.default_rng(100 * kind + size)
     F, y, eta_0 = rng.normal(size=(60, size)), rng.normal(size=60), rng.normal(size=size)
-    want = oracle.least_squares(
-        kind, factor, P_0, eta_0, oracle.exact(F), oracle.exact(y)[:, None]
-    )
+    want = oracle.least_squares(kind, factor, P_0, eta_0, oracle.exact(F), oracle.exact(y)[:, None])
     recursion = Recursion(c, kind, factor, P_0, eta_0)
     for k in range(60):
         assert recursion.update(F[k], y[k])
@@ -243,7 +240,7 @@ ANY = st.floats(allow_nan=True, allow_infinity=True, width=64)
     samples=st.lists(st.tuples(ANY, ANY, ANY, ANY), max_size=30),
 )
 @settings(max_examples=300, deadline=None, derandomize=True)
-def test_whatever_comes_P_stays_positive(  # noqa: N802
+def test_whatever_comes_P_stays_positive(
     build: Path, kind: int, P_0: float, samples: list[tuple[float, ...]]
 ) -> None:
     recursion = Recursion(load(build), kind, KINDS[kind][0], P_0, np.zeros(3))

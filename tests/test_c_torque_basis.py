@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import oracle
 import pytest
+
+import oracle
 from c_library import Array, Library, load
 
 

@@ -6,8 +6,9 @@ import math
 from pathlib import Path
 
 import numpy as np
-import oracle
 import pytest
+
+import oracle
 from c_library import Array, Library, load
 
 B, D_THETA, GAMMA = 2.3e-5, 1e-3, 50.0
@@ -29,9 +30,7 @@ def run(
     estimate = [0.0]
     for k in range(1, len(theta)):
         estimate.append(
-            c.lib.sh_torque_residual_step(
-                residual, motor, theta[k], theta_dot[k], tau[k], K_I, T
-            )
+            c.lib.sh_torque_residual_step(residual, motor, theta[k], theta_dot[k], tau[k], K_I, T)
         )
     assert residual.r_e * GAMMA == estimate[-1]
     return np.array(estimate)
@@ -78,7 +77,7 @@ def test_friction_and_inertia_alone_show_nothing(c: Library) -> None:
     assert np.max(np.abs(estimate)) < 1e-4 * GAMMA * np.max(np.abs(tau))
 
 
-def test_bandwidth_is_K_I(c: Library) -> None:  # noqa: N802
+def test_bandwidth_is_K_I(c: Library) -> None:
     # GIVEN a flexibility torque at the frequency K_I WHEN it has settled THEN the residual has
     # 1 / sqrt(2) of the amplitude, 45 degrees late
     t = T * np.arange(4000)
@@ -116,7 +115,7 @@ def test_after_lost_samples_it_goes_on_from_its_last_value(c: Library) -> None:
 
 
 @pytest.mark.parametrize(("T", "K_I"), [(1e-3, 300.0), (1e-4, 10.0), (1e-2, 199.0)])
-def test_against_the_printed_form(c: Library, T: float, K_I: float) -> None:  # noqa: N803
+def test_against_the_printed_form(c: Library, T: float, K_I: float) -> None:
     # (8) with I_tau and r(k) against its differences in C
     rng = np.random.default_rng(2)
     theta, theta_dot, tau = rng.normal(size=(3, 1000))

@@ -12,6 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+
 import sigmahat
 from sigmahat.cli import main
 from sigmahat.figures import FIGURES
@@ -41,7 +42,7 @@ def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> Non
     for words in ("table1", "V_a", "MODEL", "24.14", "SENSOR", "24.36", "RESIDUAL", "128.16"):
         assert words in done.stdout
     expected = {f"{name}.{kind}" for name in FIGURES for kind in ("png", "svg")}
-    expected |= {"MODEL.csv", "SENSOR.csv", "RESIDUAL.csv", "table.csv"}
+    expected |= {"MODEL.csv", "MODEL-measured.csv", "SENSOR.csv", "RESIDUAL.csv", "table.csv"}
     assert {path.name for path in out.iterdir()} == expected
 
 
@@ -116,6 +117,12 @@ def test_folder_that_is_a_file(out: str, tmp_path: Path) -> None:
     assert (tmp_path / "file").read_text() == "mine"
 
 
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder that nobody may write to")
+def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
+    line = refused("reproduce", "--out", "/proc/sigmahat", cwd=tmp_path)
+    assert "cannot write /proc/sigmahat" in line
+
+
 def test_folder_without_permission(tmp_path: Path) -> None:
     locked = tmp_path / "locked"
     locked.mkdir(mode=0o500)
@@ -144,8 +151,9 @@ def test_fmus_not_built(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("delay", [0.3, 1.0, 3.0])
-@pytest.mark.parametrize("seeds", ["1", "40"])
+@pytest.mark.parametrize(
+    ("seeds", "delay"), [("1", 0.6), ("100", 0.5), ("100", 0.7), ("100", 1.5), ("100", 4.0)]
+)
 def test_interrupt(seeds: str, delay: float, tmp_path: Path) -> None:
     """Ctrl-C reaches the whole process group, at any time."""
     process = subprocess.Popen(
@@ -159,8 +167,8 @@ def test_interrupt(seeds: str, delay: float, tmp_path: Path) -> None:
     time.sleep(delay)
     os.killpg(process.pid, signal.SIGINT)
     output, errors = process.communicate(timeout=30)
-    if process.returncode == 0:
-        pytest.skip("finished before the interrupt")
-    assert (process.returncode, output) == (130, "")
+    # Python ends by the signal itself if that came while it was importing; to a shell it is 130.
+    assert process.returncode in (130, -signal.SIGINT)
+    assert output == ""
     assert errors.split("\n") == ["", "sigmahat: interrupted", ""]
     assert list(tmp_path.iterdir()) == []

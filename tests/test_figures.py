@@ -10,6 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
+
 from recordings import one_seed
 from sigmahat.figures import FIGURES, save
 

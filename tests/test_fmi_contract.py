@@ -8,6 +8,7 @@ from typing import Any
 
 import fmpy
 import pytest
+
 from c_library import Library
 from fmi_instance import Instance
 

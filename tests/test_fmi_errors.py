@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
 from fmi_instance import ERROR, OK, WARNING, Instance
 
 OUT_OF_RANGE = [

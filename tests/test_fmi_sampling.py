@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from fmi_instance import ERROR, OK, Instance
 
 SENSOR, STANDARD, FINITE_DIFFERENCE = 2, 2, 3

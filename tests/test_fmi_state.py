@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from fmi_instance import ERROR, OK, Instance
 
 OUTPUTS = ["sigma", "tau_e", "tau_e_residual", "theta_dot", "a", "rho", "epsilon", "eta[2,1]"]

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+
 from sigmahat.metrics import indices, mean_interval, mse, msrep
 
 

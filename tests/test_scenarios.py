@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+
 from recordings import one_seed
 from sigmahat.metrics import mean_interval
 from sigmahat.reproduce import Result, reproduce
@@ -51,6 +52,13 @@ def test_table_1_model() -> None:
     model = one_seed("table1").indices[0]["MODEL"]
     assert model.mse == pytest.approx(23.5, abs=1.0)
     assert model.msrep == pytest.approx(0.12, abs=0.01)
+
+
+def test_table_1_modality_model_of_the_fmu() -> None:
+    """(28) at the measured positions, which are quantised but carry no noise."""
+    measured = one_seed("table1").indices[0]["MODEL-measured"]
+    assert measured.msrep == pytest.approx(0.12, abs=0.01)
+    assert measured.msrep_settled < 0.01
 
 
 def test_table_1_residual_over_20_seeds(twenty_seeds: Result) -> None:

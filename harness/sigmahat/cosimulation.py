@@ -141,9 +141,7 @@ def _series(recorder: Recorder, slave: Slave, start: Mapping[str, Value]) -> Ser
 class _Drive:
     """Steps the plant under inputs that are linear from t_k to t_k+1."""
 
-    def __init__(
-        self, plant: Slave, inputs: Mapping[str, Signal], t: NDArray[np.float64]
-    ) -> None:
+    def __init__(self, plant: Slave, inputs: Mapping[str, Signal], t: NDArray[np.float64]) -> None:
         count = len(inputs)
         values = np.empty((len(t), count))
         for i, signal in enumerate(inputs.values()):

@@ -30,6 +30,8 @@ _MODALITIES: dict[str, dict[str, Any]] = {
 # Wide and light, so that an estimate on top of the truth still shows it.
 _TRUE: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 3.0, "label": "true"}
 
+_HELD: dict[str, Any] = {"color": _SKY, "drawstyle": "steps-post"}
+
 _STYLE: Any = {
     "font.size": 9,
     "axes.grid": True,
@@ -72,10 +74,10 @@ def velocity(recording: Recording) -> Figure:
     for axes, window in zip(panels, (_everything(t), _window(t, reversal, 0.05)), strict=True):
         for values, style in (
             (true, _TRUE),
-            (differenced, {"color": _SKY, "label": r"differenced, $\Delta\theta/T$"}),
+            (differenced, {"label": r"differenced, $\Delta\theta/T$", **_HELD}),
             (filtered, {"color": _VERMILION, "label": "modified kinematic Kalman filter"}),
         ):
-            _line(axes, t[window], values[window], drawstyle="steps-post", **style)
+            _line(axes, t[window], values[window], **style)
         axes.set_ylabel(_VELOCITY)
     panels[0].legend()
     panels[1].set_title("at a reversal", fontsize=9)

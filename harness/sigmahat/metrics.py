@@ -66,9 +66,7 @@ def mean_interval(values: Sequence[float]) -> tuple[float, float]:
     return mean, float(stdtrit(len(values) - 1, 0.975)) * deviation / math.sqrt(len(values))
 
 
-def _pair(
-    sigma: ArrayLike, estimate: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _pair(sigma: ArrayLike, estimate: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     true, estimated = np.asarray(sigma, float), np.asarray(estimate, float)
     if true.ndim != 1 or true.shape != estimated.shape or len(true) < 2:
         raise ValueError(

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from multiprocessing.resource_tracker import ensure_running
 from typing import Any
 
 from sigmahat.cosimulation import Recording, simulate
@@ -99,12 +100,25 @@ def _indices(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
 
 @contextmanager
 def _interrupts_for_the_parent_alone() -> Iterator[None]:
-    """Processes started inside ignore Ctrl-C, which a terminal sends to them too."""
-    if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread may change how signals are handled
+    """Processes started inside do not hear Ctrl-C, which a terminal sends to them too.
+
+    They inherit the blocked signal. Here it waits until the end of the block, also if it comes to
+    another thread, so that no process is left half started.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    waiting: list[int] = []
+    main = threading.current_thread() is threading.main_thread()
+    if main:
+        handler = signal.signal(signal.SIGINT, lambda number, frame: waiting.append(number))
+    ensure_running()  # this helper of multiprocessing would lift the block when it starts
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        if main:
+            signal.signal(signal.SIGINT, handler)
+    if waiting:
+        raise KeyboardInterrupt

@@ -67,8 +67,8 @@ def table(result: Result) -> str:
     for name in result.scenario.estimators:
         cells = [_cell(result, name, index) for index, _ in _INDICES]
         if paper:
-            cells[1:1] = [f"{paper[name][0]:.2f}"]
-            cells[3:3] = [f"{paper[name][1]:.2f}"]
+            known = [f"{index:.2f}" for index in paper.get(name, ())] or ["", ""]
+            cells[1:1], cells[3:3] = known[:1], known[1:]
         rows.append([name, *cells])
     widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
     return "\n".join(
@@ -111,9 +111,9 @@ def _mean(result: Result, name: str, index: str) -> tuple[float, float]:
 
 def _cell(result: Result, name: str, index: str) -> str:
     mean, half_width = _mean(result, name, index)
-    digits = {"mse": 2, "msrep": 3}.get(index, 5)
-    interval = "" if math.isnan(half_width) else f" +- {half_width:.{digits}f}"
-    return f"{mean:.{digits}f}{interval}"
+    form = {"mse": ".2f", "msrep": ".3f", "msrep_settled": ".1e"}[index]
+    interval = "" if math.isnan(half_width) else f" +- {half_width:{form}}"
+    return f"{mean:{form}}{interval}"
 
 
 def _write(path: Path, head: list[str], rows: Iterable[Iterable[Any]]) -> None:

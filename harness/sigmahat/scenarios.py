@@ -104,7 +104,7 @@ def _estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> Es
 
 
 def _modalities(start: Mapping[str, Value]) -> dict[str, Estimator]:
-    """The three modalities of section VI.B.
+    """The three modalities of section VI.B, and the modality Model of the FMU.
 
     The MODEL of the paper is fed with (28) at the actual deformation (its footnote 1), like a
     sensor without noise. The modality Model of the FMU has only the measured positions.
@@ -113,6 +113,7 @@ def _modalities(start: Mapping[str, Value]) -> dict[str, Estimator]:
         "MODEL": _estimator({"modality": "Sensor", **start}, sensor="tau_e"),
         "SENSOR": _estimator({"modality": "Sensor", **start}),
         "RESIDUAL": _estimator({"modality": "Residual", **start}),
+        "MODEL-measured": _estimator({"modality": "Model", **start}),
     }
 
 

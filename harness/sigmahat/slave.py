@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import logging
-import shutil
 from collections.abc import Callable, Iterable, Mapping
 from ctypes import byref
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import fmpy
@@ -45,13 +45,14 @@ class Fmu:
         if self.description.fmiVersion != "2.0" or self.description.coSimulation is None:
             raise FmuError(f"{path}: expected an FMU for FMI 2.0 Co-Simulation")
         self.variables = {v.name: v for v in self.description.modelVariables}
-        self.folder = fmpy.extract(path)
+        self._unpacked = TemporaryDirectory(prefix="sigmahat-", ignore_cleanup_errors=True)
+        self.folder = fmpy.extract(path, self._unpacked.name)
 
     def __enter__(self) -> Fmu:
         return self
 
     def __exit__(self, *_: object) -> None:
-        shutil.rmtree(self.folder, ignore_errors=True)
+        self._unpacked.cleanup()
 
     def variable(self, name: str, causality: str | None = None) -> Any:
         """Returns FMPy's description of a variable. Raises ValueError if there is none."""
@@ -126,7 +127,7 @@ class Slave:
                 unzipDirectory=fmu.folder,
                 instanceName=name,
             )
-            self.fmi.instantiate(callbacks=self._callbacks)
+            self.fmi.instantiate(callbacks=self._callbacks, loggingOn=True)
         except Exception as error:
             raise FmuError(self._explain(str(error))) from error
         self.component = self.fmi.component

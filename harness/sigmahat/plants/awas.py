@@ -28,8 +28,8 @@ k_s = plant.parameter("spring.k_s")
 r_0 = plant.parameter("spring.r_0")
 b = plant.parameter("spring.b")
 
-# A deformation of some 0.01 rad carries the torque, (28). The velocity of the secondary motor
-# follows its torque within 10 us; how exactly is of no consequence.
+# A deformation of some 0.01 rad carries the torque, (28). The secondary motor jumps to its
+# velocity within 10 us of a change of its torque; how exactly matters less.
 q = plant.state("q", plant.parameter("initial.q"), scale=0.01)
 theta = plant.state("theta", plant.parameter("initial.theta"), scale=0.01)
 theta_c = plant.state("theta_c", plant.parameter("initial.theta_c"), scale=1.0)

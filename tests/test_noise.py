@@ -1,0 +1,119 @@
+"""Noise of the plant's sensors, as the FMU gives it."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from plant_runs import Array, run_awas
+
+SAMPLES = 50_000
+MASK = (1 << 64) - 1
+
+
+@cache
+def normals(seed: int, samples: int = SAMPLES) -> Array:
+    """Noise of unit variance of tau and of tau_e [size: samples x 2], of a plant at rest."""
+    start = {"noise.tau_variance": 1.0, "noise.tau_e_variance": 1.0, "noise.seed": seed}
+    run = run_awas(1e-3, np.zeros((samples, 3)), start, ["tau_measured", "tau_e_measured"])
+    return np.column_stack([run["tau_measured"], run["tau_e_measured"]])
+
+
+class SplitMix64:
+    """The generator of Steele, Lea and Flood (2014), in Python's integers."""
+
+    def __init__(self, state: int) -> None:
+        self.state = state & MASK
+
+    def bits(self) -> int:
+        self.state = (self.state + 0x9E3779B97F4A7C15) & MASK
+        z = self.state
+        z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & MASK
+        z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & MASK
+        return z ^ (z >> 31)
+
+    def uniform(self) -> float:
+        return ((self.bits() >> 12) + 0.5) / 2.0**52
+
+
+def normal(seed: int, channel: int, sample: int) -> float:
+    """A standard normal by the ratio of uniforms (Kinderman, Monahan 1977)."""
+    by_seed = SplitMix64(seed).bits()
+    by_channel = SplitMix64(by_seed + channel).bits()
+    generator = SplitMix64(SplitMix64(by_channel + sample).bits())
+    while True:
+        v = math.sqrt(8 / math.e) * (generator.uniform() - 0.5)
+        u = generator.uniform()
+        if (v / u) ** 2 <= -4 * math.log(u):
+            return v / u
+
+
+@pytest.mark.parametrize("seed", [0, 1, -5, 2**31 - 1, -(2**31)])
+def test_noise_is_the_published_method_bit_for_bit(seed: int) -> None:
+    expected = [[normal(seed, channel, k) for channel in (0, 1)] for k in range(300)]
+    np.testing.assert_array_equal(normals(seed, 300), expected)
+
+
+def test_noise_of_seed_1_never_changes() -> None:
+    pinned = [
+        [1.6373289364142634, 0.49263133397296516],
+        [0.4659772059901082, -0.38424641360121004],
+        [1.2758522114736408, -0.08908667161240971],
+    ]
+    np.testing.assert_array_equal(normals(1)[:3], pinned)
+
+
+@pytest.mark.parametrize("channel", [0, 1])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_noise_is_standard_normal(seed: int, channel: int) -> None:
+    noise = normals(seed)[:, channel]
+    # Bounds of five standard deviations of each estimate.
+    five = 5 / math.sqrt(SAMPLES)
+    assert abs(noise.mean()) < five
+    assert abs(noise.var() - 1) < five * math.sqrt(2)
+    assert abs(stats.skew(noise)) < five * math.sqrt(6)
+    assert abs(stats.kurtosis(noise)) < five * math.sqrt(24)
+    assert stats.kstest(noise, "norm").pvalue > 1e-3
+
+
+def test_noise_is_white_and_independent_between_channels_and_seeds() -> None:
+    five = 5 / math.sqrt(SAMPLES)
+    streams = np.column_stack([normals(seed) for seed in (1, 2, 3)])
+    correlation = np.corrcoef(streams.T) - np.eye(6)
+    assert np.abs(correlation).max() < five
+    for lag in (1, 2, 3, 10, 1000):
+        for one in streams.T:
+            for other in streams.T:
+                assert abs(np.mean(one[lag:] * other[:-lag])) < five
+
+
+def test_same_seed_same_noise() -> None:
+    normals.cache_clear()
+    first = normals(7, 100)
+    normals.cache_clear()
+    np.testing.assert_array_equal(normals(7, 100), first)
+
+
+def test_noise_is_drawn_once_per_step_whatever_its_length() -> None:
+    start = {"noise.tau_variance": 1.0}
+    short = run_awas(1e-4, np.zeros((50, 3)), start, ["tau_measured"])
+    long = run_awas(1e-2, np.zeros((50, 3)), start, ["tau_measured"])
+    np.testing.assert_array_equal(short["tau_measured"], long["tau_measured"])
+
+
+def test_noise_has_the_variance_of_the_parameters() -> None:
+    start = {"noise.tau_variance": 4.0, "noise.tau_e_variance": 0.25}
+    run = run_awas(1e-3, np.zeros((100, 3)), start, ["tau_measured", "tau_e_measured"])
+    np.testing.assert_array_equal(run["tau_measured"], 2 * normals(1)[:100, 0])
+    np.testing.assert_array_equal(run["tau_e_measured"], normals(1)[:100, 1] / 2)
+
+
+def test_noise_is_that_of_the_paper_by_default() -> None:
+    run = run_awas(1e-3, np.zeros((100, 3)), {}, ["tau_measured", "tau_e_measured"])
+    expected = normals(1)[:100] * np.sqrt([1e-5, 1e-3])  # (32), (33)
+    np.testing.assert_array_equal(run["tau_measured"], expected[:, 0])
+    np.testing.assert_array_equal(run["tau_e_measured"], expected[:, 1])

@@ -1,0 +1,236 @@
+"""AwasPlant.fmu against the paper's equations solved by scipy, and against physics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fmi_instance import ERROR, OK, Instance
+from plant_runs import QUIET, STATES, Array, run_awas, sinusoids, times
+from reference_plant import (
+    SCREW,
+    Awas,
+    Torque,
+    paper_tau,
+    paper_tau_c,
+    round_to_counts,
+    solve,
+)
+
+RETRACTED = 0.030 / SCREW  # theta_c for a lever arm of 70 mm
+AT_REST = np.array([0.0, 0.0, RETRACTED, 0.0, 0.0, 0.0])
+FRICTIONLESS = {"link.D_q": 0.0, "motor.D_theta": 0.0, "motor_c.D": 0.0}
+
+
+def states(run: dict[str, Array]) -> Array:
+    return np.column_stack([run[name] for name in STATES])
+
+
+def relative_error(run: dict[str, Array], reference: Array) -> Array:
+    """Largest error of each state over its range [size: 6]."""
+    error: Array = np.abs(states(run) - reference).max(axis=0) / np.ptp(reference, axis=0)
+    return error
+
+
+def ramp(begin: float, slope: float) -> Torque:
+    return lambda s: begin + slope * s
+
+
+def solve_piecewise(plant: Awas, h: float, torques: Array, initial: Array) -> Array:
+    """States [size: steps + 1 x 6] under torques linear between the rows given every h [s]."""
+    reference = [initial]
+    for begin, end in pairwise(torques):
+        tau, tau_c, tau_ext = (
+            ramp(value, slope) for value, slope in zip(begin, (end - begin) / h, strict=True)
+        )
+        solution = solve(plant, tau, tau_c, reference[-1], h, tau_ext)
+        reference.append(solution(np.array([h]))[:, 0])
+    return np.array(reference)
+
+
+@pytest.mark.parametrize("h", [1e-4, 1e-3])
+def test_table1_is_the_solution_of_the_equations(h: float) -> None:
+    # A sinusoid interpolated linearly is smaller by (w h)^2 / 12, but for a ripple of mean zero.
+    share = 1 - (0.2 * math.pi * h) ** 2 / 12
+    solution = solve(
+        Awas(), lambda t: share * paper_tau(t), lambda t: share * paper_tau_c(t), AT_REST, 15.0
+    )
+    t = times(h, 15.0)
+    run = run_awas(h, sinusoids(t, (0.3, 0.1), (8.0, 0.1), (0.0, 0.0)))
+    assert relative_error(run, solution(t).T).max() < 1e-7
+
+
+def test_table1_in_steps_of_10_ms_is_the_solution_of_the_equations() -> None:
+    h = 1e-2
+    torques = sinusoids(times(h, 15.0), (0.3, 0.1), (8.0, 0.1), (0.0, 0.0))
+    reference = solve_piecewise(Awas(), h, torques, AT_REST)
+    assert relative_error(run_awas(h, torques), reference).max() < 1e-8
+
+
+@pytest.mark.parametrize("h", [1e-3, 1e-2])
+def test_friction_gravity_and_external_torque_enter_as_in_the_equations(h: float) -> None:
+    plant = Awas(link_mgl=1.0, motor_tau_coulomb=0.02)
+    start = {"link.mgl": 1.0, "motor.tau_coulomb": 0.02}
+    torques = sinusoids(times(h, 0.4), (0.3, 2.0), (8.0, 3.0), (5.0, 1.1))
+    reference = solve_piecewise(plant, h, torques, AT_REST)
+    assert relative_error(run_awas(h, torques, start), reference).max() < 1e-7
+
+
+def test_held_torques_are_held() -> None:
+    h = 1e-2
+    torques = sinusoids(times(h, 0.5), (0.3, 1.0), (8.0, 1.0), (1.0, 2.0))
+    run = run_awas(h, torques, QUIET, [*STATES, "tau_measured"], held=True)
+    reference = [AT_REST]
+    for held in torques[:-1]:
+        piece = solve_piecewise(Awas(), h, np.array([held, held]), reference[-1])
+        reference.append(piece[1])
+    assert relative_error(run, np.array(reference)).max() < 1e-8
+    np.testing.assert_array_equal(run["tau_measured"][1:], torques[:-1, 0])
+
+
+def test_measured_torque_is_that_at_the_end_of_the_step() -> None:
+    torques = sinusoids(times(1e-2, 1.0), (0.3, 1.0), (0.0, 0.0), (0.0, 0.0))
+    run = run_awas(1e-2, torques, QUIET, ["tau_measured", "tau_e_measured", "tau_e"])
+    np.testing.assert_allclose(run["tau_measured"], torques[:, 0], rtol=0, atol=1e-15)
+    np.testing.assert_array_equal(run["tau_e_measured"], run["tau_e"])
+
+
+def test_energy_is_conserved_without_friction_and_torques() -> None:
+    # Conserved only if tau_e and psi_e are the derivatives of one potential.
+    plant = Awas()
+    start = {
+        **FRICTIONLESS,
+        "link.mgl": 1.0,
+        "initial.q": 0.35,
+        "initial.theta": 0.05,
+        "initial.q_dot": -3.0,
+        "initial.theta_c_dot": 40.0,
+    }
+    run = run_awas(1e-3, np.zeros((3001, 3)), start)
+    q, theta, theta_c, q_dot, theta_dot, theta_c_dot = states(run).T
+    r = plant.lever_arm(theta_c)
+    inertia = plant.motor_B * plant.motor_gamma**2
+    inertia_c = plant.motor_c_B * plant.motor_c_gamma**2
+    spring = plant.spring_k_s * r**2 * np.sin(q - theta) ** 2
+    energy = (plant.link_M * q_dot**2 + inertia * theta_dot**2 + inertia_c * theta_c_dot**2) / 2
+    energy += spring + 1.0 * (1 - np.cos(q))
+    assert np.ptp(spring) > 1.0 and np.ptp(r) > 0.01  # it does go to and fro
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-7)
+
+
+def test_outputs_are_those_of_the_state() -> None:
+    plant = Awas()
+    torques = sinusoids(times(1e-3, 0.5), (0.5, 3.0), (8.0, 1.0), (2.0, 5.0))
+    outputs = ["phi", "r", "tau_e", "sigma"]
+    run = run_awas(1e-3, torques, record=[*STATES, *outputs])
+    phi, r = run["q"] - run["theta"], plant.lever_arm(run["theta_c"])
+    expected = (phi, r, plant.flexibility_torque(r, phi), plant.stiffness(r, phi))
+    for name, value in zip(outputs, expected, strict=True):
+        np.testing.assert_allclose(run[name], value, rtol=1e-12, atol=1e-14, err_msg=name)
+
+
+@pytest.mark.parametrize("counts", [40000.0, 1024.0, 7.0])
+def test_encoders_round_to_the_nearest_count(counts: float) -> None:
+    names = ("q", "theta", "theta_c")
+    torques = sinusoids(times(1e-3, 1.0), (0.5, 1.0), (8.0, 0.5), (0.0, 0.0))
+    measured = [f"{name}_measured" for name in names]
+    encoders = {f"encoder.{name}": counts for name in names}
+    run = run_awas(1e-3, torques, encoders, [*names, *measured])
+    for name in names:
+        expected = round_to_counts(run[name], counts)
+        np.testing.assert_allclose(run[f"{name}_measured"], expected, rtol=1e-14, err_msg=name)
+        assert len(np.unique(expected)) > 1
+
+
+def test_an_encoder_of_0_counts_does_not_round() -> None:
+    torques = sinusoids(times(1e-3, 0.1), (0.5, 1.0), (8.0, 0.5), (0.0, 0.0))
+    encoders = {"encoder.q": 0.0, "encoder.theta": 0.0, "encoder.theta_c": 0.0}
+    names = ("q", "theta", "theta_c")
+    run = run_awas(1e-3, torques, encoders, [*names, *(f"{name}_measured" for name in names)])
+    for name in names:
+        np.testing.assert_array_equal(run[f"{name}_measured"], run[name])
+
+
+@pytest.mark.parametrize("tau", [0.01, 0.05])
+def test_coulomb_friction_holds_the_motor_until_the_torque_exceeds_it(tau: float) -> None:
+    plant = Awas(motor_tau_coulomb=0.02)
+    run = run_awas(1e-2, np.tile([tau, 0.0, 0.0], (301, 1)), {"motor.tau_coulomb": 0.02})
+    speed = run["theta_dot"][-1]
+    damping = plant.motor_D_theta * plant.motor_gamma + plant.link_D_q / plant.motor_gamma
+    coulomb = 0.02 * math.tanh(speed / plant.coulomb_velocity)
+    assert damping * speed + coulomb == pytest.approx(tau, rel=1e-3)
+    if tau < 0.02:
+        assert speed < plant.coulomb_velocity
+    else:
+        assert damping * speed == pytest.approx(tau - 0.02, rel=1e-3)
+
+
+def test_gravity_balances_the_external_torque_where_the_link_hangs_below_30_degrees() -> None:
+    torques = np.tile([0.0, 0.0, 0.5], (101, 1))
+    angle = math.pi / 6
+    start = {"link.mgl": 1.0, "initial.q": angle, "initial.theta": angle}
+    run = run_awas(1e-2, torques, start, ["q"])
+    np.testing.assert_allclose(run["q"], angle, rtol=1e-12)
+
+
+def test_a_parameter_changed_between_steps_takes_effect_at_the_next(plant_fmu: Path) -> None:
+    angle = 0.01
+    with Instance(plant_fmu) as plant:
+        plant.initialise({"initial.q": angle})
+        assert plant.set("spring.k_s", 0.0) == OK
+        assert plant.get("tau_e") != 0.0
+        assert plant.step(0.0, 1e-3) == OK
+        assert plant.get_all(["tau_e", "q"]) == [0.0, angle]
+
+
+@pytest.fixture
+def moving(plant_fmu: Path) -> Iterator[Instance]:
+    """A plant after a step under torque."""
+    with Instance(plant_fmu) as plant:
+        plant.initialise()
+        plant.set_all({"tau": 0.3, "tau_c": 1.0})
+        assert plant.step(0.0, 1e-3) == OK
+        yield plant
+
+
+OUTPUTS = [*STATES, "tau_e", "theta_measured", "tau_measured", "tau_e_measured"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("tau", math.nan, "finite input tau, came nan"),
+        ("tau_c", math.inf, "finite input tau_c, came inf"),
+        ("tau_ext", -math.inf, "finite input tau_ext, came -inf"),
+        ("tau_ext", 1e300, "no solution"),
+    ],
+)
+def test_a_step_with_a_bad_input_is_refused_and_leaves_the_plant_as_it_was(
+    moving: Instance, plant_fmu: Path, name: str, value: float, message: str
+) -> None:
+    before = moving.get_all(OUTPUTS)
+    good = moving.get(name)
+    moving.set(name, value)
+    assert moving.step(1e-3, 1e-3) == ERROR
+    assert message in moving.messages[-1][2]
+    assert moving.get_all(OUTPUTS) == before
+
+    moving.set(name, good)
+    assert moving.step(1e-3, 1e-3) == OK
+    with Instance(plant_fmu) as other:
+        other.initialise()
+        other.set_all({"tau": 0.3, "tau_c": 1.0})
+        assert other.step(0.0, 1e-3) == other.step(1e-3, 1e-3) == OK
+        assert moving.get_all(OUTPUTS) == other.get_all(OUTPUTS)
+
+
+def test_an_input_that_leaves_the_numbers_within_the_step_is_refused(moving: Instance) -> None:
+    moving.set("tau", 1.7e308)
+    assert moving.set_derivative("tau", 1.7e308) == OK
+    assert moving.step(1e-3, 1.0) == ERROR
+    assert "finite input tau, came 1.7e+308 at its begin and inf" in moving.messages[-1][2]
