@@ -18,8 +18,11 @@ double sh_measurement_variance(const sh_filter_parameters *filter, double x_dot,
 void sh_kinematic_kalman_start(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
                                double z)
 {
-    kalman->x = z;
+    kalman->z = z;
+    kalman->lag = 0.0;
     kalman->x_dot = 0.0;
+    kalman->dx = 0.0;
+    kalman->dx_dot = 0.0;
     kalman->P11 = filter->P_0;
     kalman->P12 = 0.0;
     kalman->P22 = filter->P_0;
@@ -28,16 +31,20 @@ void sh_kinematic_kalman_start(sh_kinematic_kalman *kalman, const sh_filter_para
 void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
                               double z, double dt, double w_s)
 {
-    double x, P11, P12, P22, R, S, innovation;
+    const double dz = z - kalman->z;
+    double innovation, lag, P11, P12, P22, R, S;
+
+    kalman->z = z;
 
     if (filter->kind == SH_FILTER_FINITE_DIFFERENCE) {
-        kalman->x_dot = (z - kalman->x) / dt;
-        kalman->x = z;
+        kalman->dx = dz;
+        kalman->dx_dot = dz / dt - kalman->x_dot;
+        kalman->x_dot = dz / dt;
         return;
     }
 
     /* (9): xi = A xi, P = A P A' + V_a Gamma Gamma', Gamma = (dt^2/2, dt)' */
-    x = kalman->x + dt * kalman->x_dot;
+    innovation = dz - kalman->lag - dt * kalman->x_dot; /* z - H xi */
     P11 = kalman->P11 + dt * (2.0 * kalman->P12 + dt * kalman->P22) +
           filter->V_a * (dt * dt) * (dt * dt) / 4.0;
     P12 = kalman->P12 + dt * kalman->P22 + filter->V_a * (dt * dt) * dt / 2.0;
@@ -48,9 +55,11 @@ void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_param
 
     /* (10): K = P H' / S, xi += K (z - H xi), P -= K H P with H = (1 0) */
     S = P11 + R;
-    innovation = z - x;
-    kalman->x = x + P11 / S * innovation;
-    kalman->x_dot += P12 / S * innovation;
+    lag = -(R / S) * innovation; /* x - z, where x = z - innovation + P11 / S innovation */
+    kalman->dx = dz + (lag - kalman->lag);
+    kalman->dx_dot = P12 / S * innovation;
+    kalman->lag = lag;
+    kalman->x_dot += kalman->dx_dot;
     /* P11 - P11^2/S without the subtraction, which would lose digits where P11 >> R */
     kalman->P11 = P11 * (R / S);
     kalman->P12 = P12 * (R / S);

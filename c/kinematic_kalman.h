@@ -39,8 +39,11 @@ typedef struct {
 
 /* State of the filter of one axis. */
 typedef struct {
-    double x;             /* position [rad] */
+    double z;             /* measured position [rad] */
+    double lag;           /* estimated position less the measured [rad]: small, so that the
+                             filter keeps its digits however far the axis has turned */
     double x_dot;         /* velocity [rad/s] */
+    double dx, dx_dot;    /* how position and velocity changed with the last sample */
     double P11, P12, P22; /* covariance of (x, x_dot) */
 } sh_kinematic_kalman;
 

@@ -22,6 +22,7 @@ void sh_least_squares_start(sh_least_squares *rls, int size, const double *eta_0
     rls->size = size;
     for (j = 0; j < size; ++j) {
         rls->eta[j] = eta_0 != NULL ? eta_0[j] : 0.0;
+        rls->eta_low[j] = 0.0;
         rls->D[j] = P_0;
     }
     for (j = 0; j < size * (size - 1) / 2; ++j)
@@ -95,7 +96,7 @@ int sh_least_squares_update(sh_least_squares *rls, int kind, double factor, cons
     int i, j;
 
     for (j = 0; j < rls->size; ++j)
-        epsilon -= F[j] * rls->eta[j];
+        epsilon -= F[j] * rls->eta[j] + F[j] * rls->eta_low[j];
     if (!(w * rho <= LARGEST) || !(fabs(epsilon) <= LARGEST))
         return 0;
 
@@ -119,8 +120,12 @@ int sh_least_squares_update(sh_least_squares *rls, int kind, double factor, cons
     }
 
     /* eta += a K epsilon with a K = w P F / (1 + w rho), (25) */
-    for (j = 0; j < rls->size; ++j)
-        rls->eta[j] += w * epsilon / beta * PF[j];
+    for (j = 0; j < rls->size; ++j) {
+        const double before = rls->eta[j];
+        const double change = w * epsilon / beta * PF[j] + rls->eta_low[j];
+        rls->eta[j] = before + change;
+        rls->eta_low[j] = change - (rls->eta[j] - before);
+    }
 
     innovation->epsilon = epsilon;
     innovation->rho = rho;

@@ -32,6 +32,8 @@ enum { SH_MAX_TRIANGLE = SH_MAX_PARAMETERS * (SH_MAX_PARAMETERS - 1) / 2 };
 typedef struct {
     int size;                     /* number of parameters, 1..SH_MAX_PARAMETERS */
     double eta[SH_MAX_PARAMETERS];/* estimate */
+    double eta_low[SH_MAX_PARAMETERS]; /* what rounding left out of eta: millions of
+                                     small updates must not add up to an error */
     double D[SH_MAX_PARAMETERS];  /* diagonal factor of P, > 0 */
     double U[SH_MAX_TRIANGLE];    /* unit upper triangular factor of P without its
                                      diagonal, by columns: U[j (j-1)/2 + i], i < j */

@@ -9,7 +9,7 @@ static const double LARGEST_MEASUREMENT = 1e12;
 
 void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate)
 {
-    static const sh_kinematic_kalman at_rest = {0.0, 0.0, 0.0, 0.0, 0.0};
+    static const sh_kinematic_kalman at_rest = {0};
     double eta_0[SH_MAX_PARAMETERS];
     int i, j;
 
@@ -24,10 +24,11 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
     }
     estimator->theta = at_rest;
     estimator->q = at_rest;
-    sh_torque_residual_start(&estimator->residual, 0.0, 0.0, 0.0);
+    sh_torque_residual_start(&estimator->residual, 0.0);
     sh_least_squares_start(&estimator->rls, p->rls.n * p->rls.m, eta_0, p->rls.P_0);
     estimator->started = 0;
     estimator->skipped = 0.0;
+    estimator->settling = 0.0;
 
     estimate->phi = 0.0;
     estimate->setPoint = p->setPoint.offset;
@@ -65,19 +66,25 @@ static double track(sh_estimator *estimator, const sh_parameters *p, const sh_me
     if (!estimator->started) {
         sh_kinematic_kalman_start(theta, &p->filter, z->theta);
         sh_kinematic_kalman_start(q, &p->filter, z->q);
-        sh_torque_residual_start(&estimator->residual, theta->x, theta->x_dot, z->tau);
+        sh_torque_residual_start(&estimator->residual, z->tau);
     } else {
         sh_kinematic_kalman_step(theta, &p->filter, z->theta, dt,
                                  count_per_sample(p->encoder.theta, T));
         if (p->deformation == SH_DEFORMATION_FILTERED)
             sh_kinematic_kalman_step(q, &p->filter, z->q, dt,
                                      count_per_sample(p->encoder.q, T));
-        /* The torque in a gap is not known: integrating over it would shake r_e. */
-        if (estimator->skipped > 0.0)
-            sh_torque_residual_resume(&estimator->residual, theta->x, theta->x_dot, z->tau);
-        else
-            sh_torque_residual_step(&estimator->residual, &p->motor, theta->x, theta->x_dot,
-                                    z->tau, p->residual.K_I, T);
+        /* (8) bridges a gap as if it were one long sample, while that is short beside
+         * 1 / K_I. Of a longer one the torque is not known: r_e stays, is wrong, and has
+         * to forget before it is learned from.
+         */
+        estimator->settling -= T;
+        if (dt * p->residual.K_I < 2.0) {
+            sh_torque_residual_step(&estimator->residual, &p->motor, theta->dx, theta->dx_dot,
+                                    z->tau, p->residual.K_I, dt);
+        } else {
+            sh_torque_residual_resume(&estimator->residual, z->tau);
+            estimator->settling = 10.0 / p->residual.K_I;
+        }
     }
     estimator->started = 1;
     estimator->skipped = 0.0;
@@ -108,33 +115,41 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
     const sh_torque_residual residual = estimator->residual;
     const int started = estimator->started;
     const double skipped = estimator->skipped;
+    const double settling = estimator->settling;
     const int n = p->rls.n, m = p->rls.m;
     sh_innovation innovation;
     double tau_e_residual, tau_e_hat, factor, phi, set_point;
-    int i, j;
+    int i, j, kind;
 
     if (!is_measurement(z->theta) || !is_measurement(z->q) || !is_measurement(z->theta_c) ||
         !is_measurement(z->tau) || !is_measurement(z->tau_e_sensor))
         return skip(estimator, estimate);
 
     tau_e_residual = track(estimator, p, z);
-    phi = p->deformation == SH_DEFORMATION_FILTERED ? estimator->q.x - estimator->theta.x
-                                                    : z->q - z->theta;
+    phi = p->deformation == SH_DEFORMATION_FILTERED ? estimator->q.lag - estimator->theta.lag
+                                                    : 0.0;
+    phi += z->q - z->theta;
     set_point = p->setPoint.offset + p->setPoint.scale * z->theta_c;
     sh_torque_basis(n, m, set_point, phi, F, dF);
 
     tau_e_hat = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
                 : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
                                                    : tau_e_residual;
-    factor = p->rls.kind == SH_RLS_ENHANCED ? p->rls.c : p->rls.a;
+    kind = p->rls.kind;
+    factor = kind == SH_RLS_ENHANCED ? p->rls.c : p->rls.a;
+    if (p->modality == SH_MODALITY_RESIDUAL && estimator->settling > 0.0) {
+        kind = SH_RLS_CONSTANT_FACTOR; /* a = 0 learns nothing, (25) */
+        factor = 0.0;
+    }
     if (!isfinite(tau_e_residual) ||
-        !sh_least_squares_update(&estimator->rls, p->rls.kind, factor, F, tau_e_hat,
+        !sh_least_squares_update(&estimator->rls, kind, factor, F, tau_e_hat,
                                  &innovation)) {
         estimator->theta = theta;
         estimator->q = q;
         estimator->residual = residual;
         estimator->started = started;
         estimator->skipped = skipped;
+        estimator->settling = settling;
         return skip(estimator, estimate);
     }
 

@@ -104,6 +104,7 @@ typedef struct {
     sh_least_squares rls;
     int started;    /* a good sample has been seen */
     double skipped; /* ticks skipped since the last good sample */
+    double settling; /* time until r_e has forgotten what was before a gap [s] */
 } sh_estimator;
 
 /* A parameter outside its range. */
@@ -131,8 +132,10 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  * Returns 1 and the new estimate. If any measurement is not finite or beyond
  * 1e12, or the regressor overflows, the tick is skipped: returns 0, sets
  * estimate->valid to 0 and leaves all else as it was. The next good sample is
- * filtered over the time that has passed; the residual goes on from its last
- * value.
+ * filtered over the time that has passed. The residual bridges a gap shorter
+ * than 2 / K_I; after a longer one it goes on from its last value, and with
+ * SH_MODALITY_RESIDUAL nothing is learned, a = 0, until it has forgotten that
+ * value, ten time constants 1 / K_I later.
  */
 int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                       sh_estimate *estimate);

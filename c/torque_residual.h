@@ -19,36 +19,32 @@ typedef struct {
 
 /* State of the residual: the sample before, and r_e. */
 typedef struct {
-    double r_e;       /* [N.m], on the motor axis */
-    double theta;     /* position [rad] */
-    double theta_dot; /* velocity [rad/s] */
-    double tau;       /* motor torque [N.m] */
+    double r_e; /* [N.m], on the motor axis */
+    double tau; /* motor torque [N.m] */
 } sh_torque_residual;
 
 /* Starts the residual at a sample: r_e = 0 and I_tau = 0. */
-void sh_torque_residual_start(sh_torque_residual *residual, double theta, double theta_dot,
-                              double tau);
+void sh_torque_residual_start(sh_torque_residual *residual, double tau);
 
 /* Makes a sample the one before without integrating over the time since the
  * last: r_e stays. For use after samples were lost.
  */
-void sh_torque_residual_resume(sh_torque_residual *residual, double theta, double theta_dot,
-                               double tau);
+void sh_torque_residual_resume(sh_torque_residual *residual, double tau);
 
 /* Advances the residual by one sample, (8), and returns the estimate gamma r_e
  * of the flexibility torque [N.m].
  *
- * theta      motor position after the gear [rad]
- * theta_dot  its velocity [rad/s]
- * tau        motor torque on the motor axis [N.m]
- * K_I        bandwidth [1/s], > 0, K_I T < 2
- * T          sample period [s], > 0
+ * dtheta      change of the motor's position since the last sample, after the gear [rad]
+ * dtheta_dot  change of its velocity [rad/s]
+ * tau         motor torque on the motor axis [N.m]
+ * K_I         bandwidth [1/s], > 0, K_I T < 2
+ * T           sample period [s], > 0
  *
  * (8) is taken in differences, r(k) - r(k-1), so that neither I_tau nor theta
  * can grow out of the range of the numbers, however long the run.
  */
 double sh_torque_residual_step(sh_torque_residual *residual, const sh_motor_parameters *motor,
-                               double theta, double theta_dot, double tau, double K_I, double T);
+                               double dtheta, double dtheta_dot, double tau, double K_I, double T);
 
 #ifdef __cplusplus
 }

@@ -18,7 +18,14 @@ T = 1e-3
 COUNTS = 40000.0
 COUNT = 2 * math.pi / COUNTS  # rad
 W_S = COUNT / T  # rad/s
-PAPER = {"kind": 1, "weighting": 1, "V_max": 10.0, "V_min": 0.1, "alpha": 6.0, "R": 10.0}
+PAPER = {
+    "kind": 1,
+    "weighting": 1,
+    "V_max": 10.0,
+    "V_min": 0.1,
+    "alpha": 6.0,
+    "R": 10.0,
+}
 SETTINGS: dict[str, Any] = {**PAPER, "V_a": 3e9, "P_0": 1.0}
 
 
@@ -33,23 +40,28 @@ def variance(c: Library, x_dot: float, w_s: float = W_S, **settings: Any) -> flo
     return R
 
 
+def position(kalman: Any) -> float:
+    x: float = kalman.z + kalman.lag
+    return x
+
+
 def run(c: Library, z: Array, w_s: float = W_S, dt: float = T, **settings: Any) -> Array:
     """Position and velocity at every sample [size: samples x 2]."""
     p = c.new("sh_filter_parameters", **{**SETTINGS, **settings})
     kalman = c.new("sh_kinematic_kalman")
     c.lib.sh_kinematic_kalman_start(kalman, p, z[0])
-    track = [(kalman.x, kalman.x_dot)]
+    track = [(position(kalman), kalman.x_dot)]
     for z_k in z[1:]:
         c.lib.sh_kinematic_kalman_step(kalman, p, z_k, dt, w_s)
-        track.append((kalman.x, kalman.x_dot))
+        track.append((position(kalman), kalman.x_dot))
     return np.array(track)
 
 
 def test_starts_at_the_measurement_at_rest(c: Library) -> None:
     p = c.new("sh_filter_parameters", **{**SETTINGS, "P_0": 7.0})
-    kalman = c.new("sh_kinematic_kalman", x=1.0, x_dot=2.0, P12=3.0)
+    kalman = c.new("sh_kinematic_kalman", lag=1.0, x_dot=2.0, P12=3.0)
     c.lib.sh_kinematic_kalman_start(kalman, p, -0.25)
-    assert (kalman.x, kalman.x_dot) == (-0.25, 0.0)
+    assert (position(kalman), kalman.x_dot) == (-0.25, 0.0)
     assert (kalman.P11, kalman.P12, kalman.P22) == (7.0, 0.0, 7.0)
 
 
@@ -158,8 +170,30 @@ def test_a_sample_that_comes_late_does_not_disturb(c: Library) -> None:
     for k in range(1, 1001):
         c.lib.sh_kinematic_kalman_step(kalman, p, 5.0 * T * k, T, W_S)
     c.lib.sh_kinematic_kalman_step(kalman, p, 5.0 * T * 1011, 11 * T, W_S)
-    assert kalman.x == pytest.approx(5.0 * T * 1011, rel=1e-12)
+    assert position(kalman) == pytest.approx(5.0 * T * 1011, rel=1e-12)
     assert kalman.x_dot == pytest.approx(5.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", [1, 2, 3])
+def test_changes_of_a_sample(c: Library, kind: int) -> None:
+    p = c.new("sh_filter_parameters", **{**SETTINGS, "kind": kind})
+    kalman = c.new("sh_kinematic_kalman")
+    c.lib.sh_kinematic_kalman_start(kalman, p, 1.0)
+    for z in (1.001, 1.003, 1.002, 1.004):
+        before = position(kalman), kalman.x_dot
+        c.lib.sh_kinematic_kalman_step(kalman, p, z, T, W_S)
+        changes = position(kalman) - before[0], kalman.x_dot - before[1]
+        assert (kalman.dx, kalman.dx_dot) == pytest.approx(changes, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", [1, 2])
+def test_a_far_position_costs_no_digits(c: Library, kind: int) -> None:
+    # GIVEN the same motion, a million turns away WHEN both are filtered
+    # THEN the velocity is the same but for what the far measurement itself is rounded
+    near = COUNT * np.floor(np.linspace(0, 500, 1500) ** 1.1)
+    far = near + 2.0**22
+    velocity = [run(c, z, kind=kind)[:, 1] for z in (far - 2.0**22, far)]
+    assert velocity[1] == pytest.approx(velocity[0], rel=1e-12, abs=1e-12)
 
 
 @pytest.mark.parametrize("weighting", [1, 2])

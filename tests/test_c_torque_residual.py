@@ -21,16 +21,29 @@ def c(build: Path) -> Library:
 
 
 def run(
-    c: Library, theta: Array, theta_dot: Array, tau: Array, T: float = T, K_I: float = K_I
+    c: Library,
+    theta: Array,
+    theta_dot: Array,
+    tau: Array,
+    T: float = T,
+    K_I: float = K_I,
 ) -> Array:
     """gamma r_e at every sample [size: samples]."""
     motor = c.new("sh_motor_parameters", B=B, D_theta=D_THETA, gamma=GAMMA)
     residual = c.new("sh_torque_residual", r_e=5.0)
-    c.lib.sh_torque_residual_start(residual, theta[0], theta_dot[0], tau[0])
+    c.lib.sh_torque_residual_start(residual, tau[0])
     estimate = [0.0]
     for k in range(1, len(theta)):
         estimate.append(
-            c.lib.sh_torque_residual_step(residual, motor, theta[k], theta_dot[k], tau[k], K_I, T)
+            c.lib.sh_torque_residual_step(
+                residual,
+                motor,
+                theta[k] - theta[k - 1],
+                theta_dot[k] - theta_dot[k - 1],
+                tau[k],
+                K_I,
+                T,
+            )
         )
     assert residual.r_e * GAMMA == estimate[-1]
     return np.array(estimate)
@@ -91,27 +104,19 @@ def test_bandwidth_is_K_I(c: Library) -> None:
     assert math.degrees(np.angle(response)) == pytest.approx(-45, abs=1)
 
 
-def test_position_has_no_origin(c: Library) -> None:
-    rng = np.random.default_rng(1)
-    theta, theta_dot, tau = rng.normal(size=(3, 200))
-    assert run(c, theta + 2.0, theta_dot, tau) == pytest.approx(
-        run(c, theta, theta_dot, tau), rel=1e-9, abs=1e-9
-    )
-
-
 def test_after_lost_samples_it_goes_on_from_its_last_value(c: Library) -> None:
     # GIVEN a settled residual WHEN samples were lost and it resumes elsewhere
     # THEN it holds, and goes on to hold under the same load
     motor = c.new("sh_motor_parameters", B=B, D_theta=D_THETA, gamma=GAMMA)
     residual = c.new("sh_torque_residual")
     step = c.lib.sh_torque_residual_step
-    c.lib.sh_torque_residual_start(residual, 0.0, 0.0, 0.2)
+    c.lib.sh_torque_residual_start(residual, 0.2)
     for _ in range(2000):
         step(residual, motor, 0.0, 0.0, 0.2, K_I, T)
     before = residual.r_e
-    c.lib.sh_torque_residual_resume(residual, 3.0, 0.0, 0.2)
+    c.lib.sh_torque_residual_resume(residual, 0.2)
     assert residual.r_e == before
-    assert step(residual, motor, 3.0, 0.0, 0.2, K_I, T) == pytest.approx(GAMMA * before, rel=1e-6)
+    assert step(residual, motor, 0.0, 0.0, 0.2, K_I, T) == pytest.approx(GAMMA * before, rel=1e-6)
 
 
 @pytest.mark.parametrize(("T", "K_I"), [(1e-3, 300.0), (1e-4, 10.0), (1e-2, 199.0)])
