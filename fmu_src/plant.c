@@ -65,7 +65,7 @@ static fmi2Status step(void *model, double t, double h, sh_instance *log)
     if (sh_radau_integrate(x, plant->u, plant->du, plant->p, h, &internal_step) == 0) {
         sh_log(log, fmi2Error,
                "Step from t = %.9g s to %.9g s refused, the state is kept: the equations have "
-               "no solution there, or it takes more than 10 million internal steps. Look for "
+               "no solution there, or it takes more than a million internal steps. Look for "
                "extreme inputs or parameters.",
                t, t + h);
         return fmi2Error;

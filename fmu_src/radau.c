@@ -6,7 +6,7 @@
 #include "plant_functions.h"
 
 enum { STATES = SH_PLANT_STATES, INPUTS = SH_PLANT_INPUTS, STAGES = 3 };
-enum { MAX_NEWTON_ITERATIONS = 10, MAX_ATTEMPTS = 10000000 };
+enum { MAX_NEWTON_ITERATIONS = 10, MAX_ATTEMPTS = 1000000 };
 
 static const double SCALE[STATES] = SH_PLANT_SCALES;
 static const double ERROR_TOLERANCE = 1e-8;

@@ -21,7 +21,7 @@ double sh_radau_step(const double *x, const double *u, const double *du, const d
  *
  * *h is the step to try first and, after it, the step that suits what follows;
  * infinite if nothing is known. Returns the number of steps; 0 if even a
- * negligible step does not keep to the error, or after ten million attempts, and
+ * negligible step does not keep to the error, or after a million attempts, and
  * x is then where that was.
  */
 int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
