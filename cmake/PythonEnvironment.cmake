@@ -20,9 +20,10 @@ else()
   set(SIGMAHAT_NINJA ${SIGMAHAT_VENV}/bin/ninja)
 endif()
 
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS requirements.txt pyproject.toml)
-file(SHA256 requirements.txt wanted)
-file(SHA256 pyproject.toml pyproject_hash)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+             ${CMAKE_CURRENT_SOURCE_DIR}/requirements.txt ${CMAKE_CURRENT_SOURCE_DIR}/pyproject.toml)
+file(SHA256 ${CMAKE_CURRENT_SOURCE_DIR}/requirements.txt wanted)
+file(SHA256 ${CMAKE_CURRENT_SOURCE_DIR}/pyproject.toml pyproject_hash)
 string(APPEND wanted ${pyproject_hash})
 set(stamp ${SIGMAHAT_VENV}/sigmahat-requirements)
 set(installed "")

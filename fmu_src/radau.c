@@ -200,7 +200,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
             u_now[j] = u[j] + du[j] * elapsed;
         error = sh_radau_step(x, u_now, du, p, step, x_new);
         /* The estimate falls with the fourth power of the step. */
-        *h = step * fmin(8.0, fmax(0.2, 0.9 * pow(error, -0.25)));
+        *h = step * fmin(8.0, fmax(0.2, 0.9 / sqrt(sqrt(error))));
         if (error <= 1.0) {
             for (j = 0; j < STATES; ++j)
                 x[j] = x_new[j];

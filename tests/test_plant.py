@@ -209,7 +209,7 @@ OUTPUTS = [*STATES, "tau_e", "theta_measured", "tau_measured", "tau_e_measured"]
         ("tau_ext", -math.inf, 0.0, "finite input tau_ext, came -inf"),
         ("tau", 1.7e308, 1.7e308, "finite input tau, came 1.7e+308 at its begin and inf"),
         ("tau_ext", 1e300, 0.0, "no solution"),
-        ("tau_ext", 0.0, 1e38, "no solution"),  # has one at first
+        ("tau_ext", 0.0, 1e26, "no solution"),  # has one at first
     ],
 )
 def test_a_step_with_a_bad_input_is_refused_and_leaves_the_plant_as_it_was(
