@@ -32,6 +32,7 @@ void sh_parameters_default(sh_parameters *p)
     p->setPoint.offset = 100.0;
     p->setPoint.scale = -0.0025 / (2.0 * PI) * 1000.0;
     p->rls.kind = SH_RLS_ENHANCED;
+    p->rls.symmetric = 1;
     p->rls.n = 6;
     p->rls.m = 3;
     p->rls.P_0 = 1e20;
@@ -95,6 +96,7 @@ static const integer_range INTEGERS[] = {
      SH_WEIGHTING_AS_PRINTED},
     {AT(rls.kind), "1 (Enhanced), 2 (Standard) or 3 (ConstantFactor)", SH_RLS_ENHANCED,
      SH_RLS_CONSTANT_FACTOR},
+    {AT(rls.symmetric), "0 or 1", 0, 1},
     {AT(rls.n), "1 to 8", 1, SH_MAX_N},
     {AT(rls.m), "1 to 5", 1, SH_MAX_M},
 };

@@ -7,10 +7,24 @@ static const double PI = 3.14159265358979323846;
 /* Largest measurement that is taken for one [rad, N.m]. */
 static const double LARGEST_MEASUREMENT = 1e12;
 
+/* Torque (21) and stiffness (23) of the present eta. */
+static void evaluate(const sh_least_squares *rls, const double *F, const double *dF,
+                     sh_estimate *estimate)
+{
+    int i;
+
+    estimate->tau_e = 0.0;
+    estimate->sigma = 0.0;
+    for (i = 0; i < rls->size; ++i) {
+        estimate->tau_e += F[i] * rls->eta[i];
+        estimate->sigma += dF[i] * rls->eta[i];
+    }
+}
+
 void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate)
 {
     static const sh_kinematic_kalman at_rest = {0};
-    double eta_0[SH_MAX_PARAMETERS];
+    double eta_0[SH_MAX_PARAMETERS], F[SH_MAX_PARAMETERS], dF[SH_MAX_PARAMETERS];
     int i, j;
 
     for (i = 0; i < SH_MAX_N; ++i) {
@@ -32,16 +46,15 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
 
     estimate->phi = 0.0;
     estimate->setPoint = p->setPoint.offset;
-    estimate->tau_e = 0.0;
     estimate->tau_e_residual = 0.0;
     estimate->theta_dot = 0.0;
     estimate->a = 0.0;
     estimate->rho = 0.0;
     estimate->epsilon = 0.0;
     estimate->valid = 1;
-    estimate->sigma = 0.0;
-    for (j = p->rls.m - 1; j >= 0; --j) /* (23) at phi = 0 */
-        estimate->sigma = estimate->sigma * estimate->setPoint + p->rls.eta_0[0][j];
+    sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, estimate->setPoint, estimate->phi, F,
+                    dF);
+    evaluate(&estimator->rls, F, dF, estimate);
 }
 
 static int is_measurement(double z)
@@ -130,7 +143,7 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
                                                     : 0.0;
     phi += z->q - z->theta;
     set_point = p->setPoint.offset + p->setPoint.scale * z->theta_c;
-    sh_torque_basis(n, m, set_point, phi, F, dF);
+    sh_torque_basis(p->rls.symmetric, n, m, set_point, phi, F, dF);
 
     tau_e_hat = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
                 : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
@@ -153,16 +166,10 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
         return skip(estimator, estimate);
     }
 
-    estimate->sigma = 0.0;
-    estimate->tau_e = 0.0;
-    for (j = 0; j < m; ++j) {
-        for (i = 0; i < n; ++i) {
-            const double eta = estimator->rls.eta[j * n + i];
-            estimate->eta[i][j] = eta;
-            estimate->tau_e += F[j * n + i] * eta;  /* (21) */
-            estimate->sigma += dF[j * n + i] * eta; /* (23) */
-        }
-    }
+    evaluate(&estimator->rls, F, dF, estimate);
+    for (j = 0; j < m; ++j)
+        for (i = 0; i < n; ++i)
+            estimate->eta[i][j] = estimator->rls.eta[j * n + i];
     estimate->tau_e_residual = tau_e_residual;
     estimate->theta_dot = estimator->theta.x_dot;
     estimate->phi = phi;

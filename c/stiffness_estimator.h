@@ -62,6 +62,7 @@ typedef struct {
     } setPoint;
     struct {
         int kind;                          /* SH_RLS_*, fixed */
+        int symmetric;                     /* 1: torque odd in phi, (16); 0: any; fixed */
         int n, m;                          /* 1..SH_MAX_N, 1..SH_MAX_M, fixed */
         double P_0;                        /* initial covariance, > 0, fixed */
         double c;                          /* (27), > 0, fixed */
@@ -92,7 +93,8 @@ typedef struct {
     double phi;                    /* deformation [rad] */
     double setPoint;               /* set-point [1] */
     double a, rho, epsilon;        /* (27) [1], (14) [1], (14) [N.m] */
-    double eta[SH_MAX_N][SH_MAX_M];/* eta[i][j]: coefficient of setPoint^j phi^(2i+1), (21) */
+    double eta[SH_MAX_N][SH_MAX_M];/* eta[i][j]: coefficient of setPoint^j phi^(2i+1), (21),
+                                      or of setPoint^j phi^i if not symmetric */
     int valid;                     /* 0 while the last tick was skipped, see sh_estimator_tick */
 } sh_estimate;
 

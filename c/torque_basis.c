@@ -1,17 +1,24 @@
 #include "torque_basis.h"
 
-void sh_torque_basis(int n, int m, double set_point, double phi, double *F, double *dF)
+void sh_torque_basis(int symmetric, int n, int m, double set_point, double phi, double *F,
+                     double *dF)
 {
-    const double phi_squared = phi * phi;
-    double l_power = 1.0; /* l^j */
+    const double step = symmetric ? phi * phi : phi; /* from one power to the next */
+    double l_power = 1.0;                            /* l^j */
     int i, j;
 
     for (j = 0; j < m; ++j) {
-        double even = l_power; /* l^j phi^(2i) */
+        double lower = l_power; /* l^j phi^(e_i - 1), from the first i with e_i > 0 on */
         for (i = 0; i < n; ++i) {
-            F[j * n + i] = even * phi;
-            dF[j * n + i] = (2 * i + 1) * even;
-            even *= phi_squared;
+            const int exponent = symmetric ? 2 * i + 1 : i;
+            if (exponent == 0) {
+                F[j * n + i] = l_power;
+                dF[j * n + i] = 0.0;
+                continue;
+            }
+            F[j * n + i] = lower * phi;
+            dF[j * n + i] = exponent * lower;
+            lower *= step;
         }
         l_power *= set_point;
     }

@@ -1,23 +1,20 @@
-# sigmahat_add_fmu(NAME STRUCT type [ARRAYS] SOURCES file...)
+# sigmahat_add_fmu(NAME STRUCT type STORAGE struct|sides|arrays SOURCES file...)
 #
 # Adds a target NAME that builds NAME.fmu from modelDescription/NAME.xml, the FMI shell and
-# the given sources. STRUCT is the C type that holds the variables; ARRAYS says that it holds
-# them in the arrays p, u and y of a plant.
+# the given sources. STRUCT is the C type that holds the variables, STORAGE says how: see
+# harness/sigmahat/export/description.py.
 function(sigmahat_add_fmu name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "ARRAYS" "STRUCT" "SOURCES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "STRUCT;STORAGE" "SOURCES")
   set(source_dir ${PROJECT_SOURCE_DIR})
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
   set(template ${source_dir}/modelDescription/${name}.xml)
   file(GLOB shared ${source_dir}/modelDescription/*.xml ${source_dir}/harness/sigmahat/export/*.py)
 
-  set(storage "")
-  if(arg_ARRAYS)
-    set(storage --arrays)
-  endif()
   add_custom_command(
     OUTPUT ${dir}/modelDescription.xml ${dir}/variables.h
     COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export describe ${template} ${dir}
-            --version ${PROJECT_VERSION} --struct ${arg_STRUCT} ${storage}
+            --version ${PROJECT_VERSION} --struct ${arg_STRUCT}
+            --storage ${arg_STORAGE}
     DEPENDS ${shared}
     COMMENT "Model description of ${name}" VERBATIM)
 
@@ -45,6 +42,13 @@ function(sigmahat_add_fmu name)
   add_custom_target(${name} ALL DEPENDS ${fmu})
 endfunction()
 
+# sigmahat_add_estimator(NAME STRUCT type STORAGE struct|sides): an FMU around the library.
+function(sigmahat_add_estimator name)
+  sigmahat_add_fmu(${name} ${ARGN} SOURCES fmu_src/${name}.c fmu_src/estimator_fmu.c
+                   fmu_src/sample_clock.c)
+  target_link_libraries(${name}_binary PRIVATE sigmahat_c)
+endfunction()
+
 # sigmahat_add_plant(NAME): the FMU of the plant written in harness/sigmahat/plants.
 function(sigmahat_add_plant name)
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
@@ -56,7 +60,7 @@ function(sigmahat_add_plant name)
     DEPENDS ${equations} ${PROJECT_SOURCE_DIR}/modelDescription/${name}.xml
             ${PROJECT_SOURCE_DIR}/modelDescription/units.xml
     COMMENT "Equations of ${name}" VERBATIM)
-  sigmahat_add_fmu(${name} ARRAYS STRUCT sh_plant SOURCES
+  sigmahat_add_fmu(${name} STRUCT sh_plant STORAGE arrays SOURCES
                    fmu_src/plant.c fmu_src/radau.c fmu_src/noise.c
                    ${dir}/plant_functions.c ${dir}/plant_functions.h)
 endfunction()

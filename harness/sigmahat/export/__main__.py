@@ -18,11 +18,10 @@ def main() -> None:
 @click.argument("out", type=click.Path(file_okay=False, path_type=Path))
 @click.option("--version", required=True, help="Version of the FMU.")
 @click.option("--struct", required=True, help="C type that holds the variables.")
-@click.option("--arrays", is_flag=True, help="Variables are in the arrays p, u and y of a plant.")
-def describe(template: Path, out: Path, version: str, struct: str, arrays: bool) -> None:
+@click.option("--storage", required=True, type=click.Choice(list(description.STORAGE)))
+def describe(template: Path, out: Path, version: str, struct: str, storage: str) -> None:
     """Write modelDescription.xml and variables.h of TEMPLATE into OUT."""
-    storage = description.storage_in_arrays if arrays else description.storage_in_structs
-    description.write(template, out, version, struct, storage)
+    description.write(template, out, version, struct, description.STORAGE[storage])
 
 
 @main.command()

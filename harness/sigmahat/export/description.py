@@ -8,6 +8,7 @@ such attribute, so it goes into the C table only.
 
 import hashlib
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
@@ -40,17 +41,37 @@ def variables(root: Element) -> list[Element]:
     return root.findall("ModelVariables/ScalarVariable")
 
 
-def storage_in_structs(root: Element) -> dict[str, str]:
+def _field(variable: Element, name: str) -> str:
+    part = {"input": "input", "output": "output", "parameter": "parameters"}
+    return f"{part[variable.attrib['causality']]}.{name.replace(',', '][')}"
+
+
+def storage_in_struct(root: Element) -> dict[str, str]:
     """Place of every variable in a struct whose fields carry the variables' names.
 
     ``motor.B`` is ``parameters.motor.B``, ``eta[1,2]`` is ``output.eta[1][2]``.
     """
-    part = {"input": "input", "output": "output", "parameter": "parameters"}
-    return {
-        variable.attrib["name"]: f"{part[variable.attrib['causality']]}."
-        + variable.attrib["name"].replace(",", "][")
-        for variable in variables(root)
-    }
+    return {v.attrib["name"]: _field(v, v.attrib["name"]) for v in variables(root)}
+
+
+def storage_in_sides(root: Element) -> dict[str, str]:
+    """Place of every variable in a struct with two such structs, ``side[0]`` and ``side[1]``.
+
+    ``motor_2.B`` is ``side[1].parameters.motor.B``. Inputs and parameters common to both are
+    in ``side[0]``, outputs common to both are fields of their own.
+    """
+    places = {}
+    for variable in variables(root):
+        name = variable.attrib["name"]
+        of_side = re.fullmatch(r"(\w+)_([12])((?:[.\[].*)?)", name)
+        if of_side:
+            base, number, rest = of_side.groups()
+            places[name] = f"side[{int(number) - 1}].{_field(variable, base + rest)}"
+        elif variable.attrib["causality"] == "output":
+            places[name] = name
+        else:
+            places[name] = f"side[0].{_field(variable, name)}"
+    return places
 
 
 def storage_in_arrays(root: Element) -> dict[str, str]:
@@ -71,6 +92,14 @@ def storage_in_arrays(root: Element) -> dict[str, str]:
     return places
 
 
+STORAGE: dict[str, Callable[[Element], dict[str, str]]] = {
+    "struct": storage_in_struct,
+    "sides": storage_in_sides,
+    "arrays": storage_in_arrays,
+}
+"""How the C struct of an FMU holds its variables."""
+
+
 def _role(variable: Element) -> str:
     causality = variable.attrib["causality"]
     if causality == "input":
@@ -81,12 +110,19 @@ def _role(variable: Element) -> str:
     return "SH_ROLE_FIXED" if fixed else "SH_ROLE_TUNABLE"
 
 
+def _start(kind: Element) -> str:
+    start = kind.get("start", "0")
+    return {"true": "1", "false": "0"}.get(start, start)
+
+
 def _limits(root: Element, kind: Element) -> tuple[str, str, int, int]:
     if kind.tag == "Enumeration":
         name = kind.attrib["declaredType"]
         items = root.findall(f"TypeDefinitions/SimpleType[@name='{name}']/Enumeration/Item")
         values = [int(item.attrib["value"]) for item in items]
         return str(min(values)), str(max(values)), 0, 0
+    if kind.tag == "Boolean":
+        return "0", "1", 0, 0
     opened = kind.get("open", "").split()
     return (
         kind.get("min", "-HUGE_VAL"),
@@ -109,7 +145,7 @@ def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> st
         low, high, low_open, high_open = _limits(root, kind)
         rows.append(
             f'    {{"{name}", offsetof({struct}, {places[name]}), {_TYPES[kind.tag]}, '
-            f"{_role(variable)}, {kind.get('start', '0')}, "
+            f"{_role(variable)}, {_start(kind)}, "
             f"{low}, {high}, {low_open}, {high_open}}},"
         )
     return "\n".join(

@@ -1,0 +1,86 @@
+/* Binding of two estimators, one for each motor of an antagonistic pair, that share
+ * the encoder of the link; section II: the device stiffness is the sum of the two.
+ */
+#include <math.h>
+
+#include "estimator_fmu.h"
+
+typedef struct {
+    sh_estimator_fmu side[2]; /* what is common to both stands in side[0] */
+    double sigma;             /* stiffness of the device [N.m/rad] */
+    int valid;
+} AntagonisticStiffnessEstimator;
+
+#include "variables.h"
+
+static const char *const WHO[] = {"Motor 1: ", "Motor 2: "};
+
+/* Parameters of one side: the common ones with its own motor. */
+static sh_parameters parameters_of(const AntagonisticStiffnessEstimator *fmu, int i)
+{
+    sh_parameters p = fmu->side[0].parameters;
+
+    p.motor = fmu->side[i].parameters.motor;
+    return p;
+}
+
+static void sum(AntagonisticStiffnessEstimator *fmu)
+{
+    fmu->sigma = fmu->side[0].output.sigma + fmu->side[1].output.sigma;
+    fmu->valid = fmu->side[0].output.valid && fmu->side[1].output.valid;
+}
+
+static fmi2Status check(const void *model, sh_instance *log)
+{
+    const AntagonisticStiffnessEstimator *fmu = model;
+    int i;
+
+    for (i = 0; i < 2; ++i) {
+        const sh_parameters p = parameters_of(fmu, i);
+        if (sh_estimator_fmu_check(&p, WHO[i], log) != fmi2OK)
+            return fmi2Error;
+    }
+    return fmi2OK;
+}
+
+static void initialize(void *model, double start_time)
+{
+    AntagonisticStiffnessEstimator *fmu = model;
+    int i;
+
+    (void)start_time;
+    for (i = 0; i < 2; ++i) {
+        fmu->side[i].parameters = parameters_of(fmu, i);
+        sh_estimator_fmu_initialize(&fmu->side[i]);
+    }
+    sum(fmu);
+}
+
+static fmi2Status step(void *model, double t, double h, sh_instance *log)
+{
+    AntagonisticStiffnessEstimator *fmu = model;
+    fmi2Status status = fmi2OK;
+    int i;
+
+    fmu->side[1].input.q = fmu->side[0].input.q;
+    fmu->side[1].input_derivative.q = fmu->side[0].input_derivative.q;
+    for (i = 0; i < 2; ++i) {
+        fmu->side[i].parameters = parameters_of(fmu, i);
+        if (sh_estimator_fmu_step(&fmu->side[i], t, h, WHO[i], log) != fmi2OK)
+            status = fmi2Warning;
+    }
+    sum(fmu);
+    return status;
+}
+
+const sh_model sh_fmu_model = {
+    .identifier = SH_IDENTIFIER,
+    .guid = SH_GUID,
+    .size = sizeof(AntagonisticStiffnessEstimator),
+    .variables = VARIABLES,
+    .count = sizeof VARIABLES / sizeof VARIABLES[0],
+    .derivative_offset = SH_ESTIMATOR_DERIVATIVE_OFFSET,
+    .check = check,
+    .initialize = initialize,
+    .step = step,
+};

@@ -1,0 +1,61 @@
+#include "estimator_fmu.h"
+
+fmi2Status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
+                                  sh_instance *log)
+{
+    sh_violation violation;
+
+    if (!sh_parameters_check(parameters, &violation))
+        return fmi2OK;
+    sh_log(log, fmi2Error, "%sParameter %s = %.9g is out of its range: %s.", who,
+           violation.name, violation.value, violation.range);
+    return fmi2Error;
+}
+
+void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu)
+{
+    sh_estimator_start(&fmu->estimator, &fmu->parameters, &fmu->output);
+    sh_sample_clock_start(&fmu->clock);
+}
+
+/* Inputs at a time after the begin of the step. */
+static sh_measurement extrapolate(const sh_estimator_fmu *fmu, double after)
+{
+    const sh_measurement *u = &fmu->input, *du = &fmu->input_derivative;
+    sh_measurement z;
+
+    z.theta = u->theta + du->theta * after;
+    z.q = u->q + du->q * after;
+    z.theta_c = u->theta_c + du->theta_c * after;
+    z.tau = u->tau + du->tau * after;
+    z.tau_e_sensor = u->tau_e_sensor + du->tau_e_sensor * after;
+    return z;
+}
+
+fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
+                                 sh_instance *log)
+{
+    fmi2Status status = fmi2OK;
+    double after;
+
+    while (sh_sample_clock_tick(&fmu->clock, h, fmu->parameters.samplePeriod, &after)) {
+        const sh_measurement z = extrapolate(fmu, after);
+        const int was_valid = fmu->output.valid;
+        const double skipped = fmu->estimator.skipped;
+
+        if (!sh_estimator_tick(&fmu->estimator, &fmu->parameters, &z, &fmu->output)) {
+            status = fmi2Warning;
+            if (was_valid)
+                sh_log(log, fmi2Warning,
+                       "%sTick at t = %.9g s skipped, the estimate is kept: expected finite "
+                       "measurements, came theta = %g, q = %g, theta_c = %g, tau = %g, "
+                       "tau_e_sensor = %g.",
+                       who, t + after, z.theta, z.q, z.theta_c, z.tau, z.tau_e_sensor);
+        } else if (!was_valid) {
+            sh_log(log, fmi2OK,
+                   "%sMeasurements are good again at t = %.9g s, %g ticks skipped.", who,
+                   t + after, skipped);
+        }
+    }
+    return status;
+}

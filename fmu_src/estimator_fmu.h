@@ -1,0 +1,31 @@
+/* One estimator inside an FMU: variables, state and clock. */
+#ifndef SH_ESTIMATOR_FMU_H
+#define SH_ESTIMATOR_FMU_H
+
+#include "model.h"
+#include "sample_clock.h"
+#include "stiffness_estimator.h"
+
+typedef struct {
+    sh_parameters parameters;
+    sh_measurement input;
+    sh_measurement input_derivative;
+    sh_estimate output;
+    sh_estimator estimator;
+    sh_sample_clock clock;
+} sh_estimator_fmu;
+
+/* From an input to its time derivative. */
+enum {
+    SH_ESTIMATOR_DERIVATIVE_OFFSET =
+        offsetof(sh_estimator_fmu, input_derivative) - offsetof(sh_estimator_fmu, input)
+};
+
+/* As in sh_model. `who` begins the messages: "", or which of several estimators. */
+fmi2Status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
+                                  sh_instance *log);
+void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu);
+fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
+                                 sh_instance *log);
+
+#endif
