@@ -24,3 +24,9 @@ def estimator_fmu() -> Path:
 def plant_fmu() -> Path:
     """Path of AwasPlant.fmu."""
     return sigmahat.fmu("AwasPlant")
+
+
+@pytest.fixture(scope="session")
+def antagonistic_fmu() -> Path:
+    """Path of AntagonisticStiffnessEstimator.fmu."""
+    return sigmahat.fmu("AntagonisticStiffnessEstimator")

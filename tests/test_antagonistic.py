@@ -1,0 +1,135 @@
+"""The antagonistic estimator is two estimators, and nothing else."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from fmi_instance import ERROR, OK, WARNING, Instance
+
+OUTPUTS = [
+    *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),
+    *(f"eta[{i},{j}]" for i in range(3) for j in range(3)),
+]
+INPUTS = ["theta", "tau", "tau_e_sensor"]
+
+
+@contextmanager
+def trio(pair_fmu: Path, fmu: Path, values: dict[str, float]) -> Iterator[list[Instance]]:
+    """The pair and two single estimators, motor 2 with other data, ready for the first step."""
+    motors = [{"B": 2.3e-5, "D_theta": 1e-3}, {"B": 3e-5, "D_theta": 2e-3}]
+    with Instance(pair_fmu) as pair, Instance(fmu) as one, Instance(fmu) as two:
+        of_pair = {f"motor_{i + 1}.{k}": v for i, m in enumerate(motors) for k, v in m.items()}
+        pair.initialise(values | of_pair)
+        for single, motor in zip((one, two), motors, strict=True):
+            single.initialise(values | {f"motor.{k}": v for k, v in motor.items()})
+        yield [pair, one, two]
+
+
+def step(instances: list[Instance], k: int, bad: dict[str, float] | None = None) -> list[int]:
+    """One step of 1 ms at the same signals for all; the statuses."""
+    t = k * 1e-3
+    q = 0.3 * math.sin(5 * t)
+    sides = [
+        {"theta": q + 0.02 * math.sin(9 * t), "tau": 0.3 * math.cos(5 * t), "tau_e_sensor": 1.0},
+        {"theta": q - 0.3 - 0.02 * math.sin(7 * t), "tau": 0.1, "tau_e_sensor": math.sin(t)},
+    ]
+    pair, *singles = instances
+    pair.set_all({"q": q})
+    for i, (single, values) in enumerate(zip(singles, sides, strict=True), start=1):
+        single.set_all({"q": q, **values})
+        pair.set_all({f"{name}_{i}": value for name, value in values.items()})
+        for name, slope in (("theta", 0.1), ("q", 0.2)):
+            single.set_derivative(name, slope)
+            pair.set_derivative(f"{name}_{i}" if name != "q" else name, slope)
+    for name, value in (bad or {}).items():
+        pair.set_all({f"{name}_2": value})
+        singles[1].set_all({name: value})
+    return [instance.step(t, 1e-3) for instance in instances]
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"modality": 2, "rls.m": 1, "rls.P_0": 1e24},
+        {"modality": 3, "deformation": 2},
+        {"filter.kind": 3, "rls.symmetric": 0, "samplePeriod": 4e-4},
+    ],
+)
+def test_bit_identical_to_two_estimators(
+    values: dict[str, float], antagonistic_fmu: Path, estimator_fmu: Path
+) -> None:
+    with trio(antagonistic_fmu, estimator_fmu, values) as instances:
+        pair, one, two = instances
+        for k in range(200):
+            bad = {"tau": math.nan} if 50 <= k < 53 else None
+            statuses = step(instances, k, bad)
+            expected = [WARNING, OK, WARNING] if bad else [OK, OK, OK]
+            assert statuses == expected
+            for i, single in ((1, one), (2, two)):
+                names = [
+                    name.replace("[", f"_{i}[") if "[" in name else f"{name}_{i}"
+                    for name in OUTPUTS
+                ]
+                assert pair.get_all(names) == single.get_all(OUTPUTS)
+                assert pair.get(f"valid_{i}") == single.get("valid")
+            assert pair.get("sigma") == one.get("sigma") + two.get("sigma")
+            assert pair.get("valid") == (0 if bad else 1)
+        assert pair.get("sigma") != 0.0
+
+
+def test_variables_are_those_of_the_estimator_for_each_motor(
+    antagonistic_fmu: Path, estimator_fmu: Path
+) -> None:
+    with Instance(antagonistic_fmu) as pair, Instance(estimator_fmu) as single:
+        expected = {"sigma", "valid"}
+        for name, variable in single.variables.items():
+            base, bracket, index = name.partition("[")
+            if name in ("theta_c", "encoder.theta_c", "setPoint.scale", "model.b"):
+                continue
+            if name.startswith("motor."):
+                expected |= {name.replace("motor", f"motor_{i}") for i in (1, 2)}
+            elif variable.causality == "parameter" or name == "q":
+                expected.add(name)
+            else:
+                expected |= {f"{base}_{i}{bracket}{index}" for i in (1, 2)}
+        assert set(pair.variables) == expected
+
+
+def test_messages_say_which_motor(antagonistic_fmu: Path) -> None:
+    with Instance(antagonistic_fmu) as pair:
+        assert pair.setup() == OK
+        pair.set_all({"motor_2.gamma": 0.0})
+        assert pair.enter() == OK
+        assert pair.exit() == ERROR
+        assert "Motor 2" in pair.messages[-1][2] and "gamma" in pair.messages[-1][2]
+        pair.set_all({"motor_2.gamma": 50.0})
+        assert pair.exit() == OK
+        pair.set_all({"tau_1": math.nan})
+        assert pair.step(0.0, 1e-3) == WARNING
+        assert "Motor 1" in pair.messages[-1][2]
+
+
+def test_state_is_restored(antagonistic_fmu: Path, estimator_fmu: Path) -> None:
+    names = ["sigma", "sigma_1", "rho_2"]
+
+    def run(instances: list[Instance]) -> list[list[float]]:
+        values = []
+        for k in range(20, 40):
+            step(instances, k)
+            values.append(instances[0].get_all(names))
+        return values
+
+    with trio(antagonistic_fmu, estimator_fmu, {}) as instances:
+        for k in range(20):
+            step(instances, k)
+        states = [instance.save() for instance in instances]
+        first = run(instances)
+        for instance, state in zip(instances, states, strict=True):
+            assert instance.restore(state) == OK
+            instance.free(state)
+        assert run(instances) == first
