@@ -58,7 +58,7 @@ function(sigmahat_add_plant name)
     OUTPUT ${dir}/plant_functions.c ${dir}/plant_functions.h
     COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export.plant_codegen ${name} ${dir}
     DEPENDS ${equations} ${PROJECT_SOURCE_DIR}/modelDescription/${name}.xml
-            ${PROJECT_SOURCE_DIR}/modelDescription/units.xml
+            ${PROJECT_SOURCE_DIR}/modelDescription/plant_macros.xml
     COMMENT "Equations of ${name}" VERBATIM)
   sigmahat_add_fmu(${name} STRUCT sh_plant STORAGE arrays SOURCES
                    fmu_src/plant.c fmu_src/radau.c fmu_src/noise.c

@@ -30,3 +30,15 @@ def plant_fmu() -> Path:
 def antagonistic_fmu() -> Path:
     """Path of AntagonisticStiffnessEstimator.fmu."""
     return sigmahat.fmu("AntagonisticStiffnessEstimator")
+
+
+@pytest.fixture(scope="session")
+def flexible_joint_fmu() -> Path:
+    """Path of FlexibleJointPlant.fmu."""
+    return sigmahat.fmu("FlexibleJointPlant")
+
+
+@pytest.fixture(scope="session")
+def antagonistic_plant_fmu() -> Path:
+    """Path of AntagonisticVsaPlant.fmu."""
+    return sigmahat.fmu("AntagonisticVsaPlant")

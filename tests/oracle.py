@@ -62,6 +62,7 @@ DEFAULTS: Parameters = {
     "setPoint.offset": 100.0,
     "setPoint.scale": -0.0025 / (2 * math.pi) * 1000,
     "rls.kind": ENHANCED,
+    "rls.symmetric": 1,
     "rls.n": 6,
     "rls.m": 3,
     "rls.P_0": 1e20,
@@ -140,10 +141,14 @@ def residual_torque(p: Parameters, theta: Exact, theta_dot: Exact, tau: Array) -
     return estimate
 
 
-def basis(n: int, m: int, set_point: Exact, phi: Exact) -> tuple[Exact, Exact]:
-    """F of (22) and dF/dphi of (23), row by row [size: ticks x n m, ticks x n m]."""
-    F = [set_point**j * phi ** (2 * i + 1) for j in range(m) for i in range(n)]
-    dF = [(2 * i + 1) * set_point**j * phi ** (2 * i) for j in range(m) for i in range(n)]
+def basis(n: int, m: int, set_point: Exact, phi: Exact, symmetric: int = 1) -> tuple[Exact, Exact]:
+    """F of (22) and dF/dphi of (23), row by row [size: ticks x n m, ticks x n m].
+
+    symmetric  1: the odd powers of (18); 0: the powers 0 to n - 1 in their place
+    """
+    powers = [2 * i + 1 if symmetric else i for i in range(n)]
+    F = [set_point**j * phi**e for j in range(m) for e in powers]
+    dF = [set_point**j * (e * phi ** (e - 1) if e else 0 * phi) for j in range(m) for e in powers]
     return np.array(F).T, np.array(dF).T
 
 
@@ -293,7 +298,7 @@ def estimator(
         residuals.append(residual)
         torques.append(torque)
 
-    F, dF = basis(n, m, set_point, phi)
+    F, dF = basis(n, m, set_point, phi, int(p["rls.symmetric"]))
     factor = p["rls.a"] if p["rls.kind"] == CONSTANT_FACTOR else p["rls.c"]
     flat = np.zeros(n * m) if eta_0 is None else eta_0.T.ravel()
     regression = least_squares(

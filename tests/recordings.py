@@ -12,3 +12,9 @@ from sigmahat.scenarios import scenario
 def one_seed(name: str) -> Result:
     """A scenario with seed 1."""
     return reproduce(scenario(name), [1])
+
+
+@cache
+def twenty_seeds(name: str) -> Result:
+    """A scenario with seeds 1 to 20."""
+    return reproduce(scenario(name), range(1, 21), processes=2)

@@ -28,6 +28,7 @@ class Awas:
     link_M: float = 0.1
     link_D_q: float = 0.15
     link_mgl: float = 0.0
+    link_tau_coulomb: float = 0.0
     motor_B: float = 2.3e-5
     motor_D_theta: float = 1e-3
     motor_gamma: float = 50.0
@@ -63,13 +64,14 @@ class Awas:
         psi_e = -2 * self.spring_k_s * self.spring_b * r * math.sin(phi) ** 2  # (31)
         friction = self.motor_D_theta * self.motor_gamma * theta_dot
         friction += self.motor_tau_coulomb * math.tanh(theta_dot / self.coulomb_velocity)
+        link_friction = self.link_D_q * q_dot
+        link_friction += self.link_tau_coulomb * math.tanh(q_dot / self.coulomb_velocity)
         return np.array(
             [
                 q_dot,
                 theta_dot,
                 theta_c_dot,
-                (tau_ext - self.link_D_q * q_dot - tau_e - self.link_mgl * math.sin(q))
-                / self.link_M,
+                (tau_ext - link_friction - tau_e - self.link_mgl * math.sin(q)) / self.link_M,
                 (tau - friction + tau_e / self.motor_gamma) / (self.motor_B * self.motor_gamma),
                 (
                     tau_c

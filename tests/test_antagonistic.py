@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+
 from fmi_instance import ERROR, OK, WARNING, Instance
 
 OUTPUTS = [

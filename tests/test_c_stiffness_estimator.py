@@ -108,6 +108,7 @@ OUTSIDE: list[tuple[str, float]] = [
     ("rls.a", math.nextafter(1.0, 2.0)),
     ("residual.K_I", 2000.0),  # K_I T = 2
     *((name, bad) for name, last in CHOICES.items() for bad in (0, -1, last + 1, 2**31 - 1)),
+    *(("rls.symmetric", bad) for bad in (-1, 2, 2**31 - 1)),
 ]
 
 
@@ -132,6 +133,8 @@ def test_outside_its_range_a_parameter_is_named(c: Library, name: str, value: fl
         ("filter.V_min", 10.0),  # V_max
         *((name, last) for name, last in CHOICES.items()),
         *((name, 1) for name in CHOICES),
+        ("rls.symmetric", 0),
+        ("rls.symmetric", 1),
     ],
 )
 def test_at_its_limit_a_parameter_passes(c: Library, name: str, value: float) -> None:
@@ -160,13 +163,16 @@ def test_initial_estimate_must_be_finite(c: Library, bad: float) -> None:
 # First tick and structure
 
 
-def test_state_before_the_first_tick(c: Library) -> None:
-    # eta_0 at phi = 0 and theta_c = 0: sigma = sum_j eta_0j offset^j
+@pytest.mark.parametrize("symmetric", [1, 0])
+def test_state_before_the_first_tick(c: Library, symmetric: int) -> None:
+    # eta_0 at phi = 0 and theta_c = 0: sigma is the sum over offset^j of the coefficients of phi,
+    # tau_e that of the constants, which only the general basis has
     eta_0 = np.zeros((8, 5))
-    eta_0[0, :3], eta_0[1, 0] = [1.0, 2.0, 3.0], 9.0
-    estimate = Estimator(c, {"rls.eta_0": eta_0.tolist(), "setPoint.offset": 10.0}).estimate
-    assert estimate.sigma == 1.0 + 20.0 + 300.0
-    assert (estimate.setPoint, estimate.phi, estimate.tau_e) == (10.0, 0.0, 0.0)
+    eta_0[:3, :3] = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [9.0, 9.0, 9.0]]
+    values = {"rls.eta_0": eta_0.tolist(), "setPoint.offset": 10.0, "rls.symmetric": symmetric}
+    estimate = Estimator(c, values).estimate
+    assert (estimate.sigma, estimate.tau_e) == ((321.0, 0.0) if symmetric else (654.0, 321.0))
+    assert (estimate.setPoint, estimate.phi) == (10.0, 0.0)
     assert np.all(np.array([list(row) for row in estimate.eta])[:6, :3] == eta_0[:6, :3])
 
 
@@ -447,6 +453,9 @@ def test_filtered_deformation_against_the_oracle(c: Library, filter_kind: int) -
         {"rls.n": 8, "rls.m": 5},
         {"samplePeriod": 2e-3, "residual.K_I": 100.0, "motor.gamma": -20.0},
         {"setPoint.offset": 0.0, "setPoint.scale": 0.01},
+        {"rls.symmetric": 0},
+        {"rls.symmetric": 0, "rls.n": 1, "rls.m": 1},
+        {"rls.symmetric": 0, "rls.n": 8, "rls.m": 1},
     ],
     ids=str,
 )

@@ -15,7 +15,6 @@ import pytest
 
 import sigmahat
 from sigmahat.cli import main
-from sigmahat.figures import FIGURES
 from sigmahat.scenarios import SCENARIOS
 
 COMMAND = [sys.executable, "-m", "sigmahat"]
@@ -41,9 +40,21 @@ def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> Non
     assert str(out) in done.stdout
     for words in ("table1", "V_a", "MODEL", "24.14", "SENSOR", "24.36", "RESIDUAL", "128.16"):
         assert words in done.stdout
-    expected = {f"{name}.{kind}" for name in FIGURES for kind in ("png", "svg")}
+    expected = {f"{name}.{kind}" for name in SCENARIOS["table1"].figures for kind in ("png", "svg")}
     expected |= {"MODEL.csv", "MODEL-measured.csv", "SENSOR.csv", "RESIDUAL.csv", "table.csv"}
     assert {path.name for path in out.iterdir()} == expected
+
+
+def test_another_scenario_has_its_own_files(tmp_path: Path) -> None:
+    done = run("reproduce", "--scenario", "single-hardening", "--out", "here", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert {path.name for path in (tmp_path / "here").iterdir()} == {
+        "summary.png",
+        "summary.svg",
+        "RESIDUAL.csv",
+        "RESIDUAL-paper-prior.csv",
+        "table.csv",
+    }
 
 
 def test_scenario_seeds_and_folder_are_taken(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import fmpy
 import pytest
 
 from c_library import Library
-from fmi_instance import Instance
+from fmi_instance import ERROR, OK, Instance
 
 B = 0.0025 / (2 * math.pi)
 # name: causality, variability (None: any), unit, start (None: any)
@@ -54,6 +54,7 @@ PARAMETERS = {
     "setPoint.offset": ("fixed", "1", 100),
     "setPoint.scale": ("fixed", "1/rad", -B * 1000),
     "rls.kind": ("fixed", None, 1),
+    "rls.symmetric": ("fixed", None, 1),
     "rls.n": ("fixed", None, 6),
     "rls.m": ("fixed", None, 3),
     "rls.P_0": ("fixed", "1", 1e20),
@@ -70,6 +71,13 @@ ITEMS = {
     "deformation": ["Raw", "Filtered"],
     "rls.kind": ["Enhanced", "Standard", "ConstantFactor"],
 }
+FMUS = [
+    "estimator_fmu",
+    "antagonistic_fmu",
+    "plant_fmu",
+    "flexible_joint_fmu",
+    "antagonistic_plant_fmu",
+]
 
 
 @pytest.fixture(scope="module")
@@ -82,14 +90,14 @@ def variables(description: Any) -> dict[str, Any]:
     return {v.name: v for v in description.modelVariables}
 
 
-@pytest.mark.parametrize("fmu", ["estimator_fmu", "plant_fmu"])
+@pytest.mark.parametrize("fmu", FMUS)
 def test_fmpy_finds_no_problem(fmu: str, request: pytest.FixtureRequest) -> None:
     from fmpy.validation import validate_fmu
 
     assert validate_fmu(str(request.getfixturevalue(fmu))) == []
 
 
-@pytest.mark.parametrize("fmu", ["estimator_fmu", "plant_fmu"])
+@pytest.mark.parametrize("fmu", FMUS)
 def test_runs_with_start_values_untouched(fmu: str, request: pytest.FixtureRequest) -> None:
     path = request.getfixturevalue(fmu)
     outputs = [
@@ -102,7 +110,7 @@ def test_runs_with_start_values_untouched(fmu: str, request: pytest.FixtureReque
     assert all(math.isfinite(result[name].astype(float).sum()) for name in outputs)
 
 
-@pytest.mark.parametrize("fmu", ["estimator_fmu", "plant_fmu"])
+@pytest.mark.parametrize("fmu", FMUS)
 def test_every_real_has_a_unit_and_everything_a_description(
     fmu: str, request: pytest.FixtureRequest
 ) -> None:
@@ -130,18 +138,25 @@ def test_inputs_and_outputs(variables: dict[str, Any]) -> None:
     assert (variables["valid"].type, variables["valid"].causality) == ("Boolean", "output")
 
 
+def start_of(variable: Any) -> float:
+    """Start value as a number; FMPy leaves it a text."""
+    if variable.type == "Boolean":
+        return {"false": 0.0, "true": 1.0}[variable.start]
+    return float(variable.start)
+
+
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_parameter(name: str, variables: dict[str, Any], build: Path) -> None:
     variability, unit, start = PARAMETERS[name]
     variable = variables[name]
     assert (variable.causality, variable.variability) == ("parameter", variability)
     assert unit is None or variable.unit == unit
-    assert start is None or float(variable.start) == pytest.approx(start, rel=1e-15)
+    assert start is None or start_of(variable) == pytest.approx(start, rel=1e-15)
     # The library has the same start values.
     value: Any = Library(build).parameters({})
     for part in name.split("."):
         value = getattr(value, part)
-    assert float(variable.start) == value
+    assert start_of(variable) == value
 
 
 @pytest.mark.parametrize("name", ITEMS)
@@ -176,10 +191,35 @@ def test_limits_in_the_description_are_those_of_the_library(
     assert checked > 20
 
 
+def test_symmetric_is_a_boolean(estimator_fmu: Path, variables: dict[str, Any]) -> None:
+    assert variables["rls.symmetric"].type == "Boolean"
+    for value in (0, 1):
+        with Instance(estimator_fmu) as fmu:
+            fmu.initialise({"rls.symmetric": value})
+            assert fmu.get("rls.symmetric") == value
+    for bad in (2, -1):
+        with Instance(estimator_fmu) as fmu:
+            assert fmu.setup() == OK
+            fmu.set_all({"rls.symmetric": bad})
+            assert fmu.enter() == OK
+            assert fmu.exit() == ERROR
+            message = fmu.messages[-1][2]
+            assert f"rls.symmetric = {bad} " in message and "[0, 1]" in message
+
+
 def test_initial_outputs_follow_the_initial_estimate(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise({"rls.eta_0[0,0]": 5.0, "rls.eta_0[0,2]": 0.01})
         assert fmu.get("sigma") == pytest.approx(5.0 + 0.01 * 100.0**2, rel=1e-15)
+        assert fmu.get("tau_e") == 0.0
         assert fmu.get("eta[0,2]") == 0.01
         assert fmu.get("setPoint") == 100.0
         assert fmu.get("valid") == 1
+
+
+def test_initial_outputs_in_the_general_basis(estimator_fmu: Path) -> None:
+    start = {"rls.symmetric": 0, "rls.eta_0[0,0]": 5.0, "rls.eta_0[0,2]": 0.01, "rls.eta_0[1,1]": 3}
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise(start)
+        assert fmu.get("tau_e") == pytest.approx(5.0 + 0.01 * 100.0**2, rel=1e-15)
+        assert fmu.get("sigma") == 3 * 100.0

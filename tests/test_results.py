@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -56,7 +57,7 @@ def test_table_file_of_one_seed(tmp_path: Path) -> None:
 
 
 def test_mean_and_interval_over_seeds(tmp_path: Path) -> None:
-    each = [{name: Indices(x, x / 100, x / 1000) for name in ROWS} for x in (1.0, 2.0, 3.0)]
+    each = [{name: Indices(*[x] * 6) for name in ROWS} for x in (1.0, 2.0, 3.0)]
     result = replace(one_seed("table1"), seeds=[1, 2, 3], indices=each)
     results.write_table(result, tmp_path / "table.csv")
     with (tmp_path / "table.csv").open(newline="") as file:
@@ -83,12 +84,55 @@ def test_printed_table_stands_beside_the_papers() -> None:
         assert (float(paper_mse), float(paper_msrep)) == pytest.approx(paper, abs=0.005)
 
 
+def test_table_of_the_experiment_has_two_parts() -> None:
+    result = one_seed("experiment")
+    settled, whole = results.table(result).split("\n\n")
+    names = [each.name for each in result.scenario.comparisons]
+    for part, time in ((settled, "after 1 s"), (whole, "all 60 s")):
+        assert [re.split("  +", line)[0] for line in part.splitlines()] == [time, *names]
+    cells = {row[0]: row[1:] for row in (re.split("  +", x) for x in settled.splitlines())}
+    assert cells["after 1 s"] == [
+        "MSE [(N.m/rad)2]",
+        "paper",
+        "MSREP [%]",
+        "paper",
+        "mean error [%]",
+    ]
+    found = result.indices[0]["RESIDUAL against SENSOR"]
+    mse, paper_mse, msrep, paper_msrep, error = map(float, cells["RESIDUAL against SENSOR"])
+    assert (paper_mse, paper_msrep) == (63.02, 1.55)
+    assert mse == pytest.approx(found.mse_settled, abs=0.005)
+    assert msrep == pytest.approx(found.msrep_settled, abs=0.0005)
+    assert error == pytest.approx(found.error_settled, abs=0.0005)
+    assert [cells["MODEL against nominal"][i] for i in (1, 3)] == ["9.36", "0.034"]
+
+
+def test_index_that_is_not_defined_is_a_dash_and_an_empty_field(tmp_path: Path) -> None:
+    """SENSOR is 0 until the joint deforms."""
+    result = one_seed("experiment")
+    whole = results.table(result).split("\n\n")[1]
+    cells = {row[0]: row[1:] for row in (re.split("  +", x) for x in whole.splitlines())}
+    assert cells["RESIDUAL against SENSOR"][1:] == ["-", "-"]
+    assert "-" not in cells["RESIDUAL against SENSOR, relative to true"]
+    results.write_table(result, tmp_path / "table.csv")
+    with (tmp_path / "table.csv").open(newline="") as file:
+        rows = {row["estimation"]: row for row in csv.DictReader(file)}
+    row = rows["RESIDUAL against SENSOR"]
+    assert row["MSREP [%]"] == row["mean error [%]"] == ""
+    assert (
+        float(row["MSREP after 1 s [%]"])
+        == result.indices[0]["RESIDUAL against SENSOR"].msrep_settled
+    )
+
+
 def test_conditions_name_what_the_run_depends_on() -> None:
     line = results.conditions(one_seed("table1"))
     assert "15 s" in line
     assert "T = 1 ms" in line
     assert "V_a = " in line
+    assert "c P(0) = 1," in line
     assert "seed 1" in line
+    assert "c P(0) = 10000," in results.conditions(one_seed("single-hardening"))
 
 
 def test_folder_appears_filled_or_not_at_all(tmp_path: Path) -> None:

@@ -24,8 +24,9 @@ def scenarios() -> None:
     """List the scenarios."""
     from sigmahat.scenarios import SCENARIOS
 
+    width = max(map(len, SCENARIOS)) + 2
     for scenario in SCENARIOS.values():
-        click.echo(f"{scenario.name:12}{scenario.description}")
+        click.echo(f"{scenario.name:{width}}{scenario.description}")
 
 
 @cli.command()
@@ -43,7 +44,7 @@ def scenarios() -> None:
     help="Folder for figures and CSV files.  [default: sigmahat-results/SCENARIO]",
 )
 def reproduce(name: str, seeds: int, out: Path | None) -> None:
-    """Run a scenario of the paper; print its table, draw its figures.
+    """Run a scenario; print its table, draw its figures.
 
     Example: sigmahat reproduce --scenario as-printed --seeds 20 --out as-printed
     """
@@ -71,9 +72,9 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
                 result = reproduce(chosen, numbers, progress=bar.update)
             from sigmahat.figures import FIGURES, save
 
-            with _progress("Drawing", len(FIGURES)) as bar:
-                for title, draw in FIGURES.items():
-                    save(draw, result.recording, folder / title)
+            with _progress("Drawing", len(chosen.figures)) as bar:
+                for title in chosen.figures:
+                    save(FIGURES[title], result.recording, folder / title)
                     bar.update(1)
             results.write_table(result, folder / "table.csv")
             for modality in chosen.estimators:

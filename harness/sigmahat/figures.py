@@ -1,12 +1,13 @@
-"""Figures 3 to 8 of the paper and a summary, drawn from a recording.
+"""Figures 3 to 12 of the paper, and one picture for each scenario, drawn from a recording.
 
-Every function takes the recording of a scenario with the estimators MODEL, SENSOR and RESIDUAL
-and returns a figure that no window manager knows about.
+Every function takes the recording of a scenario that names it and returns a figure that no window
+manager knows about.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from PIL import Image
 
 from sigmahat.cosimulation import Recording
+from sigmahat.nominal import nominal
 
 Array = NDArray[np.float64]
 
@@ -26,9 +29,12 @@ _MODALITIES: dict[str, dict[str, Any]] = {
     "RESIDUAL": {"color": _BLUE},
     "SENSOR": {"color": _GREEN, "linestyle": (0, (5, 2))},
     "MODEL": {"color": _VERMILION, "linestyle": (0, (1, 1.5))},
+    "RESIDUAL-paper-prior": {"color": _VERMILION, "linestyle": (0, (5, 2))},
 }
 # Wide and light, so that an estimate on top of the truth still shows it.
 _TRUE: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 3.0, "label": "true"}
+
+_NOMINAL: dict[str, Any] = {"color": "black", "linewidth": 0.8, "label": "nominal"}
 
 _HELD: dict[str, Any] = {"color": _SKY, "drawstyle": "steps-post"}
 
@@ -45,18 +51,25 @@ _STYLE: Any = {
     "svg.hashsalt": "sigmahat",  # the same picture gives the same file
 }
 
+_ERROR_WINDOW = 0.1
+"""[s]"""
+
 _STIFFNESS = r"stiffness $\sigma$ [N$\cdot$m/rad]"
 _TORQUE = r"flexibility torque $\tau_e$ [N$\cdot$m]"
 _VELOCITY = r"motor velocity $\dot\theta$ [rad/s]"
 
 
 def deformation(recording: Recording) -> Figure:
-    """Figure 3: deformation phi."""
+    """Figures 3 and 9: deformation phi."""
     figure, (axes,) = _figure(1)
+    _deformation(axes, recording)
+    _legend_above(axes)
+    return figure
+
+
+def _deformation(axes: Axes, recording: Recording) -> None:
     _line(axes, recording.t, recording.plant["phi"], color=_BLUE, label=r"deformation $\phi$")
     axes.set_ylabel(r"deformation $\phi$ [rad]")
-    axes.legend()
-    return figure
 
 
 def velocity(recording: Recording) -> Figure:
@@ -146,21 +159,117 @@ def constant_factors(recording: Recording) -> Figure:
     return figure
 
 
+def lever_arm(recording: Recording) -> Figure:
+    """Figure 10: lever arm r, true and by the nominal data."""
+    figure, (axes,) = _figure(1)
+    _lever_arm(axes, recording)
+    return figure
+
+
+def _lever_arm(axes: Axes, recording: Recording) -> None:
+    _line(axes, recording.t, recording.plant["r"], **_TRUE)
+    _line(axes, recording.t, nominal(recording)["r"], **_NOMINAL)
+    axes.set_ylabel("lever arm $r$ [m]")
+    axes.legend()
+
+
+def nominal_torque(recording: Recording) -> Figure:
+    """Figure 11: flexibility torque, by the nominal data and from the sensor.
+
+    The second panel shows where the nominal data are most wrong.
+    """
+    figure, panels = _figure(2)
+    _nominal_torque(panels[0], recording, _everything(recording.t))
+    _legend_above(panels[0])
+    _nominal_torque_zoom(panels[1], recording)
+    return figure
+
+
+def _nominal_torque(axes: Axes, recording: Recording, window: slice) -> None:
+    for values, style in (
+        (recording.plant["tau_e_measured"], {"color": _GREEN, "label": "sensor"}),
+        (recording.plant["tau_e"], {**_TRUE, "linewidth": 1.5}),
+        (nominal(recording)["tau_e"], _NOMINAL),
+    ):
+        _line(axes, recording.t[window], values[window], **style)
+    axes.set_ylabel(_TORQUE)
+
+
+def _nominal_torque_zoom(axes: Axes, recording: Recording) -> None:
+    error = np.abs(nominal(recording)["tau_e"] - recording.plant["tau_e"])
+    centre = float(recording.t[np.argmax(error)])
+    _nominal_torque(axes, recording, _window(recording.t, centre, 0.5))
+    axes.set_title("where the nominal torque is most wrong", fontsize=9)
+
+
+def experiment_stiffness(recording: Recording) -> Figure:
+    """Figure 12: stiffness, true, by the nominal data, and estimated in the three modalities.
+
+    The second panel shows where it is largest.
+    """
+    t, true = recording.t, recording.plant["sigma"]
+    figure, panels = _figure(2)
+    _experiment_stiffness(panels[0], recording, _everything(t))
+    panels[0].legend(ncols=5)
+    window = _window(t, float(t[np.argmax(np.where(t > 1.0, true, 0.0))]), 2.0)
+    _experiment_stiffness(panels[1], recording, window)
+    panels[1].set_ylim(0.95 * true[window].min(), 1.2 * true[window].max())
+    panels[1].set_title("where it is largest", fontsize=9)
+    return figure
+
+
+def _experiment_stiffness(axes: Axes, recording: Recording, window: slice) -> None:
+    _line(axes, recording.t[window], nominal(recording)["sigma"][window], **_NOMINAL)
+    _stiffness_lines(axes, recording, window)
+
+
+def experiment(recording: Recording) -> Figure:
+    """Figures 9 to 12 below each other, and the relative error of each estimate."""
+    figure, panels = _figure(5)
+    _deformation(panels[0], recording)
+    _legend_above(panels[0])
+    _lever_arm(panels[1], recording)
+    _nominal_torque_zoom(panels[2], recording)
+    _legend_above(panels[2])
+    _experiment_stiffness(panels[3], recording, _everything(recording.t))
+    panels[3].legend(ncols=5)
+    _modality_errors(panels[4], recording)
+    return figure
+
+
+def antagonistic(recording: Recording) -> Figure:
+    """Torques of both transmissions, stiffness of the device and of its sides, relative errors."""
+    t, plant, estimate = recording.t, recording.plant, recording.estimators["RESIDUAL"]
+    figure, (torques, stiffnesses, errors) = _figure(3)
+    for i, color in ((1, _GREEN), (2, _VERMILION)):
+        _line(torques, t, plant[f"tau_e_{i}"], color=color, label=f"side {i}")
+    total = plant["tau_e_1"] + plant["tau_e_2"]
+    _line(torques, t, total, color="black", linewidth=0.8, label="sum, which moves the link")
+    torques.set_ylabel(_TORQUE)
+    _legend_above(torques)
+
+    for name, signal, color in (
+        ("device", "sigma", _BLUE),
+        ("side 1", "sigma_1", _GREEN),
+        ("side 2", "sigma_2", _VERMILION),
+    ):
+        _line(stiffnesses, t, plant[signal], **_TRUE)
+        _line(stiffnesses, t, estimate[signal], color=color, label=f"RESIDUAL, {name}")
+        _error_line(errors, t, plant[signal], estimate[signal], color=color, label=name)
+    _limit(stiffnesses, plant["sigma"])
+    stiffnesses.set_ylabel(_STIFFNESS)
+    lines = {str(each.get_label()): each for each in stiffnesses.get_lines()}
+    stiffnesses.legend(handles=lines.values(), ncols=4)
+    _error_axes(errors)
+    return figure
+
+
 def summary(recording: Recording) -> Figure:
     """Stiffness, true and estimated, and the relative error of each estimate."""
-    t, true = recording.t, recording.plant["sigma"]
     figure, (above, below) = _figure(2)
-    _stiffness_lines(above, recording, _everything(t))
+    _stiffness_lines(above, recording, _everything(recording.t))
     above.legend(ncols=2)
-    window = int(np.searchsorted(t, 0.1))
-    windows = len(t) // window
-    for name, style in _MODALITIES.items():
-        error = np.abs(recording.estimators[name]["sigma"] / true - 1)[: windows * window] * 100
-        worst = error.reshape(windows, window).max(axis=1)
-        _line(below, t[: windows * window : window], worst, label=name, **style)
-    below.set_yscale("log")
-    below.set_ylabel("relative error [%],\nlargest within 0.1 s")
-    below.legend(ncols=3)
+    _modality_errors(below, recording)
     return figure
 
 
@@ -171,7 +280,13 @@ FIGURES: dict[str, Callable[[Recording], Figure]] = {
     "fig6-stiffness": stiffness,
     "fig7-stability-factor": stability_factor,
     "fig8-constant-factors": constant_factors,
+    "fig9-deformation": deformation,
+    "fig10-lever-arm": lever_arm,
+    "fig11-flexibility-torque": nominal_torque,
+    "fig12-stiffness": experiment_stiffness,
     "summary": summary,
+    "experiment": experiment,
+    "antagonistic": antagonistic,
 }
 """Every figure by the name of its files."""
 
@@ -180,8 +295,11 @@ def save(draw: Callable[[Recording], Figure], recording: Recording, path: Path) 
     """Draws a figure into <path>.png and <path>.svg. The same recording gives the same SVG."""
     with matplotlib.rc_context(_STYLE):
         figure = draw(recording)
-        figure.savefig(path.with_suffix(".png"))
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
+        pixels = BytesIO()
+        figure.savefig(pixels, format="png")
+    with Image.open(pixels) as image:  # 64 colours look the same in a third of the bytes
+        image.convert("RGB").quantize(64).save(path.with_suffix(".png"), optimize=True)
 
 
 def _figure(panels: int) -> tuple[Figure, list[Axes]]:
@@ -193,13 +311,42 @@ def _figure(panels: int) -> tuple[Figure, list[Axes]]:
     return figure, axes
 
 
+def _modalities(recording: Recording) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Estimators of the recording that have a style, and their style with a label."""
+    for name, style in _MODALITIES.items():
+        if name in recording.estimators:
+            yield name, {**style, "label": name}
+
+
 def _stiffness_lines(axes: Axes, recording: Recording, window: slice) -> None:
     t, true = recording.t[window], recording.plant["sigma"][window]
     _line(axes, t, true, **_TRUE)
-    for name, style in _MODALITIES.items():
-        _line(axes, t, recording.estimators[name]["sigma"][window], label=name, **style)
+    for name, style in _modalities(recording):
+        _line(axes, t, recording.estimators[name]["sigma"][window], **style)
     _limit(axes, true)
     axes.set_ylabel(_STIFFNESS)
+
+
+def _modality_errors(axes: Axes, recording: Recording) -> None:
+    for name, style in _modalities(recording):
+        estimate = recording.estimators[name]["sigma"]
+        _error_line(axes, recording.t, recording.plant["sigma"], estimate, **style)
+    _error_axes(axes)
+
+
+def _error_line(axes: Axes, t: Array, true: Array, estimate: Array, **style: Any) -> None:
+    """Relative error of a stiffness, the largest of each window."""
+    window = int(np.searchsorted(t, _ERROR_WINDOW))
+    windows = len(t) // window
+    error = np.abs(estimate / true - 1)[: windows * window] * 100
+    worst = error.reshape(windows, window).max(axis=1)
+    _line(axes, t[: windows * window : window], worst, **style)
+
+
+def _error_axes(axes: Axes) -> None:
+    axes.set_yscale("log")
+    axes.set_ylabel(f"relative error [%],\nlargest within {_ERROR_WINDOW:g} s")
+    axes.legend(ncols=3)
 
 
 def _line(axes: Axes, t: Array, values: Array, **style: Any) -> None:
@@ -223,6 +370,13 @@ def _limit(axes: Axes, true: Array) -> None:
     """Keeps the scale where the true values are, however far an estimate goes."""
     top = float(np.max(true))
     axes.set_ylim(min(0.0, float(np.min(true))) - 0.1 * top, 1.4 * top)
+
+
+def _legend_above(axes: Axes) -> None:
+    """Legend above the lines, where they reach all over the panel."""
+    bottom, top = axes.get_ylim()
+    axes.set_ylim(bottom, top + 0.2 * (top - bottom))
+    axes.legend(loc="upper right", ncols=len(axes.get_lines()))
 
 
 def _everything(t: Array) -> slice:

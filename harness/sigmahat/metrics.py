@@ -9,20 +9,26 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-SETTLED = 1.0
-"""Time after which an estimate is judged without its start-up [s]."""
-
 
 @dataclass(frozen=True)
 class Indices:
-    """Performance indices of one estimate over one run."""
+    """Performance indices of one estimate over one run.
+
+    Relative ones are nan where what they are relative to is zero at some time.
+    """
 
     mse: float
     """(35) [(N.m/rad)2]"""
     msrep: float
     """(36) [%]"""
+    error: float
+    """Mean relative error [%]"""
+    mse_settled: float
+    """(35) without the start-up [(N.m/rad)2]"""
     msrep_settled: float
-    """(36) over t >= SETTLED [%]"""
+    """(36) without the start-up [%]"""
+    error_settled: float
+    """Mean relative error without the start-up [%]"""
 
 
 def mse(sigma: ArrayLike, estimate: ArrayLike) -> float:
@@ -31,48 +37,89 @@ def mse(sigma: ArrayLike, estimate: ArrayLike) -> float:
     Both arguments have the shape (p + 1,), p >= 1: samples k = 0..p. As printed, the p + 1 squares
     are divided by p. Raises ValueError for other shapes and values that are not finite.
     """
-    true, estimated = _pair(sigma, estimate)
+    true, estimated = _equal_shapes(sigma, estimate)
     return float(np.sum((true - estimated) ** 2) / (len(true) - 1))
 
 
-def msrep(sigma: ArrayLike, estimate: ArrayLike) -> float:
-    """Mean square relative error, (36) [%]; arguments as for mse, with sigma nonzero."""
-    true, estimated = _pair(sigma, estimate)
-    if not np.all(true):
-        raise ValueError("relative error: expected a true stiffness that is nowhere zero")
-    return mse(np.ones_like(true), estimated / true) * 100
+def msrep(sigma: ArrayLike, estimate: ArrayLike, relative_to: ArrayLike | None = None) -> float:
+    """Mean square relative error, (36) [%]; arguments as for mse.
+
+    The error is relative to sigma, or to another stiffness of the same shape; it must be nonzero.
+    """
+    return mse(*_relative(sigma, estimate, relative_to)) * 100
 
 
-def indices(t: NDArray[np.float64], sigma: ArrayLike, estimate: ArrayLike) -> Indices:
-    """All indices of one run; t [s] has the shape of sigma and estimate [N.m/rad]."""
-    true, estimated = _pair(sigma, estimate)
-    settled = t >= SETTLED
-    return Indices(
-        mse(true, estimated), msrep(true, estimated), msrep(true[settled], estimated[settled])
+def mean_error(
+    sigma: ArrayLike, estimate: ArrayLike, relative_to: ArrayLike | None = None
+) -> float:
+    """Mean relative error [%], positive if the estimate is too stiff; arguments as for msrep."""
+    true, estimated = _relative(sigma, estimate, relative_to)
+    return float(np.mean(estimated - true)) * 100
+
+
+def indices(
+    t: NDArray[np.float64],
+    sigma: ArrayLike,
+    estimate: ArrayLike,
+    relative_to: ArrayLike | None = None,
+    settled: float = 1.0,
+) -> Indices:
+    """All indices of one run, over all of it and without its start-up.
+
+    t [s]          shape of sigma and estimate [N.m/rad]
+    relative_to    what errors are relative to [N.m/rad], sigma if not given; may be zero here
+    settled        time at which the start-up ends [s]
+    """
+    true, estimated, scale = _equal_shapes(
+        sigma, estimate, sigma if relative_to is None else relative_to
     )
+    found = []
+    for part in (slice(None), t >= settled):
+        arguments = true[part], estimated[part], scale[part]
+        known = bool(np.all(scale[part]))
+        found += [
+            mse(*arguments[:2]),
+            msrep(*arguments) if known else math.nan,
+            mean_error(*arguments) if known else math.nan,
+        ]
+    return Indices(*found)
 
 
 def mean_interval(values: Sequence[float]) -> tuple[float, float]:
     """Mean over independent runs and half the width of its 95 % interval (Student t).
 
-    The half width of a single value is not known: nan.
+    The half width of a single value is not known: nan. That of equal values is 0, not rounding.
     """
     mean = float(np.mean(values))
     if len(values) < 2:
         return mean, math.nan
+    if len(set(values)) == 1:
+        return values[0], 0.0
     from scipy.special import stdtrit
 
     deviation = float(np.std(values, ddof=1))
     return mean, float(stdtrit(len(values) - 1, 0.975)) * deviation / math.sqrt(len(values))
 
 
-def _pair(sigma: ArrayLike, estimate: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    true, estimated = np.asarray(sigma, float), np.asarray(estimate, float)
-    if true.ndim != 1 or true.shape != estimated.shape or len(true) < 2:
+def _relative(
+    sigma: ArrayLike, estimate: ArrayLike, relative_to: ArrayLike | None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    true, estimated, scale = _equal_shapes(
+        sigma, estimate, sigma if relative_to is None else relative_to
+    )
+    if not np.all(scale):
+        raise ValueError("relative error: expected a true stiffness that is nowhere zero")
+    return true / scale, estimated / scale
+
+
+def _equal_shapes(*signals: ArrayLike) -> list[NDArray[np.float64]]:
+    arrays = [np.asarray(signal, float) for signal in signals]
+    shapes = [array.shape for array in arrays]
+    if len(set(shapes)) > 1 or arrays[0].ndim != 1 or len(arrays[0]) < 2:
         raise ValueError(
             "expected true and estimated stiffness of the same shape (p + 1,), p >= 1, "
-            f"got {true.shape} and {estimated.shape}"
+            f"got {', '.join(map(str, shapes))}"
         )
-    if not (np.all(np.isfinite(true)) and np.all(np.isfinite(estimated))):
+    if not all(np.all(np.isfinite(array)) for array in arrays):
         raise ValueError("expected finite stiffness, got values that are not")
-    return true, estimated
+    return arrays

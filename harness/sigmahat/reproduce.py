@@ -13,8 +13,11 @@ from dataclasses import dataclass, replace
 from multiprocessing.resource_tracker import ensure_running
 from typing import Any
 
+from numpy.typing import NDArray
+
 from sigmahat.cosimulation import Recording, simulate
 from sigmahat.metrics import Indices, indices
+from sigmahat.nominal import nominal
 from sigmahat.scenarios import Scenario, T
 
 Progress = Callable[[int], object]
@@ -29,7 +32,7 @@ class Result:
     recording: Recording
     """Run of the first seed, with the variants that only the figures need."""
     indices: Sequence[dict[str, Indices]]
-    """For each seed, by modality."""
+    """For each seed, by comparison."""
 
 
 def work(scenario: Scenario, seeds: Sequence[int]) -> int:
@@ -93,9 +96,27 @@ def _run_indices(scenario: Scenario, seed: int) -> dict[str, Indices]:
 
 def _indices(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
     return {
-        name: indices(recording.t, recording.plant["sigma"], recording.estimators[name]["sigma"])
-        for name in scenario.estimators
+        each.name: indices(
+            recording.t,
+            signal_of(recording, each.reference),
+            signal_of(recording, each.estimate),
+            signal_of(recording, each.relative_to or each.reference),
+            scenario.settled,
+        )
+        for each in scenario.comparisons
     }
+
+
+def signal_of(recording: Recording, name: str) -> NDArray[Any]:
+    """Returns a signal, shape (N + 1,), by its name as in scenarios.Comparison.
+
+    Raises KeyError if it was not recorded.
+    """
+    source, _, variable = name.rpartition(".")
+    if source == "nominal":
+        return nominal(recording)[variable]
+    series = recording.plant if source == "plant" else recording.estimators[source]
+    return series[variable]
 
 
 @contextmanager

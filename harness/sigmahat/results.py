@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from sigmahat.cosimulation import Recording, Series
-from sigmahat.metrics import SETTLED, mean_interval
+from sigmahat.metrics import mean_interval
 from sigmahat.reproduce import Result
-from sigmahat.scenarios import T
+from sigmahat.scenarios import Scenario, T
 
-_INDICES = (
-    ("mse", "MSE [(N.m/rad)2]"),
-    ("msrep", "MSREP [%]"),
-    ("msrep_settled", f"MSREP after {SETTLED:g} s [%]"),
-)
+_TITLES = {"mse": "MSE [(N.m/rad)2]", "msrep": "MSREP [%]", "error": "mean error [%]"}
 
 
 @contextmanager
@@ -50,26 +46,33 @@ def conditions(result: Result) -> str:
     if len(seeds) > 1:
         noise = f"mean +- 95 % interval over {len(seeds)} seeds"
     parameters = result.recording.estimators["RESIDUAL"].parameters
+    prior = float(parameters["rls.c"]) * float(parameters["rls.P_0"])
     return (
         f"{scenario.duration:g} s, T = {T * 1e3:g} ms, "
-        f"V_a = {parameters['filter.V_a']:g} rad2/s4, {noise}"
+        f"V_a = {parameters['filter.V_a']:g} rad2/s4, c P(0) = {prior:g}, {noise}"
     )
 
 
 def table(result: Result) -> str:
-    """The indices of each modality beside the paper's, as text."""
-    paper = result.scenario.paper
-    head = ["", *(title for _, title in _INDICES)]
+    """The indices of each comparison beside the paper's, as text; "-": not defined."""
+    tables = [_table(result, columns, i == 0) for i, columns in enumerate(result.scenario.tables)]
+    return "\n\n".join(tables)
+
+
+def _table(result: Result, columns: Sequence[str], with_paper: bool) -> str:
+    """One table; the paper gives indices of the first two columns."""
+    paper = result.scenario.paper if with_paper else {}
+    head = _head(result.scenario, columns)
     if paper:
         head[2:2] = ["paper"]
         head[4:4] = ["paper"]
     rows = [head]
-    for name in result.scenario.estimators:
-        cells = [_cell(result, name, index) for index, _ in _INDICES]
+    for each in result.scenario.comparisons:
+        cells = [_cell(result, each.name, index) for index in columns]
         if paper:
-            known = [f"{index:.2f}" for index in paper.get(name, ())] or ["", ""]
+            known = [_paper(index) for index in paper.get(each.name, ())] or ["", ""]
             cells[1:1], cells[3:3] = known[:1], known[1:]
-        rows.append([name, *cells])
+        rows.append([each.name, *cells])
     widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
     return "\n".join(
         "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in rows
@@ -77,17 +80,18 @@ def table(result: Result) -> str:
 
 
 def write_table(result: Result, path: Path) -> None:
-    """Writes the indices of each modality, with half the width of their 95 % interval."""
+    """Writes the indices of each comparison, with half the width of their 95 % interval."""
+    columns = [index for each in result.scenario.tables for index in each]
     head = ["estimation", "seeds"]
-    for _, title in _INDICES:
+    for title in (_title(result.scenario, index) for index in columns):
         head += [title, title.replace(" [", " 95 % half width [")]
     head += ["MSE of the paper [(N.m/rad)2]", "MSREP of the paper [%]"]
     rows: list[list[Any]] = []
-    for name in result.scenario.estimators:
-        row: list[Any] = [name, len(result.seeds)]
-        for index, _ in _INDICES:
-            row += (None if math.isnan(x) else x for x in _mean(result, name, index))
-        rows.append([*row, *result.scenario.paper.get(name, (None, None))])
+    for each in result.scenario.comparisons:
+        row: list[Any] = [each.name, len(result.seeds)]
+        for index in columns:
+            row += (None if math.isnan(x) else x for x in _mean(result, each.name, index))
+        rows.append([*row, *result.scenario.paper.get(each.name, (None, None))])
     _write(path, head, rows)
 
 
@@ -105,15 +109,44 @@ def _titles(series: Series, prefix: str) -> Iterator[str]:
         yield f"{prefix}{name} [{unit}]" if unit else f"{prefix}{name}"
 
 
+def _head(scenario: Scenario, columns: Sequence[str]) -> list[str]:
+    """Titles of a table; where all columns are of the same time, that stands in the corner."""
+    settled = {index.endswith("_settled") for index in columns}
+    if len(settled) > 1:
+        return ["", *(_title(scenario, index) for index in columns)]
+    time = f"after {scenario.settled:g} s" if settled.pop() else f"all {scenario.duration:g} s"
+    return [time, *(_TITLES[index.removesuffix("_settled")] for index in columns)]
+
+
+def _title(scenario: Scenario, index: str) -> str:
+    title = _TITLES[index.removesuffix("_settled")]
+    if index.endswith("_settled"):
+        title = title.replace(" [", f" after {scenario.settled:g} s [")
+    return title
+
+
 def _mean(result: Result, name: str, index: str) -> tuple[float, float]:
     return mean_interval([getattr(each[name], index) for each in result.indices])
 
 
 def _cell(result: Result, name: str, index: str) -> str:
     mean, half_width = _mean(result, name, index)
-    form = {"mse": ".2f", "msrep": ".3f", "msrep_settled": ".1e"}[index]
-    interval = "" if math.isnan(half_width) else f" +- {half_width:{form}}"
-    return f"{mean:{form}}{interval}"
+    if math.isnan(mean):
+        return "-"
+    interval = "" if math.isnan(half_width) else f" +- {_number(half_width, index)}"
+    return f"{_number(mean, index)}{interval}"
+
+
+def _number(value: float, index: str) -> str:
+    """Fixed point, but for what is small once the start-up is over."""
+    if index.endswith("_settled") and abs(value) < 0.01:
+        return f"{value:.1e}"
+    return f"{value:.{2 if index.startswith('mse') else 3}f}"
+
+
+def _paper(value: float) -> str:
+    """As many digits as tell it from zero."""
+    return f"{value:.2f}" if value >= 0.1 else f"{value:.2g}"
 
 
 def _write(path: Path, head: list[str], rows: Iterable[Iterable[Any]]) -> None:

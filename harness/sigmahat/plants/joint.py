@@ -1,0 +1,80 @@
+"""What joints have in common: the link (2), motors (3), friction, encoders, torque sensors.
+
+A plant makes its states and the torque of its transmission, and has the rest added here, with the
+names that all plants use. Where a joint has several motors, `side` ends the names that belong to
+one of them: "_1" makes `theta_1`, `motor_1.B` and `tau_measured_1`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import casadi as ca
+
+from sigmahat.plants.plant import Plant, encoder
+
+# Coulomb friction is smooth, tau_coulomb tanh(velocity / COULOMB_VELOCITY). What is stuck thus
+# creeps, at this speed [rad/s] under 76 % of the friction torque.
+COULOMB_VELOCITY = 0.02
+
+
+def position(plant: Plant, name: str) -> ca.SX:
+    """State `name` [rad] of a link or motor, which starts at the parameter `initial.<name>`.
+
+    A deformation of some 0.01 rad may carry the whole torque: so much of a position matters.
+    """
+    return plant.state(name, plant.parameter(f"initial.{name}"), scale=0.01)
+
+
+def velocity(plant: Plant, name: str) -> ca.SX:
+    """State `name` [rad/s] of a link or motor, which starts at the parameter `initial.<name>`."""
+    return plant.state(name, plant.parameter(f"initial.{name}"), scale=1.0)
+
+
+def add_link(plant: Plant, q: ca.SX, q_dot: ca.SX, tau_e: ca.SX) -> None:
+    """The link (2) with g(q) = mgl sin q and Coulomb friction, and its encoder.
+
+    It is moved by the input `tau_ext` and against `tau_e`, the sum of the flexibility torques.
+    """
+    tau_ext = plant.input("tau_ext")
+    friction = plant.parameter("link.D_q") * q_dot
+    friction += _coulomb(plant.parameter("link.tau_coulomb"), q_dot)
+    gravity = plant.parameter("link.mgl") * ca.sin(q)
+    plant.derivative(q, q_dot)
+    plant.derivative(q_dot, (tau_ext - friction - tau_e - gravity) / plant.parameter("link.M"))
+    plant.output("q", q)
+    plant.output("q_dot", q_dot)
+    plant.output("q_measured", encoder(q, plant.parameter("encoder.q")))
+
+
+def add_motor(
+    plant: Plant, theta: ca.SX, theta_dot: ca.SX, tau: ca.SX, tau_e: ca.SX, side: str = ""
+) -> None:
+    """A motor (3) with Coulomb friction, and its encoder; `tau` is on the motor axis."""
+    gamma = plant.parameter(f"motor{side}.gamma")
+    friction = plant.parameter(f"motor{side}.D_theta") * gamma * theta_dot
+    friction += _coulomb(plant.parameter(f"motor{side}.tau_coulomb"), theta_dot)
+    inertia = plant.parameter(f"motor{side}.B") * gamma
+    plant.derivative(theta, theta_dot)
+    plant.derivative(theta_dot, (tau - friction + tau_e / gamma) / inertia)
+    plant.output(f"theta{side}", theta)
+    plant.output(f"theta_dot{side}", theta_dot)
+    plant.output(f"theta_measured{side}", encoder(theta, plant.parameter(f"encoder.theta{side}")))
+
+
+def add_torque_sensors(plant: Plant, torques: Mapping[str, tuple[ca.SX, ca.SX]]) -> None:
+    """Measured motor torque (32) and flexibility torque (33) of every side, each with its noise.
+
+    `torques` holds tau and tau_e by side. Variances and the gain of the sensor of tau_e are
+    common to all sides.
+    """
+    tau_variance = plant.parameter("noise.tau_variance")
+    tau_e_variance = plant.parameter("noise.tau_e_variance")
+    gain = plant.parameter("sensor.gain")
+    for side, (tau, tau_e) in torques.items():
+        plant.output(f"tau_measured{side}", tau + plant.noise(tau_variance))
+        plant.output(f"tau_e_measured{side}", gain * tau_e + plant.noise(tau_e_variance))
+
+
+def _coulomb(torque: ca.SX, velocity: ca.SX) -> ca.SX:
+    return torque * ca.tanh(velocity / COULOMB_VELOCITY)

@@ -1,0 +1,174 @@
+"""AntagonisticVsaPlant.fmu against the paper's equations solved by scipy, and against physics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from functools import cache
+
+import numpy as np
+import pytest
+
+import reference_joints
+from plant_runs import QUIET, Array, between, relative_error, run_plant, slope, times
+from reference_joints import PAIR
+from reference_plant import round_to_counts
+
+INPUTS = ("tau_1", "tau_2", "tau_ext")
+STATES = ("q", "theta_1", "theta_2", "q_dot", "theta_dot_1", "theta_dot_2")
+# Two different motors, so that a mix-up shows.
+UNEQUAL = {
+    "link.M": 0.03,
+    "link.D_q": 0.04,
+    "link.mgl": 0.3,
+    "motor_1.B": 2e-5,
+    "motor_2.B": 3e-5,
+    "motor_1.D_theta": 1e-3,
+    "motor_2.D_theta": 2e-3,
+    "motor_1.gamma": 50.0,
+    "motor_2.gamma": 60.0,
+    "spring_1.k": 0.003,
+    "spring_2.k": 0.002,
+    "spring_1.a": 8.0,
+    "spring_2.a": 10.0,
+}
+FRICTIONLESS = {"link.D_q": 0.0, "motor_1.D_theta": 0.0, "motor_2.D_theta": 0.0}
+
+
+def run(
+    h: float, torques: Array, start: Mapping[str, float], record: Iterable[str] = STATES
+) -> dict[str, Array]:
+    return run_plant("AntagonisticVsaPlant", INPUTS, h, torques, start, record)
+
+
+def preload(torque: float) -> dict[str, float]:
+    """Motor positions at rest under -torque and torque [N.m], link at 0."""
+    return {
+        f"initial.theta_{i}": math.asinh(50.0 * tau / PAIR[f"spring_{i}.k"]) / PAIR[f"spring_{i}.a"]
+        for i, tau in ((1, -torque), (2, torque))
+    }
+
+
+@cache
+def scenario() -> tuple[Array, Array]:
+    """Torques and states every 10 ms under slow co-contraction while the link moves, 30 s."""
+    t = times(1e-2, 30.0)
+    both = 0.04 + 0.025 * np.sin(2 * np.pi * 0.1 * t)
+    move = 0.012 * np.sin(2 * np.pi * 0.25 * t)
+    torques = np.column_stack([-both + move, both + move, np.zeros_like(t)])
+    initial = np.array([0.0, *preload(0.04).values(), 0.0, 0.0, 0.0])
+    return torques, reference_joints.solve(reference_joints.pair({}), 1e-2, torques, initial)
+
+
+@pytest.mark.parametrize("steps", [1, 10, 100])
+def test_scenario_is_the_solution_of_the_equations(steps: int) -> None:
+    torques, reference = scenario()
+    states = run(1e-2 / steps, between(torques, steps), preload(0.04))
+    assert relative_error(states, reference, steps).max() < 1e-8
+
+
+@pytest.mark.parametrize("h", [1e-3, 1e-2])
+def test_friction_gravity_and_external_torque_enter_as_in_the_equations(h: float) -> None:
+    start = {
+        **UNEQUAL,
+        "link.tau_coulomb": 0.05,
+        "motor_1.tau_coulomb": 0.02,
+        "motor_2.tau_coulomb": 0.01,
+    }
+    initial = np.array([0.1, -0.5, 0.6, 0.5, -0.2, 0.3])
+    t = times(h, 1.0)
+    torques = np.column_stack(
+        [
+            0.1 * np.sin(2 * np.pi * 2 * t) - 0.05,
+            0.05 * np.cos(2 * np.pi * t),
+            0.3 * np.sin(2 * np.pi * 1.1 * t),
+        ]
+    )
+    reference = reference_joints.solve(reference_joints.pair(start), h, torques, initial)
+    at = {f"initial.{name}": value for name, value in zip(STATES, initial, strict=True)}
+    assert relative_error(run(h, torques, {**start, **at}), reference).max() < 1e-8
+
+
+def test_energy_is_conserved_without_friction_and_torques() -> None:
+    start = {
+        **UNEQUAL,
+        **FRICTIONLESS,
+        "initial.theta_1": -0.5,
+        "initial.theta_2": 0.6,
+        "initial.q_dot": 3.0,
+    }
+    out = run(1e-3, np.zeros((3001, 3)), start)
+    q = out["q"]
+    energy = UNEQUAL["link.M"] * out["q_dot"] ** 2 / 2 + UNEQUAL["link.mgl"] * (1 - np.cos(q))
+    for i in (1, 2):
+        k, a, B, gamma = (
+            UNEQUAL[name]
+            for name in (f"spring_{i}.k", f"spring_{i}.a", f"motor_{i}.B", f"motor_{i}.gamma")
+        )
+        spring = k / a * (np.cosh(a * (q - out[f"theta_{i}"])) - 1)
+        assert np.ptp(spring) > 0.03  # it does go to and fro
+        energy += spring + B * gamma**2 * out[f"theta_dot_{i}"] ** 2 / 2
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-7)
+
+
+def test_torque_and_stiffness_are_those_of_the_transmissions() -> None:
+    t = times(1e-3, 0.5)
+    torques = np.column_stack([0.1 * np.sin(9 * t), -0.1 * np.sin(5 * t), np.cos(5 * t)])
+    names = [f"{name}_{i}" for i in (1, 2) for name in ("phi", "tau_e", "sigma")]
+    start = {**UNEQUAL, "initial.theta_1": -0.5, "initial.theta_2": 0.6}
+    out = run(1e-3, torques, start, [*STATES, *names, "sigma"])
+    for i in (1, 2):
+        k, a = UNEQUAL[f"spring_{i}.k"], UNEQUAL[f"spring_{i}.a"]
+        phi = out["q"] - out[f"theta_{i}"]
+        assert np.ptp(phi) > 0.1
+        np.testing.assert_allclose(out[f"phi_{i}"], phi, rtol=0, atol=1e-15)
+        np.testing.assert_allclose(out[f"tau_e_{i}"], k * np.sinh(a * phi), rtol=1e-11, atol=1e-14)
+        np.testing.assert_allclose(out[f"sigma_{i}"], k * a * np.cosh(a * phi), rtol=1e-11)
+    np.testing.assert_array_equal(out["sigma"], out["sigma_1"] + out["sigma_2"])
+
+
+@pytest.mark.parametrize("phi", [-0.9, 0.0, 0.3])
+@pytest.mark.parametrize("side", ["_1", "_2"])
+def test_stiffness_is_the_derivative_of_the_torque(side: str, phi: float) -> None:
+    stiffness, difference = slope("AntagonisticVsaPlant", {}, phi, side)
+    assert stiffness == pytest.approx(difference, rel=1e-6)
+
+
+@pytest.mark.parametrize("torque", [0.0, 0.02, 0.06])
+def test_co_contraction_stiffens_a_link_at_rest(torque: float) -> None:
+    out = run(1e-2, np.tile([-torque, torque, 0.0], (101, 1)), preload(torque), [*STATES, "sigma"])
+    for name in STATES:
+        np.testing.assert_allclose(out[name], out[name][0], rtol=0, atol=1e-9, err_msg=name)
+    # tau_e = gamma torque on either side, and sigma = a sqrt(k^2 + tau_e^2).
+    sides = ((PAIR[f"spring_{i}.a"], PAIR[f"spring_{i}.k"]) for i in (1, 2))
+    expected = sum(a * math.hypot(k, 50.0 * torque) for a, k in sides)
+    assert out["sigma"][-1] == pytest.approx(expected, rel=1e-7)
+
+
+def test_encoders_and_sensors_are_those_of_their_side() -> None:
+    angles, counts = ("q", "theta_1", "theta_2"), (700.0, 300.0, 500.0)
+    encoders = {f"encoder.{name}": n for name, n in zip(angles, counts, strict=True)}
+    measured = ["q_measured", "theta_measured_1", "theta_measured_2"]
+    sensors = [
+        f"{name}_{i}" for i in (1, 2) for name in ("tau_e", "tau_measured", "tau_e_measured")
+    ]
+    t = times(1e-2, 1.0)
+    torques = np.column_stack([0.1 * np.sin(9 * t), -0.1 * np.sin(5 * t), np.cos(5 * t)])
+    start = {**QUIET, **encoders, "sensor.gain": 1.03}
+    out = run(1e-2, torques, start, [*angles, *measured, *sensors])
+    for name, reading, n in zip(angles, measured, counts, strict=True):
+        expected = round_to_counts(out[name], n)
+        np.testing.assert_allclose(out[reading], expected, rtol=1e-14, err_msg=reading)
+        assert len(np.unique(expected)) > 10
+    for i in (1, 2):
+        np.testing.assert_allclose(out[f"tau_measured_{i}"], torques[:, i - 1], rtol=0, atol=1e-15)
+        np.testing.assert_array_equal(out[f"tau_e_measured_{i}"], 1.03 * out[f"tau_e_{i}"])
+
+
+def test_every_sensor_has_its_own_noise() -> None:
+    names = ["tau_measured_1", "tau_measured_2", "tau_e_measured_1", "tau_e_measured_2"]
+    out = run(1e-3, np.zeros((4001, 3)), {}, names)  # at rest: noise and nothing else
+    noise = np.array([out[name] for name in names])
+    # Three standard deviations and a bit, for 4000 samples.
+    np.testing.assert_allclose(noise.var(axis=1), [1e-5, 1e-5, 1e-3, 1e-3], rtol=0.08)
+    np.testing.assert_allclose(np.corrcoef(noise), np.eye(4), rtol=0, atol=0.06)
