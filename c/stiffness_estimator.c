@@ -90,7 +90,7 @@ static double track(sh_estimator *estimator, const sh_parameters *p, const sh_me
          * 1 / K_I. Of a longer one the torque is not known: r_e stays, is wrong, and has
          * to forget before it is learned from.
          */
-        estimator->settling -= T;
+        estimator->settling -= dt;
         if (dt * p->residual.K_I < 2.0) {
             sh_torque_residual_step(&estimator->residual, &p->motor, theta->dx, theta->dx_dot,
                                     z->tau, p->residual.K_I, dt);

@@ -8,7 +8,7 @@ function(sigmahat_add_fmu name)
   set(source_dir ${PROJECT_SOURCE_DIR})
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
   set(template ${source_dir}/modelDescription/${name}.xml)
-  file(GLOB shared ${source_dir}/modelDescription/*.xml ${source_dir}/harness/sigmahat/export/*.py)
+  file(GLOB shared CONFIGURE_DEPENDS ${source_dir}/modelDescription/*.xml ${source_dir}/harness/sigmahat/export/*.py)
 
   add_custom_command(
     OUTPUT ${dir}/modelDescription.xml ${dir}/variables.h
@@ -52,7 +52,7 @@ endfunction()
 # sigmahat_add_plant(NAME): the FMU of the plant written in harness/sigmahat/plants.
 function(sigmahat_add_plant name)
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
-  file(GLOB equations ${PROJECT_SOURCE_DIR}/harness/sigmahat/plants/*.py
+  file(GLOB equations CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/harness/sigmahat/plants/*.py
        ${PROJECT_SOURCE_DIR}/harness/sigmahat/export/*.py)
   add_custom_command(
     OUTPUT ${dir}/plant_functions.c ${dir}/plant_functions.h

@@ -104,6 +104,19 @@ def test_inputs_with_derivatives_give_the_same_ticks_for_any_step(
         np.testing.assert_allclose(result[key] / scale, value / scale, atol=1e-9)
 
 
+@pytest.mark.parametrize("error", [9e-7, -9e-7])
+def test_ticks_do_not_drift_from_their_times(error: float, estimator_fmu: Path) -> None:
+    # GIVEN steps that are longer or shorter than a period by less than the tolerance
+    # WHEN the difference has added up to two periods THEN there are two ticks more, or less
+    h, steps = 1e-3 * (1 + error), 2_300_000
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise(COUNTING)
+        for k in range(0, steps, 1000):
+            for i in range(k, k + 1000):
+                fmu.step(i * h, h)
+        assert ticks(fmu) == math.ceil(steps * (1 + error) - 1e-6)
+
+
 def test_inputs_without_derivatives_are_held(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise({"filter.kind": FINITE_DIFFERENCE})
@@ -133,6 +146,8 @@ def test_ticks_start_at_the_start_time(estimator_fmu: Path) -> None:
         (0.5, 1e-3, "currentCommunicationPoint"),
         (-1e-3, 1e-3, "currentCommunicationPoint"),
         (math.nan, 1e-3, "currentCommunicationPoint"),
+        (math.inf, 1e-3, "currentCommunicationPoint"),
+        (0.0, 1e9, "communicationStepSize = 1e+09 s is more than 1e+09 times samplePeriod"),
     ],
 )
 def test_a_step_that_cannot_be_is_refused(

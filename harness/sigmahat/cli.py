@@ -13,6 +13,15 @@ import click
 _ERROR, _INTERRUPTED = 2, 130
 
 
+def _folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | None:
+    """A folder to write into. An empty name is what a shell makes of a variable not set."""
+    if name == "":
+        raise click.BadParameter("expected a folder, got an empty name.")
+    if name is not None and Path(name).is_file():
+        raise click.BadParameter(f"{name} is a file; name a folder.")
+    return None if name is None else Path(name)
+
+
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="sigmahat", message="%(prog)s %(version)s")
 def cli() -> None:
@@ -40,7 +49,7 @@ def scenarios() -> None:
 )
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    callback=_folder,
     help="Folder for figures and CSV files.  [default: sigmahat-results/SCENARIO]",
 )
 def reproduce(name: str, seeds: int, out: Path | None) -> None:
@@ -79,11 +88,11 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
             results.write_table(result, folder / "table.csv")
             for modality in chosen.estimators:
                 results.write_series(result.recording, modality, folder / f"{modality}.csv")
-    except FmuError as error:
+    except (FmuError, ValueError) as error:
         raise click.ClickException(str(error)) from error
     except OSError as error:
-        where = error.filename or out
-        raise click.ClickException(f"cannot write {where}: {error.strerror or error}") from error
+        where = f"cannot write {error.filename or out}: {error.strerror or error}"
+        raise click.ClickException(f"{where}; choose another folder with --out") from error
 
     click.echo(f"{chosen.name}: {chosen.description}")
     click.echo(f"{results.conditions(result)}\n")
@@ -94,12 +103,18 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit status; an error is one line on stderr."""
     try:
-        return int(cli.main(arguments, prog_name="sigmahat", standalone_mode=False) or 0)
+        status = int(cli.main(arguments, prog_name="sigmahat", standalone_mode=False) or 0)
+        sys.stdout.flush()
+        return status
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message(), err=True)
         return _ERROR
     except click.ClickException as error:
         click.echo(f"sigmahat: error: {' '.join(error.format_message().split())}", err=True)
+        return _ERROR
+    except OSError as error:  # what a command writes to files it answers for itself
+        sys.stdout = None  # or Python would try to write the rest at its end
+        click.echo(f"sigmahat: error: cannot write the output: {error.strerror}", err=True)
         return _ERROR
     except click.Abort:
         click.echo("sigmahat: interrupted", err=True)
