@@ -7,6 +7,9 @@ from collections.abc import Sequence
 
 import click
 
+from sigmahat.commands.estimate import estimate
+from sigmahat.commands.identify import identify
+from sigmahat.commands.init import init
 from sigmahat.commands.reproduce import reproduce
 from sigmahat.commands.scenarios import scenarios
 
@@ -19,7 +22,7 @@ def cli() -> None:
     """Stiffness of robot joints, estimated by FMUs."""
 
 
-for command in (reproduce, scenarios):
+for command in (reproduce, scenarios, init, estimate, identify):
     cli.add_command(command)
 
 

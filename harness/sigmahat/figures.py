@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import matplotlib
 import numpy as np
@@ -22,6 +22,8 @@ from sigmahat.cosimulation import Recording
 from sigmahat.nominal import nominal
 
 Array = NDArray[np.float64]
+Source = TypeVar("Source")
+"""What a figure is drawn from."""
 
 # Colours of Okabe and Ito, told apart with every kind of colour vision.
 _BLUE, _GREEN, _VERMILION, _SKY = "#0072B2", "#009E73", "#D55E00", "#56B4E9"
@@ -291,7 +293,7 @@ FIGURES: dict[str, Callable[[Recording], Figure]] = {
 """Every figure by the name of its files."""
 
 
-def save(draw: Callable[[Recording], Figure], recording: Recording, path: Path) -> None:
+def save(draw: Callable[[Source], Figure], recording: Source, path: Path) -> None:
     """Draws a figure into <path>.png and <path>.svg. The same recording gives the same SVG."""
     with matplotlib.rc_context(_STYLE):
         figure = draw(recording)
