@@ -18,6 +18,18 @@ function(sigmahat_add_fmu name)
     DEPENDS ${shared}
     COMMENT "Model description of ${name}" VERBATIM)
 
+  # What people see of it: documentation and icons.
+  file(GLOB pages ${source_dir}/modelDescription/documentation/*.html)
+  set(shown ${dir}/shown)
+  set(shown_files ${shown}/model.png ${shown}/documentation/index.html
+                  ${shown}/documentation/icon.svg)
+  add_custom_command(
+    OUTPUT ${shown_files}
+    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export document ${template} ${shown}
+            --version ${PROJECT_VERSION}
+    DEPENDS ${shared} ${pages}
+    COMMENT "Documentation of ${name}" VERBATIM)
+
   add_library(${name}_binary MODULE $<TARGET_OBJECTS:sigmahat_shell> ${arg_SOURCES}
               ${dir}/variables.h)
   target_include_directories(${name}_binary PRIVATE ${dir} ${source_dir}/fmu_src
@@ -36,8 +48,9 @@ function(sigmahat_add_fmu name)
     OUTPUT ${fmu}
     COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export pack ${fmu}
             --description ${dir}/modelDescription.xml --binary $<TARGET_FILE:${name}_binary>
-            --licence ${source_dir}/LICENSE
-    DEPENDS ${name}_binary ${dir}/modelDescription.xml ${source_dir}/LICENSE ${shared}
+            --licence ${source_dir}/LICENSE --shown ${shown}
+    DEPENDS ${name}_binary ${dir}/modelDescription.xml ${source_dir}/LICENSE ${shown_files}
+            ${shared}
     COMMENT "Packing ${name}.fmu" VERBATIM)
   add_custom_target(${name} ALL DEPENDS ${fmu})
 endfunction()

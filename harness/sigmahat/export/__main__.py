@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 import fmpy
 
-from sigmahat.export import archive, description
+from sigmahat.export import archive, description, documentation, system
 
 
 @click.group()
@@ -29,7 +29,8 @@ def describe(template: Path, out: Path, version: str, struct: str, storage: str)
 @click.option("--description", "xml", required=True, type=click.Path(path_type=Path))
 @click.option("--binary", required=True, type=click.Path(path_type=Path))
 @click.option("--licence", required=True, type=click.Path(path_type=Path))
-def pack(fmu: Path, xml: Path, binary: Path, licence: Path) -> None:
+@click.option("--shown", required=True, type=click.Path(path_type=Path))
+def pack(fmu: Path, xml: Path, binary: Path, licence: Path, shown: Path) -> None:
     """Write an FMU with the binary of this machine."""
     archive.write(
         fmu,
@@ -37,8 +38,28 @@ def pack(fmu: Path, xml: Path, binary: Path, licence: Path) -> None:
             "modelDescription.xml": xml,
             f"binaries/{fmpy.platform}/{binary.name}": binary,
             "documentation/licenses/LICENSE.txt": licence,
+            **{f.relative_to(shown).as_posix(): f for f in shown.rglob("*") if f.is_file()},
         },
     )
+
+
+@main.command()
+@click.argument("template", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("out", type=click.Path(file_okay=False, path_type=Path))
+@click.option("--version", required=True, help="Version of the FMU.")
+def document(template: Path, out: Path, version: str) -> None:
+    """Write documentation and icons of TEMPLATE into OUT, by their names in the FMU."""
+    documentation.write(template, out, version)
+
+
+@main.command("system")
+@click.argument("ssp", type=click.Path(dir_okay=False, path_type=Path))
+@click.argument("plant", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("estimator", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option("--templates", required=True, type=click.Path(exists=True, path_type=Path))
+def write_system(ssp: Path, plant: Path, estimator: Path, templates: Path) -> None:
+    """Write SSP, the system of FMUs PLANT and ESTIMATOR that gives Table I."""
+    system.write(ssp, plant, estimator, templates)
 
 
 main()
