@@ -1,16 +1,16 @@
 """Model description of an FMU from its template, and the C table that goes with it.
 
 A template in ``modelDescription/`` is Jinja2 that renders to FMI 2.0 XML without what
-follows from the rest: value references, model structure, display units and GUID are added
-here. Two attributes are ours and not in FMI: ``open`` of a Real says which of its limits is
-itself not allowed, for the C table; ``depends`` of an output names the variables that its
-initial value depends on, for the model structure.
+follows from the rest: value references, model structure, display units, source files and GUID
+are added here. Two attributes are ours and not in FMI: ``open`` of a Real says which of its
+limits is itself not allowed, for the C table; ``depends`` of an output names the variables that
+its initial value depends on, for the model structure.
 """
 
 import hashlib
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
@@ -220,16 +220,28 @@ def complete(root: Element) -> str:
     return guid
 
 
+def _add_source_files(root: Element, names: Iterable[str]) -> None:
+    """The files of ``sources/`` that an importer has to compile."""
+    listed = ElementTree.SubElement(root.findall("CoSimulation")[0], "SourceFiles")
+    for name in names:
+        ElementTree.SubElement(listed, "File", name=name)
+
+
 def write(
     template: Path,
     out: Path,
     version: str,
     struct: str,
     storage: Callable[[Element], dict[str, str]],
+    sources: Iterable[str],
 ) -> None:
-    """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder."""
+    """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder.
+
+    ``sources`` are the names of the C files of the FMU.
+    """
     out.mkdir(parents=True, exist_ok=True)
     root, delivered = render(template, version), render(template, version)
+    _add_source_files(delivered, sources)
     guid = complete(delivered)
     (out / "variables.h").write_text(c_table(root, struct, storage(root), guid), encoding="utf-8")
     tree = ElementTree.ElementTree(delivered)
