@@ -6,28 +6,19 @@ SIGMAHAT_GATE=1.
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import tempfile
 from functools import cache
 from pathlib import Path
-from typing import NoReturn
 
 import fmpy
-import pytest
 
 from fmi_runs import ESTIMATORS
+from gate import missing
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 PLANT_SOURCES = ("plant.c", "radau.c", "noise.c")
-
-
-def lacking(what: str) -> NoReturn:
-    """Ends the test for want of a tool."""
-    if os.environ.get("SIGMAHAT_GATE") == "1":
-        pytest.fail(what)
-    pytest.skip(what)
 
 
 def sources(fmu: str, build: Path) -> list[Path]:
@@ -87,4 +78,7 @@ def compiler_with(flags: tuple[str, ...], folder: Path) -> str:
     for compiler in ("clang", "gcc"):
         if shutil.which(compiler) and _works(compiler, flags, folder, text):
             return compiler
-    lacking(f"no compiler builds a program that runs with {' '.join(flags) or 'no options'}")
+    missing(
+        f"a compiler that builds programs with {' '.join(flags) or 'no options'}",
+        "apt-get install clang libclang-rt-dev",
+    )

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import fmpy
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
 FMUS = [
@@ -75,11 +73,3 @@ class Run:
         relative = difference / np.where(scale > 0, scale, 1)
         worst = int(np.argmax(relative))
         assert relative[worst] <= AGREEMENT, f"{self.outputs[worst].name}: {relative[worst]:.1e}"
-
-
-def missing(what: str, how: str) -> NoReturn:
-    """A tool is not there: fails in the gate, where the variable CI is set; else skips."""
-    text = f"{what} is not installed; to install it: {how}"
-    if os.environ.get("CI"):
-        pytest.fail(text)
-    pytest.skip(text)

@@ -13,7 +13,8 @@ import fmpy
 import numpy as np
 import pytest
 
-from release import FMUS, STEP, Run, missing
+from gate import missing
+from release import FMUS, STEP, Run
 
 each_fmu = pytest.mark.parametrize("run", FMUS, indirect=True)
 

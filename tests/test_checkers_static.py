@@ -10,7 +10,8 @@ from zipfile import ZipFile
 
 import pytest
 
-from release import FMUS, missing
+from gate import missing
+from release import FMUS
 
 each_fmu = pytest.mark.parametrize("name", FMUS)
 

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from c_programs import compile_driver, compiler_with, lacking
+from c_programs import compile_driver, compiler_with
 from fmi_runs import ESTIMATORS, PLANTS
+from gate import missing
 
 every_fmu = pytest.mark.parametrize("fmu", ESTIMATORS + PLANTS)
 CYCLES = 100_000
@@ -59,7 +60,7 @@ def test_no_leak_and_nothing_undefined(fmu: str, build: Path, folder: Path) -> N
 @every_fmu
 def test_valgrind_finds_nothing(fmu: str, build: Path, folder: Path) -> None:
     if shutil.which("valgrind") is None:
-        lacking("valgrind is not installed")
+        missing("valgrind", "apt-get install valgrind")
     program = compile_driver("cycles", fmu, build, folder, compiler_with((), folder))
     leaks = ["--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all"]
     run("valgrind", "-q", "--error-exitcode=1", *leaks, program, "1000")
