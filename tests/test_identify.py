@@ -12,7 +12,7 @@ import tomlkit
 
 from logs import CONFIGURATION, LEAD, TRUE, Array, awas_log, write_log
 from sigmahat.cli import main
-from sigmahat.identify import Identified, identify
+from sigmahat.identification import Identified, identify
 from sigmahat.identify_noise import bandwidth, best_V_a, low_pass, variance
 from sigmahat.identify_regression import Signals, equations, fit
 from sigmahat.identify_write import write

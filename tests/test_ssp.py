@@ -57,7 +57,7 @@ def test_holds_the_fmus_of_the_build(ssp: Path) -> None:
 def test_same_bytes_again(ssp: Path, tmp_path: Path) -> None:
     again = tmp_path / "again.ssp"
     plant, estimator = sigmahat.fmu("AwasPlant"), sigmahat.fmu("StiffnessEstimator")
-    system.write(again, plant, estimator, TEMPLATES)
+    system.write(again, plant, estimator, TEMPLATES, sigmahat.__version__)
     assert hashlib.sha256(again.read_bytes()).digest() == hashlib.sha256(ssp.read_bytes()).digest()
 
 
@@ -116,6 +116,7 @@ def test_a_scenario_with_another_enumeration_is_refused(
             sigmahat.fmu("AwasPlant"),
             sigmahat.fmu("StiffnessEstimator"),
             TEMPLATES,
+            sigmahat.__version__,
         )
 
 

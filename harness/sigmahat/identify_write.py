@@ -10,7 +10,7 @@ from typing import Any
 
 import tomlkit
 
-from sigmahat.identify import UNITS, Identified
+from sigmahat.identification import UNITS, Identified
 from sigmahat.logs.configuration import parse
 
 _ABOVE = 1.4

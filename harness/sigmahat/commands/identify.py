@@ -34,8 +34,8 @@ def identify(
     Example: sigmahat identify knee.csv --config knee.toml
     """
     import sigmahat
-    from sigmahat.identify import as_dict, summary
-    from sigmahat.identify import identify as run
+    from sigmahat.identification import as_dict, summary
+    from sigmahat.identification import identify as run
     from sigmahat.identify_write import write
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.files import open_log
