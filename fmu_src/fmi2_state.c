@@ -121,6 +121,7 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
     instance->time = header.time;
     instance->outputs_stale = header.outputs_stale;
     instance->parameters_unchecked = header.parameters_unchecked;
+    instance->slopes_set = 1; /* the state may have some */
     return fmi2OK;
 }
 

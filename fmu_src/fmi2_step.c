@@ -11,6 +11,9 @@ static void clear_input_derivatives(sh_instance *instance)
 {
     size_t i;
 
+    if (!instance->slopes_set)
+        return;
+    instance->slopes_set = 0;
     for (i = 0; i < sh_fmu_model.count; ++i) {
         const sh_variable *variable = &sh_fmu_model.variables[i];
         if (variable->role == SH_ROLE_INPUT)

@@ -27,6 +27,7 @@ struct sh_instance {
     double time;             /* communication point reached */
     int outputs_stale;       /* initialisation: outputs do not yet follow what was set */
     int parameters_unchecked; /* a parameter was set since they were checked */
+    int slopes_set;          /* derivatives of inputs may be other than 0 */
     void *model;             /* of sh_fmu_model.size bytes */
 };
 
