@@ -4,9 +4,6 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* Largest measurement that is taken for one [rad, N.m]. */
-static const double LARGEST_MEASUREMENT = 1e12;
-
 /* Torque (21) and stiffness (23) of the present eta. */
 static void evaluate(const sh_least_squares *rls, const double *F, const double *dF,
                      sh_estimate *estimate)
@@ -59,7 +56,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
 
 static int is_measurement(double z)
 {
-    return fabs(z) <= LARGEST_MEASUREMENT; /* false for NaN */
+    return fabs(z) <= SH_LARGEST_MEASUREMENT; /* false for NaN */
 }
 
 /* Velocity of one count per sample, w_s of (11) [rad/s]. */

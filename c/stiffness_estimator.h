@@ -78,6 +78,9 @@ typedef struct {
     } model;        /* for SH_MODALITY_MODEL */
 } sh_parameters;
 
+/* Largest measurement that is taken for one [rad, N.m]. */
+#define SH_LARGEST_MEASUREMENT 1e12
+
 /* One sample of the measurements. */
 typedef struct {
     double theta, q, theta_c; /* positions: principal motor after its gear, link,
@@ -134,7 +137,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
 /* Runs one tick.
  *
  * Returns 1 and the new estimate. If any measurement is not finite or beyond
- * 1e12, or the regressor overflows, the tick is skipped: returns 0, sets
+ * SH_LARGEST_MEASUREMENT, or the regressor overflows, the tick is skipped: returns 0, sets
  * estimate->valid to 0 and leaves all else as it was. The next good sample is
  * filtered over the time that has passed. The residual bridges a gap shorter
  * than 2 / K_I; after a longer one it goes on from its last value, and with

@@ -13,11 +13,10 @@ import casadi as ca
 from matplotlib.figure import Figure
 
 import sigmahat
-from sigmahat.plants.fmu import Variable, write_fmu
-from sigmahat.plants.plant import Plant, encoder
+from sigmahat import PlantEquations, PlantVariable, encoder, write_plant_fmu
 
 # The equations. Names are those of the variables of the FMU.
-plant = Plant("PendulumPlant")
+plant = PlantEquations("PendulumPlant")
 tau = plant.input("tau")
 M = plant.parameter("link.M")
 D_q = plant.parameter("link.D_q")
@@ -50,30 +49,32 @@ plant.output("phi", phi)
 
 # What the model description says of them: unit, description, start value.
 variables = {
-    "tau": Variable("N.m", "Torque of the motor, before its gear"),
-    "link.M": Variable("kg.m2", "Inertia of the pendulum", 0.1),
-    "link.D_q": Variable("N.m.s/rad", "Friction of the pendulum", 0.15),
-    "link.mgl": Variable("N.m", "Gravity torque of the horizontal pendulum", 5.0),
-    "motor.B": Variable("kg.m2", "Inertia of the motor", 2.3e-5),
-    "motor.D_theta": Variable("N.m.s/rad", "Friction of the motor", 1e-3),
-    "motor.gamma": Variable("1", "Gear ratio", 50.0),
-    "spring.k_1": Variable("N.m/rad", "Stiffness of the undeformed spring", 80.0),
-    "spring.phi_0": Variable("rad", "Deformation at which the spring hardens", 0.08),
-    "encoder.counts": Variable("1", "Counts per turn of both encoders", 40000.0),
-    "noise.variance": Variable("N2.m2", "Variance of the noise of tau_measured", 1e-5),
-    "initial.q": Variable("rad", "Position of the pendulum at the start", 0.0),
-    "q_measured": Variable("rad", "Position of the pendulum, from its encoder"),
-    "theta_measured": Variable("rad", "Position of the motor after its gear, from its encoder"),
-    "tau_measured": Variable("N.m", "Torque of the motor with noise"),
-    "sigma": Variable("N.m/rad", "True stiffness"),
-    "phi": Variable("rad", "True deformation"),
+    "tau": PlantVariable("N.m", "Torque of the motor, before its gear"),
+    "link.M": PlantVariable("kg.m2", "Inertia of the pendulum", 0.1),
+    "link.D_q": PlantVariable("N.m.s/rad", "Friction of the pendulum", 0.15),
+    "link.mgl": PlantVariable("N.m", "Gravity torque of the horizontal pendulum", 5.0),
+    "motor.B": PlantVariable("kg.m2", "Inertia of the motor", 2.3e-5),
+    "motor.D_theta": PlantVariable("N.m.s/rad", "Friction of the motor", 1e-3),
+    "motor.gamma": PlantVariable("1", "Gear ratio", 50.0),
+    "spring.k_1": PlantVariable("N.m/rad", "Stiffness of the undeformed spring", 80.0),
+    "spring.phi_0": PlantVariable("rad", "Deformation at which the spring hardens", 0.08),
+    "encoder.counts": PlantVariable("1", "Counts per turn of both encoders", 40000.0),
+    "noise.variance": PlantVariable("N2.m2", "Variance of the noise of tau_measured", 1e-5),
+    "initial.q": PlantVariable("rad", "Position of the pendulum at the start", 0.0),
+    "q_measured": PlantVariable("rad", "Position of the pendulum, from its encoder"),
+    "theta_measured": PlantVariable(
+        "rad", "Position of the motor after its gear, from its encoder"
+    ),
+    "tau_measured": PlantVariable("N.m", "Torque of the motor with noise"),
+    "sigma": PlantVariable("N.m/rad", "True stiffness"),
+    "phi": PlantVariable("rad", "True deformation"),
 }
 
 
 def main(folder: Path) -> None:
     """Make the FMU, run it with the estimator, draw both stiffnesses."""
     fmu = folder / "PendulumPlant.fmu"
-    write_fmu(plant, variables, fmu)
+    write_plant_fmu(plant, variables, fmu)
     recording = sigmahat.simulate(
         sigmahat.Plant(
             fmu=str(fmu),

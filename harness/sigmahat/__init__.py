@@ -15,7 +15,10 @@ A scenario of the paper, and how well the stiffness was estimated:
 True
 
 `simulate` steps plants and estimators of your own. A recorded log goes through `open_log`,
-`read_configuration`, and `estimate` or `identify`. `write_plant_fmu` makes an FMU of equations.
+`read_configuration`, and `estimate` or `identify`. `write_plant_fmu` makes an FMU of equations; it
+and `encoder` need the extra `plants` and a C compiler.
+
+What is on this page is public, and nothing else: other modules may change with any version.
 """
 
 from __future__ import annotations
@@ -34,6 +37,8 @@ if TYPE_CHECKING:
     from sigmahat.logs.files import open_log
     from sigmahat.logs.log import Log
     from sigmahat.metrics import Indices, indices, mean_error, mse, msrep
+    from sigmahat.plants.fmu import PlantVariable, write_plant_fmu
+    from sigmahat.plants.plant import PlantEquations, encoder
     from sigmahat.reproduce import run
     from sigmahat.scenarios import SCENARIOS, Comparison, Scenario, Sine, Sines, scenario
     from sigmahat.slave import FmuError
@@ -52,6 +57,8 @@ __all__ = [
     "Log",
     "LogError",
     "Plant",
+    "PlantEquations",
+    "PlantVariable",
     "Port",
     "Quantity",
     "Recording",
@@ -62,6 +69,7 @@ __all__ = [
     "Sines",
     "Time",
     "__version__",
+    "encoder",
     "estimate",
     "fmu",
     "identify",
@@ -74,6 +82,7 @@ __all__ = [
     "run",
     "scenario",
     "simulate",
+    "write_plant_fmu",
 ]
 
 _HOMES = {
@@ -85,6 +94,8 @@ _HOMES = {
     "logs.files": ("open_log",),
     "logs.log": ("Log",),
     "metrics": ("Indices", "indices", "mean_error", "mse", "msrep"),
+    "plants.fmu": ("PlantVariable", "write_plant_fmu"),
+    "plants.plant": ("PlantEquations", "encoder"),
     "reproduce": ("run",),
     "scenarios": ("SCENARIOS", "Comparison", "Scenario", "Sine", "Sines", "scenario"),
     "slave": ("FmuError",),

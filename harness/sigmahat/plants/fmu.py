@@ -21,14 +21,14 @@ import fmpy
 
 import sigmahat
 from sigmahat.export import archive, cross_compiler, description, plant_codegen
-from sigmahat.plants.plant import Plant
+from sigmahat.plants.plant import PlantEquations
 from sigmahat.suggest import unknown
 
 _SEED = "noise.seed"
 
 
 @dataclass(frozen=True)
-class Variable:
+class PlantVariable:
     """What the model description says of an input, output or parameter."""
 
     unit: str
@@ -38,7 +38,9 @@ class Variable:
     """Start value of an input or parameter in its unit. An output has none."""
 
 
-def write_fmu(plant: Plant, variables: Mapping[str, Variable], fmu: Path) -> None:
+def write_plant_fmu(
+    plant: PlantEquations, variables: Mapping[str, PlantVariable], fmu: Path
+) -> None:
     """Write the FMU of a plant, with the binary of this machine and its sources.
 
     variables  each input, output and parameter of the plant by its name
@@ -81,7 +83,7 @@ def write_fmu(plant: Plant, variables: Mapping[str, Variable], fmu: Path) -> Non
 _CAUSALITIES = ("input", "output", "parameter")
 
 
-def _names(plant: Plant, causality: str) -> list[str]:
+def _names(plant: PlantEquations, causality: str) -> list[str]:
     own: dict[str, Iterable[str]] = {
         "input": plant.inputs,
         "output": plant.outputs,
@@ -90,7 +92,9 @@ def _names(plant: Plant, causality: str) -> list[str]:
     return list(own[causality])
 
 
-def _describe(plant: Plant, variables: Mapping[str, Variable], root: Element) -> Element:
+def _describe(
+    plant: PlantEquations, variables: Mapping[str, PlantVariable], root: Element
+) -> Element:
     """The description of another plant turned into that of this one, but for what follows from it.
 
     It is what a template in ``modelDescription/`` renders to: see ``description``.
@@ -142,7 +146,7 @@ def _describe(plant: Plant, variables: Mapping[str, Variable], root: Element) ->
     return root
 
 
-def _depends(plant: Plant) -> dict[str, list[str]]:
+def _depends(plant: PlantEquations) -> dict[str, list[str]]:
     """Names of the variables that the initial value of each output depends on."""
     x = ca.vertcat(*(state.symbol for state in plant.states.values()))
     start = ca.vertcat(*(state.start for state in plant.states.values()))
@@ -154,7 +158,7 @@ def _depends(plant: Plant) -> dict[str, list[str]]:
     return depends
 
 
-def _of_the_start(plant: Plant) -> set[str]:
+def _of_the_start(plant: PlantEquations) -> set[str]:
     """Names of the parameters that start values of states depend on."""
     start = ca.vertcat(*(state.start for state in plant.states.values()))
     return {symbol.name() for symbol in ca.symvar(start)}

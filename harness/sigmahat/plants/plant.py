@@ -17,12 +17,12 @@ class State:
     scale: float
 
 
-class Plant:
+class PlantEquations:
     """Ordinary differential equations with inputs, parameters, noise and outputs.
 
     A plant file makes one of these, asks it for symbols and hands it equations::
 
-        plant = Plant("MassPlant")
+        plant = PlantEquations("MassPlant")
         force = plant.input("force")
         mass = plant.parameter("mass")
         x = plant.state("x", start=plant.parameter("initial.x"), scale=1.0)
