@@ -1,5 +1,7 @@
 """The page of the Python API, from its docstrings: `cmake --build build --target api`."""
 
+from __future__ import annotations
+
 import sys
 from pathlib import Path
 
@@ -7,17 +9,18 @@ import pdoc
 
 import sigmahat
 
-# Excluded are modules that are no API, though their classes may be part of it.
-MODULES = ("sigmahat", "sigmahat.plants.plant", "sigmahat.plants.fmu")
 
-
-def main(folder: Path) -> None:
-    """Write index.html and what it links to into a folder."""
-    for name in sigmahat.__all__:  # pdoc sees what is imported already
+def write(page: Path) -> None:
+    """Writes the page, one HTML file; its folder is made."""
+    for name in sigmahat.__all__:  # they are imported when they are used, which pdoc does not do
         setattr(sigmahat, name, getattr(sigmahat, name))
+    module = pdoc.doc.Module(sigmahat)
     pdoc.render.configure(docformat="markdown", show_source=False, search=False)
-    pdoc.pdoc("sigmahat", r"!sigmahat\.", *MODULES[1:], output_directory=folder)
+    html = pdoc.render.html_module(module, all_modules={"sigmahat": module})
+    page.parent.mkdir(parents=True, exist_ok=True)
+    page.write_text(html, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    write(Path(sys.argv[1]))
+    print(sys.argv[1])

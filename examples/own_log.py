@@ -45,14 +45,18 @@ motor.gamma = 50
 """
 
 
-def record(path: Path) -> None:
-    """Write a log of the AwAS: 15 s at 1 kHz, the motor at 0.3 Hz, the lever arm at 0.1 Hz."""
+def record(path: Path) -> sigmahat.Recording:
+    """Write a log of the AwAS: 15 s at 1 kHz. Returns the same with the true stiffness."""
     lead = 0.0025 / (2 * math.pi)  # of the ball screw [m/rad]
     plant = sigmahat.Plant(
         fmu="AwasPlant",
         start={"initial.theta_c": 0.030 / lead},
-        inputs={"tau": sigmahat.Sine(0.3, 0.3), "tau_c": sigmahat.Sine(8.0, 0.1)},
-        record=["theta_measured", "q_measured", "theta_c_measured", "tau_measured"],
+        # The slow sine shows D_theta and the springs, the fast one B.
+        inputs={
+            "tau": sigmahat.Sines(0.0, [sigmahat.Sine(0.3, 0.5), sigmahat.Sine(0.2, 3.0)]),
+            "tau_c": sigmahat.Sine(8.0, 0.1),
+        },
+        record=["theta_measured", "q_measured", "theta_c_measured", "tau_measured", "sigma"],
     )
     joint = sigmahat.simulate(plant, {}, T=1e-3, steps=15_000)
     columns = {
@@ -64,11 +68,12 @@ def record(path: Path) -> None:
     }
     table = np.column_stack(list(columns.values()))
     np.savetxt(path, table, "%.10g", ",", header=",".join(columns), comments="")
+    return joint
 
 
 def main(folder: Path) -> None:
     """Log and configuration, then what you would do with yours."""
-    record(folder / "knee.csv")
+    joint = record(folder / "knee.csv")
     (folder / "knee.toml").write_text(CONFIGURATION, encoding="utf-8")
 
     log = sigmahat.open_log(folder / "knee.csv")
@@ -81,13 +86,13 @@ def main(folder: Path) -> None:
         print(f"{name}: {told}")
         if found.told:
             parameters[f"motor.{name}"] = found.value
-
     configuration = replace(configuration, parameters=parameters)
-
     (folder / "knee").mkdir(exist_ok=True)
     result = sigmahat.estimate(log, configuration, folder / "knee")
     low, high = result.sigma_range
     print(f"stiffness in the second half: {low:.1f} to {high:.1f} N.m/rad, see {folder / 'knee'}")
+    true = joint.plant["sigma"][len(joint.t) // 2 :]
+    print(f"the true one: {true.min():.1f} to {true.max():.1f} N.m/rad")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import csv
+import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -11,10 +14,12 @@ import time
 from importlib.metadata import version
 from pathlib import Path
 
+import click
 import pytest
 
 import sigmahat
-from sigmahat.cli import main
+from gate import missing
+from sigmahat.cli import cli, main
 from sigmahat.scenarios import SCENARIOS
 
 COMMAND = [sys.executable, "-m", "sigmahat"]
@@ -87,6 +92,84 @@ def test_help_names_every_command_and_option(tmp_path: Path) -> None:
     help_ = run("reproduce", "--help", cwd=tmp_path).stdout
     for option in ("--scenario", "--seeds", "--out"):
         assert option in help_
+
+
+@pytest.mark.parametrize("name", ["", *sorted(cli.commands)])
+def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
+    done = run(*name.split(), "--help", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    (example,) = re.findall(r"^ *Example: sigmahat (.*)$", done.stdout, re.M)
+    command, *arguments = example.split()
+    assert command == name or not name
+    with cli.commands[command].make_context(command, arguments):
+        pass
+
+
+@pytest.mark.parametrize("name", sorted(cli.commands))
+def test_options_that_are_in_several_commands_are_the_same(name: str) -> None:
+    options = {p.name: p for p in cli.commands[name].params if isinstance(p, click.Option)}
+    if name != "scenarios":  # it is asked for nothing but what it prints
+        assert "quiet" in options
+    if name != "init":  # it writes a file for people
+        assert "json" in options
+
+
+def test_json_of_reproduce_is_its_table(tmp_path: Path) -> None:
+    done = run("reproduce", "--scenario", "single-linear", "--json", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    printed = json.loads(done.stdout)
+    assert (printed["scenario"], printed["seeds"]) == ("single-linear", [1])
+    with (tmp_path / "sigmahat-results" / "single-linear" / "table.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    as_text = [{k: "" if v is None else str(v) for k, v in row.items()} for row in printed["table"]]
+    assert as_text == rows
+
+
+def test_quiet_reproduce_prints_nothing_and_writes_all(tmp_path: Path) -> None:
+    done = run("reproduce", "--scenario", "single-linear", "--quiet", cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (tmp_path / "sigmahat-results" / "single-linear" / "table.csv").is_file()
+
+
+@pytest.mark.parametrize("option", ["--quiet", "--json"])
+def test_an_error_is_printed_nevertheless(option: str, tmp_path: Path) -> None:
+    assert "tabel1" in refused("reproduce", "--scenario", "tabel1", option, cwd=tmp_path)
+
+
+def test_json_of_scenarios(tmp_path: Path) -> None:
+    listed = json.loads(run("scenarios", "--json", cwd=tmp_path).stdout)
+    assert {each["name"]: each["description"] for each in listed} == {
+        name: scenario.description for name, scenario in SCENARIOS.items()
+    }
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ("sigmahat rep", {"reproduce"}),
+        ("sigmahat reproduce --se", {"--seeds"}),
+        ("sigmahat reproduce --scenario as", {name for name in SCENARIOS if name[:2] == "as"}),
+    ],
+)
+def test_bash_completes(words: str, expected: set[str], tmp_path: Path) -> None:
+    """With the line that the README says belongs into .bashrc."""
+    bash = shutil.which("bash")
+    if bash is None:
+        missing("bash", "apt-get install bash")
+    readme = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+    (line,) = re.findall(r"`(eval [^`]*bash_source[^`]*)`", readme)
+    script = f"{line}\nCOMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n"
+    script += '_sigmahat_completion sigmahat; printf "%s\\n" "${COMPREPLY[@]}"'
+    programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        [bash, "-c", script],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": programs},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert set(done.stdout.split()) == expected
 
 
 def test_help_imports_nothing_slow() -> None:

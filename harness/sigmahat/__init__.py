@@ -29,7 +29,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sigmahat.cosimulation import Estimator, Plant, Recording, Series, Signal, simulate
+    from sigmahat.cosimulation import Estimator, Plant, Recording, Series, simulate
     from sigmahat.identification import Identified, Quantity, identify
     from sigmahat.logs.configuration import Configuration, Port, Time, read_configuration
     from sigmahat.logs.errors import LogError
@@ -40,13 +40,12 @@ if TYPE_CHECKING:
     from sigmahat.plants.fmu import PlantVariable, write_plant_fmu
     from sigmahat.plants.plant import PlantEquations, encoder
     from sigmahat.reproduce import run
-    from sigmahat.scenarios import SCENARIOS, Comparison, Scenario, Sine, Sines, scenario
+    from sigmahat.scenarios import Comparison, Scenario, Sine, Sines, scenario
     from sigmahat.slave import FmuError
 
     __version__: str
 
 __all__ = [
-    "SCENARIOS",
     "Comparison",
     "Configuration",
     "Estimate",
@@ -64,7 +63,6 @@ __all__ = [
     "Recording",
     "Scenario",
     "Series",
-    "Signal",
     "Sine",
     "Sines",
     "Time",
@@ -86,7 +84,7 @@ __all__ = [
 ]
 
 _HOMES = {
-    "cosimulation": ("Estimator", "Plant", "Recording", "Series", "Signal", "simulate"),
+    "cosimulation": ("Estimator", "Plant", "Recording", "Series", "simulate"),
     "identification": ("Identified", "Quantity", "identify"),
     "logs.configuration": ("Configuration", "Port", "Time", "read_configuration"),
     "logs.errors": ("LogError",),
@@ -97,7 +95,7 @@ _HOMES = {
     "plants.fmu": ("PlantVariable", "write_plant_fmu"),
     "plants.plant": ("PlantEquations", "encoder"),
     "reproduce": ("run",),
-    "scenarios": ("SCENARIOS", "Comparison", "Scenario", "Sine", "Sines", "scenario"),
+    "scenarios": ("Comparison", "Scenario", "Sine", "Sines", "scenario"),
     "slave": ("FmuError",),
 }
 

@@ -19,7 +19,13 @@ _ERROR, _INTERRUPTED = 2, 130
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="sigmahat", message="%(prog)s %(version)s")
 def cli() -> None:
-    """Stiffness of robot joints, estimated by FMUs."""
+    """Stiffness of robot joints, estimated by FMUs.
+
+    \b
+    Example: sigmahat reproduce
+
+    Exit status: 0 done; 2 error, one line on stderr says which; 130 interrupted.
+    """
 
 
 for command in (reproduce, scenarios, init, estimate, identify):

@@ -75,7 +75,9 @@ class Recording:
     t: NDArray[np.float64]
     """Time [s], shape (N + 1,)."""
     plant: Series
+    """What was recorded of the plant."""
     estimators: Mapping[str, Series]
+    """What was recorded of each estimator, by its name."""
 
 
 def simulate(

@@ -52,7 +52,10 @@ class Quantity:
     """One figure with its 95 % interval, value +- half_width."""
 
     value: float
+    """In the unit of its name: B [kg.m2], D_theta [N.m.s/rad], tau_coulomb [N.m],
+    torque_constant [N.m/A]."""
     half_width: float
+    """Of the interval, in the same unit."""
     told: bool
     """Whether the log determines it well enough to use it."""
 
@@ -62,8 +65,9 @@ class Identified:
     """What the log tells."""
 
     quantities: dict[str, Quantity]
-    """By name, as in UNITS."""
+    """B, D_theta, tau_coulomb, and torque_constant if it was asked for."""
     n: int
+    """For rls.n, see m."""
     m: int
     """Smallest orders that are not worse than the best by more than chance."""
     tau_variance: float
@@ -75,12 +79,14 @@ class Identified:
     V_a: float
     """For filter.V_a [rad2/s4]."""
     notes: Sequence[str]
+    """What the log needed."""
 
 
 def identify(log: Log, configuration: Configuration, torque_constant: bool = False) -> Identified:
     """Identifies the motor of a log.
 
-    torque_constant  also finds K_t; then the sensor's torque is believed, tau must be a current
+    With torque_constant it also finds K_t: then the torque of the sensor is believed, and tau must
+    be a current.
 
     Raises LogError for a log and configuration that do not fit, or without a stretch to use.
     """

@@ -84,7 +84,11 @@ def run(
     variants: bool = False,
     progress: Progress = lambda steps: None,
 ) -> Recording:
-    """Runs the scenario once; with or without the estimators that only the figures need."""
+    """Runs the scenario once, with this seed of the plant's noise.
+
+    With variants the estimators that only figures need run too. From time to time progress is
+    called with the number of steps made since the last call. Raises what simulate() raises.
+    """
     plant = replace(scenario.plant, start={**scenario.plant.start, "noise.seed": seed})
     estimators = {**scenario.estimators, **(scenario.variants if variants else {})}
     return simulate(plant, estimators, T, scenario.steps, progress)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from pathlib import Path
 
 import click
@@ -22,14 +21,15 @@ from sigmahat.commands import common
     callback=common.folder,
     help="Folder for table and figure.  [default: sigmahat-results/LOG]",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
-@click.option("--quiet", is_flag=True, help="Print nothing.")
-def estimate(log: Path, config: Path | None, out: Path | None, as_json: bool, quiet: bool) -> None:
+@common.json_option
+@common.quiet_option
+def estimate(log: Path, config: Path | None, out: Path | None) -> None:
     """Replay LOG through the estimator; add the stiffness to its table.
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag; `sigmahat init LOG` writes the
     configuration. Writes a table (CSV for CSV, else Parquet) and a figure.
 
+    \b
     Example: sigmahat estimate knee.parquet --config knee.toml --out knee
     """
     from sigmahat import results
@@ -39,16 +39,11 @@ def estimate(log: Path, config: Path | None, out: Path | None, as_json: bool, qu
     from sigmahat.logs.files import open_log
 
     common.need_fmu("StiffnessEstimator")
-    if quiet or as_json:
-        logging.getLogger("sigmahat").setLevel(logging.ERROR)
     out = out or Path("sigmahat-results", log.stem)
     with common.work(out):
         configuration = read_configuration(config or common.configuration_of(log))
         opened = open_log(log)
         with results.folder(out) as folder, common.progress("Replaying", 1000) as bar:
             result = run(opened, configuration, folder, progress=bar.update)
-    if as_json:
-        common.print_json(result.as_dict())
-    elif not quiet:
-        click.echo(summary(result))
-        click.echo(f"\nTable and figure (PNG, SVG) are in {out.resolve()}")
+    where = f"Table and figure (PNG, SVG) are in {out.resolve()}"
+    common.answer(f"{summary(result)}\n\n{where}", result.as_dict())

@@ -22,15 +22,14 @@ from sigmahat.commands import common
     help="Also find K_t; needs tau in A and a torque sensor, which is believed.",
 )
 @click.option("--dry-run", is_flag=True, help="Leave the configuration as it is.")
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-@click.option("--quiet", is_flag=True, help="Print nothing.")
-def identify(
-    log: Path, config: Path | None, torque_constant: bool, dry_run: bool, as_json: bool, quiet: bool
-) -> None:
+@common.json_option
+@common.quiet_option
+def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: bool) -> None:
     """Find B, D_theta and Coulomb friction from LOG; write them into the configuration.
 
     What the motion does not show is not told ("cannot tell") and not written. Comments stay.
 
+    \b
     Example: sigmahat identify knee.csv --config knee.toml
     """
     import sigmahat
@@ -50,9 +49,7 @@ def identify(
         if not dry_run:
             with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
                 written = write(found, config, frozenset(fmu.variables))
-    if as_json:
-        common.print_json({**as_dict(found), "written": written})
-    elif not quiet:
-        click.echo(f"{log}\n{summary(found)}")
-        if written:
-            click.echo(f"\nWritten into {config}: {', '.join(written)}")
+    text = f"{log}\n{summary(found)}"
+    if written:
+        text += f"\n\nWritten into {config}: {', '.join(written)}"
+    common.answer(text, {**as_dict(found), "written": written})

@@ -17,12 +17,13 @@ from sigmahat.commands import common
     help="File to write.  [default: LOG with the suffix .toml, in this folder]",
 )
 @click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
-@click.option("--quiet", is_flag=True, help="Print nothing.")
-def init(log: Path, config: Path | None, force: bool, quiet: bool) -> None:
+@common.quiet_option
+def init(log: Path, config: Path | None, force: bool) -> None:
     """Write a configuration for LOG to start from.
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. Its columns are guessed by name.
 
+    \b
     Example: sigmahat init knee.csv
     """
     import sigmahat
@@ -43,7 +44,6 @@ def init(log: Path, config: Path | None, force: bool, quiet: bool) -> None:
         opened = open_log(log)
         config.write_text(template.write(opened, motor), encoding="utf-8")
         _, found = template.guess(opened)
-    if not quiet:
-        for port, guess in found.items():
-            click.echo(f"{port:13} {guess.column} [{guess.unit}]")
-        click.echo(f"\nCheck {config}, fill in what it asks for, then: sigmahat estimate {log}")
+    guesses = "\n".join(f"{port:13} {each.column} [{each.unit}]" for port, each in found.items())
+    then = f"Check {config}, fill in what it asks for, then: sigmahat estimate {log}"
+    common.answer(f"{guesses}\n\n{then}")

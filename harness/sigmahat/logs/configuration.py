@@ -44,11 +44,13 @@ class Port:
     """Where the values of a port come from: sign (x - zero) times its unit, over gear_ratio."""
 
     column: str
+    """Its name in the log."""
     time: str | None = None
     """Column with the times of this one, where it has its own; in the unit of [time]."""
     unit: str | None = None
     """Unit of the column; that of the port if not given."""
     sign: float = 1.0
+    """1 or -1."""
     zero: float = 0.0
     """What the column shows at the zero of the port, in the unit of the column."""
     gear_ratio: float = 1.0
@@ -70,7 +72,9 @@ class Time:
     """When the samples were taken."""
 
     column: str | None = None
+    """Its name in the log; if not given, rows are samplePeriod apart."""
     unit: str = "s"
+    """Unit of the column."""
     longest_gap: float | None = None
     """Time over which is interpolated at most [s]."""
 
@@ -80,9 +84,13 @@ class Configuration:
     """What a configuration file says."""
 
     path: Path
+    """The file."""
     time: Time
+    """When the samples were taken."""
     ports: Mapping[str, Port]
+    """By input of `StiffnessEstimator`."""
     parameters: Mapping[str, Value]
+    """Start values of `StiffnessEstimator`, by its names."""
 
     def need_ports(self, modality: str) -> None:
         """Raises LogError if a port is missing that the modality needs."""

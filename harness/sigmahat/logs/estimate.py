@@ -24,10 +24,15 @@ class Estimate:
     """What came out, in short."""
 
     log: Path
+    """The file."""
     ticks: int
+    """Of the estimator, over the log."""
     skipped: int
+    """Ticks without an estimate: a measurement was missing."""
     T: float
+    """Between ticks [s]."""
     parameters: dict[str, Value]
+    """Of the estimator, by its names."""
     sigma: float
     """Stiffness at the end [N.m/rad]."""
     sigma_range: tuple[float, float]
@@ -35,7 +40,7 @@ class Estimate:
     tau_e_range: tuple[float, float]
     """Of the fitted torque in the second half [N.m]."""
     phi_range: tuple[float, float]
-    """[rad]"""
+    """Of the deformation in the second half [rad]."""
     epsilon_rms: float
     """Of the prediction error of the torque in the second half [N.m]."""
     eta: Sequence[Sequence[float]]

@@ -21,6 +21,7 @@ class Log(ABC):
 
     def __init__(self, path: Path, columns: Mapping[str, int]) -> None:
         self.path = path
+        """The file."""
         self.columns = columns
         """Number of samples of each column."""
 

@@ -34,6 +34,7 @@ class PlantVariable:
     unit: str
     """One of the units of ``AwasPlant.fmu``: 1, s, rad, rad/s, m, kg.m2, N.m, N.m/rad, ..."""
     description: str
+    """One line."""
     start: float = 0.0
     """Start value of an input or parameter in its unit. An output has none."""
 
@@ -43,8 +44,8 @@ def write_plant_fmu(
 ) -> None:
     """Write the FMU of a plant, with the binary of this machine and its sources.
 
-    variables  each input, output and parameter of the plant by its name
-    fmu        file to write; its folder is made
+    `variables` has each input, output and parameter of the plant by its name, `fmu` is the file to
+    write; its folder is made.
 
     It is for FMI 2.0 Co-Simulation and behaves as the plants that come with sigmahat: inputs are
     held or linear over a step, and a plant with noise has the parameter ``noise.seed``. Parameters

@@ -20,7 +20,7 @@ class State:
 class PlantEquations:
     """Ordinary differential equations with inputs, parameters, noise and outputs.
 
-    A plant file makes one of these, asks it for symbols and hands it equations::
+    A plant file makes one of these, asks it for symbols and hands it equations:
 
         plant = PlantEquations("MassPlant")
         force = plant.input("force")
@@ -32,17 +32,25 @@ class PlantEquations:
         plant.output("x", x)
 
     Names of inputs, parameters and outputs are those of the FMU's variables, whose units, start
-    values and ranges stand in ``modelDescription/<name>.xml``. Expressions are CasADi ``SX``.
+    values and ranges stand in ``modelDescription/NAME.xml``, or in the `PlantVariable` of each in
+    `write_plant_fmu`. Expressions are CasADi ``SX``.
     """
 
     def __init__(self, name: str) -> None:
         self.name = name
+        """Of the FMU."""
         self.inputs: dict[str, ca.SX] = {}
+        """Symbols by name."""
         self.parameters: dict[str, ca.SX] = {}
+        """Symbols by name."""
         self.states: dict[str, State] = {}
+        """Symbols, start values and scales by name."""
         self.derivatives: dict[str, ca.SX] = {}
+        """d/dt of each state by its name."""
         self.outputs: dict[str, ca.SX] = {}
+        """Expressions by name."""
         self.normals: list[ca.SX] = []
+        """Noises of variance 1."""
 
     def input(self, name: str) -> ca.SX:
         """Input `name`; held, or linear in time, over a communication step."""
