@@ -145,3 +145,9 @@ def test_no_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(RuntimeError, match="no C compiler found"):
         write_plant_fmu(mass(), VARIABLES, tmp_path / "x.fmu")
     assert not (tmp_path / "x.fmu").exists()
+
+
+def test_a_compiler_that_does_not_exist(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "no-such-compiler -O2")
+    with pytest.raises(RuntimeError, match="CC=no-such-compiler -O2: No such file"):
+        write_plant_fmu(mass(), VARIABLES, tmp_path / "x.fmu")

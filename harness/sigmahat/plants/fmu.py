@@ -7,6 +7,7 @@ this works wherever sigmahat is installed with its extra ``plants`` and there is
 from __future__ import annotations
 
 import os
+import shlex
 import shutil
 import subprocess
 from collections.abc import Iterable, Mapping
@@ -178,11 +179,15 @@ def _compile(sources: Path, binary: Path) -> None:
         raise RuntimeError("no C compiler found: install gcc or clang, or name one in CC")
     files = sorted(file.name for file in sources.glob("*.c"))
     include = f"-I{Path(fmpy.__file__).parent / 'c-code'}"
-    done = subprocess.run(
-        [compiler, *cross_compiler.FLAGS, include, *files, "-lm", "-o", str(binary.resolve())],
-        cwd=sources,
-        capture_output=True,
-        text=True,
-    )
+    command = [*shlex.split(compiler), *cross_compiler.FLAGS, include, *files]
+    try:
+        done = subprocess.run(
+            [*command, "-lm", "-o", str(binary.resolve())],
+            cwd=sources,
+            capture_output=True,
+            text=True,
+        )
+    except OSError as error:
+        raise RuntimeError(f"CC={compiler}: {error.strerror}") from error
     if done.returncode:
         raise RuntimeError(f"{compiler} could not compile the plant:\n{done.stderr}")

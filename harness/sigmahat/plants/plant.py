@@ -105,7 +105,7 @@ class PlantEquations:
         return symbols[name]
 
 
-def encoder(angle: ca.SX, counts: ca.SX) -> ca.SX:
+def encoder(angle: ca.SX, counts: ca.SX | float) -> ca.SX:
     """Angle [rad] rounded to the nearest of `counts` per turn; as it is for 0 counts."""
     count = 2 * math.pi / ca.if_else(counts > 0, counts, 1)
     return ca.if_else(counts > 0, count * ca.floor(angle / count + 0.5), angle)
