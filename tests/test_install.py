@@ -107,8 +107,21 @@ def test_fmu_is_that_of_the_installation(installed: Path, tmp_path: Path) -> Non
     assert {Path(path).name for path in printed[1:] if Path(path).is_file()} == FMUS
 
 
-def test_reproduce_gives_what_the_development_tree_gives(installed: Path, tmp_path: Path) -> None:
-    run(installed / "sigmahat", "reproduce", "--out", "wheel", cwd=tmp_path)
-    run(Path(sys.executable).with_name("sigmahat"), "reproduce", "--out", "tree", cwd=tmp_path)
-    for name in ("table.csv", "RESIDUAL.csv"):
-        assert (tmp_path / "wheel" / name).read_bytes() == (tmp_path / "tree" / name).read_bytes()
+def test_commands_give_what_the_development_tree_gives(installed: Path, tmp_path: Path) -> None:
+    arguments = ("reproduce", "--scenario", "single-linear", "--json")
+    printed = run(installed / "sigmahat", *arguments, cwd=tmp_path)
+    assert "RESIDUAL" in printed
+    assert printed == run(Path(sys.executable).with_name("sigmahat"), *arguments, cwd=tmp_path)
+
+
+def test_types_are_those_of_the_sources(installed: Path, tmp_path: Path) -> None:
+    program = tmp_path / "program.py"
+    program.write_text("import sigmahat\nreveal_type(sigmahat.fmu)\nsigmahat.fmu(1)\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--python-executable", installed / "python", program],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert 'Revealed type is "def (name: str) -> pathlib.Path"' in done.stdout
+    assert 'Argument 1 to "fmu" has incompatible type "int"; expected "str"' in done.stdout
