@@ -168,6 +168,8 @@ def _port(log: Log, name: str, each: Guess) -> Iterator[str]:
         yield f"time = {_text(each.time)}"
     if each.unit == "counts":
         yield "counts_per_turn = 0   # FILL IN: of the encoder, after its four-fold evaluation"
+    if name == "theta":
+        yield "gear_ratio = 1   # CHECK: that of the gear if the encoder sits on the motor's shaft"
     if each.unit in ("A", "mA"):
         yield "torque_constant = 0   # FILL IN: N.m/A, from the data sheet of the motor"
     if each.unit == "mm":
