@@ -76,6 +76,12 @@ POSITIVE = [
     "rls.P_0",
     "rls.c",
     "rls.a",
+    "noise.tau",
+    "noise.tau_e",
+    "confidence",
+    "matched.slow",
+    "range.phi",
+    "range.setPoint",
 ]
 NOT_NEGATIVE = [
     "motor.D_theta",
@@ -85,9 +91,16 @@ NOT_NEGATIVE = [
     "encoder.q",
     "encoder.theta_c",
     "model.k_s",
+    "matched.drift",
+    "prior.tau_e",
+    "prior.nominal",
+    "prior.D_theta",
+    "prior.B",
+    "prior.tau_coulomb",
 ]
 ANY_FINITE = ["motor.gamma", "setPoint.offset", "setPoint.scale", "model.r_0", "model.b"]
 CHOICES = {
+    "method": 2,
     "modality": 3,
     "deformation": 2,
     "filter.kind": 3,
@@ -107,6 +120,7 @@ OUTSIDE: list[tuple[str, float]] = [
     ("motor.gamma", 0.0),
     ("rls.a", math.nextafter(1.0, 2.0)),
     ("residual.K_I", 2000.0),  # K_I T = 2
+    *(("matched.bandwidth", bad) for bad in (-1.0, 0.0, 0.0999, 2000.0, math.nan, math.inf)),
     *((name, bad) for name, last in CHOICES.items() for bad in (0, -1, last + 1, 2**31 - 1)),
     *(("rls.symmetric", bad) for bad in (-1, 2, 2**31 - 1)),
 ]
@@ -131,6 +145,8 @@ def test_outside_its_range_a_parameter_is_named(c: Library, name: str, value: fl
         ("rls.a", 1.0),
         ("residual.K_I", math.nextafter(2000.0, 0.0)),
         ("filter.V_min", 10.0),  # V_max
+        ("matched.bandwidth", 0.1),
+        ("matched.bandwidth", math.nextafter(2000.0, 0.0)),
         *((name, last) for name, last in CHOICES.items()),
         *((name, 1) for name in CHOICES),
         ("rls.symmetric", 0),
