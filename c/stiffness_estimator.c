@@ -67,22 +67,22 @@ static sh_matched_settings matched_settings(const sh_parameters *p)
     return s;
 }
 
-/* Torque (21), stiffness (23) and the rest that follows from the present eta and P. */
+/* Torque (21), stiffness (23) and the rest that follows from the present eta and P at an operating
+ * point with regressor F and derivative dF [size: SH_MAX_PARAMETERS, 0 beyond the basis].
+ */
 static void evaluate(const sh_estimator *estimator, const sh_parameters *p, double phi,
-                     double set_point, sh_estimate *estimate)
+                     double set_point, const double *F, const double *dF, sh_estimate *estimate)
 {
     const sh_least_squares *rls = &estimator->rls;
     const sh_matched_settings settings = matched_settings(p);
     const int matched = p->method == SH_METHOD_MATCHED_FILTER;
     const int size = p->rls.n * p->rls.m;
-    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0}, believed[SH_MAX_PARAMETERS];
-    double units[SH_MAX_BASIS];
+    double believed[SH_MAX_PARAMETERS], units[SH_MAX_BASIS];
     const double *eta = matched ? believed : rls->eta;
     double variance;
     int i, j;
 
     units_of_basis(p, units);
-    basis(p, phi, set_point, F, dF);
     variance = matched
                    ? sh_matched_belief(&estimator->matched, rls, &settings, dF, believed)
                    : noise_of_paper(p) * sh_least_squares_variance(rls, dF);
@@ -111,6 +111,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
     const sh_matched_settings settings = matched_settings(p);
     const int n = p->rls.n, size = n * p->rls.m;
     double eta_0[SH_MAX_BASIS], units[SH_MAX_BASIS];
+    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
     int i, j;
 
     units_of_basis(p, units);
@@ -125,7 +126,8 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
     else
         sh_least_squares_start(&estimator->rls, size, eta_0, p->rls.P_0);
     estimate->valid = 1;
-    evaluate(estimator, p, 0.0, p->setPoint.offset, estimate);
+    basis(p, 0.0, p->setPoint.offset, F, dF);
+    evaluate(estimator, p, 0.0, p->setPoint.offset, F, dF, estimate);
 }
 
 static int is_measurement(double z)
@@ -153,7 +155,7 @@ static double track(sh_estimator *estimator, const sh_parameters *p, const sh_me
          * 1 / K_I. Of a longer one the torque is not known: r_e stays, is wrong, and has
          * to forget before it is learned from.
          */
-        estimator->settling -= T;
+        estimator->settling -= dt;
         if (dt * p->residual.K_I < 2.0) {
             sh_torque_residual_step(&estimator->residual, &p->motor, theta->dx, theta->dx_dot,
                                     z->tau, p->residual.K_I, dt);
@@ -182,11 +184,15 @@ static int skip(sh_estimator *estimator, sh_estimate *estimate)
     return 0;
 }
 
-/* The paper's two stages. Returns what sh_estimator_tick does, but restores nothing. */
+/* The paper's two stages. Returns 0, and leaves all as it was, if the regression refuses. */
 static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                       double set_point, sh_estimate *estimate)
 {
-    double F[SH_MAX_BASIS], dF[SH_MAX_BASIS];
+    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
+    const sh_kinematic_kalman theta = estimator->theta, q = estimator->q;
+    const sh_torque_residual residual = estimator->residual;
+    const double skipped = estimator->skipped, settling = estimator->settling;
+    const int started = estimator->started;
     const double tau_e_residual = track(estimator, p, z);
     double phi = z->q - z->theta;
     double tau_e_hat, factor;
@@ -205,9 +211,16 @@ static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_
         factor = 0.0;
     }
     if (!isfinite(tau_e_residual) ||
-        !sh_least_squares_update(&estimator->rls, kind, factor, F, tau_e_hat, &innovation))
+        !sh_least_squares_update(&estimator->rls, kind, factor, F, tau_e_hat, &innovation)) {
+        estimator->theta = theta;
+        estimator->q = q;
+        estimator->residual = residual;
+        estimator->skipped = skipped;
+        estimator->settling = settling;
+        estimator->started = started;
         return 0;
-    evaluate(estimator, p, phi, set_point, estimate);
+    }
+    evaluate(estimator, p, phi, set_point, F, dF, estimate);
     estimate->tau_e_residual = tau_e_residual;
     estimate->theta_dot = estimator->theta.x_dot;
     estimate->a = innovation.a;
@@ -216,11 +229,13 @@ static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_
     return 1;
 }
 
-/* The matched filter. Returns what sh_estimator_tick does, but restores nothing. */
+/* The matched filter. Returns 0, with what was learned as it was, if the regression refuses. The
+ * filters begin anew after any sample that was skipped, so they need not be restored.
+ */
 static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                         double set_point, sh_estimate *estimate)
 {
-    double F[SH_MAX_BASIS], dF[SH_MAX_BASIS];
+    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
     const sh_matched_settings settings = matched_settings(p);
     const double phi = z->q - z->theta;
     double y;
@@ -231,14 +246,16 @@ static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const s
 
     if (estimator->started && (estimator->skipped > 0.0 || estimator->modality != p->modality))
         sh_matched_resume(&estimator->matched, &settings);
+    basis(p, phi, set_point, F, dF);
+    if (!sh_matched_step(&estimator->matched, &estimator->rls, &settings, z->theta, torque, phi,
+                         estimate->sigma, F, &y, &innovation)) {
+        estimator->matched.samples = 0;
+        return 0;
+    }
     estimator->started = 1;
     estimator->skipped = 0.0;
     estimator->modality = p->modality;
-    basis(p, phi, set_point, F, dF);
-    if (!sh_matched_step(&estimator->matched, &estimator->rls, &settings, z->theta, torque, phi,
-                         estimate->sigma, F, &y, &innovation))
-        return 0;
-    evaluate(estimator, p, phi, set_point, estimate);
+    evaluate(estimator, p, phi, set_point, F, dF, estimate);
     estimate->tau_e_residual = y;
     estimate->theta_dot =
         sh_state_variable_filter_first(&estimator->matched.theta, &estimator->matched.design);
@@ -252,7 +269,6 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
                       sh_estimate *estimate)
 {
     const double set_point = p->setPoint.offset + p->setPoint.scale * z->theta_c;
-    const sh_estimator before = *estimator;
     int good;
 
     if (!is_measurement(z->theta) || !is_measurement(z->q) || !is_measurement(z->theta_c) ||
@@ -261,10 +277,8 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
     good = p->method == SH_METHOD_MATCHED_FILTER
                ? tick_matched(estimator, p, z, set_point, estimate)
                : tick_paper(estimator, p, z, set_point, estimate);
-    if (!good) {
-        *estimator = before;
+    if (!good)
         return skip(estimator, estimate);
-    }
     estimate->valid = 1;
     return 1;
 }

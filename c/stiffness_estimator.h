@@ -64,7 +64,9 @@ typedef struct {
     } residual;
     sh_filter_parameters filter; /* kind, weighting and P_0 fixed */
     struct {
-        double theta, q, theta_c; /* resolution [counts/turn], >= 0; 0: no quantisation; fixed */
+        double theta, q; /* resolution [counts/turn], >= 0; 0: no quantisation; q acts with
+                            SH_DEFORMATION_FILTERED alone; fixed */
+        double theta_c;  /* not used: theta_c is not filtered */
     } encoder;
     struct {
         double offset, scale; /* set-point = offset + scale theta_c [1, 1/rad], fixed */

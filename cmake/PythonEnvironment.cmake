@@ -6,9 +6,12 @@ find_program(SIGMAHAT_HOST_PYTHON NAMES python3 python REQUIRED)
 execute_process(
   COMMAND ${SIGMAHAT_HOST_PYTHON} -c "import sys; sys.exit(sys.version_info < (3, 10))"
   RESULT_VARIABLE too_old)
-if(too_old)
+if(too_old EQUAL 1)
   message(FATAL_ERROR "${SIGMAHAT_HOST_PYTHON} is older than Python 3.10. Install a newer one, "
                       "or name it: -D SIGMAHAT_HOST_PYTHON=/path/to/python3.")
+elseif(too_old)
+  message(FATAL_ERROR "${SIGMAHAT_HOST_PYTHON} cannot be run (${too_old}). Install Python 3.10 or "
+                      "newer, or name one: -D SIGMAHAT_HOST_PYTHON=/path/to/python3.")
 endif()
 
 set(SIGMAHAT_VENV ${CMAKE_CURRENT_BINARY_DIR}/venv)

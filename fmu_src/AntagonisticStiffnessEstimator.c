@@ -65,9 +65,12 @@ static fmi2Status step(void *model, double t, double h, sh_instance *log)
     fmu->side[1].input.q = fmu->side[0].input.q;
     fmu->side[1].input_derivative.q = fmu->side[0].input_derivative.q;
     for (i = 0; i < 2; ++i) {
+        fmi2Status of_side;
+
         fmu->side[i].parameters = parameters_of(fmu, i);
-        if (sh_estimator_fmu_step(&fmu->side[i], t, h, WHO[i], log) != fmi2OK)
-            status = fmi2Warning;
+        of_side = sh_estimator_fmu_step(&fmu->side[i], t, h, WHO[i], log);
+        if (of_side > status)
+            status = of_side;
     }
     sum(fmu);
     return status;

@@ -18,6 +18,9 @@ void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu)
     sh_sample_clock_start(&fmu->clock);
 }
 
+/* Ticks in one step. More would take minutes, and are a mistake in a unit. */
+static const double MAX_TICKS = 1e9;
+
 /* Inputs at a time after the begin of the step. */
 static sh_measurement extrapolate(const sh_estimator_fmu *fmu, double after)
 {
@@ -35,10 +38,18 @@ static sh_measurement extrapolate(const sh_estimator_fmu *fmu, double after)
 fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
                                  sh_instance *log)
 {
+    const double T = fmu->parameters.samplePeriod;
     fmi2Status status = fmi2OK;
     double after;
 
-    while (sh_sample_clock_tick(&fmu->clock, h, fmu->parameters.samplePeriod, &after)) {
+    if (h / T > MAX_TICKS) {
+        sh_log(log, fmi2Error,
+               "%sfmi2DoStep: communicationStepSize = %g s is more than %g times samplePeriod = "
+               "%g s; expected a shorter step.",
+               who, h, MAX_TICKS, T);
+        return fmi2Error;
+    }
+    while (sh_sample_clock_tick(&fmu->clock, h, T, &after)) {
         const sh_measurement z = extrapolate(fmu, after);
         const int was_valid = fmu->output.valid;
         const double skipped = fmu->estimator.skipped;
@@ -47,8 +58,8 @@ fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, cons
             status = fmi2Warning;
             if (was_valid)
                 sh_log(log, fmi2Warning,
-                       "%sTick at t = %.9g s skipped, the estimate is kept: expected finite "
-                       "measurements, came theta = %g, q = %g, theta_c = %g, tau = %g, "
+                       "%sTick at t = %.9g s skipped, the estimate is kept: expected measurements "
+                       "that are finite and at most 1e12, came theta = %g, q = %g, theta_c = %g, tau = %g, "
                        "tau_e_sensor = %g.",
                        who, t + after, z.theta, z.q, z.theta_c, z.tau, z.tau_e_sensor);
         } else if (!was_valid) {

@@ -9,7 +9,11 @@
 
 #include "instance.h"
 
-enum { GUID_LENGTH = 64, STATE_VERSION = 1 };
+enum {
+    GUID_LENGTH = 64,
+    STATE_VERSION = 1 /* raise it with every change of a model's struct: the GUID tells only
+                         changes of the variables */
+};
 
 typedef struct {
     char magic[8];
@@ -179,7 +183,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedSta
                (unsigned long)size, what);
         return fmi2Error;
     }
-    block = *FMUstate != NULL ? *FMUstate : sh_allocate(&instance->callbacks, block_size());
+    block = sh_allocate(&instance->callbacks, block_size());
     if (block == NULL) {
         sh_log(instance, fmi2Error, "fmi2DeSerializeFMUstate: out of memory.");
         return fmi2Error;

@@ -37,7 +37,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
         return fmi2Error;
     }
     /* Importers add up their time with rounding; a thousandth of a step is no gap. */
-    if (!(fabs(t - instance->time) <= 1e-3 * h + 1e-12 * fabs(t))) {
+    if (!isfinite(t) || !(fabs(t - instance->time) <= 1e-3 * h + 1e-12 * fabs(t))) {
         sh_log(instance, fmi2Error,
                "fmi2DoStep: currentCommunicationPoint = %.12g s; expected %.12g s, "
                "where the last step ended.",

@@ -1,4 +1,4 @@
-/* What a model gives to the FMI shell (fmi2.c): one constant of type sh_model.
+/* What a model gives to the FMI shell (fmi2_*.c): one constant of type sh_model.
  *
  * A model is one plain struct without pointers that holds parameters, inputs,
  * outputs and state. The shell allocates it, reaches its variables through the

@@ -13,12 +13,10 @@ int sh_sample_clock_tick(sh_sample_clock *clock, double h, double T, double *aft
     const double tolerance = fmin(1e-6, step / 2.0); /* a tiny step is not nothing */
 
     if (clock->ahead < step - tolerance) {
-        *after = clock->ahead * T;
+        *after = fmax(clock->ahead, 0.0) * T; /* may be late by the tolerance */
         clock->ahead += 1.0;
         return 1;
     }
     clock->ahead -= step;
-    if (fabs(clock->ahead) <= tolerance)
-        clock->ahead = 0.0;
     return 0;
 }

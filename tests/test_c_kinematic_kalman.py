@@ -77,7 +77,7 @@ def test_a_motor_at_rest_has_no_velocity(c: Library, kind: int) -> None:
 def test_a_ramp_is_followed_without_error(c: Library, kind: int, slope: float) -> None:
     # GIVEN constant velocity, which (9) models exactly WHEN the filter has settled
     # THEN position and velocity have no error left
-    z = 3.0 + slope * T * np.arange(2000.0)
+    z = 3.0 + slope * T * np.arange(2000, dtype=np.float64)
     track = run(c, z, kind=kind)
     assert track[-1, 0] == pytest.approx(z[-1], rel=1e-12)
     assert track[-1, 1] == pytest.approx(slope, rel=1e-9)
@@ -88,7 +88,7 @@ def test_quantisation_is_smoothed(c: Library, counts_per_sample: float) -> None:
     # GIVEN a quantised ramp WHEN it is differenced THEN the velocity jumps by whole counts per
     # sample; WHEN it is filtered THEN the mean is the same and the jumps are smaller
     slope = counts_per_sample * W_S
-    z = round_to_counts(slope * T * np.arange(3000.0), COUNTS)
+    z = round_to_counts(slope * T * np.arange(3000, dtype=np.float64), COUNTS)
     differenced = run(c, z, kind=3)[1000:, 1]
     filtered = run(c, z, kind=1)[1000:, 1]
     assert np.allclose(differenced / W_S, np.round(differenced / W_S), atol=1e-9)
@@ -97,7 +97,7 @@ def test_quantisation_is_smoothed(c: Library, counts_per_sample: float) -> None:
 
 
 def test_a_slower_filter_is_smoother(c: Library) -> None:
-    z = round_to_counts(0.3 * W_S * T * np.arange(3000.0), COUNTS)
+    z = round_to_counts(0.3 * W_S * T * np.arange(3000, dtype=np.float64), COUNTS)
     spread = [run(c, z, V_a=V_a)[1000:, 1].std() for V_a in (1e6, 1e8, 1e10)]
     assert spread[0] < spread[1] < spread[2]
 

@@ -313,6 +313,18 @@ def test_a_bad_sample_is_skipped(c: Library, name: str, bad: float) -> None:
 
 
 @pytest.mark.parametrize("name", ["theta", "q"])
+def test_a_first_sample_that_would_overflow_is_not_the_first(c: Library, name: str) -> None:
+    states = []
+    for bad in (math.nan, 1e12):
+        estimator = Estimator(c, {})
+        first = table1_recording().measurements()[0].copy()
+        first[MEASUREMENTS.index(name)] = bad
+        assert not estimator.tick(first)
+        states.append(bytes(c.ffi.buffer(estimator.state)))
+    assert states[0] == states[1]
+
+
+@pytest.mark.parametrize("name", ["theta", "q"])
 def test_a_sample_that_would_overflow_leaves_no_trace(c: Library, name: str) -> None:
     # GIVEN a finite sample whose powers overflow the regression WHEN it is skipped
     # THEN filters, residual and regression are as if it had not been finite, also behind a gap
@@ -356,6 +368,19 @@ def test_recovery_is_clean(c: Library, gap: int, modality: int) -> None:
     assert np.max(relative(estimates, recording.true_sigma)[after]) < 0.05
     if modality != RESIDUAL:  # which alone has a memory that a gap makes wrong
         assert np.all(estimates["a"][after] > 0)
+
+
+@pytest.mark.parametrize("lost", [0, 3])
+def test_learning_goes_on_when_the_residual_has_forgotten(c: Library, lost: int) -> None:
+    # GIVEN a gap of a second, and some samples lost soon after WHEN ten time constants 1 / K_I have
+    # passed since the gap THEN the regression learns again, no sooner and no later
+    z = table1_recording().measurements()
+    z[2000:3000, 0] = math.nan
+    z[3010 : 3010 + lost, 0] = math.nan
+    a = Estimator(c, {"residual.K_I": 300.0}).run(z)["a"]
+    settled = 3000 + math.ceil(10 / 300 / 1e-3)
+    assert np.all(a[3000:settled] == 0)
+    assert np.all(a[settled : settled + 100] > 0)
 
 
 @pytest.mark.parametrize("filter_kind", FILTERS)
@@ -454,7 +479,13 @@ def test_table1_against_the_oracle(
 @pytest.mark.parametrize("filter_kind", FILTERS)
 def test_filtered_deformation_against_the_oracle(c: Library, filter_kind: int) -> None:
     z = table1_recording().measurements()[:3000]
-    values = {**DEFAULTS, "filter.kind": filter_kind, "deformation": FILTERED, "modality": SENSOR}
+    values = {
+        **DEFAULTS,
+        "encoder.q": 5000.0,  # not that of theta
+        "filter.kind": filter_kind,
+        "deformation": FILTERED,
+        "modality": SENSOR,
+    }
     want = oracle.estimator(values, z, [{}])[0]
     errors = compare(Estimator(c, values).run(z), want, z[:, 4])
     assert max(errors.values()) < 1e-9, errors

@@ -122,10 +122,25 @@ def test_folder_that_is_a_file(out: str, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("mine")
     started = time.monotonic()
     line = refused("reproduce", "--seeds", "500", "--out", out, cwd=tmp_path)
-    assert "cannot write" in line
-    assert "file" in line
+    assert "file is a file" in line or "choose another folder with --out" in line
     assert time.monotonic() - started < 30  # refused before anything is computed
     assert (tmp_path / "file").read_text() == "mine"
+
+
+def test_folder_without_a_name(tmp_path: Path) -> None:
+    assert "empty name" in refused("reproduce", "--out", "", cwd=tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_output_that_cannot_be_written(tmp_path: Path) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [*COMMAND, "scenarios"], cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True
+        )
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert "cannot write the output" in line
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder that nobody may write to")

@@ -185,3 +185,11 @@ def test_a_warning_of_an_fmu_goes_to_the_log(caplog: pytest.LogCaptureFixture) -
         slave.call(slave.fmi.fmi2DoStep, 0.0, T, 1)
     assert [r.levelname for r in caplog.records] == ["WARNING"]
     assert caplog.records[0].getMessage().startswith("one: ")
+
+
+@pytest.mark.parametrize("content", [b"", b"not a zip file", b"PK\x05\x06" + bytes(18)])
+def test_a_file_that_is_no_fmu(content: bytes, tmp_path: Path) -> None:
+    file = tmp_path / "broken.fmu"
+    file.write_bytes(content)
+    with pytest.raises(FmuError, match=r"broken\.fmu: not a readable FMU"):
+        Fmu(file)

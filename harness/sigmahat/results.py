@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import csv
 import math
+import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from shutil import rmtree
 from typing import Any
 
 from sigmahat.cosimulation import Recording, Series
@@ -26,13 +27,16 @@ def folder(path: Path) -> Iterator[Path]:
     written to.
     """
     missing = [p for p in (path, *path.parents) if not p.exists()]
+    # A name known beforehand, so that an interrupt at any moment leaves nothing behind.
+    unfinished = path / f".unfinished-{os.getpid()}"
     try:
-        path.mkdir(parents=True, exist_ok=True)
-        with TemporaryDirectory(prefix=".unfinished-", dir=path) as unfinished:
-            yield Path(unfinished)
-            for file in sorted(Path(unfinished).iterdir()):
-                file.replace(path / file.name)
+        unfinished.mkdir(parents=True)
+        yield unfinished
+        for file in sorted(unfinished.iterdir()):
+            file.replace(path / file.name)
+        unfinished.rmdir()
     except BaseException:
+        rmtree(unfinished, ignore_errors=True)
         for p in missing:
             with suppress(OSError):
                 p.rmdir()

@@ -40,7 +40,12 @@ class Fmu:
 
     def __init__(self, path: Path) -> None:
         """Unpacks the FMU. Raises FileNotFoundError, or FmuError if it is not for co-simulation."""
-        self.description = fmpy.read_model_description(path)
+        try:  # FMPy raises plain Exception for a description that is not valid
+            self.description = fmpy.read_model_description(path)
+        except OSError:
+            raise
+        except Exception as error:
+            raise FmuError(f"{path}: not a readable FMU ({error}); build it again") from error
         self.name: str = self.description.modelName
         if self.description.fmiVersion != "2.0" or self.description.coSimulation is None:
             raise FmuError(f"{path}: expected an FMU for FMI 2.0 Co-Simulation")

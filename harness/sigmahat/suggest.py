@@ -16,6 +16,6 @@ def unknown(kind: str, name: str, known: Iterable[str]) -> str:
     message = f"unknown {kind} {name!r}"
     if similar:
         message += "; did you mean " + " or ".join(map(repr, similar)) + "?"
-    if not similar or len(names) <= 10:
+    if not similar or len(names) <= 20:
         message += f" (there are: {', '.join(names) or 'none'})"
     return message

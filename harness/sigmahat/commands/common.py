@@ -1,0 +1,62 @@
+"""What several commands share: the folder they write to, progress, and errors in one line."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+
+
+def folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | None:
+    """Callback of an option: a folder to write into.
+
+    An empty name, which is what a shell makes of a variable not set, is refused.
+    """
+    if name == "":
+        raise click.BadParameter("expected a folder, got an empty name.")
+    if name is not None and Path(name).is_file():
+        raise click.BadParameter(f"{name} is a file; name a folder.")
+    return None if name is None else Path(name)
+
+
+def progress(label: str, length: int) -> Any:
+    """A progress bar on stderr, hidden where nobody sees it."""
+    return click.progressbar(
+        length=length, label=label, file=sys.stderr, hidden=not sys.stderr.isatty()
+    )
+
+
+def need_fmu(name: str) -> None:
+    """Raises ClickException, which says what to do, if an FMU is not built."""
+    import sigmahat
+
+    try:
+        sigmahat.fmu(name)
+    except FileNotFoundError as error:
+        build = "run `cmake --workflow --preset build`"
+        if not any(map(shutil.which, ("cc", "gcc", "clang"))):
+            build = f"install a C compiler (gcc or clang), then {build}"
+        raise click.ClickException(f"{name}.fmu is not built: {build}") from error
+
+
+@contextmanager
+def work(out: Path) -> Iterator[None]:
+    """Around the work of a command that writes to out: its errors become one line.
+
+    Raises ClickException for an FMU's refusal, a value that does not fit, and a file or folder
+    that cannot be written.
+    """
+    from sigmahat.slave import FmuError
+
+    try:
+        yield
+    except (FmuError, ValueError) as error:
+        raise click.ClickException(str(error)) from error
+    except OSError as error:
+        where = f"cannot write {error.filename or out}: {error.strerror or error}"
+        raise click.ClickException(f"{where}; choose another folder with --out") from error

@@ -1,0 +1,60 @@
+"""sigmahat reproduce"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from sigmahat.commands import common
+
+
+@click.command()
+@click.option("--scenario", "name", default="table1", show_default=True, help="What to run.")
+@click.option(
+    "--seeds",
+    default=1,
+    show_default=True,
+    type=click.IntRange(min=1),
+    help="Number of runs, each with other noise.",
+)
+@click.option(
+    "--out",
+    callback=common.folder,
+    help="Folder for figures and CSV files.  [default: sigmahat-results/SCENARIO]",
+)
+def reproduce(name: str, seeds: int, out: Path | None) -> None:
+    """Run a scenario; print its table, draw its figures.
+
+    Example: sigmahat reproduce --scenario as-printed --seeds 20 --out as-printed
+    """
+    from sigmahat import results
+    from sigmahat.reproduce import reproduce, work
+    from sigmahat.scenarios import scenario
+
+    try:
+        chosen = scenario(name)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from error
+    for fmu in {chosen.plant.fmu, *(e.fmu for e in chosen.estimators.values())}:
+        common.need_fmu(fmu)
+
+    out = out or Path("sigmahat-results", name)
+    numbers = range(1, seeds + 1)
+    with common.work(out), results.folder(out) as folder:
+        with common.progress("Running", work(chosen, numbers)) as bar:
+            result = reproduce(chosen, numbers, progress=bar.update)
+        from sigmahat.figures import FIGURES, save
+
+        with common.progress("Drawing", len(chosen.figures)) as bar:
+            for title in chosen.figures:
+                save(FIGURES[title], result.recording, folder / title)
+                bar.update(1)
+        results.write_table(result, folder / "table.csv")
+        for modality in chosen.estimators:
+            results.write_series(result.recording, modality, folder / f"{modality}.csv")
+
+    click.echo(f"{chosen.name}: {chosen.description}")
+    click.echo(f"{results.conditions(result)}\n")
+    click.echo(results.table(result))
+    click.echo(f"\nFigures (PNG, SVG) and CSV files are in {out.resolve()}")
