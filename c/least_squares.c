@@ -197,19 +197,21 @@ void sh_least_squares_bound(sh_least_squares *rls, const double *P_max)
     }
 }
 
-double sh_least_squares_product(const sh_least_squares *rls, const double *F, double *PF)
+void sh_least_squares_column(const sh_least_squares *rls, int i, double *P_i)
 {
-    double f[SH_MAX_PARAMETERS], g[SH_MAX_PARAMETERS];
-    const double rho = project(rls, F, f, g);
-    int i, j;
+    int j, k;
 
-    for (j = 0; j < rls->size; ++j) {
-        const double *u = column(rls, j);
-        PF[j] = g[j];
-        for (i = 0; i < j; ++i)
-            PF[i] += u[i] * g[j];
+    for (j = 0; j < rls->size; ++j)
+        P_i[j] = 0.0;
+    /* Columns of U before the i-th have nothing in row i. */
+    for (k = i; k < rls->size; ++k) {
+        const double *u = column(rls, k);
+        const double g = k == i ? rls->D[k] : rls->D[k] * u[i];
+
+        P_i[k] += g;
+        for (j = 0; j < k; ++j)
+            P_i[j] += u[j] * g;
     }
-    return rho;
 }
 
 void sh_least_squares_move(sh_least_squares *rls, double c, const double *v)

@@ -94,8 +94,8 @@ void sh_least_squares_widen(sh_least_squares *rls, double c, const double *v);
 /* Shrinks what has grown too wide: no variance above P_max [size: size]; correlations stay. */
 void sh_least_squares_bound(sh_least_squares *rls, const double *P_max);
 
-/* Product PF = P F [size: size]; returns F' P F. */
-double sh_least_squares_product(const sh_least_squares *rls, const double *F, double *PF);
+/* Column i of P [size: size]; cheap for the last ones. */
+void sh_least_squares_column(const sh_least_squares *rls, int i, double *P_i);
 
 /* Moves the estimate: eta += c v. v [size: size]. */
 void sh_least_squares_move(sh_least_squares *rls, double c, const double *v);

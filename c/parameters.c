@@ -75,6 +75,7 @@ typedef struct {
 
 #define AT(designator) #designator, offsetof(sh_parameters, designator)
 
+/* Finite limits other than 0 and 1 are far beyond use: what squares and powers can hold. */
 static const real_range REALS[] = {
     {AT(samplePeriod), "> 0", 0.0, HUGE_VAL, 1},
     {AT(motor.B), "> 0", 0.0, HUGE_VAL, 1},
@@ -98,19 +99,19 @@ static const real_range REALS[] = {
     {AT(model.k_s), ">= 0", 0.0, HUGE_VAL, 0},
     {AT(model.r_0), "finite", -HUGE_VAL, HUGE_VAL, 0},
     {AT(model.b), "finite", -HUGE_VAL, HUGE_VAL, 0},
-    {AT(noise.tau), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(noise.tau_e), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(noise.tau), "1e-12 to 1e12", 1e-12, 1e12, 0},
+    {AT(noise.tau_e), "1e-12 to 1e12", 1e-12, 1e12, 0},
     {AT(confidence), "> 0", 0.0, HUGE_VAL, 1},
     {AT(matched.bandwidth), "> 0", 0.0, HUGE_VAL, 1},
     {AT(matched.slow), "> 0", 0.0, HUGE_VAL, 1},
     {AT(matched.drift), ">= 0", 0.0, HUGE_VAL, 0},
-    {AT(range.phi), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(range.setPoint), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(prior.tau_e), ">= 0", 0.0, HUGE_VAL, 0},
-    {AT(prior.nominal), ">= 0", 0.0, HUGE_VAL, 0},
-    {AT(prior.D_theta), ">= 0", 0.0, HUGE_VAL, 0},
-    {AT(prior.B), ">= 0", 0.0, HUGE_VAL, 0},
-    {AT(prior.tau_coulomb), ">= 0", 0.0, HUGE_VAL, 0},
+    {AT(range.phi), "1e-6 to 1e6", 1e-6, 1e6, 0},
+    {AT(range.setPoint), "1e-12 to 1e12", 1e-12, 1e12, 0},
+    {AT(prior.tau_e), "0 to 1e12", 0.0, 1e12, 0},
+    {AT(prior.nominal), "0 to 1e12", 0.0, 1e12, 0},
+    {AT(prior.D_theta), "0 to 1e12", 0.0, 1e12, 0},
+    {AT(prior.B), "0 to 1e12", 0.0, 1e12, 0},
+    {AT(prior.tau_coulomb), "0 to 1e12", 0.0, 1e12, 0},
 };
 
 static const integer_range INTEGERS[] = {
@@ -169,11 +170,12 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
         return violates(violation, "motor.gamma", p->motor.gamma, "finite and not 0");
     if (p->filter.V_min > p->filter.V_max)
         return violates(violation, "filter.V_min", p->filter.V_min, "> 0 and <= filter.V_max");
-    if (p->residual.K_I * p->samplePeriod >= 2.0)
+    if (p->method == SH_METHOD_PAPER2011 && p->residual.K_I * p->samplePeriod >= 2.0)
         return violates(violation, "residual.K_I", p->residual.K_I,
                         "> 0 and < 2 / samplePeriod");
-    if (p->matched.bandwidth * p->samplePeriod < 1e-4 ||
-        p->matched.bandwidth * p->samplePeriod >= 2.0)
+    if (p->method == SH_METHOD_MATCHED_FILTER &&
+        (p->matched.bandwidth * p->samplePeriod < 1e-4 ||
+         p->matched.bandwidth * p->samplePeriod >= 2.0))
         return violates(violation, "matched.bandwidth", p->matched.bandwidth,
                         ">= 1e-4 / samplePeriod and < 2 / samplePeriod");
     return 0;

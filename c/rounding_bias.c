@@ -2,29 +2,21 @@
 
 #include <math.h>
 
-/* Variance of parameter `at`, and its column PF of P. */
-static double marginal(const sh_least_squares *rls, int at, double *PF)
-{
-    double unit[SH_MAX_PARAMETERS] = {0};
-
-    unit[at] = 1.0;
-    return sh_least_squares_product(rls, unit, PF);
-}
-
 void sh_rounding_bias_take_back(sh_rounding_bias *bias, sh_least_squares *rls, int at,
                                 double prior_variance)
 {
-    double PF[SH_MAX_PARAMETERS];
-    const double variance = marginal(rls, at, PF);
-    const double back = fmin(bias->surplus, 1.0 / variance - 1.0 / prior_variance);
-    double gain;
+    double P_b[SH_MAX_PARAMETERS];
+    double variance, back, gain;
 
+    sh_least_squares_column(rls, at, P_b);
+    variance = P_b[at];
+    back = fmin(bias->surplus, 1.0 / variance - 1.0 / prior_variance);
     if (!(back > 0.0) || !(variance > 0.0))
         return;
     /* P^-1 -= back at b, and the sum of squares loses back (1 + b)^2. */
     gain = back / (1.0 - back * variance);
-    sh_least_squares_move(rls, gain * (1.0 + rls->eta[at]), PF);
-    sh_least_squares_widen(rls, gain, PF);
+    sh_least_squares_move(rls, gain * (1.0 + rls->eta[at]), P_b);
+    sh_least_squares_widen(rls, gain, P_b);
     bias->surplus -= back;
     bias->taken += back;
 }
@@ -41,7 +33,7 @@ void sh_rounding_bias_take_back(sh_rounding_bias *bias, sh_least_squares *rls, i
 double sh_rounding_bias_belief(const sh_rounding_bias *bias, const sh_least_squares *rls, int at,
                                double prior_variance, const double *dF, double *eta)
 {
-    double PF[SH_MAX_PARAMETERS];
+    double P_b[SH_MAX_PARAMETERS];
     const double variance = sh_least_squares_variance(rls, dF);
     double of_b, information, share, believed, change, along = 0.0;
     int i;
@@ -50,14 +42,15 @@ double sh_rounding_bias_belief(const sh_rounding_bias *bias, const sh_least_squa
         eta[i] = rls->eta[i];
     if (!(bias->taken > 0.0))
         return variance;
-    of_b = marginal(rls, at, PF);
+    sh_least_squares_column(rls, at, P_b);
+    of_b = P_b[at];
     information = fmax(1.0 / of_b - 1.0 / prior_variance, 0.0);
     share = information / (information + bias->taken);
     believed = 1.0 / (1.0 / prior_variance + information * share);
     change = (share / of_b * believed - 1.0) * eta[at];
     for (i = 0; i < rls->size; ++i) {
-        eta[i] += PF[i] / of_b * change;
-        along += PF[i] / of_b * dF[i];
+        eta[i] += P_b[i] / of_b * change;
+        along += P_b[i] / of_b * dF[i];
     }
     return variance + along * along * (believed - of_b);
 }

@@ -18,8 +18,8 @@ extern "C" {
 #endif
 
 typedef struct {
-    double phi;      /* largest deformation to be expected [rad], > 0 */
-    double setPoint; /* largest set-point to be expected [1], > 0 */
+    double phi;      /* largest deformation to be expected [rad], 1e-6..1e6 */
+    double setPoint; /* largest set-point to be expected [1], 1e-12..1e12 */
 } sh_range_parameters;
 
 /* Regressor F and its derivative dF by phi [1/rad]; arguments as for sh_torque_basis. */

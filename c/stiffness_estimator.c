@@ -16,19 +16,6 @@ static void basis(const sh_parameters *p, double phi, double set_point, double *
         sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, F, dF);
 }
 
-/* Factors from the coefficients of the paper's basis to those of the method's. */
-static void units_of_basis(const sh_parameters *p, double *units)
-{
-    int i;
-
-    if (p->method == SH_METHOD_MATCHED_FILTER) {
-        sh_scaled_basis_units(&p->range, p->rls.symmetric, p->rls.n, p->rls.m, units);
-        return;
-    }
-    for (i = 0; i < p->rls.n * p->rls.m; ++i)
-        units[i] = 1.0;
-}
-
 /* What P of the paper's recursion is to be multiplied by to be a covariance [(N.m)2]: the noise
  * of the torque as if it were white, times the weight that (27) gives to every sample.
  */
@@ -67,67 +54,97 @@ static sh_matched_settings matched_settings(const sh_parameters *p)
     return s;
 }
 
-/* Torque (21), stiffness (23) and the rest that follows from the present eta and P at an operating
- * point with regressor F and derivative dF [size: SH_MAX_PARAMETERS, 0 beyond the basis].
- */
-static void evaluate(const sh_estimator *estimator, const sh_parameters *p, double phi,
-                     double set_point, const double *F, const double *dF, sh_estimate *estimate)
+/* Torque (21) and stiffness (23) at a regressor F and its derivative dF. */
+static void evaluate_curve(const double *F, const double *dF, const double *eta, int size,
+                           sh_estimate *estimate)
 {
-    const sh_least_squares *rls = &estimator->rls;
-    const sh_matched_settings settings = matched_settings(p);
-    const int matched = p->method == SH_METHOD_MATCHED_FILTER;
-    const int size = p->rls.n * p->rls.m;
-    double believed[SH_MAX_PARAMETERS], units[SH_MAX_BASIS];
-    const double *eta = matched ? believed : rls->eta;
-    double variance;
-    int i, j;
+    int i;
 
-    units_of_basis(p, units);
-    variance = matched
-                   ? sh_matched_belief(&estimator->matched, rls, &settings, dF, believed)
-                   : noise_of_paper(p) * sh_least_squares_variance(rls, dF);
-    estimate->phi = phi;
-    estimate->setPoint = set_point;
     estimate->tau_e = 0.0;
     estimate->sigma = 0.0;
     for (i = 0; i < size; ++i) {
         estimate->tau_e += F[i] * eta[i];
         estimate->sigma += dF[i] * eta[i];
     }
+}
+
+/* All that follows from parameters eta, of which dF' eta has the given variance, at an operating
+ * point with regressor F and derivative dF.
+ */
+static void evaluate(const sh_parameters *p, double phi, double set_point, const double *F,
+                     const double *dF, const double *eta, double variance, sh_estimate *estimate)
+{
+    const int matched = p->method == SH_METHOD_MATCHED_FILTER;
+    const int n = p->rls.n, m = p->rls.m, size = n * m;
+    double units[SH_MAX_BASIS];
+    int i, j;
+
+    evaluate_curve(F, dF, eta, size, estimate);
+    estimate->phi = phi;
+    estimate->setPoint = set_point;
     estimate->sigma_std = sqrt(variance);
     estimate->confident = estimate->sigma_std <= p->confidence * fabs(estimate->sigma);
-    for (j = 0; j < p->rls.m; ++j)
-        for (i = 0; i < p->rls.n; ++i)
-            estimate->eta[i][j] = eta[j * p->rls.n + i] / units[j * p->rls.n + i];
+    if (matched)
+        sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
+    for (j = 0; j < m; ++j)
+        for (i = 0; i < n; ++i)
+            estimate->eta[i][j] = matched ? eta[j * n + i] / units[j * n + i] : eta[j * n + i];
     estimate->D_theta_hat = p->motor.D_theta * (matched ? 1.0 + eta[size + SH_MOTOR_D_THETA] : 1.0);
     estimate->B_hat = p->motor.B * (matched ? 1.0 + eta[size + SH_MOTOR_B] : 1.0);
     estimate->tau_coulomb_hat = matched ? eta[size + SH_MOTOR_COULOMB] : 0.0;
+}
+
+static void evaluate_paper(const sh_estimator *estimator, const sh_parameters *p, double phi,
+                           double set_point, const double *F, const double *dF,
+                           sh_estimate *estimate)
+{
+    const double variance = noise_of_paper(p) * sh_least_squares_variance(&estimator->rls, dF);
+
+    evaluate(p, phi, set_point, F, dF, estimator->rls.eta, variance, estimate);
 }
 
 void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate)
 {
     static const sh_estimator zero;
     static const sh_estimate nothing;
-    const sh_matched_settings settings = matched_settings(p);
-    const int n = p->rls.n, size = n * p->rls.m;
-    double eta_0[SH_MAX_BASIS], units[SH_MAX_BASIS];
+    const int n = p->rls.n, m = p->rls.m, size = n * m;
+    const double set_point = p->setPoint.offset;
+    double eta_0[SH_MAX_BASIS], units[SH_MAX_BASIS], scaled[SH_MAX_PARAMETERS] = {0};
     double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
     int i, j;
 
-    units_of_basis(p, units);
     *estimator = zero;
     *estimate = nothing;
-    for (j = 0; j < p->rls.m; ++j)
+    for (j = 0; j < m; ++j)
         for (i = 0; i < n; ++i)
-            eta_0[j * n + i] = p->rls.eta_0[i][j] * units[j * n + i];
+            eta_0[j * n + i] = p->rls.eta_0[i][j];
     estimator->modality = p->modality;
-    if (p->method == SH_METHOD_MATCHED_FILTER)
-        sh_matched_start(&estimator->matched, &estimator->rls, &settings, size, eta_0);
-    else
+    basis(p, 0.0, set_point, F, dF);
+    if (p->method == SH_METHOD_MATCHED_FILTER) {
+        const sh_matched_settings settings = matched_settings(p);
+        double each = 0.0, curve = 0.0; /* what each coefficient, and the curve, add to sigma */
+
+        sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
+        for (i = 0; i < size; ++i) {
+            scaled[i] = eta_0[i] * units[i];
+            each += dF[i] * dF[i];
+            curve += dF[i] * scaled[i];
+        }
+        each *= p->prior.tau_e * p->prior.tau_e;
+        curve *= p->prior.nominal;
+        sh_matched_start(&estimator->matched, &estimator->rls, &settings, size, scaled);
+        evaluate(p, 0.0, set_point, F, dF, scaled, each + curve * curve, estimate);
+        /* The estimate is eta_0 to the last digit, whatever the units. */
+        sh_torque_basis(p->rls.symmetric, n, m, set_point, 0.0, F, dF);
+        evaluate_curve(F, dF, eta_0, size, estimate);
+        for (j = 0; j < m; ++j)
+            for (i = 0; i < n; ++i)
+                estimate->eta[i][j] = p->rls.eta_0[i][j];
+    } else {
         sh_least_squares_start(&estimator->rls, size, eta_0, p->rls.P_0);
+        evaluate_paper(estimator, p, 0.0, set_point, F, dF, estimate);
+    }
     estimate->valid = 1;
-    basis(p, 0.0, p->setPoint.offset, F, dF);
-    evaluate(estimator, p, 0.0, p->setPoint.offset, F, dF, estimate);
 }
 
 static int is_measurement(double z)
@@ -220,7 +237,7 @@ static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_
         estimator->started = started;
         return 0;
     }
-    evaluate(estimator, p, phi, set_point, F, dF, estimate);
+    evaluate_paper(estimator, p, phi, set_point, F, dF, estimate);
     estimate->tau_e_residual = tau_e_residual;
     estimate->theta_dot = estimator->theta.x_dot;
     estimate->a = innovation.a;
@@ -238,7 +255,8 @@ static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const s
     double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
     const sh_matched_settings settings = matched_settings(p);
     const double phi = z->q - z->theta;
-    double y;
+    double eta[SH_MAX_PARAMETERS];
+    double y, variance;
     const double torque = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
                           : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
                                                              : z->tau;
@@ -255,7 +273,8 @@ static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const s
     estimator->started = 1;
     estimator->skipped = 0.0;
     estimator->modality = p->modality;
-    evaluate(estimator, p, phi, set_point, F, dF, estimate);
+    variance = sh_matched_belief(&estimator->matched, &estimator->rls, &settings, dF, eta);
+    evaluate(p, phi, set_point, F, dF, eta, variance, estimate);
     estimate->tau_e_residual = y;
     estimate->theta_dot =
         sh_state_variable_filter_first(&estimator->matched.theta, &estimator->matched.design);

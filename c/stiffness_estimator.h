@@ -60,7 +60,7 @@ typedef struct {
     int deformation;     /* SH_DEFORMATION_*, fixed */
     sh_motor_parameters motor;
     struct {
-        double K_I; /* bandwidth of the residual [1/s], > 0, K_I T < 2 */
+        double K_I; /* bandwidth of the residual [1/s], > 0, K_I T < 2 if it is used */
     } residual;
     sh_filter_parameters filter; /* kind, weighting and P_0 fixed */
     struct {
@@ -86,26 +86,27 @@ typedef struct {
         double b;   /* lead of the ball screw, (30) [m/rad] */
     } model;        /* for SH_MODALITY_MODEL */
     struct {
-        double tau;   /* std deviation of the noise of tau [N.m], > 0 */
-        double tau_e; /* and of tau_e_sensor [N.m], > 0; also how far the model is trusted */
+        double tau;   /* std deviation of the noise of tau [N.m], 1e-12..1e12 */
+        double tau_e; /* and of tau_e_sensor, also how far the model is trusted [N.m],
+                         1e-12..1e12 */
     } noise;
     double confidence; /* largest sigma_std / |sigma| that counts as confident [1], > 0 */
     /* All below for SH_METHOD_MATCHED_FILTER. */
     struct {
-        double bandwidth; /* w of the filter [rad/s], 1e-4 <= w T < 2, fixed */
+        double bandwidth; /* w of the filter [rad/s], > 0, 1e-4 <= w T < 2 if it is used, fixed */
         double slow;      /* |theta'| below which the sign of friction is unknown [rad/s], > 0 */
         double drift;     /* share of its prior variance by which the torque curve drifts in a
                              second [1/s], >= 0; 0: it does not change */
     } matched;
     sh_range_parameters range; /* fixed */
-    struct {
+    struct { /* 0..1e12, fixed */
         double tau_e;       /* std deviation of each coefficient of the torque, for phi and
-                               set-point in units of their range [N.m], >= 0, fixed */
-        double nominal;     /* of the curve rls.eta_0 as a whole, relative [1], >= 0, fixed */
-        double D_theta;     /* of motor.D_theta, relative [1], >= 0; 0: exact; fixed */
-        double B;           /* of motor.B, relative [1], >= 0; 0: exact; fixed */
-        double tau_coulomb; /* of the Coulomb friction of the motor, on its axis [N.m], >= 0;
-                               0: there is none; fixed */
+                               set-point in units of their range [N.m] */
+        double nominal;     /* of the curve rls.eta_0 as a whole, relative [1] */
+        double D_theta;     /* of motor.D_theta, relative [1]; 0: exact */
+        double B;           /* of motor.B, relative [1]; 0: exact */
+        double tau_coulomb; /* of the Coulomb friction of the motor, on its axis [N.m];
+                               0: there is none */
     } prior;
 } sh_parameters;
 
@@ -169,7 +170,7 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation);
  */
 void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate);
 
-/* Runs one tick.
+/* Runs one tick. estimate comes in as the last tick, or sh_estimator_start, left it.
  *
  * Returns 1 and the new estimate. If any measurement is not finite or beyond
  * 1e12, or the regressor overflows, the tick is skipped: returns 0, sets

@@ -82,11 +82,12 @@ def test_version(tmp_path: Path) -> None:
 
 def test_help_names_every_command_and_option(tmp_path: Path) -> None:
     help_ = run("--help", cwd=tmp_path).stdout
-    assert "reproduce" in help_
-    assert "scenarios" in help_
-    help_ = run("reproduce", "--help", cwd=tmp_path).stdout
-    for option in ("--scenario", "--seeds", "--out"):
-        assert option in help_
+    options = {"reproduce": ["--scenario", "--seeds", "--out"], "compare": ["--seeds", "--out"]}
+    for command in (*options, "scenarios"):
+        assert command in help_
+    for command, named in options.items():
+        help_ = run(command, "--help", cwd=tmp_path).stdout
+        assert all(option in help_ for option in named)
 
 
 def test_help_imports_nothing_slow() -> None:
@@ -105,9 +106,10 @@ def test_unknown_scenario(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("command", ["reproduce", "compare"])
 @pytest.mark.parametrize("seeds", ["0", "-3", "two", "1.5"])
-def test_bad_number_of_seeds(seeds: str, tmp_path: Path) -> None:
-    assert "--seeds" in refused("reproduce", "--seeds", seeds, cwd=tmp_path)
+def test_bad_number_of_seeds(command: str, seeds: str, tmp_path: Path) -> None:
+    assert "--seeds" in refused(command, "--seeds", seeds, cwd=tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -158,8 +160,10 @@ def test_folder_without_permission(tmp_path: Path) -> None:
     assert list(locked.iterdir()) == []
 
 
+@pytest.mark.parametrize("command", ["reproduce", "compare"])
 @pytest.mark.parametrize("compiler", [None, "/usr/bin/cc"])
 def test_fmus_not_built(
+    command: str,
     compiler: str | None,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -170,7 +174,7 @@ def test_fmus_not_built(
 
     monkeypatch.setattr(sigmahat, "fmu", missing)
     monkeypatch.setattr(shutil, "which", lambda name: compiler)
-    assert main(["reproduce", "--out", str(tmp_path / "out")]) == 2
+    assert main([command, "--out", str(tmp_path / "out")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "cmake --workflow --preset build" in line
     assert ("install a C compiler" in line) == (compiler is None)
@@ -178,12 +182,16 @@ def test_fmus_not_built(
 
 
 @pytest.mark.parametrize(
-    ("seeds", "delay"), [("1", 0.6), ("100", 0.5), ("100", 0.7), ("100", 1.5), ("100", 4.0)]
+    ("command", "seeds", "delay"),
+    [
+        *(("reproduce", "1", 0.6), ("reproduce", "100", 0.5), ("reproduce", "100", 0.7)),
+        *(("reproduce", "100", 1.5), ("reproduce", "100", 4.0), ("compare", "100", 4.0)),
+    ],
 )
-def test_interrupt(seeds: str, delay: float, tmp_path: Path) -> None:
+def test_interrupt(command: str, seeds: str, delay: float, tmp_path: Path) -> None:
     """Ctrl-C reaches the whole process group, at any time."""
     process = subprocess.Popen(
-        [*COMMAND, "reproduce", "--seeds", seeds],
+        [*COMMAND, command, "--seeds", seeds],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import click
 
+from sigmahat.commands.compare import compare
 from sigmahat.commands.reproduce import reproduce
 from sigmahat.commands.scenarios import scenarios
 
@@ -19,7 +20,7 @@ def cli() -> None:
     """Stiffness of robot joints, estimated by FMUs."""
 
 
-for command in (reproduce, scenarios):
+for command in (reproduce, compare, scenarios):
     cli.add_command(command)
 
 
