@@ -4,9 +4,6 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* Largest measurement that is taken for one [rad, N.m]. */
-static const double LARGEST_MEASUREMENT = 1e12;
-
 /* Regressor and its derivative by phi at an operating point, in the units of the method. */
 static void basis(const sh_parameters *p, double phi, double set_point, double *F, double *dF)
 {
@@ -149,7 +146,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
 
 static int is_measurement(double z)
 {
-    return fabs(z) <= LARGEST_MEASUREMENT; /* false for NaN */
+    return fabs(z) <= SH_LARGEST_MEASUREMENT; /* false for NaN */
 }
 
 /* First stage: filters and residual. Returns gamma r_e [N.m]. */

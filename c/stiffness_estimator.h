@@ -110,6 +110,9 @@ typedef struct {
     } prior;
 } sh_parameters;
 
+/* Largest measurement that is taken for one [rad, N.m]. */
+#define SH_LARGEST_MEASUREMENT 1e12
+
 /* One sample of the measurements. */
 typedef struct {
     double theta, q, theta_c; /* positions: principal motor after its gear, link,
@@ -173,7 +176,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
 /* Runs one tick. estimate comes in as the last tick, or sh_estimator_start, left it.
  *
  * Returns 1 and the new estimate. If any measurement is not finite or beyond
- * 1e12, or the regressor overflows, the tick is skipped: returns 0, sets
+ * SH_LARGEST_MEASUREMENT, or the regressor overflows, the tick is skipped: returns 0, sets
  * estimate->valid to 0 and leaves all else as it was. The next good sample ends the gap:
  *
  * SH_METHOD_PAPER2011 filters over the time that has passed. The residual

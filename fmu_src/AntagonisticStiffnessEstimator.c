@@ -48,12 +48,11 @@ static fmi2Status check(const void *model, sh_instance *log)
     return fmi2OK;
 }
 
-static void initialize(void *model, double start_time)
+static void initialize(void *model)
 {
     AntagonisticStiffnessEstimator *fmu = model;
     int i;
 
-    (void)start_time;
     for (i = 0; i < 2; ++i) {
         fmu->side[i].parameters = parameters_of(fmu, i);
         sh_estimator_fmu_initialize(&fmu->side[i]);

@@ -11,9 +11,8 @@ static fmi2Status check(const void *model, sh_instance *log)
     return sh_estimator_fmu_check(&fmu->parameters, "", log);
 }
 
-static void initialize(void *model, double start_time)
+static void initialize(void *model)
 {
-    (void)start_time;
     sh_estimator_fmu_initialize(model);
 }
 

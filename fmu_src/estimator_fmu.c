@@ -53,6 +53,28 @@ static sh_measurement extrapolate(const sh_estimator_fmu *fmu, double after)
     return z;
 }
 
+/* Says why a tick was skipped: the first input that is no measurement, or too much together. */
+static void say_skipped(const sh_measurement *z, double t, const char *who, sh_instance *log)
+{
+    static const char *const NAMES[] = {"theta", "q", "theta_c", "tau", "tau_e_sensor"};
+    const double values[] = {z->theta, z->q, z->theta_c, z->tau, z->tau_e_sensor};
+    size_t i;
+
+    for (i = 0; i < sizeof values / sizeof values[0]; ++i) {
+        if (!(fabs(values[i]) <= SH_LARGEST_MEASUREMENT)) {
+            sh_log(log, fmi2Warning,
+                   "%sTick at t = %.9g s skipped, the estimate is kept: expected %s finite and at "
+                   "most %g in magnitude, came %g.",
+                   who, t, NAMES[i], SH_LARGEST_MEASUREMENT, values[i]);
+            return;
+        }
+    }
+    sh_log(log, fmi2Warning,
+           "%sTick at t = %.9g s skipped, the estimate is kept: the regression overflows at "
+           "theta = %g, q = %g, tau = %g.",
+           who, t, z->theta, z->q, z->tau);
+}
+
 fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
                                  sh_instance *log)
 {
@@ -75,11 +97,7 @@ fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, cons
         if (!sh_estimator_tick(&fmu->estimator, &fmu->parameters, &z, &fmu->output)) {
             status = fmi2Warning;
             if (was_valid)
-                sh_log(log, fmi2Warning,
-                       "%sTick at t = %.9g s skipped, the estimate is kept: expected measurements "
-                       "that are finite and at most 1e12, came theta = %g, q = %g, theta_c = %g, tau = %g, "
-                       "tau_e_sensor = %g.",
-                       who, t + after, z.theta, z.q, z.theta_c, z.tau, z.tau_e_sensor);
+                say_skipped(&z, t + after, who, log);
         } else if (!was_valid) {
             sh_log(log, fmi2OK,
                    "%sMeasurements are good again at t = %.9g s, %g ticks skipped.", who,

@@ -22,6 +22,7 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
         unsigned category;
     } KNOWN[] = {{"logEvents", SH_LOG_EVENTS},
                  {"logStatusWarning", SH_LOG_WARNING},
+                 {"logStatusDiscard", SH_LOG_DISCARD},
                  {"logStatusError", SH_LOG_ERROR},
                  {"logAll", SH_LOG_ALL}};
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2SetDebugLogging");
@@ -39,14 +40,14 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
         if (category == 0) {
             sh_log(instance, fmi2Error,
                    "fmi2SetDebugLogging: unknown category %s; known are logEvents, "
-                   "logStatusWarning, logStatusError and logAll.",
+                   "logStatusWarning, logStatusDiscard, logStatusError and logAll.",
                    categories[i] != NULL ? categories[i] : "NULL");
             return fmi2Error;
         }
         chosen |= category;
     }
     if (!loggingOn)
-        instance->categories = SH_LOG_WARNING | SH_LOG_ERROR; /* debug messages alone go */
+        instance->categories = SH_LOG_STATUS; /* debug messages alone go */
     else
         instance->categories = nCategories > 0 ? chosen : SH_LOG_ALL;
     return fmi2OK;
@@ -102,7 +103,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     }
     strcpy(instance->name, instanceName);
     instance->callbacks = *functions;
-    instance->categories = loggingOn ? SH_LOG_ALL : SH_LOG_WARNING | SH_LOG_ERROR;
+    instance->categories = loggingOn ? SH_LOG_ALL : SH_LOG_STATUS;
     instance->state = SH_INSTANTIATED;
     sh_set_start_values(instance);
     if (sh_make_utf8(instance->name))
@@ -140,13 +141,13 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined,
                startTime);
         return fmi2Error;
     }
+    /* Steps beyond stopTime are run: importers round their last step, and nothing here ends. */
     if (stopTimeDefined && !(stopTime >= startTime)) {
         sh_log(instance, fmi2Error,
                "fmi2SetupExperiment: stopTime = %.9g is before startTime = %.9g.", stopTime,
                startTime);
         return fmi2Error;
     }
-    instance->start_time = startTime;
     instance->time = startTime;
     return fmi2OK;
 }
@@ -193,7 +194,6 @@ fmi2Status fmi2Reset(fmi2Component c)
     if (instance == NULL)
         return fmi2Error;
     instance->state = SH_INSTANTIATED;
-    instance->start_time = 0.0;
     instance->time = 0.0;
     sh_set_start_values(instance);
     return fmi2OK;

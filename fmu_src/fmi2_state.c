@@ -21,7 +21,7 @@ typedef struct {
     uint32_t state; /* sh_state */
     uint64_t size;  /* of header and model */
     char guid[GUID_LENGTH];
-    double start_time, time;
+    double time;
     int32_t outputs_stale, parameters_unchecked;
     uint64_t checksum; /* of all bytes of the block, taken with 0 in this place */
 } state_header;
@@ -88,7 +88,6 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
     header.state = (uint32_t)instance->state;
     header.size = block_size();
     strncpy(header.guid, sh_fmu_model.guid, GUID_LENGTH - 1);
-    header.start_time = instance->start_time;
     header.time = instance->time;
     header.outputs_stale = instance->outputs_stale;
     header.parameters_unchecked = instance->parameters_unchecked;
@@ -117,10 +116,10 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
     memcpy(&header, block, sizeof header);
     memcpy(instance->model, block + sizeof header, sh_fmu_model.size);
     instance->state = (sh_state)header.state;
-    instance->start_time = header.start_time;
     instance->time = header.time;
     instance->outputs_stale = header.outputs_stale;
     instance->parameters_unchecked = header.parameters_unchecked;
+    instance->slopes_set = 1; /* the state may have some */
     return fmi2OK;
 }
 

@@ -222,6 +222,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
             return fmi2Error;
         }
     }
+    instance->slopes_set = 1;
     for (i = 0; i < nvr; ++i) {
         const size_t offset =
             sh_fmu_model.variables[vr[i]].offset + sh_fmu_model.derivative_offset;

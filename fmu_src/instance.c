@@ -8,16 +8,30 @@
 
 static unsigned category_of(fmi2Status status)
 {
-    if (status == fmi2OK)
+    switch (status) {
+    case fmi2OK:
         return SH_LOG_EVENTS;
-    return status == fmi2Warning ? SH_LOG_WARNING : SH_LOG_ERROR;
+    case fmi2Warning:
+        return SH_LOG_WARNING;
+    case fmi2Discard:
+        return SH_LOG_DISCARD;
+    default:
+        return SH_LOG_ERROR;
+    }
 }
 
 static const char *category_name(unsigned category)
 {
-    if (category == SH_LOG_EVENTS)
+    switch (category) {
+    case SH_LOG_EVENTS:
         return "logEvents";
-    return category == SH_LOG_WARNING ? "logStatusWarning" : "logStatusError";
+    case SH_LOG_WARNING:
+        return "logStatusWarning";
+    case SH_LOG_DISCARD:
+        return "logStatusDiscard";
+    default:
+        return "logStatusError";
+    }
 }
 
 /* Bytes of the UTF-8 character that begins here, or 0 if none does (RFC 3629). */
@@ -212,13 +226,39 @@ fmi2Status sh_check_parameters(sh_instance *instance)
     return fmi2OK;
 }
 
+/* Parameters that are each in their range may still give numbers too large together. */
+static int outputs_are_finite(sh_instance *instance)
+{
+    const char *bytes = instance->model;
+    size_t i;
+
+    for (i = 0; i < sh_fmu_model.count; ++i) {
+        const sh_variable *variable = &sh_fmu_model.variables[i];
+        double value;
+
+        if (variable->type != SH_TYPE_REAL ||
+            (variable->role != SH_ROLE_OUTPUT && variable->role != SH_ROLE_GUESS))
+            continue;
+        value = *(const double *)(const void *)(bytes + variable->offset);
+        if (!isfinite(value)) {
+            sh_log(instance, fmi2Error,
+                   "Initialisation: output %s = %g is not finite. Look for extreme parameters.",
+                   variable->name, value);
+            return 0;
+        }
+    }
+    return 1;
+}
+
 fmi2Status sh_initialize(sh_instance *instance)
 {
     if (!instance->outputs_stale)
         return fmi2OK;
     if (sh_check_parameters(instance) != fmi2OK)
         return fmi2Error;
-    sh_fmu_model.initialize(instance->model, instance->start_time);
+    sh_fmu_model.initialize(instance->model);
+    if (!outputs_are_finite(instance))
+        return fmi2Error;
     instance->outputs_stale = 0;
     return fmi2OK;
 }

@@ -16,17 +16,24 @@ typedef enum {
     SH_ANY = 15
 } sh_state;
 
-enum { SH_LOG_EVENTS = 1, SH_LOG_WARNING = 2, SH_LOG_ERROR = 4, SH_LOG_ALL = 7 };
+enum {
+    SH_LOG_EVENTS = 1,
+    SH_LOG_WARNING = 2,
+    SH_LOG_DISCARD = 4,
+    SH_LOG_ERROR = 8,
+    SH_LOG_STATUS = 14, /* all but events */
+    SH_LOG_ALL = 15
+};
 
 struct sh_instance {
     fmi2CallbackFunctions callbacks; /* as handed over; any of them may be NULL */
     char *name;
     unsigned categories; /* SH_LOG_* that are passed on */
     sh_state state;
-    double start_time;
     double time;             /* communication point reached */
     int outputs_stale;       /* initialisation: outputs do not yet follow what was set */
     int parameters_unchecked; /* a parameter was set since they were checked */
+    int slopes_set;          /* derivatives of inputs may be other than 0 */
     void *model;             /* of sh_fmu_model.size bytes */
 };
 

@@ -50,7 +50,7 @@ typedef struct {
      */
     fmi2Status (*check)(const void *model, sh_instance *log);
     /* Sets state and outputs from parameters and inputs. May be called again. */
-    void (*initialize)(void *model, double start_time);
+    void (*initialize)(void *model);
     /* Advances the model from t to t + h. Inputs are u + du/dt (s - t) for s in
      * [t, t + h]. Returns fmi2OK, fmi2Warning or fmi2Error, and logs unless fmi2OK.
      */

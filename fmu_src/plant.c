@@ -23,13 +23,12 @@ static void set_outputs(sh_plant *plant, const double *u, uint64_t sample)
     plant->sample = sample;
 }
 
-static void initialize(void *model, double start_time)
+static void initialize(void *model)
 {
     sh_plant *plant = model;
     const double *arguments[] = {plant->p};
     double *results[] = {plant->x};
 
-    (void)start_time;
     sh_plant_start(arguments, results, NULL, NULL, 0);
     plant->h = INFINITY;
     set_outputs(plant, plant->u, 0);

@@ -358,6 +358,7 @@ def test_log_categories_filter(estimator_fmu: Path) -> None:
         declared = {category.name for category in fmu.description.logCategories or []} or {
             "logEvents",
             "logStatusWarning",
+            "logStatusDiscard",
             "logStatusError",
             "logAll",
         }
@@ -372,6 +373,49 @@ def test_log_categories_filter(estimator_fmu: Path) -> None:
         assert fmu.messages[-1][1] == "logStatusError"
         assert choose(fmu, True, b"no such category") == ERROR
         assert "no such category" in fmu.messages[-1][2]
+
+
+@pytest.mark.parametrize(
+    ("on", "chosen", "passed"),
+    [
+        (True, [], {"logEvents", "logStatusWarning", "logStatusDiscard", "logStatusError"}),
+        (False, [], {"logStatusWarning", "logStatusDiscard", "logStatusError"}),
+        (True, ["logEvents"], {"logEvents"}),
+        (True, ["logStatusDiscard", "logStatusWarning"], {"logStatusDiscard", "logStatusWarning"}),
+    ],
+)
+def test_each_category_comes_where_it_was_chosen(
+    on: bool, chosen: list[str], passed: set[str], estimator_fmu: Path
+) -> None:
+    with Instance(estimator_fmu, logging_on=not on) as fmu:
+        categories = (ctypes.c_char_p * len(chosen))(*map(str.encode, chosen))
+        count = ctypes.c_size_t(len(chosen))
+        assert fmu.call("fmi2SetDebugLogging", int(on), count, categories) == OK
+        fmu.initialise()  # an event
+        fmu.set_all({"theta": math.nan})
+        assert fmu.step(0.0, 1e-3) == WARNING
+        fmu.call("fmi2GetStatus", 0, ctypes.byref(ctypes.c_int()))  # to be discarded
+        assert fmu.step(5.0, 1e-3) == ERROR
+        assert {category for _, category, _ in fmu.messages} == passed
+
+
+def test_a_regression_that_overflows_is_told_from_a_bad_measurement(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise()
+        fmu.set_all({"q": 1e12, "theta": -1e12})
+        assert fmu.step(0.0, 1e-3) == WARNING
+        assert "regression overflows at theta = -1e+12" in fmu.messages[-1][2]
+
+
+def test_parameters_that_are_too_large_together_are_refused(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
+        assert fmu.setup() == OK
+        fmu.set_all({"setPoint.offset": 1e308, "rls.eta_0[0,2]": 1.0})
+        assert fmu.enter() == OK
+        assert fmu.exit() == ERROR
+        assert "output sigma" in fmu.messages[-1][2] and "not finite" in fmu.messages[-1][2]
+        fmu.set_all({"setPoint.offset": 100.0})
+        assert fmu.exit() == OK
 
 
 @pytest.mark.parametrize(
@@ -455,6 +499,9 @@ def test_steps_out_of_time_are_refused_and_change_nothing(name: str) -> None:
             (1.001, 1e-3, "currentCommunicationPoint = 1.001 s; expected 1.002 s"),  # backwards
             (0.0, 1e-3, "currentCommunicationPoint = 0 s; expected 1.002 s"),
             (1.003, 1e-3, "currentCommunicationPoint = 1.003 s; expected 1.002 s"),  # a gap
+            (1.00201, 1e-3, "currentCommunicationPoint = 1.00201 s; expected 1.002 s"),
+            (1.001, 2.0, "currentCommunicationPoint = 1.001 s; expected 1.002 s"),
+            (1.00201, 2.0, "currentCommunicationPoint = 1.00201 s; expected 1.002 s"),
             (math.nan, 1e-3, "currentCommunicationPoint"),
             (math.inf, 1e-3, "currentCommunicationPoint"),
             (1.002, 0.0, "communicationStepSize = 0 s"),
@@ -513,7 +560,8 @@ def test_a_bad_input_derivative_skips_the_ticks_it_reaches(estimator_fmu: Path) 
         fmu.initialise()
         assert fmu.set_derivative("theta", math.nan) == OK
         assert fmu.step(0.0, 2e-3) == WARNING
-        assert "theta = nan" in fmu.messages[-1][2].replace("-nan", "nan")
+        message = fmu.messages[-1][2].replace("-nan", "nan")
+        assert "expected theta finite" in message and "came nan" in message
         assert fmu.step(2e-3, 1e-3) == OK
         assert fmu.get("valid") == 1
 

@@ -12,7 +12,7 @@ import pytest
 
 import sigmahat
 from fmi_instance import ERROR, OK, Instance
-from fmi_runs import ESTIMATORS, SIGNALS, names
+from fmi_runs import ESTIMATORS, PLANTS, SIGNALS, names
 
 SENSOR, STANDARD, FINITE_DIFFERENCE = 2, 2, 3
 # One parameter, regressor phi = 1 and P_0 = 1: P(k) = 1 / (1 + k), so rho counts ticks.
@@ -116,6 +116,50 @@ def test_inputs_without_derivatives_are_held(estimator_fmu: Path) -> None:
         assert fmu.set("theta", 0.02) == OK  # no derivative this time
         assert fmu.step(1e-2, 1e-2) == OK
         assert fmu.get("theta_dot") == 0.0
+
+
+@pytest.mark.parametrize("h", [1.0009e-3, 0.9991e-3])
+def test_times_have_the_last_word_over_steps_that_do_not_quite_fit(
+    h: float, estimator_fmu: Path
+) -> None:
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise(COUNTING)
+        for k in range(10000):
+            assert fmu.step(k * 1e-3, h) == OK
+        end = 9999 * 1e-3 + h
+        assert ticks(fmu) == math.ceil(end / 1e-3 - 1e-6)
+
+
+@pytest.mark.parametrize("start", [0.0, 1.7e9])
+def test_a_step_left_out_is_a_gap_at_any_time(start: float, estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise(COUNTING, start=start)
+        for k in range(3000):  # 1.7e9 s: times are rounded to 0.2 us, and a period is a period
+            assert fmu.step(start + k * 1e-3, 1e-3) == OK
+            assert ticks(fmu) == k + 1
+        assert fmu.step(start + 3.001, 1e-3) == ERROR
+        came, expected = fmu.messages[-1][2].split("; expected ")
+        assert came.split()[-2] != expected.split()[0]
+        assert fmu.step(start + 3.0, 1e-3) == OK
+
+
+@pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
+def test_derivatives_of_every_input_hold_for_one_step(name: str) -> None:
+    path = sigmahat.fmu(name)
+    with Instance(path) as fmu:
+        inputs = names(fmu, "input")
+    for kept in inputs:
+        results = []
+        for again in (None, 0.0):  # the second step: nothing said, or no slope said
+            with Instance(path) as fmu:
+                fmu.initialise()
+                assert fmu.set_derivative(kept, 3.0) == OK
+                assert fmu.step(0.0, 3e-3) == OK
+                if again is not None:
+                    assert fmu.set_derivative(kept, again) == OK
+                assert fmu.step(3e-3, 3e-3) == OK
+                results.append(fmu.get_all(names(fmu, "output")))
+        assert results[0] == results[1], kept
 
 
 def test_ticks_start_at_the_start_time(estimator_fmu: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import random
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
@@ -107,6 +108,37 @@ def test_a_state_holds_where_the_instance_stands(at: str, estimator_fmu: Path) -
         assert fmu.step(0.0, 1e-3) == ERROR
         assert fmu.enter() == (OK if at == "instantiated" else ERROR)
         assert fmu.exit() == (ERROR if at == "terminated" else OK)
+        fmu.free(state)
+
+
+def test_a_state_of_initialisation_mode_knows_what_was_not_yet_computed(
+    estimator_fmu: Path,
+) -> None:
+    with Instance(estimator_fmu) as fmu:
+        assert fmu.setup() == OK and fmu.enter() == OK
+        fmu.set_all({"rls.eta_0[0,0]": 5.0})
+        state = fmu.save()
+        fmu.set_all({"rls.eta_0[0,0]": 7.0})
+        assert fmu.exit() == OK
+        assert fmu.restore(state) == OK
+        assert fmu.get("sigma") == 5.0
+        assert fmu.exit() == OK
+        assert fmu.get("sigma") == 5.0
+        fmu.free(state)
+
+
+def test_a_state_with_a_parameter_out_of_range_is_still_refused_a_step(
+    estimator_fmu: Path,
+) -> None:
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise()
+        fmu.set_all({"motor.B": math.nan})
+        state = fmu.save()
+        fmu.set_all({"motor.B": 2.3e-5})
+        assert fmu.step(0.0, 1e-3) == OK
+        assert fmu.restore(state) == OK
+        assert fmu.step(0.0, 1e-3) == ERROR
+        assert "motor.B = " in fmu.messages[-1][2]
         fmu.free(state)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from lxml import etree
 
 import sigmahat
 from fmi_master import run, torques
+from release import AGREEMENT
 from sigmahat.cosimulation import simulate
 from sigmahat.export import system
 from sigmahat.scenarios import T, scenario
@@ -31,9 +33,14 @@ NAMESPACES = {
 }
 
 
-@pytest.fixture(scope="module")
-def ssp() -> Path:
-    path = sigmahat.fmu("StiffnessEstimator").with_name("sigmahat-awas.ssp")
+@pytest.fixture(scope="module", params=["development", "release"])
+def ssp(request: pytest.FixtureRequest) -> Path:
+    """The system as the build makes it for this machine, and as it is released."""
+    if request.param == "release":
+        released: Path = request.getfixturevalue("released")
+        path = released / "sigmahat-awas.ssp"
+    else:
+        path = sigmahat.fmu("StiffnessEstimator").with_name("sigmahat-awas.ssp")
     assert path.is_file()
     return path
 
@@ -48,15 +55,56 @@ def test_valid_against_the_schema(ssp: Path) -> None:
     assert read_ssv(str(ssp), "resources/table1.ssv", validate=True).name == "table1"
 
 
-def test_holds_the_fmus_of_the_build(ssp: Path) -> None:
+def test_opens_in_omsimulator_2(ssp: Path) -> None:
+    """Its importer goes by prefixed names, and refuses what it does not know.
+
+    OMSimulator 2.1.3, src/OMSimulatorLib: Model.cpp and System.cpp (importFromSnapshot), ComRef.cpp
+    (isValidIdent), SystemWC.cpp (importFromSSD_SimulationInformation).
+    """
+    root = read(ssp, "SystemStructure.ssd")
+    (system,) = root.findall("ssd:System", NAMESPACES)
+    components = root.findall("ssd:System/ssd:Elements/ssd:Component", NAMESPACES)
+    assert len(components) == 2
+    for element in (root, system, *components):
+        assert re.fullmatch("[a-zA-Z][a-zA-Z0-9_]*", element.get("name"))
+    assert {c.get("type") for c in components} == {"application/x-fmu-sharedlibrary"}
+    known = {
+        root: {"ssd:System", "ssd:Units", "ssd:Enumerations", "ssd:DefaultExperiment"},
+        system: {
+            *("ssd:ElementGeometry", "ssd:ParameterBindings", "ssd:Connections", "ssd:Connectors"),
+            *("ssd:Elements", "ssd:Annotations"),
+        },
+        **dict.fromkeys(
+            components, {"ssd:Connectors", "ssd:ElementGeometry", "ssd:ParameterBindings"}
+        ),
+    }
+    for element, tags in known.items():
+        assert {prefixed(child) for child in element} <= tags
+    (annotation,) = system.findall("ssd:Annotations/ssc:Annotation", NAMESPACES)
+    assert annotation.get("type") == "org.openmodelica"
+    names = []
+    while len(annotation):
+        (annotation,) = annotation
+        names.append(prefixed(annotation))
+    assert names == ["oms:Annotations", "oms:SimulationInformation", "oms:FixedStepMaster"]
+    assert annotation.get("description") == "oms-ma"
+    assert float(annotation.get("stepSize")) == T
+
+
+def prefixed(element: Any) -> str:
+    return f"{element.prefix}:{etree.QName(element).localname}"
+
+
+def test_holds_the_fmus_beside_it(ssp: Path) -> None:
     with zipfile.ZipFile(ssp) as archive:
         for name in ("AwasPlant", "StiffnessEstimator"):
-            assert archive.read(f"resources/{name}.fmu") == sigmahat.fmu(name).read_bytes()
+            fmu = ssp.with_name(f"{name}.fmu")
+            assert archive.read(f"resources/{name}.fmu") == fmu.read_bytes()
 
 
 def test_same_bytes_again(ssp: Path, tmp_path: Path) -> None:
     again = tmp_path / "again.ssp"
-    plant, estimator = sigmahat.fmu("AwasPlant"), sigmahat.fmu("StiffnessEstimator")
+    plant, estimator = ssp.with_name("AwasPlant.fmu"), ssp.with_name("StiffnessEstimator.fmu")
     system.write(again, plant, estimator, TEMPLATES)
     assert hashlib.sha256(again.read_bytes()).digest() == hashlib.sha256(ssp.read_bytes()).digest()
 

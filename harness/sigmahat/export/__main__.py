@@ -51,7 +51,7 @@ def pack(
         {
             "modelDescription.xml": xml,
             f"binaries/{fmpy.platform}/{binary.name}": binary,
-            "documentation/licenses/LICENSE.txt": licence,
+            "documentation/licenses/license.txt": licence,
             **{f.relative_to(shown).as_posix(): f for f in shown.rglob("*") if f.is_file()},
             **{f"sources/{f.name}": f for f in source_files.with_headers(sources)},
         },

@@ -14,7 +14,7 @@ import jinja2
 
 import sigmahat
 from sigmahat.export import archive
-from sigmahat.scenarios import scenario
+from sigmahat.scenarios import T, scenario
 from sigmahat.slave import Fmu, Value
 
 
@@ -38,6 +38,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path) -> None:
             "torques": table1.plant.inputs,
             "connections": connections,
             "duration": table1.duration,
+            "step": T,
             "units": units.values(),
             "plant": _element("plant", of_plant, plant, table1.plant.inputs, sent),
             "estimator": _element("estimator", of_estimator, estimator, connections, ["sigma"]),

@@ -1,0 +1,155 @@
+/* The recursion of this project, the yardstick, and liquid-dsp. */
+#include <stdlib.h>
+
+#include "../c/least_squares.h"
+#include "least_squares.h"
+
+#include <liquid/liquid.h>
+
+void *sigmahat_start(int size)
+{
+    sh_least_squares *rls = size <= SH_MAX_PARAMETERS ? malloc(sizeof *rls) : NULL;
+
+    if (rls != NULL)
+        sh_least_squares_start(rls, size, NULL, BENCH_P_0);
+    return rls;
+}
+
+void sigmahat_run(void *rls, const double *F, const double *y, int samples)
+{
+    const int size = ((const sh_least_squares *)rls)->size;
+    sh_innovation innovation;
+    int k;
+
+    for (k = 0; k < samples; ++k)
+        sh_least_squares_update(rls, SH_RLS_STANDARD, 1.0, F + k * size, y[k], &innovation);
+}
+
+void sigmahat_eta(const void *rls, double *eta)
+{
+    const sh_least_squares *own = rls;
+    int i;
+
+    for (i = 0; i < own->size; ++i)
+        eta[i] = own->eta[i];
+}
+
+/* K = P F / (1 + F' P F), P -= K F' P, with all entries of P, for a size known beforehand. */
+#define COVARIANCE(n)                                                                           \
+    static void update_##n(double P[n][n], const double *F)                                     \
+    {                                                                                           \
+        double PF[n], K[n], S = 1.0;                                                            \
+        int i, j;                                                                               \
+                                                                                                \
+        for (i = 0; i < n; ++i) {                                                               \
+            PF[i] = 0.0;                                                                        \
+            for (j = 0; j < n; ++j)                                                             \
+                PF[i] += P[i][j] * F[j];                                                        \
+            S += F[i] * PF[i];                                                                  \
+        }                                                                                       \
+        for (i = 0; i < n; ++i)                                                                 \
+            K[i] = PF[i] / S;                                                                   \
+        for (i = 0; i < n; ++i)                                                                 \
+            for (j = 0; j < n; ++j)                                                             \
+                P[i][j] -= K[i] * PF[j];                                                        \
+    }                                                                                           \
+    static void run_##n(double *P, const double *F, int samples)                                \
+    {                                                                                           \
+        int k;                                                                                  \
+                                                                                                \
+        for (k = 0; k < samples; ++k)                                                           \
+            update_##n((double(*)[n])P, F + k * n);                                             \
+    }
+
+COVARIANCE(3)
+COVARIANCE(6)
+COVARIANCE(18)
+COVARIANCE(40)
+
+typedef struct {
+    int size;
+    void (*run)(double *P, const double *F, int samples);
+    double P[]; /* size x size */
+} covariance;
+
+void *covariance_start(int size)
+{
+    covariance *c = calloc(1, sizeof *c + (size_t)(size * size) * sizeof(double));
+    int i;
+
+    if (c == NULL)
+        return NULL;
+    c->size = size;
+    c->run = size == 3 ? run_3 : size == 6 ? run_6 : size == 18 ? run_18 : run_40;
+    for (i = 0; i < size; ++i)
+        c->P[i * size + i] = BENCH_P_0;
+    return size == 3 || size == 6 || size == 18 || size == 40 ? c : NULL;
+}
+
+void covariance_run(void *rls, const double *F, const double *y, int samples)
+{
+    covariance *c = rls;
+
+    (void)y;
+    c->run(c->P, F, samples);
+}
+
+/* liquid-dsp keeps the delay line itself, in single precision. */
+typedef struct {
+    eqrls_rrrf equaliser;
+    int size;
+} liquid_rls;
+
+void *liquid_start(int size)
+{
+    liquid_rls *rls = malloc(sizeof *rls);
+
+    if (rls == NULL)
+        return NULL;
+    rls->equaliser = eqrls_rrrf_create(NULL, (unsigned)size);
+    rls->size = size;
+    eqrls_rrrf_set_bw(rls->equaliser, 1.0f); /* no forgetting */
+    return rls;
+}
+
+void liquid_run(void *rls, const double *F, const double *y, int samples)
+{
+    liquid_rls *own = rls;
+    int k;
+
+    for (k = 0; k < samples; ++k) {
+        float predicted;
+        eqrls_rrrf_push(own->equaliser, (float)F[k * own->size]);
+        eqrls_rrrf_execute(own->equaliser, &predicted);
+        eqrls_rrrf_step(own->equaliser, (float)y[k], predicted);
+    }
+}
+
+void liquid_eta(const void *rls, double *eta)
+{
+    const liquid_rls *own = rls;
+    float weights[SH_MAX_PARAMETERS];
+    int i;
+
+    eqrls_rrrf_get_weights(own->equaliser, weights);
+    for (i = 0; i < own->size; ++i)
+        eta[i] = (double)weights[i];
+}
+
+/* Independent chains x = a x + b, enough of them to keep every unit of the processor busy. */
+double peak_run(int times)
+{
+    double x[BENCH_PEAK], sum = 0.0;
+    const volatile double a = 0.999, b = 0.001;
+    const double factor = a, term = b;
+    int i, k;
+
+    for (i = 0; i < BENCH_PEAK; ++i)
+        x[i] = i;
+    for (k = 0; k < times; ++k)
+        for (i = 0; i < BENCH_PEAK; ++i)
+            x[i] = factor * x[i] + term;
+    for (i = 0; i < BENCH_PEAK; ++i)
+        sum += x[i];
+    return sum;
+}

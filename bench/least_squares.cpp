@@ -1,0 +1,110 @@
+// dlib, and the few lines one would write with Eigen.
+#include "least_squares.h"
+
+#include <Eigen/Dense>
+
+// dlib with its own loops. Debian builds it for a BLAS, whose calls are no faster for matrices of
+// this size, and which would have to be installed too.
+#include <dlib/assert.h>
+#include <dlib/test_for_odr_violations.h>
+#undef DLIB_USE_BLAS
+#undef DLIB_USE_LAPACK
+#include <dlib/svm/rls.h>
+
+namespace {
+
+class Recursion {
+public:
+    virtual ~Recursion() = default;
+    virtual void run(const double *F, const double *y, int samples) = 0;
+    virtual void eta(double *to) const = 0;
+};
+
+template <int size> class Eigens final : public Recursion {
+    using Vector = Eigen::Matrix<double, size, 1>;
+    Eigen::Matrix<double, size, size> P = BENCH_P_0 * Eigen::Matrix<double, size, size>::Identity();
+    Vector estimate = Vector::Zero();
+
+public:
+    EIGEN_MAKE_ALIGNED_OPERATOR_NEW
+
+    void run(const double *F, const double *y, int samples) override
+    {
+        for (int k = 0; k < samples; ++k) {
+            const Eigen::Map<const Vector> f(F + k * size);
+            const Vector Pf = P * f;
+            const Vector gain = Pf / (1.0 + f.dot(Pf));
+            estimate += gain * (y[k] - f.dot(estimate));
+            P.noalias() -= gain * Pf.transpose();
+        }
+    }
+
+    void eta(double *to) const override
+    {
+        Eigen::Map<Vector>{to} = estimate;
+    }
+};
+
+class Dlibs final : public Recursion {
+    dlib::rls rls{1.0, BENCH_P_0};
+    dlib::matrix<double, 0, 1> f;
+
+public:
+    explicit Dlibs(int size) : f(size) {}
+
+    void run(const double *F, const double *y, int samples) override
+    {
+        for (int k = 0; k < samples; ++k) {
+            std::copy_n(F + k * f.size(), f.size(), f.begin());
+            rls.train(f, y[k]);
+        }
+    }
+
+    void eta(double *to) const override
+    {
+        std::copy(rls.get_w().begin(), rls.get_w().end(), to);
+    }
+};
+
+} // namespace
+
+void *eigen_start(int size)
+{
+    switch (size) {
+    case 3:
+        return new Eigens<3>;
+    case 6:
+        return new Eigens<6>;
+    case 18:
+        return new Eigens<18>;
+    case 40:
+        return new Eigens<40>;
+    default:
+        return nullptr;
+    }
+}
+
+void eigen_run(void *rls, const double *F, const double *y, int samples)
+{
+    static_cast<Recursion *>(rls)->run(F, y, samples);
+}
+
+void eigen_eta(const void *rls, double *eta)
+{
+    static_cast<const Recursion *>(rls)->eta(eta);
+}
+
+void *dlib_start(int size)
+{
+    return static_cast<Recursion *>(new Dlibs(size));
+}
+
+void dlib_run(void *rls, const double *F, const double *y, int samples)
+{
+    static_cast<Recursion *>(rls)->run(F, y, samples);
+}
+
+void dlib_eta(const void *rls, double *eta)
+{
+    static_cast<const Recursion *>(rls)->eta(eta);
+}

@@ -1,0 +1,68 @@
+#include "tick.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../c/stiffness_estimator.h"
+
+typedef struct {
+    sh_parameters parameters;
+    sh_estimator estimator;
+    sh_estimate estimate;
+} tick;
+
+static int choose(sh_parameters *p, const char *method)
+{
+#ifdef BENCH_HAS_METHODS
+    p->method = SH_METHOD_PAPER2011;
+    if (strcmp(method, "MatchedFilter") == 0) {
+        p->method = SH_METHOD_MATCHED_FILTER;
+        p->prior.D_theta = 0.2;
+        p->prior.B = 0.03;
+        p->prior.tau_coulomb = 0.02;
+        return 1;
+    }
+#else
+    (void)p;
+#endif
+    return strcmp(method, "Paper2011") == 0;
+}
+
+void *tick_start(const char *method)
+{
+    tick *own = malloc(sizeof *own);
+    sh_violation violation;
+
+    if (own == NULL)
+        return NULL;
+    sh_parameters_default(&own->parameters);
+    if (!choose(&own->parameters, method) ||
+        sh_parameters_check(&own->parameters, &violation) != 0) {
+        free(own);
+        return NULL;
+    }
+    sh_estimator_start(&own->estimator, &own->parameters, &own->estimate);
+    return own;
+}
+
+void tick_run(void *ticks, const double *z, int samples, double *outputs)
+{
+    tick *own = ticks;
+    int k;
+
+    for (k = 0; k < samples; ++k) {
+        const double *row = z + k * BENCH_MEASUREMENTS;
+        const sh_measurement measured = {row[0], row[1], row[2], row[3], row[4]};
+        sh_estimator_tick(&own->estimator, &own->parameters, &measured, &own->estimate);
+    }
+    outputs[0] = own->estimate.sigma;
+    outputs[1] = own->estimate.tau_e;
+    outputs[2] = own->estimate.theta_dot;
+}
+
+void tick_bytes(int *bytes)
+{
+    bytes[0] = (int)sizeof(sh_estimator);
+    bytes[1] = (int)sizeof(sh_parameters);
+    bytes[2] = (int)sizeof(sh_estimate);
+}
