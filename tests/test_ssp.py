@@ -16,7 +16,6 @@ from lxml import etree
 
 import sigmahat
 from fmi_master import run, torques
-from release import AGREEMENT
 from sigmahat.cosimulation import simulate
 from sigmahat.export import system
 from sigmahat.scenarios import T, scenario
@@ -74,9 +73,10 @@ def test_opens_in_omsimulator_2(ssp: Path) -> None:
             *("ssd:ElementGeometry", "ssd:ParameterBindings", "ssd:Connections", "ssd:Connectors"),
             *("ssd:Elements", "ssd:Annotations"),
         },
-        **dict.fromkeys(
-            components, {"ssd:Connectors", "ssd:ElementGeometry", "ssd:ParameterBindings"}
-        ),
+        **{
+            component: {"ssd:Connectors", "ssd:ElementGeometry", "ssd:ParameterBindings"}
+            for component in components
+        },
     }
     for element, tags in known.items():
         assert {prefixed(child) for child in element} <= tags
