@@ -8,6 +8,9 @@ from collections.abc import Sequence
 import click
 
 from sigmahat.commands.compare import compare
+from sigmahat.commands.estimate import estimate
+from sigmahat.commands.identify import identify
+from sigmahat.commands.init import init
 from sigmahat.commands.reproduce import reproduce
 from sigmahat.commands.scenarios import scenarios
 
@@ -20,7 +23,7 @@ def cli() -> None:
     """Stiffness of robot joints, estimated by FMUs."""
 
 
-for command in (reproduce, compare, scenarios):
+for command in (reproduce, compare, scenarios, init, estimate, identify):
     cli.add_command(command)
 
 

@@ -150,6 +150,10 @@ class Slave:
         except FMICallException as error:
             raise FmuError(self._explain(str(error))) from error
 
+    def failure(self, function: str) -> FmuError:
+        """What to raise where an FMI function that was not called through call() failed."""
+        return FmuError(self._explain(f"{function} failed"))
+
     def initialize(self, start: Mapping[str, Value]) -> None:
         """Sets start values by name and initialises at time 0.
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 import shutil
 import sys
 from collections.abc import Iterator
@@ -45,8 +47,8 @@ def need_fmu(name: str) -> None:
 
 
 @contextmanager
-def work(out: Path) -> Iterator[None]:
-    """Around the work of a command that writes to out: its errors become one line.
+def work(out: Path, option: str = "--out") -> Iterator[None]:
+    """Around the work of a command that writes to out, named by an option: errors become one line.
 
     Raises ClickException for an FMU's refusal, a value that does not fit, and a file or folder
     that cannot be written.
@@ -58,5 +60,26 @@ def work(out: Path) -> Iterator[None]:
     except (FmuError, ValueError) as error:
         raise click.ClickException(str(error)) from error
     except OSError as error:
+        kind = "folder" if option == "--out" else "file"
         where = f"cannot write {error.filename or out}: {error.strerror or error}"
-        raise click.ClickException(f"{where}; choose another folder with --out") from error
+        raise click.ClickException(f"{where}; choose another {kind} with {option}") from error
+
+
+def configuration_of(log: Path) -> Path:
+    """Where the configuration of a log is looked for: in this folder, with the suffix .toml."""
+    return Path(f"{log.stem}.toml")
+
+
+def print_json(values: object) -> None:
+    """Prints values for a script; what is not a number is null."""
+    click.echo(json.dumps(_finite(values), indent=2))
+
+
+def _finite(values: Any) -> Any:
+    if isinstance(values, dict):
+        return {str(key): _finite(value) for key, value in values.items()}
+    if isinstance(values, (list, tuple)):
+        return [_finite(value) for value in values]
+    if isinstance(values, float) and not math.isfinite(values):
+        return None
+    return values
