@@ -190,7 +190,10 @@ def test_fmus_not_built(
 )
 def test_interrupt(command: str, seeds: str, delay: float, tmp_path: Path) -> None:
     """Ctrl-C reaches the whole process group, at any time after the start of Python."""
-    started = "import sys; from sigmahat.cli import main; print(flush=True); sys.exit(main())"
+    started = (
+        "import sys, sigmahat.cli as c; run = c.cli.main; "
+        "c.cli.main = lambda *a, **k: print(flush=True) or run(*a, **k); sys.exit(c.main())"
+    )
     process = subprocess.Popen(
         [sys.executable, "-c", started, command, "--seeds", seeds],
         cwd=tmp_path,
@@ -206,5 +209,5 @@ def test_interrupt(command: str, seeds: str, delay: float, tmp_path: Path) -> No
     # Python ends by the signal itself if that came while it was importing; to a shell it is 130.
     assert process.returncode in (130, -signal.SIGINT)
     assert output == ""
-    assert errors.split("\n") == ["", "sigmahat: interrupted", ""]
+    assert errors.strip() == "sigmahat: interrupted"
     assert list(tmp_path.iterdir()) == []

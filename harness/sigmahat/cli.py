@@ -43,6 +43,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout = None  # or Python would try to write the rest at its end
         click.echo(f"sigmahat: error: cannot write the output: {error.strerror}", err=True)
         return _ERROR
-    except click.Abort:
+    except (click.Abort, KeyboardInterrupt):
         click.echo("sigmahat: interrupted", err=True)
         return _INTERRUPTED
