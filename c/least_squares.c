@@ -86,13 +86,12 @@ static double sample_weight(int kind, double factor, double rho)
     return 1.0;
 }
 
-int sh_least_squares_update(sh_least_squares *rls, int kind, double factor, const double *F,
-                            double y, sh_innovation *innovation)
+/* Takes one sample of which project() gave f, g and rho. */
+static int take(sh_least_squares *rls, double w, const double *F, double y, const double *f,
+                const double *g, double rho, double *prediction_error)
 {
-    double f[SH_MAX_PARAMETERS], g[SH_MAX_PARAMETERS], PF[SH_MAX_PARAMETERS];
+    double PF[SH_MAX_PARAMETERS];
     double epsilon = y, beta = 1.0;
-    const double rho = project(rls, F, f, g);
-    const double w = sample_weight(kind, factor, rho);
     int i, j;
 
     for (j = 0; j < rls->size; ++j)
@@ -120,15 +119,109 @@ int sh_least_squares_update(sh_least_squares *rls, int kind, double factor, cons
     }
 
     /* eta += a K epsilon with a K = w P F / (1 + w rho), (25) */
-    for (j = 0; j < rls->size; ++j) {
-        const double before = rls->eta[j];
-        const double change = w * epsilon / beta * PF[j] + rls->eta_low[j];
-        rls->eta[j] = before + change;
-        rls->eta_low[j] = change - (rls->eta[j] - before);
-    }
+    sh_least_squares_move(rls, w * epsilon / beta, PF);
+    *prediction_error = epsilon;
+    return 1;
+}
 
-    innovation->epsilon = epsilon;
+int sh_least_squares_weigh(sh_least_squares *rls, double w, const double *F, double y,
+                           double *epsilon, double *rho)
+{
+    double f[SH_MAX_PARAMETERS], g[SH_MAX_PARAMETERS];
+    const double variance = project(rls, F, f, g);
+
+    if (!take(rls, w, F, y, f, g, variance, epsilon))
+        return 0;
+    *rho = variance;
+    return 1;
+}
+
+int sh_least_squares_update(sh_least_squares *rls, int kind, double factor, const double *F,
+                            double y, sh_innovation *innovation)
+{
+    double f[SH_MAX_PARAMETERS], g[SH_MAX_PARAMETERS];
+    const double rho = project(rls, F, f, g);
+
+    if (!take(rls, sample_weight(kind, factor, rho), F, y, f, g, rho, &innovation->epsilon))
+        return 0;
     innovation->rho = rho;
     innovation->a = stability_factor(kind, factor, rho);
     return 1;
+}
+
+void sh_least_squares_prior(sh_least_squares *rls, int i, double variance)
+{
+    rls->D[i] = variance;
+}
+
+void sh_least_squares_widen(sh_least_squares *rls, double c, const double *v)
+{
+    double rest[SH_MAX_PARAMETERS]; /* v without what the columns so far took */
+    int i, j;
+
+    for (j = 0; j < rls->size; ++j)
+        rest[j] = v[j];
+    for (j = rls->size - 1; j >= 0; --j) {
+        double *u = rls->U + j * (j - 1) / 2;
+        const double before = rls->D[j];
+        const double after = before + c * rest[j] * rest[j];
+        const double gain = after > 0.0 ? c * rest[j] / after : 0.0;
+
+        for (i = 0; i < j; ++i) {
+            rest[i] -= rest[j] * u[i];
+            u[i] += gain * rest[i];
+        }
+        rls->D[j] = after;
+        if (after > 0.0)
+            c *= before / after;
+    }
+}
+
+void sh_least_squares_bound(sh_least_squares *rls, const double *P_max)
+{
+    int i, j;
+
+    for (i = 0; i < rls->size; ++i) {
+        const double variance = sh_least_squares_covariance(rls, i, i);
+        double scale;
+
+        if (variance <= P_max[i])
+            continue;
+        /* S P S with S = 1 but for entry i: row i of U grows by the scale, its column shrinks */
+        scale = sqrt(P_max[i] / variance);
+        rls->D[i] *= scale * scale;
+        for (j = i + 1; j < rls->size; ++j)
+            rls->U[j * (j - 1) / 2 + i] *= scale;
+        for (j = 0; j < i; ++j)
+            rls->U[i * (i - 1) / 2 + j] /= scale;
+    }
+}
+
+void sh_least_squares_column(const sh_least_squares *rls, int i, double *P_i)
+{
+    int j, k;
+
+    for (j = 0; j < rls->size; ++j)
+        P_i[j] = 0.0;
+    /* Columns of U before the i-th have nothing in row i. */
+    for (k = i; k < rls->size; ++k) {
+        const double *u = column(rls, k);
+        const double g = k == i ? rls->D[k] : rls->D[k] * u[i];
+
+        P_i[k] += g;
+        for (j = 0; j < k; ++j)
+            P_i[j] += u[j] * g;
+    }
+}
+
+void sh_least_squares_move(sh_least_squares *rls, double c, const double *v)
+{
+    int j;
+
+    for (j = 0; j < rls->size; ++j) {
+        const double before = rls->eta[j];
+        const double change = c * v[j] + rls->eta_low[j];
+        rls->eta[j] = before + change;
+        rls->eta_low[j] = change - (rls->eta[j] - before);
+    }
 }

@@ -26,6 +26,10 @@ enum {
     SH_RLS_CONSTANT_FACTOR = 3 /* a as given, in (25) */
 };
 
+enum {
+    SH_MAX_MOTOR = 3, /* errors of motor data that are estimated with the torque */
+    SH_MAX_PARAMETERS = SH_MAX_BASIS + SH_MAX_MOTOR
+};
 enum { SH_MAX_TRIANGLE = SH_MAX_PARAMETERS * (SH_MAX_PARAMETERS - 1) / 2 };
 
 /* State of the recursion. */
@@ -68,6 +72,33 @@ void sh_least_squares_start(sh_least_squares *rls, int size, const double *eta_0
  */
 int sh_least_squares_update(sh_least_squares *rls, int kind, double factor, const double *F,
                             double y, sh_innovation *innovation);
+
+/* Takes one sample with a given weight: P^-1 += w F F'.
+ *
+ * w        one over the variance of the noise of y, >= 0
+ * epsilon  prediction error before the update, as in sh_innovation
+ *
+ * F, y and the returned value as for sh_least_squares_update.
+ */
+int sh_least_squares_weigh(sh_least_squares *rls, double w, const double *F, double y,
+                           double *epsilon, double *rho);
+
+/* Prior variance of parameter i alone, >= 0; 0 keeps it at its eta_0. Between start and the
+ * first sample.
+ */
+void sh_least_squares_prior(sh_least_squares *rls, int i, double variance);
+
+/* Widens the covariance: P += c v v', c >= 0 (Agee and Turner 1972). v [size: size]. */
+void sh_least_squares_widen(sh_least_squares *rls, double c, const double *v);
+
+/* Shrinks what has grown too wide: no variance above P_max [size: size]; correlations stay. */
+void sh_least_squares_bound(sh_least_squares *rls, const double *P_max);
+
+/* Column i of P [size: size]; cheap for the last ones. */
+void sh_least_squares_column(const sh_least_squares *rls, int i, double *P_i);
+
+/* Moves the estimate: eta += c v. v [size: size]. */
+void sh_least_squares_move(sh_least_squares *rls, double c, const double *v);
 
 /* F' P F [unit of y squared over noise variance] for a vector F [size: size]. */
 double sh_least_squares_variance(const sh_least_squares *rls, const double *F);

@@ -12,6 +12,7 @@ void sh_parameters_default(sh_parameters *p)
 
     *p = zero;
     p->samplePeriod = 1e-3;
+    p->method = SH_METHOD_PAPER2011;
     p->modality = SH_MODALITY_RESIDUAL;
     p->deformation = SH_DEFORMATION_RAW;
     p->motor.B = 2.3e-5;
@@ -41,6 +42,19 @@ void sh_parameters_default(sh_parameters *p)
     p->model.k_s = 14220.0;
     p->model.r_0 = 0.1;
     p->model.b = 0.0025 / (2.0 * PI);
+    p->noise.tau = 3.2e-3;
+    p->noise.tau_e = 3.2e-2;
+    p->confidence = 0.1;
+    p->matched.bandwidth = 350.0;
+    p->matched.slow = 0.05;
+    p->matched.drift = 0.0;
+    p->range.phi = 0.3;
+    p->range.setPoint = 100.0;
+    p->prior.tau_e = 45.0;
+    p->prior.nominal = 0.0;
+    p->prior.D_theta = 0.2;
+    p->prior.B = 0.0;
+    p->prior.tau_coulomb = 0.0;
 }
 
 /* Range of one parameter. */
@@ -61,6 +75,7 @@ typedef struct {
 
 #define AT(designator) #designator, offsetof(sh_parameters, designator)
 
+/* Finite limits other than 0 and 1 are far beyond use: what squares and powers can hold. */
 static const real_range REALS[] = {
     {AT(samplePeriod), "> 0", 0.0, HUGE_VAL, 1},
     {AT(motor.B), "> 0", 0.0, HUGE_VAL, 1},
@@ -84,9 +99,24 @@ static const real_range REALS[] = {
     {AT(model.k_s), ">= 0", 0.0, HUGE_VAL, 0},
     {AT(model.r_0), "finite", -HUGE_VAL, HUGE_VAL, 0},
     {AT(model.b), "finite", -HUGE_VAL, HUGE_VAL, 0},
+    {AT(noise.tau), "1e-12 to 1e12", 1e-12, 1e12, 0},
+    {AT(noise.tau_e), "1e-12 to 1e12", 1e-12, 1e12, 0},
+    {AT(confidence), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(matched.bandwidth), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(matched.slow), "> 0", 0.0, HUGE_VAL, 1},
+    {AT(matched.drift), ">= 0", 0.0, HUGE_VAL, 0},
+    {AT(range.phi), "1e-6 to 1e6", 1e-6, 1e6, 0},
+    {AT(range.setPoint), "1e-12 to 1e12", 1e-12, 1e12, 0},
+    {AT(prior.tau_e), "0 to 1e12", 0.0, 1e12, 0},
+    {AT(prior.nominal), "0 to 1e12", 0.0, 1e12, 0},
+    {AT(prior.D_theta), "0 to 1e12", 0.0, 1e12, 0},
+    {AT(prior.B), "0 to 1e12", 0.0, 1e12, 0},
+    {AT(prior.tau_coulomb), "0 to 1e12", 0.0, 1e12, 0},
 };
 
 static const integer_range INTEGERS[] = {
+    {AT(method), "1 (Paper2011) or 2 (MatchedFilter)", SH_METHOD_PAPER2011,
+     SH_METHOD_MATCHED_FILTER},
     {AT(modality), "1 (Residual), 2 (Sensor) or 3 (Model)", SH_MODALITY_RESIDUAL,
      SH_MODALITY_MODEL},
     {AT(deformation), "1 (Raw) or 2 (Filtered)", SH_DEFORMATION_RAW, SH_DEFORMATION_FILTERED},
@@ -140,8 +170,13 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
         return violates(violation, "motor.gamma", p->motor.gamma, "finite and not 0");
     if (p->filter.V_min > p->filter.V_max)
         return violates(violation, "filter.V_min", p->filter.V_min, "> 0 and <= filter.V_max");
-    if (p->residual.K_I * p->samplePeriod >= 2.0)
+    if (p->method == SH_METHOD_PAPER2011 && p->residual.K_I * p->samplePeriod >= 2.0)
         return violates(violation, "residual.K_I", p->residual.K_I,
                         "> 0 and < 2 / samplePeriod");
+    if (p->method == SH_METHOD_MATCHED_FILTER &&
+        (p->matched.bandwidth * p->samplePeriod < 1e-4 ||
+         p->matched.bandwidth * p->samplePeriod >= 2.0))
+        return violates(violation, "matched.bandwidth", p->matched.bandwidth,
+                        ">= 1e-4 / samplePeriod and < 2 / samplePeriod");
     return 0;
 }

@@ -4,65 +4,149 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* Torque (21) and stiffness (23) of the present eta. */
-static void evaluate(const sh_least_squares *rls, const double *F, const double *dF,
-                     sh_estimate *estimate)
+/* Regressor and its derivative by phi at an operating point, in the units of the method. */
+static void basis(const sh_parameters *p, double phi, double set_point, double *F, double *dF)
+{
+    if (p->method == SH_METHOD_MATCHED_FILTER)
+        sh_scaled_basis(&p->range, p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, F, dF);
+    else
+        sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, F, dF);
+}
+
+/* What P of the paper's recursion is to be multiplied by to be a covariance [(N.m)2]: the noise
+ * of the torque as if it were white, times the weight that (27) gives to every sample.
+ */
+static double noise_of_paper(const sh_parameters *p)
+{
+    const double noise =
+        p->modality == SH_MODALITY_RESIDUAL ? p->motor.gamma * p->noise.tau : p->noise.tau_e;
+
+    return noise * noise * (p->rls.kind == SH_RLS_ENHANCED ? p->rls.c : 1.0);
+}
+
+/* Resolution of an encoder [rad], 0 without quantisation. */
+static double count_of(double counts_per_turn)
+{
+    return counts_per_turn > 0.0 ? 2.0 * PI / counts_per_turn : 0.0;
+}
+
+static sh_matched_settings matched_settings(const sh_parameters *p)
+{
+    sh_matched_settings s;
+
+    s.T = p->samplePeriod;
+    s.bandwidth = p->matched.bandwidth;
+    s.measured = p->modality != SH_MODALITY_RESIDUAL;
+    s.noise = s.measured ? p->noise.tau_e : p->noise.tau;
+    s.motor = p->motor;
+    s.count = count_of(p->encoder.theta);
+    s.count_q = count_of(p->encoder.q);
+    s.slow = p->matched.slow;
+    s.drift = p->matched.drift;
+    s.torque = p->prior.tau_e;
+    s.nominal = p->prior.nominal;
+    s.motor_prior[SH_MOTOR_D_THETA] = p->prior.D_theta;
+    s.motor_prior[SH_MOTOR_B] = p->prior.B;
+    s.motor_prior[SH_MOTOR_COULOMB] = p->prior.tau_coulomb;
+    return s;
+}
+
+/* Torque (21) and stiffness (23) at a regressor F and its derivative dF. */
+static void evaluate_curve(const double *F, const double *dF, const double *eta, int size,
+                           sh_estimate *estimate)
 {
     int i;
 
     estimate->tau_e = 0.0;
     estimate->sigma = 0.0;
-    for (i = 0; i < rls->size; ++i) {
-        estimate->tau_e += F[i] * rls->eta[i];
-        estimate->sigma += dF[i] * rls->eta[i];
+    for (i = 0; i < size; ++i) {
+        estimate->tau_e += F[i] * eta[i];
+        estimate->sigma += dF[i] * eta[i];
     }
+}
+
+/* All that follows from parameters eta, of which dF' eta has the given variance, at an operating
+ * point with regressor F and derivative dF.
+ */
+static void evaluate(const sh_parameters *p, double phi, double set_point, const double *F,
+                     const double *dF, const double *eta, double variance, sh_estimate *estimate)
+{
+    const int matched = p->method == SH_METHOD_MATCHED_FILTER;
+    const int n = p->rls.n, m = p->rls.m, size = n * m;
+    double units[SH_MAX_BASIS];
+    int i, j;
+
+    evaluate_curve(F, dF, eta, size, estimate);
+    estimate->phi = phi;
+    estimate->setPoint = set_point;
+    estimate->sigma_std = sqrt(variance);
+    estimate->confident = estimate->sigma_std <= p->confidence * fabs(estimate->sigma);
+    if (matched)
+        sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
+    for (j = 0; j < m; ++j)
+        for (i = 0; i < n; ++i)
+            estimate->eta[i][j] = matched ? eta[j * n + i] / units[j * n + i] : eta[j * n + i];
+    estimate->D_theta_hat = p->motor.D_theta * (matched ? 1.0 + eta[size + SH_MOTOR_D_THETA] : 1.0);
+    estimate->B_hat = p->motor.B * (matched ? 1.0 + eta[size + SH_MOTOR_B] : 1.0);
+    estimate->tau_coulomb_hat = matched ? eta[size + SH_MOTOR_COULOMB] : 0.0;
+}
+
+static void evaluate_paper(const sh_estimator *estimator, const sh_parameters *p, double phi,
+                           double set_point, const double *F, const double *dF,
+                           sh_estimate *estimate)
+{
+    const double variance = noise_of_paper(p) * sh_least_squares_variance(&estimator->rls, dF);
+
+    evaluate(p, phi, set_point, F, dF, estimator->rls.eta, variance, estimate);
 }
 
 void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate)
 {
-    static const sh_kinematic_kalman at_rest = {0};
-    double eta_0[SH_MAX_PARAMETERS], F[SH_MAX_PARAMETERS], dF[SH_MAX_PARAMETERS];
+    static const sh_estimator zero;
+    static const sh_estimate nothing;
+    const int n = p->rls.n, m = p->rls.m, size = n * m;
+    const double set_point = p->setPoint.offset;
+    double eta_0[SH_MAX_BASIS], units[SH_MAX_BASIS], scaled[SH_MAX_PARAMETERS] = {0};
+    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
     int i, j;
 
-    for (i = 0; i < SH_MAX_N; ++i) {
-        for (j = 0; j < SH_MAX_M; ++j) {
-            estimate->eta[i][j] = 0.0;
-            if (i < p->rls.n && j < p->rls.m) {
-                eta_0[j * p->rls.n + i] = p->rls.eta_0[i][j];
-                estimate->eta[i][j] = p->rls.eta_0[i][j];
-            }
-        }
-    }
-    estimator->theta = at_rest;
-    estimator->q = at_rest;
-    sh_torque_residual_start(&estimator->residual, 0.0);
-    sh_least_squares_start(&estimator->rls, p->rls.n * p->rls.m, eta_0, p->rls.P_0);
-    estimator->started = 0;
-    estimator->skipped = 0.0;
-    estimator->settling = 0.0;
+    *estimator = zero;
+    *estimate = nothing;
+    for (j = 0; j < m; ++j)
+        for (i = 0; i < n; ++i)
+            eta_0[j * n + i] = p->rls.eta_0[i][j];
+    estimator->modality = p->modality;
+    basis(p, 0.0, set_point, F, dF);
+    if (p->method == SH_METHOD_MATCHED_FILTER) {
+        const sh_matched_settings settings = matched_settings(p);
+        double each = 0.0, curve = 0.0; /* what each coefficient, and the curve, add to sigma */
 
-    estimate->phi = 0.0;
-    estimate->setPoint = p->setPoint.offset;
-    estimate->tau_e_residual = 0.0;
-    estimate->theta_dot = 0.0;
-    estimate->a = 0.0;
-    estimate->rho = 0.0;
-    estimate->epsilon = 0.0;
+        sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
+        for (i = 0; i < size; ++i) {
+            scaled[i] = eta_0[i] * units[i];
+            each += dF[i] * dF[i];
+            curve += dF[i] * scaled[i];
+        }
+        each *= p->prior.tau_e * p->prior.tau_e;
+        curve *= p->prior.nominal;
+        sh_matched_start(&estimator->matched, &estimator->rls, &settings, size, scaled);
+        evaluate(p, 0.0, set_point, F, dF, scaled, each + curve * curve, estimate);
+        /* The estimate is eta_0 to the last digit, whatever the units. */
+        sh_torque_basis(p->rls.symmetric, n, m, set_point, 0.0, F, dF);
+        evaluate_curve(F, dF, eta_0, size, estimate);
+        for (j = 0; j < m; ++j)
+            for (i = 0; i < n; ++i)
+                estimate->eta[i][j] = p->rls.eta_0[i][j];
+    } else {
+        sh_least_squares_start(&estimator->rls, size, eta_0, p->rls.P_0);
+        evaluate_paper(estimator, p, 0.0, set_point, F, dF, estimate);
+    }
     estimate->valid = 1;
-    sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, estimate->setPoint, estimate->phi, F,
-                    dF);
-    evaluate(&estimator->rls, F, dF, estimate);
 }
 
 static int is_measurement(double z)
 {
     return fabs(z) <= SH_LARGEST_MEASUREMENT; /* false for NaN */
-}
-
-/* Velocity of one count per sample, w_s of (11) [rad/s]. */
-static double count_per_sample(double counts_per_turn, double T)
-{
-    return counts_per_turn > 0.0 ? 2.0 * PI / counts_per_turn / T : 0.0;
 }
 
 /* First stage: filters and residual. Returns gamma r_e [N.m]. */
@@ -78,11 +162,9 @@ static double track(sh_estimator *estimator, const sh_parameters *p, const sh_me
         sh_kinematic_kalman_start(q, &p->filter, z->q);
         sh_torque_residual_start(&estimator->residual, z->tau);
     } else {
-        sh_kinematic_kalman_step(theta, &p->filter, z->theta, dt,
-                                 count_per_sample(p->encoder.theta, T));
+        sh_kinematic_kalman_step(theta, &p->filter, z->theta, dt, count_of(p->encoder.theta) / T);
         if (p->deformation == SH_DEFORMATION_FILTERED)
-            sh_kinematic_kalman_step(q, &p->filter, z->q, dt,
-                                     count_per_sample(p->encoder.q, T));
+            sh_kinematic_kalman_step(q, &p->filter, z->q, dt, count_of(p->encoder.q) / T);
         /* (8) bridges a gap as if it were one long sample, while that is short beside
          * 1 / K_I. Of a longer one the torque is not known: r_e stays, is wrong, and has
          * to forget before it is learned from.
@@ -116,64 +198,103 @@ static int skip(sh_estimator *estimator, sh_estimate *estimate)
     return 0;
 }
 
-int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
-                      sh_estimate *estimate)
+/* The paper's two stages. Returns 0, and leaves all as it was, if the regression refuses. */
+static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
+                      double set_point, sh_estimate *estimate)
 {
-    double F[SH_MAX_PARAMETERS], dF[SH_MAX_PARAMETERS];
-    const sh_kinematic_kalman theta = estimator->theta;
-    const sh_kinematic_kalman q = estimator->q;
+    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
+    const sh_kinematic_kalman theta = estimator->theta, q = estimator->q;
     const sh_torque_residual residual = estimator->residual;
+    const double skipped = estimator->skipped, settling = estimator->settling;
     const int started = estimator->started;
-    const double skipped = estimator->skipped;
-    const double settling = estimator->settling;
-    const int n = p->rls.n, m = p->rls.m;
+    const double tau_e_residual = track(estimator, p, z);
+    double phi = z->q - z->theta;
+    double tau_e_hat, factor;
+    int kind = p->rls.kind;
     sh_innovation innovation;
-    double tau_e_residual, tau_e_hat, factor, phi, set_point;
-    int i, j, kind;
 
-    if (!is_measurement(z->theta) || !is_measurement(z->q) || !is_measurement(z->theta_c) ||
-        !is_measurement(z->tau) || !is_measurement(z->tau_e_sensor))
-        return skip(estimator, estimate);
-
-    tau_e_residual = track(estimator, p, z);
-    phi = p->deformation == SH_DEFORMATION_FILTERED ? estimator->q.lag - estimator->theta.lag
-                                                    : 0.0;
-    phi += z->q - z->theta;
-    set_point = p->setPoint.offset + p->setPoint.scale * z->theta_c;
-    sh_torque_basis(p->rls.symmetric, n, m, set_point, phi, F, dF);
-
+    if (p->deformation == SH_DEFORMATION_FILTERED)
+        phi += estimator->q.lag - estimator->theta.lag;
+    basis(p, phi, set_point, F, dF);
     tau_e_hat = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
                 : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
                                                    : tau_e_residual;
-    kind = p->rls.kind;
     factor = kind == SH_RLS_ENHANCED ? p->rls.c : p->rls.a;
     if (p->modality == SH_MODALITY_RESIDUAL && estimator->settling > 0.0) {
         kind = SH_RLS_CONSTANT_FACTOR; /* a = 0 learns nothing, (25) */
         factor = 0.0;
     }
     if (!isfinite(tau_e_residual) ||
-        !sh_least_squares_update(&estimator->rls, kind, factor, F, tau_e_hat,
-                                 &innovation)) {
+        !sh_least_squares_update(&estimator->rls, kind, factor, F, tau_e_hat, &innovation)) {
         estimator->theta = theta;
         estimator->q = q;
         estimator->residual = residual;
-        estimator->started = started;
         estimator->skipped = skipped;
         estimator->settling = settling;
-        return skip(estimator, estimate);
+        estimator->started = started;
+        return 0;
     }
-
-    evaluate(&estimator->rls, F, dF, estimate);
-    for (j = 0; j < m; ++j)
-        for (i = 0; i < n; ++i)
-            estimate->eta[i][j] = estimator->rls.eta[j * n + i];
+    evaluate_paper(estimator, p, phi, set_point, F, dF, estimate);
     estimate->tau_e_residual = tau_e_residual;
     estimate->theta_dot = estimator->theta.x_dot;
-    estimate->phi = phi;
-    estimate->setPoint = set_point;
     estimate->a = innovation.a;
     estimate->rho = innovation.rho;
     estimate->epsilon = innovation.epsilon;
+    return 1;
+}
+
+/* The matched filter. Returns 0, with what was learned as it was, if the regression refuses. The
+ * filters begin anew after any sample that was skipped, so they need not be restored.
+ */
+static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
+                        double set_point, sh_estimate *estimate)
+{
+    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
+    const sh_matched_settings settings = matched_settings(p);
+    const double phi = z->q - z->theta;
+    double eta[SH_MAX_PARAMETERS];
+    double y, variance;
+    const double torque = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
+                          : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
+                                                             : z->tau;
+    sh_innovation innovation;
+
+    if (estimator->started && (estimator->skipped > 0.0 || estimator->modality != p->modality))
+        sh_matched_resume(&estimator->matched, &settings);
+    basis(p, phi, set_point, F, dF);
+    if (!sh_matched_step(&estimator->matched, &estimator->rls, &settings, z->theta, torque, phi,
+                         estimate->sigma, F, &y, &innovation)) {
+        estimator->matched.samples = 0;
+        return 0;
+    }
+    estimator->started = 1;
+    estimator->skipped = 0.0;
+    estimator->modality = p->modality;
+    variance = sh_matched_belief(&estimator->matched, &estimator->rls, &settings, dF, eta);
+    evaluate(p, phi, set_point, F, dF, eta, variance, estimate);
+    estimate->tau_e_residual = y;
+    estimate->theta_dot =
+        sh_state_variable_filter_first(&estimator->matched.theta, &estimator->matched.design);
+    estimate->a = innovation.a;
+    estimate->rho = innovation.rho;
+    estimate->epsilon = innovation.epsilon;
+    return 1;
+}
+
+int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
+                      sh_estimate *estimate)
+{
+    const double set_point = p->setPoint.offset + p->setPoint.scale * z->theta_c;
+    int good;
+
+    if (!is_measurement(z->theta) || !is_measurement(z->q) || !is_measurement(z->theta_c) ||
+        !is_measurement(z->tau) || !is_measurement(z->tau_e_sensor))
+        return skip(estimator, estimate);
+    good = p->method == SH_METHOD_MATCHED_FILTER
+               ? tick_matched(estimator, p, z, set_point, estimate)
+               : tick_paper(estimator, p, z, set_point, estimate);
+    if (!good)
+        return skip(estimator, estimate);
     estimate->valid = 1;
     return 1;
 }

@@ -21,12 +21,20 @@
 
 #include "kinematic_kalman.h"
 #include "least_squares.h"
+#include "matched_regression.h"
+#include "scaled_basis.h"
 #include "torque_basis.h"
 #include "torque_residual.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* How the stiffness is estimated. */
+enum {
+    SH_METHOD_PAPER2011 = 1,     /* Kalman filter, residual and (25)-(27), as in the paper */
+    SH_METHOD_MATCHED_FILTER = 2 /* matched_regression.h */
+};
 
 /* What feeds the regression, section VI.B. */
 enum {
@@ -47,11 +55,12 @@ enum {
  */
 typedef struct {
     double samplePeriod; /* T [s], > 0, fixed */
+    int method;          /* SH_METHOD_*, fixed */
     int modality;        /* SH_MODALITY_* */
     int deformation;     /* SH_DEFORMATION_*, fixed */
     sh_motor_parameters motor;
     struct {
-        double K_I; /* bandwidth of the residual [1/s], > 0, K_I T < 2 */
+        double K_I; /* bandwidth of the residual [1/s], > 0, K_I T < 2 if it is used */
     } residual;
     sh_filter_parameters filter; /* kind, weighting and P_0 fixed */
     struct {
@@ -76,6 +85,29 @@ typedef struct {
         double r_0; /* lever arm at theta_c = 0, (30) [m] */
         double b;   /* lead of the ball screw, (30) [m/rad] */
     } model;        /* for SH_MODALITY_MODEL */
+    struct {
+        double tau;   /* std deviation of the noise of tau [N.m], 1e-12..1e12 */
+        double tau_e; /* and of tau_e_sensor, also how far the model is trusted [N.m],
+                         1e-12..1e12 */
+    } noise;
+    double confidence; /* largest sigma_std / |sigma| that counts as confident [1], > 0 */
+    /* All below for SH_METHOD_MATCHED_FILTER. */
+    struct {
+        double bandwidth; /* w of the filter [rad/s], > 0, 1e-4 <= w T < 2 if it is used, fixed */
+        double slow;      /* |theta'| below which the sign of friction is unknown [rad/s], > 0 */
+        double drift;     /* share of its prior variance by which the torque curve drifts in a
+                             second [1/s], >= 0; 0: it does not change */
+    } matched;
+    sh_range_parameters range; /* fixed */
+    struct { /* 0..1e12, fixed */
+        double tau_e;       /* std deviation of each coefficient of the torque, for phi and
+                               set-point in units of their range [N.m] */
+        double nominal;     /* of the curve rls.eta_0 as a whole, relative [1] */
+        double D_theta;     /* of motor.D_theta, relative [1]; 0: exact */
+        double B;           /* of motor.B, relative [1]; 0: exact */
+        double tau_coulomb; /* of the Coulomb friction of the motor, on its axis [N.m];
+                               0: there is none */
+    } prior;
 } sh_parameters;
 
 /* Largest measurement that is taken for one [rad, N.m]. */
@@ -100,6 +132,11 @@ typedef struct {
     double a, rho, epsilon;        /* (27) [1], (14) [1], (14) [N.m] */
     double eta[SH_MAX_N][SH_MAX_M];/* eta[i][j]: coefficient of setPoint^j phi^(2i+1), (21),
                                       or of setPoint^j phi^i if not symmetric */
+    double sigma_std;              /* std deviation of sigma, as far as the method knows
+                                      [N.m/rad] */
+    double D_theta_hat, B_hat;     /* motor data as corrected [N.m.s/rad, kg.m2] */
+    double tau_coulomb_hat;        /* Coulomb friction found, on the motor axis [N.m] */
+    int confident;                 /* sigma_std is at most confidence |sigma| */
     int valid;                     /* 0 while the last tick was skipped, see sh_estimator_tick */
 } sh_estimate;
 
@@ -109,6 +146,8 @@ typedef struct {
     sh_kinematic_kalman q;
     sh_torque_residual residual;
     sh_least_squares rls;
+    sh_matched_regression matched;
+    int modality;   /* of the last good sample */
     int started;    /* a good sample has been seen */
     double skipped; /* ticks skipped since the last good sample */
     double settling; /* time until r_e has forgotten what was before a gap [s] */
@@ -134,15 +173,19 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation);
  */
 void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate);
 
-/* Runs one tick.
+/* Runs one tick. estimate comes in as the last tick, or sh_estimator_start, left it.
  *
  * Returns 1 and the new estimate. If any measurement is not finite or beyond
  * SH_LARGEST_MEASUREMENT, or the regressor overflows, the tick is skipped: returns 0, sets
- * estimate->valid to 0 and leaves all else as it was. The next good sample is
- * filtered over the time that has passed. The residual bridges a gap shorter
- * than 2 / K_I; after a longer one it goes on from its last value, and with
- * SH_MODALITY_RESIDUAL nothing is learned, a = 0, until it has forgotten that
- * value, ten time constants 1 / K_I later.
+ * estimate->valid to 0 and leaves all else as it was. The next good sample ends the gap:
+ *
+ * SH_METHOD_PAPER2011 filters over the time that has passed. The residual
+ * bridges a gap shorter than 2 / K_I; after a longer one it goes on from its
+ * last value, and with SH_MODALITY_RESIDUAL nothing is learned, a = 0, until it
+ * has forgotten that value, ten time constants 1 / K_I later.
+ *
+ * SH_METHOD_MATCHED_FILTER begins its filters anew and learns nothing for
+ * 12 / matched.bandwidth; the same after a change of the modality.
  */
 int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                       sh_estimate *estimate);

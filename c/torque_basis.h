@@ -14,7 +14,7 @@ extern "C" {
 enum {
     SH_MAX_N = 8,                        /* largest order in the deformation */
     SH_MAX_M = 5,                        /* largest order in the set-point */
-    SH_MAX_PARAMETERS = SH_MAX_N * SH_MAX_M
+    SH_MAX_BASIS = SH_MAX_N * SH_MAX_M
 };
 
 /* Regressor F of (22) and its derivative by the deformation, (23).

@@ -13,6 +13,7 @@ typedef struct {
     sh_estimate output;
     sh_estimator estimator;
     sh_sample_clock clock;
+    int strained; /* a deformation far beyond range.phi was reported */
 } sh_estimator_fmu;
 
 /* From an input to its time derivative. */

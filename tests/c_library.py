@@ -20,6 +20,11 @@ HEADERS = [  # in the order in which they need each other
     REPOSITORY / "c" / "torque_basis.h",
     REPOSITORY / "c" / "torque_residual.h",
     REPOSITORY / "c" / "least_squares.h",
+    REPOSITORY / "c" / "scaled_basis.h",
+    REPOSITORY / "c" / "motion_sign.h",
+    REPOSITORY / "c" / "state_variable_filter.h",
+    REPOSITORY / "c" / "rounding_bias.h",
+    REPOSITORY / "c" / "matched_regression.h",
     REPOSITORY / "c" / "stiffness_estimator.h",
     REPOSITORY / "tests" / "drivers" / "run.h",
 ]

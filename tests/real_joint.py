@@ -41,6 +41,14 @@ PARAMETERS: dict[str, Value] = {
     "rls.m": M,
     "rls.P_0": 1e32,
 }
+PAPER2011: dict[str, Value] = {}
+MATCHED_FILTER: dict[str, Value] = {
+    "method": "MatchedFilter",
+    "range.phi": 0.25,
+    "range.setPoint": 45.0,
+    "prior.tau_e": 100.0,
+    "noise.tau_e": 0.1,
+}
 BIN = 5e-3  # width over which the measured curve is averaged [rad]
 POINTS = (-0.1, 0.1)  # where the stiffness is compared [rad]
 HALF_WIDTH = 0.05  # of the window in which the slope is taken, see docs/real-joint.md [rad]
@@ -153,7 +161,9 @@ def logs(path: Path) -> list[Log]:
     return found
 
 
-def replay(fmu: Fmu, played: Sequence[Log], symmetric: bool) -> Fit:
+def replay(
+    fmu: Fmu, played: Sequence[Log], symmetric: bool, method: Mapping[str, Value] = PAPER2011
+) -> Fit:
     """Plays logs through a new instance of the estimator, one after another."""
     names = ["theta", "q", "theta_c", "tau_e_sensor"]
     columns = [
@@ -164,7 +174,7 @@ def replay(fmu: Fmu, played: Sequence[Log], symmetric: bool) -> Fit:
     ]
     rows = np.ctypeslib.as_ctypes(np.column_stack(columns))
     with Slave(fmu, "real joint") as slave:
-        slave.initialize({**PARAMETERS, "rls.symmetric": symmetric})
+        slave.initialize({**PARAMETERS, **method, "rls.symmetric": symmetric})
         inputs = fmu.references(names, "input")
         set_real, do_step = slave.fmi.fmi2SetReal, slave.fmi.fmi2DoStep
         for k, row in enumerate(rows):

@@ -14,6 +14,7 @@ from fmi_instance import ERROR, OK, WARNING, Instance
 OUTPUTS = [
     *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),
     *(f"eta[{i},{j}]" for i in range(3) for j in range(3)),
+    *("sigma_std", "D_theta_hat", "B_hat", "tau_coulomb_hat"),
 ]
 INPUTS = ["theta", "tau", "tau_e_sensor"]
 
@@ -59,6 +60,7 @@ def step(instances: list[Instance], k: int, bad: dict[str, float] | None = None)
         {"modality": 2, "rls.m": 1, "rls.P_0": 1e24},
         {"modality": 3, "deformation": 2},
         {"filter.kind": 3, "rls.symmetric": 0, "samplePeriod": 4e-4},
+        {"method": 2, "rls.n": 3, "rls.m": 1, "prior.B": 0.1, "prior.tau_coulomb": 0.02},
     ],
 )
 def test_bit_identical_to_two_estimators(
@@ -77,8 +79,13 @@ def test_bit_identical_to_two_estimators(
                     for name in OUTPUTS
                 ]
                 assert pair.get_all(names) == single.get_all(OUTPUTS)
-                assert pair.get(f"valid_{i}") == single.get("valid")
+                for name in ("valid", "confident"):
+                    assert pair.get(f"{name}_{i}") == single.get(name)
             assert pair.get("sigma") == one.get("sigma") + two.get("sigma")
+            sigma_std = math.hypot(one.get("sigma_std"), two.get("sigma_std"))
+            assert pair.get("sigma_std") == pytest.approx(sigma_std, rel=1e-15)
+            confident = pair.get("sigma_std") <= pair.get("confidence") * abs(pair.get("sigma"))
+            assert pair.get("confident") == confident
             assert pair.get("valid") == (0 if bad else 1)
         assert pair.get("sigma") != 0.0
 
@@ -87,7 +94,7 @@ def test_variables_are_those_of_the_estimator_for_each_motor(
     antagonistic_fmu: Path, estimator_fmu: Path
 ) -> None:
     with Instance(antagonistic_fmu) as pair, Instance(estimator_fmu) as single:
-        expected = {"sigma", "valid"}
+        expected = {"sigma", "sigma_std", "confident", "valid"}
         for name, variable in single.variables.items():
             base, bracket, index = name.partition("[")
             if name in ("theta_c", "encoder.theta_c", "setPoint.scale", "model.b"):

@@ -250,3 +250,72 @@ def test_whatever_comes_P_stays_positive(
         assert np.all(np.isfinite(recursion.diagonal))
         assert np.all(np.isfinite(recursion.eta))
         assert np.all(np.isfinite(recursion.covariance))
+
+
+def test_a_weight_is_one_over_the_noise_variance(c: Library) -> None:
+    rng = np.random.default_rng(7)
+    F, y, w = rng.normal(size=(30, 4)), rng.normal(size=30), rng.uniform(0, 5, 30)
+    prior = np.array([1.0, 0.0, 9.0, 0.04])
+    recursion = Recursion(c, STANDARD, 1.0, 1.0, np.zeros(4))
+    for i, variance in enumerate(prior):
+        c.lib.sh_least_squares_prior(recursion.state, i, variance)
+    epsilon, rho = c.ffi.new("double *"), c.ffi.new("double *")
+    for k in range(30):
+        row = F[k].copy()
+        want = y[k] - row @ recursion.eta, row @ recursion.covariance @ row
+        assert c.lib.sh_least_squares_weigh(
+            recursion.state, w[k], c.pointer(row), y[k], epsilon, rho
+        )
+        assert (epsilon[0], rho[0]) == pytest.approx(want, rel=1e-9)
+    on = prior > 0
+    information = np.diag(1 / prior[on]) + (F[:, on].T * w) @ F[:, on]
+    assert recursion.eta[on] == pytest.approx(np.linalg.solve(information, F[:, on].T @ (w * y)))
+    assert recursion.covariance[np.ix_(on, on)] == pytest.approx(np.linalg.inv(information))
+    assert recursion.eta[1] == 0.0
+    assert not np.any(recursion.covariance[1])
+
+
+def fitted(c: Library, size: int) -> Recursion:
+    """A recursion with a full covariance."""
+    rng = np.random.default_rng(size)
+    recursion = Recursion(c, STANDARD, 1.0, 1.0, np.zeros(size))
+    for row in rng.normal(size=(2 * size, size)):
+        assert recursion.update(row, rng.normal())
+    return recursion
+
+
+@pytest.mark.parametrize("size", [1, 2, 5, 43])
+def test_widening_adds_a_square(c: Library, size: int) -> None:
+    recursion = fitted(c, size)
+    v = np.random.default_rng(1).normal(size=size)
+    want = recursion.covariance + 0.3 * np.outer(v, v)
+    c.lib.sh_least_squares_widen(recursion.state, 0.3, c.pointer(v))
+    assert recursion.covariance == pytest.approx(want, rel=1e-9, abs=1e-12)
+    assert np.all(recursion.diagonal > 0)
+
+
+def test_bounding_shrinks_variances_and_keeps_correlations(c: Library) -> None:
+    recursion = fitted(c, 5)
+    before = recursion.covariance
+    P_max = np.diag(before) * np.array([0.5, 2.0, 1.0, 0.1, 0.9])
+    c.lib.sh_least_squares_bound(recursion.state, c.pointer(P_max))
+    scale = np.sqrt(np.minimum(1.0, P_max / np.diag(before)))
+    assert recursion.covariance == pytest.approx(before * np.outer(scale, scale), rel=1e-9)
+
+
+@pytest.mark.parametrize("size", [1, 5, 43])
+def test_columns_of_the_covariance(c: Library, size: int) -> None:
+    recursion = fitted(c, size)
+    for i in {0, size // 2, size - 1}:
+        column = np.full(size, 7.0)
+        c.lib.sh_least_squares_column(recursion.state, i, c.pointer(column))
+        assert pytest.approx(recursion.covariance[:, i], rel=1e-9, abs=1e-12) == column
+
+
+def test_moving_keeps_what_rounding_leaves_out(c: Library) -> None:
+    recursion = Recursion(c, STANDARD, 1.0, 1.0, np.array([1e8]))
+    v = np.array([1.0])
+    for _ in range(100_000):
+        c.lib.sh_least_squares_move(recursion.state, 1e-10, c.pointer(v))
+    left = recursion.state.eta[0] - 1e8 + recursion.state.eta_low[0]
+    assert left == pytest.approx(1e-5, rel=1e-6)

@@ -76,6 +76,8 @@ POSITIVE = [
     "rls.P_0",
     "rls.c",
     "rls.a",
+    "confidence",
+    "matched.slow",
 ]
 NOT_NEGATIVE = [
     "motor.D_theta",
@@ -85,9 +87,23 @@ NOT_NEGATIVE = [
     "encoder.q",
     "encoder.theta_c",
     "model.k_s",
+    "matched.drift",
 ]
+# What is squared or raised to a power.
+BOUNDED = {
+    "noise.tau": (1e-12, 1e12),
+    "noise.tau_e": (1e-12, 1e12),
+    "range.phi": (1e-6, 1e6),
+    "range.setPoint": (1e-12, 1e12),
+    "prior.tau_e": (0.0, 1e12),
+    "prior.nominal": (0.0, 1e12),
+    "prior.D_theta": (0.0, 1e12),
+    "prior.B": (0.0, 1e12),
+    "prior.tau_coulomb": (0.0, 1e12),
+}
 ANY_FINITE = ["motor.gamma", "setPoint.offset", "setPoint.scale", "model.r_0", "model.b"]
 CHOICES = {
+    "method": 2,
     "modality": 3,
     "deformation": 2,
     "filter.kind": 3,
@@ -101,12 +117,15 @@ OUTSIDE: list[tuple[str, float]] = [
     *((name, bad) for name in NOT_NEGATIVE for bad in (-TINY, -1.0)),
     *(
         (name, bad)
-        for name in POSITIVE + NOT_NEGATIVE + ANY_FINITE
+        for name in [*POSITIVE, *NOT_NEGATIVE, *BOUNDED, *ANY_FINITE]
         for bad in (math.nan, math.inf, -math.inf)
     ),
+    *((name, low * 0.999 or -TINY) for name, (low, _) in BOUNDED.items()),
+    *((name, high * 1.001) for name, (_, high) in BOUNDED.items()),
     ("motor.gamma", 0.0),
     ("rls.a", math.nextafter(1.0, 2.0)),
     ("residual.K_I", 2000.0),  # K_I T = 2
+    *(("matched.bandwidth", bad) for bad in (-1.0, 0.0, 0.0999, 2000.0, math.nan, math.inf)),
     *((name, bad) for name, last in CHOICES.items() for bad in (0, -1, last + 1, 2**31 - 1)),
     *(("rls.symmetric", bad) for bad in (-1, 2, 2**31 - 1)),
 ]
@@ -114,7 +133,8 @@ OUTSIDE: list[tuple[str, float]] = [
 
 @pytest.mark.parametrize(("name", "value"), OUTSIDE)
 def test_outside_its_range_a_parameter_is_named(c: Library, name: str, value: float) -> None:
-    problem = c.violation(c.parameters({name: value}))
+    method = {"method": 2} if name.startswith("matched.") else {}
+    problem = c.violation(c.parameters({**method, name: value}))
     assert problem is not None
     named, came, allowed = problem
     assert named == name
@@ -128,6 +148,7 @@ def test_outside_its_range_a_parameter_is_named(c: Library, name: str, value: fl
         *((name, TINY) for name in POSITIVE if name not in ("filter.V_max", "samplePeriod")),
         *((name, 0.0) for name in NOT_NEGATIVE),
         *((name, -1.0) for name in ANY_FINITE),
+        *((name, limit) for name, limits in BOUNDED.items() for limit in limits),
         ("rls.a", 1.0),
         ("residual.K_I", math.nextafter(2000.0, 0.0)),
         ("filter.V_min", 10.0),  # V_max
@@ -139,6 +160,29 @@ def test_outside_its_range_a_parameter_is_named(c: Library, name: str, value: fl
 )
 def test_at_its_limit_a_parameter_passes(c: Library, name: str, value: float) -> None:
     assert c.violation(c.parameters({name: value})) is None
+
+
+@pytest.mark.parametrize("value", [0.1, math.nextafter(2000.0, 0.0)])
+def test_at_its_limit_the_bandwidth_passes(c: Library, value: float) -> None:
+    assert c.violation(c.parameters({"method": 2, "matched.bandwidth": value})) is None
+
+
+def test_limits_by_the_sample_period_hold_for_the_method_that_has_them(c: Library) -> None:
+    for method, name in ((1, "residual.K_I"), (2, "matched.bandwidth")):
+        problem = c.violation(c.parameters({"method": method, "samplePeriod": 0.01}))
+        assert problem is not None and problem[0] == name
+        mended = {"method": method, "samplePeriod": 0.01, name: 100.0}
+        assert c.violation(c.parameters(mended)) is None
+
+
+@pytest.mark.parametrize("low", [True, False])
+def test_extreme_ranges_and_priors_leave_finite_numbers(c: Library, low: bool) -> None:
+    extreme = {name: limits[0 if low else 1] for name, limits in BOUNDED.items()}
+    estimator = Estimator(c, {"method": 2, "rls.n": 8, "rls.m": 5, "rls.symmetric": 1, **extreme})
+    for k in range(100):
+        estimator.tick([0.1 * math.sin(0.01 * k), 0.1, 0.0, 0.1, 0.0])
+    for name in ("sigma", "sigma_std", "tau_e", "D_theta_hat", "B_hat", "tau_coulomb_hat"):
+        assert math.isfinite(getattr(estimator.estimate, name)), name
 
 
 def test_parameters_that_contradict_each_other(c: Library) -> None:

@@ -87,31 +87,40 @@ def test_version(tmp_path: Path) -> None:
 
 def test_help_names_every_command_and_option(tmp_path: Path) -> None:
     help_ = run("--help", cwd=tmp_path).stdout
-    assert "reproduce" in help_
-    assert "scenarios" in help_
-    help_ = run("reproduce", "--help", cwd=tmp_path).stdout
-    for option in ("--scenario", "--seeds", "--out"):
-        assert option in help_
+    options = {"reproduce": ["--scenario", "--seeds", "--out"], "compare": ["--seeds", "--out"]}
+    for command in (*options, "scenarios"):
+        assert command in help_
+    for command, named in options.items():
+        help_ = run(command, "--help", cwd=tmp_path).stdout
+        assert all(option in help_ for option in named)
 
 
 @pytest.mark.parametrize("name", ["", *sorted(cli.commands)])
 def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
     done = run(*name.split(), "--help", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
-    (example,) = re.findall(r"^ *Example: sigmahat (.*)$", done.stdout, re.M)
+    help_ = (cli.commands[name] if name else cli).help or ""
+    (example,) = re.findall(r"Example: sigmahat (.*?)(?:\n\n|$)", help_, re.DOTALL)
+    assert f"Example: sigmahat {example.split()[0]}" in done.stdout
     command, *arguments = example.split()
     assert command == name or not name
     with cli.commands[command].make_context(command, arguments):
         pass
 
 
-@pytest.mark.parametrize("name", sorted(cli.commands))
-def test_options_that_are_in_several_commands_are_the_same(name: str) -> None:
-    options = {p.name: p for p in cli.commands[name].params if isinstance(p, click.Option)}
-    if name != "scenarios":  # it is asked for nothing but what it prints
-        assert "quiet" in options
-    if name != "init":  # it writes a file for people
-        assert "json" in options
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("reproduce", {"--json", "--quiet"}),
+        ("estimate", {"--json", "--quiet"}),
+        ("identify", {"--json", "--quiet"}),
+        ("init", {"--quiet"}),  # it writes a file for people
+        ("scenarios", {"--json"}),  # it is asked for nothing but what it prints
+    ],
+)
+def test_options_for_scripts(name: str, options: set[str]) -> None:
+    have = {option for parameter in cli.commands[name].params for option in parameter.opts}
+    assert have & {"--json", "--quiet"} == options
 
 
 def test_json_of_reproduce_is_its_table(tmp_path: Path) -> None:
@@ -188,9 +197,10 @@ def test_unknown_scenario(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("command", ["reproduce", "compare"])
 @pytest.mark.parametrize("seeds", ["0", "-3", "two", "1.5"])
-def test_bad_number_of_seeds(seeds: str, tmp_path: Path) -> None:
-    assert "--seeds" in refused("reproduce", "--seeds", seeds, cwd=tmp_path)
+def test_bad_number_of_seeds(command: str, seeds: str, tmp_path: Path) -> None:
+    assert "--seeds" in refused(command, "--seeds", seeds, cwd=tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -241,8 +251,10 @@ def test_folder_without_permission(tmp_path: Path) -> None:
     assert list(locked.iterdir()) == []
 
 
+@pytest.mark.parametrize("command", ["reproduce", "compare"])
 @pytest.mark.parametrize("compiler", [None, "/usr/bin/cc"])
 def test_fmus_not_built(
+    command: str,
     compiler: str | None,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -253,7 +265,7 @@ def test_fmus_not_built(
 
     monkeypatch.setattr(sigmahat, "fmu", missing)
     monkeypatch.setattr(shutil, "which", lambda name: compiler)
-    assert main(["reproduce", "--out", str(tmp_path / "out")]) == 2
+    assert main([command, "--out", str(tmp_path / "out")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "cmake --workflow --preset build" in line
     assert ("install a C compiler" in line) == (compiler is None)
@@ -261,23 +273,32 @@ def test_fmus_not_built(
 
 
 @pytest.mark.parametrize(
-    ("seeds", "delay"), [("1", 0.6), ("100", 0.5), ("100", 0.7), ("100", 1.5), ("100", 4.0)]
+    ("command", "seeds", "delay"),
+    [
+        *(("reproduce", "1", 0.2), ("reproduce", "100", 0.0), ("reproduce", "100", 0.3)),
+        *(("reproduce", "100", 1.0), ("reproduce", "100", 3.5), ("compare", "100", 3.5)),
+    ],
 )
-def test_interrupt(seeds: str, delay: float, tmp_path: Path) -> None:
-    """Ctrl-C reaches the whole process group, at any time."""
+def test_interrupt(command: str, seeds: str, delay: float, tmp_path: Path) -> None:
+    """Ctrl-C reaches the whole process group, at any time after the start of Python."""
+    started = (
+        "import sys, sigmahat.cli as c; run = c.cli.main; "
+        "c.cli.main = lambda *a, **k: print(flush=True) or run(*a, **k); sys.exit(c.main())"
+    )
     process = subprocess.Popen(
-        [*COMMAND, "reproduce", "--seeds", seeds],
+        [sys.executable, "-c", started, command, "--seeds", seeds],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
     )
+    assert process.stdout is not None and process.stdout.readline() == "\n"
     time.sleep(delay)
     os.killpg(process.pid, signal.SIGINT)
     output, errors = process.communicate(timeout=30)
     # Python ends by the signal itself if that came while it was importing; to a shell it is 130.
     assert process.returncode in (130, -signal.SIGINT)
     assert output == ""
-    assert errors.split("\n") == ["", "sigmahat: interrupted", ""]
+    assert errors.strip() == "sigmahat: interrupted"
     assert list(tmp_path.iterdir()) == []

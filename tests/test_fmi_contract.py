@@ -31,9 +31,11 @@ OUTPUTS = {
     "a": "1",
     "rho": "1",
     "epsilon": "N.m",
+    "sigma_std": "N.m/rad",
 }
 PARAMETERS = {
     "samplePeriod": ("fixed", "s", 1e-3),
+    "method": ("fixed", None, 1),
     "modality": ("tunable", None, 1),
     "motor.B": ("tunable", "kg.m2", 2.3e-5),
     "motor.D_theta": ("tunable", "N.m.s/rad", 1e-3),
@@ -63,6 +65,11 @@ PARAMETERS = {
     "model.k_s": ("tunable", "N/m", 14220),
     "model.r_0": ("tunable", "m", 0.1),
     "model.b": ("tunable", "m/rad", B),
+    "range.phi": ("fixed", "rad", None),
+    "range.setPoint": ("fixed", "1", None),
+    "prior.D_theta": ("fixed", "1", None),
+    "prior.B": ("fixed", "1", None),
+    "prior.tau_coulomb": ("fixed", "N.m", None),
 }
 ONE, COUNTS = "1", "1"
 PLANT_IN = ("input", None)
@@ -104,6 +111,7 @@ PLANT = {  # AwasPlant: causality, variability, unit, start (None: any)
     ),
 }
 ITEMS = {
+    "method": ["Paper2011", "MatchedFilter"],
     "modality": ["Residual", "Sensor", "Model"],
     "filter.kind": ["ModifiedKalman", "Kalman", "FiniteDifference"],
     "filter.weighting": ["Normalized", "AsPrinted"],
@@ -174,7 +182,8 @@ def test_inputs_and_outputs(variables: dict[str, Any]) -> None:
             assert variables[f"eta[{i},{j}]"].causality == "output"
             assert variables[f"rls.eta_0[{i},{j}]"].variability == "fixed"
             assert float(variables[f"rls.eta_0[{i},{j}]"].start) == 0.0
-    assert (variables["valid"].type, variables["valid"].causality) == ("Boolean", "output")
+    for name in ("valid", "confident"):
+        assert (variables[name].type, variables[name].causality) == ("Boolean", "output")
 
 
 def start_of(variable: Any) -> float:

@@ -100,6 +100,26 @@ def test_a_bad_measurement_skips_the_tick_and_warns_once(
         assert name in warnings[0] and "skipped" in warnings[0]
 
 
+@pytest.mark.parametrize("method", [1, 2])
+def test_a_deformation_far_beyond_its_range_is_reported_once(
+    method: int, estimator_fmu: Path
+) -> None:
+    with Instance(estimator_fmu) as fmu:
+        for _ in range(2):  # a reset forgets that it was reported
+            fmu.messages.clear()
+            fmu.initialise({"method": method, "range.phi": 0.1})
+            statuses = []
+            for k, phi in enumerate((0.0, 0.2, -0.21, 0.3, 0.0, 0.3)):
+                fmu.set_all({"q": phi})
+                statuses.append(fmu.step(k * 1e-3, 1e-3))
+            expected = [OK, OK, WARNING, OK, OK, OK] if method == 2 else [OK] * 6
+            assert statuses == expected
+            warnings = [message for status, _, message in fmu.messages if status == WARNING]
+            assert len(warnings) == expected.count(WARNING)
+            assert all("range.phi = 0.1" in text and "-0.21" in text for text in warnings)
+            assert fmu.call("fmi2Reset") == OK
+
+
 def test_the_first_tick_waits_for_a_good_measurement(estimator_fmu: Path) -> None:
     """Starting late at a position away from 0 is starting there, not moving there."""
     with Instance(estimator_fmu) as late, Instance(estimator_fmu) as prompt:

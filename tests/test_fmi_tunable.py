@@ -20,17 +20,25 @@ STEPS = 60
 CHANGE = random.Random(4).randrange(20, 40)  # the parameter is changed before this step
 SIDES = {"StiffnessEstimator": [""], "AntagonisticStiffnessEstimator": ["_1", "_2"]}
 # Where a parameter acts; the others act as the FMU is.
-CONFIGURATION = {
+CONFIGURATION: dict[str, dict[str, float]] = {
     "filter.R": {"filter.kind": 2},
     "filter.V_max": {"encoder.theta": 2000},  # in slow motion, counted in these
     "filter.alpha": {"encoder.theta": 2000},
     "model.k_s": {"modality": 3},
     "model.r_0": {"modality": 3},
     "model.b": {"modality": 3},
+    "noise.tau_e": {"modality": 2},
+    "confidence": {"confidence": 1e12},
+    "matched.slow": {"prior.tau_coulomb": 0.02},
 }
+# What each method needs; SIGNALS begin in motion, which a fast filter soon has forgotten.
+METHODS: dict[int, dict[str, float]] = {1: {}, 2: {"method": 2, "matched.bandwidth": 1900}}
 # The new value where half as much again is the same, or not enough.
 CHANGED = {
     "modality": 2,
+    "confidence": 1e-12,
+    "matched.slow": 1e3,
+    "matched.drift": 1.0,
     "motor_c.B": 1.29e-6,
     "spring.k_3": 1e4,
     "link.tau_coulomb": 0.05,
@@ -49,6 +57,11 @@ SCALARS = (
     "a",
     "rho",
     "epsilon",
+    "sigma_std",
+    "D_theta_hat",
+    "B_hat",
+    "tau_coulomb_hat",
+    "confident",
 )
 ETA = [(i, j) for i in range(8) for j in range(5)]
 
@@ -105,9 +118,19 @@ def run_library(
     return results
 
 
-@pytest.mark.parametrize(("fmu", "name"), tunables(ESTIMATORS))
+def methods(name: str) -> list[int]:
+    """The methods in which a parameter acts."""
+    if name.startswith(("residual.", "filter.")):
+        return [1]
+    return [2] if name.startswith("matched.") else [1, 2]
+
+
+@pytest.mark.parametrize(
+    ("fmu", "name", "method"),
+    [(fmu, name, method) for fmu, name in tunables(ESTIMATORS) for method in methods(name)],
+)
 def test_an_estimator_goes_on_as_the_library_with_the_parameter_changed(
-    fmu: str, name: str, build: Path
+    fmu: str, name: str, method: int, build: Path
 ) -> None:
     sides = SIDES[fmu]
     outputs = [
@@ -115,7 +138,7 @@ def test_an_estimator_goes_on_as_the_library_with_the_parameter_changed(
         for side in sides
         for output in [f"{n}{side}" for n in SCALARS] + [f"eta{side}[{i},{j}]" for i, j in ETA]
     ]
-    start: Mapping[str, float] = CONFIGURATION.get(name, {})
+    start: Mapping[str, float] = METHODS[method] | CONFIGURATION.get(name, {})
     with Instance(sigmahat.fmu(fmu)) as instance:
         value = CHANGED.get(name, 1.5 * float(instance.variables[name].start))
     with_change = run_fmu(fmu, outputs, start, {name: value})

@@ -103,3 +103,12 @@ def test_stiffness_is_the_slope_of_the_measured_curve(
     for half_width in (0.05, 0.055, 0.06):
         assert real_joint.worst(measured, general, half_width) <= 10.0
     assert real_joint.worst(measured, odd, real_joint.HALF_WIDTH) > 50.0
+
+
+def test_matched_filter_is_no_worse(fmu: Fmu, measured: list[Log], general: Fit) -> None:
+    matched = real_joint.replay(fmu, measured, False, real_joint.MATCHED_FILTER)
+    for log in measured:
+        assert log.rms(matched) <= 1.001 * log.rms(general)
+    assert real_joint.worst(measured, matched, real_joint.HALF_WIDTH) <= real_joint.worst(
+        measured, general, real_joint.HALF_WIDTH
+    )

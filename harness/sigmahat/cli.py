@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import click
 
+from sigmahat.commands.compare import compare
 from sigmahat.commands.estimate import estimate
 from sigmahat.commands.identify import identify
 from sigmahat.commands.init import init
@@ -28,7 +29,7 @@ def cli() -> None:
     """
 
 
-for command in (reproduce, scenarios, init, estimate, identify):
+for command in (reproduce, compare, scenarios, init, estimate, identify):
     cli.add_command(command)
 
 
@@ -48,6 +49,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout = None  # or Python would try to write the rest at its end
         click.echo(f"sigmahat: error: cannot write the output: {error.strerror}", err=True)
         return _ERROR
-    except click.Abort:
+    except (click.Abort, KeyboardInterrupt):
         click.echo("sigmahat: interrupted", err=True)
         return _INTERRUPTED

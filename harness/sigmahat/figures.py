@@ -1,12 +1,12 @@
-"""Figures 3 to 12 of the paper, and one picture for each scenario, drawn from a recording.
+"""Figures 3 to 12 of the paper, one picture for each scenario, and the comparison of methods.
 
-Every function takes the recording of a scenario that names it and returns a figure that no window
-manager knows about.
+Every function but comparison() takes the recording of a scenario that names it. All return a
+figure that no window manager knows about.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
+from sigmahat.comparison import METHODS, Line
 from sigmahat.cosimulation import Recording
 from sigmahat.nominal import nominal
 
@@ -293,10 +294,46 @@ FIGURES: dict[str, Callable[[Recording], Figure]] = {
 """Every figure by the name of its files."""
 
 
-def save(draw: Callable[[Source], Figure], recording: Source, path: Path) -> None:
-    """Draws a figure into <path>.png and <path>.svg. The same recording gives the same SVG."""
+def comparison(lines: Sequence[Line]) -> Figure:
+    """MSREP of both methods over the frequency of the motion, for the AwAS with wrong motor data.
+
+    Right: with Coulomb friction, too.
+    """
+    curves: dict[tuple[str, str], list[Line]] = {}
+    for line in lines:
+        if line.group.startswith("r(0)"):
+            curves.setdefault((line.group, line.case), []).append(line)
+    figure = Figure(figsize=(9.0, 5.0), layout="constrained")
+    panels = figure.subplots(1, 2, sharey=True).tolist()
+    for method, color in zip(METHODS, (_VERMILION, _BLUE), strict=True):
+        for ((group, case), points), marker in zip(curves.items(), "ovsD^", strict=False):
+            friction = "Coulomb" in group
+            panels[friction].plot(
+                [float(point.joint.removesuffix(" Hz")) for point in points],
+                [point.found[method].msrep for point in points],
+                color=color,
+                marker=marker,
+                markersize=4,
+                linestyle="--" if marker in "v^" else "-",
+                label=f"{method}: {'Coulomb friction, ' if friction else f'{group}, '}{case}",
+            )
+    panels[0].set_title("all 15 s", fontsize=9)
+    panels[1].set_title(r"Coulomb friction 0.02 N$\cdot$m, r(0) = 70 mm, after 1 s", fontsize=9)
+    for axes in panels:
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlabel("frequency of the motor torque [Hz]")
+    panels[0].set_ylabel("MSREP [%]")
+    drawn = [each for axes in panels for each in axes.get_lines()]
+    handles = sorted(drawn, key=lambda each: METHODS.index(each.get_label().split(":")[0]))
+    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8)
+    return figure
+
+
+def save(draw: Callable[[Source], Figure], source: Source, path: Path) -> None:
+    """Draws a figure into <path>.png and <path>.svg. The same source gives the same SVG."""
     with matplotlib.rc_context(_STYLE):
-        figure = draw(recording)
+        figure = draw(source)
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
         pixels = BytesIO()
         figure.savefig(pixels, format="png")

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import signal
-import threading
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from multiprocessing.resource_tracker import ensure_running
+from functools import partial
 from typing import Any
 
 from numpy.typing import NDArray
@@ -18,6 +12,7 @@ from numpy.typing import NDArray
 from sigmahat.cosimulation import Recording, simulate
 from sigmahat.metrics import Indices, indices
 from sigmahat.nominal import nominal
+from sigmahat.processes import spread
 from sigmahat.scenarios import Scenario, T
 
 Progress = Callable[[int], object]
@@ -61,21 +56,10 @@ def reproduce(
         recording = run(scenario, seeds[0], variants=True, progress=progress)
         return Result(scenario, seeds, recording, [_indices(scenario, recording)])
 
-    workers = min(len(seeds), processes or os.cpu_count() or 1)
-    context = multiprocessing.get_context("spawn")
-    executor = ProcessPoolExecutor(workers, mp_context=context)
-    try:
-        with _interrupts_for_the_parent_alone():
-            first = executor.submit(run, scenario, seeds[0], variants=True)
-            others = [executor.submit(_run_indices, scenario, seed) for seed in seeds[1:]]
-        futures: list[Future[Any]] = [first, *others]
-        for future in as_completed(futures):
-            future.result()
-            progress(1)
-        every = [_indices(scenario, first.result()), *(future.result() for future in others)]
-        return Result(scenario, seeds, first.result(), every)
-    finally:
-        executor.shutdown(cancel_futures=True)
+    jobs: list[partial[Any]] = [partial(run, scenario, seeds[0], variants=True)]
+    jobs += [partial(_run_indices, scenario, seed) for seed in seeds[1:]]
+    first, *others = spread(jobs, processes, progress)
+    return Result(scenario, seeds, first, [_indices(scenario, first), *others])
 
 
 def run(
@@ -121,29 +105,3 @@ def signal_of(recording: Recording, name: str) -> NDArray[Any]:
         return nominal(recording)[variable]
     series = recording.plant if source == "plant" else recording.estimators[source]
     return series[variable]
-
-
-@contextmanager
-def _interrupts_for_the_parent_alone() -> Iterator[None]:
-    """Processes started inside do not hear Ctrl-C, which a terminal sends to them too.
-
-    They inherit the blocked signal. Here it waits until the end of the block, also if it comes to
-    another thread, so that no process is left half started.
-    """
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    waiting: list[int] = []
-    main = threading.current_thread() is threading.main_thread()
-    if main:
-        handler = signal.signal(signal.SIGINT, lambda number, frame: waiting.append(number))
-    ensure_running()  # this helper of multiprocessing would lift the block when it starts
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        if main:
-            signal.signal(signal.SIGINT, handler)
-    if waiting:
-        raise KeyboardInterrupt

@@ -11,6 +11,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
+from sigmahat.comparison import METHODS, Line
 from sigmahat.cosimulation import Recording, Series
 from sigmahat.metrics import mean_interval
 from sigmahat.reproduce import Result
@@ -77,9 +78,83 @@ def _table(result: Result, columns: Sequence[str], with_paper: bool) -> str:
             known = [_paper(index) for index in paper.get(each.name, ())] or ["", ""]
             cells[1:1], cells[3:3] = known[:1], known[1:]
         rows.append([each.name, *cells])
-    widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
-    return "\n".join(
+    return "\n".join(_aligned(rows))
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows as lines of columns, the first to the left and the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
         "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in rows
+    ]
+
+
+def comparison_table(lines: Sequence[Line]) -> str:
+    """Both methods beside each other, as text, a part for each group of joints; "-": not known.
+
+    What is there of MatchedFilter alone: the standard deviation that it gives, whether it keeps it,
+    and the motor data that it found.
+    """
+    head = [
+        "",
+        *(f"{method} [%]" for method in METHODS),
+        "sigma_std [%]",
+        "within [%]",
+        "D_theta_hat",
+        "B_hat",
+        "tau_coulomb_hat",
+    ]
+    rows = [head]
+    for line in lines:
+        found = line.found[METHODS[1]]
+        motor = (found.D_theta, found.B, found.tau_coulomb)
+        rows.append(
+            [
+                f"  {line.joint}, {line.case}{_since(line)}",
+                *(f"{line.found[method].msrep:.3g}" for method in METHODS),
+                f"{found.sigma_std:.2f}",
+                f"{found.inside:.0f}",
+                *("-" if math.isnan(value) else f"{value:.4g}" for value in motor),
+            ]
+        )
+    first, *others = _aligned(rows)
+    text, group = [first], ""
+    for line, row in zip(lines, others, strict=True):
+        if line.group != group:
+            text += ["", group := line.group]
+        text.append(row)
+    return "\n".join(text)
+
+
+def _since(line: Line) -> str:
+    return f", after {line.after:g} s" if line.after else ""
+
+
+def write_comparison(lines: Sequence[Line], seeds: int, path: Path) -> None:
+    """Writes a row for every line and method, numbers in full."""
+    head = [
+        "group",
+        "joint",
+        "case",
+        "method",
+        "seeds",
+        "judged from [s]",
+        "MSREP [%]",
+        "sigma_std [%]",
+        "within 1.96 sigma_std [%]",
+        "D_theta_hat [N.m.s/rad]",
+        "B_hat [kg.m2]",
+        "tau_coulomb_hat [N.m]",
+    ]
+    _write(
+        path,
+        head,
+        (
+            [line.group, line.joint, line.case, method, seeds, line.after]
+            + [None if math.isnan(value) else value for value in vars(line.found[method]).values()]
+            for line in lines
+            for method in METHODS
+        ),
     )
 
 

@@ -110,12 +110,19 @@ _AWAS_OUTPUTS = (
 )
 
 
-def _awas(retraction: float) -> Plant:
-    """The AwAS under the torques of section VI.B, its lever arm shortened at first [m]."""
+SECTION_VI_B = Sine(0.3, 0.1)
+"""Torque of the principal motor there [N.m, Hz]."""
+
+
+def awas(retraction: float, tau: Sine = SECTION_VI_B) -> Plant:
+    """The AwAS under the torques of section VI.B or another one of the principal motor.
+
+    Its lever arm is shortened by retraction [m] at first.
+    """
     return Plant(
         fmu="AwasPlant",
         start={"initial.theta_c": retraction / _LEAD},
-        inputs={"tau": Sine(0.3, 0.1), "tau_c": Sine(8.0, 0.1)},
+        inputs={"tau": tau, "tau_c": Sine(8.0, 0.1)},
         record=_AWAS_OUTPUTS,
     )
 
@@ -134,7 +141,7 @@ _OUTPUTS = (
 )
 
 
-def _estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> Estimator:
+def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> Estimator:
     """The estimator of the AwAS with the start values of its FMU but those given."""
     return Estimator(
         fmu="StiffnessEstimator",
@@ -157,17 +164,17 @@ def _modalities(start: Mapping[str, Value]) -> dict[str, Estimator]:
     sensor without noise. The modality Model of the FMU has only the measured positions.
     """
     return {
-        "MODEL": _estimator({"modality": "Sensor", **start}, sensor="tau_e"),
-        "SENSOR": _estimator({"modality": "Sensor", **start}),
-        "RESIDUAL": _estimator({"modality": "Residual", **start}),
-        "MODEL-measured": _estimator({"modality": "Model", **start}),
+        "MODEL": estimator({"modality": "Sensor", **start}, sensor="tau_e"),
+        "SENSOR": estimator({"modality": "Sensor", **start}),
+        "RESIDUAL": estimator({"modality": "Residual", **start}),
+        "MODEL-measured": estimator({"modality": "Model", **start}),
     }
 
 
 def _constant_factors(start: Mapping[str, Value]) -> dict[str, Estimator]:
     """RESIDUAL with constant stability factors, one too small and one too large, for figure 8."""
     return {
-        f"RESIDUAL, a = {a:g}": _estimator(
+        f"RESIDUAL, a = {a:g}": estimator(
             {"modality": "Residual", "rls.kind": "ConstantFactor", "rls.a": a, **start}
         )
         for a in (1e-4, 1e-2)
@@ -188,7 +195,7 @@ def _simulation(
         name=name,
         description=description,
         duration=duration,
-        plant=_awas(retraction),
+        plant=awas(retraction),
         estimators=estimators,
         comparisons=_truth(estimators),
         figures=(
@@ -230,9 +237,9 @@ def _experiment() -> Scenario:
         duration=60.0,
         plant=plant,
         estimators={
-            "MODEL": _estimator({"modality": "Model"}),
-            "SENSOR": _estimator({"modality": "Sensor"}),
-            "RESIDUAL": _estimator({"modality": "Residual"}),
+            "MODEL": estimator({"modality": "Model"}),
+            "SENSOR": estimator({"modality": "Sensor"}),
+            "RESIDUAL": estimator({"modality": "Residual"}),
         },
         comparisons=[
             Comparison("MODEL against nominal", "MODEL.sigma", "nominal.sigma"),

@@ -1,0 +1,56 @@
+#include "rounding_bias.h"
+
+#include <math.h>
+
+void sh_rounding_bias_take_back(sh_rounding_bias *bias, sh_least_squares *rls, int at,
+                                double prior_variance)
+{
+    double P_b[SH_MAX_PARAMETERS];
+    double variance, back, gain;
+
+    sh_least_squares_column(rls, at, P_b);
+    variance = P_b[at];
+    back = fmin(bias->surplus, 1.0 / variance - 1.0 / prior_variance);
+    if (!(back > 0.0) || !(variance > 0.0))
+        return;
+    /* P^-1 -= back at b, and the sum of squares loses back (1 + b)^2. */
+    gain = back / (1.0 - back * variance);
+    sh_least_squares_move(rls, gain * (1.0 + rls->eta[at]), P_b);
+    sh_least_squares_widen(rls, gain, P_b);
+    bias->surplus -= back;
+    bias->taken += back;
+}
+
+/* What the recursion says of b, prior p = 1 / variance and data together, is not yet all. With the
+ * information I that is left the data say I b = s without bias; but s scatters with the variance
+ * I + N, where N is what was taken back: the rounding has gone from the mean of s, not from its
+ * noise. So the data are worth I^2 / (I + N) and not I. Of b are believed
+ *
+ *     mean  s I / (I + N) / (p + I^2 / (I + N)) ,   variance  1 / (p + I^2 / (I + N)) ,
+ *
+ * with s = (I + p) b of the recursion. What is known of the others if b is known stays.
+ */
+double sh_rounding_bias_belief(const sh_rounding_bias *bias, const sh_least_squares *rls, int at,
+                               double prior_variance, const double *dF, double *eta)
+{
+    double P_b[SH_MAX_PARAMETERS];
+    const double variance = sh_least_squares_variance(rls, dF);
+    double of_b, information, share, believed, change, along = 0.0;
+    int i;
+
+    for (i = 0; i < rls->size; ++i)
+        eta[i] = rls->eta[i];
+    if (!(bias->taken > 0.0))
+        return variance;
+    sh_least_squares_column(rls, at, P_b);
+    of_b = P_b[at];
+    information = fmax(1.0 / of_b - 1.0 / prior_variance, 0.0);
+    share = information / (information + bias->taken);
+    believed = 1.0 / (1.0 / prior_variance + information * share);
+    change = (share / of_b * believed - 1.0) * eta[at];
+    for (i = 0; i < rls->size; ++i) {
+        eta[i] += P_b[i] / of_b * change;
+        along += P_b[i] / of_b * dF[i];
+    }
+    return variance + along * along * (believed - of_b);
+}

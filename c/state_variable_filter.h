@@ -1,0 +1,71 @@
+/* State-variable filter: low pass and derivatives of a sampled signal, without
+ * differentiating it.
+ *
+ *     H(s) = (w / (s + w))^3 ,  s H(s)  and  s^2 H(s)
+ *
+ * Whatever passes the same H keeps its linear relations: a differential equation
+ * of second order between measured signals becomes an algebraic one between
+ * filtered signals, without lag between its terms. The third order makes s^2 H
+ * roll off, so that little of the rounding of an encoder comes through. (Young
+ * 1981, Automatica 17:23-39; Garnier and Wang 2008, Identification of
+ * Continuous-time Models from Sampled Data, chapter 1.)
+ *
+ * The filter is solved exactly for signals that are linear between samples. So
+ * a derivative is the true derivative of what the other signals show at every
+ * frequency, while trapezoids (bilinear) make s^2 too large by (Omega T)^2 / 6.
+ */
+#ifndef SH_STATE_VARIABLE_FILTER_H
+#define SH_STATE_VARIABLE_FILTER_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What all filters of one corner and sample period share. */
+typedef struct {
+    double w;       /* corner [rad/s] */
+    double T;       /* sample period [s] */
+    double keep[3]; /* what a stage keeps of its own deviation, and of those one and two stages
+                       before it, after T */
+} sh_filter_design;
+
+/* State of the filter of one signal, in the signal's unit. */
+typedef struct {
+    double input;    /* last sample */
+    double stage[3]; /* output of each stage; the last is the filtered signal */
+} sh_state_variable_filter;
+
+/* Filter with corner w [rad/s] and sample period T [s]; w T from 1e-4 on, below which digits
+ * are lost.
+ */
+sh_filter_design sh_state_variable_filter_design(double w, double T);
+
+/* Starts the filter as if the signal had been x for ever: no transient. */
+void sh_state_variable_filter_start(sh_state_variable_filter *filter, double x);
+
+/* Starts the filter at rest for a signal that begins now with x and was zero before. */
+void sh_state_variable_filter_begin(sh_state_variable_filter *filter, double x);
+
+/* Advances the filter by T; the signal went linearly to x. */
+void sh_state_variable_filter_step(sh_state_variable_filter *filter,
+                                   const sh_filter_design *design, double x);
+
+/* The same for a signal of which only the mean over T is known. Do not mix the two. */
+void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
+                                        const sh_filter_design *design, double mean);
+
+/* First and second derivative of the filtered signal [1/s, 1/s2]. */
+double sh_state_variable_filter_first(const sh_state_variable_filter *filter,
+                                      const sh_filter_design *design);
+double sh_state_variable_filter_second(const sh_state_variable_filter *filter,
+                                       const sh_filter_design *design);
+
+/* Noise gain of the second derivative: variance of s^2 H x [1/s4] for white samples x of
+ * variance 1.
+ */
+double sh_state_variable_filter_noise(const sh_filter_design *design);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,314 @@
+"""The method MatchedFilter: every tick against a batch solution, and what it is for."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import signal
+
+from c_library import Array, Estimator, Library, load
+from matched_joint import GAMMA, Joint, T
+from oracle import MODEL, RESIDUAL, SENSOR
+
+PAPER2011, MATCHED_FILTER = 1, 2
+MATCHED = {"method": MATCHED_FILTER, "rls.n": 3}
+FRICTION = {**MATCHED, "prior.tau_coulomb": 0.02}
+ALL = {**FRICTION, "prior.B": 0.1}
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+def error(found: np.ndarray[Any, Any], joint: Joint, after: float) -> float:
+    """Root mean square of the relative error from a time [s] on."""
+    k = round(after / T)
+    return float(np.sqrt(np.mean((found["sigma"][k:] / joint.sigma[k:] - 1) ** 2)))
+
+
+# The equations
+
+
+def filtered(x: Array, order: int, w: float) -> Array:
+    """s^order w^3 / (s + w)^3 of x, linear between samples, zero before."""
+    system = signal.TransferFunction([w**3] + [0.0] * order, np.poly([-w] * 3))
+    _, y, _ = signal.lsim(system, x, T * np.arange(len(x)), interp=True)
+    return np.asarray(y)
+
+
+def columns(z: Array, n: int, m: int) -> tuple[Array, Array]:
+    """Basis and its derivative by phi [size: ticks x n m], in units of 0.3 rad and 100 mm."""
+    phi, r = (z[:, 1] - z[:, 0]) / 0.3, 1 - 0.025 / (2 * np.pi) * z[:, 2]
+    e = [2 * i + 1 for i in range(n)]
+    F = [r**j * phi ** e[i] / e[i] for j in range(m) for i in range(n)]
+    dF = [r**j * phi ** (e[i] - 1) / 0.3 for j in range(m) for i in range(n)]
+    return np.column_stack(F), np.column_stack(dF)
+
+
+@pytest.mark.parametrize("n,m", [(1, 1), (3, 3), (6, 3)])
+@pytest.mark.parametrize("modality", [RESIDUAL, SENSOR])
+def test_against_the_batch_solution(c: Library, n: int, m: int, modality: int) -> None:
+    # Encoders without rounding, so that the noise is the same in every sample
+    joint, w = Joint(duration=0.5, counts=0.0, frequency=3.0, amplitude=0.1), 350.0
+    z = joint.measurements()
+    B, D = 2.5e-5, 1.2e-3  # as the estimator is told
+    values = {
+        **MATCHED,
+        "modality": modality,
+        "rls.n": n,
+        "rls.m": m,
+        "motor.B": B,
+        "motor.D_theta": D,
+        "encoder.theta": 0.0,
+        "encoder.q": 0.0,
+        "prior.D_theta": 0.3,
+    }
+    estimator = Estimator(c, values)
+    found = estimator.run(z)
+
+    F, dF = columns(z, n, m)
+    F_f = np.column_stack([filtered(column, 0, w) for column in F.T])
+    moved = z[:, 0] - z[0, 0]
+    viscous = GAMMA**2 * D * filtered(moved, 1, w)
+    inertial = GAMMA**2 * B * filtered(moved, 2, w)
+    torque = filtered(z[:, 3], 0, w) + T**2 / 12 * filtered(z[:, 3], 2, w)
+    noise = GAMMA * 3.2e-3
+    prior = [45.0] * (n * m) + [0.3]
+    y = inertial + viscous - GAMMA * torque
+    A = np.column_stack([F_f, -viscous])
+    if modality == SENSOR:
+        noise, y = 3.2e-2, filtered(z[:, 4], 0, w)
+        A[:, -1] = 0.0
+    for k in (20, 100, 500):
+        information = np.diag(np.array(prior) ** -2.0) + A[: k + 1].T @ A[: k + 1] / noise**2
+        eta = np.linalg.solve(information, A[: k + 1].T @ y[: k + 1]) / noise**2
+        h = np.append(dF[k], 0.0)
+        assert found["tau_e_residual"][k] == pytest.approx(y[k], rel=1e-7, abs=1e-9)
+        assert found["sigma"][k] == pytest.approx(h @ eta, rel=1e-6)
+        std = math.sqrt(h @ np.linalg.solve(information, h))
+        assert found["sigma_std"][k] == pytest.approx(std, rel=1e-6)
+        assert found["D_theta_hat"][k] == pytest.approx(D * (1 + eta[-1]), rel=1e-6)
+        assert found["B_hat"][k] == B
+        phi, set_point = found["phi"][k], found["setPoint"][k]
+        powers = [[set_point**j * phi ** (2 * i + 1) for j in range(m)] for i in range(n)]
+        tau_e = np.sum(found["eta"][k, :n, :m] * powers)
+        assert tau_e == pytest.approx(found["tau_e"][k], rel=1e-9)
+
+
+def test_before_the_first_tick_all_is_prior(c: Library) -> None:
+    e = Estimator(c, ALL).estimate
+    # at phi = 0, of the basis only phi r^j, j = 0..2, with r = 100 mm
+    assert (e.sigma, e.tau_e) == (0.0, 0.0)
+    assert e.sigma_std == pytest.approx(45.0 / 0.3 * math.sqrt(3.0))
+    assert (e.D_theta_hat, e.B_hat, e.tau_coulomb_hat) == (1e-3, 2.3e-5, 0.0)
+    assert e.confident == 0
+
+
+def test_a_nominal_curve_is_the_prior_mean(c: Library) -> None:
+    """GIVEN a nominal curve that is trusted to 30 % as a whole and exactly in its shape, THEN the
+    stiffness before the first tick is its, with a standard deviation of 30 %."""
+    estimator = Estimator(c, {**MATCHED, "prior.nominal": 0.3, "prior.tau_e": 0.0})
+    estimator.parameters.rls.eta_0[0][2] = 2 * 14220e-6
+    c.lib.sh_estimator_start(estimator.state, estimator.parameters, estimator.estimate)
+    sigma = 2 * 14220 * 0.1**2
+    assert estimator.estimate.sigma == pytest.approx(sigma)
+    assert estimator.estimate.sigma_std == pytest.approx(0.3 * sigma)
+
+
+# What it is for
+
+
+@pytest.mark.parametrize("frequency", [0.3, 1.0, 8.0])
+@pytest.mark.parametrize("wrong", [0.9, 1.1])
+def test_finds_wrong_friction(c: Library, frequency: float, wrong: float) -> None:
+    """GIVEN viscous friction that is 10 % from what the estimator is told, and Coulomb friction
+    that it is not told of, THEN both are found, and the stiffness is right."""
+    joint = Joint(frequency=frequency, amplitude=0.8 / frequency, tau_coulomb=0.015)
+    found = Estimator(c, {**FRICTION, "motor.D_theta": wrong * 1e-3}).run(joint.measurements())
+    assert found["D_theta_hat"][-1] == pytest.approx(1e-3, abs=0.1 * abs(wrong - 1) * 1e-3)
+    assert found["tau_coulomb_hat"][-1] == pytest.approx(0.015, rel=0.1)
+    assert error(found, joint, 2.0) < 0.02
+
+
+@pytest.mark.parametrize("frequency", [1.0, 8.0])
+def test_finds_a_wrong_inertia(c: Library, frequency: float) -> None:
+    joint = Joint(frequency=frequency, amplitude=0.8 / frequency, tau_coulomb=0.015)
+    wrong = {"motor.D_theta": 1.1e-3, "motor.B": 1.1 * 2.3e-5}
+    found = Estimator(c, {**ALL, **wrong}).run(joint.measurements())
+    assert found["B_hat"][-1] == pytest.approx(2.3e-5, rel=0.03)
+    assert error(found, joint, 2.0) < 0.03
+
+
+def test_rounding_alone_says_nothing_about_the_inertia(c: Library) -> None:
+    """GIVEN a motor so slow that its inertia cannot be seen, WHEN it has turned for a long time,
+    THEN B is about what it was before, although theta'' is full of rounding."""
+    joint = Joint(duration=40.0, frequency=0.02, amplitude=30.0, B=1.1 * 2.3e-5)
+    estimator = Estimator(c, ALL)
+    found = estimator.run(joint.measurements())
+    assert found["B_hat"][-1] == pytest.approx(2.3e-5, rel=0.2)
+
+
+@pytest.mark.parametrize("modality", [SENSOR, MODEL])
+def test_other_sources_of_the_torque(c: Library, modality: int) -> None:
+    joint = Joint(duration=4.0)
+    found = Estimator(c, {**MATCHED, "modality": modality}).run(joint.measurements())
+    assert error(found, joint, 1.0) < 0.02
+
+
+@pytest.mark.parametrize("m", [1, 3])
+def test_general_basis(c: Library, m: int) -> None:
+    joint = Joint(duration=6.0)
+    z = joint.measurements()
+    if m == 1:  # a single transmission
+        z[:, 2] = 0.0
+        z[:, 3] += (joint.tau_e - 100 * joint.motion[3]) / GAMMA
+    values = {**MATCHED, "rls.symmetric": 0, "rls.n": 4, "rls.m": m}
+    found = Estimator(c, values).run(z)
+    sigma = joint.sigma if m == 3 else np.full(len(z), 100.0)
+    assert np.sqrt(np.mean((found["sigma"][3000:] / sigma[3000:] - 1) ** 2)) < 0.03
+
+
+def test_says_how_sure_it_is(c: Library) -> None:
+    """GIVEN errors of the friction drawn from their priors, WHEN the stiffness is estimated over
+    many runs, THEN it lies within 1.96 standard deviations about as often as it should."""
+    rng = np.random.default_rng(3)
+    inside = []
+    for seed in range(30):
+        joint = Joint(
+            duration=5.0,
+            frequency=float(np.exp(rng.uniform(np.log(0.5), np.log(5)))),
+            tau_coulomb=abs(0.02 * rng.normal()),
+            seed=seed,
+        )
+        values = {**FRICTION, "motor.D_theta": 1e-3 / (1 + 0.2 * rng.uniform(-1.7, 1.7))}
+        found = Estimator(c, values).run(joint.measurements())[2000:]
+        inside.append(np.abs(found["sigma"] - joint.sigma[2000:]) < 1.96 * found["sigma_std"])
+    assert 0.85 < np.mean(inside) < 1.0
+
+
+def test_confident_compares_with_the_threshold(c: Library) -> None:
+    found = Estimator(c, {**MATCHED, "confidence": 0.05}).run(Joint(duration=2.0).measurements())
+    assert np.array_equal(found["confident"] == 1, found["sigma_std"] <= 0.05 * found["sigma"])
+    assert not found["confident"][0]
+    assert found["confident"][-1]
+
+
+# Drift
+
+
+def test_follows_a_spring_that_ages_and_keeps_what_it_knows_at_rest(c: Library) -> None:
+    joint = Joint(duration=30.0, stiffness=lambda t: 1 - 0.3 * np.clip((t - 10) / 10, 0, 1))
+    estimator = Estimator(c, {**MATCHED, "matched.drift": 1e-3})
+    z = joint.measurements()
+    found = estimator.run(z)
+    assert error(found, joint, 20.0) < 0.05
+    assert error(Estimator(c, MATCHED).run(z), joint, 20.0) > 0.2
+
+    rest = z[-1:].repeat(1000, 0)
+    rest[:, 1] = rest[:, 0]
+    rest[:, 3] = 10**-2.5 * np.random.default_rng(1).normal(size=1000)
+    estimator.repeat(rest, 1000)
+    before = estimator.estimate.sigma
+    estimator.repeat(rest, 300_000)
+    assert estimator.estimate.sigma == pytest.approx(before, rel=0.01)
+    P = estimator.covariance()
+    assert np.all(np.diag(P) <= np.array([45.0**2] * 9 + [0.04, 0.0, 0.0]) * (1 + 1e-9))
+    assert np.all(np.linalg.eigvalsh(P[:10, :10]) > 0)
+
+
+def test_no_variance_grows_beyond_the_prior(c: Library) -> None:
+    estimator = Estimator(c, {**ALL, "matched.drift": 1e3})
+    estimator.run(Joint(deformation=0.005).measurements())
+    prior = np.array([45.0**2] * 9 + [0.2**2, 0.1**2, 0.02**2])
+    assert np.all(np.diag(estimator.covariance()) <= prior * (1 + 1e-9))
+    assert np.all(np.linalg.eigvalsh(estimator.covariance()) > 0)
+
+
+# What is not known
+
+
+def test_rest_of_any_length_tells_no_more_than_its_rounding(c: Library) -> None:
+    """GIVEN a joint held at a deformation of 0.6 counts, which the encoders show as one, WHEN it
+    rests there for long, THEN the standard deviation of the stiffness covers the error."""
+    count, sigma = 2 * np.pi / 40000, 140.0
+    z = np.zeros((1000, 5))
+    z[:, 1] = count
+    z[:, 3] = -sigma * 0.6 * count / GAMMA
+    estimator = Estimator(c, {**MATCHED, "prior.D_theta": 0.0})
+    estimator.repeat(z, 1_000_000)
+    assert estimator.estimate.sigma == pytest.approx(0.6 * sigma, rel=0.2)
+    assert abs(estimator.estimate.sigma - sigma) < 2.5 * estimator.estimate.sigma_std
+
+
+def test_friction_of_unknown_sign_is_noise(c: Library) -> None:
+    """GIVEN a motor that creeps, so that friction takes a part of the torque that nobody knows,
+    THEN the stiffness is off, and its standard deviation says so."""
+    joint = Joint(frequency=0.1, amplitude=0.03, tau_coulomb=0.02)
+    found = Estimator(c, FRICTION).run(joint.measurements())[2000:]
+    error = np.abs(found["sigma"] - joint.sigma[2000:])
+    assert np.mean(error < 1.96 * found["sigma_std"]) > 0.9
+
+
+# Odd beginnings and gaps
+
+
+def test_a_joint_that_already_moves_is_not_believed_at_once(c: Library) -> None:
+    """GIVEN a motor that turns when the first sample is taken, THEN nothing is learned until the
+    filters have forgotten that they took it to be at rest."""
+    joint = Joint(duration=5.0)
+    z = joint.measurements()[100:]
+    found = Estimator(c, MATCHED).run(z)
+    assert np.all(found["sigma"][1:30] == 0)
+    sigma = joint.sigma[100:]
+    assert np.max(np.abs(found["sigma"][1000:] / sigma[1000:] - 1)) < 0.03
+
+
+def test_goes_on_after_lost_samples(c: Library) -> None:
+    joint = Joint(duration=6.0)
+    z = joint.measurements()
+    z[3000:3050, 0] = math.nan
+    found = Estimator(c, MATCHED).run(z)
+    assert not np.any(found["valid"][3000:3050])
+    assert np.all(found["valid"][3050:])
+    assert np.all(found["a"][3052:3080] == 0)  # nothing is learned while the filters settle
+    assert error(found, joint, 3.05) < 0.02
+
+
+def test_starts_anew_when_the_modality_changes(c: Library) -> None:
+    joint = Joint(duration=6.0)
+    z = joint.measurements()
+    estimator = Estimator(c, MATCHED)
+    estimator.run(z[:3000])
+    c.set(estimator.parameters, "modality", SENSOR)
+    found = estimator.run(z[3000:])
+    assert np.all(found["a"][:30] == 0)  # nothing is learned while the filters settle
+    assert np.all(found["a"][50:] == 1)
+    assert np.all(np.abs(found["sigma"] / joint.sigma[3000:] - 1) < 0.05)
+
+
+@pytest.mark.parametrize("huge", [1e11, -1e11])
+def test_huge_measurements_leave_finite_numbers(c: Library, huge: float) -> None:
+    z = Joint(duration=1.0).measurements()
+    z[300] = huge
+    estimator = Estimator(c, {**ALL, "matched.drift": 1e-2})
+    found = estimator.run(z)
+    assert all(np.all(np.isfinite(found[name])) for name in ("sigma", "sigma_std", "eta", "tau_e"))
+    assert np.all(np.isfinite(estimator.covariance()))
+
+
+# The paper's method
+
+
+def test_paper_says_how_sure_it_is_as_white_noise_would_have_it(c: Library) -> None:
+    estimator = Estimator(c, {"rls.n": 2, "rls.m": 1, "noise.tau": 0.01})
+    found = estimator.run(Joint(duration=2.0).measurements())
+    phi = found["phi"][-1]
+    dF = np.array([1.0, 3 * phi**2])
+    want = 0.01 * GAMMA * math.sqrt(1e-20 * (dF @ estimator.covariance() @ dF))
+    assert found["sigma_std"][-1] == pytest.approx(want, rel=1e-9)
+    assert found["B_hat"][-1] == 2.3e-5

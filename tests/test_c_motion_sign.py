@@ -1,0 +1,83 @@
+"""The direction of motion from encoder counts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from c_library import Array, Library, load
+
+COUNT = 2 * np.pi / 40000
+T = 1e-3
+SLOW = 0.05  # [rad/s]
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+def steps(count: int) -> Array:
+    """0, 1, 2, ..."""
+    return np.arange(count, dtype=np.float64)
+
+
+def run(c: Library, positions: Array, count: float = COUNT) -> tuple[Array, Array]:
+    """Mean sign and share unknown for every sample but the first."""
+    motion = c.new("sh_motion_sign")
+    c.lib.sh_motion_sign_start(motion, positions[0])
+    found = []
+    for position in positions[1:]:
+        c.lib.sh_motion_sign_step(motion, position, count, SLOW * T)
+        found.append((motion.sign, motion.unknown))
+    signs, unknown = np.array(found).T
+    return signs, unknown
+
+
+def rounded(x: Array) -> Array:
+    return np.round(x / COUNT) * COUNT
+
+
+@pytest.mark.parametrize("velocity", [0.06, 0.3, -2.0, 40.0])
+def test_steady_motion_is_known_between_counts(c: Library, velocity: float) -> None:
+    signs, unknown = run(c, rounded(velocity * T * steps(400)))
+    assert np.all(signs[20:] == np.sign(velocity))
+    assert np.all(unknown[20:] == 0)
+
+
+def test_at_rest_nothing_is_known(c: Library) -> None:
+    """GIVEN a motor that stops, WHEN no count comes for as long as one takes at the slow velocity,
+    THEN the sign is unknown, and 0."""
+    x = 0.5 * T * np.minimum(steps(200), 100)
+    signs, unknown = run(c, rounded(x))
+    waiting = int(np.ceil(COUNT / (SLOW * T))) + 2
+    assert np.all(unknown[100 + waiting :] == 1)
+    assert np.all(signs[100 + waiting :] == 0)
+
+
+def test_creeping_is_unknown(c: Library) -> None:
+    _, unknown = run(c, rounded(0.02 * T * steps(500)))
+    assert np.all(unknown == 1)
+
+
+@pytest.mark.parametrize("acceleration", [50.0, 100.0, 400.0, 3000.0])
+@pytest.mark.parametrize("seed", range(5))
+def test_a_reversal_costs_no_impulse(c: Library, acceleration: float, seed: int) -> None:
+    """GIVEN a reversal at any instant, WHEN the signs are summed over it, THEN the sum is that of
+    the true sign to within one sample, as soon as the motor is back at speed."""
+    turn = 0.1 + np.random.default_rng(seed).uniform(0, T)
+    t = T * steps(201)
+    offset = np.random.default_rng(seed + 100).uniform(0, COUNT)
+    signs, _ = run(c, rounded(acceleration / 2 * (t - turn) ** 2 + offset))
+    true = 2 * np.clip((t[1:] - turn) / T, 0, 1) - 1
+    assert abs(np.sum(signs[50:] - true[50:])) < 1.0
+
+
+def test_without_rounding_a_reversal_is_placed_within_the_sample(c: Library) -> None:
+    turn = 0.0503
+    t = T * steps(101)
+    signs, _ = run(c, 50.0 * (t - turn) ** 2, count=0.0)
+    true = 2 * np.clip((t[1:] - turn) / T, 0, 1) - 1
+    assert abs(np.sum(signs[1:] - true[1:])) < 1e-6

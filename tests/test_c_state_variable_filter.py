@@ -1,0 +1,99 @@
+"""The state-variable filter against scipy's solution of the same differential equation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import signal
+
+from c_library import Array, Library, load
+
+T = 1e-3
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+def design(c: Library, w: float) -> Any:
+    return c.ffi.new("sh_filter_design *", c.lib.sh_state_variable_filter_design(w, T))
+
+
+def transfer(w: float, order: int) -> signal.lti:
+    """s^order w^3 / (s + w)^3."""
+    return signal.TransferFunction([w**3] + [0.0] * order, np.poly([-w] * 3))
+
+
+def random_walk(seed: int) -> Array:
+    return np.cumsum(np.random.default_rng(seed).normal(size=300))
+
+
+@pytest.mark.parametrize("w", [1.0, 200.0, 3000.0])
+def test_filters_signals_that_are_linear_between_samples(c: Library, w: float) -> None:
+    x = random_walk(1)
+    t = T * np.arange(len(x))
+    lib, d, f = c.lib, design(c, w), c.new("sh_state_variable_filter")
+    lib.sh_state_variable_filter_begin(f, x[0])
+    got = [(0.0, 0.0)]
+    first = [lib.sh_state_variable_filter_first(f, d)]
+    for value in x[1:]:
+        lib.sh_state_variable_filter_step(f, d, value)
+        got.append((f.stage[2], lib.sh_state_variable_filter_second(f, d)))
+        first.append(lib.sh_state_variable_filter_first(f, d))
+    for order, values in ((0, [g[0] for g in got]), (1, first), (2, [g[1] for g in got])):
+        _, want, _ = signal.lsim(transfer(w, order), x, t, interp=True)
+        assert np.max(np.abs(np.array(values) - want)) < 1e-9 * np.max(np.abs(want))
+
+
+def test_filters_means_as_signals_held_over_the_sample(c: Library) -> None:
+    x = random_walk(2)
+    lib, d, f = c.lib, design(c, 200.0), c.new("sh_state_variable_filter")
+    lib.sh_state_variable_filter_start(f, 0.0)
+    got = [0.0]
+    for value in x[:-1]:
+        lib.sh_state_variable_filter_step_mean(f, d, value)
+        got.append(f.stage[2])
+    _, want, _ = signal.lsim(transfer(200.0, 0), x, T * np.arange(len(x)), interp=False)
+    assert np.max(np.abs(np.array(got) - want)) < 1e-9 * np.max(np.abs(want))
+
+
+def test_a_signal_that_was_there_for_ever_has_no_transient(c: Library) -> None:
+    lib, d, f = c.lib, design(c, 200.0), c.new("sh_state_variable_filter")
+    lib.sh_state_variable_filter_start(f, 7.0)
+    lib.sh_state_variable_filter_step(f, d, 7.0)
+    assert list(f.stage) == [7.0] * 3
+    assert lib.sh_state_variable_filter_first(f, d) == 0.0
+    assert lib.sh_state_variable_filter_second(f, d) == 0.0
+
+
+@pytest.mark.parametrize("w", [50.0, 350.0, 1500.0])
+def test_noise_gain_is_the_integral_over_all_frequencies(c: Library, w: float) -> None:
+    second = transfer(w, 2)
+    # scipy's first-order hold is exact for the same class of signals
+    numerator, denominator, _ = signal.cont2discrete((second.num, second.den), T, method="foh")
+    frequencies = (np.arange(200_000) + 0.5) * np.pi / 200_000
+    _, response = signal.freqz(numerator.ravel(), denominator, worN=frequencies)
+    want = np.mean(np.abs(response) ** 2)
+    assert c.lib.sh_state_variable_filter_noise(design(c, w)) == pytest.approx(want, rel=1e-6)
+
+
+def test_a_derivative_beside_its_signal_is_exact(c: Library) -> None:
+    """GIVEN sin(Omega t) and its second derivative, both sampled, WHEN both are filtered, THEN
+    s^2 H of the one is H of the other, but for images beyond half the sampling rate."""
+    Omega = 2 * np.pi * 20.0
+    t = T * np.arange(1000)
+    lib, d = c.lib, design(c, 300.0)
+    x, acceleration = (c.new("sh_state_variable_filter") for _ in range(2))
+    largest = error = 0.0
+    for k, value in enumerate(np.sin(Omega * t)):
+        lib.sh_state_variable_filter_step(x, d, value)
+        lib.sh_state_variable_filter_step(acceleration, d, -(Omega**2) * value)
+        if k > 500:
+            want = acceleration.stage[2]
+            largest = max(largest, abs(want))
+            error = max(error, abs(lib.sh_state_variable_filter_second(x, d) - want))
+    assert error < 1e-3 * largest  # trapezoids: (Omega T)^2 / 6 = 2.6e-3
