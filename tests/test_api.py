@@ -43,7 +43,9 @@ def members() -> list[tuple[str, object]]:
     return found
 
 
-@pytest.mark.parametrize(("name", "member"), members(), ids=lambda each: str(each))
+@pytest.mark.parametrize(
+    ("name", "member"), [pytest.param(*each, id=each[0]) for each in members()]
+)
 def test_it_is_documented_and_typed(name: str, member: object) -> None:
     text = inspect.getdoc(member) or ""
     assert text and not text.startswith(f"{name.split('.')[-1]}("), "a docstring of our own"

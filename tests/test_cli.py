@@ -14,7 +14,6 @@ import time
 from importlib.metadata import version
 from pathlib import Path
 
-import click
 import pytest
 
 import sigmahat
