@@ -10,8 +10,10 @@ import click
 from sigmahat.commands.estimate import estimate
 from sigmahat.commands.identify import identify
 from sigmahat.commands.init import init
+from sigmahat.commands.report import report
 from sigmahat.commands.reproduce import reproduce
 from sigmahat.commands.scenarios import scenarios
+from sigmahat.commands.sweep import sweep
 
 _ERROR, _INTERRUPTED = 2, 130
 
@@ -22,7 +24,7 @@ def cli() -> None:
     """Stiffness of robot joints, estimated by FMUs."""
 
 
-for command in (reproduce, scenarios, init, estimate, identify):
+for command in (reproduce, scenarios, init, estimate, identify, sweep, report):
     cli.add_command(command)
 
 

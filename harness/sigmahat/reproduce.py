@@ -59,20 +59,20 @@ def reproduce(
     """
     if len(seeds) == 1:
         recording = run(scenario, seeds[0], variants=True, progress=progress)
-        return Result(scenario, seeds, recording, [_indices(scenario, recording)])
+        return Result(scenario, seeds, recording, [all_indices(scenario, recording)])
 
     workers = min(len(seeds), processes or os.cpu_count() or 1)
     context = multiprocessing.get_context("spawn")
     executor = ProcessPoolExecutor(workers, mp_context=context)
     try:
-        with _interrupts_for_the_parent_alone():
+        with interrupts_for_the_parent_alone():
             first = executor.submit(run, scenario, seeds[0], variants=True)
             others = [executor.submit(_run_indices, scenario, seed) for seed in seeds[1:]]
         futures: list[Future[Any]] = [first, *others]
         for future in as_completed(futures):
             future.result()
             progress(1)
-        every = [_indices(scenario, first.result()), *(future.result() for future in others)]
+        every = [all_indices(scenario, first.result()), *(future.result() for future in others)]
         return Result(scenario, seeds, first.result(), every)
     finally:
         executor.shutdown(cancel_futures=True)
@@ -91,10 +91,11 @@ def run(
 
 
 def _run_indices(scenario: Scenario, seed: int) -> dict[str, Indices]:
-    return _indices(scenario, run(scenario, seed))
+    return all_indices(scenario, run(scenario, seed))
 
 
-def _indices(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
+def all_indices(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
+    """The indices of each comparison of the scenario, by its name."""
     return {
         each.name: indices(
             recording.t,
@@ -120,7 +121,7 @@ def signal_of(recording: Recording, name: str) -> NDArray[Any]:
 
 
 @contextmanager
-def _interrupts_for_the_parent_alone() -> Iterator[None]:
+def interrupts_for_the_parent_alone() -> Iterator[None]:
     """Processes started inside do not hear Ctrl-C, which a terminal sends to them too.
 
     They inherit the blocked signal. Here it waits until the end of the block, also if it comes to
