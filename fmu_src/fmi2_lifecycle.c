@@ -105,6 +105,10 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     instance->categories = loggingOn ? SH_LOG_ALL : SH_LOG_WARNING | SH_LOG_ERROR;
     instance->state = SH_INSTANTIATED;
     sh_set_start_values(instance);
+    if (sh_make_utf8(instance->name))
+        sh_log(instance, fmi2Warning,
+               "fmi2Instantiate: instanceName is not UTF-8; messages name %s.",
+               instance->name);
     return instance;
 }
 

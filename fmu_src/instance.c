@@ -20,6 +20,49 @@ static const char *category_name(unsigned category)
     return category == SH_LOG_WARNING ? "logStatusWarning" : "logStatusError";
 }
 
+/* Bytes of the UTF-8 character that begins here, or 0 if none does (RFC 3629). */
+static size_t utf8_length(const unsigned char *s)
+{
+    unsigned char low = 0x80, high = 0xbf; /* of the second byte */
+    size_t length, i;
+
+    if (s[0] < 0x80)
+        return 1;
+    if (s[0] < 0xc2 || s[0] > 0xf4)
+        return 0;
+    length = s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
+    if (s[0] == 0xe0)
+        low = 0xa0; /* the rest has a shorter form */
+    else if (s[0] == 0xed)
+        high = 0x9f; /* no halves of surrogate pairs */
+    else if (s[0] == 0xf0)
+        low = 0x90;
+    else if (s[0] == 0xf4)
+        high = 0x8f; /* no characters above U+10FFFF */
+    if (s[1] < low || s[1] > high)
+        return 0;
+    for (i = 2; i < length; ++i)
+        if ((s[i] & 0xc0) != 0x80)
+            return 0;
+    return length;
+}
+
+int sh_make_utf8(char *text)
+{
+    int replaced = 0;
+
+    while (*text != '\0') {
+        size_t length = utf8_length((const unsigned char *)text);
+        if (length == 0) {
+            *text = '?';
+            replaced = 1;
+            length = 1;
+        }
+        text += length;
+    }
+    return replaced;
+}
+
 void sh_log(sh_instance *instance, fmi2Status status, const char *format, ...)
 {
     const unsigned category = category_of(status);
@@ -32,6 +75,7 @@ void sh_log(sh_instance *instance, fmi2Status status, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    sh_make_utf8(text); /* it may quote the importer, or be cut inside a character */
     /* The logger takes the message for a format: a % must not start a conversion. */
     for (i = 0; text[i] != '\0'; ++i) {
         if (text[i] == '%')

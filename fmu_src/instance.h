@@ -43,6 +43,9 @@ int sh_has(sh_instance *instance, const void *pointer, const char *function,
 void *sh_allocate(const fmi2CallbackFunctions *callbacks, size_t size);
 void sh_release(const fmi2CallbackFunctions *callbacks, void *memory);
 
+/* Replaces every byte that is not part of UTF-8 by '?'; returns 1 if there was one. */
+int sh_make_utf8(char *text);
+
 /* Sets every variable to its start value. */
 void sh_set_start_values(sh_instance *instance);
 

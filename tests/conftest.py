@@ -42,3 +42,12 @@ def flexible_joint_fmu() -> Path:
 def antagonistic_plant_fmu() -> Path:
     """Path of AntagonisticVsaPlant.fmu."""
     return sigmahat.fmu("AntagonisticVsaPlant")
+
+
+@pytest.fixture(scope="session")
+def released(build: Path) -> Path:
+    """Folder of the FMUs as ``cmake --workflow --preset release`` makes them."""
+    folder = build / "release"
+    if not folder.is_dir():
+        pytest.fail("there is no release to test; make it: cmake --workflow --preset release")
+    return folder

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ctypes
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +18,16 @@ OK, WARNING, DISCARD, ERROR = 0, 1, 2, 3
 
 
 class Instance:
-    """An instance of an FMU, in the state fmi2Instantiate leaves it in."""
+    """An instance of an FMU, in the state fmi2Instantiate leaves it in.
+
+    A lone surrogate in the name or the GUID stands for a byte that is not UTF-8.
+    """
 
     def __init__(
         self,
         fmu: Path,
         *,
+        name: str = "test",
         guid: str | None = None,
         resources: str | None = "file:///",
         logger: bool = True,
@@ -35,6 +39,8 @@ class Instance:
         self.folder = fmpy.extract(str(fmu))
         self.messages: list[tuple[int, str, str]] = []  # status, category, message
         self.environments: list[int | None] = []  # as handed back to the logger
+        self.names: set[str] = set()  # as given to the logger
+        self.blocks: set[int] = set()  # of memory from this importer, not yet given back
         slave = fmi2.FMU2Slave(
             guid=self.description.guid,
             unzipDirectory=self.folder,
@@ -47,8 +53,8 @@ class Instance:
         if logger:
             self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._log)
         if memory:
-            self.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-            self.callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
+            self.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(self.allocate)
+            self.callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(self._free)
         self.callbacks.componentEnvironment = 4711 if logger else None
         self.dll.fmi2Instantiate.restype = ctypes.c_void_p
         self.dll.fmi2DoStep.argtypes = [
@@ -58,9 +64,9 @@ class Instance:
             ctypes.c_int,
         ]
         self.component = self.dll.fmi2Instantiate(
-            ctypes.c_char_p(b"test"),
+            ctypes.c_char_p(name.encode(errors="surrogateescape")),
             1,
-            ctypes.c_char_p((guid or self.description.guid).encode()),
+            ctypes.c_char_p((guid or self.description.guid).encode(errors="surrogateescape")),
             None if resources is None else ctypes.c_char_p(resources.encode()),
             ctypes.byref(self.callbacks),
             0,
@@ -79,9 +85,18 @@ class Instance:
     def _log(
         self, environment: Any, name: bytes, status: int, category: bytes, text: bytes
     ) -> None:
-        assert name in (b"test", b"(no name)")
+        self.names.add(name.decode())
         self.environments.append(environment)
         self.messages.append((status, category.decode(), text.decode()))
+
+    def allocate(self, count: int, size: int) -> int:
+        block: int = fmpy.calloc(count, size)
+        self.blocks.add(block)
+        return block
+
+    def _free(self, block: int) -> None:
+        self.blocks.remove(block)
+        fmpy.free(block)
 
     def call(self, function: str, *arguments: Any) -> int:
         """Status of a call with this instance as its first argument."""
@@ -106,7 +121,7 @@ class Instance:
             f"fmi2Set{kind}", self.references([name]), ctypes.c_size_t(1), (c_type * 1)(value)
         )
 
-    def set_all(self, values: dict[str, float]) -> None:
+    def set_all(self, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             assert self.set(name, value) == OK, self.messages
 
@@ -149,7 +164,7 @@ class Instance:
     def exit(self) -> int:
         return self.call("fmi2ExitInitializationMode")
 
-    def initialise(self, values: dict[str, float] | None = None, start: float = 0.0) -> None:
+    def initialise(self, values: Mapping[str, float] | None = None, start: float = 0.0) -> None:
         """From instantiated to ready for the first step."""
         assert self.setup(start) == OK
         self.set_all(values or {})

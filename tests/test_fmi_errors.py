@@ -6,10 +6,16 @@ import ctypes
 import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import fmpy.fmi2 as fmi2
 import pytest
 
-from fmi_instance import ERROR, OK, WARNING, Instance
+import sigmahat
+from fmi_instance import DISCARD, ERROR, OK, WARNING, Instance
+from fmi_runs import ESTIMATORS, PLANTS, Driver, names
+
+every_fmu = pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
 
 OUT_OF_RANGE = [
     ({"samplePeriod": 0.0}, "samplePeriod = 0", "(0, inf)"),
@@ -111,23 +117,117 @@ def test_the_first_tick_waits_for_a_good_measurement(estimator_fmu: Path) -> Non
         assert late.get_all(names) == prompt.get_all(names)
 
 
-CALLS: list[tuple[str, Callable[[Instance], int]]] = [
-    ("fmi2DoStep", lambda fmu: fmu.step(0.0, 1e-3)),
-    ("fmi2ExitInitializationMode", lambda fmu: fmu.exit()),
-    ("fmi2Terminate", lambda fmu: fmu.call("fmi2Terminate")),
-    ("fmi2GetReal", lambda fmu: fmu.status_and_value("sigma")[0]),
-    ("fmi2CancelStep", lambda fmu: fmu.call("fmi2CancelStep")),
-]
+INSTANTIATED, INITIALISATION, STEP, TERMINATED = "instantiated", "initialisation", "step", "end"
+EVERYWHERE = {INSTANTIATED, INITIALISATION, STEP, TERMINATED}
+SETTABLE, READABLE = EVERYWHERE - {TERMINATED}, EVERYWHERE - {INSTANTIATED}
+STEPPED = {STEP, TERMINATED}
+ONE, ORDER = ctypes.c_size_t(1), (ctypes.c_int * 1)(1)
 
 
-@pytest.mark.parametrize(("function", "call"), CALLS, ids=[name for name, _ in CALLS])
-def test_a_call_before_initialisation_is_refused(
-    function: str, call: Callable[[Instance], int], estimator_fmu: Path
+def variables_call(function: str, name: str, c_type: Any, *between: Any) -> Callable[..., int]:
+    """A call with a value reference, how many, maybe something, and an array of values."""
+    return lambda fmu: fmu.call(function, fmu.references([name]), ONE, *between, (c_type * 1)())
+
+
+def status_call(function: str, kind: int, c_type: Any) -> Callable[[Instance], int]:
+    return lambda fmu: fmu.call(function, kind, ctypes.byref(c_type()))
+
+
+def with_state(function: str, *others: Any) -> Callable[[Instance], int]:
+    """A call with a state that is freed afterwards."""
+
+    def call(fmu: Instance) -> int:
+        state = fmu.save()
+        status = fmu.call(function, state, *others)
+        fmu.free(state)
+        return status
+
+    return call
+
+
+def save_and_free(fmu: Instance) -> int:
+    state = ctypes.c_void_p()
+    status = fmu.call("fmi2GetFMUstate", ctypes.byref(state))
+    fmu.free(state)
+    return status
+
+
+# FMI 2.0, the table of section 4.2.4: where a slave that has no asynchronous step allows each
+# function. A call that is allowed may still be refused, but for another reason.
+CALLS: dict[str, tuple[set[str], Callable[[Instance], int]]] = {
+    "fmi2SetDebugLogging": (EVERYWHERE, lambda fmu: fmu.call("fmi2SetDebugLogging", 1, 0, None)),
+    "fmi2SetupExperiment": ({INSTANTIATED}, lambda fmu: fmu.setup()),
+    "fmi2EnterInitializationMode": ({INSTANTIATED}, lambda fmu: fmu.enter()),
+    "fmi2ExitInitializationMode": ({INITIALISATION}, lambda fmu: fmu.exit()),
+    "fmi2Terminate": ({STEP}, lambda fmu: fmu.call("fmi2Terminate")),
+    "fmi2Reset": (EVERYWHERE, lambda fmu: fmu.call("fmi2Reset")),
+    "fmi2GetReal": (READABLE, variables_call("fmi2GetReal", "sigma", ctypes.c_double)),
+    "fmi2GetInteger": (READABLE, variables_call("fmi2GetInteger", "rls.n", ctypes.c_int)),
+    "fmi2GetBoolean": (READABLE, variables_call("fmi2GetBoolean", "valid", ctypes.c_int)),
+    "fmi2GetString": (READABLE, variables_call("fmi2GetString", "sigma", ctypes.c_char_p)),
+    "fmi2SetReal": (SETTABLE, variables_call("fmi2SetReal", "tau", ctypes.c_double)),
+    "fmi2SetInteger": (SETTABLE, variables_call("fmi2SetInteger", "modality", ctypes.c_int)),
+    "fmi2SetBoolean": (SETTABLE, variables_call("fmi2SetBoolean", "rls.symmetric", ctypes.c_int)),
+    "fmi2SetString": (SETTABLE, variables_call("fmi2SetString", "tau", ctypes.c_char_p)),
+    "fmi2GetFMUstate": (EVERYWHERE, save_and_free),
+    "fmi2SetFMUstate": (EVERYWHERE, with_state("fmi2SetFMUstate")),
+    "fmi2FreeFMUstate": (EVERYWHERE, lambda fmu: fmu.call("fmi2FreeFMUstate", None)),
+    "fmi2SerializedFMUstateSize": (
+        EVERYWHERE,
+        with_state("fmi2SerializedFMUstateSize", ctypes.byref(ctypes.c_size_t())),
+    ),
+    "fmi2SerializeFMUstate": (
+        EVERYWHERE,
+        with_state("fmi2SerializeFMUstate", ctypes.create_string_buffer(1), ctypes.c_size_t(1)),
+    ),
+    "fmi2DeSerializeFMUstate": (EVERYWHERE, lambda fmu: fmu.deserialise(b"x")[0]),
+    "fmi2GetDirectionalDerivative": (
+        READABLE,
+        lambda fmu: fmu.call("fmi2GetDirectionalDerivative", *[None, ONE] * 2, None, None),
+    ),
+    "fmi2SetRealInputDerivatives": (SETTABLE, lambda fmu: fmu.set_derivative("tau", 1.0)),
+    "fmi2GetRealOutputDerivatives": (
+        STEPPED,
+        variables_call("fmi2GetRealOutputDerivatives", "sigma", ctypes.c_double, ORDER),
+    ),
+    "fmi2DoStep": ({STEP}, lambda fmu: fmu.step(0.0, 1e-3)),
+    "fmi2GetStatus": (STEPPED, status_call("fmi2GetStatus", 0, ctypes.c_int)),
+    "fmi2GetRealStatus": (STEPPED, status_call("fmi2GetRealStatus", 2, ctypes.c_double)),
+    "fmi2GetIntegerStatus": (STEPPED, status_call("fmi2GetIntegerStatus", 1, ctypes.c_int)),
+    "fmi2GetBooleanStatus": (STEPPED, status_call("fmi2GetBooleanStatus", 3, ctypes.c_int)),
+    "fmi2GetStringStatus": (STEPPED, status_call("fmi2GetStringStatus", 1, ctypes.c_char_p)),
+}
+
+
+@pytest.mark.parametrize("state", sorted(EVERYWHERE))
+@pytest.mark.parametrize("function", CALLS)
+def test_a_function_is_refused_where_the_standard_does_not_allow_it(
+    function: str, state: str, estimator_fmu: Path
 ) -> None:
+    allowed, call = CALLS[function]
     with Instance(estimator_fmu) as fmu:
-        assert call(fmu) == ERROR
-        assert function in fmu.messages[-1][2]
+        if state != INSTANTIATED:
+            assert fmu.setup() == OK and fmu.enter() == OK
+        if state in STEPPED:
+            assert fmu.exit() == OK
+        if state == TERMINATED:
+            assert fmu.call("fmi2Terminate") == OK
+        fmu.messages.clear()
+        status = call(fmu)
+        refused = [text for _, _, text in fmu.messages if f"{function}: not allowed" in text]
+        assert bool(refused) == (state not in allowed)
+        if state not in allowed:
+            assert status == ERROR
+        assert fmu.call("fmi2Reset") == OK
         fmu.initialise()
+        assert fmu.step(0.0, 1e-3) == OK
+
+
+def test_a_step_cannot_be_cancelled(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise()
+        assert fmu.call("fmi2CancelStep") == ERROR
+        assert "no step is in progress" in fmu.messages[-1][2]
         assert fmu.step(0.0, 1e-3) == OK
 
 
@@ -252,3 +352,223 @@ def test_log_categories_filter(estimator_fmu: Path) -> None:
         assert fmu.messages[-1][1] == "logStatusError"
         assert choose(fmu, True, b"no such category") == ERROR
         assert "no such category" in fmu.messages[-1][2]
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [("\udcff\udcfe", "??"), ("Gel\udce4nk", "Gel?nk"), ("\udced\udca0\udc80", "???")],
+)
+def test_an_instance_name_that_is_not_utf8_is_shown_without_those_bytes(
+    name: str, shown: str, estimator_fmu: Path
+) -> None:
+    with Instance(estimator_fmu, name=name, logging_on=False) as fmu:
+        assert fmu.component
+        assert [status for status, _, _ in fmu.messages] == [WARNING]
+        assert "not UTF-8" in fmu.messages[0][2] and shown in fmu.messages[0][2]
+        fmu.initialise()
+        assert fmu.step(0.0, 1e-3) == OK
+        assert fmu.step(5.0, 1e-3) == ERROR
+        assert fmu.names == {shown}
+
+
+@pytest.mark.parametrize("name", ["Gelenk \u00fc \u03c3\u0302 \u20ac \U0001f9be", "", "100 %s"])
+def test_any_other_instance_name_is_shown_as_it_is(name: str, estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu, name=name) as fmu:
+        assert fmu.messages == []
+        assert fmu.step(0.0, 1e-3) == ERROR
+        assert fmu.names == {name}
+
+
+def test_other_texts_that_are_not_utf8_are_refused_in_messages_that_are(
+    estimator_fmu: Path,
+) -> None:
+    with Instance(estimator_fmu, guid="{\udcff}") as fmu:
+        assert not fmu.component
+        assert "{?}" in fmu.messages[-1][2]
+    with Instance(estimator_fmu) as fmu:
+        category = (ctypes.c_char_p * 1)(b"log\xc3(")
+        assert fmu.call("fmi2SetDebugLogging", 1, ONE, category) == ERROR
+        assert "unknown category log?(" in fmu.messages[-1][2]
+        fmu.initialise()
+        assert fmu.step(0.0, 1e-3) == OK
+
+
+@pytest.mark.parametrize("length", range(300, 304))
+def test_a_message_too_long_is_not_cut_inside_a_character(length: int, estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu, guid="x" * (length - 300) + "\u20ac" * length) as fmu:
+        assert "\u20ac" * 50 in fmu.messages[-1][2]
+
+
+@pytest.mark.parametrize(
+    ("start", "stop", "expected"),
+    [
+        (math.nan, None, "startTime"),
+        (math.inf, None, "startTime"),
+        (0.0, -1.0, "stopTime = -1 is before startTime = 0"),
+        (0.0, math.nan, "stopTime"),
+    ],
+)
+def test_an_experiment_that_cannot_be_is_refused(
+    start: float, stop: float | None, expected: str, estimator_fmu: Path
+) -> None:
+    with Instance(estimator_fmu) as fmu:
+        status = fmu.call(
+            "fmi2SetupExperiment",
+            *(0, ctypes.c_double(0.0), ctypes.c_double(start)),
+            *(int(stop is not None), ctypes.c_double(stop or 0.0)),
+        )
+        assert status == ERROR
+        assert expected in fmu.messages[-1][2]
+        fmu.initialise()
+        assert fmu.step(0.0, 1e-3) == OK
+
+
+@every_fmu
+def test_steps_out_of_time_are_refused_and_change_nothing(name: str) -> None:
+    with Instance(sigmahat.fmu(name)) as fmu, Instance(sigmahat.fmu(name)) as other:
+        driver, expected = Driver(fmu), Driver(other)
+        for instance in (fmu, other):
+            instance.initialise(start=1.0)
+        driver.run([(1.0, 1e-3), (1.001, 1e-3)])
+        expected.run([(1.0, 1e-3), (1.001, 1e-3)])
+        for t, h, named in [
+            (1.001, 1e-3, "currentCommunicationPoint = 1.001 s; expected 1.002 s"),  # backwards
+            (0.0, 1e-3, "currentCommunicationPoint = 0 s; expected 1.002 s"),
+            (1.003, 1e-3, "currentCommunicationPoint = 1.003 s; expected 1.002 s"),  # a gap
+            (math.nan, 1e-3, "currentCommunicationPoint"),
+            (math.inf, 1e-3, "currentCommunicationPoint"),
+            (1.002, 0.0, "communicationStepSize = 0 s"),
+            (1.002, -1e-3, "communicationStepSize = -0.001 s"),
+            (1.002, math.nan, "communicationStepSize"),
+            (1.002, math.inf, "communicationStepSize"),
+        ]:
+            assert fmu.step(t, h) == ERROR
+            status, category, message = fmu.messages[-1]
+            assert (status, category) == (ERROR, "logStatusError")
+            assert message.startswith("fmi2DoStep: ") and named in message
+            assert driver.result() == expected.result()
+        assert driver.step(1.002, 1e-3) == expected.step(1.002, 1e-3)
+
+
+@every_fmu
+def test_references_and_values_that_cannot_be_are_refused(name: str) -> None:
+    with Instance(sigmahat.fmu(name)) as fmu:
+        driver = Driver(fmu)
+        fmu.initialise()
+        driver.step(0.0, 1e-3)
+        before = driver.result()
+        unknown = (ctypes.c_uint * 1)(len(fmu.variables))
+        for kind, c_type in (
+            ("Real", ctypes.c_double),
+            ("Integer", ctypes.c_int),
+            ("Boolean", ctypes.c_int),
+        ):
+            for what in ("Get", "Set"):
+                assert fmu.call(f"fmi2{what}{kind}", unknown, ONE, (c_type * 1)()) == ERROR
+                message = fmu.messages[-1][2]
+                assert f"unknown value reference {len(fmu.variables)}" in message
+        for fixed in names(fmu, "parameter", "fixed"):
+            assert fmu.set(fixed, 1) == ERROR
+            assert f"{fixed} cannot be set now" in fmu.messages[-1][2]
+            assert "fixed" in fmu.messages[-1][2]
+        for output in names(fmu, "output"):
+            assert fmu.set(output, 1) == ERROR
+            assert f"{output} cannot be set now" in fmu.messages[-1][2]
+        for tunable in names(fmu, "parameter", "tunable"):
+            if fmu.variables[tunable].type != "Real":
+                continue
+            good = fmu.get(tunable)
+            for bad in (math.nan, math.inf):
+                assert fmu.set(tunable, bad) == OK  # refused with the others, by the step
+                assert fmu.step(1e-3, 1e-3) == ERROR
+                assert f"{tunable} = " in fmu.messages[-1][2]
+                assert "range" in fmu.messages[-1][2]
+            assert fmu.set(tunable, good) == OK
+        assert driver.result() == before
+        driver.step(1e-3, 1e-3)
+
+
+def test_a_bad_input_derivative_skips_the_ticks_it_reaches(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise()
+        assert fmu.set_derivative("theta", math.nan) == OK
+        assert fmu.step(0.0, 2e-3) == WARNING
+        assert "theta = nan" in fmu.messages[-1][2].replace("-nan", "nan")
+        assert fmu.step(2e-3, 1e-3) == OK
+        assert fmu.get("valid") == 1
+
+
+def test_the_time_reached_can_be_asked_for(estimator_fmu: Path) -> None:
+    time, number, text = ctypes.c_double(-1.0), ctypes.c_int(7), ctypes.c_char_p(b"unchanged")
+
+    def reached(fmu: Instance) -> float:
+        assert fmu.call("fmi2GetRealStatus", 2, ctypes.byref(time)) == OK
+        return time.value
+
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise(start=0.5)
+        assert reached(fmu) == 0.5
+        assert fmu.step(0.5, 1e-3) == OK
+        assert reached(fmu) == 0.5 + 1e-3
+        assert fmu.step(0.7, 1e-3) == ERROR
+        assert reached(fmu) == 0.5 + 1e-3
+        state = fmu.save()
+        assert fmu.step(0.501, 0.25) == OK
+        assert reached(fmu) == 0.501 + 0.25
+        assert fmu.restore(state) == OK
+        assert reached(fmu) == 0.5 + 1e-3
+        fmu.free(state)
+        assert fmu.call("fmi2GetBooleanStatus", 3, ctypes.byref(number)) == OK
+        assert number.value == 0  # it does not ask to stop
+        others: list[tuple[str, int, Any]] = [
+            ("fmi2GetStatus", 0, number),
+            ("fmi2GetRealStatus", 0, time),
+            ("fmi2GetIntegerStatus", 0, number),
+            ("fmi2GetBooleanStatus", 0, number),
+            ("fmi2GetStringStatus", 1, text),
+        ]
+        for function, kind, value in others:
+            assert fmu.call(function, kind, ctypes.byref(value)) == DISCARD
+            assert function in fmu.messages[-1][2]
+        assert fmu.call("fmi2GetRealStatus", 2, None) == ERROR
+        assert fmu.call("fmi2Terminate") == OK
+        assert reached(fmu) == 0.5 + 1e-3
+
+
+@every_fmu
+def test_what_cannot_be_instantiated_is_nothing(name: str) -> None:
+    with Instance(sigmahat.fmu(name)) as fmu:
+        instantiate, guid = fmu.dll.fmi2Instantiate, fmu.description.guid.encode()
+        callbacks = ctypes.byref(fmu.callbacks)
+        fmu.messages.clear()
+        for arguments, said in [
+            ((b"test", 0, guid, None, callbacks), "not for model exchange"),
+            ((None, 1, guid, None, callbacks), "instanceName is NULL"),
+            ((b"test", 1, None, None, callbacks), "the importer gave NULL"),
+            ((b"test", 1, b"{wrong}", None, callbacks), "{wrong}"),
+        ]:
+            assert instantiate(*arguments, 0, 0) is None
+            status, category, message = fmu.messages[-1]
+            assert (status, category) == (ERROR, "logStatusError")
+            assert message.startswith("fmi2Instantiate: ") and said in message
+        assert fmu.description.guid in fmu.messages[-1][2]
+        assert instantiate(b"test", 1, guid, None, None, 0, 0) is None
+
+
+@pytest.mark.parametrize("after", range(3))
+def test_without_memory_there_is_no_instance_and_no_leak(after: int, estimator_fmu: Path) -> None:
+    """The importer's memory is used up after so many blocks."""
+    with Instance(estimator_fmu, memory=True) as fmu:
+        before = set(fmu.blocks)
+        assert len(before) == 3
+
+        def allocate(count: int, size: int) -> int | None:
+            return None if len(fmu.blocks) == 3 + after else fmu.allocate(count, size)
+
+        fmu.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(allocate)
+        guid = fmu.description.guid.encode()
+        assert (
+            fmu.dll.fmi2Instantiate(b"x", 1, guid, None, ctypes.byref(fmu.callbacks), 0, 0) is None
+        )
+        assert "out of memory" in fmu.messages[-1][2]
+        assert fmu.blocks == before

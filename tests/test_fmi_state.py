@@ -2,124 +2,192 @@
 
 from __future__ import annotations
 
-import math
-import subprocess
-import sys
+import ctypes
+import random
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
 
+import sigmahat
 from fmi_instance import ERROR, OK, Instance
+from fmi_runs import ESTIMATORS, PLANTS, Driver, continue_from, names, random_steps
 
-OUTPUTS = ["sigma", "tau_e", "tau_e_residual", "theta_dot", "a", "rho", "epsilon", "eta[2,1]"]
-
-
-def feed(fmu: Instance, k: int) -> list[float]:
-    """One step of 1 ms from k ms on, at measurements that excite everything; the outputs."""
-    t = k * 1e-3
-    theta = 0.5 * math.sin(9 * t)
-    fmu.set_all(
-        {
-            "theta": theta,
-            "q": theta + 0.01 * math.sin(13 * t),
-            "theta_c": 20 * math.sin(3 * t),
-            "tau": 0.3 * math.cos(9 * t),
-        }
-    )
-    assert fmu.step(t, 1e-3) == OK
-    return fmu.get_all(OUTPUTS)
+every_fmu = pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
+STEPS = random_steps(120, seed=1)
+POINTS = random.Random(2).sample(range(len(STEPS)), 50)
 
 
-def test_reset_is_a_fresh_instance(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+@every_fmu
+def test_reset_is_a_fresh_instance(name: str) -> None:
+    path = sigmahat.fmu(name)
+    with Instance(path) as fmu:
+        driver = Driver(fmu)
         fmu.initialise()
-        fresh = [feed(fmu, k) for k in range(100)]
+        initial, fresh = driver.result(), driver.run(STEPS)
+    with Instance(path) as fmu:
+        driver = Driver(fmu)
+        tunable = names(fmu, "parameter", "tunable")[:3]
+        other = {n: 1.5 * float(fmu.variables[n].start) for n in tunable}
+        for point in POINTS:
+            fmu.initialise(other)  # which is to be forgotten
+            driver.run(STEPS[:point])
+            assert fmu.call("fmi2Reset") == OK
+            fmu.initialise()
+            assert driver.result() == initial
+            assert driver.run(STEPS) == fresh
+            assert fmu.call("fmi2Reset") == OK
+
+
+@every_fmu
+def test_reset_without_setting_up_again_starts_at_0(name: str) -> None:
+    with Instance(sigmahat.fmu(name)) as fmu:
+        driver = Driver(fmu)
+        fmu.initialise(start=0.0)
+        fresh = driver.run(STEPS[:20])
         assert fmu.call("fmi2Reset") == OK
-        fmu.initialise()
-        assert [feed(fmu, k) for k in range(100)] == fresh
+        fmu.initialise(start=3.7)
+        assert fmu.step(3.7, 1e-3) == OK
         assert fmu.call("fmi2Reset") == OK
-        fmu.initialise({"motor.D_theta": 2e-3})
-        assert [feed(fmu, k) for k in range(100)] != fresh
-        assert fmu.call("fmi2Reset") == OK  # also forgets parameters
+        assert fmu.enter() == OK and fmu.exit() == OK
+        assert driver.run(STEPS[:20]) == fresh
+
+
+@every_fmu
+def test_a_restored_state_goes_on_bit_for_bit(name: str) -> None:
+    with Instance(sigmahat.fmu(name)) as fmu:
+        driver = Driver(fmu)
         fmu.initialise()
-        assert [feed(fmu, k) for k in range(100)] == fresh
+        states, results, whole = {}, {}, []
+        for k, step in enumerate(STEPS):
+            if k in POINTS:
+                states[k], results[k] = fmu.save(), driver.result()
+            whole.append(driver.step(*step))
+        for point in POINTS:
+            assert fmu.restore(states[point]) == OK
+            assert driver.result() == results[point]
+            assert driver.run(STEPS[point:]) == whole[point:]
+            fmu.free(states[point])
 
 
-@pytest.mark.parametrize("at", [0, 1, 37, 80])
-def test_restored_state_goes_on_bit_for_bit(at: int, estimator_fmu: Path) -> None:
+@every_fmu
+def test_a_serialised_state_goes_on_in_another_process(name: str) -> None:
+    path = sigmahat.fmu(name)
+    with Instance(path) as fmu:
+        driver = Driver(fmu)
+        fmu.initialise()
+        states, whole = {}, []
+        for k, step in enumerate(STEPS):
+            if k in POINTS:
+                state = fmu.save()
+                states[k] = fmu.serialise(state)
+                fmu.free(state)
+            whole.append(driver.step(*step))
+    with ProcessPoolExecutor(1, get_context("spawn")) as process:
+        results = process.submit(
+            continue_from, path, [states[p] for p in POINTS], [STEPS[p:] for p in POINTS]
+        ).result()
+    for point, result in zip(POINTS, results, strict=True):
+        assert result == whole[point:]
+
+
+@pytest.mark.parametrize("at", ["instantiated", "initialisation", "terminated"])
+def test_a_state_holds_where_the_instance_stands(at: str, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
-        fmu.initialise()
-        for k in range(at):
-            feed(fmu, k)
+        if at != "instantiated":
+            assert fmu.setup() == OK and fmu.enter() == OK
+        if at == "terminated":
+            assert fmu.exit() == OK and fmu.call("fmi2Terminate") == OK
         state = fmu.save()
-        first = [feed(fmu, k) for k in range(at, 120)]
+        assert fmu.call("fmi2Reset") == OK
+        fmu.initialise()
+        assert fmu.step(0.0, 1e-3) == OK
         assert fmu.restore(state) == OK
-        assert [feed(fmu, k) for k in range(at, 120)] == first
+        assert fmu.step(0.0, 1e-3) == ERROR
+        assert fmu.enter() == (OK if at == "instantiated" else ERROR)
+        assert fmu.exit() == (ERROR if at == "terminated" else OK)
         fmu.free(state)
 
 
-def test_serialised_state_goes_on_in_another_process(estimator_fmu: Path, tmp_path: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+@every_fmu
+def test_a_damaged_or_foreign_state_is_refused(name: str) -> None:
+    foreign_name = "AwasPlant" if name != "AwasPlant" else "StiffnessEstimator"
+    with Instance(sigmahat.fmu(name)) as fmu, Instance(sigmahat.fmu(foreign_name)) as other:
+        driver = Driver(fmu)
         fmu.initialise()
-        for k in range(50):
-            feed(fmu, k)
+        driver.run(STEPS[:5])
         state = fmu.save()
-        (tmp_path / "state").write_bytes(fmu.serialise(state))
-        fmu.free(state)
-        expected = [feed(fmu, k) for k in range(50, 80)]
-    program = f"""
-import sys
-sys.path.insert(0, {str(Path(__file__).parent)!r})
-from pathlib import Path
-from fmi_instance import Instance
-from test_fmi_state import feed
-with Instance(Path({str(estimator_fmu)!r})) as fmu:
-    status, state = fmu.deserialise(Path({str(tmp_path / "state")!r}).read_bytes())
-    assert status == 0 and fmu.restore(state) == 0
-    fmu.free(state)
-    print(repr([feed(fmu, k) for k in range(50, 80)]))
-"""
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == repr(expected)
-
-
-def test_a_damaged_or_foreign_state_is_refused(estimator_fmu: Path, plant_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu, Instance(plant_fmu) as other:
-        fmu.initialise()
-        feed(fmu, 0)
-        state = fmu.save()
-        good = fmu.serialise(state)
-        fmu.free(state)
-        foreign = other.serialise(other.save())
-        flipped = bytearray(good)
-        flipped[len(good) // 2] ^= 1
-        for bad, reason in [
-            (bytes(flipped), "damaged"),
+        good, expected = fmu.serialise(state), driver.run(STEPS[5:10])
+        foreign_state = other.save()
+        foreign = other.serialise(foreign_state)
+        other.free(foreign_state)
+        refused = [
             (good[:-1], "truncated"),
             (good[:10], "truncated"),
             (b"", "truncated"),
             (good + b"x", "too long"),
             (foreign, "another FMU"),
             (b"x" * len(good), "not a state"),
-        ]:
+        ]
+        for byte in random.Random(3).sample(range(len(good)), 200):
+            flipped = bytearray(good)
+            flipped[byte] ^= 1 << byte % 8
+            refused.append((bytes(flipped), ""))
+        reached = driver.result()
+        for bad, reason in refused:
+            fmu.messages.clear()
             status, _ = fmu.deserialise(bad)
             assert status == ERROR
+            assert "fmi2DeSerializeFMUstate" in fmu.messages[-1][2]
             assert reason in fmu.messages[-1][2]
-        assert fmu.step(1e-3, 1e-3) == OK
+            assert driver.result() == reached
+        # One that is damaged only after it was read.
+        memory = (ctypes.c_ubyte * len(good)).from_address(state.value or 0)
+        memory[len(good) // 2] ^= 1
+        assert fmu.restore(state) == ERROR
+        assert "damaged" in fmu.messages[-1][2]
+        assert driver.result() == reached
+        fmu.free(state)
         status, state = fmu.deserialise(good)
-        assert status == OK
+        assert status == OK and fmu.restore(state) == OK
+        assert driver.run(STEPS[5:10]) == expected
         fmu.free(state)
 
 
-def test_two_instances_do_not_know_each_other(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as alone:
-        alone.initialise()
-        expected = [feed(alone, k) for k in range(60)]
-    with Instance(estimator_fmu) as one, Instance(estimator_fmu) as two:
-        one.initialise()
-        two.initialise({"motor.D_theta": 2e-3})
-        results = [(feed(one, k), feed(two, k)) for k in range(60)]
-    assert [first for first, _ in results] == expected
-    assert [second for _, second in results] != expected
+def test_too_little_room_for_a_state_is_refused(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise()
+        state = fmu.save()
+        size = len(fmu.serialise(state))
+        buffer = ctypes.create_string_buffer(b"\xa5" * size, size)
+        status = fmu.call("fmi2SerializeFMUstate", state, buffer, ctypes.c_size_t(size - 1))
+        assert status == ERROR
+        assert f"size = {size - 1} bytes; expected {size}" in fmu.messages[-1][2]
+        assert buffer.raw == b"\xa5" * size
+        assert fmu.call("fmi2SerializeFMUstate", state, buffer, ctypes.c_size_t(size)) == OK
+        fmu.free(state)
+
+
+def test_freeing_a_state_gives_its_memory_back(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu, memory=True) as fmu:
+        fmu.initialise()
+        without = set(fmu.blocks)
+        assert without
+        state = fmu.save()
+        block = state.value
+        assert fmu.blocks == without | {block}
+        assert fmu.call("fmi2GetFMUstate", ctypes.byref(state)) == OK  # into the same memory
+        assert state.value == block and fmu.blocks == without | {block}
+        status, copy = fmu.deserialise(fmu.serialise(state))
+        assert status == OK
+        assert fmu.blocks == without | {block, copy.value}
+        fmu.free(state)
+        assert state.value is None
+        assert fmu.blocks == without | {copy.value}
+        fmu.free(state)  # of nothing
+        fmu.free(copy)
+        assert fmu.blocks == without
+        fmu.dll.fmi2FreeInstance(ctypes.c_void_p(fmu.component))
+        fmu.component = None
+        assert fmu.blocks == set()

@@ -5,7 +5,14 @@ from pathlib import Path
 import click
 import fmpy
 
-from sigmahat.export import archive, description
+from sigmahat.export import (
+    archive,
+    cross_compiler,
+    description,
+    documentation,
+    source_files,
+    system,
+)
 
 
 @click.group()
@@ -16,29 +23,67 @@ def main() -> None:
 @main.command()
 @click.argument("template", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.argument("out", type=click.Path(file_okay=False, path_type=Path))
+@click.argument("sources", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option("--version", required=True, help="Version of the FMU.")
 @click.option("--struct", required=True, help="C type that holds the variables.")
 @click.option("--storage", required=True, type=click.Choice(list(description.STORAGE)))
-def describe(template: Path, out: Path, version: str, struct: str, storage: str) -> None:
-    """Write modelDescription.xml and variables.h of TEMPLATE into OUT."""
-    description.write(template, out, version, struct, description.STORAGE[storage])
+def describe(
+    template: Path, out: Path, sources: list[Path], version: str, struct: str, storage: str
+) -> None:
+    """Write modelDescription.xml and variables.h of TEMPLATE, with C files SOURCES, into OUT."""
+    names = [source.name for source in sources]
+    description.write(template, out, version, struct, description.STORAGE[storage], names)
 
 
 @main.command()
 @click.argument("fmu", type=click.Path(dir_okay=False, path_type=Path))
+@click.argument("sources", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option("--description", "xml", required=True, type=click.Path(path_type=Path))
 @click.option("--binary", required=True, type=click.Path(path_type=Path))
 @click.option("--licence", required=True, type=click.Path(path_type=Path))
-def pack(fmu: Path, xml: Path, binary: Path, licence: Path) -> None:
-    """Write an FMU with the binary of this machine."""
+@click.option("--shown", required=True, type=click.Path(path_type=Path))
+def pack(
+    fmu: Path, sources: list[Path], xml: Path, binary: Path, licence: Path, shown: Path
+) -> None:
+    """Write an FMU with the binary of this machine, SOURCES and the headers they include."""
     archive.write(
         fmu,
         {
             "modelDescription.xml": xml,
             f"binaries/{fmpy.platform}/{binary.name}": binary,
             "documentation/licenses/LICENSE.txt": licence,
+            **{f.relative_to(shown).as_posix(): f for f in shown.rglob("*") if f.is_file()},
+            **{f"sources/{f.name}": f for f in source_files.with_headers(sources)},
         },
     )
+
+
+@main.command()
+@click.argument("template", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("out", type=click.Path(file_okay=False, path_type=Path))
+@click.option("--version", required=True, help="Version of the FMU.")
+def document(template: Path, out: Path, version: str) -> None:
+    """Write documentation and icons of TEMPLATE into OUT, by their names in the FMU."""
+    documentation.write(template, out, version)
+
+
+@main.command("system")
+@click.argument("ssp", type=click.Path(dir_okay=False, path_type=Path))
+@click.argument("plant", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("estimator", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option("--templates", required=True, type=click.Path(exists=True, path_type=Path))
+def write_system(ssp: Path, plant: Path, estimator: Path, templates: Path) -> None:
+    """Write SSP, the system of FMUs PLANT and ESTIMATOR that gives Table I."""
+    system.write(ssp, plant, estimator, templates)
+
+
+@main.command()
+@click.argument("fmu", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("out", type=click.Path(dir_okay=False, path_type=Path))
+@click.option("--cache", required=True, type=click.Path(file_okay=False, path_type=Path))
+def release(fmu: Path, out: Path, cache: Path) -> None:
+    """Write OUT: the FMU with the binaries of every platform, compiled from its sources."""
+    cross_compiler.release(fmu, out, cache)
 
 
 main()

@@ -1,15 +1,16 @@
 """Model description of an FMU from its template, and the C table that goes with it.
 
 A template in ``modelDescription/`` is Jinja2 that renders to FMI 2.0 XML without what
-follows from the rest: value references, model structure and GUID are added here. The
-attribute ``open`` of a Real says which of its limits is itself not allowed; FMI has no
-such attribute, so it goes into the C table only.
+follows from the rest: value references, model structure, display units, source files and GUID
+are added here. Two attributes are ours and not in FMI: ``open`` of a Real says which of its
+limits is itself not allowed, for the C table; ``depends`` of an output names the variables that
+its initial value depends on, for the model structure.
 """
 
 import hashlib
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
@@ -163,24 +164,40 @@ def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> st
 
 
 def _add_model_structure(root: Element) -> None:
-    """Outputs, and which of them are computed at initialisation.
+    """Outputs, and what their initial values depend on.
 
-    No output depends on an input of the same communication point: both estimators and
-    plants compute outputs in fmi2DoStep alone.
+    At a communication point no output depends on an input: both estimators and plants compute
+    outputs in fmi2DoStep alone.
     """
     structure = ElementTree.SubElement(root, "ModelStructure")
-    outputs = [
-        (index, variable)
-        for index, variable in enumerate(variables(root), start=1)
-        if variable.attrib["causality"] == "output"
-    ]
     listed = ElementTree.SubElement(structure, "Outputs")
-    for index, _ in outputs:
-        ElementTree.SubElement(listed, "Unknown", index=str(index), dependencies="")
     unknowns = ElementTree.SubElement(structure, "InitialUnknowns")
-    for index, variable in outputs:
-        if variable.attrib["initial"] in ("approx", "calculated"):
-            ElementTree.SubElement(unknowns, "Unknown", index=str(index))
+    indices = {v.attrib["name"]: i for i, v in enumerate(variables(root), start=1)}
+    for variable in variables(root):
+        if variable.attrib["causality"] != "output":
+            continue
+        index = str(indices[variable.attrib["name"]])
+        known = sorted(indices[name] for name in variable.attrib.pop("depends").split())
+        ElementTree.SubElement(listed, "Unknown", index=index, dependencies="")
+        ElementTree.SubElement(
+            unknowns,
+            "Unknown",
+            index=index,
+            dependencies=" ".join(map(str, known)),
+            dependenciesKind=" ".join(["dependent"] * len(known)),
+        )
+
+
+def _add_display_units(root: Element) -> None:
+    """Reals whose unit has a display unit are shown in it."""
+    displayed = {
+        unit.attrib["name"]: display.attrib["name"]
+        for unit in root.findall("UnitDefinitions/Unit")
+        for display in unit.findall("DisplayUnit")
+    }
+    for real in root.findall("ModelVariables/ScalarVariable/Real"):
+        if real.attrib["unit"] in displayed:
+            real.set("displayUnit", displayed[real.attrib["unit"]])
 
 
 def complete(root: Element) -> str:
@@ -192,6 +209,7 @@ def complete(root: Element) -> str:
     for reference, variable in enumerate(variables(root)):
         variable.set("valueReference", str(reference))
         variable[0].attrib.pop("open", None)
+    _add_display_units(root)
     _add_model_structure(root)
     ElementTree.indent(root)
     canonical = ElementTree.canonicalize(ElementTree.tostring(root, encoding="unicode"))
@@ -202,16 +220,28 @@ def complete(root: Element) -> str:
     return guid
 
 
+def _add_source_files(root: Element, names: Iterable[str]) -> None:
+    """The files of ``sources/`` that an importer has to compile."""
+    listed = ElementTree.SubElement(root.findall("CoSimulation")[0], "SourceFiles")
+    for name in names:
+        ElementTree.SubElement(listed, "File", name=name)
+
+
 def write(
     template: Path,
     out: Path,
     version: str,
     struct: str,
     storage: Callable[[Element], dict[str, str]],
+    sources: Iterable[str],
 ) -> None:
-    """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder."""
+    """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder.
+
+    ``sources`` are the names of the C files of the FMU.
+    """
     out.mkdir(parents=True, exist_ok=True)
     root, delivered = render(template, version), render(template, version)
+    _add_source_files(delivered, sources)
     guid = complete(delivered)
     (out / "variables.h").write_text(c_table(root, struct, storage(root), guid), encoding="utf-8")
     tree = ElementTree.ElementTree(delivered)

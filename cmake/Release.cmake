@@ -1,0 +1,29 @@
+# Target release: every FMU and the system again in release/, with the binaries of all platforms.
+#
+# The cross compiler is a large download, so it is installed only here.
+set(requirements ${PROJECT_SOURCE_DIR}/requirements-release.txt)
+set(installed ${SIGMAHAT_VENV}/sigmahat-requirements-release)
+add_custom_command(
+  OUTPUT ${installed}
+  COMMAND ${SIGMAHAT_PYTHON} -m pip install --quiet --disable-pip-version-check -r ${requirements}
+  COMMAND ${CMAKE_COMMAND} -E touch ${installed}
+  DEPENDS ${requirements}
+  COMMENT "Installing the cross compiler" VERBATIM)
+
+get_property(fmus GLOBAL PROPERTY SIGMAHAT_FMUS)
+set(released "")
+foreach(fmu IN LISTS fmus)
+  cmake_path(GET fmu FILENAME file)
+  set(release ${PROJECT_BINARY_DIR}/release/${file})
+  add_custom_command(
+    OUTPUT ${release}
+    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export release ${fmu} ${release}
+            --cache ${PROJECT_BINARY_DIR}/cross-compiler
+    DEPENDS ${fmu} ${installed}
+    COMMENT "Compiling ${file} for every platform" VERBATIM)
+  list(APPEND released ${release})
+endforeach()
+set(release ${PROJECT_BINARY_DIR}/release)
+sigmahat_add_system(${release}/sigmahat-awas.ssp ${release}/AwasPlant.fmu
+                    ${release}/StiffnessEstimator.fmu)
+add_custom_target(release DEPENDS ${released} ${release}/sigmahat-awas.ssp)

@@ -1,0 +1,21 @@
+# sigmahat_add_system(SSP PLANT ESTIMATOR)
+#
+# Makes the file SSP from the FMUs PLANT and ESTIMATOR, all full paths: the two connected,
+# with the parameters of Table I.
+function(sigmahat_add_system ssp plant estimator)
+  set(templates ${PROJECT_SOURCE_DIR}/modelDescription/system)
+  file(GLOB sources CONFIGURE_DEPENDS ${templates}/* ${PROJECT_SOURCE_DIR}/harness/sigmahat/*.py
+       ${PROJECT_SOURCE_DIR}/harness/sigmahat/export/*.py)
+  cmake_path(GET ssp FILENAME name)
+  add_custom_command(
+    OUTPUT ${ssp}
+    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export system ${ssp} ${plant} ${estimator}
+            --templates ${templates}
+    DEPENDS ${plant} ${estimator} ${sources}
+    COMMENT "Packing ${name}" VERBATIM)
+endfunction()
+
+set(fmus ${SIGMAHAT_VENV}/share/sigmahat)
+sigmahat_add_system(${fmus}/sigmahat-awas.ssp ${fmus}/AwasPlant.fmu
+                    ${fmus}/StiffnessEstimator.fmu)
+add_custom_target(awas_system ALL DEPENDS ${fmus}/sigmahat-awas.ssp)

@@ -1,0 +1,70 @@
+"""Binaries of an FMU for every platform, compiled on any one of them."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import fmpy
+
+from sigmahat.export import archive
+
+PLATFORMS = {
+    "linux64": ("x86_64-linux-gnu.2.17", ".so"),
+    "win64": ("x86_64-windows-gnu", ".dll"),
+    "darwin64": ("x86_64-macos", ".dylib"),
+}
+"""Platforms of FMI 2.0: target of the compiler, extension of a shared library."""
+
+# No contraction to fused operations: the same numbers on every machine. No symbols and no
+# debug information (-s): they would hold paths.
+FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared", "-s")
+
+
+def compile_binary(folder: Path, platform: str, cache: Path) -> None:
+    """Compile the sources of an unpacked FMU, and put the binary in its place in the folder.
+
+    ``cache`` is where the compiler keeps what it can use again. Raises
+    ``subprocess.CalledProcessError`` where the compiler refuses; it says why on stderr.
+    """
+    # FMPy reads the SourceFiles of FMI 2.0 as a build configuration of FMI 3.0.
+    description: Any = fmpy.read_model_description(str(folder))
+    sources = description.buildConfigurations[0].sourceFileSets[0].sourceFiles
+    target, extension = PLATFORMS[platform]
+    binary = description.coSimulation.modelIdentifier + extension
+    with TemporaryDirectory() as scratch:
+        # Names without a folder: a dynamic library of macOS holds the name it was made with.
+        shutil.copytree(folder / "sources", scratch, dirs_exist_ok=True)
+        subprocess.run(
+            [
+                *(sys.executable, "-m", "ziglang", "cc", "-target", target, *FLAGS),
+                *(f"-I{Path(fmpy.__file__).parent / 'c-code'}", *sources, "-lm", "-o", binary),
+            ],
+            cwd=scratch,
+            env={
+                **os.environ,
+                "ZIG_GLOBAL_CACHE_DIR": str(cache.resolve()),
+                "ZIG_LOCAL_CACHE_DIR": str(cache.resolve()),
+            },
+            check=True,
+        )
+        place = folder / "binaries" / platform
+        place.mkdir(parents=True)
+        shutil.move(Path(scratch) / binary, place / binary)
+
+
+def release(fmu: Path, out: Path, cache: Path) -> None:
+    """Write a copy of an FMU with the binaries of every platform instead of its own.
+
+    All are compiled from the sources in the FMU; ``cache`` and errors as ``compile_binary``.
+    """
+    with TemporaryDirectory() as unpacked:
+        folder = Path(fmpy.extract(str(fmu), unzipdir=unpacked))
+        shutil.rmtree(folder / "binaries")
+        for platform in PLATFORMS:
+            compile_binary(folder, platform, cache)
+        files = [f for f in folder.rglob("*") if f.is_file()]
+        archive.write(out, {f.relative_to(folder).as_posix(): f for f in files})

@@ -1,0 +1,90 @@
+"""What people see of an FMU: ``documentation/index.html``, its icon, and ``model.png``.
+
+The page is one Jinja2 template for all FMUs, in ``modelDescription/documentation``; its
+variables are those of the template of the model description.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import Element
+
+import jinja2
+
+from sigmahat.export import description, icon
+
+
+def write(template: Path, out: Path, version: str) -> None:
+    """Write the files into a folder, by their names in the FMU.
+
+    Raises as `description.render` does, and ``KeyError`` for an FMU without an icon.
+    """
+    folder = out / "documentation"
+    folder.mkdir(parents=True, exist_ok=True)
+    icon.write(template.stem, out / "model.png", folder / "icon.svg")
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(template.parent / "documentation"),
+        undefined=jinja2.StrictUndefined,
+        autoescape=True,
+    )
+    root = description.render(template, version)
+    (experiment,) = root.findall("DefaultExperiment")
+    page = environment.get_template("page.html").render(
+        identifier=template.stem,
+        kind="plant" if template.stem.endswith("Plant") else "estimator",
+        experiment=experiment.attrib,
+        variables={c: _table(root, c) for c in ("input", "output", "parameter")},
+        **{key: root.attrib[key] for key in ("description", "version", "copyright", "license")},
+    )
+    (folder / "index.html").write_text(page, encoding="utf-8")
+
+
+def _table(root: Element, causality: str) -> dict[str, Any]:
+    """Rows of the variables of one causality; those of an array by the array's name."""
+    single: list[dict[str, Any]] = []
+    arrays: dict[str, list[dict[str, Any]]] = {}
+    for variable in description.variables(root):
+        if variable.attrib["causality"] == causality:
+            array = re.fullmatch(r"(.+)\[.+\]", variable.attrib["name"])
+            rows = arrays.setdefault(array[1], []) if array else single
+            rows.append(_row(root, variable))
+    return {"single": single, "arrays": arrays}
+
+
+def _row(root: Element, variable: Element) -> dict[str, Any]:
+    kind = variable[0]
+    start, shown, choices = kind.get("start", ""), "", []
+    limits = _range(kind)
+    if kind.tag == "Real":
+        start = f"{float(start):.6g}" if start else ""
+        display = root.find(f"UnitDefinitions/Unit[@name='{kind.attrib['unit']}']/DisplayUnit")
+        if display is not None and float(start or 0):
+            value = float(kind.attrib["start"]) * float(display.attrib["factor"])
+            shown = f" ({value:.6g} {display.attrib['name']})"
+    elif kind.tag == "Enumeration":
+        path = f"TypeDefinitions/SimpleType[@name='{kind.attrib['declaredType']}']/Enumeration/Item"
+        choices = [item.attrib for item in root.findall(path)]
+        start = next(item["name"] for item in choices if item["value"] == start)
+        limits = "see items"
+    elif kind.tag == "Boolean":
+        limits = "false, true"
+    return {
+        "name": variable.attrib["name"],
+        "unit": kind.get("unit", ""),
+        "start": start + shown,
+        "range": limits,
+        "variability": variable.attrib["variability"],
+        "description": variable.attrib["description"],
+        "choices": choices,
+    }
+
+
+def _range(kind: Element) -> str:
+    low, high = kind.get("min"), kind.get("max")
+    if low is None and high is None:
+        return "any"
+    open_low = low is None or "min" in kind.get("open", "")
+    open_high = high is None or "max" in kind.get("open", "")
+    return f"{'(['[not open_low]}{low or '-∞'}, {high or '∞'}{')]'[not open_high]}"

@@ -1,0 +1,97 @@
+"""``sigmahat-awas.ssp``: plant and estimator as a system after SSP 1.0, to be opened at once.
+
+What is connected, and with which parameters, is the scenario ``table1``, estimator RESIDUAL.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import jinja2
+
+import sigmahat
+from sigmahat.export import archive
+from sigmahat.scenarios import scenario
+from sigmahat.slave import Fmu, Value
+
+
+def write(ssp: Path, plant: Path, estimator: Path, templates: Path) -> None:
+    """Write the SSP from the two FMUs and the folder of its Jinja2 templates.
+
+    Equal FMUs and templates give equal bytes. Raises ValueError if the scenario sets an
+    enumeration to something else than the FMU does.
+    """
+    table1 = scenario("table1")
+    residual = table1.estimators["RESIDUAL"]
+    connections = residual.connections
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates), undefined=jinja2.StrictUndefined, autoescape=True
+    )
+    with Fmu(plant) as of_plant, Fmu(estimator) as of_estimator, TemporaryDirectory() as folder:
+        units = {u.name: u for f in (of_plant, of_estimator) for u in f.description.unitDefinitions}
+        sent = dict.fromkeys((*connections.values(), "sigma"))
+        data = {
+            "version": sigmahat.__version__,
+            "torques": table1.plant.inputs,
+            "connections": connections,
+            "duration": table1.duration,
+            "units": units.values(),
+            "plant": _element("plant", of_plant, plant, table1.plant.inputs, sent),
+            "estimator": _element("estimator", of_estimator, estimator, connections, ["sigma"]),
+            "parameters": [
+                *_parameters("plant", of_plant, table1.plant.start),
+                *_parameters("estimator", of_estimator, residual.start),
+            ],
+        }
+        contents = {f"resources/{fmu.name}": fmu for fmu in (plant, estimator)}
+        for name, template in (
+            ("SystemStructure.ssd", "SystemStructure.ssd"),
+            ("resources/table1.ssv", "table1.ssv"),
+        ):
+            contents[name] = Path(folder) / template
+            text = environment.get_template(template).render(data)
+            contents[name].write_text(text, encoding="utf-8")
+        archive.write(ssp, contents)
+
+
+def _element(
+    name: str, fmu: Fmu, path: Path, inputs: Iterable[str], outputs: Iterable[str]
+) -> dict[str, Any]:
+    return {
+        "name": name,
+        "fmu": path.name,
+        "description": fmu.description.description,
+        "input": {n: fmu.variable(n, "input").unit for n in inputs},
+        "output": {n: fmu.variable(n, "output").unit for n in outputs},
+    }
+
+
+def _parameters(element: str, fmu: Fmu, start: Mapping[str, Value]) -> list[dict[str, Any]]:
+    """All parameters but initial estimates, which are zero, and enumerations.
+
+    Importers disagree on how to write an enumeration: the standard wants the name of its item,
+    FMPy the number. So they stay as the FMU has them.
+    """
+    own, listed = fmu.parameters({}), []
+    for name, value in fmu.parameters(start).items():
+        variable = fmu.variable(name)
+        if variable.type == "Enumeration":
+            if value != own[name]:
+                raise ValueError(
+                    f"{fmu.name}.{name}: the SSP leaves it at {own[name]}, "
+                    f"the scenario wants {value}"
+                )
+        elif not name.startswith("rls.eta_0"):
+            boolean = variable.type == "Boolean"
+            listed.append(
+                {
+                    "name": f"{element}.{name}",
+                    "type": variable.type,
+                    "value": str(bool(value)).lower() if boolean else repr(value),
+                    "unit": variable.unit,
+                }
+            )
+    return listed

@@ -1,0 +1,75 @@
+"""The FMUs as they are released, and one run of each that every importer repeats."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+from numpy.typing import NDArray
+
+FMUS = [
+    "AntagonisticStiffnessEstimator",
+    "AntagonisticVsaPlant",
+    "AwasPlant",
+    "FlexibleJointPlant",
+    "StiffnessEstimator",
+]
+STEP, STEPS = 1e-3, 1000
+
+# The greatest difference that is allowed between two runs, relative to the variable's range.
+AGREEMENT = 1e-9
+
+
+class Run:
+    """An FMU and the trajectory that FMPy computes with it: held inputs, one row per step."""
+
+    def __init__(self, fmu: Path) -> None:
+        self.fmu = fmu
+        self.description: Any = fmpy.read_model_description(str(fmu))
+        variables = self.description.modelVariables
+        self.inputs = [v for v in variables if v.causality == "input"]
+        self.outputs = [v for v in variables if v.causality == "output" and v.type == "Real"]
+        self.time = STEP * np.arange(STEPS + 1)
+        # Different for each input, so that exchanged ones are seen; 0 at the start, where
+        # importers differ in whether they set inputs before the initialisation ends.
+        self.signals = np.array(
+            [
+                0.3 * np.sin(2 * np.pi * (1 + 0.37 * number) * self.time)
+                for number in range(len(self.inputs))
+            ]
+        ).T
+        self.trajectory = self.simulate(fmu)
+
+    def table(self) -> NDArray[Any]:
+        """The inputs with their times, as FMPy takes them."""
+        names = ["time", *(v.name for v in self.inputs)]
+        table = np.empty(len(self.time), [(name, np.float64) for name in names])
+        for name, column in zip(names, [self.time, *self.signals.T], strict=True):
+            table[name] = column
+        return table
+
+    def simulate(self, fmu: Path) -> NDArray[np.float64]:
+        """Real outputs of an FMU with this description under FMPy [size: steps + 1, outputs]."""
+        messages: list[str] = []
+        result = fmpy.simulate_fmu(
+            str(fmu),
+            stop_time=self.time[-1],
+            output_interval=STEP,
+            input=self.table(),
+            output=[v.name for v in self.outputs],
+            logger=lambda *message: messages.append(str(message)),
+        )
+        assert messages == []
+        trajectory: NDArray[np.float64] = np.array([result[v.name] for v in self.outputs]).T
+        return trajectory
+
+    def assert_same(self, other: NDArray[np.float64]) -> None:
+        """Fails, with the worst variable, where a trajectory is not FMPy's."""
+        assert other.shape == self.trajectory.shape
+        scale = np.abs(self.trajectory).max(axis=0)
+        difference = np.abs(other - self.trajectory).max(axis=0)
+        relative = difference / np.where(scale > 0, scale, 1)
+        worst = int(np.argmax(relative))
+        assert relative[worst] <= AGREEMENT, f"{self.outputs[worst].name}: {relative[worst]:.1e}"

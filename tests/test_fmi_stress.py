@@ -1,0 +1,83 @@
+"""What only sanitizers see: races, leaks, undefined behaviour, and sequences nobody thought of."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from c_programs import compile_driver, compiler_with
+from fmi_runs import ESTIMATORS, PLANTS
+from gate import missing
+
+every_fmu = pytest.mark.parametrize("fmu", ESTIMATORS + PLANTS)
+CYCLES = 100_000
+THREAD = ("-fsanitize=thread", "-pthread")
+ADDRESS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+FUZZER = (
+    "-fsanitize=fuzzer,address,undefined,float-cast-overflow",
+    "-fno-sanitize-recover=all",
+    "-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION",
+)
+FUZZED = ["StiffnessEstimator", "AwasPlant"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("drivers")
+
+
+def run(*command: str | Path) -> str:
+    """Standard output of a program that has to end well and keep its peace."""
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    assert done.returncode == 0 and done.stderr == "", done.stderr[-10000:]
+    return done.stdout
+
+
+@every_fmu
+def test_instances_in_turn_and_in_threads_do_not_know_each_other(
+    fmu: str, build: Path, folder: Path
+) -> None:
+    compiler = compiler_with(THREAD, folder)
+    run(compile_driver("threads", fmu, build, folder, compiler, THREAD))
+
+
+@every_fmu
+def test_memory_does_not_grow(fmu: str, build: Path, folder: Path) -> None:
+    program = compile_driver("cycles", fmu, build, folder, compiler_with((), folder))
+    # A single byte lost in each cycle would be more.
+    assert int(run(program, str(CYCLES))) * 1024 < 0.9 * CYCLES
+
+
+@every_fmu
+def test_no_leak_and_nothing_undefined(fmu: str, build: Path, folder: Path) -> None:
+    compiler = compiler_with(ADDRESS, folder)
+    run(compile_driver("cycles", fmu, build, folder, compiler, ADDRESS), str(CYCLES))
+
+
+@every_fmu
+def test_valgrind_finds_nothing(fmu: str, build: Path, folder: Path) -> None:
+    if shutil.which("valgrind") is None:
+        missing("valgrind", "apt-get install valgrind")
+    program = compile_driver("cycles", fmu, build, folder, compiler_with((), folder))
+    leaks = ["--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all"]
+    run("valgrind", "-q", "--error-exitcode=1", *leaks, program, "1000")
+
+
+def test_fuzzer_finds_nothing(build: Path, folder: Path) -> None:
+    """An estimator and a plant, half a minute each, side by side."""
+    compiler = compiler_with(FUZZER, folder)
+    programs = [compile_driver("fuzz", fmu, build, folder, compiler, FUZZER) for fmu in FUZZED]
+    options = ["-max_total_time=30", "-max_len=512", "-timeout=20", f"-artifact_prefix={folder}/"]
+    running = [
+        subprocess.Popen(
+            [program, *options], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        )
+        for program in programs
+    ]
+    for process in running:
+        log = process.communicate()[1]
+        assert process.returncode == 0, log[-10000:]
+        assert "DONE" in log

@@ -1,0 +1,161 @@
+"""Tunable parameters changed in the middle of a run: at once, and nothing else is lost."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+
+import sigmahat
+from c_library import MEASUREMENTS, Estimator, load
+from fmi_instance import OK, Instance
+from fmi_runs import ESTIMATORS, PLANTS, SIGNALS, names
+
+T = 1e-3  # s
+STEPS = 60
+CHANGE = random.Random(4).randrange(20, 40)  # the parameter is changed before this step
+SIDES = {"StiffnessEstimator": [""], "AntagonisticStiffnessEstimator": ["_1", "_2"]}
+# Where a parameter acts; the others act as the FMU is.
+CONFIGURATION = {
+    "filter.R": {"filter.kind": 2},
+    "filter.V_max": {"encoder.theta": 2000},  # in slow motion, counted in these
+    "filter.alpha": {"encoder.theta": 2000},
+    "model.k_s": {"modality": 3},
+    "model.r_0": {"modality": 3},
+    "model.b": {"modality": 3},
+}
+# The new value where half as much again is the same, or not enough.
+CHANGED = {
+    "modality": 2,
+    "motor_c.B": 1.29e-6,
+    "spring.k_3": 1e4,
+    "link.tau_coulomb": 0.05,
+    "link.mgl": 1.0,
+    "motor.tau_coulomb": 0.02,
+    "motor_1.tau_coulomb": 0.02,
+    "motor_2.tau_coulomb": 0.02,
+}
+SCALARS = (
+    "sigma",
+    "tau_e",
+    "tau_e_residual",
+    "theta_dot",
+    "phi",
+    "setPoint",
+    "a",
+    "rho",
+    "epsilon",
+)
+ETA = [(i, j) for i in range(8) for j in range(5)]
+
+
+def tunables(fmus: list[str]) -> list[tuple[str, str]]:
+    return [
+        (fmu, variable.name)
+        for fmu in fmus
+        for variable in fmpy.read_model_description(str(sigmahat.fmu(fmu))).modelVariables
+        if variable.variability == "tunable"
+    ]
+
+
+def run_fmu(
+    fmu: str, outputs: list[str], start: Mapping[str, float], change: Mapping[str, float]
+) -> list[list[float]]:
+    """Outputs after every step, with parameters changed before step number CHANGE."""
+    results = []
+    with Instance(sigmahat.fmu(fmu)) as instance:
+        instance.initialise(start)
+        inputs = names(instance, "input")
+        for k in range(STEPS):
+            if k == CHANGE:
+                instance.set_all(change)
+            instance.set_all({name: SIGNALS[name](k * T) for name in inputs})
+            assert instance.step(k * T, T) == OK, instance.messages
+            results.append(instance.get_all(outputs))
+    return results
+
+
+def run_library(
+    build: Path, side: str, start: Mapping[str, float], change: Mapping[str, float]
+) -> list[list[float]]:
+    """The same of one estimator, which takes its inputs and its motor from a side of the FMU."""
+    estimator = Estimator(load(build), start)
+    results = []
+    for k in range(STEPS):
+        if k == CHANGE:
+            for name, value in change.items():
+                group, dot, last = name.rpartition(".")
+                if group in ("motor_1", "motor_2"):
+                    if not group.endswith(side):
+                        continue
+                    group = "motor"
+                estimator.library.set(estimator.parameters, group + dot + last, value)
+        signals = {name: SIGNALS.get(name + side) or SIGNALS[name] for name in MEASUREMENTS}
+        if side:
+            signals["theta_c"] = lambda t: 0.0
+        assert estimator.tick([signals[name](k * T) for name in MEASUREMENTS])
+        estimate = estimator.estimate
+        results.append(
+            [getattr(estimate, name) for name in SCALARS] + [estimate.eta[i][j] for i, j in ETA]
+        )
+    return results
+
+
+@pytest.mark.parametrize(("fmu", "name"), tunables(ESTIMATORS))
+def test_an_estimator_goes_on_as_the_library_with_the_parameter_changed(
+    fmu: str, name: str, build: Path
+) -> None:
+    sides = SIDES[fmu]
+    outputs = [
+        output
+        for side in sides
+        for output in [f"{n}{side}" for n in SCALARS] + [f"eta{side}[{i},{j}]" for i, j in ETA]
+    ]
+    start: Mapping[str, float] = CONFIGURATION.get(name, {})
+    with Instance(sigmahat.fmu(fmu)) as instance:
+        value = CHANGED.get(name, 1.5 * float(instance.variables[name].start))
+    with_change = run_fmu(fmu, outputs, start, {name: value})
+    without = run_fmu(fmu, outputs, start, {})
+    assert with_change[:CHANGE] == without[:CHANGE]
+    assert with_change[CHANGE] != without[CHANGE]  # the very next tick
+
+    runs = [run_library(build, side, start, {name: value}) for side in sides]
+    expected = [[value for row in rows for value in row] for rows in zip(*runs, strict=True)]
+    assert with_change == expected
+
+
+@pytest.mark.parametrize(("fmu", "name"), tunables(PLANTS))
+def test_a_plant_goes_on_from_its_state_with_the_parameter_changed(fmu: str, name: str) -> None:
+    """As another plant does, that has the parameter from the start and starts in that state."""
+    with Instance(sigmahat.fmu(fmu)) as instance:
+        variables = instance.variables
+        outputs = names(instance, "output")
+        value = CHANGED.get(name, 1.5 * float(variables[name].start))
+        exact = {n: 0.0 for n in variables if n.endswith("_variance") or n.startswith("encoder.")}
+        states = [n.removeprefix("initial.") for n in variables if n.startswith("initial.")]
+    with_change = np.array(run_fmu(fmu, outputs, exact, {name: value}))
+    without = np.array(run_fmu(fmu, outputs, exact, {}))
+    np.testing.assert_array_equal(with_change[:CHANGE], without[:CHANGE])
+    assert (with_change[CHANGE] != without[CHANGE]).any()  # the very next step
+
+    at_change = dict(zip(outputs, with_change[CHANGE - 1], strict=True))
+    with Instance(sigmahat.fmu(fmu)) as other:
+        other.initialise(
+            exact | {f"initial.{n}": at_change[n] for n in states} | {name: value},
+            start=CHANGE * T,
+        )
+        expected = []
+        for k in range(CHANGE, STEPS):
+            other.set_all({n: SIGNALS[n](k * T) for n in names(other, "input")})
+            assert other.step(k * T, T) == OK, other.messages
+            expected.append(other.get_all(outputs))
+    scale = np.max(np.abs(with_change), axis=0)
+    scale[scale == 0.0] = 1.0
+    error = np.abs(with_change[CHANGE:] - expected) / scale
+    effect = np.abs(with_change[CHANGE:] - without[CHANGE:]) / scale
+    assert error.max() < 1e-9  # of the integration, which took other internal steps
+    assert effect.max() > 1e-7

@@ -1,0 +1,198 @@
+"""What modelDescription.xml says of an FMU beside its names, against what the FMU does."""
+
+from __future__ import annotations
+
+import math
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import pytest
+from lxml import etree
+
+import sigmahat
+from fmi_instance import OK, Instance
+
+ESTIMATORS = ["StiffnessEstimator", "AntagonisticStiffnessEstimator"]
+PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant"]
+FMUS = ESTIMATORS + PLANTS
+
+# SI units of this many base units; what the name of a unit means. Powers follow a symbol.
+SYMBOLS = {
+    "1": {},
+    "s": {"s": 1},
+    "m": {"m": 1},
+    "rad": {"rad": 1},
+    "kg": {"kg": 1},
+    "N": {"kg": 1, "m": 1, "s": -2},
+}
+
+
+@pytest.fixture(scope="module", params=FMUS)
+def fmu(request: pytest.FixtureRequest) -> Path:
+    return sigmahat.fmu(request.param)
+
+
+def read(fmu: Path) -> Any:
+    with zipfile.ZipFile(fmu) as archive:
+        return etree.fromstring(archive.read("modelDescription.xml"))
+
+
+def powers(unit: str) -> dict[str, int]:
+    """Exponents of the base units in a product such as N.m.s/rad."""
+    total: dict[str, int] = {}
+    for sign, part in zip((1, -1), unit.split("/"), strict=False):
+        for factor in part.split("."):
+            symbol = factor.rstrip("234") or factor
+            exponent = int(factor[len(symbol) :] or 1)
+            for base, power in SYMBOLS[symbol].items():
+                total[base] = total.get(base, 0) + sign * exponent * power
+    return {base: power for base, power in total.items() if power}
+
+
+def test_base_units_are_what_the_names_of_units_say(fmu: Path) -> None:
+    for unit in read(fmu).iterfind("UnitDefinitions/Unit"):
+        base = {key: int(value) for key, value in unit.find("BaseUnit").attrib.items()}
+        assert base == powers(unit.get("name")), unit.get("name")
+
+
+@pytest.mark.parametrize(
+    ("unit", "display", "shown"),
+    [
+        ("rad", "deg", 180 / math.pi),
+        ("rad/s", "deg/s", 180 / math.pi),
+        ("m", "mm", 1e3),
+        ("s", "ms", 1e3),
+        ("kg.m2", "g.cm2", 1e3 * 100**2),
+        ("N/m", "N/mm", 1e-3),
+        ("m/rad", "mm/rad", 1e3),
+    ],
+)
+def test_one_unit_is_so_much_of_its_display_unit(
+    fmu: Path, unit: str, display: str, shown: float
+) -> None:
+    root = read(fmu)
+    (found,) = root.xpath(f"UnitDefinitions/Unit[@name='{unit}']/DisplayUnit")
+    assert found.get("name") == display
+    assert float(found.get("factor")) == pytest.approx(shown, rel=1e-15)
+    for real in root.xpath(f"ModelVariables/ScalarVariable/Real[@unit='{unit}']"):
+        assert real.get("displayUnit") == display
+
+
+def test_starts_and_nominals_fit_the_ranges(fmu: Path) -> None:
+    reals = read(fmu).xpath("ModelVariables/ScalarVariable/Real")
+    for real in reals:
+        low, high = float(real.get("min", "-inf")), float(real.get("max", "inf"))
+        for key in ("start", "nominal"):
+            assert real.get(key) is None or low <= float(real.get(key)) <= high
+        assert float(real.get("nominal", 1)) > 0
+
+
+def test_everything_is_described(fmu: Path) -> None:
+    root = read(fmu)
+    for path in (
+        "ModelVariables/ScalarVariable",
+        "TypeDefinitions/SimpleType",
+        "TypeDefinitions/SimpleType/Enumeration/Item",
+        "LogCategories/Category",
+    ):
+        for element in root.iterfind(path):
+            assert len(element.get("description", "")) > 5, element.get("name")
+    for key in ("description", "author", "version", "copyright", "license", "generationTool"):
+        assert root.get(key)
+    experiment = root.find("DefaultExperiment")
+    assert set(experiment.attrib) == {"startTime", "stopTime", "stepSize"}
+    assert float(experiment.get("stepSize")) == 1e-3
+
+
+def test_only_attributes_of_the_standard_are_delivered(fmu: Path) -> None:
+    """Those that serve the build alone, `open` and `depends`, are gone."""
+    folder = Path(fmpy.__file__).parent / "schema" / "fmi2"
+    schema = etree.XMLSchema(file=str(folder / "fmi2ModelDescription.xsd"))
+    schema.assertValid(read(fmu))
+
+
+def known_values(fmu: Instance) -> dict[str, list[float]]:
+    """Values to try, besides the present one, for every input and parameter."""
+    values: dict[str, list[float]] = {}
+    for name, v in fmu.variables.items():
+        if v.causality == "output":
+            continue
+        if v.type == "Boolean":
+            values[name] = [0, 1]
+        elif v.type == "Enumeration":
+            values[name] = [int(item.value) for item in v.declaredType.items]
+        elif v.type == "Integer":
+            values[name] = [1, 2, float(v.max or 3)]
+        else:
+            present = fmu.get(name) or 0.1
+            values[name] = [0.4321 * present, 1.2345 * present]
+    return values
+
+
+def distinct(fmu: Instance, symmetric: int) -> dict[str, float]:
+    """Parameters such that none is without effect because another one is zero."""
+    start: dict[str, float] = {}
+    for k, (name, v) in enumerate(fmu.variables.items()):
+        if name == "rls.symmetric":
+            start[name] = symmetric
+        elif name in ("rls.n", "rls.m"):
+            start[name] = float(v.max)
+        elif v.causality == "parameter" and v.type == "Real" and float(v.start) == 0:
+            start[name] = 0.3 + 0.01 * k
+    return start
+
+
+def observed(path: Path, symmetric: int) -> dict[str, set[str]]:
+    """By output: the inputs and parameters that change its value in initialisation mode."""
+    with Instance(path) as fmu:
+        outputs = [n for n, v in fmu.variables.items() if v.causality == "output"]
+        assert fmu.setup() == OK
+        fmu.set_all(distinct(fmu, symmetric))
+        assert fmu.enter() == OK
+        depends: dict[str, set[str]] = {name: set() for name in outputs}
+        before = fmu.get_all(outputs)
+        for known, values in known_values(fmu).items():
+            present = fmu.get(known)
+            for value in values:
+                fmu.set_all({known: value})
+                for name, old, new in zip(outputs, before, fmu.get_all(outputs), strict=True):
+                    if new != old:
+                        depends[name].add(known)
+            fmu.set_all({known: present})
+            assert fmu.get_all(outputs) == before
+    return depends
+
+
+def test_initial_unknowns_depend_on_what_changes_them(fmu: Path) -> None:
+    """Both ways: nothing that acts is left out, nothing is listed that does not act."""
+    root = read(fmu)
+    names = [v.get("name") for v in root.iterfind("ModelVariables/ScalarVariable")]
+    declared = {}
+    for unknown in root.iterfind("ModelStructure/InitialUnknowns/Unknown"):
+        indices = unknown.get("dependencies").split()
+        assert unknown.get("dependenciesKind").split() == ["dependent"] * len(indices)
+        declared[names[int(unknown.get("index")) - 1]] = {names[int(i) - 1] for i in indices}
+    first, second = observed(fmu, 1), observed(fmu, 0)
+    assert declared == {name: first[name] | second[name] for name in first}
+
+
+def test_no_output_depends_on_an_input_at_a_communication_point(fmu: Path) -> None:
+    root = read(fmu)
+    unknowns = root.findall("ModelStructure/Outputs/Unknown")
+    assert [u.get("dependencies") for u in unknowns] == [""] * len(unknowns)
+    with Instance(fmu) as instance:
+        variables = instance.variables.items()
+        outputs = [name for name, v in variables if v.causality == "output"]
+        assert [int(u.get("index")) - 1 for u in unknowns] == [
+            i for i, (_, v) in enumerate(variables) if v.causality == "output"
+        ]
+        instance.initialise()
+        for k in range(3):
+            assert instance.step(k * 1e-3, 1e-3) == OK
+            before = instance.get_all(outputs)
+            for name, v in variables:
+                if v.causality == "input":
+                    instance.set_all({name: 0.2 + k})
+                    assert instance.get_all(outputs) == before
