@@ -107,6 +107,22 @@ def test_an_interrupt_keeps_what_is_done(tmp_path: Path) -> None:
     assert 2 <= len(records(tmp_path / "out" / "runs.jsonl")) < 200
 
 
+def test_a_process_that_is_killed(tmp_path: Path) -> None:
+    arguments = [*QUICK, "--seeds", "200", "--out", "out"]
+    process = start(arguments, tmp_path)
+    path = tmp_path / "out" / "runs.jsonl"
+    wait_for_records(path, 2, process)
+    children = psutil.Process(process.pid).children()
+    next(child for child in children if "spawn_main" in " ".join(child.cmdline())).kill()
+    output, errors = process.communicate(timeout=60)
+    assert (process.returncode, output) == (2, "")
+    assert errors == (
+        "sigmahat: error: a process was ended from outside; "
+        "the same command goes on from what is done\n"
+    )
+    assert 2 <= len(records(path)) < 200
+
+
 def test_two_sweeps_at_once_in_one_folder(tmp_path: Path) -> None:
     arguments = [*QUICK, "--seeds", "50", "--out", "out"]
     process = start(arguments, tmp_path)

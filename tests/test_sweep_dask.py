@@ -31,28 +31,36 @@ def background(*arguments: str, cwd: Path) -> Iterator[subprocess.Popen[bytes]]:
 
 
 @pytest.fixture
-def address(tmp_path: Path) -> Iterator[str]:
-    """Of a scheduler without workers."""
-    with background("scheduler", "--port", "0", *HERE, cwd=tmp_path):
-        file = tmp_path / "scheduler.json"
-        deadline = time.monotonic() + 60
-        while not file.exists() or not file.read_text():
-            assert time.monotonic() < deadline
-            time.sleep(0.1)
-        yield json.loads(file.read_text())["address"]
+def scheduler(tmp_path: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """One without workers."""
+    with background("scheduler", "--port", "0", *HERE, cwd=tmp_path) as process:
+        yield process
+
+
+@pytest.fixture
+def address(scheduler: subprocess.Popen[bytes], tmp_path: Path) -> str:
+    """Of the scheduler, once it is there."""
+    file = tmp_path / "scheduler.json"
+    deadline = time.monotonic() + 60
+    while not file.exists() or not file.read_text():
+        assert scheduler.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.1)
+    found: str = json.loads(file.read_text())["address"]
+    return found
 
 
 @contextmanager
-def worker(folder: Path, name: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A process that does one run at a time."""
-    options = ["--nthreads", "1", "--no-nanny", "--name", name, "--local-directory", name]
+def worker(folder: Path, name: str, runs: int = 1) -> Iterator[subprocess.Popen[bytes]]:
+    """A process that does so many runs at a time."""
+    options = ["--nthreads", str(runs), "--no-nanny", "--name", name, "--local-directory", name]
     with background("worker", *HERE, *options, cwd=folder) as process:
         yield process
 
 
 def test_one_of_two_workers_killed(address: str, tmp_path: Path) -> None:
     arguments = [*QUICK, "--seeds", "24"]
-    with worker(tmp_path, "one") as one, worker(tmp_path, "two"):
+    with worker(tmp_path, "one") as one, worker(tmp_path, "two", runs=2):
         process = start([*arguments, "--scheduler", address, "--out", "cluster"], tmp_path)
         # WHEN a worker is killed while both have work
         path = tmp_path / "cluster" / "runs.jsonl"
@@ -75,3 +83,22 @@ def test_a_scheduler_without_workers(address: str, tmp_path: Path) -> None:
     line = refused(*QUICK, "--scheduler", address, "--out", "out", cwd=tmp_path)
     assert f"start one with `dask worker {address}`" in line
     assert not (tmp_path / "out").exists()
+
+
+def test_the_scheduler_is_lost(
+    scheduler: subprocess.Popen[bytes], address: str, tmp_path: Path
+) -> None:
+    arguments = [*QUICK, "--seeds", "200", "--out", "out"]
+    path = tmp_path / "out" / "runs.jsonl"
+    with worker(tmp_path, "one"):
+        process = start([*arguments, "--scheduler", address], tmp_path)
+        wait_for_records(path, 3, process)
+        scheduler.kill()
+        output, errors = process.communicate(timeout=60)
+    assert (process.returncode, output) == (2, "")
+    (line,) = errors.splitlines()
+    assert line == (
+        f"sigmahat: error: the scheduler at {address} was lost; "
+        "the same command goes on from what is done"
+    )
+    assert 3 <= len(records(path)) < 200

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -76,6 +77,18 @@ def test_runs_in_the_order_of_the_file(tmp_path: Path) -> None:
              for seed in (1, 2)}  # fmt: skip
     assert [len(values) for values in drawn.values()] == [1, 1]
     assert drawn[1] != drawn[2]
+
+
+def test_the_plan_of_the_documentation(tmp_path: Path) -> None:
+    page = Path(__file__).parent.parent / "docs" / "sweeps.md"
+    (text,) = re.findall(r"```toml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    (tmp_path / "plan.toml").write_text(text)
+    plan = read_plan(tmp_path / "plan.toml")
+    assert (len(plan), plan.modalities) == (100, ("RESIDUAL",))
+    assert plan.parameters == {
+        "estimator.motor.D_theta": tuple(np.linspace(0.9e-3, 1.1e-3, 5).tolist()),
+        "plant.link.M": Drawn("normal", 0.1, 0.005),
+    }
 
 
 def test_options_replace_the_file(tmp_path: Path) -> None:

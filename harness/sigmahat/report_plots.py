@@ -1,4 +1,7 @@
-"""Panels as Bokeh plots. The page gives them their switches and, through CSS, their colours."""
+"""What a report shows, and its panels as Bokeh draws them.
+
+The page gives the plots their switches and, through CSS, their colours.
+"""
 
 from __future__ import annotations
 
@@ -23,9 +26,69 @@ from bokeh.models import (
 from bokeh.plotting import figure
 from numpy.typing import NDArray
 
-from sigmahat.report_contents import Panel, Trace
-
 _HEIGHT = 300
+TRUE = "#8f8f8f"
+COLORS = ("#1f83c4", "#12a37c", "#e06a1a", "#c9589b", "#b58900", "#56b4e9")
+"""Okabe and Ito, shifted to be read on white and on black."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Cells as text."""
+
+    title: str
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+    @property
+    def words(self) -> list[bool]:
+        """Of each column, whether it has words, which stand at the left."""
+        columns = zip(*self.rows, strict=True)
+        return [any(cell[:1].isalpha() and cell != "nan" for cell in column) for column in columns]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """A line, or points, in one colour and with one switch."""
+
+    label: str
+    color: str
+    x: NDArray[Any]
+    y: NDArray[Any]
+    kind: str = "line"
+    """line; points; means, points with intervals; steps, y between edges x (one x more)."""
+    half: NDArray[Any] | None = None
+    """Half widths of the intervals of means."""
+    width: float = 1.4
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A plot."""
+
+    title: str
+    x_label: str
+    y_label: str
+    traces: Sequence[Trace]
+    x_log: bool = False
+    y_log: bool = False
+    linked: bool = True
+    """Its x axis moves with those of the other panels that are linked."""
+    y_range: tuple[float, float] | None = None
+    """What is seen at first, where an estimate jumps while it learns."""
+
+
+@dataclass(frozen=True)
+class Contents:
+    """All of a report."""
+
+    title: str
+    lines: Sequence[str]
+    """Below the title."""
+    tables: Sequence[Table]
+    panels: Sequence[Panel]
+    every: tuple[float, float] | None = None
+    """Where every sample is drawn, if not everywhere."""
 
 
 @dataclass(frozen=True)

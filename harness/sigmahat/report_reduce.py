@@ -36,8 +36,8 @@ def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = B
     rows = max(budget // max(len(signals), 1), 8)
     t = np.asarray(t, dtype=np.float64)
     if len(t) <= rows:
-        values = {name: np.asarray(s, dtype=np.float32) for name, s in signals.items()}
-        return Reduced(t, values, 1, (float(t[0]), float(t[-1])))
+        whole = {name: np.asarray(s, dtype=np.float32) for name, s in signals.items()}
+        return Reduced(t, whole, 1, (float(t[0]), float(t[-1])))
     first = (len(t) - rows // 2) // 2
     last = first + rows // 2
     bucket = -(-(len(t) - rows // 2) * 2 // (rows - rows // 2))

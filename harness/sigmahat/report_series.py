@@ -13,7 +13,7 @@ import pyarrow.csv
 import pyarrow.parquet
 from numpy.typing import NDArray
 
-from sigmahat.report_contents import COLORS, TRUE, Contents, Panel, Table, Trace, number
+from sigmahat.report_plots import COLORS, TRUE, Contents, Panel, Table, Trace
 from sigmahat.report_reduce import Reduced, reduce
 
 _TIME = "time t [s]"
@@ -56,12 +56,15 @@ def reproduction(folder: Path) -> Contents:
     }
     # Its other files may be there, but not its own.
     modalities = {n: t for n, t in modalities.items() if t.column_names[0] == "t [s]"}
-    if not modalities or table.column_names[0] != "estimation":
+    if not modalities or table.column_names[:2] != ["estimation", "seeds"]:
         raise ValueError(f"{folder}: no result of `sigmahat reproduce`; run it again")
     order = [str(n).split(" ")[0] for n in table["estimation"].to_pylist()]
     names = sorted(modalities, key=lambda n: order.index(n) if n in order else len(order))
     if len({len(modalities[n]) for n in names}) > 1:
-        raise ValueError(f"{folder}: files of different lengths; run `sigmahat reproduce` again")
+        raise ValueError(
+            f"{folder}: files of different lengths; run `sigmahat reproduce` again, "
+            "with an empty folder as --out"
+        )
     # What is shown of one estimator is shown of the one that needs no sensor of torque.
     main = "RESIDUAL" if "RESIDUAL" in names else names[0]
     signals = _signals(modalities[main])
@@ -74,7 +77,7 @@ def reproduction(folder: Path) -> Contents:
         *_stiffness(reduced, names),
         *_quantities(reduced, main if len(names) > 1 else ""),
     ]
-    rows = [[number(cell) for cell in row.values()] for row in table.to_pylist()]
+    rows = [[_number(cell) for cell in row.values()] for row in table.to_pylist()]
     seeds = table["seeds"][0].as_py()
     lines = [
         f"{len(modalities[main])} samples of {seeds} seed{'s' if seeds > 1 else ''}; "
@@ -102,25 +105,23 @@ def reproduction(folder: Path) -> Contents:
 def log(folder: Path) -> Contents:
     """From what `sigmahat estimate` wrote."""
     path = next(folder.glob("estimate.parquet"), folder / "estimate.csv")
-    if path.suffix == ".csv":
-        table = _read_csv(path)
-    else:
-        names = pa.parquet.read_schema(path).names
-        table = pa.parquet.read_table(path, columns=[n for n in names if n.startswith(_ESTIMATE)])
+    table = _read_csv(path) if path.suffix == ".csv" else _read_parquet(path)
     signals = _signals(table, _ESTIMATE)
     valid = signals.pop("valid", None)
     if "t" not in signals or "sigma" not in signals or valid is None:
         raise ValueError(f"{path}: no table of `sigmahat estimate`; run it again")
     samples = len(valid)
-    half = slice(samples // 2, None)
+    used = valid.astype(bool)
+    half = np.arange(samples) >= samples // 2
     rows = []
     for name, values in signals.items():
         if name not in ("t", "a", "rho"):
             title = next(t for t in table.column_names if _variable(t) == _ESTIMATE + name)
-            later = values[half]
-            cells = (values[-1], np.nanmin(later), np.nanmax(later), np.sqrt(np.nanmean(later**2)))
-            rows.append([title.removeprefix(_ESTIMATE), *(number(float(c)) for c in cells)])
-    skipped = int(np.count_nonzero(~valid.astype(bool)))
+            later = values[half & used]
+            cells = [values[-1], *([later.min(), later.max(), _rms(later)] if len(later) else [])]
+            cells += [np.nan] * (4 - len(cells))
+            rows.append([title.removeprefix(_ESTIMATE), *(_number(float(c)) for c in cells)])
+    skipped = int(np.count_nonzero(~used))
     duration = signals["t"][-1] - signals["t"][0]
     reduced = reduce(signals.pop("t"), signals)
     return Contents(
@@ -134,6 +135,21 @@ def log(folder: Path) -> Contents:
         [*_stiffness(reduced, []), *_quantities(reduced, "")],
         reduced.every if reduced.bucket > 1 else None,
     )
+
+
+def _rms(values: NDArray[Any]) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _number(value: object) -> str:
+    """A cell for a value; "-" for what is not known."""
+    if value is None or value == "":
+        return "-"
+    if not isinstance(value, float):
+        return str(value)
+    if np.isnan(value):
+        return "-"
+    return f"{value:.4g}"
 
 
 def _sampling(reduced: Reduced) -> list[str]:
@@ -152,6 +168,15 @@ def _read_csv(path: Path) -> pa.Table:
         return pa.csv.read_csv(path)
     except (pa.ArrowInvalid, pa.ArrowKeyError) as error:
         raise ValueError(f"{path}: not readable as CSV; run the command that wrote it") from error
+
+
+def _read_parquet(path: Path) -> pa.Table:
+    """The columns of the estimator alone; a log may have many others."""
+    try:
+        names = [n for n in pa.parquet.read_schema(path).names if n.startswith(_ESTIMATE)]
+        return pa.parquet.read_table(path, columns=names)
+    except (pa.ArrowException, OSError) as error:
+        raise ValueError(f"{path}: damaged; run `sigmahat estimate` again") from error
 
 
 def _variable(title: str) -> str:
@@ -225,7 +250,10 @@ def _positive(estimate: NDArray[Any], true: NDArray[Any]) -> NDArray[np.float32]
 
 
 def _range(values: NDArray[Any]) -> tuple[float, float]:
-    low, high = np.nanpercentile(values, [_OUTER, 100 - _OUTER]).tolist()
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return 0.0, 1.0
+    low, high = np.percentile(finite, [_OUTER, 100 - _OUTER]).tolist()
     margin = 0.2 * ((high - low) or abs(high) or 1.0)
     return low - margin, high + margin
 

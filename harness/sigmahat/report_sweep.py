@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from sigmahat import sweep_table
-from sigmahat.report_contents import COLORS, Contents, Panel, Table, Trace
+from sigmahat.report_plots import COLORS, Contents, Panel, Table, Trace
 from sigmahat.sweep import summary_rows
 from sigmahat.sweep_figures import (
     abscissas,
     column,
-    has_few_values,
     index_of,
     interval_at,
+    is_drawn,
     log_bins,
     series,
 )
@@ -62,11 +62,11 @@ def _against(read: SweepTable) -> Iterator[Panel]:
         for i, (name, part) in enumerate(series(read).items()):
             color = COLORS[i % len(COLORS)]
             x, y = column(part, abscissa), column(part, INDICES[field])
-            if has_few_values(x):
+            if is_drawn(read, abscissa):
+                traces.append(Trace(name, color, x, y, "points"))
+            else:
                 at, mean, half = map(np.array, interval_at(x, y))
                 traces.append(Trace(name, color, at, mean, "means", half))
-            else:
-                traces.append(Trace(name, color, x, y, "points"))
         yield Panel(
             f"{title.rpartition(' [')[0]} over {abscissa.rpartition(' [')[0]}",
             abscissa,

@@ -11,8 +11,8 @@ from sigmahat import results, sweep_table
 from sigmahat.scenarios import SCENARIOS
 from sigmahat.sweep_plan import Plan
 from sigmahat.sweep_records import records
+from sigmahat.sweep_run import cluster, local
 from sigmahat.sweep_table import INDICES, Mean, SweepTable
-from sigmahat.sweep_workers import cluster, local
 
 _ROWS = 30
 """Rows of a printed summary; summary.csv has all of them."""

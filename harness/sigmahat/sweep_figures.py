@@ -19,7 +19,6 @@ Column = NDArray[np.float64]
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#000000")
 AFTER, ALL = "msrep_settled", "msrep"
 _BINS = 40
-_MOST_VALUES = 25
 
 
 def series(sweep: SweepTable) -> dict[str, SweepTable]:
@@ -85,13 +84,18 @@ def log_bins(values: Column) -> list[float]:
 def abscissas(sweep: SweepTable) -> list[str]:
     """What the error is drawn against: errors of parameters, and other parameters with numbers."""
     errors = [title for title in sweep.errors if _varies(sweep, title)]
-    covered = {title.removeprefix(ERROR).split(" ")[0].split(".")[-1] for title in errors}
+    covered = {_symbol(title) for title in errors}
     others = [
         title
         for title in (*sweep.listed, *sweep.drawn)
-        if title.split(" ")[0].split(".")[-1] not in covered and _varies(sweep, title)
+        if _symbol(title) not in covered and _varies(sweep, title)
     ]
     return [*errors, *others]
+
+
+def _symbol(title: str) -> str:
+    """The end of a parameter's name, the same for plant, estimators and error of it."""
+    return title.removeprefix(ERROR).split(" ")[0].split(".")[-1]
 
 
 def _varies(sweep: SweepTable, title: str) -> bool:
@@ -110,26 +114,26 @@ def against_parameters(sweep: SweepTable) -> Figure:
         every = series(sweep)
         for (name, part), color in zip(every.items(), _cycle(len(every)), strict=True):
             x, y = column(part, abscissa), column(part, INDICES[field])
-            if not has_few_values(x):
+            if is_drawn(sweep, abscissa):
                 axes.plot(x, y, ".", markersize=4, alpha=0.6, color=color, label=name)
             else:
                 at, mean, half = interval_at(x, y)
                 low = np.minimum(half, 0.999 * np.array(mean))  # the scale has no place for 0
                 axes.errorbar(
-                    at, mean, [low, half], color=color, marker="o", markersize=4, capsize=3,
-                    linewidth=1.2, label=name,
+                    at, mean, np.array([low, half]), color=color, marker="o", markersize=4,
+                    capsize=3, linewidth=1.2, label=name,
                 )  # fmt: skip
         axes.set_yscale("log")
         axes.set_xlabel(abscissa)
-        few = has_few_values(column(sweep, abscissa))
-        axes.set_ylabel(f"{title},\nmean and 95 % interval" if few else title)
+        points = is_drawn(sweep, abscissa)
+        axes.set_ylabel(title if points else f"{title},\nmean and 95 % interval")
         _legend(axes, len(every))
     return figure
 
 
-def has_few_values(x: Column) -> bool:
-    """Whether a parameter is drawn as means with intervals, and not as one point for each run."""
-    return len(np.unique(x)) <= _MOST_VALUES
+def is_drawn(sweep: SweepTable, title: str) -> bool:
+    """Whether each run has its own value, shown as a point; others are shown as means."""
+    return _symbol(title) in {_symbol(each) for each in sweep.drawn}
 
 
 def interval_at(x: Column, y: Column) -> tuple[list[float], list[float], list[float]]:
