@@ -14,7 +14,10 @@ QUICK = ["--modality", "RESIDUAL"]
 
 
 def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([*COMMAND, *arguments], cwd=cwd, capture_output=True, text=True)
+    """Runs a sweep to its end, and ends one that hangs."""
+    return subprocess.run(
+        [*COMMAND, *arguments], cwd=cwd, capture_output=True, text=True, timeout=600
+    )
 
 
 def start(arguments: Sequence[str], cwd: Path) -> subprocess.Popen[str]:
@@ -40,7 +43,7 @@ def records(path: Path) -> list[bytes]:
 
 def wait_for_records(path: Path, count: int, process: subprocess.Popen[str]) -> None:
     """Waits until some runs are done, but not all of them."""
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + 300
     while len(records(path)) < count:
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < deadline

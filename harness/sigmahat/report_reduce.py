@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 BUDGET = 400_000
 """Values of all signals together; as 4 bytes in base64 they are 2 MB of a report."""
+_MOST = 20_000
+"""Values of a signal; a browser takes seconds to draw longer lines."""
 
 
 @dataclass(frozen=True)
@@ -27,13 +29,13 @@ class Reduced:
 
 
 def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = BUDGET) -> Reduced:
-    """Keeps at most about budget values.
+    """Keeps at most about budget values of all signals, and 20000 of each.
 
     Half of them are every sample around the middle, where single counts of an encoder show. The
     others are the least and the greatest value of each bucket, in the order in which they come.
     t and the signals have the same shape (N,), N >= 1.
     """
-    rows = max(budget // max(len(signals), 1), 8)
+    rows = min(max(budget // max(len(signals), 1), 8), _MOST)
     t = np.asarray(t, dtype=np.float64)
     if len(t) <= rows:
         whole = {name: np.asarray(s, dtype=np.float32) for name, s in signals.items()}

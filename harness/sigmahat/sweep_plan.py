@@ -174,15 +174,13 @@ def _seeds(content: Mapping[str, Any]) -> int:
 
 
 def _check(plan: Plan) -> None:
-    """Lets the FMUs of each scenario see each combination of listed values once."""
+    """Lets the FMUs of each scenario see each listed value once, beside the first of the others."""
     for names in (plan.scenarios, plan.modalities):
         if len(set(names)) < len(names):
             raise ValueError(f"{', '.join(names)}: expected each name once")
     with ExitStack() as stack:
         fmus: dict[str, Fmu] = {}
-        for run in plan.runs():
-            if run.seed > 1:
-                continue
+        for run in _samples(plan):
             # What is drawn may leave its range now and then: that run fails, not the sweep.
             sure = replace(run, parameters={name: run.parameters[name] for name in plan.listed})
             for label, model in _models(sure).items():
@@ -194,6 +192,18 @@ def _check(plan: Plan) -> None:
                     fmu.number(name, value)
                 with Slave(fmu, label) as slave:
                     slave.initialize(model.start)
+
+
+def _samples(plan: Plan) -> Iterator[Run]:
+    """The first run of each scenario, and that run with each other listed value."""
+    for scenario_name in plan.scenarios:
+        first = next(replace(plan, scenarios=(scenario_name,)).runs())
+        yield first
+        for name in plan.listed:
+            listed = plan.parameters[name]
+            assert not isinstance(listed, Drawn)
+            for value in listed[1:]:
+                yield replace(first, parameters={**first.parameters, name: value})
 
 
 def _models(run: Run) -> dict[str, Plant | Estimator]:
@@ -265,13 +275,16 @@ def _signals(comparisons: Sequence[Comparison]) -> dict[str, set[str]]:
     return found
 
 
+def fmu_names(scenarios: Sequence[str]) -> list[str]:
+    """Names of the FMUs of some scenarios, sorted, each once."""
+    chosen = [scenario(name) for name in scenarios]
+    estimators = {e.fmu for each in chosen for e in each.estimators.values()}
+    return sorted(estimators | {each.plant.fmu for each in chosen})
+
+
 def fmu_digest(scenarios: Sequence[str]) -> str:
-    """Of the FMUs of some scenarios, as they are installed here."""
-    names: set[str] = set()
-    for name in scenarios:
-        base = scenario(name)
-        names |= {base.plant.fmu, *(e.fmu for e in base.estimators.values())}
+    """Of the FMUs of some scenarios, as they are installed here: 32 hexadecimal digits."""
     text = hashlib.sha256()
-    for name in sorted(names):
+    for name in fmu_names(scenarios):
         text.update(sigmahat.fmu(name).read_bytes())
     return text.hexdigest()[:32]

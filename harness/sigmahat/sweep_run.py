@@ -20,7 +20,7 @@ from sigmahat.scenarios import T
 from sigmahat.slave import FmuError
 from sigmahat.sweep_plan import Run, fmu_digest, prepare
 
-_CONNECT = 5.0
+_CONNECT = 10.0
 """How long a scheduler and its first worker are waited for [s]."""
 _AGAIN = "the same command goes on from what is done"
 

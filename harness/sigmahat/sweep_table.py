@@ -17,7 +17,7 @@ import sigmahat
 from sigmahat.metrics import Indices, mean_interval
 from sigmahat.scenarios import SCENARIOS, Scenario
 from sigmahat.slave import Fmu, Value
-from sigmahat.sweep_plan import Plan, Run, prepare
+from sigmahat.sweep_plan import Plan, Run, fmu_names, prepare
 from sigmahat.sweep_run import Outcome
 
 INDICES = {
@@ -68,7 +68,7 @@ def build(plan: Plan, outcomes: Mapping[int, Outcome]) -> SweepTable:
     columns: dict[str, list[Any]] = {}
     with ExitStack() as stack:
         fmus = {
-            name: stack.enter_context(Fmu(sigmahat.fmu(name))) for name in _fmus(plan.scenarios)
+            name: stack.enter_context(Fmu(sigmahat.fmu(name))) for name in fmu_names(plan.scenarios)
         }
         titles = {name: _title(plan, name, fmus) for name in names}
         for run in plan.runs():
@@ -138,14 +138,6 @@ def means(sweep: SweepTable) -> list[Mean]:
                 },
             )
         )
-    return found
-
-
-def _fmus(scenarios: Sequence[str]) -> set[str]:
-    found = set()
-    for name in scenarios:
-        base = SCENARIOS[name]
-        found |= {base.plant.fmu, *(e.fmu for e in base.estimators.values())}
     return found
 
 
