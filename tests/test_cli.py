@@ -180,10 +180,25 @@ def test_bash_completes(words: str, expected: set[str], tmp_path: Path) -> None:
     assert set(done.stdout.split()) == expected
 
 
+def test_the_shell_completes_commands_and_options(tmp_path: Path) -> None:
+    for words, expected in (
+        ("sigmahat rep", "report reproduce"),
+        ("sigmahat sweep --sc", "--scenario --scheduler"),
+    ):
+        asked = {"_SIGMAHAT_COMPLETE": "bash_complete", "COMP_WORDS": words}
+        asked["COMP_CWORD"] = str(len(words.split()) - 1)
+        done = subprocess.run(
+            COMMAND, cwd=tmp_path, env={**os.environ, **asked}, capture_output=True, text=True
+        )
+        found = [line.removeprefix("plain,") for line in done.stdout.splitlines()]
+        assert sorted(found) == sorted(expected.split())
+
+
 def test_help_imports_nothing_slow() -> None:
     code = (
         "import sys, sigmahat.cli; sigmahat.cli.main(['--help'])\n"
-        "print(sorted({'numpy', 'fmpy', 'matplotlib', 'casadi', 'scipy'} & set(sys.modules)))"
+        "slow = {'numpy', 'fmpy', 'matplotlib', 'casadi', 'scipy', 'pyarrow', 'bokeh', 'dask'}\n"
+        "print(sorted(slow & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "[]"

@@ -11,8 +11,10 @@ from sigmahat.commands.compare import compare
 from sigmahat.commands.estimate import estimate
 from sigmahat.commands.identify import identify
 from sigmahat.commands.init import init
+from sigmahat.commands.report import report
 from sigmahat.commands.reproduce import reproduce
 from sigmahat.commands.scenarios import scenarios
+from sigmahat.commands.sweep import sweep
 
 _ERROR, _INTERRUPTED = 2, 130
 
@@ -29,7 +31,7 @@ def cli() -> None:
     """
 
 
-for command in (reproduce, compare, scenarios, init, estimate, identify):
+for command in (reproduce, compare, scenarios, init, estimate, identify, sweep, report):
     cli.add_command(command)
 
 

@@ -24,7 +24,8 @@ class Table(AbstractContextManager["Table"]):
     """Every row of the log, with the outputs of the last tick at or before it.
 
     A CSV log gives a CSV file, every other log a Parquet file. Estimates are the columns
-    "estimate.sigma [N.m/rad]" and so on.
+    "estimate.sigma [N.m/rad]" and so on, and "estimate.t [s]", the time of the
+    tick since the start of the log.
     """
 
     def __init__(self, log: Log, samples: Samples, units: Mapping[str, str], stem: Path) -> None:
@@ -33,6 +34,7 @@ class Table(AbstractContextManager["Table"]):
         self.path = stem.with_suffix(".csv" if self._text else ".parquet")
         self._units = units
         self._tick_of_row = samples.tick_of_row
+        self._T = samples.T
         names = [name for name, n in log.columns.items() if n == len(samples.tick_of_row)]
         self._rows = _Rows(log.batches(names, _ROWS))
         self._row = self._tick = 0
@@ -44,6 +46,8 @@ class Table(AbstractContextManager["Table"]):
         end = int(np.searchsorted(self._tick_of_row, self._tick + ticks))
         take = self._tick_of_row[self._row : end] - self._tick
         table = self._rows.take(end - self._row)
+        times = self._T * (self._tick + take)
+        table = table.append_column("estimate.t [s]", pa.array(times))
         for name, values in outputs.items():
             unit = self._units.get(name)
             title = f"estimate.{name} [{unit}]" if unit else f"estimate.{name}"

@@ -58,7 +58,7 @@ def replay(
     slave.initialize(start)
     fmu, T, component = slave.fmu, samples.T, slave.component
     # Past slave.call: its checks would take twice the time of a tick.
-    functions = (slave.fmi.dll, "fmi2SetReal", "fmi2DoStep", "fmi2GetReal", "fmi2GetBoolean")
+    functions = (slave.functions, "fmi2SetReal", "fmi2DoStep", "fmi2GetReal", "fmi2GetBoolean")
     set_real, do_step, get_real, get_boolean = (getattr(functions[0], f) for f in functions[1:])
     inputs = fmu.references(samples.names, "input")
     outputs = fmu.references(OUTPUTS, "output")
@@ -83,5 +83,5 @@ def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
     names = [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
     values = (fmi2.fmi2Real * len(names))()
     references = slave.fmu.references(names, "output")
-    slave.call(slave.fmi.fmi2GetReal, references, len(names), values)
+    slave.call(slave.functions.fmi2GetReal, references, len(names), values)
     return np.array(values).reshape(n, m).tolist()
