@@ -25,6 +25,7 @@
 #include "scaled_basis.h"
 #include "torque_basis.h"
 #include "torque_residual.h"
+#include "real.h"
 
 #ifdef __cplusplus
 extern "C" {

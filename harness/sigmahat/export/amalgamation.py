@@ -7,9 +7,7 @@ from pathlib import Path
 _OWN_INCLUDE = re.compile(r'^#include "(.+)"\n', re.MULTILINE)
 
 
-def write(
-    out: Path, sources: Iterable[Path], interface: Path, licence: Path, version: str
-) -> None:
+def write(out: Path, sources: Iterable[Path], interface: Path, licence: Path, version: str) -> None:
     """Write ``sigmahat.h`` and ``sigmahat.c`` into the folder ``out``.
 
     sources    C files of the library
