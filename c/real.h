@@ -1,6 +1,8 @@
 /* The floating-point type of the whole library.
  *
- * double, unless every file of a program is compiled with -DSH_REAL=float.
+ * It is double, or float if every file of the program that includes one of these headers is
+ * compiled with -DSH_REAL=float. Constants that are not whole numbers are written as double and
+ * converted by a cast, which costs nothing at run time.
  */
 #ifndef SH_REAL_H
 #define SH_REAL_H
@@ -10,5 +12,7 @@
 #endif
 
 typedef SH_REAL sh_real;
+
+#define SH_PI 3.14159265358979323846
 
 #endif
