@@ -30,17 +30,26 @@ enum {
     SH_MAX_MOTOR = 3, /* errors of motor data that are estimated with the torque */
     SH_MAX_PARAMETERS = SH_MAX_BASIS + SH_MAX_MOTOR
 };
-enum { SH_MAX_TRIANGLE = SH_MAX_PARAMETERS * (SH_MAX_PARAMETERS - 1) / 2 };
+enum {
+    SH_PANEL = 4,                                         /* rows of U side by side in memory */
+    SH_MAX_ROWS = (SH_MAX_PARAMETERS + SH_PANEL - 1) / SH_PANEL * SH_PANEL,
+    SH_MAX_U = SH_MAX_ROWS * SH_MAX_PARAMETERS - SH_MAX_ROWS * (SH_MAX_ROWS - SH_PANEL) / 2
+};
 
 /* State of the recursion. */
 typedef struct {
-    int size;                     /* number of parameters, 1..SH_MAX_PARAMETERS */
-    double eta[SH_MAX_PARAMETERS];/* estimate */
-    double eta_low[SH_MAX_PARAMETERS]; /* what rounding left out of eta: millions of
+    double eta[SH_MAX_ROWS];      /* estimate */
+    double eta_low[SH_MAX_ROWS];  /* what rounding left out of eta: millions of
                                      small updates must not add up to an error */
-    double D[SH_MAX_PARAMETERS];  /* diagonal factor of P, > 0 */
-    double U[SH_MAX_TRIANGLE];    /* unit upper triangular factor of P without its
-                                     diagonal, by columns: U[j (j-1)/2 + i], i < j */
+    double D[SH_MAX_ROWS];        /* diagonal factor of P, > 0 */
+    double U[SH_MAX_U];           /* unit upper triangular factor of P, in panels of SH_PANEL
+                                     rows: from the diagonal on, column after column, with
+                                     the ones and zeros of the triangle */
+    struct {
+        double pairs[SH_MAX_ROWS][2];
+        double F[SH_MAX_ROWS], f[SH_MAX_ROWS], rho[SH_MAX_ROWS + 1];
+    } work;                       /* means nothing between calls; here to spare the stack */
+    int size;                     /* number of parameters, 1..SH_MAX_PARAMETERS */
 } sh_least_squares;
 
 /* What one sample did, all of it from before the update. */
@@ -91,17 +100,24 @@ void sh_least_squares_prior(sh_least_squares *rls, int i, double variance);
 /* Widens the covariance: P += c v v', c >= 0 (Agee and Turner 1972). v [size: size]. */
 void sh_least_squares_widen(sh_least_squares *rls, double c, const double *v);
 
-/* Shrinks what has grown too wide: no variance above P_max [size: size]; correlations stay. */
-void sh_least_squares_bound(sh_least_squares *rls, const double *P_max);
+/* Shrinks the variance of parameter i to P_max if it is above; correlations stay. */
+void sh_least_squares_bound(sh_least_squares *rls, int i, double P_max);
 
-/* Column i of P [size: size]; cheap for the last ones. */
-void sh_least_squares_column(const sh_least_squares *rls, int i, double *P_i);
+/* The same along column i of P; cheap for the last ones. */
+void sh_least_squares_widen_column(sh_least_squares *rls, double c, int i);
+
+/* Column i of P [size: size]; cheap for the last ones. It is kept at work: the next call of any
+ * other function but sh_least_squares_move writes over it.
+ */
+const double *sh_least_squares_column(sh_least_squares *rls, int i);
 
 /* Moves the estimate: eta += c v. v [size: size]. */
 void sh_least_squares_move(sh_least_squares *rls, double c, const double *v);
 
-/* F' P F [unit of y squared over noise variance] for a vector F [size: size]. */
-double sh_least_squares_variance(const sh_least_squares *rls, const double *F);
+/* F' P F [unit of y squared over noise variance] for a vector F [size: size]. Changes nothing
+ * but what is at work.
+ */
+double sh_least_squares_variance(sh_least_squares *rls, const double *F);
 
 /* Entry (i, j) of P, 0 <= i, j < size. */
 double sh_least_squares_covariance(const sh_least_squares *rls, int i, int j);

@@ -170,10 +170,10 @@ static void compensate(sh_matched_regression *matched, sh_least_squares *rls,
  * 36:1725-1731, who take from the information; here no variance grows beyond the prior. Motor data
  * are taken to be constant.
  */
-static void drift(const sh_matched_regression *matched, sh_least_squares *rls,
+static void drift(sh_matched_regression *matched, sh_least_squares *rls,
                   const sh_matched_settings *settings, const double *F, double noise)
 {
-    double direction[SH_MAX_PARAMETERS] = {0}, P_max[SH_MAX_PARAMETERS];
+    double *direction = matched->work.direction; /* zero beyond the basis */
     double along = 0.0, power = 0.0;
     int i;
 
@@ -183,14 +183,14 @@ static void drift(const sh_matched_regression *matched, sh_least_squares *rls,
         direction[i] = square(settings->torque) * F[i] +
                        square(settings->nominal) * matched->eta_0[i] * along;
         power += F[i] * direction[i];
-        P_max[i] = prior_variance(matched, settings, i);
     }
     if (!(power > 0.0))
         return;
-    for (i = 0; i < SH_MAX_MOTOR; ++i)
-        P_max[matched->basis + i] = square(settings->motor_prior[i]);
     sh_least_squares_widen(rls, settings->drift * settings->T / (power + noise), direction);
-    sh_least_squares_bound(rls, P_max);
+    for (i = 0; i < matched->basis; ++i)
+        sh_least_squares_bound(rls, i, prior_variance(matched, settings, i));
+    for (i = 0; i < SH_MAX_MOTOR; ++i)
+        sh_least_squares_bound(rls, matched->basis + i, square(settings->motor_prior[i]));
 }
 
 int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
@@ -198,7 +198,7 @@ int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
                     double phi, double sigma, const double *F, double *y,
                     sh_innovation *innovation)
 {
-    double column[SH_MAX_PARAMETERS];
+    double *column = matched->work.F;
     double variance;
 
     innovation->a = 0.0;
@@ -231,7 +231,7 @@ int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
     return 1;
 }
 
-double sh_matched_belief(const sh_matched_regression *matched, const sh_least_squares *rls,
+double sh_matched_belief(const sh_matched_regression *matched, sh_least_squares *rls,
                          const sh_matched_settings *settings, const double *dF, double *eta)
 {
     return sh_rounding_bias_belief(&matched->bias, rls, matched->basis + SH_MOTOR_B,

@@ -65,6 +65,9 @@ typedef struct {
     sh_filter_design design;
     double rounding; /* variance of theta'' filtered for a rounding of one [1/s4] */
     int samples;     /* since the filters began: 0, 1, 2 (or more) */
+    struct {
+        double F[SH_MAX_PARAMETERS], direction[SH_MAX_PARAMETERS];
+    } work;          /* means nothing between samples; here to spare the stack */
 } sh_matched_regression;
 
 /* Starts regression and recursion.
@@ -103,7 +106,7 @@ int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
  *
  * Returns the variance of dF' eta.
  */
-double sh_matched_belief(const sh_matched_regression *matched, const sh_least_squares *rls,
+double sh_matched_belief(const sh_matched_regression *matched, sh_least_squares *rls,
                          const sh_matched_settings *settings, const double *dF, double *eta);
 
 #ifdef __cplusplus

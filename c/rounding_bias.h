@@ -38,7 +38,7 @@ void sh_rounding_bias_take_back(sh_rounding_bias *bias, sh_least_squares *rls, i
  *
  * Returns the variance of dF' eta.
  */
-double sh_rounding_bias_belief(const sh_rounding_bias *bias, const sh_least_squares *rls, int at,
+double sh_rounding_bias_belief(const sh_rounding_bias *bias, sh_least_squares *rls, int at,
                                double prior_variance, const double *dF, double *eta);
 
 #ifdef __cplusplus

@@ -9,15 +9,23 @@ static int power(int symmetric, int i)
 void sh_scaled_basis(const sh_range_parameters *range, int symmetric, int n, int m,
                      double set_point, double phi, double *F, double *dF)
 {
+    const double x = phi / range->phi, step = symmetric ? x * x : x, l = set_point / range->setPoint;
+    double upper = symmetric ? x : 1.0; /* x^e */
+    double slope = symmetric ? 1.0 / range->phi : 0.0; /* x^(e - 1) / range, 0 for e = 0 */
     int i, j;
 
-    sh_torque_basis(symmetric, n, m, set_point / range->setPoint, phi / range->phi, F, dF);
     for (i = 0; i < n; ++i) {
-        const double e = power(symmetric, i) > 0 ? power(symmetric, i) : 1.0;
+        const int e = power(symmetric, i);
+        double of_F = e > 0 ? upper / e : upper, of_dF = slope;
+
         for (j = 0; j < m; ++j) {
-            F[j * n + i] /= e;
-            dF[j * n + i] /= e * range->phi;
+            F[j * n + i] = of_F;
+            dF[j * n + i] = of_dF;
+            of_F *= l;
+            of_dF *= l;
         }
+        upper *= step;
+        slope = e > 0 ? slope * step : 1.0 / range->phi;
     }
 }
 

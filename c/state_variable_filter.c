@@ -9,6 +9,7 @@ sh_filter_design sh_state_variable_filter_design(double w, double T)
 
     design.w = w;
     design.T = T;
+    design.lag = 1.0 / wT;
     design.keep[0] = decay;
     design.keep[1] = decay * wT;
     design.keep[2] = decay * wT * wT / 2.0;
@@ -48,7 +49,7 @@ static void advance(sh_state_variable_filter *filter, const sh_filter_design *de
 void sh_state_variable_filter_step(sh_state_variable_filter *filter,
                                    const sh_filter_design *design, double x)
 {
-    advance(filter, design, filter->input, x, (x - filter->input) / (design->w * design->T));
+    advance(filter, design, filter->input, x, (x - filter->input) * design->lag);
     filter->input = x;
 }
 

@@ -25,6 +25,7 @@ extern "C" {
 typedef struct {
     double w;       /* corner [rad/s] */
     double T;       /* sample period [s] */
+    double lag;     /* 1 / (w T), by which a stage runs behind a ramp [samples] */
     double keep[3]; /* what a stage keeps of its own deviation, and of those one and two stages
                        before it, after T */
 } sh_filter_design;

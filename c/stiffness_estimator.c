@@ -65,39 +65,36 @@ static void evaluate_curve(const double *F, const double *dF, const double *eta,
     }
 }
 
-/* All that follows from parameters eta, of which dF' eta has the given variance, at an operating
- * point with regressor F and derivative dF.
+/* All that follows from parameters eta, of which dF' eta has the given variance, at the operating
+ * point of the regressor F and its derivative dF.
  */
-static void evaluate(const sh_parameters *p, double phi, double set_point, const double *F,
-                     const double *dF, const double *eta, double variance, sh_estimate *estimate)
+static void evaluate(const sh_estimator *estimator, const sh_parameters *p, double phi,
+                     double set_point, const double *eta, double variance, sh_estimate *estimate)
 {
     const int matched = p->method == SH_METHOD_MATCHED_FILTER;
     const int n = p->rls.n, m = p->rls.m, size = n * m;
-    double units[SH_MAX_BASIS];
     int i, j;
 
-    evaluate_curve(F, dF, eta, size, estimate);
+    evaluate_curve(estimator->work.F, estimator->work.dF, eta, size, estimate);
     estimate->phi = phi;
     estimate->setPoint = set_point;
     estimate->sigma_std = sqrt(variance);
     estimate->confident = estimate->sigma_std <= p->confidence * fabs(estimate->sigma);
-    if (matched)
-        sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
     for (j = 0; j < m; ++j)
         for (i = 0; i < n; ++i)
-            estimate->eta[i][j] = matched ? eta[j * n + i] / units[j * n + i] : eta[j * n + i];
+            estimate->eta[i][j] = eta[j * n + i] * estimator->units[j * n + i];
     estimate->D_theta_hat = p->motor.D_theta * (matched ? 1.0 + eta[size + SH_MOTOR_D_THETA] : 1.0);
     estimate->B_hat = p->motor.B * (matched ? 1.0 + eta[size + SH_MOTOR_B] : 1.0);
     estimate->tau_coulomb_hat = matched ? eta[size + SH_MOTOR_COULOMB] : 0.0;
 }
 
-static void evaluate_paper(const sh_estimator *estimator, const sh_parameters *p, double phi,
-                           double set_point, const double *F, const double *dF,
-                           sh_estimate *estimate)
+static void evaluate_paper(sh_estimator *estimator, const sh_parameters *p, double phi,
+                           double set_point, sh_estimate *estimate)
 {
-    const double variance = noise_of_paper(p) * sh_least_squares_variance(&estimator->rls, dF);
+    const double variance =
+        noise_of_paper(p) * sh_least_squares_variance(&estimator->rls, estimator->work.dF);
 
-    evaluate(p, phi, set_point, F, dF, estimator->rls.eta, variance, estimate);
+    evaluate(estimator, p, phi, set_point, estimator->rls.eta, variance, estimate);
 }
 
 void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate)
@@ -106,8 +103,9 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
     static const sh_estimate nothing;
     const int n = p->rls.n, m = p->rls.m, size = n * m;
     const double set_point = p->setPoint.offset;
-    double eta_0[SH_MAX_BASIS], units[SH_MAX_BASIS], scaled[SH_MAX_PARAMETERS] = {0};
-    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
+    double eta_0[SH_MAX_BASIS], scaled[SH_MAX_PARAMETERS] = {0};
+    double *const units = estimator->units, *const F = estimator->work.F;
+    double *const dF = estimator->work.dF;
     int i, j;
 
     *estimator = zero;
@@ -124,13 +122,14 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
         sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
         for (i = 0; i < size; ++i) {
             scaled[i] = eta_0[i] * units[i];
+            units[i] = 1.0 / units[i];
             each += dF[i] * dF[i];
             curve += dF[i] * scaled[i];
         }
         each *= p->prior.tau_e * p->prior.tau_e;
         curve *= p->prior.nominal;
         sh_matched_start(&estimator->matched, &estimator->rls, &settings, size, scaled);
-        evaluate(p, 0.0, set_point, F, dF, scaled, each + curve * curve, estimate);
+        evaluate(estimator, p, 0.0, set_point, scaled, each + curve * curve, estimate);
         /* The estimate is eta_0 to the last digit, whatever the units. */
         sh_torque_basis(p->rls.symmetric, n, m, set_point, 0.0, F, dF);
         evaluate_curve(F, dF, eta_0, size, estimate);
@@ -138,8 +137,10 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
             for (i = 0; i < n; ++i)
                 estimate->eta[i][j] = p->rls.eta_0[i][j];
     } else {
+        for (i = 0; i < size; ++i)
+            units[i] = 1.0;
         sh_least_squares_start(&estimator->rls, size, eta_0, p->rls.P_0);
-        evaluate_paper(estimator, p, 0.0, set_point, F, dF, estimate);
+        evaluate_paper(estimator, p, 0.0, set_point, estimate);
     }
     estimate->valid = 1;
 }
@@ -202,7 +203,7 @@ static int skip(sh_estimator *estimator, sh_estimate *estimate)
 static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                       double set_point, sh_estimate *estimate)
 {
-    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
+    double *const F = estimator->work.F;
     const sh_kinematic_kalman theta = estimator->theta, q = estimator->q;
     const sh_torque_residual residual = estimator->residual;
     const double skipped = estimator->skipped, settling = estimator->settling;
@@ -215,7 +216,7 @@ static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_
 
     if (p->deformation == SH_DEFORMATION_FILTERED)
         phi += estimator->q.lag - estimator->theta.lag;
-    basis(p, phi, set_point, F, dF);
+    basis(p, phi, set_point, F, estimator->work.dF);
     tau_e_hat = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
                 : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
                                                    : tau_e_residual;
@@ -234,7 +235,7 @@ static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_
         estimator->started = started;
         return 0;
     }
-    evaluate_paper(estimator, p, phi, set_point, F, dF, estimate);
+    evaluate_paper(estimator, p, phi, set_point, estimate);
     estimate->tau_e_residual = tau_e_residual;
     estimate->theta_dot = estimator->theta.x_dot;
     estimate->a = innovation.a;
@@ -249,10 +250,9 @@ static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_
 static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                         double set_point, sh_estimate *estimate)
 {
-    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
+    double *const F = estimator->work.F, *const dF = estimator->work.dF;
     const sh_matched_settings settings = matched_settings(p);
     const double phi = z->q - z->theta;
-    double eta[SH_MAX_PARAMETERS];
     double y, variance;
     const double torque = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
                           : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
@@ -270,8 +270,9 @@ static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const s
     estimator->started = 1;
     estimator->skipped = 0.0;
     estimator->modality = p->modality;
-    variance = sh_matched_belief(&estimator->matched, &estimator->rls, &settings, dF, eta);
-    evaluate(p, phi, set_point, F, dF, eta, variance, estimate);
+    variance = sh_matched_belief(&estimator->matched, &estimator->rls, &settings, dF,
+                                 estimator->work.eta);
+    evaluate(estimator, p, phi, set_point, estimator->work.eta, variance, estimate);
     estimate->tau_e_residual = y;
     estimate->theta_dot =
         sh_state_variable_filter_first(&estimator->matched.theta, &estimator->matched.design);

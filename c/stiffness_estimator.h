@@ -152,6 +152,12 @@ typedef struct {
     int started;    /* a good sample has been seen */
     double skipped; /* ticks skipped since the last good sample */
     double settling; /* time until r_e has forgotten what was before a gap [s] */
+    double units[SH_MAX_BASIS]; /* factors from the coefficients in the unit of the method to
+                                   those of the estimate */
+    struct {
+        double F[SH_MAX_PARAMETERS], dF[SH_MAX_PARAMETERS]; /* zero beyond the basis */
+        double eta[SH_MAX_PARAMETERS];
+    } work;          /* means nothing between ticks; here to spare the stack */
 } sh_estimator;
 
 /* A parameter outside its range. */

@@ -123,6 +123,15 @@ class Estimator:
         lib = self.library.lib
         return bool(lib.sh_estimator_tick(self.state, self.parameters, z, self.estimate))
 
+    def lasting(self) -> bytes:
+        """The state without what was at work in the last tick."""
+        ffi = self.library.ffi
+        state = ffi.new("sh_estimator *", self.state[0])
+        for part in (state, state.rls, state.matched):
+            size = ffi.sizeof(part.work)
+            ffi.memmove(ffi.addressof(part, "work"), bytes(size), size)
+        return bytes(ffi.buffer(state))
+
     def run(self, measurements: Array) -> NDArray[np.void]:
         """Runs ticks over measurements [size: ticks x 5]; the estimates by field name."""
         record = np.zeros(len(measurements), self.library.dtype("sh_estimate"))
