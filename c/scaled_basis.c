@@ -7,16 +7,17 @@ static int power(int symmetric, int i)
 }
 
 void sh_scaled_basis(const sh_range_parameters *range, int symmetric, int n, int m,
-                     double set_point, double phi, double *F, double *dF)
+                     sh_real set_point, sh_real phi, sh_real *F, sh_real *dF)
 {
-    const double x = phi / range->phi, step = symmetric ? x * x : x, l = set_point / range->setPoint;
-    double upper = symmetric ? x : 1.0; /* x^e */
-    double slope = symmetric ? 1.0 / range->phi : 0.0; /* x^(e - 1) / range, 0 for e = 0 */
+    const sh_real x = phi / range->phi, step = symmetric ? x * x : x;
+    const sh_real l = set_point / range->setPoint;
+    sh_real upper = symmetric ? x : 1; /* x^e */
+    sh_real slope = symmetric ? 1 / range->phi : 0; /* x^(e - 1) / range, 0 for e = 0 */
     int i, j;
 
     for (i = 0; i < n; ++i) {
         const int e = power(symmetric, i);
-        double of_F = e > 0 ? upper / e : upper, of_dF = slope;
+        sh_real of_F = e > 0 ? upper / (sh_real)e : upper, of_dF = slope;
 
         for (j = 0; j < m; ++j) {
             F[j * n + i] = of_F;
@@ -25,20 +26,20 @@ void sh_scaled_basis(const sh_range_parameters *range, int symmetric, int n, int
             of_dF *= l;
         }
         upper *= step;
-        slope = e > 0 ? slope * step : 1.0 / range->phi;
+        slope = e > 0 ? slope * step : 1 / range->phi;
     }
 }
 
 void sh_scaled_basis_units(const sh_range_parameters *range, int symmetric, int n, int m,
-                           double *units)
+                           sh_real *units)
 {
-    double of_l = 1.0;
+    sh_real of_l = 1;
     int i, j, k;
 
     for (j = 0; j < m; ++j) {
         for (i = 0; i < n; ++i) {
             const int e = power(symmetric, i);
-            double unit = e > 0 ? of_l * e : of_l;
+            sh_real unit = e > 0 ? of_l * (sh_real)e : of_l;
             for (k = 0; k < e; ++k)
                 unit *= range->phi;
             units[j * n + i] = unit;

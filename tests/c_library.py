@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 REPOSITORY = Path(__file__).resolve().parent.parent
 HEADERS = [  # in the order in which they need each other
+    REPOSITORY / "c" / "real.h",
     REPOSITORY / "c" / "kinematic_kalman.h",
     REPOSITORY / "c" / "torque_basis.h",
     REPOSITORY / "c" / "torque_residual.h",
@@ -32,9 +33,9 @@ MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
 
 def declarations(header: Path) -> str:
-    """The C declarations of a header, without its preprocessor lines."""
+    """The C declarations of a header, without its preprocessor lines, for double."""
     text = re.sub(r"#ifdef __cplusplus.*?#endif", "", header.read_text(), flags=re.DOTALL)
-    return re.sub(r"^#.*$", "", text, flags=re.MULTILINE)
+    return re.sub(r"^#.*$", "", text, flags=re.MULTILINE).replace("SH_REAL", "double")
 
 
 @cache

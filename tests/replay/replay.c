@@ -29,6 +29,7 @@ static int configure(sh_parameters *p, char configuration)
     case 'e':
         p->filter.kind = SH_FILTER_FINITE_DIFFERENCE;
         p->rls.kind = SH_RLS_STANDARD;
+        p->rls.P_0 = 1; /* the same ridge as in Table I: c P_0 */
         return 1;
     case 'f':
         p->filter.weighting = SH_WEIGHTING_AS_PRINTED;
