@@ -194,6 +194,14 @@ static void drift(sh_matched_regression *matched, sh_least_squares *rls,
         sh_least_squares_bound(rls, matched->basis + i, square(settings->motor_prior[i]));
 }
 
+/* Whether phi changed by more than the rounding of q - theta, where both may have moved on by the
+ * same number of counts.
+ */
+static int moved(const sh_matched_settings *settings, sh_real change)
+{
+    return sh_fabs(change) > sh_fmin(settings->count, settings->count_q) / 4;
+}
+
 int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
                     const sh_matched_settings *settings, sh_real theta, sh_real torque,
                     sh_real phi, sh_real sigma, const sh_real *F, sh_real *y,
@@ -209,7 +217,7 @@ int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
         begin(matched, theta, torque, F);
     else
         filter(matched, settings, theta, torque, F);
-    matched->resting = sh_fabs(phi - matched->phi) > 0 ? 0 : matched->resting + 1;
+    matched->resting = moved(settings, phi - matched->phi) ? 0 : matched->resting + 1;
     matched->phi = phi;
     if (matched->samples < 2)
         ++matched->samples;
