@@ -86,7 +86,7 @@ static void filter(sh_matched_regression *matched, const sh_matched_settings *se
  */
 static sh_real beside_smooth(const sh_state_variable_filter *filter, const sh_filter_design *design)
 {
-    return filter->stage[2] +
+    return sh_state_variable_filter_output(filter) +
            square(design->T) / 12 * sh_state_variable_filter_second(filter, design);
 }
 
@@ -104,11 +104,11 @@ static sh_real regression(const sh_matched_regression *matched, const sh_matched
     int i;
 
     for (i = 0; i < matched->basis; ++i)
-        F[i] = matched->column[i].stage[2];
+        F[i] = sh_state_variable_filter_output(&matched->column[i]);
     for (i = 0; i < SH_MAX_MOTOR; ++i)
         error[i] = 0;
     if (settings->measured)
-        return matched->torque.stage[2];
+        return sh_state_variable_filter_output(&matched->torque);
     error[SH_MOTOR_D_THETA] = -viscous;
     error[SH_MOTOR_B] = -inertial;
     error[SH_MOTOR_COULOMB] = -sh_fabs(motor->gamma) * beside_smooth(&matched->friction, design);
@@ -122,7 +122,8 @@ static sh_real friction_variance(const sh_matched_regression *matched, const sh_
     const int at = matched->basis + SH_MOTOR_COULOMB;
     const sh_real tau_C = square(rls->eta[at]) + sh_least_squares_covariance(rls, at, at);
 
-    return square(settings->motor.gamma) * tau_C * square(matched->unknown.stage[2]);
+    return square(settings->motor.gamma) * tau_C *
+           square(sh_state_variable_filter_output(&matched->unknown));
 }
 
 /* Variance of a sample beside others that are white [(N.m)2]: of the noise of the torque, of the

@@ -34,8 +34,9 @@ typedef struct {
 
 /* State of the filter of one signal, in the signal's unit. */
 typedef struct {
-    sh_real input;    /* last sample */
-    sh_real stage[3]; /* output of each stage; the last is the filtered signal */
+    sh_real input;     /* last sample */
+    sh_real behind[3]; /* input less output of each stage: small, so that derivatives keep their
+                          digits however far the signal is from zero */
 } sh_state_variable_filter;
 
 /* Filter with corner w [rad/s] and sample period T [s]; w T from 1e-4 on, below which digits
@@ -56,6 +57,9 @@ void sh_state_variable_filter_step(sh_state_variable_filter *filter,
 /* The same for a signal of which only the mean over T is known. Do not mix the two. */
 void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
                                         const sh_filter_design *design, sh_real mean);
+
+/* The filtered signal. */
+sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter);
 
 /* First and second derivative of the filtered signal [1/s, 1/s2]. */
 sh_real sh_state_variable_filter_first(const sh_state_variable_filter *filter,
