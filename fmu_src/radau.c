@@ -152,18 +152,18 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     return 0;
 }
 
-/* One step as sh_radau_step; the error is what at least `followers` steps of this length leave of it.
+/* One step as sh_radau_step, with factors for its length; the error is what as many more steps as
+ * `followers` leave of it.
  *
  * A motion that has died out by then need not be resolved. A step takes exp(z) to R(z), and R to
  * less than 1 / (1 - z / REAL) on the whole negative axis, which the factors give for all modes.
  */
 static double take(const double *x, const double *u, const double *du, const double *p, double h,
-                   int followers, double *x_new)
+                   int followers, const double *factors, double *x_new)
 {
-    double factors[SH_PLANT_FACTORS], Z[STAGES][STATES], defect[STATES], error[STATES], size;
+    double Z[STAGES][STATES], defect[STATES], error[STATES], size;
     int j;
 
-    factorize(x, u, p, h, factors);
     if (!solve_stages(x, u, du, p, h, factors, Z))
         return INFINITY;
     for (j = 0; j < STATES; ++j) {
@@ -202,7 +202,10 @@ static double take(const double *x, const double *u, const double *du, const dou
 double sh_radau_step(const double *x, const double *u, const double *du, const double *p,
                      double h, double *x_new)
 {
-    return take(x, u, du, p, h, 0, x_new);
+    double factors[SH_PLANT_FACTORS];
+
+    factorize(x, u, p, h, factors);
+    return take(x, u, du, p, h, 0, factors, x_new);
 }
 
 int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
@@ -211,6 +214,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
     /* Far below any time constant, far above the rounding of the time. */
     const double shortest = 1e-12 * (1.0 + duration);
     double elapsed = 0.0, begin = INFINITY; /* step that suits the begin */
+    double factors[SH_PLANT_FACTORS], factorized = 0.0; /* for steps of this length */
     int attempt, steps = 0, owed = 0, j;
 
     for (attempt = 0; attempt < MAX_ATTEMPTS; ++attempt) {
@@ -222,7 +226,12 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
 
         for (j = 0; j < INPUTS; ++j)
             u_now[j] = u[j] + du[j] * elapsed;
-        error = take(x, u_now, du, p, step, followers, x_new);
+        /* Steps that were planned together share their factors. */
+        if (owed == 0 || fabs(step - factorized) > 1e-9 * step) {
+            factorize(x, u_now, p, step, factors);
+            factorized = step;
+        }
+        error = take(x, u_now, du, p, step, followers, factors, x_new);
         /* The estimate falls with the fourth power of the step. */
         *h = step * fmin(8.0, fmax(0.2, 0.9 / sqrt(sqrt(error))));
         if (error <= 1.0) {
