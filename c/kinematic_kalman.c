@@ -1,38 +1,38 @@
 #include "kinematic_kalman.h"
 
-#include <math.h>
+#include "real_math.h"
 
-double sh_measurement_variance(const sh_filter_parameters *filter, double x_dot, double w_s)
+sh_real sh_measurement_variance(const sh_filter_parameters *filter, sh_real x_dot, sh_real w_s)
 {
-    const double speed = fabs(x_dot);
-    double relative;
+    const sh_real speed = sh_fabs(x_dot);
+    sh_real relative;
 
-    if (!(w_s > 0.0))
+    if (!(w_s > 0))
         return filter->V_min;
     relative = filter->weighting == SH_WEIGHTING_NORMALIZED ? speed / w_s : speed * w_s;
     /* (11); exp may overflow to infinity, which makes R the minimum as it should. */
-    return (filter->V_max - filter->V_min) / (1.0 + exp((relative - 1.0) * filter->alpha)) +
+    return (filter->V_max - filter->V_min) / (1 + sh_exp((relative - 1) * filter->alpha)) +
            filter->V_min;
 }
 
 void sh_kinematic_kalman_start(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
-                               double z)
+                               sh_real z)
 {
     kalman->z = z;
-    kalman->lag = 0.0;
-    kalman->x_dot = 0.0;
-    kalman->dx = 0.0;
-    kalman->dx_dot = 0.0;
+    kalman->lag = 0;
+    kalman->x_dot = 0;
+    kalman->dx = 0;
+    kalman->dx_dot = 0;
     kalman->P11 = filter->P_0;
-    kalman->P12 = 0.0;
+    kalman->P12 = 0;
     kalman->P22 = filter->P_0;
 }
 
 void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
-                              double z, double dt, double w_s)
+                              sh_real z, sh_real dt, sh_real w_s)
 {
-    const double dz = z - kalman->z;
-    double innovation, lag, P11, P12, P22, R, S;
+    const sh_real dz = z - kalman->z;
+    sh_real innovation, lag, P11, P12, P22, R, S;
 
     kalman->z = z;
 
@@ -45,9 +45,9 @@ void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_param
 
     /* (9): xi = A xi, P = A P A' + V_a Gamma Gamma', Gamma = (dt^2/2, dt)' */
     innovation = dz - kalman->lag - dt * kalman->x_dot; /* z - H xi */
-    P11 = kalman->P11 + dt * (2.0 * kalman->P12 + dt * kalman->P22) +
-          filter->V_a * (dt * dt) * (dt * dt) / 4.0;
-    P12 = kalman->P12 + dt * kalman->P22 + filter->V_a * (dt * dt) * dt / 2.0;
+    P11 = kalman->P11 + dt * (2 * kalman->P12 + dt * kalman->P22) +
+          filter->V_a * (dt * dt) * (dt * dt) / 4;
+    P12 = kalman->P12 + dt * kalman->P22 + filter->V_a * (dt * dt) * dt / 2;
     P22 = kalman->P22 + filter->V_a * (dt * dt);
 
     R = filter->kind == SH_FILTER_KALMAN ? filter->R

@@ -8,6 +8,8 @@
 #ifndef SH_KINEMATIC_KALMAN_H
 #define SH_KINEMATIC_KALMAN_H
 
+#include "real.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -29,22 +31,22 @@ enum {
 typedef struct {
     int kind;      /* SH_FILTER_* */
     int weighting; /* SH_WEIGHTING_* */
-    double V_a;    /* (9) variance of the acceleration [rad2/s4], >= 0 */
-    double V_max;  /* (11) measurement variance at rest [rad2], > 0, >= V_min */
-    double V_min;  /* (11) measurement variance in fast motion [rad2], > 0 */
-    double alpha;  /* (11) steepness between the two [1], >= 0 */
-    double R;      /* (10) constant measurement variance, SH_FILTER_KALMAN [rad2], > 0 */
-    double P_0;    /* initial covariance, both diagonal entries [rad2, rad2/s2], > 0 */
+    sh_real V_a;   /* (9) variance of the acceleration [rad2/s4], >= 0 */
+    sh_real V_max; /* (11) measurement variance at rest [rad2], > 0, >= V_min */
+    sh_real V_min; /* (11) measurement variance in fast motion [rad2], > 0 */
+    sh_real alpha; /* (11) steepness between the two [1], >= 0 */
+    sh_real R;     /* (10) constant measurement variance, SH_FILTER_KALMAN [rad2], > 0 */
+    sh_real P_0;   /* initial covariance, both diagonal entries [rad2, rad2/s2], > 0 */
 } sh_filter_parameters;
 
 /* State of the filter of one axis. */
 typedef struct {
-    double z;             /* measured position [rad] */
-    double lag;           /* estimated position less the measured [rad]: small, so that the
-                             filter keeps its digits however far the axis has turned */
-    double x_dot;         /* velocity [rad/s] */
-    double dx, dx_dot;    /* how position and velocity changed with the last sample */
-    double P11, P12, P22; /* covariance of (x, x_dot) */
+    sh_real z;             /* measured position [rad] */
+    sh_real lag;           /* estimated position less the measured [rad]: small, so that the
+                              filter keeps its digits however far the axis has turned */
+    sh_real x_dot;         /* velocity [rad/s] */
+    sh_real dx, dx_dot;    /* how position and velocity changed with the last sample */
+    sh_real P11, P12, P22; /* covariance of (x, x_dot) */
 } sh_kinematic_kalman;
 
 /* Measurement variance R at a velocity, (11) [rad2].
@@ -54,11 +56,11 @@ typedef struct {
  * w_s     velocity of one count per sample, (2 pi / counts) / T [rad/s]; 0 for
  *         an encoder without quantisation, whose R is V_min whatever the weighting
  */
-double sh_measurement_variance(const sh_filter_parameters *filter, double x_dot, double w_s);
+sh_real sh_measurement_variance(const sh_filter_parameters *filter, sh_real x_dot, sh_real w_s);
 
 /* Starts the filter at a measured position z [rad]: zero velocity, covariance P_0 I. */
 void sh_kinematic_kalman_start(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
-                               double z);
+                               sh_real z);
 
 /* Advances the filter by one sample: (9), then R from the predicted velocity, then (10).
  *
@@ -67,7 +69,7 @@ void sh_kinematic_kalman_start(sh_kinematic_kalman *kalman, const sh_filter_para
  * w_s  velocity of one count per sample period [rad/s], >= 0
  */
 void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
-                              double z, double dt, double w_s);
+                              sh_real z, sh_real dt, sh_real w_s);
 
 #ifdef __cplusplus
 }

@@ -1,227 +1,373 @@
 #include "least_squares.h"
 
-#include <math.h>
 #include <stddef.h>
+#include <string.h>
+
+#include "real_math.h"
 
 /* Largest information w rho and prediction error that are taken. The update
  * changes eta_i by at most sqrt(w P_0) |epsilon| / 2 and shrinks no D_j by more
  * than 1 + w rho, so nothing overflows and D stays above 0 (also false: NaN).
  */
-static const double LARGEST = 1e150;
+static const sh_real LARGEST = SH_LARGE;
 
-/* Column j of U above its diagonal, entries 0..j-1. */
-static const double *column(const sh_least_squares *rls, int j)
+/* Place of entry (i, j) of U, i <= j; the panel begins with row and column i - i % SH_PANEL. */
+static int place(int size, int i, int j)
 {
-    return rls->U + j * (j - 1) / 2;
+    const int row = i % SH_PANEL, first = i - row;
+
+    return first * size - first * (first - SH_PANEL) / 2 + (j - first) * SH_PANEL + row;
 }
 
-void sh_least_squares_start(sh_least_squares *rls, int size, const double *eta_0, double P_0)
+void sh_least_squares_start(sh_least_squares *rls, int size, const sh_real *eta_0, sh_real P_0)
 {
     int j;
 
+    memset(rls, 0, sizeof *rls);
     rls->size = size;
     for (j = 0; j < size; ++j) {
-        rls->eta[j] = eta_0 != NULL ? eta_0[j] : 0.0;
-        rls->eta_low[j] = 0.0;
+        rls->eta[j] = eta_0 != NULL ? eta_0[j] : 0;
         rls->D[j] = P_0;
+        rls->U[place(size, j, j)] = 1;
     }
-    for (j = 0; j < size * (size - 1) / 2; ++j)
-        rls->U[j] = 0.0;
 }
 
-/* f = U' F and g = D f; returns rho = F' P F = f' g. */
-static double project(const sh_least_squares *rls, const double *F, double *f, double *g)
+/* Copies v [size: size] with zeros behind it, as far as its last panel goes. */
+static void set(sh_real *padded, const sh_real *v, int size)
 {
-    double rho = 0.0;
+    int i;
+
+    for (i = 0; i < size; ++i)
+        padded[i] = v[i];
+    for (; i % SH_PANEL != 0; ++i)
+        padded[i] = 0;
+}
+
+/* Adds up one panel's share of column u in U' F: the even and the odd rows by themselves, as they
+ * lie side by side.
+ */
+static void add(const sh_real *u, const sh_real *F, sh_real *sum)
+{
+    sum[0] += u[0] * F[0] + u[2] * F[2];
+    sum[1] += u[1] * F[1] + u[3] * F[3];
+}
+
+/* work.f = U' F */
+static void project(sh_least_squares *rls, const sh_real *F)
+{
+    const int size = rls->size;
+    sh_real *padded = rls->work.F, (*sum)[2] = rls->work.pairs;
     int i, j;
 
-    for (j = 0; j < rls->size; ++j) {
-        const double *u = column(rls, j);
-        double sum = F[j];
-        for (i = 0; i < j; ++i)
-            sum += u[i] * F[i];
-        f[j] = sum;
-        g[j] = rls->D[j] * sum;
-        rho += f[j] * g[j];
+    set(padded, F, size);
+    for (j = 0; j + 1 < size; j += 2) { /* two columns share F */
+        const sh_real *u = rls->U + j * SH_PANEL;
+        sh_real one[2] = {0, 0}, next[2] = {0, 0};
+        int stride = (size - SH_PANEL) * SH_PANEL; /* from a panel to the next */
+
+        for (i = 0; i <= j; i += SH_PANEL) {
+            const sh_real F_i[SH_PANEL] = {padded[i], padded[i + 1], padded[i + 2], padded[i + 3]};
+            add(u, F_i, one);
+            add(u + SH_PANEL, F_i, next);
+            u += stride;
+            stride -= SH_PANEL * SH_PANEL;
+        }
+        sum[j][0] = one[0];
+        sum[j][1] = one[1];
+        sum[j + 1][0] = next[0];
+        sum[j + 1][1] = next[1];
     }
+    if (j < size) {
+        const sh_real *u = rls->U + j * SH_PANEL;
+        int stride = (size - SH_PANEL) * SH_PANEL;
+
+        sum[j][0] = 0;
+        sum[j][1] = 0;
+        for (i = 0; i <= j; i += SH_PANEL) {
+            add(u, padded + i, sum[j]);
+            u += stride;
+            stride -= SH_PANEL * SH_PANEL;
+        }
+    }
+    for (j = 0; j < size; ++j)
+        rls->work.f[j] = sum[j][0] + sum[j][1];
+}
+
+sh_real sh_least_squares_variance(sh_least_squares *rls, const sh_real *F)
+{
+    sh_real rho = 0;
+    int j;
+
+    project(rls, F);
+    for (j = 0; j < rls->size; ++j)
+        rho += rls->work.f[j] * (rls->D[j] * rls->work.f[j]);
     return rho;
 }
 
-double sh_least_squares_variance(const sh_least_squares *rls, const double *F)
-{
-    double f[SH_MAX_PARAMETERS], g[SH_MAX_PARAMETERS];
-
-    return project(rls, F, f, g);
-}
-
-double sh_least_squares_covariance(const sh_least_squares *rls, int i, int j)
+sh_real sh_least_squares_covariance(const sh_least_squares *rls, int i, int j)
 {
     const int last = i > j ? i : j;
-    double sum = 0.0;
+    sh_real sum = 0;
     int k;
 
-    for (k = last; k < rls->size; ++k) {
-        const double u_i = k == i ? 1.0 : column(rls, k)[i];
-        const double u_j = k == j ? 1.0 : column(rls, k)[j];
-        sum += u_i * rls->D[k] * u_j;
-    }
+    for (k = last; k < rls->size; ++k)
+        sum += rls->U[place(rls->size, i, k)] * rls->D[k] * rls->U[place(rls->size, j, k)];
     return sum;
 }
 
 /* Stability factor a(k): (27), 1 or as given. */
-static double stability_factor(int kind, double factor, double rho)
+static sh_real stability_factor(int kind, sh_real factor, sh_real rho)
 {
     if (kind == SH_RLS_ENHANCED)
-        return (factor + factor * rho) / (1.0 + factor * rho);
-    return kind == SH_RLS_CONSTANT_FACTOR ? factor : 1.0;
+        return (factor + factor * rho) / (1 + factor * rho);
+    return kind == SH_RLS_CONSTANT_FACTOR ? factor : 1;
 }
 
 /* Weight of the sample: a / (1 + rho - a rho), which is c for (27) and 1 for (14). */
-static double sample_weight(int kind, double factor, double rho)
+static sh_real sample_weight(int kind, sh_real factor, sh_real rho)
 {
     if (kind == SH_RLS_ENHANCED)
         return factor;
     if (kind == SH_RLS_CONSTANT_FACTOR)
-        return factor / (1.0 + (1.0 - factor) * rho);
-    return 1.0;
-}
-
-/* Takes one sample of which project() gave f, g and rho. */
-static int take(sh_least_squares *rls, double w, const double *F, double y, const double *f,
-                const double *g, double rho, double *prediction_error)
-{
-    double PF[SH_MAX_PARAMETERS];
-    double epsilon = y, beta = 1.0;
-    int i, j;
-
-    for (j = 0; j < rls->size; ++j)
-        epsilon -= F[j] * rls->eta[j] + F[j] * rls->eta_low[j];
-    if (!(w * rho <= LARGEST) || !(fabs(epsilon) <= LARGEST))
-        return 0;
-
-    /* Bierman's rank-one update of U D U' for P - P F (w / (1 + w rho)) F' P.
-     * After column j, beta = 1 + w (f_0 g_0 + ... + f_j g_j), PF[0..j] is the
-     * product of the leading blocks of P and F.
-     */
-    for (j = 0; j < rls->size; ++j) {
-        double *u = rls->U + j * (j - 1) / 2;
-        const double beta_before = beta;
-        const double scaled = w * f[j] / beta_before;
-
-        beta += w * f[j] * g[j];
-        rls->D[j] *= beta_before / beta;
-        PF[j] = g[j];
-        for (i = 0; i < j; ++i) {
-            const double u_before = u[i];
-            u[i] -= scaled * PF[i];
-            PF[i] += g[j] * u_before;
-        }
-    }
-
-    /* eta += a K epsilon with a K = w P F / (1 + w rho), (25) */
-    sh_least_squares_move(rls, w * epsilon / beta, PF);
-    *prediction_error = epsilon;
+        return factor / (1 + (1 - factor) * rho);
     return 1;
 }
 
-int sh_least_squares_weigh(sh_least_squares *rls, double w, const double *F, double y,
-                           double *epsilon, double *rho)
+/* Begins a sample: f = U' F, and rho before each column. Returns the whole rho = F' P F. */
+static sh_real begin(sh_least_squares *rls, const sh_real *F)
 {
-    double f[SH_MAX_PARAMETERS], g[SH_MAX_PARAMETERS];
-    const double variance = project(rls, F, f, g);
+    sh_real *f = rls->work.f, *rho = rls->work.rho, before = 0;
+    int j;
 
-    if (!take(rls, w, F, y, f, g, variance, epsilon))
+    project(rls, F);
+    for (j = 0; j + 1 < rls->size; j += 2) { /* two at a time wait for each other half as long */
+        const sh_real one = f[j] * (rls->D[j] * f[j]);
+        const sh_real both = one + f[j + 1] * (rls->D[j + 1] * f[j + 1]);
+
+        rho[j] = before;
+        rho[j + 1] = before + one;
+        before += both;
+    }
+    if (j < rls->size) {
+        rho[j] = before;
+        before += f[j] * (rls->D[j] * f[j]);
+    }
+    return before;
+}
+
+/* eta += c v */
+static void move(sh_real *eta, sh_real *eta_low, sh_real c, const sh_real *v, int size)
+{
+    int j;
+
+    for (j = 0; j < size; ++j) {
+        const sh_real before = eta[j];
+        const sh_real change = c * v[j] + eta_low[j];
+        const sh_real after = before + change;
+        eta[j] = after;
+        eta_low[j] = change - (after - before);
+    }
+}
+
+/* y - F' eta */
+static sh_real prediction_error(const sh_least_squares *rls, const sh_real *F, sh_real y)
+{
+    sh_real high[2] = {0, 0}, low[2] = {0, 0};
+    int j;
+
+    for (j = 0; j + 1 < rls->size; j += 2) {
+        high[0] += F[j] * rls->eta[j];
+        high[1] += F[j + 1] * rls->eta[j + 1];
+        low[0] += F[j] * rls->eta_low[j];
+        low[1] += F[j + 1] * rls->eta_low[j + 1];
+    }
+    if (j < rls->size) {
+        high[0] += F[j] * rls->eta[j];
+        low[0] += F[j] * rls->eta_low[j];
+    }
+    return y - (high[0] + high[1]) - (low[0] + low[1]);
+}
+
+/* Takes a sample that was begun. */
+static int take(sh_least_squares *rls, sh_real w, const sh_real *F, sh_real y, sh_real rho,
+                sh_real *epsilon)
+{
+    const int size = rls->size;
+    sh_real *f = rls->work.f, *beta = rls->work.rho, (*sg)[2] = rls->work.pairs;
+    const sh_real error = prediction_error(rls, F, y);
+    sh_real *u = rls->U;
+    int i, j;
+
+    if (!(w * rho <= LARGEST) || !(sh_fabs(error) <= LARGEST))
+        return 0;
+
+    /* Bierman's rank-one update of U D U' for P - P F (w / (1 + w rho)) F' P. With g = D f and
+     * beta_j = 1 + w (f_0 g_0 + ... + f_{j-1} g_{j-1}), D_j shrinks by beta_j / beta_{j+1}, and
+     * column j of U by s_j = w f_j / beta_j times the product of the blocks of P and F before it.
+     */
+    for (j = 0; j < size; ++j)
+        beta[j] = 1 + w * beta[j];
+    beta[size] = 1 + w * rho;
+    for (j = 0; j < size; ++j) {
+        sg[j][0] = w * f[j] / beta[j];
+        sg[j][1] = rls->D[j] * f[j];
+        rls->D[j] *= beta[j] / beta[j + 1];
+    }
+    /* Panel after panel, as an entry p of the product needs those of its row alone. In column i of
+     * the panel only the one on the diagonal is not zero.
+     */
+    for (i = 0; i < size; i += SH_PANEL) {
+        sh_real p_0 = sg[i][1], p_1 = 0, p_2 = 0, p_3 = 0;
+
+        u += SH_PANEL;
+        for (j = i + 1; j < size; ++j) {
+            const sh_real s_j = sg[j][0], g_j = sg[j][1];
+            const sh_real u_0 = u[0], u_1 = u[1], u_2 = u[2], u_3 = u[3];
+
+            u[0] = u_0 - s_j * p_0;
+            u[1] = u_1 - s_j * p_1;
+            u[2] = u_2 - s_j * p_2;
+            u[3] = u_3 - s_j * p_3;
+            p_0 += g_j * u_0;
+            p_1 += g_j * u_1;
+            p_2 += g_j * u_2;
+            p_3 += g_j * u_3;
+            u += SH_PANEL;
+        }
+        f[i] = p_0; /* f itself is not needed any more */
+        f[i + 1] = p_1;
+        f[i + 2] = p_2;
+        f[i + 3] = p_3;
+    }
+    /* eta += a K epsilon with a K = w P F / (1 + w rho), (25) */
+    move(rls->eta, rls->eta_low, w * error / beta[size], f, size);
+    *epsilon = error;
+    return 1;
+}
+
+int sh_least_squares_weigh(sh_least_squares *rls, sh_real w, const sh_real *F, sh_real y,
+                           sh_real *epsilon, sh_real *rho)
+{
+    const sh_real variance = begin(rls, F);
+
+    if (!take(rls, w, F, y, variance, epsilon))
         return 0;
     *rho = variance;
     return 1;
 }
 
-int sh_least_squares_update(sh_least_squares *rls, int kind, double factor, const double *F,
-                            double y, sh_innovation *innovation)
+int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
+                            sh_real y, sh_innovation *innovation)
 {
-    double f[SH_MAX_PARAMETERS], g[SH_MAX_PARAMETERS];
-    const double rho = project(rls, F, f, g);
+    const sh_real rho = begin(rls, F);
 
-    if (!take(rls, sample_weight(kind, factor, rho), F, y, f, g, rho, &innovation->epsilon))
+    if (!take(rls, sample_weight(kind, factor, rho), F, y, rho, &innovation->epsilon))
         return 0;
     innovation->rho = rho;
     innovation->a = stability_factor(kind, factor, rho);
     return 1;
 }
 
-void sh_least_squares_prior(sh_least_squares *rls, int i, double variance)
+void sh_least_squares_prior(sh_least_squares *rls, int i, sh_real variance)
 {
     rls->D[i] = variance;
 }
 
-void sh_least_squares_widen(sh_least_squares *rls, double c, const double *v)
+/* Column i of P in `sum`, [size: SH_MAX_ROWS]. */
+static void add_up_column(const sh_least_squares *rls, int i, sh_real *sum)
 {
-    double rest[SH_MAX_PARAMETERS]; /* v without what the columns so far took */
+    int j, k;
+
+    for (j = 0; j < rls->size; j += SH_PANEL)
+        sum[j] = sum[j + 1] = sum[j + 2] = sum[j + 3] = 0;
+    /* Columns of U before the i-th have nothing in row i. */
+    for (k = i; k < rls->size; ++k) {
+        const sh_real g = rls->D[k] * rls->U[place(rls->size, i, k)];
+        const sh_real *u = rls->U + k * SH_PANEL;
+        int stride = (rls->size - SH_PANEL) * SH_PANEL; /* from a panel to the next */
+
+        for (j = 0; j <= k; j += SH_PANEL) {
+            sum[j] += u[0] * g;
+            sum[j + 1] += u[1] * g;
+            sum[j + 2] += u[2] * g;
+            sum[j + 3] += u[3] * g;
+            u += stride;
+            stride -= SH_PANEL * SH_PANEL;
+        }
+    }
+}
+
+const sh_real *sh_least_squares_column(sh_least_squares *rls, int i)
+{
+    add_up_column(rls, i, rls->work.F);
+    return rls->work.F;
+}
+
+/* P += c v v' with v in work.f, a combination of the columns of U from `first` on. */
+static void widen(sh_least_squares *rls, sh_real c, int first)
+{
+    sh_real *v = rls->work.f; /* becomes what the columns so far leave of v, with zeros behind */
     int i, j;
 
-    for (j = 0; j < rls->size; ++j)
-        rest[j] = v[j];
-    for (j = rls->size - 1; j >= 0; --j) {
-        double *u = rls->U + j * (j - 1) / 2;
-        const double before = rls->D[j];
-        const double after = before + c * rest[j] * rest[j];
-        const double gain = after > 0.0 ? c * rest[j] / after : 0.0;
+    for (j = rls->size - 1; j >= first; --j) {
+        const sh_real before = rls->D[j], v_j = v[j];
+        const sh_real after = before + c * v_j * v_j;
+        const sh_real gain = after > 0 ? c * v_j / after : 0;
+        sh_real *u = rls->U + j * SH_PANEL;
+        int stride = (rls->size - SH_PANEL) * SH_PANEL; /* from a panel to the next */
 
-        for (i = 0; i < j; ++i) {
-            rest[i] -= rest[j] * u[i];
-            u[i] += gain * rest[i];
+        for (i = 0; i <= j; i += SH_PANEL) {
+            const sh_real v_0 = v[i] - v_j * u[0], v_1 = v[i + 1] - v_j * u[1];
+            const sh_real v_2 = v[i + 2] - v_j * u[2], v_3 = v[i + 3] - v_j * u[3];
+
+            v[i] = v_0;
+            v[i + 1] = v_1;
+            v[i + 2] = v_2;
+            v[i + 3] = v_3;
+            u[0] += gain * v_0;
+            u[1] += gain * v_1;
+            u[2] += gain * v_2;
+            u[3] += gain * v_3;
+            u += stride;
+            stride -= SH_PANEL * SH_PANEL;
         }
         rls->D[j] = after;
-        if (after > 0.0)
+        if (after > 0)
             c *= before / after;
     }
 }
 
-void sh_least_squares_bound(sh_least_squares *rls, const double *P_max)
+void sh_least_squares_widen(sh_least_squares *rls, sh_real c, const sh_real *v)
 {
-    int i, j;
-
-    for (i = 0; i < rls->size; ++i) {
-        const double variance = sh_least_squares_covariance(rls, i, i);
-        double scale;
-
-        if (variance <= P_max[i])
-            continue;
-        /* S P S with S = 1 but for entry i: row i of U grows by the scale, its column shrinks */
-        scale = sqrt(P_max[i] / variance);
-        rls->D[i] *= scale * scale;
-        for (j = i + 1; j < rls->size; ++j)
-            rls->U[j * (j - 1) / 2 + i] *= scale;
-        for (j = 0; j < i; ++j)
-            rls->U[i * (i - 1) / 2 + j] /= scale;
-    }
+    set(rls->work.f, v, rls->size);
+    widen(rls, c, 0);
 }
 
-void sh_least_squares_column(const sh_least_squares *rls, int i, double *P_i)
+void sh_least_squares_widen_column(sh_least_squares *rls, sh_real c, int i)
 {
-    int j, k;
-
-    for (j = 0; j < rls->size; ++j)
-        P_i[j] = 0.0;
-    /* Columns of U before the i-th have nothing in row i. */
-    for (k = i; k < rls->size; ++k) {
-        const double *u = column(rls, k);
-        const double g = k == i ? rls->D[k] : rls->D[k] * u[i];
-
-        P_i[k] += g;
-        for (j = 0; j < k; ++j)
-            P_i[j] += u[j] * g;
-    }
+    add_up_column(rls, i, rls->work.f);
+    widen(rls, c, i);
 }
 
-void sh_least_squares_move(sh_least_squares *rls, double c, const double *v)
+void sh_least_squares_bound(sh_least_squares *rls, int i, sh_real P_max)
 {
+    const int size = rls->size;
+    const sh_real variance = sh_least_squares_covariance(rls, i, i);
+    sh_real scale;
     int j;
 
-    for (j = 0; j < rls->size; ++j) {
-        const double before = rls->eta[j];
-        const double change = c * v[j] + rls->eta_low[j];
-        rls->eta[j] = before + change;
-        rls->eta_low[j] = change - (rls->eta[j] - before);
-    }
+    if (variance <= P_max)
+        return;
+    /* S P S with S = 1 but for entry i: row i of U grows by the scale, its column shrinks */
+    scale = sh_sqrt(P_max / variance);
+    rls->D[i] *= scale * scale;
+    for (j = i + 1; j < size; ++j)
+        rls->U[place(size, i, j)] *= scale;
+    for (j = 0; j < i; ++j)
+        rls->U[place(size, j, i)] /= scale;
+}
+
+void sh_least_squares_move(sh_least_squares *rls, sh_real c, const sh_real *v)
+{
+    move(rls->eta, rls->eta_low, c, v, rls->size);
 }

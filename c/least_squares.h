@@ -30,24 +30,33 @@ enum {
     SH_MAX_MOTOR = 3, /* errors of motor data that are estimated with the torque */
     SH_MAX_PARAMETERS = SH_MAX_BASIS + SH_MAX_MOTOR
 };
-enum { SH_MAX_TRIANGLE = SH_MAX_PARAMETERS * (SH_MAX_PARAMETERS - 1) / 2 };
+enum {
+    SH_PANEL = 4,                                         /* rows of U side by side in memory */
+    SH_MAX_ROWS = (SH_MAX_PARAMETERS + SH_PANEL - 1) / SH_PANEL * SH_PANEL,
+    SH_MAX_U = SH_MAX_ROWS * SH_MAX_PARAMETERS - SH_MAX_ROWS * (SH_MAX_ROWS - SH_PANEL) / 2
+};
 
 /* State of the recursion. */
 typedef struct {
-    int size;                     /* number of parameters, 1..SH_MAX_PARAMETERS */
-    double eta[SH_MAX_PARAMETERS];/* estimate */
-    double eta_low[SH_MAX_PARAMETERS]; /* what rounding left out of eta: millions of
-                                     small updates must not add up to an error */
-    double D[SH_MAX_PARAMETERS];  /* diagonal factor of P, > 0 */
-    double U[SH_MAX_TRIANGLE];    /* unit upper triangular factor of P without its
-                                     diagonal, by columns: U[j (j-1)/2 + i], i < j */
+    sh_real eta[SH_MAX_ROWS];      /* estimate */
+    sh_real eta_low[SH_MAX_ROWS];  /* what rounding left out of eta: millions of
+                                      small updates must not add up to an error */
+    sh_real D[SH_MAX_ROWS];        /* diagonal factor of P, > 0 */
+    sh_real U[SH_MAX_U];           /* unit upper triangular factor of P, in panels of SH_PANEL
+                                      rows: from the diagonal on, column after column, with
+                                      the ones and zeros of the triangle */
+    struct {
+        sh_real pairs[SH_MAX_ROWS][2];
+        sh_real F[SH_MAX_ROWS], f[SH_MAX_ROWS], rho[SH_MAX_ROWS + 1];
+    } work;                        /* means nothing between calls; here to spare the stack */
+    int size;                      /* number of parameters, 1..SH_MAX_PARAMETERS */
 } sh_least_squares;
 
 /* What one sample did, all of it from before the update. */
 typedef struct {
-    double epsilon; /* prediction error, (14), in the unit of y */
-    double rho;     /* F' P F, (14) */
-    double a;       /* stability factor a(k), (27) */
+    sh_real epsilon; /* prediction error, (14), in the unit of y */
+    sh_real rho;     /* F' P F, (14) */
+    sh_real a;       /* stability factor a(k), (27) */
 } sh_innovation;
 
 /* Starts the recursion.
@@ -56,7 +65,7 @@ typedef struct {
  * eta_0  [size: size] initial estimate, NULL for zero
  * P_0    initial covariance, every diagonal entry, > 0
  */
-void sh_least_squares_start(sh_least_squares *rls, int size, const double *eta_0, double P_0);
+void sh_least_squares_start(sh_least_squares *rls, int size, const sh_real *eta_0, sh_real P_0);
 
 /* Takes one sample, (25).
  *
@@ -70,8 +79,8 @@ void sh_least_squares_start(sh_least_squares *rls, int size, const double *eta_0
  * as they were if the sample is not finite or so large that the update would
  * overflow.
  */
-int sh_least_squares_update(sh_least_squares *rls, int kind, double factor, const double *F,
-                            double y, sh_innovation *innovation);
+int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
+                            sh_real y, sh_innovation *innovation);
 
 /* Takes one sample with a given weight: P^-1 += w F F'.
  *
@@ -80,31 +89,38 @@ int sh_least_squares_update(sh_least_squares *rls, int kind, double factor, cons
  *
  * F, y and the returned value as for sh_least_squares_update.
  */
-int sh_least_squares_weigh(sh_least_squares *rls, double w, const double *F, double y,
-                           double *epsilon, double *rho);
+int sh_least_squares_weigh(sh_least_squares *rls, sh_real w, const sh_real *F, sh_real y,
+                           sh_real *epsilon, sh_real *rho);
 
 /* Prior variance of parameter i alone, >= 0; 0 keeps it at its eta_0. Between start and the
  * first sample.
  */
-void sh_least_squares_prior(sh_least_squares *rls, int i, double variance);
+void sh_least_squares_prior(sh_least_squares *rls, int i, sh_real variance);
 
 /* Widens the covariance: P += c v v', c >= 0 (Agee and Turner 1972). v [size: size]. */
-void sh_least_squares_widen(sh_least_squares *rls, double c, const double *v);
+void sh_least_squares_widen(sh_least_squares *rls, sh_real c, const sh_real *v);
 
-/* Shrinks what has grown too wide: no variance above P_max [size: size]; correlations stay. */
-void sh_least_squares_bound(sh_least_squares *rls, const double *P_max);
+/* Shrinks the variance of parameter i to P_max if it is above; correlations stay. */
+void sh_least_squares_bound(sh_least_squares *rls, int i, sh_real P_max);
 
-/* Column i of P [size: size]; cheap for the last ones. */
-void sh_least_squares_column(const sh_least_squares *rls, int i, double *P_i);
+/* The same along column i of P; cheap for the last ones. */
+void sh_least_squares_widen_column(sh_least_squares *rls, sh_real c, int i);
+
+/* Column i of P [size: size]; cheap for the last ones. It is kept at work: the next call of any
+ * other function but sh_least_squares_move writes over it.
+ */
+const sh_real *sh_least_squares_column(sh_least_squares *rls, int i);
 
 /* Moves the estimate: eta += c v. v [size: size]. */
-void sh_least_squares_move(sh_least_squares *rls, double c, const double *v);
+void sh_least_squares_move(sh_least_squares *rls, sh_real c, const sh_real *v);
 
-/* F' P F [unit of y squared over noise variance] for a vector F [size: size]. */
-double sh_least_squares_variance(const sh_least_squares *rls, const double *F);
+/* F' P F [unit of y squared over noise variance] for a vector F [size: size]. Changes nothing
+ * but what is at work.
+ */
+sh_real sh_least_squares_variance(sh_least_squares *rls, const sh_real *F);
 
 /* Entry (i, j) of P, 0 <= i, j < size. */
-double sh_least_squares_covariance(const sh_least_squares *rls, int i, int j);
+sh_real sh_least_squares_covariance(const sh_least_squares *rls, int i, int j);
 
 #ifdef __cplusplus
 }

@@ -1,30 +1,31 @@
 #include "matched_regression.h"
 
-#include <math.h>
+#include <string.h>
+
+#include "real_math.h"
 
 /* Time constants 1/w after which a filter has forgotten. */
-static const double FORGOTTEN = 12.0;
+static const sh_real FORGOTTEN = 12;
 
-static double square(double x)
+static sh_real square(sh_real x)
 {
     return x * x;
 }
 
 /* Prior variance of coefficient i of the torque [(N.m)2]. */
-static double prior_variance(const sh_matched_regression *matched,
-                             const sh_matched_settings *settings, int i)
+static sh_real prior_variance(const sh_matched_regression *matched,
+                              const sh_matched_settings *settings, int i)
 {
     return square(settings->torque) + square(settings->nominal * matched->eta_0[i]);
 }
 
 void sh_matched_start(sh_matched_regression *matched, sh_least_squares *rls,
-                      const sh_matched_settings *settings, int basis, const double *eta_0)
+                      const sh_matched_settings *settings, int basis, const sh_real *eta_0)
 {
-    static const sh_matched_regression zero;
-    double prior_mean[SH_MAX_PARAMETERS] = {0}, curve[SH_MAX_PARAMETERS] = {0};
+    sh_real prior_mean[SH_MAX_PARAMETERS] = {0}, curve[SH_MAX_PARAMETERS] = {0};
     int i;
 
-    *matched = zero;
+    memset(matched, 0, sizeof *matched);
     matched->basis = basis;
     matched->design = sh_state_variable_filter_design(settings->bandwidth, settings->T);
     matched->rounding = sh_state_variable_filter_noise(&matched->design);
@@ -46,35 +47,35 @@ void sh_matched_resume(sh_matched_regression *matched, const sh_matched_settings
 }
 
 /* Filters begin. The motor is taken to be at rest, at any torque: equations hold from now on. */
-static void begin(sh_matched_regression *matched, double theta, double torque, const double *F)
+static void begin(sh_matched_regression *matched, sh_real theta, sh_real torque, const sh_real *F)
 {
     int i;
 
     sh_state_variable_filter_start(&matched->theta, theta);
     sh_state_variable_filter_begin(&matched->torque, torque);
-    sh_state_variable_filter_start(&matched->friction, 0.0);
-    sh_state_variable_filter_start(&matched->unknown, 0.0);
+    sh_state_variable_filter_start(&matched->friction, 0);
+    sh_state_variable_filter_start(&matched->unknown, 0);
     for (i = 0; i < matched->basis; ++i)
         sh_state_variable_filter_begin(&matched->column[i], F[i]);
     sh_motion_sign_start(&matched->motion, theta);
 }
 
 static void filter(sh_matched_regression *matched, const sh_matched_settings *settings,
-                   double theta, double torque, const double *F)
+                   sh_real theta, sh_real torque, const sh_real *F)
 {
     const sh_filter_design *design = &matched->design;
     int i;
 
     /* The first step shows whether the motor was at rest, as the filters take it to be. */
-    if (matched->samples == 1 && fabs(theta - matched->theta.input) >
-                                     1.5 * settings->count + settings->slow * settings->T)
+    if (matched->samples == 1 && sh_fabs(theta - matched->theta.input) >
+                                     (sh_real)1.5 * settings->count + settings->slow * settings->T)
         matched->settling = FORGOTTEN / settings->bandwidth;
     sh_state_variable_filter_step(&matched->theta, design, theta);
     sh_state_variable_filter_step(&matched->torque, design, torque);
     for (i = 0; i < matched->basis; ++i)
         sh_state_variable_filter_step(&matched->column[i], design, F[i]);
     sh_motion_sign_step(&matched->motion, theta, settings->count, settings->slow * settings->T);
-    matched->unsure = matched->motion.unknown > 0.0 ? matched->unsure + 1.0 : 0.0;
+    matched->unsure = matched->motion.unknown > 0 ? matched->unsure + 1 : 0;
     sh_state_variable_filter_step_mean(&matched->friction, design, matched->motion.sign);
     sh_state_variable_filter_step_mean(&matched->unknown, design, matched->motion.unknown);
 }
@@ -83,45 +84,46 @@ static void filter(sh_matched_regression *matched, const sh_matched_settings *se
  * filter takes the smooth ones to be linear too, which costs them (Omega T)^2 / 12 at Omega;
  * here the same is taken from the other one.
  */
-static double beside_smooth(const sh_state_variable_filter *filter, const sh_filter_design *design)
+static sh_real beside_smooth(const sh_state_variable_filter *filter, const sh_filter_design *design)
 {
-    return filter->stage[2] +
-           square(design->T) / 12.0 * sh_state_variable_filter_second(filter, design);
+    return sh_state_variable_filter_output(filter) +
+           square(design->T) / 12 * sh_state_variable_filter_second(filter, design);
 }
 
 /* The regression: columns F [size: basis + SH_MAX_MOTOR], returns y. */
-static double regression(const sh_matched_regression *matched, const sh_matched_settings *settings,
-                         double *F)
+static sh_real regression(const sh_matched_regression *matched, const sh_matched_settings *settings,
+                          sh_real *F)
 {
     const sh_motor_parameters *motor = &settings->motor;
     const sh_filter_design *design = &matched->design;
-    const double viscous = square(motor->gamma) * motor->D_theta *
+    const sh_real viscous = square(motor->gamma) * motor->D_theta *
                            sh_state_variable_filter_first(&matched->theta, design);
-    const double inertial =
+    const sh_real inertial =
         square(motor->gamma) * motor->B * sh_state_variable_filter_second(&matched->theta, design);
-    double *error = F + matched->basis;
+    sh_real *error = F + matched->basis;
     int i;
 
     for (i = 0; i < matched->basis; ++i)
-        F[i] = matched->column[i].stage[2];
+        F[i] = sh_state_variable_filter_output(&matched->column[i]);
     for (i = 0; i < SH_MAX_MOTOR; ++i)
-        error[i] = 0.0;
+        error[i] = 0;
     if (settings->measured)
-        return matched->torque.stage[2];
+        return sh_state_variable_filter_output(&matched->torque);
     error[SH_MOTOR_D_THETA] = -viscous;
     error[SH_MOTOR_B] = -inertial;
-    error[SH_MOTOR_COULOMB] = -fabs(motor->gamma) * beside_smooth(&matched->friction, design);
+    error[SH_MOTOR_COULOMB] = -sh_fabs(motor->gamma) * beside_smooth(&matched->friction, design);
     return inertial + viscous - motor->gamma * beside_smooth(&matched->torque, design);
 }
 
 /* Variance of friction whose sign is not known [(N.m)2]. */
-static double friction_variance(const sh_matched_regression *matched, const sh_least_squares *rls,
-                                const sh_matched_settings *settings)
+static sh_real friction_variance(const sh_matched_regression *matched, const sh_least_squares *rls,
+                                 const sh_matched_settings *settings)
 {
     const int at = matched->basis + SH_MOTOR_COULOMB;
-    const double tau_C = square(rls->eta[at]) + sh_least_squares_covariance(rls, at, at);
+    const sh_real tau_C = square(rls->eta[at]) + sh_least_squares_covariance(rls, at, at);
 
-    return square(settings->motor.gamma) * tau_C * square(matched->unknown.stage[2]);
+    return square(settings->motor.gamma) * tau_C *
+           square(sh_state_variable_filter_output(&matched->unknown));
 }
 
 /* Variance of a sample beside others that are white [(N.m)2]: of the noise of the torque, of the
@@ -132,31 +134,31 @@ static double friction_variance(const sh_matched_regression *matched, const sh_l
  * of one sample and c that of its part that stays, n samples tell 1 / (R / n + c). So the last of
  * them tells as much as one with the variance R (1 + c n / R)^2, and all no more than 1 / c.
  */
-static double noise_variance(const sh_matched_regression *matched, const sh_least_squares *rls,
-                             const sh_matched_settings *settings, double sigma)
+static sh_real noise_variance(const sh_matched_regression *matched, const sh_least_squares *rls,
+                              const sh_matched_settings *settings, sh_real sigma)
 {
-    const double rounding =
-        square(sigma) * (square(settings->count) + square(settings->count_q)) / 12.0;
-    const double gamma = settings->motor.gamma;
-    double R = rounding + square(settings->noise), stays = rounding * matched->resting;
+    const sh_real rounding =
+        square(sigma) * (square(settings->count) + square(settings->count_q)) / 12;
+    const sh_real gamma = settings->motor.gamma;
+    sh_real R = rounding + square(settings->noise), stays = rounding * matched->resting;
 
     if (!settings->measured) {
-        const double friction = friction_variance(matched, rls, settings);
+        const sh_real friction = friction_variance(matched, rls, settings);
         R = rounding + square(gamma * settings->noise) +
-            friction * (1.0 + 10.0 / (settings->bandwidth * settings->T));
+            friction * (1 + 10 / (settings->bandwidth * settings->T));
         stays += friction * matched->unsure;
     }
-    return R * square(1.0 + stays / R);
+    return R * square(1 + stays / R);
 }
 
 /* Keeps the rounding of theta out of what is said about B. There is none while theta rests. */
 static void compensate(sh_matched_regression *matched, sh_least_squares *rls,
-                       const sh_matched_settings *settings, double variance)
+                       const sh_matched_settings *settings, sh_real variance)
 {
-    const double deviation = square(settings->motor.gamma) * settings->motor.B * settings->count;
+    const sh_real deviation = square(settings->motor.gamma) * settings->motor.B * settings->count;
 
-    if (matched->motion.waiting == 0.0)
-        matched->bias.surplus += square(deviation) / 12.0 * matched->rounding / variance;
+    if (matched->motion.waiting == 0)
+        matched->bias.surplus += square(deviation) / 12 * matched->rounding / variance;
     sh_rounding_bias_take_back(&matched->bias, rls, matched->basis + SH_MOTOR_B,
                                square(settings->motor_prior[SH_MOTOR_B]));
 }
@@ -170,11 +172,11 @@ static void compensate(sh_matched_regression *matched, sh_least_squares *rls,
  * 36:1725-1731, who take from the information; here no variance grows beyond the prior. Motor data
  * are taken to be constant.
  */
-static void drift(const sh_matched_regression *matched, sh_least_squares *rls,
-                  const sh_matched_settings *settings, const double *F, double noise)
+static void drift(sh_matched_regression *matched, sh_least_squares *rls,
+                  const sh_matched_settings *settings, const sh_real *F, sh_real noise)
 {
-    double direction[SH_MAX_PARAMETERS] = {0}, P_max[SH_MAX_PARAMETERS];
-    double along = 0.0, power = 0.0;
+    sh_real *direction = matched->work.direction; /* zero beyond the basis */
+    sh_real along = 0, power = 0;
     int i;
 
     for (i = 0; i < matched->basis; ++i)
@@ -183,56 +185,64 @@ static void drift(const sh_matched_regression *matched, sh_least_squares *rls,
         direction[i] = square(settings->torque) * F[i] +
                        square(settings->nominal) * matched->eta_0[i] * along;
         power += F[i] * direction[i];
-        P_max[i] = prior_variance(matched, settings, i);
     }
-    if (!(power > 0.0))
+    if (!(power > 0))
         return;
-    for (i = 0; i < SH_MAX_MOTOR; ++i)
-        P_max[matched->basis + i] = square(settings->motor_prior[i]);
     sh_least_squares_widen(rls, settings->drift * settings->T / (power + noise), direction);
-    sh_least_squares_bound(rls, P_max);
+    for (i = 0; i < matched->basis; ++i)
+        sh_least_squares_bound(rls, i, prior_variance(matched, settings, i));
+    for (i = 0; i < SH_MAX_MOTOR; ++i)
+        sh_least_squares_bound(rls, matched->basis + i, square(settings->motor_prior[i]));
+}
+
+/* Whether phi changed by more than the rounding of q - theta, where both may have moved on by the
+ * same number of counts.
+ */
+static int moved(const sh_matched_settings *settings, sh_real change)
+{
+    return sh_fabs(change) > sh_fmin(settings->count, settings->count_q) / 4;
 }
 
 int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
-                    const sh_matched_settings *settings, double theta, double torque,
-                    double phi, double sigma, const double *F, double *y,
+                    const sh_matched_settings *settings, sh_real theta, sh_real torque,
+                    sh_real phi, sh_real sigma, const sh_real *F, sh_real *y,
                     sh_innovation *innovation)
 {
-    double column[SH_MAX_PARAMETERS];
-    double variance;
+    sh_real *column = matched->work.F;
+    sh_real variance;
 
-    innovation->a = 0.0;
-    innovation->rho = 0.0;
-    innovation->epsilon = 0.0;
+    innovation->a = 0;
+    innovation->rho = 0;
+    innovation->epsilon = 0;
     if (matched->samples == 0)
         begin(matched, theta, torque, F);
     else
         filter(matched, settings, theta, torque, F);
-    matched->resting = fabs(phi - matched->phi) > 0.0 ? 0.0 : matched->resting + 1.0;
+    matched->resting = moved(settings, phi - matched->phi) ? 0 : matched->resting + 1;
     matched->phi = phi;
     if (matched->samples < 2)
         ++matched->samples;
     *y = regression(matched, settings, column);
     matched->settling -= settings->T;
-    if (matched->settling > 0.0)
+    if (matched->settling > 0)
         return 1;
-    matched->settling = 0.0;
+    matched->settling = 0;
 
     variance = noise_variance(matched, rls, settings, sigma);
-    if (!sh_least_squares_weigh(rls, 1.0 / variance, column, *y, &innovation->epsilon,
+    if (!sh_least_squares_weigh(rls, 1 / variance, column, *y, &innovation->epsilon,
                                 &innovation->rho))
         return 0;
     innovation->rho /= variance;
-    innovation->a = 1.0;
-    if (!settings->measured && settings->motor_prior[SH_MOTOR_B] > 0.0)
+    innovation->a = 1;
+    if (!settings->measured && settings->motor_prior[SH_MOTOR_B] > 0)
         compensate(matched, rls, settings, variance);
-    if (settings->drift > 0.0)
+    if (settings->drift > 0)
         drift(matched, rls, settings, column, variance);
     return 1;
 }
 
-double sh_matched_belief(const sh_matched_regression *matched, const sh_least_squares *rls,
-                         const sh_matched_settings *settings, const double *dF, double *eta)
+sh_real sh_matched_belief(const sh_matched_regression *matched, sh_least_squares *rls,
+                          const sh_matched_settings *settings, const sh_real *dF, sh_real *eta)
 {
     return sh_rounding_bias_belief(&matched->bias, rls, matched->basis + SH_MOTOR_B,
                                    square(settings->motor_prior[SH_MOTOR_B]), dF, eta);

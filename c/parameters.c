@@ -1,60 +1,57 @@
 /* Start values and ranges of the parameters of the stiffness estimator. */
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "stiffness_estimator.h"
 
-static const double PI = 3.14159265358979323846;
-
 void sh_parameters_default(sh_parameters *p)
 {
-    static const sh_parameters zero;
-
-    *p = zero;
-    p->samplePeriod = 1e-3;
+    memset(p, 0, sizeof *p);
+    p->samplePeriod = (sh_real)1e-3;
     p->method = SH_METHOD_PAPER2011;
     p->modality = SH_MODALITY_RESIDUAL;
     p->deformation = SH_DEFORMATION_RAW;
-    p->motor.B = 2.3e-5;
-    p->motor.D_theta = 1e-3;
-    p->motor.gamma = 50.0;
-    p->residual.K_I = 300.0;
+    p->motor.B = (sh_real)2.3e-5;
+    p->motor.D_theta = (sh_real)1e-3;
+    p->motor.gamma = 50;
+    p->residual.K_I = 300;
     p->filter.kind = SH_FILTER_MODIFIED_KALMAN;
     p->filter.weighting = SH_WEIGHTING_NORMALIZED;
-    p->filter.V_a = 3e9;
-    p->filter.V_max = 10.0;
-    p->filter.V_min = 0.1;
-    p->filter.alpha = 6.0;
-    p->filter.R = 10.0;
-    p->filter.P_0 = 1.0;
-    p->encoder.theta = 40000.0;
-    p->encoder.q = 40000.0;
-    p->encoder.theta_c = 1024.0;
-    p->setPoint.offset = 100.0;
-    p->setPoint.scale = -0.0025 / (2.0 * PI) * 1000.0;
+    p->filter.V_a = (sh_real)3e9;
+    p->filter.V_max = 10;
+    p->filter.V_min = (sh_real)0.1;
+    p->filter.alpha = 6;
+    p->filter.R = 10;
+    p->filter.P_0 = 1;
+    p->encoder.theta = 40000;
+    p->encoder.q = 40000;
+    p->encoder.theta_c = 1024;
+    p->setPoint.offset = 100;
+    p->setPoint.scale = (sh_real)(-0.0025 / (2 * SH_PI) * 1000);
     p->rls.kind = SH_RLS_ENHANCED;
     p->rls.symmetric = 1;
     p->rls.n = 6;
     p->rls.m = 3;
-    p->rls.P_0 = 1e20;
-    p->rls.c = 1e-20;
-    p->rls.a = 0.1;
-    p->model.k_s = 14220.0;
-    p->model.r_0 = 0.1;
-    p->model.b = 0.0025 / (2.0 * PI);
-    p->noise.tau = 3.2e-3;
-    p->noise.tau_e = 3.2e-2;
-    p->confidence = 0.1;
-    p->matched.bandwidth = 350.0;
-    p->matched.slow = 0.05;
-    p->matched.drift = 0.0;
-    p->range.phi = 0.3;
-    p->range.setPoint = 100.0;
-    p->prior.tau_e = 45.0;
-    p->prior.nominal = 0.0;
-    p->prior.D_theta = 0.2;
-    p->prior.B = 0.0;
-    p->prior.tau_coulomb = 0.0;
+    p->rls.P_0 = (sh_real)1e20;
+    p->rls.c = (sh_real)1e-20;
+    p->rls.a = (sh_real)0.1;
+    p->model.k_s = 14220;
+    p->model.r_0 = (sh_real)0.1;
+    p->model.b = (sh_real)(0.0025 / (2 * SH_PI));
+    p->noise.tau = (sh_real)3.2e-3;
+    p->noise.tau_e = (sh_real)3.2e-2;
+    p->confidence = (sh_real)0.1;
+    p->matched.bandwidth = 350;
+    p->matched.slow = (sh_real)0.05;
+    p->matched.drift = 0;
+    p->range.phi = (sh_real)0.3;
+    p->range.setPoint = 100;
+    p->prior.tau_e = 45;
+    p->prior.nominal = 0;
+    p->prior.D_theta = (sh_real)0.2;
+    p->prior.B = 0;
+    p->prior.tau_coulomb = 0;
 }
 
 /* Range of one parameter. */
@@ -62,7 +59,7 @@ typedef struct {
     const char *name;
     size_t offset; /* in sh_parameters */
     const char *range;
-    double min, max;
+    sh_real min, max;
     int min_open; /* 1: min itself is not allowed */
 } real_range;
 
@@ -77,41 +74,41 @@ typedef struct {
 
 /* Finite limits other than 0 and 1 are far beyond use: what squares and powers can hold. */
 static const real_range REALS[] = {
-    {AT(samplePeriod), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(motor.B), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(motor.D_theta), ">= 0", 0.0, HUGE_VAL, 0},
-    {AT(motor.gamma), "finite and not 0", -HUGE_VAL, HUGE_VAL, 0},
-    {AT(residual.K_I), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(filter.V_a), ">= 0", 0.0, HUGE_VAL, 0},
-    {AT(filter.V_max), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(filter.V_min), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(filter.alpha), ">= 0", 0.0, HUGE_VAL, 0},
-    {AT(filter.R), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(filter.P_0), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(encoder.theta), ">= 0 (0: no quantisation)", 0.0, HUGE_VAL, 0},
-    {AT(encoder.q), ">= 0 (0: no quantisation)", 0.0, HUGE_VAL, 0},
-    {AT(encoder.theta_c), ">= 0 (0: no quantisation)", 0.0, HUGE_VAL, 0},
-    {AT(setPoint.offset), "finite", -HUGE_VAL, HUGE_VAL, 0},
-    {AT(setPoint.scale), "finite", -HUGE_VAL, HUGE_VAL, 0},
-    {AT(rls.P_0), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(rls.c), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(rls.a), "> 0 and <= 1", 0.0, 1.0, 1},
-    {AT(model.k_s), ">= 0", 0.0, HUGE_VAL, 0},
-    {AT(model.r_0), "finite", -HUGE_VAL, HUGE_VAL, 0},
-    {AT(model.b), "finite", -HUGE_VAL, HUGE_VAL, 0},
-    {AT(noise.tau), "1e-12 to 1e12", 1e-12, 1e12, 0},
-    {AT(noise.tau_e), "1e-12 to 1e12", 1e-12, 1e12, 0},
-    {AT(confidence), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(matched.bandwidth), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(matched.slow), "> 0", 0.0, HUGE_VAL, 1},
-    {AT(matched.drift), ">= 0", 0.0, HUGE_VAL, 0},
-    {AT(range.phi), "1e-6 to 1e6", 1e-6, 1e6, 0},
-    {AT(range.setPoint), "1e-12 to 1e12", 1e-12, 1e12, 0},
-    {AT(prior.tau_e), "0 to 1e12", 0.0, 1e12, 0},
-    {AT(prior.nominal), "0 to 1e12", 0.0, 1e12, 0},
-    {AT(prior.D_theta), "0 to 1e12", 0.0, 1e12, 0},
-    {AT(prior.B), "0 to 1e12", 0.0, 1e12, 0},
-    {AT(prior.tau_coulomb), "0 to 1e12", 0.0, 1e12, 0},
+    {AT(samplePeriod), "> 0", 0, INFINITY, 1},
+    {AT(motor.B), "> 0", 0, INFINITY, 1},
+    {AT(motor.D_theta), ">= 0", 0, INFINITY, 0},
+    {AT(motor.gamma), "finite and not 0", -INFINITY, INFINITY, 0},
+    {AT(residual.K_I), "> 0", 0, INFINITY, 1},
+    {AT(filter.V_a), ">= 0", 0, INFINITY, 0},
+    {AT(filter.V_max), "> 0", 0, INFINITY, 1},
+    {AT(filter.V_min), "> 0", 0, INFINITY, 1},
+    {AT(filter.alpha), ">= 0", 0, INFINITY, 0},
+    {AT(filter.R), "> 0", 0, INFINITY, 1},
+    {AT(filter.P_0), "> 0", 0, INFINITY, 1},
+    {AT(encoder.theta), ">= 0 (0: no quantisation)", 0, INFINITY, 0},
+    {AT(encoder.q), ">= 0 (0: no quantisation)", 0, INFINITY, 0},
+    {AT(encoder.theta_c), ">= 0 (0: no quantisation)", 0, INFINITY, 0},
+    {AT(setPoint.offset), "finite", -INFINITY, INFINITY, 0},
+    {AT(setPoint.scale), "finite", -INFINITY, INFINITY, 0},
+    {AT(rls.P_0), "> 0", 0, INFINITY, 1},
+    {AT(rls.c), "> 0", 0, INFINITY, 1},
+    {AT(rls.a), "> 0 and <= 1", 0, 1, 1},
+    {AT(model.k_s), ">= 0", 0, INFINITY, 0},
+    {AT(model.r_0), "finite", -INFINITY, INFINITY, 0},
+    {AT(model.b), "finite", -INFINITY, INFINITY, 0},
+    {AT(noise.tau), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12, 0},
+    {AT(noise.tau_e), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12, 0},
+    {AT(confidence), "> 0", 0, INFINITY, 1},
+    {AT(matched.bandwidth), "> 0", 0, INFINITY, 1},
+    {AT(matched.slow), "> 0", 0, INFINITY, 1},
+    {AT(matched.drift), ">= 0", 0, INFINITY, 0},
+    {AT(range.phi), "1e-6 to 1e6", (sh_real)1e-6, (sh_real)1e6, 0},
+    {AT(range.setPoint), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12, 0},
+    {AT(prior.tau_e), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.nominal), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.D_theta), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.B), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.tau_coulomb), "0 to 1e12", 0, (sh_real)1e12, 0},
 };
 
 static const integer_range INTEGERS[] = {
@@ -136,7 +133,7 @@ enum {
     INTEGER_COUNT = sizeof INTEGERS / sizeof INTEGERS[0]
 };
 
-static int violates(sh_violation *violation, const char *name, double value, const char *range)
+static int violates(sh_violation *violation, const char *name, sh_real value, const char *range)
 {
     violation->name = name;
     violation->value = value;
@@ -151,7 +148,7 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
 
     for (i = 0; i < REAL_COUNT; ++i) {
         const real_range *r = &REALS[i];
-        const double value = *(const double *)(const void *)(bytes + r->offset);
+        const sh_real value = *(const sh_real *)(const void *)(bytes + r->offset);
         const int above = r->min_open ? value > r->min : value >= r->min;
         if (!isfinite(value) || !above || value > r->max)
             return violates(violation, r->name, value, r->range);
@@ -160,22 +157,22 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
         const integer_range *r = &INTEGERS[i];
         const int value = *(const int *)(const void *)(bytes + r->offset);
         if (value < r->min || value > r->max)
-            return violates(violation, r->name, value, r->range);
+            return violates(violation, r->name, (sh_real)value, r->range);
     }
     for (i = 0; i < SH_MAX_N; ++i)
         for (j = 0; j < SH_MAX_M; ++j)
             if (!isfinite(p->rls.eta_0[i][j]))
                 return violates(violation, "rls.eta_0", p->rls.eta_0[i][j], "finite");
-    if (!(p->motor.gamma > 0.0) && !(p->motor.gamma < 0.0))
+    if (!(p->motor.gamma > 0) && !(p->motor.gamma < 0))
         return violates(violation, "motor.gamma", p->motor.gamma, "finite and not 0");
     if (p->filter.V_min > p->filter.V_max)
         return violates(violation, "filter.V_min", p->filter.V_min, "> 0 and <= filter.V_max");
-    if (p->method == SH_METHOD_PAPER2011 && p->residual.K_I * p->samplePeriod >= 2.0)
+    if (p->method == SH_METHOD_PAPER2011 && p->residual.K_I * p->samplePeriod >= 2)
         return violates(violation, "residual.K_I", p->residual.K_I,
                         "> 0 and < 2 / samplePeriod");
     if (p->method == SH_METHOD_MATCHED_FILTER &&
-        (p->matched.bandwidth * p->samplePeriod < 1e-4 ||
-         p->matched.bandwidth * p->samplePeriod >= 2.0))
+        (p->matched.bandwidth * p->samplePeriod < (sh_real)1e-4 ||
+         p->matched.bandwidth * p->samplePeriod >= 2))
         return violates(violation, "matched.bandwidth", p->matched.bandwidth,
                         ">= 1e-4 / samplePeriod and < 2 / samplePeriod");
     return 0;

@@ -1,22 +1,23 @@
 #include "rounding_bias.h"
 
-#include <math.h>
+#include "real_math.h"
 
 void sh_rounding_bias_take_back(sh_rounding_bias *bias, sh_least_squares *rls, int at,
-                                double prior_variance)
+                                sh_real prior_variance)
 {
-    double P_b[SH_MAX_PARAMETERS];
-    double variance, back, gain;
+    const sh_real *P_b = sh_least_squares_column(rls, at);
+    sh_real variance, back, left;
 
-    sh_least_squares_column(rls, at, P_b);
     variance = P_b[at];
-    back = fmin(bias->surplus, 1.0 / variance - 1.0 / prior_variance);
-    if (!(back > 0.0) || !(variance > 0.0))
+    back = sh_fmin(bias->surplus, 1 / variance - 1 / prior_variance);
+    if (!(back > 0) || !(variance > 0))
         return;
     /* P^-1 -= back at b, and the sum of squares loses back (1 + b)^2. */
-    gain = back / (1.0 - back * variance);
-    sh_least_squares_move(rls, gain * (1.0 + rls->eta[at]), P_b);
-    sh_least_squares_widen(rls, gain, P_b);
+    left = 1 - back * variance;
+    if (!(left > 0)) /* too close to nothing for the digits of a number */
+        return;
+    sh_least_squares_move(rls, back / left * (1 + rls->eta[at]), P_b);
+    sh_least_squares_widen_column(rls, back / left, at);
     bias->surplus -= back;
     bias->taken += back;
 }
@@ -30,27 +31,28 @@ void sh_rounding_bias_take_back(sh_rounding_bias *bias, sh_least_squares *rls, i
  *
  * with s = (I + p) b of the recursion. What is known of the others if b is known stays.
  */
-double sh_rounding_bias_belief(const sh_rounding_bias *bias, const sh_least_squares *rls, int at,
-                               double prior_variance, const double *dF, double *eta)
+sh_real sh_rounding_bias_belief(const sh_rounding_bias *bias, sh_least_squares *rls, int at,
+                                sh_real prior_variance, const sh_real *dF, sh_real *eta)
 {
-    double P_b[SH_MAX_PARAMETERS];
-    const double variance = sh_least_squares_variance(rls, dF);
-    double of_b, information, share, believed, change, along = 0.0;
+    const sh_real variance = sh_least_squares_variance(rls, dF);
+    const sh_real *P_b;
+    sh_real of_b, information, share, believed, change, along = 0;
     int i;
 
     for (i = 0; i < rls->size; ++i)
         eta[i] = rls->eta[i];
-    if (!(bias->taken > 0.0))
+    if (!(bias->taken > 0))
         return variance;
-    sh_least_squares_column(rls, at, P_b);
+    P_b = sh_least_squares_column(rls, at);
     of_b = P_b[at];
-    information = fmax(1.0 / of_b - 1.0 / prior_variance, 0.0);
+    information = sh_fmax(1 / of_b - 1 / prior_variance, 0);
     share = information / (information + bias->taken);
-    believed = 1.0 / (1.0 / prior_variance + information * share);
-    change = (share / of_b * believed - 1.0) * eta[at];
+    believed = 1 / (1 / prior_variance + information * share);
+    change = (share / of_b * believed - 1) * eta[at] / of_b;
     for (i = 0; i < rls->size; ++i) {
-        eta[i] += P_b[i] / of_b * change;
-        along += P_b[i] / of_b * dF[i];
+        eta[i] += P_b[i] * change;
+        along += P_b[i] * dF[i];
     }
+    along /= of_b;
     return variance + along * along * (believed - of_b);
 }

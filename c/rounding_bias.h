@@ -18,8 +18,8 @@ extern "C" {
 
 /* Information about the parameter that is rounding and no information [1]. */
 typedef struct {
-    double surplus; /* still in the recursion */
-    double taken;   /* taken back so far */
+    sh_real surplus; /* still in the recursion */
+    sh_real taken;   /* taken back so far */
 } sh_rounding_bias;
 
 /* Takes the surplus out of the recursion, information and pull alike, as far as P can bear it:
@@ -29,7 +29,7 @@ typedef struct {
  * prior_variance  its prior variance, > 0; its prior mean is 0
  */
 void sh_rounding_bias_take_back(sh_rounding_bias *bias, sh_least_squares *rls, int at,
-                                double prior_variance);
+                                sh_real prior_variance);
 
 /* What is believed of a combination of parameters: estimate and variance.
  *
@@ -38,8 +38,8 @@ void sh_rounding_bias_take_back(sh_rounding_bias *bias, sh_least_squares *rls, i
  *
  * Returns the variance of dF' eta.
  */
-double sh_rounding_bias_belief(const sh_rounding_bias *bias, const sh_least_squares *rls, int at,
-                               double prior_variance, const double *dF, double *eta);
+sh_real sh_rounding_bias_belief(const sh_rounding_bias *bias, sh_least_squares *rls, int at,
+                                sh_real prior_variance, const sh_real *dF, sh_real *eta);
 
 #ifdef __cplusplus
 }

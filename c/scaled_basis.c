@@ -7,30 +7,39 @@ static int power(int symmetric, int i)
 }
 
 void sh_scaled_basis(const sh_range_parameters *range, int symmetric, int n, int m,
-                     double set_point, double phi, double *F, double *dF)
+                     sh_real set_point, sh_real phi, sh_real *F, sh_real *dF)
 {
+    const sh_real x = phi / range->phi, step = symmetric ? x * x : x;
+    const sh_real l = set_point / range->setPoint;
+    sh_real upper = symmetric ? x : 1; /* x^e */
+    sh_real slope = symmetric ? 1 / range->phi : 0; /* x^(e - 1) / range, 0 for e = 0 */
     int i, j;
 
-    sh_torque_basis(symmetric, n, m, set_point / range->setPoint, phi / range->phi, F, dF);
     for (i = 0; i < n; ++i) {
-        const double e = power(symmetric, i) > 0 ? power(symmetric, i) : 1.0;
+        const int e = power(symmetric, i);
+        sh_real of_F = e > 0 ? upper / (sh_real)e : upper, of_dF = slope;
+
         for (j = 0; j < m; ++j) {
-            F[j * n + i] /= e;
-            dF[j * n + i] /= e * range->phi;
+            F[j * n + i] = of_F;
+            dF[j * n + i] = of_dF;
+            of_F *= l;
+            of_dF *= l;
         }
+        upper *= step;
+        slope = e > 0 ? slope * step : 1 / range->phi;
     }
 }
 
 void sh_scaled_basis_units(const sh_range_parameters *range, int symmetric, int n, int m,
-                           double *units)
+                           sh_real *units)
 {
-    double of_l = 1.0;
+    sh_real of_l = 1;
     int i, j, k;
 
     for (j = 0; j < m; ++j) {
         for (i = 0; i < n; ++i) {
             const int e = power(symmetric, i);
-            double unit = e > 0 ? of_l * e : of_l;
+            sh_real unit = e > 0 ? of_l * (sh_real)e : of_l;
             for (k = 0; k < e; ++k)
                 unit *= range->phi;
             units[j * n + i] = unit;

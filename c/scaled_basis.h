@@ -18,17 +18,17 @@ extern "C" {
 #endif
 
 typedef struct {
-    double phi;      /* largest deformation to be expected [rad], 1e-6..1e6 */
-    double setPoint; /* largest set-point to be expected [1], 1e-12..1e12 */
+    sh_real phi;      /* largest deformation to be expected [rad], 1e-6..1e6 */
+    sh_real setPoint; /* largest set-point to be expected [1], 1e-12..1e12 */
 } sh_range_parameters;
 
 /* Regressor F and its derivative dF by phi [1/rad]; arguments as for sh_torque_basis. */
 void sh_scaled_basis(const sh_range_parameters *range, int symmetric, int n, int m,
-                     double set_point, double phi, double *F, double *dF);
+                     sh_real set_point, sh_real phi, sh_real *F, sh_real *dF);
 
 /* Factors from the coefficients of setPoint^j phi^e to those of the scaled basis, in F's order. */
 void sh_scaled_basis_units(const sh_range_parameters *range, int symmetric, int n, int m,
-                           double *units);
+                           sh_real *units);
 
 #ifdef __cplusplus
 }

@@ -1,89 +1,107 @@
 #include "state_variable_filter.h"
 
-#include <math.h>
+#include "real_math.h"
 
-sh_filter_design sh_state_variable_filter_design(double w, double T)
+/* Far below the resolution of any signal, far above the smallest number. */
+static const sh_real SMALL = (sh_real)1e-30;
+
+sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T)
 {
-    const double wT = w * T, decay = exp(-wT);
+    const sh_real wT = w * T, decay = sh_exp(-wT);
     sh_filter_design design;
 
     design.w = w;
     design.T = T;
+    design.lag = 1 / wT;
     design.keep[0] = decay;
     design.keep[1] = decay * wT;
-    design.keep[2] = decay * wT * wT / 2.0;
+    design.keep[2] = decay * wT * wT / 2;
     return design;
 }
 
-void sh_state_variable_filter_start(sh_state_variable_filter *filter, double x)
+void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x)
 {
     filter->input = x;
-    filter->stage[0] = x;
-    filter->stage[1] = x;
-    filter->stage[2] = x;
+    filter->behind[0] = 0;
+    filter->behind[1] = 0;
+    filter->behind[2] = 0;
 }
 
-void sh_state_variable_filter_begin(sh_state_variable_filter *filter, double x)
+void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x)
 {
-    sh_state_variable_filter_start(filter, 0.0);
     filter->input = x;
+    filter->behind[0] = x;
+    filter->behind[1] = x;
+    filter->behind[2] = x;
 }
 
 /* Advances by T. In the steady state of a ramp, stage i runs behind it by i + 1 times lag;
  * deviations from that die out as in the unforced filter.
  */
-static void advance(sh_state_variable_filter *filter, const sh_filter_design *design, double from,
-                    double to, double lag)
+static void advance(sh_state_variable_filter *filter, const sh_filter_design *design, sh_real lag)
 {
-    const double *keep = design->keep;
-    const double d0 = filter->stage[0] - (from - lag);
-    const double d1 = filter->stage[1] - (from - 2.0 * lag);
-    const double d2 = filter->stage[2] - (from - 3.0 * lag);
+    const sh_real *keep = design->keep;
+    sh_real *behind = filter->behind;
+    const sh_real d0 = behind[0] - lag, d1 = behind[1] - 2 * lag, d2 = behind[2] - 3 * lag;
 
-    filter->stage[0] = to - lag + keep[0] * d0;
-    filter->stage[1] = to - 2.0 * lag + keep[0] * d1 + keep[1] * d0;
-    filter->stage[2] = to - 3.0 * lag + keep[0] * d2 + keep[1] * d1 + keep[2] * d0;
+    behind[0] = lag + keep[0] * d0;
+    behind[1] = 2 * lag + keep[0] * d1 + keep[1] * d0;
+    behind[2] = 3 * lag + keep[0] * d2 + keep[1] * d1 + keep[2] * d0;
+    /* What has died out ends here, and not among numbers too small for processors to be fast. */
+    if (sh_fabs(behind[2]) < SMALL && sh_fabs(behind[1]) < SMALL && sh_fabs(behind[0]) < SMALL)
+        behind[0] = behind[1] = behind[2] = 0;
 }
 
 void sh_state_variable_filter_step(sh_state_variable_filter *filter,
-                                   const sh_filter_design *design, double x)
+                                   const sh_filter_design *design, sh_real x)
 {
-    advance(filter, design, filter->input, x, (x - filter->input) / (design->w * design->T));
+    advance(filter, design, (x - filter->input) * design->lag);
     filter->input = x;
 }
 
 void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
-                                        const sh_filter_design *design, double mean)
+                                        const sh_filter_design *design, sh_real mean)
 {
-    advance(filter, design, mean, mean, 0.0);
+    const sh_real jump = mean - filter->input;
+
+    filter->behind[0] += jump;
+    filter->behind[1] += jump;
+    filter->behind[2] += jump;
+    advance(filter, design, 0);
+    filter->input = mean;
 }
 
-double sh_state_variable_filter_first(const sh_state_variable_filter *filter,
-                                      const sh_filter_design *design)
+sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter)
 {
-    return design->w * (filter->stage[1] - filter->stage[2]);
+    return filter->input - filter->behind[2];
 }
 
-double sh_state_variable_filter_second(const sh_state_variable_filter *filter,
+sh_real sh_state_variable_filter_first(const sh_state_variable_filter *filter,
                                        const sh_filter_design *design)
 {
-    return design->w * design->w *
-           (filter->stage[0] - 2.0 * filter->stage[1] + filter->stage[2]);
+    return design->w * (filter->behind[2] - filter->behind[1]);
 }
 
-double sh_state_variable_filter_noise(const sh_filter_design *design)
+sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
+                                        const sh_filter_design *design)
+{
+    return design->w * design->w *
+           (2 * filter->behind[1] - filter->behind[0] - filter->behind[2]);
+}
+
+sh_real sh_state_variable_filter_noise(const sh_filter_design *design)
 {
     /* Sum of squares of the response to one sample; it has died out after 60 time constants. */
-    const double samples = 2.0 + 60.0 / (design->w * design->T);
+    const sh_real samples = 2 + 60 / (design->w * design->T);
     sh_state_variable_filter filter;
-    double k, sum = 0.0;
+    sh_real k, sum = 0;
 
-    sh_state_variable_filter_start(&filter, 0.0);
-    sh_state_variable_filter_step(&filter, design, 1.0);
-    for (k = 0.0; k < samples; k += 1.0) {
-        const double response = sh_state_variable_filter_second(&filter, design);
+    sh_state_variable_filter_start(&filter, 0);
+    sh_state_variable_filter_step(&filter, design, 1);
+    for (k = 0; k < samples; k += 1) {
+        const sh_real response = sh_state_variable_filter_second(&filter, design);
         sum += response * response;
-        sh_state_variable_filter_step(&filter, design, 0.0);
+        sh_state_variable_filter_step(&filter, design, 0);
     }
     return sum;
 }

@@ -17,53 +17,60 @@
 #ifndef SH_STATE_VARIABLE_FILTER_H
 #define SH_STATE_VARIABLE_FILTER_H
 
+#include "real.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* What all filters of one corner and sample period share. */
 typedef struct {
-    double w;       /* corner [rad/s] */
-    double T;       /* sample period [s] */
-    double keep[3]; /* what a stage keeps of its own deviation, and of those one and two stages
-                       before it, after T */
+    sh_real w;       /* corner [rad/s] */
+    sh_real T;       /* sample period [s] */
+    sh_real lag;     /* 1 / (w T), by which a stage runs behind a ramp [samples] */
+    sh_real keep[3]; /* what a stage keeps of its own deviation, and of those one and two stages
+                        before it, after T */
 } sh_filter_design;
 
 /* State of the filter of one signal, in the signal's unit. */
 typedef struct {
-    double input;    /* last sample */
-    double stage[3]; /* output of each stage; the last is the filtered signal */
+    sh_real input;     /* last sample */
+    sh_real behind[3]; /* input less output of each stage: small, so that derivatives keep their
+                          digits however far the signal is from zero */
 } sh_state_variable_filter;
 
 /* Filter with corner w [rad/s] and sample period T [s]; w T from 1e-4 on, below which digits
  * are lost.
  */
-sh_filter_design sh_state_variable_filter_design(double w, double T);
+sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T);
 
 /* Starts the filter as if the signal had been x for ever: no transient. */
-void sh_state_variable_filter_start(sh_state_variable_filter *filter, double x);
+void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x);
 
 /* Starts the filter at rest for a signal that begins now with x and was zero before. */
-void sh_state_variable_filter_begin(sh_state_variable_filter *filter, double x);
+void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x);
 
 /* Advances the filter by T; the signal went linearly to x. */
 void sh_state_variable_filter_step(sh_state_variable_filter *filter,
-                                   const sh_filter_design *design, double x);
+                                   const sh_filter_design *design, sh_real x);
 
 /* The same for a signal of which only the mean over T is known. Do not mix the two. */
 void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
-                                        const sh_filter_design *design, double mean);
+                                        const sh_filter_design *design, sh_real mean);
+
+/* The filtered signal. */
+sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter);
 
 /* First and second derivative of the filtered signal [1/s, 1/s2]. */
-double sh_state_variable_filter_first(const sh_state_variable_filter *filter,
-                                      const sh_filter_design *design);
-double sh_state_variable_filter_second(const sh_state_variable_filter *filter,
+sh_real sh_state_variable_filter_first(const sh_state_variable_filter *filter,
                                        const sh_filter_design *design);
+sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
+                                        const sh_filter_design *design);
 
 /* Noise gain of the second derivative: variance of s^2 H x [1/s4] for white samples x of
  * variance 1.
  */
-double sh_state_variable_filter_noise(const sh_filter_design *design);
+sh_real sh_state_variable_filter_noise(const sh_filter_design *design);
 
 #ifdef __cplusplus
 }

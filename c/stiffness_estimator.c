@@ -1,11 +1,11 @@
 #include "stiffness_estimator.h"
 
-#include <math.h>
+#include <string.h>
 
-static const double PI = 3.14159265358979323846;
+#include "real_math.h"
 
 /* Regressor and its derivative by phi at an operating point, in the units of the method. */
-static void basis(const sh_parameters *p, double phi, double set_point, double *F, double *dF)
+static void basis(const sh_parameters *p, sh_real phi, sh_real set_point, sh_real *F, sh_real *dF)
 {
     if (p->method == SH_METHOD_MATCHED_FILTER)
         sh_scaled_basis(&p->range, p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, F, dF);
@@ -16,18 +16,18 @@ static void basis(const sh_parameters *p, double phi, double set_point, double *
 /* What P of the paper's recursion is to be multiplied by to be a covariance [(N.m)2]: the noise
  * of the torque as if it were white, times the weight that (27) gives to every sample.
  */
-static double noise_of_paper(const sh_parameters *p)
+static sh_real noise_of_paper(const sh_parameters *p)
 {
-    const double noise =
+    const sh_real noise =
         p->modality == SH_MODALITY_RESIDUAL ? p->motor.gamma * p->noise.tau : p->noise.tau_e;
 
-    return noise * noise * (p->rls.kind == SH_RLS_ENHANCED ? p->rls.c : 1.0);
+    return noise * noise * (p->rls.kind == SH_RLS_ENHANCED ? p->rls.c : 1);
 }
 
 /* Resolution of an encoder [rad], 0 without quantisation. */
-static double count_of(double counts_per_turn)
+static sh_real count_of(sh_real counts_per_turn)
 {
-    return counts_per_turn > 0.0 ? 2.0 * PI / counts_per_turn : 0.0;
+    return counts_per_turn > 0 ? (sh_real)(2 * SH_PI) / counts_per_turn : 0;
 }
 
 static sh_matched_settings matched_settings(const sh_parameters *p)
@@ -52,108 +52,107 @@ static sh_matched_settings matched_settings(const sh_parameters *p)
 }
 
 /* Torque (21) and stiffness (23) at a regressor F and its derivative dF. */
-static void evaluate_curve(const double *F, const double *dF, const double *eta, int size,
+static void evaluate_curve(const sh_real *F, const sh_real *dF, const sh_real *eta, int size,
                            sh_estimate *estimate)
 {
     int i;
 
-    estimate->tau_e = 0.0;
-    estimate->sigma = 0.0;
+    estimate->tau_e = 0;
+    estimate->sigma = 0;
     for (i = 0; i < size; ++i) {
         estimate->tau_e += F[i] * eta[i];
         estimate->sigma += dF[i] * eta[i];
     }
 }
 
-/* All that follows from parameters eta, of which dF' eta has the given variance, at an operating
- * point with regressor F and derivative dF.
+/* All that follows from parameters eta, of which dF' eta has the given variance, at the operating
+ * point of the regressor F and its derivative dF.
  */
-static void evaluate(const sh_parameters *p, double phi, double set_point, const double *F,
-                     const double *dF, const double *eta, double variance, sh_estimate *estimate)
+static void evaluate(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,
+                     sh_real set_point, const sh_real *eta, sh_real variance, sh_estimate *estimate)
 {
     const int matched = p->method == SH_METHOD_MATCHED_FILTER;
     const int n = p->rls.n, m = p->rls.m, size = n * m;
-    double units[SH_MAX_BASIS];
     int i, j;
 
-    evaluate_curve(F, dF, eta, size, estimate);
+    evaluate_curve(estimator->work.F, estimator->work.dF, eta, size, estimate);
     estimate->phi = phi;
     estimate->setPoint = set_point;
-    estimate->sigma_std = sqrt(variance);
-    estimate->confident = estimate->sigma_std <= p->confidence * fabs(estimate->sigma);
-    if (matched)
-        sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
+    estimate->sigma_std = sh_sqrt(variance);
+    estimate->confident = estimate->sigma_std <= p->confidence * sh_fabs(estimate->sigma);
     for (j = 0; j < m; ++j)
         for (i = 0; i < n; ++i)
-            estimate->eta[i][j] = matched ? eta[j * n + i] / units[j * n + i] : eta[j * n + i];
-    estimate->D_theta_hat = p->motor.D_theta * (matched ? 1.0 + eta[size + SH_MOTOR_D_THETA] : 1.0);
-    estimate->B_hat = p->motor.B * (matched ? 1.0 + eta[size + SH_MOTOR_B] : 1.0);
-    estimate->tau_coulomb_hat = matched ? eta[size + SH_MOTOR_COULOMB] : 0.0;
+            estimate->eta[i][j] = eta[j * n + i] * estimator->units[j * n + i];
+    estimate->D_theta_hat = p->motor.D_theta * (matched ? 1 + eta[size + SH_MOTOR_D_THETA] : 1);
+    estimate->B_hat = p->motor.B * (matched ? 1 + eta[size + SH_MOTOR_B] : 1);
+    estimate->tau_coulomb_hat = matched ? eta[size + SH_MOTOR_COULOMB] : 0;
 }
 
-static void evaluate_paper(const sh_estimator *estimator, const sh_parameters *p, double phi,
-                           double set_point, const double *F, const double *dF,
-                           sh_estimate *estimate)
+static void evaluate_paper(sh_estimator *estimator, const sh_parameters *p, sh_real phi,
+                           sh_real set_point, sh_estimate *estimate)
 {
-    const double variance = noise_of_paper(p) * sh_least_squares_variance(&estimator->rls, dF);
+    const sh_real variance =
+        noise_of_paper(p) * sh_least_squares_variance(&estimator->rls, estimator->work.dF);
 
-    evaluate(p, phi, set_point, F, dF, estimator->rls.eta, variance, estimate);
+    evaluate(estimator, p, phi, set_point, estimator->rls.eta, variance, estimate);
 }
 
 void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate)
 {
-    static const sh_estimator zero;
-    static const sh_estimate nothing;
     const int n = p->rls.n, m = p->rls.m, size = n * m;
-    const double set_point = p->setPoint.offset;
-    double eta_0[SH_MAX_BASIS], units[SH_MAX_BASIS], scaled[SH_MAX_PARAMETERS] = {0};
-    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
+    const sh_real set_point = p->setPoint.offset;
+    sh_real eta_0[SH_MAX_BASIS], scaled[SH_MAX_PARAMETERS] = {0};
+    sh_real *const units = estimator->units, *const F = estimator->work.F;
+    sh_real *const dF = estimator->work.dF;
     int i, j;
 
-    *estimator = zero;
-    *estimate = nothing;
+    memset(estimator, 0, sizeof *estimator);
+    memset(estimate, 0, sizeof *estimate);
     for (j = 0; j < m; ++j)
         for (i = 0; i < n; ++i)
             eta_0[j * n + i] = p->rls.eta_0[i][j];
     estimator->modality = p->modality;
-    basis(p, 0.0, set_point, F, dF);
+    basis(p, 0, set_point, F, dF);
     if (p->method == SH_METHOD_MATCHED_FILTER) {
         const sh_matched_settings settings = matched_settings(p);
-        double each = 0.0, curve = 0.0; /* what each coefficient, and the curve, add to sigma */
+        sh_real each = 0, curve = 0; /* what each coefficient, and the curve, add to sigma */
 
         sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
         for (i = 0; i < size; ++i) {
             scaled[i] = eta_0[i] * units[i];
+            units[i] = 1 / units[i];
             each += dF[i] * dF[i];
             curve += dF[i] * scaled[i];
         }
         each *= p->prior.tau_e * p->prior.tau_e;
         curve *= p->prior.nominal;
         sh_matched_start(&estimator->matched, &estimator->rls, &settings, size, scaled);
-        evaluate(p, 0.0, set_point, F, dF, scaled, each + curve * curve, estimate);
+        evaluate(estimator, p, 0, set_point, scaled, each + curve * curve, estimate);
         /* The estimate is eta_0 to the last digit, whatever the units. */
-        sh_torque_basis(p->rls.symmetric, n, m, set_point, 0.0, F, dF);
+        sh_torque_basis(p->rls.symmetric, n, m, set_point, 0, F, dF);
         evaluate_curve(F, dF, eta_0, size, estimate);
         for (j = 0; j < m; ++j)
             for (i = 0; i < n; ++i)
                 estimate->eta[i][j] = p->rls.eta_0[i][j];
     } else {
+        for (i = 0; i < size; ++i)
+            units[i] = 1;
         sh_least_squares_start(&estimator->rls, size, eta_0, p->rls.P_0);
-        evaluate_paper(estimator, p, 0.0, set_point, F, dF, estimate);
+        evaluate_paper(estimator, p, 0, set_point, estimate);
     }
     estimate->valid = 1;
 }
 
-static int is_measurement(double z)
+static int is_measurement(sh_real z)
 {
-    return fabs(z) <= SH_LARGEST_MEASUREMENT; /* false for NaN */
+    return sh_fabs(z) <= SH_LARGEST_MEASUREMENT; /* false for NaN */
 }
 
 /* First stage: filters and residual. Returns gamma r_e [N.m]. */
-static double track(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z)
+static sh_real track(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z)
 {
-    const double T = p->samplePeriod;
-    const double dt = T * (1.0 + estimator->skipped);
+    const sh_real T = p->samplePeriod;
+    const sh_real dt = T * (1 + estimator->skipped);
     sh_kinematic_kalman *theta = &estimator->theta;
     sh_kinematic_kalman *q = &estimator->q;
 
@@ -170,59 +169,59 @@ static double track(sh_estimator *estimator, const sh_parameters *p, const sh_me
          * to forget before it is learned from.
          */
         estimator->settling -= dt;
-        if (dt * p->residual.K_I < 2.0) {
+        if (dt * p->residual.K_I < 2) {
             sh_torque_residual_step(&estimator->residual, &p->motor, theta->dx, theta->dx_dot,
                                     z->tau, p->residual.K_I, dt);
         } else {
             sh_torque_residual_resume(&estimator->residual, z->tau);
-            estimator->settling = 10.0 / p->residual.K_I;
+            estimator->settling = 10 / p->residual.K_I;
         }
     }
     estimator->started = 1;
-    estimator->skipped = 0.0;
+    estimator->skipped = 0;
     return p->motor.gamma * estimator->residual.r_e;
 }
 
 /* Nominal flexibility torque at the measured positions, (28) with (30) [N.m]. */
-static double nominal_torque(const sh_parameters *p, const sh_measurement *z)
+static sh_real nominal_torque(const sh_parameters *p, const sh_measurement *z)
 {
-    const double r = p->model.r_0 - p->model.b * z->theta_c;
+    const sh_real r = p->model.r_0 - p->model.b * z->theta_c;
 
-    return p->model.k_s * r * r * sin(2.0 * (z->q - z->theta));
+    return p->model.k_s * r * r * sh_sin(2 * (z->q - z->theta));
 }
 
 static int skip(sh_estimator *estimator, sh_estimate *estimate)
 {
-    estimator->skipped += 1.0;
+    estimator->skipped += 1;
     estimate->valid = 0;
     return 0;
 }
 
 /* The paper's two stages. Returns 0, and leaves all as it was, if the regression refuses. */
 static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
-                      double set_point, sh_estimate *estimate)
+                      sh_real set_point, sh_estimate *estimate)
 {
-    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
+    sh_real *const F = estimator->work.F;
     const sh_kinematic_kalman theta = estimator->theta, q = estimator->q;
     const sh_torque_residual residual = estimator->residual;
-    const double skipped = estimator->skipped, settling = estimator->settling;
+    const sh_real skipped = estimator->skipped, settling = estimator->settling;
     const int started = estimator->started;
-    const double tau_e_residual = track(estimator, p, z);
-    double phi = z->q - z->theta;
-    double tau_e_hat, factor;
+    const sh_real tau_e_residual = track(estimator, p, z);
+    sh_real phi = z->q - z->theta;
+    sh_real tau_e_hat, factor;
     int kind = p->rls.kind;
     sh_innovation innovation;
 
     if (p->deformation == SH_DEFORMATION_FILTERED)
         phi += estimator->q.lag - estimator->theta.lag;
-    basis(p, phi, set_point, F, dF);
+    basis(p, phi, set_point, F, estimator->work.dF);
     tau_e_hat = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
                 : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
                                                    : tau_e_residual;
     factor = kind == SH_RLS_ENHANCED ? p->rls.c : p->rls.a;
-    if (p->modality == SH_MODALITY_RESIDUAL && estimator->settling > 0.0) {
+    if (p->modality == SH_MODALITY_RESIDUAL && estimator->settling > 0) {
         kind = SH_RLS_CONSTANT_FACTOR; /* a = 0 learns nothing, (25) */
-        factor = 0.0;
+        factor = 0;
     }
     if (!isfinite(tau_e_residual) ||
         !sh_least_squares_update(&estimator->rls, kind, factor, F, tau_e_hat, &innovation)) {
@@ -234,7 +233,7 @@ static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_
         estimator->started = started;
         return 0;
     }
-    evaluate_paper(estimator, p, phi, set_point, F, dF, estimate);
+    evaluate_paper(estimator, p, phi, set_point, estimate);
     estimate->tau_e_residual = tau_e_residual;
     estimate->theta_dot = estimator->theta.x_dot;
     estimate->a = innovation.a;
@@ -247,19 +246,18 @@ static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_
  * filters begin anew after any sample that was skipped, so they need not be restored.
  */
 static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
-                        double set_point, sh_estimate *estimate)
+                        sh_real set_point, sh_estimate *estimate)
 {
-    double F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
+    sh_real *const F = estimator->work.F, *const dF = estimator->work.dF;
     const sh_matched_settings settings = matched_settings(p);
-    const double phi = z->q - z->theta;
-    double eta[SH_MAX_PARAMETERS];
-    double y, variance;
-    const double torque = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
+    const sh_real phi = z->q - z->theta;
+    sh_real y, variance;
+    const sh_real torque = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
                           : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
                                                              : z->tau;
     sh_innovation innovation;
 
-    if (estimator->started && (estimator->skipped > 0.0 || estimator->modality != p->modality))
+    if (estimator->started && (estimator->skipped > 0 || estimator->modality != p->modality))
         sh_matched_resume(&estimator->matched, &settings);
     basis(p, phi, set_point, F, dF);
     if (!sh_matched_step(&estimator->matched, &estimator->rls, &settings, z->theta, torque, phi,
@@ -268,10 +266,11 @@ static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const s
         return 0;
     }
     estimator->started = 1;
-    estimator->skipped = 0.0;
+    estimator->skipped = 0;
     estimator->modality = p->modality;
-    variance = sh_matched_belief(&estimator->matched, &estimator->rls, &settings, dF, eta);
-    evaluate(p, phi, set_point, F, dF, eta, variance, estimate);
+    variance = sh_matched_belief(&estimator->matched, &estimator->rls, &settings, dF,
+                                 estimator->work.eta);
+    evaluate(estimator, p, phi, set_point, estimator->work.eta, variance, estimate);
     estimate->tau_e_residual = y;
     estimate->theta_dot =
         sh_state_variable_filter_first(&estimator->matched.theta, &estimator->matched.design);
@@ -284,7 +283,7 @@ static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const s
 int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                       sh_estimate *estimate)
 {
-    const double set_point = p->setPoint.offset + p->setPoint.scale * z->theta_c;
+    const sh_real set_point = p->setPoint.offset + p->setPoint.scale * z->theta_c;
     int good;
 
     if (!is_measurement(z->theta) || !is_measurement(z->q) || !is_measurement(z->theta_c) ||

@@ -25,6 +25,7 @@
 #include "scaled_basis.h"
 #include "torque_basis.h"
 #include "torque_residual.h"
+#include "real.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -54,90 +55,90 @@ enum {
  * the next one.
  */
 typedef struct {
-    double samplePeriod; /* T [s], > 0, fixed */
-    int method;          /* SH_METHOD_*, fixed */
-    int modality;        /* SH_MODALITY_* */
-    int deformation;     /* SH_DEFORMATION_*, fixed */
+    sh_real samplePeriod; /* T [s], > 0, fixed */
+    int method;           /* SH_METHOD_*, fixed */
+    int modality;         /* SH_MODALITY_* */
+    int deformation;      /* SH_DEFORMATION_*, fixed */
     sh_motor_parameters motor;
     struct {
-        double K_I; /* bandwidth of the residual [1/s], > 0, K_I T < 2 if it is used */
+        sh_real K_I; /* bandwidth of the residual [1/s], > 0, K_I T < 2 if it is used */
     } residual;
     sh_filter_parameters filter; /* kind, weighting and P_0 fixed */
     struct {
-        double theta, q; /* resolution [counts/turn], >= 0; 0: no quantisation; q acts with
-                            SH_DEFORMATION_FILTERED alone; fixed */
-        double theta_c;  /* not used: theta_c is not filtered */
+        sh_real theta, q; /* resolution [counts/turn], >= 0; 0: no quantisation; q acts with
+                             SH_DEFORMATION_FILTERED alone; fixed */
+        sh_real theta_c;  /* not used: theta_c is not filtered */
     } encoder;
     struct {
-        double offset, scale; /* set-point = offset + scale theta_c [1, 1/rad], fixed */
+        sh_real offset, scale; /* set-point = offset + scale theta_c [1, 1/rad], fixed */
     } setPoint;
     struct {
-        int kind;                          /* SH_RLS_*, fixed */
-        int symmetric;                     /* 1: torque odd in phi, (16); 0: any; fixed */
-        int n, m;                          /* 1..SH_MAX_N, 1..SH_MAX_M, fixed */
-        double P_0;                        /* initial covariance, > 0, fixed */
-        double c;                          /* (27), > 0, fixed */
-        double a;                          /* constant stability factor, (0, 1], fixed */
-        double eta_0[SH_MAX_N][SH_MAX_M];  /* initial estimate, fixed */
+        int kind;                           /* SH_RLS_*, fixed */
+        int symmetric;                      /* 1: torque odd in phi, (16); 0: any; fixed */
+        int n, m;                           /* 1..SH_MAX_N, 1..SH_MAX_M, fixed */
+        sh_real P_0;                        /* initial covariance, > 0, fixed */
+        sh_real c;                          /* (27), > 0, fixed */
+        sh_real a;                          /* constant stability factor, (0, 1], fixed */
+        sh_real eta_0[SH_MAX_N][SH_MAX_M];  /* initial estimate, fixed */
     } rls;
     struct {
-        double k_s; /* stiffness of the springs, (28) [N/m], >= 0 */
-        double r_0; /* lever arm at theta_c = 0, (30) [m] */
-        double b;   /* lead of the ball screw, (30) [m/rad] */
-    } model;        /* for SH_MODALITY_MODEL */
+        sh_real k_s; /* stiffness of the springs, (28) [N/m], >= 0 */
+        sh_real r_0; /* lever arm at theta_c = 0, (30) [m] */
+        sh_real b;   /* lead of the ball screw, (30) [m/rad] */
+    } model;         /* for SH_MODALITY_MODEL */
     struct {
-        double tau;   /* std deviation of the noise of tau [N.m], 1e-12..1e12 */
-        double tau_e; /* and of tau_e_sensor, also how far the model is trusted [N.m],
-                         1e-12..1e12 */
+        sh_real tau;   /* std deviation of the noise of tau [N.m], 1e-12..1e12 */
+        sh_real tau_e; /* and of tau_e_sensor, also how far the model is trusted [N.m],
+                          1e-12..1e12 */
     } noise;
-    double confidence; /* largest sigma_std / |sigma| that counts as confident [1], > 0 */
+    sh_real confidence; /* largest sigma_std / |sigma| that counts as confident [1], > 0 */
     /* All below for SH_METHOD_MATCHED_FILTER. */
     struct {
-        double bandwidth; /* w of the filter [rad/s], > 0, 1e-4 <= w T < 2 if it is used, fixed */
-        double slow;      /* |theta'| below which the sign of friction is unknown [rad/s], > 0 */
-        double drift;     /* share of its prior variance by which the torque curve drifts in a
-                             second [1/s], >= 0; 0: it does not change */
+        sh_real bandwidth; /* w of the filter [rad/s], > 0, 1e-4 <= w T < 2 if it is used, fixed */
+        sh_real slow;      /* |theta'| below which the sign of friction is unknown [rad/s], > 0 */
+        sh_real drift;     /* share of its prior variance by which the torque curve drifts in a
+                              second [1/s], >= 0; 0: it does not change */
     } matched;
     sh_range_parameters range; /* fixed */
     struct { /* 0..1e12, fixed */
-        double tau_e;       /* std deviation of each coefficient of the torque, for phi and
-                               set-point in units of their range [N.m] */
-        double nominal;     /* of the curve rls.eta_0 as a whole, relative [1] */
-        double D_theta;     /* of motor.D_theta, relative [1]; 0: exact */
-        double B;           /* of motor.B, relative [1]; 0: exact */
-        double tau_coulomb; /* of the Coulomb friction of the motor, on its axis [N.m];
-                               0: there is none */
+        sh_real tau_e;       /* std deviation of each coefficient of the torque, for phi and
+                                set-point in units of their range [N.m] */
+        sh_real nominal;     /* of the curve rls.eta_0 as a whole, relative [1] */
+        sh_real D_theta;     /* of motor.D_theta, relative [1]; 0: exact */
+        sh_real B;           /* of motor.B, relative [1]; 0: exact */
+        sh_real tau_coulomb; /* of the Coulomb friction of the motor, on its axis [N.m];
+                                0: there is none */
     } prior;
 } sh_parameters;
 
 /* Largest measurement that is taken for one [rad, N.m]. */
-#define SH_LARGEST_MEASUREMENT 1e12
+#define SH_LARGEST_MEASUREMENT ((sh_real)1e12)
 
 /* One sample of the measurements. */
 typedef struct {
-    double theta, q, theta_c; /* positions: principal motor after its gear, link,
-                                 secondary motor [rad] */
-    double tau;               /* torque of the principal motor, on its axis [N.m] */
-    double tau_e_sensor;      /* flexibility torque from a sensor, SH_MODALITY_SENSOR [N.m] */
+    sh_real theta, q, theta_c; /* positions: principal motor after its gear, link,
+                                  secondary motor [rad] */
+    sh_real tau;               /* torque of the principal motor, on its axis [N.m] */
+    sh_real tau_e_sensor;      /* flexibility torque from a sensor, SH_MODALITY_SENSOR [N.m] */
 } sh_measurement;
 
 /* What a tick gives. */
 typedef struct {
-    double sigma;                  /* stiffness, (23) [N.m/rad] */
-    double tau_e;                  /* flexibility torque of the fitted model, (21) [N.m] */
-    double tau_e_residual;         /* gamma r_e, (8) [N.m] */
-    double theta_dot;              /* motor velocity used by the residual [rad/s] */
-    double phi;                    /* deformation [rad] */
-    double setPoint;               /* set-point [1] */
-    double a, rho, epsilon;        /* (27) [1], (14) [1], (14) [N.m] */
-    double eta[SH_MAX_N][SH_MAX_M];/* eta[i][j]: coefficient of setPoint^j phi^(2i+1), (21),
-                                      or of setPoint^j phi^i if not symmetric */
-    double sigma_std;              /* std deviation of sigma, as far as the method knows
-                                      [N.m/rad] */
-    double D_theta_hat, B_hat;     /* motor data as corrected [N.m.s/rad, kg.m2] */
-    double tau_coulomb_hat;        /* Coulomb friction found, on the motor axis [N.m] */
-    int confident;                 /* sigma_std is at most confidence |sigma| */
-    int valid;                     /* 0 while the last tick was skipped, see sh_estimator_tick */
+    sh_real sigma;                  /* stiffness, (23) [N.m/rad] */
+    sh_real tau_e;                  /* flexibility torque of the fitted model, (21) [N.m] */
+    sh_real tau_e_residual;         /* gamma r_e, (8) [N.m] */
+    sh_real theta_dot;              /* motor velocity used by the residual [rad/s] */
+    sh_real phi;                    /* deformation [rad] */
+    sh_real setPoint;               /* set-point [1] */
+    sh_real a, rho, epsilon;        /* (27) [1], (14) [1], (14) [N.m] */
+    sh_real eta[SH_MAX_N][SH_MAX_M];/* eta[i][j]: coefficient of setPoint^j phi^(2i+1), (21),
+                                       or of setPoint^j phi^i if not symmetric */
+    sh_real sigma_std;              /* std deviation of sigma, as far as the method knows
+                                       [N.m/rad] */
+    sh_real D_theta_hat, B_hat;     /* motor data as corrected [N.m.s/rad, kg.m2] */
+    sh_real tau_coulomb_hat;        /* Coulomb friction found, on the motor axis [N.m] */
+    int confident;                  /* sigma_std is at most confidence |sigma| */
+    int valid;                      /* 0 while the last tick was skipped, see sh_estimator_tick */
 } sh_estimate;
 
 /* State between ticks. Holds no pointer: copy it by assignment. */
@@ -147,17 +148,23 @@ typedef struct {
     sh_torque_residual residual;
     sh_least_squares rls;
     sh_matched_regression matched;
-    int modality;   /* of the last good sample */
-    int started;    /* a good sample has been seen */
-    double skipped; /* ticks skipped since the last good sample */
-    double settling; /* time until r_e has forgotten what was before a gap [s] */
+    int modality;     /* of the last good sample */
+    int started;      /* a good sample has been seen */
+    sh_real skipped;  /* ticks skipped since the last good sample */
+    sh_real settling; /* time until r_e has forgotten what was before a gap [s] */
+    sh_real units[SH_MAX_BASIS]; /* factors from the coefficients in the unit of the method to
+                                    those of the estimate */
+    struct {
+        sh_real F[SH_MAX_PARAMETERS], dF[SH_MAX_PARAMETERS]; /* zero beyond the basis */
+        sh_real eta[SH_MAX_PARAMETERS];
+    } work;          /* means nothing between ticks; here to spare the stack */
 } sh_estimator;
 
 /* A parameter outside its range. */
 typedef struct {
     const char *name;  /* as in the FMU, "residual.K_I" */
-    double value;      /* what came */
-    const char *range; /* what is allowed, "K_I samplePeriod < 2" */
+    sh_real value;     /* what came */
+    const char *range;  /* what is allowed, "K_I samplePeriod < 2" */
 } sh_violation;
 
 /* Sets the parameters of the AwAS, section VI.A, and of the FMU's start values. */

@@ -7,6 +7,8 @@
 #ifndef SH_TORQUE_BASIS_H
 #define SH_TORQUE_BASIS_H
 
+#include "real.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -29,8 +31,8 @@ enum {
  * The torque (21) is F' eta, the stiffness (23) is dF' eta, with eta in the
  * same order.
  */
-void sh_torque_basis(int symmetric, int n, int m, double set_point, double phi, double *F,
-                     double *dF);
+void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi, sh_real *F,
+                     sh_real *dF);
 
 #ifdef __cplusplus
 }

@@ -6,30 +6,32 @@
 #ifndef SH_TORQUE_RESIDUAL_H
 #define SH_TORQUE_RESIDUAL_H
 
+#include "real.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* Data of the motor, (3). */
 typedef struct {
-    double B;       /* rotor inertia [kg.m2], > 0 */
-    double D_theta; /* viscous friction [N.m.s/rad], >= 0 */
-    double gamma;   /* gear ratio [1], not 0 */
+    sh_real B;       /* rotor inertia [kg.m2], > 0 */
+    sh_real D_theta; /* viscous friction [N.m.s/rad], >= 0 */
+    sh_real gamma;   /* gear ratio [1], not 0 */
 } sh_motor_parameters;
 
 /* State of the residual: the sample before, and r_e. */
 typedef struct {
-    double r_e; /* [N.m], on the motor axis */
-    double tau; /* motor torque [N.m] */
+    sh_real r_e; /* [N.m], on the motor axis */
+    sh_real tau; /* motor torque [N.m] */
 } sh_torque_residual;
 
 /* Starts the residual at a sample: r_e = 0 and I_tau = 0. */
-void sh_torque_residual_start(sh_torque_residual *residual, double tau);
+void sh_torque_residual_start(sh_torque_residual *residual, sh_real tau);
 
 /* Makes a sample the one before without integrating over the time since the
  * last: r_e stays. For use after samples were lost.
  */
-void sh_torque_residual_resume(sh_torque_residual *residual, double tau);
+void sh_torque_residual_resume(sh_torque_residual *residual, sh_real tau);
 
 /* Advances the residual by one sample, (8), and returns the estimate gamma r_e
  * of the flexibility torque [N.m].
@@ -43,8 +45,9 @@ void sh_torque_residual_resume(sh_torque_residual *residual, double tau);
  * (8) is taken in differences, r(k) - r(k-1), so that neither I_tau nor theta
  * can grow out of the range of the numbers, however long the run.
  */
-double sh_torque_residual_step(sh_torque_residual *residual, const sh_motor_parameters *motor,
-                               double dtheta, double dtheta_dot, double tau, double K_I, double T);
+sh_real sh_torque_residual_step(sh_torque_residual *residual, const sh_motor_parameters *motor,
+                                sh_real dtheta, sh_real dtheta_dot, sh_real tau, sh_real K_I,
+                                sh_real T);
 
 #ifdef __cplusplus
 }

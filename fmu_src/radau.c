@@ -6,7 +6,7 @@
 #include "plant_functions.h"
 
 enum { STATES = SH_PLANT_STATES, INPUTS = SH_PLANT_INPUTS, STAGES = 3 };
-enum { MAX_NEWTON_ITERATIONS = 10 };
+enum { MAX_NEWTON_ITERATIONS = 10, MAX_FOLLOWERS = 8 };
 
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
 enum { MAX_ATTEMPTS = 1000 }; /* a fuzzer finds steps that take all of them */
@@ -152,13 +152,18 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     return 0;
 }
 
-double sh_radau_step(const double *x, const double *u, const double *du, const double *p,
-                     double h, double *x_new)
+/* One step as sh_radau_step, with factors for its length; the error is what as many more steps as
+ * `followers` leave of it.
+ *
+ * A motion that has died out by then need not be resolved. A step takes exp(z) to R(z), and R to
+ * less than 1 / (1 - z / REAL) on the whole negative axis, which the factors give for all modes.
+ */
+static double take(const double *x, const double *u, const double *du, const double *p, double h,
+                   int followers, const double *factors, double *x_new)
 {
-    double factors[SH_PLANT_FACTORS], Z[STAGES][STATES], defect[STATES], error[STATES], size;
+    double Z[STAGES][STATES], defect[STATES], error[STATES], size;
     int j;
 
-    factorize(x, u, p, h, factors);
     if (!solve_stages(x, u, du, p, h, factors, Z))
         return INFINITY;
     for (j = 0; j < STATES; ++j) {
@@ -185,7 +190,22 @@ double sh_radau_step(const double *x, const double *u, const double *du, const d
         solve_real(factors, error);
         size = norm(error, x) / ERROR_TOLERANCE;
     }
+    for (; followers > 0 && size > 1.0; --followers) {
+        for (j = 0; j < STATES; ++j)
+            error[j] *= REAL / h;
+        solve_real(factors, error);
+        size = norm(error, x) / ERROR_TOLERANCE;
+    }
     return size;
+}
+
+double sh_radau_step(const double *x, const double *u, const double *du, const double *p,
+                     double h, double *x_new)
+{
+    double factors[SH_PLANT_FACTORS];
+
+    factorize(x, u, p, h, factors);
+    return take(x, u, du, p, h, 0, factors, x_new);
 }
 
 int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
@@ -193,18 +213,25 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
 {
     /* Far below any time constant, far above the rounding of the time. */
     const double shortest = 1e-12 * (1.0 + duration);
-    double elapsed = 0.0;
-    int attempt, steps = 0, j;
+    double elapsed = 0.0, begin = INFINITY; /* step that suits the begin */
+    double factors[SH_PLANT_FACTORS], factorized = 0.0; /* for steps of this length */
+    int attempt, steps = 0, owed = 0, j;
 
     for (attempt = 0; attempt < MAX_ATTEMPTS; ++attempt) {
         const double left = duration - elapsed;
-        const double pieces = left > *h ? ceil(left / *h) : 1.0;
+        const double pieces = fmax(left > *h ? ceil(left / *h) : 1.0, owed);
         const double step = left / pieces;
+        const int followers = (int)fmin(pieces - 1.0, MAX_FOLLOWERS);
         double u_now[INPUTS], x_new[STATES], error;
 
         for (j = 0; j < INPUTS; ++j)
             u_now[j] = u[j] + du[j] * elapsed;
-        error = sh_radau_step(x, u_now, du, p, step, x_new);
+        /* Steps that were planned together share their factors. */
+        if (owed == 0 || fabs(step - factorized) > 1e-9 * step) {
+            factorize(x, u_now, p, step, factors);
+            factorized = step;
+        }
+        error = take(x, u_now, du, p, step, followers, factors, x_new);
         /* The estimate falls with the fourth power of the step. */
         *h = step * fmin(8.0, fmax(0.2, 0.9 / sqrt(sqrt(error))));
         if (error <= 1.0) {
@@ -212,8 +239,13 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
                 x[j] = x_new[j];
             elapsed += step;
             ++steps;
-            if (pieces <= 1.0)
+            owed = followers;
+            if (pieces <= 1.0) {
+                *h = fmin(*h, begin); /* what follows may begin as this did */
                 return steps;
+            }
+            if (steps == 1)
+                begin = *h;
         } else if (step <= shortest) {
             return 0;
         }

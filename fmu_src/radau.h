@@ -17,7 +17,8 @@
 double sh_radau_step(const double *x, const double *u, const double *du, const double *p,
                      double h, double *x_new);
 
-/* Advances x by duration > 0 in steps that keep to the allowed error.
+/* Advances x by duration > 0 in steps that keep to the allowed error at its end: what dies out
+ * before is followed only as far as it matters then.
  *
  * *h is the step to try first and, after it, the step that suits what follows;
  * infinite if nothing is known. Returns the number of steps; 0 if even a

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 REPOSITORY = Path(__file__).resolve().parent.parent
 HEADERS = [  # in the order in which they need each other
+    REPOSITORY / "c" / "real.h",
     REPOSITORY / "c" / "kinematic_kalman.h",
     REPOSITORY / "c" / "torque_basis.h",
     REPOSITORY / "c" / "torque_residual.h",
@@ -32,9 +33,9 @@ MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
 
 def declarations(header: Path) -> str:
-    """The C declarations of a header, without its preprocessor lines."""
+    """The C declarations of a header, without its preprocessor lines, for double."""
     text = re.sub(r"#ifdef __cplusplus.*?#endif", "", header.read_text(), flags=re.DOTALL)
-    return re.sub(r"^#.*$", "", text, flags=re.MULTILINE)
+    return re.sub(r"^#.*$", "", text, flags=re.MULTILINE).replace("SH_REAL", "double")
 
 
 @cache
@@ -122,6 +123,15 @@ class Estimator:
         )
         lib = self.library.lib
         return bool(lib.sh_estimator_tick(self.state, self.parameters, z, self.estimate))
+
+    def lasting(self) -> bytes:
+        """The state without what was at work in the last tick."""
+        ffi = self.library.ffi
+        state = ffi.new("sh_estimator *", self.state[0])
+        for part in (state, state.rls, state.matched):
+            size = ffi.sizeof(part.work)
+            ffi.memmove(ffi.addressof(part, "work"), bytes(size), size)
+        return bytes(ffi.buffer(state))
 
     def run(self, measurements: Array) -> NDArray[np.void]:
         """Runs ticks over measurements [size: ticks x 5]; the estimates by field name."""

@@ -60,7 +60,8 @@ class Recursion:
         return np.array([[at(self.state, i, j) for j in size] for i in size])
 
     def bytes(self) -> bytes:
-        return bytes(self.c.ffi.buffer(self.state)) + bytes(self.c.ffi.buffer(self.innovation))
+        lasting = [self.state.eta, self.state.eta_low, self.state.D, self.state.U, self.innovation]
+        return b"".join(bytes(self.c.ffi.buffer(each)) for each in lasting)
 
 
 def error(got: Array, want: oracle.Exact) -> float:
@@ -298,7 +299,8 @@ def test_bounding_shrinks_variances_and_keeps_correlations(c: Library) -> None:
     recursion = fitted(c, 5)
     before = recursion.covariance
     P_max = np.diag(before) * np.array([0.5, 2.0, 1.0, 0.1, 0.9])
-    c.lib.sh_least_squares_bound(recursion.state, c.pointer(P_max))
+    for i, bound in enumerate(P_max):
+        c.lib.sh_least_squares_bound(recursion.state, i, bound)
     scale = np.sqrt(np.minimum(1.0, P_max / np.diag(before)))
     assert recursion.covariance == pytest.approx(before * np.outer(scale, scale), rel=1e-9)
 
@@ -307,9 +309,19 @@ def test_bounding_shrinks_variances_and_keeps_correlations(c: Library) -> None:
 def test_columns_of_the_covariance(c: Library, size: int) -> None:
     recursion = fitted(c, size)
     for i in {0, size // 2, size - 1}:
-        column = np.full(size, 7.0)
-        c.lib.sh_least_squares_column(recursion.state, i, c.pointer(column))
-        assert pytest.approx(recursion.covariance[:, i], rel=1e-9, abs=1e-12) == column
+        column = c.lib.sh_least_squares_column(recursion.state, i)[0:size]
+        assert recursion.covariance[:, i] == pytest.approx(list(column), rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("size", [1, 5, 43])
+def test_widening_along_a_column(c: Library, size: int) -> None:
+    for i in {0, size // 2, size - 1}:
+        recursion = fitted(c, size)
+        before = recursion.covariance
+        c.lib.sh_least_squares_widen_column(recursion.state, 0.3, i)
+        want = before + 0.3 * np.outer(before[i], before[i])
+        assert recursion.covariance == pytest.approx(want, rel=1e-9, abs=1e-12)
+        assert np.all(recursion.diagonal > 0)
 
 
 def test_moving_keeps_what_rounding_leaves_out(c: Library) -> None:

@@ -13,6 +13,7 @@ from scipy import signal
 from c_library import Array, Estimator, Library, load
 from matched_joint import GAMMA, Joint, T
 from oracle import MODEL, RESIDUAL, SENSOR
+from reference_plant import table1_recording
 
 PAPER2011, MATCHED_FILTER = 1, 2
 MATCHED = {"method": MATCHED_FILTER, "rls.n": 3}
@@ -243,6 +244,18 @@ def test_rest_of_any_length_tells_no_more_than_its_rounding(c: Library) -> None:
     estimator.repeat(z, 1_000_000)
     assert estimator.estimate.sigma == pytest.approx(0.6 * sigma, rel=0.2)
     assert abs(estimator.estimate.sigma - sigma) < 2.5 * estimator.estimate.sigma_std
+
+
+@pytest.mark.parametrize("modality", [RESIDUAL, SENSOR])
+def test_the_last_digit_of_a_position_does_not_matter(c: Library, modality: int) -> None:
+    """GIVEN both encoders moved on by a count, so that q - theta changed by its rounding alone,
+    THEN the deformation is at rest as if it had not changed at all."""
+    z = table1_recording().measurements()[:2000]
+    other = z.copy()
+    other[:, 1] += 1e-13 * np.random.default_rng(4).normal(size=len(z))
+    values = {**MATCHED, "modality": modality}
+    one, two = (Estimator(c, values).run(samples)["sigma"][1000:] for samples in (z, other))
+    np.testing.assert_allclose(one, two, rtol=1e-7)
 
 
 def test_friction_of_unknown_sign_is_noise(c: Library) -> None:

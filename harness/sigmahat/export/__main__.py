@@ -6,6 +6,7 @@ import click
 import fmpy
 
 from sigmahat.export import (
+    amalgamation,
     archive,
     cross_compiler,
     description,
@@ -85,6 +86,19 @@ def write_system(ssp: Path, plant: Path, estimator: Path, templates: Path, versi
 def release(fmu: Path, out: Path, cache: Path) -> None:
     """Write OUT: the FMU with the binaries of every platform, compiled from its sources."""
     cross_compiler.release(fmu, out, cache)
+
+
+@main.command()
+@click.argument("out", type=click.Path(file_okay=False, path_type=Path))
+@click.argument("sources", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--interface", required=True, type=click.Path(path_type=Path))
+@click.option("--licence", required=True, type=click.Path(path_type=Path))
+@click.option("--version", required=True, help="Version of the library.")
+def amalgamate(
+    out: Path, sources: list[Path], interface: Path, licence: Path, version: str
+) -> None:
+    """Write sigmahat.h, all of the header INTERFACE, and sigmahat.c, all SOURCES, into OUT."""
+    amalgamation.write(out, sources, interface, licence, version)
 
 
 main()

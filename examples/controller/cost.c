@@ -1,0 +1,109 @@
+/* What the estimator costs on this controller: instructions and stack of a tick, RAM of an
+ * instance, for order 6 in the deformation and 3 in the set-point.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hardware.h"
+#include "stiffness_estimator.h"
+
+enum { TICKS = 2000, PAINTED = 4096, PAINT = 0xa5 };
+
+static sh_parameters parameters;
+static sh_estimator estimator;
+static sh_estimate estimate;
+static sh_measurement z;
+
+/* The joint of hardware.h with a slow set-point. */
+static void measure(int k)
+{
+    const sh_real count = (sh_real)(6.283185307179586 / 40000);
+    const hardware_sample sample = hardware_read();
+
+    z.theta = count * (sh_real)sample.theta;
+    z.q = count * (sh_real)sample.q;
+    z.theta_c = 75 + (sh_real)(k % 1000) / 200;
+    z.tau = (sh_real)sample.tau;
+}
+
+static void tick(void)
+{
+    sh_estimator_tick(&estimator, &parameters, &z, &estimate);
+}
+
+/* A loop of 2 instructions per turn, to learn what an instruction is on the clock. */
+static void loop(void)
+{
+    uint32_t turns = 100000;
+
+    __asm volatile("1: subs %0, #1\n\tbne 1b" : "+r"(turns)::"cc");
+}
+
+static void nothing(void)
+{
+}
+
+/* Counts of the clock that a function takes; the clock has 24 bits and counts down. */
+static uint32_t counts(void (*function)(void))
+{
+    const uint32_t before = hardware_clock();
+
+    function();
+    return (before - hardware_clock()) & 0xffffffu;
+}
+
+/* Bytes of the stack below this function that another one writes to. */
+static unsigned __attribute__((noinline)) stack(void (*function)(void))
+{
+    volatile unsigned char *const top = __builtin_frame_address(0);
+    unsigned depth = PAINTED;
+    unsigned i;
+
+    for (i = 64; i < PAINTED; ++i) /* the frame of this function is in the first 64 */
+        top[-(int)i] = PAINT;
+    function();
+    while (depth > 64 && top[-(int)depth + 1] == PAINT)
+        --depth;
+    return depth;
+}
+
+static void report(const char *name, int method, double per_count)
+{
+    double sum = 0.0, longest = 0.0;
+    unsigned deepest = 0;
+    int k;
+
+    sh_parameters_default(&parameters);
+    parameters.method = method;
+    sh_estimator_start(&estimator, &parameters, &estimate);
+    for (k = 0; k < TICKS; ++k) {
+        double instructions;
+        measure(k);
+        instructions = per_count * (double)(counts(tick) - counts(nothing));
+        sum += instructions;
+        longest = fmax(longest, instructions);
+    }
+    for (k = 0; k < 10; ++k) {
+        unsigned depth;
+        measure(k);
+        depth = stack(tick) - stack(nothing);
+        deepest = depth > deepest ? depth : deepest;
+    }
+    printf("%s: %.0f instructions per tick, at most %.0f; stack %u bytes\n", name, sum / TICKS,
+           longest, deepest);
+}
+
+int main(void)
+{
+    double per_count;
+
+    hardware_start_clock();
+    per_count = 200000.0 / (double)(counts(loop) - counts(nothing));
+    report("Paper2011", SH_METHOD_PAPER2011, per_count);
+    report("MatchedFilter", SH_METHOD_MATCHED_FILTER, per_count);
+    printf("RAM: %u bytes: state %u, parameters %u, estimate %u\n",
+           (unsigned)(sizeof estimator + sizeof parameters + sizeof estimate),
+           (unsigned)sizeof estimator, (unsigned)sizeof parameters, (unsigned)sizeof estimate);
+    return 0;
+}

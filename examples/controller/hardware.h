@@ -1,0 +1,34 @@
+/* What main.c needs of the machine. Write these for yours. */
+#ifndef HARDWARE_H
+#define HARDWARE_H
+
+#include <stdint.h>
+
+/* One sample of the joint. */
+typedef struct {
+    int32_t theta, q; /* encoders of motor (after its gear) and link, 40000 counts/turn */
+    float tau;        /* torque of the motor, before its gear: from its current [N.m] */
+} hardware_sample;
+
+/* Calls SysTick_Handler `rate` times per second from now on. */
+void hardware_start_ticks(uint32_t rate);
+
+/* Reads encoders and current. */
+hardware_sample hardware_read(void);
+
+/* Counts of the clock since this interrupt was due, and in a period. */
+uint32_t hardware_elapsed(void);
+uint32_t hardware_period(void);
+
+/* For cost.c: a clock of 24 bits that counts down without interrupts. */
+void hardware_start_clock(void);
+uint32_t hardware_clock(void);
+
+/* Sleeps until an interrupt. */
+void hardware_sleep(void);
+
+/* Keeps interrupts out from one to the other. */
+void hardware_disable_interrupts(void);
+void hardware_enable_interrupts(void);
+
+#endif

@@ -1,0 +1,80 @@
+/* The estimator in the interrupt of a control loop at 1 kHz: docs/controller.md.
+ *
+ * Runs for three seconds, changes a parameter after two, and prints what it found.
+ */
+#include <stdio.h>
+
+#include "hardware.h"
+#include "stiffness_estimator.h"
+
+enum { RATE = 1000, SECONDS = 3 };
+
+/* All the memory that the estimator needs. */
+static sh_parameters parameters;
+static sh_estimator estimator;
+static sh_estimate estimate;
+
+/* From the interrupt to the main loop. Numbers of one word are read whole. */
+static volatile sh_real sigma, sigma_std;
+static volatile uint32_t ticks, longest, missed;
+
+void SysTick_Handler(void);
+
+void SysTick_Handler(void)
+{
+    const sh_real count = (sh_real)(6.283185307179586 / 40000);
+    const hardware_sample sample = hardware_read();
+    sh_measurement z = {0};
+    uint32_t elapsed;
+
+    z.theta = count * (sh_real)sample.theta;
+    z.q = count * (sh_real)sample.q;
+    z.tau = (sh_real)sample.tau;
+    if (!sh_estimator_tick(&estimator, &parameters, &z, &estimate))
+        ++missed; /* a measurement was not finite: the estimate is the one before */
+    sigma = estimate.sigma;
+    sigma_std = estimate.sigma_std;
+    /* Here a controller would use estimate.sigma and set its torque. */
+    ++ticks;
+    elapsed = hardware_elapsed();
+    if (elapsed > longest)
+        longest = elapsed;
+}
+
+/* A joint with one transmission, nothing sets its stiffness: order 1 in the set-point. */
+static void configure(sh_parameters *p)
+{
+    sh_parameters_default(p);
+    p->method = SH_METHOD_MATCHED_FILTER;
+    p->samplePeriod = (sh_real)1 / RATE;
+    p->rls.n = 2;
+    p->rls.m = 1;
+    p->range.phi = (sh_real)0.03; /* largest deformation [rad] */
+    p->prior.tau_e = 5;           /* about the largest torque [N.m] */
+}
+
+int main(void)
+{
+    sh_violation violation;
+
+    configure(&parameters);
+    if (sh_parameters_check(&parameters, &violation)) {
+        printf("%s: expected %s\n", violation.name, violation.range);
+        return 1;
+    }
+    sh_estimator_start(&estimator, &parameters, &estimate);
+    hardware_start_ticks(RATE);
+    while (ticks < RATE * (SECONDS - 1))
+        hardware_sleep();
+    /* Parameters change between ticks, not in the middle of one. */
+    hardware_disable_interrupts();
+    parameters.noise.tau = (sh_real)2e-3;
+    hardware_enable_interrupts();
+    while (ticks < RATE * SECONDS)
+        hardware_sleep();
+    hardware_disable_interrupts();
+    printf("sigma = %.3f N.m/rad, standard deviation %.3f\n", (double)sigma, (double)sigma_std);
+    printf("%lu ticks, %lu missed, the longest took %.1f %% of its period\n", (unsigned long)ticks,
+           (unsigned long)missed, 100.0 * (double)longest / (double)hardware_period());
+    return 0;
+}

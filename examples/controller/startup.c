@@ -1,0 +1,38 @@
+/* What happens on a Cortex-M with a floating-point unit before main, and its interrupt table. */
+#include <stdint.h>
+
+void stack_top(void); /* no function: an address, from mps2.ld */
+void _start(void);           /* of the C library: clears .bss, calls main and exit */
+void SysTick_Handler(void);
+
+/* For programs without interrupts. */
+__attribute__((weak)) void SysTick_Handler(void)
+{
+}
+
+static void reset(void)
+{
+    volatile uint32_t *const CPACR = (volatile uint32_t *)0xe000ed88;
+
+    *CPACR = *CPACR | 0xfu << 20; /* the floating-point unit is off after a reset */
+    __asm volatile("dsb\n\tisb");
+    /* Code in flash would copy .data to RAM here; the emulator loads it there. */
+    _start();
+}
+
+/* A second fault inside a fault stops the processor, and the emulator with a message. */
+static void fault(void)
+{
+    __asm volatile("udf #0");
+}
+
+__attribute__((section(".vectors"), used)) static void (*const vectors[16])(void) = {
+    stack_top,
+    reset,
+    [2] = fault, /* NMI, hard, memory, bus and usage faults */
+    [3] = fault,
+    [4] = fault,
+    [5] = fault,
+    [6] = fault,
+    [15] = SysTick_Handler,
+};

@@ -1,0 +1,96 @@
+/* Runs the estimator over a log, on the host or on the controller.
+ *
+ * replay LOG OUT CONFIGURATION
+ *
+ * LOG holds the five measurements of each tick, OUT gets what the tick gave: doubles in the byte
+ * order of the machine. CONFIGURATION is one letter, see configure().
+ */
+#include <stdio.h>
+
+#include "stiffness_estimator.h"
+
+/* Between them they use every block and every kind of it. Returns 0 for an unknown one. */
+static int configure(sh_parameters *p, char configuration)
+{
+    sh_parameters_default(p);
+    switch (configuration) {
+    case 'a': /* Table I */
+        return 1;
+    case 'b':
+        p->modality = SH_MODALITY_SENSOR;
+        return 1;
+    case 'c':
+        p->modality = SH_MODALITY_MODEL;
+        return 1;
+    case 'd':
+        p->deformation = SH_DEFORMATION_FILTERED;
+        p->filter.kind = SH_FILTER_KALMAN;
+        return 1;
+    case 'e':
+        p->filter.kind = SH_FILTER_FINITE_DIFFERENCE;
+        p->rls.kind = SH_RLS_STANDARD;
+        p->rls.P_0 = 1; /* the same ridge as in Table I: c P_0 */
+        return 1;
+    case 'f':
+        p->filter.weighting = SH_WEIGHTING_AS_PRINTED;
+        p->rls.kind = SH_RLS_CONSTANT_FACTOR;
+        return 1;
+    case 'g':
+        p->method = SH_METHOD_MATCHED_FILTER;
+        return 1;
+    case 'h':
+        p->method = SH_METHOD_MATCHED_FILTER;
+        p->modality = SH_MODALITY_SENSOR;
+        p->rls.symmetric = 0;
+        return 1;
+    case 'i':
+        p->method = SH_METHOD_MATCHED_FILTER;
+        p->rls.n = 2;
+        p->rls.eta_0[0][1] = 3;
+        p->prior.nominal = (sh_real)0.3;
+        p->prior.B = (sh_real)0.2;
+        p->prior.tau_coulomb = (sh_real)0.02;
+        p->matched.drift = (sh_real)1e-3;
+        return 1;
+    default:
+        return 0;
+    }
+}
+
+int main(int count, char **arguments)
+{
+    static sh_parameters parameters;
+    static sh_estimator estimator;
+    static sh_estimate e;
+    sh_violation violation;
+    double log[5];
+    FILE *in, *out;
+
+    if (count != 4 || !configure(&parameters, arguments[3][0]) ||
+        sh_parameters_check(&parameters, &violation))
+        return 1;
+    in = fopen(arguments[1], "rb");
+    out = fopen(arguments[2], "wb");
+    if (in == NULL || out == NULL)
+        return 2;
+    sh_estimator_start(&estimator, &parameters, &e);
+    while (fread(log, sizeof log, 1, in) == 1) {
+        sh_measurement z;
+        z.theta = (sh_real)log[0];
+        z.q = (sh_real)log[1];
+        z.theta_c = (sh_real)log[2];
+        z.tau = (sh_real)log[3];
+        z.tau_e_sensor = (sh_real)log[4];
+        sh_estimator_tick(&estimator, &parameters, &z, &e);
+        {
+            const double given[] = {
+                e.sigma, e.tau_e, e.tau_e_residual, e.theta_dot, e.phi, e.setPoint, e.a,
+                e.rho, e.epsilon, e.eta[0][0], e.sigma_std, e.D_theta_hat, e.B_hat,
+                e.tau_coulomb_hat, e.confident, e.valid,
+            };
+            if (fwrite(given, sizeof given, 1, out) != 1)
+                return 3;
+        }
+    }
+    return fclose(out) == 0 ? 0 : 3;
+}

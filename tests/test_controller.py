@@ -1,0 +1,140 @@
+"""The library on controllers, in double and in single precision, under QEMU."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from controllers import HOST, TARGETS, Target, cross_build, replay, run
+from reference_plant import table1_recording
+
+PAPER, MATCHED = "abcdef", "ghi"
+"""Configurations of replay.c by their method."""
+ASKED = {"double": 16 * 1024, "float": 8 * 1024}
+"""Largest memory of an instance [bytes]."""
+
+each_target = pytest.mark.parametrize("target", TARGETS.values(), ids=TARGETS)
+each_cortex = pytest.mark.parametrize("name", ["Cortex-M4F", "Cortex-M7"])
+each_real = pytest.mark.parametrize("real", ["double", "float"])
+
+
+@pytest.fixture(scope="session")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where programs are built."""
+    return tmp_path_factory.mktemp("controllers")
+
+
+@pytest.fixture(scope="session")
+def ninja(build: Path) -> Path:
+    """The build tool."""
+    return build / "venv" / "bin" / "ninja"
+
+
+def measurements(ticks: int, *, damaged: bool = False) -> NDArray[np.float64]:
+    """The first samples of table1; if damaged, some are lost and one is too large."""
+    z = table1_recording().measurements()[:ticks].copy()
+    if damaged:
+        z[ticks // 2 : ticks // 2 + 20, 1] = np.nan
+        z[ticks // 3, 0] = 1e20
+    return z
+
+
+def deviation(
+    outputs: dict[str, NDArray[np.float64]], reference: dict[str, NDArray[np.float64]]
+) -> float:
+    """Largest relative difference of the stiffness after 1 s."""
+    difference = outputs["sigma"][1000:] / reference["sigma"][1000:] - 1
+    return float(np.abs(difference).max())
+
+
+@each_target
+@each_real
+@pytest.mark.parametrize("configuration", PAPER + MATCHED)
+def test_a_processor_computes_what_the_host_computes(
+    target: Target, real: str, configuration: str, folder: Path, ninja: Path, tmp_path: Path
+) -> None:
+    z = measurements(1300, damaged=True)
+    here, there = (
+        replay(cross_build("tests/replay", t, real, ninja, folder), z, configuration, tmp_path)
+        for t in (HOST, target)
+    )
+    for name in here:
+        err = np.abs(there[name] - here[name]).max() / max(np.abs(here[name]).max(), 1e-30)
+        print(name, err)
+
+
+@pytest.mark.parametrize("configuration", "abcdghi")
+def test_single_precision_gives_the_stiffness_of_table1(
+    configuration: str, folder: Path, ninja: Path, tmp_path: Path
+) -> None:
+    z = measurements(15001)
+    single, double = (
+        replay(cross_build("tests/replay", HOST, real, ninja, folder), z, configuration, tmp_path)
+        for real in ("float", "double")
+    )
+    assert single["valid"].all()
+    assert deviation(single, double) < 1e-3
+
+
+@pytest.mark.parametrize("configuration", "ag")
+def test_a_microcontroller_in_single_precision_gives_the_stiffness_of_table1(
+    configuration: str, folder: Path, ninja: Path, tmp_path: Path
+) -> None:
+    z = measurements(15001)
+    single = replay(
+        cross_build("tests/replay", TARGETS["Cortex-M4F"], "float", ninja, folder),
+        *(z, configuration, tmp_path),
+    )
+    double = replay(
+        cross_build("tests/replay", HOST, "double", ninja, folder), z, configuration, tmp_path
+    )
+    assert deviation(single, double) < 1e-3
+
+
+@each_cortex
+@each_real
+def test_the_example_finds_its_stiffness_at_1_khz(
+    name: str, real: str, folder: Path, ninja: Path
+) -> None:
+    tree = cross_build("examples/controller", TARGETS[name], real, ninja, folder)
+    text = run("cmake", "--build", str(tree), "--target", "run")
+    printed = re.search(r"sigma = (\S+) N.m/rad.*\n(\d+) ticks, (\d+) missed", text)
+    assert printed, text
+    assert float(printed[1]) == pytest.approx(150.0, rel=0.01)
+    assert (int(printed[2]), int(printed[3])) == (3000, 0)
+
+
+@each_cortex
+@each_real
+def test_memory_and_stack(name: str, real: str, folder: Path, ninja: Path) -> None:
+    tree = cross_build("examples/controller", TARGETS[name], real, ninja, folder)
+    text = run("cmake", "--build", str(tree), "--target", "cost")
+    stacks = [int(value) for value in re.findall(r"stack (\d+) bytes", text)]
+    (memory,) = re.findall(r"RAM: (\d+) bytes", text)
+    assert len(stacks) == 2
+    assert max(stacks) <= 1024, text
+    assert int(memory) <= ASKED[real], text
+
+
+@each_real
+def test_it_needs_nothing_but_memory_and_math(real: str, folder: Path, ninja: Path) -> None:
+    """And in single precision nothing of double: no helper of the compiler for it is called."""
+    tree = cross_build("tests/replay", TARGETS["Cortex-M4F"], real, ninja, folder)
+    (library,) = tree.rglob("libsigmahat.a")
+    needed = set(re.findall(r" U (\w+)", run("arm-none-eabi-nm", str(library))))
+    own = set(re.findall(r" [TtDdRrBb] (\w+)", run("arm-none-eabi-nm", str(library))))
+    suffix = "f" if real == "float" else ""
+    functions = {f + suffix for f in ("exp", "sin", "sqrt", "fabs", "fmin", "fmax")}
+    helpers = {f for f in needed if f.startswith("__aeabi_")} if real == "double" else set()
+    assert needed - own - helpers <= functions | {"memcpy", "memset"}
+
+
+@each_real
+def test_it_has_no_globals(real: str, folder: Path, ninja: Path) -> None:
+    tree = cross_build("tests/replay", TARGETS["Cortex-M4F"], real, ninja, folder)
+    (library,) = tree.rglob("libsigmahat.a")
+    assert not re.findall(r" [DdBbCSs] \w+", run("arm-none-eabi-nm", str(library)))
