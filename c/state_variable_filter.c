@@ -74,13 +74,14 @@ double sh_state_variable_filter_second(const sh_state_variable_filter *filter,
 double sh_state_variable_filter_noise(const sh_filter_design *design)
 {
     /* Sum of squares of the response to one sample; it has died out after 60 time constants. */
-    const double samples = 2.0 + 60.0 / (design->w * design->T);
+    const int samples = 2 + (int)ceil(60.0 / (design->w * design->T));
     sh_state_variable_filter filter;
-    double k, sum = 0.0;
+    double sum = 0.0;
+    int k;
 
     sh_state_variable_filter_start(&filter, 0.0);
     sh_state_variable_filter_step(&filter, design, 1.0);
-    for (k = 0.0; k < samples; k += 1.0) {
+    for (k = 0; k < samples; ++k) {
         const double response = sh_state_variable_filter_second(&filter, design);
         sum += response * response;
         sh_state_variable_filter_step(&filter, design, 0.0);
