@@ -11,7 +11,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -54,10 +54,13 @@ CASES = (
 )
 
 
-def compile_program(folder: Path, precision: str, compiler: str = "gcc") -> Path:
-    """drivers/endurance.c with the estimator in a precision of PRECISIONS."""
+def compile_program(
+    folder: Path, precision: str, compiler: str = "gcc", flags: Sequence[str] = ()
+) -> Path:
+    """drivers/endurance.c with the estimator in a precision of PRECISIONS, in a new folder."""
+    folder = Path(tempfile.mkdtemp(dir=folder))
     name = precision.replace(" ", "_")
-    common = [compiler, *FLAGS, f"-I{REPOSITORY / 'c'}", f"-I{DRIVERS}"]
+    common = [compiler, *FLAGS, *flags, f"-I{REPOSITORY / 'c'}", f"-I{DRIVERS}"]
     stream = folder / f"{name}.o"
     sources = [DRIVERS / "endurance.c", *sorted((REPOSITORY / "c").glob("*.c"))]
     for command in (
