@@ -36,7 +36,7 @@ def ninja(build: Path) -> Path:
 
 def measurements(ticks: int, *, damaged: bool = False) -> NDArray[np.float64]:
     """The first samples of table1; if damaged, some are lost and one is too large."""
-    z = table1_recording().measurements()[:ticks].copy()
+    z: NDArray[np.float64] = table1_recording().measurements()[:ticks].copy()
     if damaged:
         z[ticks // 2 : ticks // 2 + 20, 1] = np.nan
         z[ticks // 3, 0] = 1e20
