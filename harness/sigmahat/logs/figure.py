@@ -53,6 +53,8 @@ def draw(replay: Replay) -> Figure:
             ends = replay.trace.ends(name)
             if name == "tau_e_residual" and replay.modality == "Sensor":
                 ends, title = _sensor(replay), "sensor"
+            elif name == "tau_e_residual" and replay.method == "MatchedFilter":
+                title = "by the motor data, with friction"
             t = replay.samples.T * replay.trace.bucket * np.arange(len(ends))
             axes.plot(np.repeat(t, 2), ends.ravel(), color=color, label=title)
             settled = ends[int(_SETTLED * len(ends)) :]
