@@ -22,7 +22,7 @@ function(sigmahat_add_fmu name)
 
   add_custom_command(
     OUTPUT ${dir}/modelDescription.xml ${dir}/variables.h
-    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export describe ${template} ${dir} ${sources}
+    COMMAND ${SIGMAHAT_RUN} sigmahat.export describe ${template} ${dir} ${sources}
             --version ${PROJECT_VERSION} --struct ${arg_STRUCT}
             --storage ${arg_STORAGE}
     DEPENDS ${shared}
@@ -35,7 +35,7 @@ function(sigmahat_add_fmu name)
                   ${shown}/documentation/icon.svg)
   add_custom_command(
     OUTPUT ${shown_files}
-    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export document ${template} ${shown}
+    COMMAND ${SIGMAHAT_RUN} sigmahat.export document ${template} ${shown}
             --version ${PROJECT_VERSION}
     DEPENDS ${shared} ${pages}
     COMMENT "Documentation of ${name}" VERBATIM)
@@ -53,10 +53,10 @@ function(sigmahat_add_fmu name)
   endif()
   target_link_libraries(${name}_binary PRIVATE ${arg_LIBRARY} ${SIGMAHAT_MATH})
 
-  set(fmu ${SIGMAHAT_VENV}/share/sigmahat/${name}.fmu)
+  set(fmu ${SIGMAHAT_FMU_FOLDER}/${name}.fmu)
   add_custom_command(
     OUTPUT ${fmu}
-    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export pack ${fmu} ${sources} ${dir}/variables.h
+    COMMAND ${SIGMAHAT_RUN} sigmahat.export pack ${fmu} ${sources} ${dir}/variables.h
             --description ${dir}/modelDescription.xml --binary $<TARGET_FILE:${name}_binary>
             --licence ${source_dir}/LICENSE --shown ${shown}
     DEPENDS ${name}_binary ${dir}/modelDescription.xml ${source_dir}/LICENSE ${shown_files}
@@ -80,7 +80,7 @@ function(sigmahat_add_plant name)
        ${PROJECT_SOURCE_DIR}/harness/sigmahat/export/*.py)
   add_custom_command(
     OUTPUT ${dir}/plant_functions.c ${dir}/plant_functions.h
-    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export.plant_codegen ${name} ${dir}
+    COMMAND ${SIGMAHAT_RUN} sigmahat.export.plant_codegen ${name} ${dir}
     DEPENDS ${equations} ${PROJECT_SOURCE_DIR}/modelDescription/${name}.xml
             ${PROJECT_SOURCE_DIR}/modelDescription/plant_macros.xml
     COMMENT "Equations of ${name}" VERBATIM)

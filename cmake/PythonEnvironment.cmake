@@ -1,6 +1,19 @@
-# A Python environment of our own inside the build tree, from the pinned requirements.
+# A Python environment of our own inside the build tree, from the pinned requirements; in a build
+# of the Python package (SKBUILD) that of the build, which has what pyproject.toml requires.
 #
-# Sets SIGMAHAT_VENV (folder), SIGMAHAT_PYTHON (interpreter) and SIGMAHAT_NINJA.
+# Sets SIGMAHAT_PYTHON (interpreter), SIGMAHAT_RUN (command that runs one of our modules),
+# SIGMAHAT_FMU_FOLDER (where the FMUs go), and for an environment of our own SIGMAHAT_VENV
+# (folder) and SIGMAHAT_NINJA.
+
+# The modules of this source tree, whether they are installed or not.
+set(SIGMAHAT_RUN ${CMAKE_COMMAND} -E env --modify
+    PYTHONPATH=path_list_prepend:${CMAKE_CURRENT_SOURCE_DIR}/harness)
+if(SKBUILD)
+  set(SIGMAHAT_PYTHON ${Python_EXECUTABLE})
+  list(APPEND SIGMAHAT_RUN ${SIGMAHAT_PYTHON} -m)
+  set(SIGMAHAT_FMU_FOLDER ${CMAKE_CURRENT_BINARY_DIR}/fmus)
+  return()
+endif()
 
 find_program(SIGMAHAT_HOST_PYTHON NAMES python3 python REQUIRED)
 execute_process(
@@ -22,6 +35,8 @@ else()
   set(SIGMAHAT_PYTHON ${SIGMAHAT_VENV}/bin/python)
   set(SIGMAHAT_NINJA ${SIGMAHAT_VENV}/bin/ninja)
 endif()
+list(APPEND SIGMAHAT_RUN ${SIGMAHAT_PYTHON} -m)
+set(SIGMAHAT_FMU_FOLDER ${SIGMAHAT_VENV}/share/sigmahat)
 
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
              ${CMAKE_CURRENT_SOURCE_DIR}/requirements.txt ${CMAKE_CURRENT_SOURCE_DIR}/pyproject.toml)

@@ -17,7 +17,7 @@ foreach(fmu IN LISTS fmus)
   set(release ${PROJECT_BINARY_DIR}/release/${file})
   add_custom_command(
     OUTPUT ${release}
-    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export release ${fmu} ${release}
+    COMMAND ${SIGMAHAT_RUN} sigmahat.export release ${fmu} ${release}
             --cache ${PROJECT_BINARY_DIR}/cross-compiler
     DEPENDS ${fmu} ${installed}
     COMMENT "Compiling ${file} for every platform" VERBATIM)

@@ -9,13 +9,13 @@ function(sigmahat_add_system ssp plant estimator)
   cmake_path(GET ssp FILENAME name)
   add_custom_command(
     OUTPUT ${ssp}
-    COMMAND ${SIGMAHAT_PYTHON} -m sigmahat.export system ${ssp} ${plant} ${estimator}
-            --templates ${templates}
+    COMMAND ${SIGMAHAT_RUN} sigmahat.export system ${ssp} ${plant} ${estimator}
+            --templates ${templates} --version ${PROJECT_VERSION}
     DEPENDS ${plant} ${estimator} ${sources}
     COMMENT "Packing ${name}" VERBATIM)
 endfunction()
 
-set(fmus ${SIGMAHAT_VENV}/share/sigmahat)
+set(fmus ${SIGMAHAT_FMU_FOLDER})
 sigmahat_add_system(${fmus}/sigmahat-awas.ssp ${fmus}/AwasPlant.fmu
                     ${fmus}/StiffnessEstimator.fmu)
 add_custom_target(awas_system ALL DEPENDS ${fmus}/sigmahat-awas.ssp)

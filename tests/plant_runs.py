@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from fmpy import fmi2
@@ -42,7 +41,7 @@ def run_plant(
     orders = (fmi2.fmi2Integer * count)(*[1] * count)
     with Fmu(sigmahat.fmu(name)) as fmu, Slave(fmu, "plant") as plant:
         references = fmu.references(inputs, "input")
-        fmi: Any = plant.fmi
+        fmi = plant.functions
         first = dict(zip(inputs, torques[0].tolist(), strict=True))
         plant.initialize({**first, **(start or {})})
         recorder = Recorder(plant, record, steps + 1)

@@ -176,7 +176,7 @@ def replay(
     with Slave(fmu, "real joint") as slave:
         slave.initialize({**PARAMETERS, **method, "rls.symmetric": symmetric})
         inputs = fmu.references(names, "input")
-        set_real, do_step = slave.fmi.fmi2SetReal, slave.fmi.fmi2DoStep
+        set_real, do_step = slave.functions.fmi2SetReal, slave.functions.fmi2DoStep
         for k, row in enumerate(rows):
             slave.call(set_real, inputs, len(names), row)
             slave.call(do_step, k * SAMPLE_PERIOD, SAMPLE_PERIOD, fmi2.fmi2True)

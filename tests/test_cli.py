@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import csv
+import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -14,7 +17,8 @@ from pathlib import Path
 import pytest
 
 import sigmahat
-from sigmahat.cli import main
+from gate import missing
+from sigmahat.cli import cli, main
 from sigmahat.scenarios import SCENARIOS
 
 COMMAND = [sys.executable, "-m", "sigmahat"]
@@ -90,10 +94,111 @@ def test_help_names_every_command_and_option(tmp_path: Path) -> None:
         assert all(option in help_ for option in named)
 
 
+@pytest.mark.parametrize("name", ["", *sorted(cli.commands)])
+def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
+    done = run(*name.split(), "--help", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    help_ = (cli.commands[name] if name else cli).help or ""
+    (example,) = re.findall(r"Example: sigmahat (.*?)(?:\n\n|$)", help_, re.DOTALL)
+    assert f"Example: sigmahat {example.split()[0]}" in done.stdout
+    command, *arguments = example.split()
+    assert command == name or not name
+    with cli.commands[command].make_context(command, arguments):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("reproduce", {"--json", "--quiet"}),
+        ("estimate", {"--json", "--quiet"}),
+        ("identify", {"--json", "--quiet"}),
+        ("init", {"--quiet"}),  # it writes a file for people
+        ("scenarios", {"--json"}),  # it is asked for nothing but what it prints
+    ],
+)
+def test_options_for_scripts(name: str, options: set[str]) -> None:
+    have = {option for parameter in cli.commands[name].params for option in parameter.opts}
+    assert have & {"--json", "--quiet"} == options
+
+
+def test_json_of_reproduce_is_its_table(tmp_path: Path) -> None:
+    done = run("reproduce", "--scenario", "single-linear", "--json", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    printed = json.loads(done.stdout)
+    assert (printed["scenario"], printed["seeds"]) == ("single-linear", [1])
+    with (tmp_path / "sigmahat-results" / "single-linear" / "table.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    as_text = [{k: "" if v is None else str(v) for k, v in row.items()} for row in printed["table"]]
+    assert as_text == rows
+
+
+def test_quiet_reproduce_prints_nothing_and_writes_all(tmp_path: Path) -> None:
+    done = run("reproduce", "--scenario", "single-linear", "--quiet", cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (tmp_path / "sigmahat-results" / "single-linear" / "table.csv").is_file()
+
+
+@pytest.mark.parametrize("option", ["--quiet", "--json"])
+def test_an_error_is_printed_nevertheless(option: str, tmp_path: Path) -> None:
+    assert "tabel1" in refused("reproduce", "--scenario", "tabel1", option, cwd=tmp_path)
+
+
+def test_json_of_scenarios(tmp_path: Path) -> None:
+    listed = json.loads(run("scenarios", "--json", cwd=tmp_path).stdout)
+    assert {each["name"]: each["description"] for each in listed} == {
+        name: scenario.description for name, scenario in SCENARIOS.items()
+    }
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ("sigmahat rep", {"reproduce"}),
+        ("sigmahat reproduce --se", {"--seeds"}),
+        ("sigmahat reproduce --scenario as", {name for name in SCENARIOS if name[:2] == "as"}),
+    ],
+)
+def test_bash_completes(words: str, expected: set[str], tmp_path: Path) -> None:
+    """With the line that the README says belongs into .bashrc."""
+    bash = shutil.which("bash")
+    if bash is None:
+        missing("bash", "apt-get install bash")
+    readme = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+    (line,) = re.findall(r"`(eval [^`]*bash_source[^`]*)`", readme)
+    script = f"{line}\nCOMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n"
+    script += '_sigmahat_completion sigmahat; printf "%s\\n" "${COMPREPLY[@]}"'
+    programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        [bash, "-c", script],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": programs},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert set(done.stdout.split()) == expected
+
+
+def test_the_shell_completes_commands_and_options(tmp_path: Path) -> None:
+    for words, expected in (
+        ("sigmahat rep", "report reproduce"),
+        ("sigmahat sweep --sc", "--scenario --scheduler"),
+    ):
+        asked = {"_SIGMAHAT_COMPLETE": "bash_complete", "COMP_WORDS": words}
+        asked["COMP_CWORD"] = str(len(words.split()) - 1)
+        done = subprocess.run(
+            COMMAND, cwd=tmp_path, env={**os.environ, **asked}, capture_output=True, text=True
+        )
+        found = [line.removeprefix("plain,") for line in done.stdout.splitlines()]
+        assert sorted(found) == sorted(expected.split())
+
+
 def test_help_imports_nothing_slow() -> None:
     code = (
         "import sys, sigmahat.cli; sigmahat.cli.main(['--help'])\n"
-        "print(sorted({'numpy', 'fmpy', 'matplotlib', 'casadi', 'scipy'} & set(sys.modules)))"
+        "slow = {'numpy', 'fmpy', 'matplotlib', 'casadi', 'scipy', 'pyarrow', 'bokeh', 'dask'}\n"
+        "print(sorted(slow & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "[]"
@@ -184,25 +289,30 @@ def test_fmus_not_built(
 @pytest.mark.parametrize(
     ("command", "seeds", "delay"),
     [
-        *(("reproduce", "1", 0.6), ("reproduce", "100", 0.5), ("reproduce", "100", 0.7)),
-        *(("reproduce", "100", 1.5), ("reproduce", "100", 4.0), ("compare", "100", 4.0)),
+        *(("reproduce", "1", 0.2), ("reproduce", "100", 0.0), ("reproduce", "100", 0.3)),
+        *(("reproduce", "100", 1.0), ("reproduce", "100", 3.5), ("compare", "100", 3.5)),
     ],
 )
 def test_interrupt(command: str, seeds: str, delay: float, tmp_path: Path) -> None:
-    """Ctrl-C reaches the whole process group, at any time."""
+    """Ctrl-C reaches the whole process group, at any time after the start of Python."""
+    started = (
+        "import sys, sigmahat.cli as c; run = c.cli.main; "
+        "c.cli.main = lambda *a, **k: print(flush=True) or run(*a, **k); sys.exit(c.main())"
+    )
     process = subprocess.Popen(
-        [*COMMAND, command, "--seeds", seeds],
+        [sys.executable, "-c", started, command, "--seeds", seeds],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
     )
+    assert process.stdout is not None and process.stdout.readline() == "\n"
     time.sleep(delay)
     os.killpg(process.pid, signal.SIGINT)
     output, errors = process.communicate(timeout=30)
     # Python ends by the signal itself if that came while it was importing; to a shell it is 130.
     assert process.returncode in (130, -signal.SIGINT)
     assert output == ""
-    assert errors.split("\n") == ["", "sigmahat: interrupted", ""]
+    assert errors.strip() == "sigmahat: interrupted"
     assert list(tmp_path.iterdir()) == []

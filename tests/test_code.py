@@ -55,7 +55,7 @@ def test_the_library_needs_no_heap_and_no_output(source: Path) -> None:
 @pytest.mark.parametrize("command", [["ruff", "check"], ["ruff", "format", "--check"]])
 def test_ruff(command: list[str]) -> None:
     done = subprocess.run(
-        [sys.executable, "-m", *command, "harness", "tests"],
+        [sys.executable, "-m", *command, "harness", "tests", "examples", "docs/api.py"],
         cwd=REPOSITORY,
         capture_output=True,
         text=True,
@@ -65,7 +65,7 @@ def test_ruff(command: list[str]) -> None:
 
 def test_mypy() -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "mypy", "harness/sigmahat", "tests"],
+        [sys.executable, "-m", "mypy", "harness/sigmahat", "tests", "examples", "docs"],
         cwd=REPOSITORY,
         capture_output=True,
         text=True,

@@ -181,8 +181,8 @@ def test_a_warning_of_an_fmu_goes_to_the_log(caplog: pytest.LogCaptureFixture) -
     ):
         slave.initialize({})
         value = fmpy.fmi2.fmi2Real * 1
-        slave.call(slave.fmi.fmi2SetReal, fmu.references(["theta"]), 1, value(math.nan))
-        slave.call(slave.fmi.fmi2DoStep, 0.0, T, 1)
+        slave.call(slave.functions.fmi2SetReal, fmu.references(["theta"]), 1, value(math.nan))
+        slave.call(slave.functions.fmi2DoStep, 0.0, T, 1)
     assert [r.levelname for r in caplog.records] == ["WARNING"]
     assert caplog.records[0].getMessage().startswith("one: ")
 

@@ -13,7 +13,7 @@ import pytest
 
 from sigmahat.export import plant_codegen
 from sigmahat.export.elimination import Elimination
-from sigmahat.plants.plant import Plant
+from sigmahat.plants.plant import PlantEquations
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -60,8 +60,8 @@ def test_unknown_plant() -> None:
         plant_codegen.find("Awas")
 
 
-def mass() -> Plant:
-    plant = Plant("MassPlant")
+def mass() -> PlantEquations:
+    plant = PlantEquations("MassPlant")
     force = plant.input("force")
     m = plant.parameter("mass")
     x = plant.state("x", start=0.0, scale=1.0)

@@ -15,12 +15,12 @@ import pytest
 from c_library import REPOSITORY, declarations
 from plant_runs import Array, sinusoids, times
 from sigmahat.export import plant_codegen
-from sigmahat.plants.plant import Plant
+from sigmahat.plants.plant import PlantEquations
 
 
-def problems() -> Plant:
+def problems() -> PlantEquations:
     """Independent equations, each with a known solution; see `exact`."""
-    plant = Plant("Problems")
+    plant = PlantEquations("Problems")
     u = plant.input("u")
     stiffness = plant.parameter("stiffness")
     growth = plant.parameter("growth")
@@ -69,7 +69,7 @@ STIFF = np.array([1e6, 1.0])
 class Radau:
     """fmu_src/radau.c with the equations of a plant, compiled."""
 
-    def __init__(self, plant: Plant, folder: Path) -> None:
+    def __init__(self, plant: PlantEquations, folder: Path) -> None:
         plant_codegen.write(
             plant, list(plant.parameters), list(plant.inputs), list(plant.outputs), folder
         )

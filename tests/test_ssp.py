@@ -16,7 +16,6 @@ from lxml import etree
 
 import sigmahat
 from fmi_master import run, torques
-from release import AGREEMENT
 from sigmahat.cosimulation import simulate
 from sigmahat.export import system
 from sigmahat.scenarios import T, scenario
@@ -74,9 +73,10 @@ def test_opens_in_omsimulator_2(ssp: Path) -> None:
             *("ssd:ElementGeometry", "ssd:ParameterBindings", "ssd:Connections", "ssd:Connectors"),
             *("ssd:Elements", "ssd:Annotations"),
         },
-        **dict.fromkeys(
-            components, {"ssd:Connectors", "ssd:ElementGeometry", "ssd:ParameterBindings"}
-        ),
+        **{
+            component: {"ssd:Connectors", "ssd:ElementGeometry", "ssd:ParameterBindings"}
+            for component in components
+        },
     }
     for element, tags in known.items():
         assert {prefixed(child) for child in element} <= tags
@@ -105,7 +105,7 @@ def test_holds_the_fmus_beside_it(ssp: Path) -> None:
 def test_same_bytes_again(ssp: Path, tmp_path: Path) -> None:
     again = tmp_path / "again.ssp"
     plant, estimator = ssp.with_name("AwasPlant.fmu"), ssp.with_name("StiffnessEstimator.fmu")
-    system.write(again, plant, estimator, TEMPLATES)
+    system.write(again, plant, estimator, TEMPLATES, sigmahat.__version__)
     assert hashlib.sha256(again.read_bytes()).digest() == hashlib.sha256(ssp.read_bytes()).digest()
 
 
@@ -164,6 +164,7 @@ def test_a_scenario_with_another_enumeration_is_refused(
             sigmahat.fmu("AwasPlant"),
             sigmahat.fmu("StiffnessEstimator"),
             TEMPLATES,
+            sigmahat.__version__,
         )
 
 

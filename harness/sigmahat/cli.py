@@ -8,8 +8,13 @@ from collections.abc import Sequence
 import click
 
 from sigmahat.commands.compare import compare
+from sigmahat.commands.estimate import estimate
+from sigmahat.commands.identify import identify
+from sigmahat.commands.init import init
+from sigmahat.commands.report import report
 from sigmahat.commands.reproduce import reproduce
 from sigmahat.commands.scenarios import scenarios
+from sigmahat.commands.sweep import sweep
 
 _ERROR, _INTERRUPTED = 2, 130
 
@@ -17,10 +22,16 @@ _ERROR, _INTERRUPTED = 2, 130
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="sigmahat", message="%(prog)s %(version)s")
 def cli() -> None:
-    """Stiffness of robot joints, estimated by FMUs."""
+    """Stiffness of robot joints, estimated by FMUs.
+
+    \b
+    Example: sigmahat reproduce
+
+    Exit status: 0 done; 2 error, one line on stderr says which; 130 interrupted.
+    """
 
 
-for command in (reproduce, compare, scenarios):
+for command in (reproduce, compare, scenarios, init, estimate, identify, sweep, report):
     cli.add_command(command)
 
 
@@ -40,6 +51,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout = None  # or Python would try to write the rest at its end
         click.echo(f"sigmahat: error: cannot write the output: {error.strerror}", err=True)
         return _ERROR
-    except click.Abort:
+    except (click.Abort, KeyboardInterrupt):
         click.echo("sigmahat: interrupted", err=True)
         return _INTERRUPTED

@@ -75,7 +75,9 @@ class Recording:
     t: NDArray[np.float64]
     """Time [s], shape (N + 1,)."""
     plant: Series
+    """What was recorded of the plant."""
     estimators: Mapping[str, Series]
+    """What was recorded of each estimator, by its name."""
 
 
 def simulate(
@@ -155,7 +157,7 @@ class _Drive:
         self._orders = (fmi2.fmi2Integer * count)(*[1] * count)
 
     def step(self, k: int, t: float, T: float) -> None:
-        call, fmi, references = self._plant.call, self._plant.fmi, self._references
+        call, fmi, references = self._plant.call, self._plant.functions, self._references
         count = len(references)
         call(fmi.fmi2SetReal, references, count, self._values[k])
         call(fmi.fmi2SetRealInputDerivatives, references, count, self._orders, self._slopes[k])
@@ -175,7 +177,7 @@ class _Link:
 
     def tick(self, k: int, t: float, T: float) -> None:
         plant, slave, count = self._plant, self.slave, len(self._buffer)
-        plant.call(plant.fmi.fmi2GetReal, self._sources, count, self._buffer)
-        slave.call(slave.fmi.fmi2SetReal, self._inputs, count, self._buffer)
-        slave.call(slave.fmi.fmi2DoStep, t, T, fmi2.fmi2True)
+        plant.call(plant.functions.fmi2GetReal, self._sources, count, self._buffer)
+        slave.call(slave.functions.fmi2SetReal, self._inputs, count, self._buffer)
+        slave.call(slave.functions.fmi2DoStep, t, T, fmi2.fmi2True)
         self.recorder.sample(k)

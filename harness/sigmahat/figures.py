@@ -23,7 +23,8 @@ from sigmahat.cosimulation import Recording
 from sigmahat.nominal import nominal
 
 Array = NDArray[np.float64]
-Drawn = TypeVar("Drawn")
+Source = TypeVar("Source")
+"""What a figure is drawn from."""
 
 # Colours of Okabe and Ito, told apart with every kind of colour vision.
 _BLUE, _GREEN, _VERMILION, _SKY = "#0072B2", "#009E73", "#D55E00", "#56B4E9"
@@ -329,10 +330,10 @@ def comparison(lines: Sequence[Line]) -> Figure:
     return figure
 
 
-def save(draw: Callable[[Drawn], Figure], what: Drawn, path: Path) -> None:
-    """Draws a figure of something into <path>.png and <path>.svg. The same gives the same SVG."""
+def save(draw: Callable[[Source], Figure], source: Source, path: Path) -> None:
+    """Draws a figure into <path>.png and <path>.svg. The same source gives the same SVG."""
     with matplotlib.rc_context(_STYLE):
-        figure = draw(what)
+        figure = draw(source)
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
         pixels = BytesIO()
         figure.savefig(pixels, format="png")

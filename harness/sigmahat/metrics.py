@@ -66,9 +66,11 @@ def indices(
 ) -> Indices:
     """All indices of one run, over all of it and without its start-up.
 
-    t [s]          shape of sigma and estimate [N.m/rad]
-    relative_to    what errors are relative to [N.m/rad], sigma if not given; may be zero here
-    settled        time at which the start-up ends [s]
+    `t` [s] has the shape of `sigma` and `estimate` [N.m/rad], (p + 1,). Errors are relative to
+    `relative_to` [N.m/rad], which is `sigma` if not given and may be zero here. The start-up ends
+    at the time `settled` [s].
+
+    Raises ValueError for other shapes and values that are not finite.
     """
     true, estimated, scale = _equal_shapes(
         sigma, estimate, sigma if relative_to is None else relative_to

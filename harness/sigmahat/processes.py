@@ -28,7 +28,7 @@ def spread(
     context = multiprocessing.get_context("spawn")
     executor = ProcessPoolExecutor(workers, mp_context=context)
     try:
-        with _interrupts_for_the_parent_alone():
+        with interrupts_for_the_parent_alone():
             futures = [executor.submit(job) for job in jobs]
         for future in as_completed(futures):
             future.result()
@@ -39,7 +39,7 @@ def spread(
 
 
 @contextmanager
-def _interrupts_for_the_parent_alone() -> Iterator[None]:
+def interrupts_for_the_parent_alone() -> Iterator[None]:
     """Processes started inside do not hear Ctrl-C, which a terminal sends to them too.
 
     They inherit the blocked signal. Here it waits until the end of the block, also if it comes to

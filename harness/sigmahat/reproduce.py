@@ -54,12 +54,12 @@ def reproduce(
     """
     if len(seeds) == 1:
         recording = run(scenario, seeds[0], variants=True, progress=progress)
-        return Result(scenario, seeds, recording, [_indices(scenario, recording)])
+        return Result(scenario, seeds, recording, [all_indices(scenario, recording)])
 
     jobs: list[partial[Any]] = [partial(run, scenario, seeds[0], variants=True)]
     jobs += [partial(_run_indices, scenario, seed) for seed in seeds[1:]]
     first, *others = spread(jobs, processes, progress)
-    return Result(scenario, seeds, first, [_indices(scenario, first), *others])
+    return Result(scenario, seeds, first, [all_indices(scenario, first), *others])
 
 
 def run(
@@ -68,17 +68,22 @@ def run(
     variants: bool = False,
     progress: Progress = lambda steps: None,
 ) -> Recording:
-    """Runs the scenario once; with or without the estimators that only the figures need."""
+    """Runs the scenario once, with this seed of the plant's noise.
+
+    With variants the estimators that only figures need run too. From time to time progress is
+    called with the number of steps made since the last call. Raises what simulate() raises.
+    """
     plant = replace(scenario.plant, start={**scenario.plant.start, "noise.seed": seed})
     estimators = {**scenario.estimators, **(scenario.variants if variants else {})}
     return simulate(plant, estimators, T, scenario.steps, progress)
 
 
 def _run_indices(scenario: Scenario, seed: int) -> dict[str, Indices]:
-    return _indices(scenario, run(scenario, seed))
+    return all_indices(scenario, run(scenario, seed))
 
 
-def _indices(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
+def all_indices(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
+    """The indices of each comparison of the scenario, by its name."""
     return {
         each.name: indices(
             recording.t,

@@ -160,6 +160,18 @@ def write_comparison(lines: Sequence[Line], seeds: int, path: Path) -> None:
 
 def write_table(result: Result, path: Path) -> None:
     """Writes the indices of each comparison, with half the width of their 95 % interval."""
+    _write(path, *_indices(result))
+
+
+def as_dict(result: Result) -> dict[str, Any]:
+    """For JSON: what write_table writes."""
+    head, rows = _indices(result)
+    table = [dict(zip(head, row, strict=True)) for row in rows]
+    return {"scenario": result.scenario.name, "seeds": list(result.seeds), "table": table}
+
+
+def _indices(result: Result) -> tuple[list[str], list[list[Any]]]:
+    """Titles and rows of the table of all indices."""
     columns = [index for each in result.scenario.tables for index in each]
     head = ["estimation", "seeds"]
     for title in (_title(result.scenario, index) for index in columns):
@@ -171,7 +183,7 @@ def write_table(result: Result, path: Path) -> None:
         for index in columns:
             row += (None if math.isnan(x) else x for x in _mean(result, each.name, index))
         rows.append([*row, *result.scenario.paper.get(each.name, (None, None))])
-    _write(path, head, rows)
+    return head, rows
 
 
 def write_series(recording: Recording, name: str, path: Path) -> None:

@@ -39,6 +39,7 @@ class Sines:
     offset: float
     """In the unit of the input."""
     terms: Sequence[Sine]
+    """Of any number."""
 
     def __call__(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
         return self.offset + sum((term(t) for term in self.terms), np.zeros_like(t))
@@ -48,7 +49,7 @@ class Sines:
 class Comparison:
     """One stiffness against another.
 
-    A signal is "<source>.<variable>": the source is "plant", an estimator, or "nominal", the AwAS
+    A signal is `"SOURCE.VARIABLE"`: the source is "plant", an estimator, or "nominal", the AwAS
     as its nominal data say it is.
     """
 
@@ -67,11 +68,13 @@ class Scenario:
     """One run of a plant and its estimators."""
 
     name: str
+    """For `sigmahat reproduce --scenario`, and for folders."""
     description: str
     """One line."""
     duration: float
     """Simulated time [s], a multiple of T."""
     plant: Plant
+    """What is estimated."""
     estimators: Mapping[str, Estimator]
     """By modality."""
     comparisons: Sequence[Comparison]

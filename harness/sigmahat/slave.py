@@ -12,7 +12,6 @@ from typing import Any
 import fmpy
 import numpy as np
 from fmpy import fmi2
-from fmpy.fmi1 import FMICallException
 from numpy.typing import NDArray
 
 from sigmahat.suggest import unknown
@@ -136,6 +135,8 @@ class Slave:
         except Exception as error:
             raise FmuError(self._explain(str(error))) from error
         self.component = self.fmi.component
+        self.functions: Any = self.fmi.dll
+        """The FMI functions themselves, with the types that FMPy gave them, for call()."""
 
     def __enter__(self) -> Slave:
         return self
@@ -144,11 +145,13 @@ class Slave:
         self.fmi.freeInstance()
 
     def call(self, function: Callable[..., int], *arguments: Any) -> None:
-        """Calls an FMI function of this instance. Raises FmuError if it fails."""
-        try:
-            function(self.component, *arguments)
-        except FMICallException as error:
-            raise FmuError(self._explain(str(error))) from error
+        """Calls one of the functions for this instance. Raises FmuError if it fails."""
+        if function(self.component, *arguments) > fmi2.fmi2Warning:
+            raise self.failure(function.__name__)
+
+    def failure(self, function: str) -> FmuError:
+        """What to raise where an FMI function that was not called through call() failed."""
+        return FmuError(self._explain(f"{function} failed"))
 
     def initialize(self, start: Mapping[str, Value]) -> None:
         """Sets start values by name and initialises at time 0.
@@ -157,18 +160,18 @@ class Slave:
         if the FMU refuses a value.
         """
         numbers = {name: self.fmu.number(name, value) for name, value in start.items()}
-        self.call(self.fmi.fmi2SetupExperiment, 0, 0.0, 0.0, 0, 0.0)
+        self.call(self.functions.fmi2SetupExperiment, 0, 0.0, 0.0, 0, 0.0)
         for name, number in numbers.items():
             variable = self.fmu.variables[name]
             setter, kind = {
-                "Real": (self.fmi.fmi2SetReal, fmi2.fmi2Real),
-                "Integer": (self.fmi.fmi2SetInteger, fmi2.fmi2Integer),
-                "Enumeration": (self.fmi.fmi2SetInteger, fmi2.fmi2Integer),
-                "Boolean": (self.fmi.fmi2SetBoolean, fmi2.fmi2Boolean),
+                "Real": (self.functions.fmi2SetReal, fmi2.fmi2Real),
+                "Integer": (self.functions.fmi2SetInteger, fmi2.fmi2Integer),
+                "Enumeration": (self.functions.fmi2SetInteger, fmi2.fmi2Integer),
+                "Boolean": (self.functions.fmi2SetBoolean, fmi2.fmi2Boolean),
             }[variable.type]
             self.call(setter, _references([variable]), 1, (kind * 1)(number))
-        self.call(self.fmi.fmi2EnterInitializationMode)
-        self.call(self.fmi.fmi2ExitInitializationMode)
+        self.call(self.functions.fmi2EnterInitializationMode)
+        self.call(self.functions.fmi2ExitInitializationMode)
 
     def _on_message(
         self, _environment: int, _instance: bytes, status: int, _category: bytes, message: bytes
@@ -193,9 +196,9 @@ class Recorder:
         self._reads: list[tuple[Callable[..., int], Any, int, Any]] = []
         variables = [slave.fmu.variable(name) for name in names]
         for types, getter, dtype in (
-            (("Real",), slave.fmi.fmi2GetReal, np.float64),
-            (("Integer", "Enumeration"), slave.fmi.fmi2GetInteger, np.int32),
-            (("Boolean",), slave.fmi.fmi2GetBoolean, np.int32),
+            (("Real",), slave.functions.fmi2GetReal, np.float64),
+            (("Integer", "Enumeration"), slave.functions.fmi2GetInteger, np.int32),
+            (("Boolean",), slave.functions.fmi2GetBoolean, np.int32),
         ):
             group = [v for v in variables if v.type in types]
             if group:

@@ -1,15 +1,62 @@
-"""What several commands share: the folder they write to, progress, and errors in one line."""
+"""What several commands share: options, the folder they write to, progress, errors in one line.
+
+A command with `@json_option` and `@quiet_option` ends with `answer(text, values)`, and has
+nothing else to do for them.
+"""
 
 from __future__ import annotations
 
+import json
+import logging
+import math
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
+
+_Command = TypeVar("_Command", bound=Callable[..., object])
+_JSON, _QUIET = "sigmahat.json", "sigmahat.quiet"
+
+
+def _for_scripts(context: click.Context, parameter: click.Parameter, given: bool) -> None:
+    """Callback of --json and --quiet: keeps them for `answer`, and leaves warnings out."""
+    context.meta[f"sigmahat.{parameter.name}"] = given
+    if given:
+        logger = logging.getLogger("sigmahat")
+        context.call_on_close(lambda level=logger.level: logger.setLevel(level))
+        logger.setLevel(logging.ERROR)
+
+
+def json_option(command: _Command) -> _Command:
+    """Gives a command the option --json."""
+    text = "Print the result as JSON, and no warnings."
+    return click.option(
+        "--json", is_flag=True, expose_value=False, callback=_for_scripts, help=text
+    )(command)
+
+
+def quiet_option(command: _Command) -> _Command:
+    """Gives a command the option --quiet."""
+    return click.option(
+        "--quiet",
+        is_flag=True,
+        expose_value=False,
+        callback=_for_scripts,
+        help="Print nothing but errors.",
+    )(command)
+
+
+def answer(text: str, values: object = None) -> None:
+    """Prints what came out: values after --json, nothing after --quiet, else the text."""
+    options = click.get_current_context().meta
+    if options.get(_JSON):
+        print_json(values)
+    elif not options.get(_QUIET):
+        click.echo(text)
 
 
 def folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | None:
@@ -25,10 +72,9 @@ def folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | No
 
 
 def progress(label: str, length: int) -> Any:
-    """A progress bar on stderr, hidden where nobody sees it."""
-    return click.progressbar(
-        length=length, label=label, file=sys.stderr, hidden=not sys.stderr.isatty()
-    )
+    """A progress bar on stderr, hidden where nobody sees it or wants it."""
+    hidden = click.get_current_context().meta.get(_QUIET) or not sys.stderr.isatty()
+    return click.progressbar(length=length, label=label, file=sys.stderr, hidden=hidden)
 
 
 def need_fmu(name: str) -> None:
@@ -45,8 +91,8 @@ def need_fmu(name: str) -> None:
 
 
 @contextmanager
-def work(out: Path) -> Iterator[None]:
-    """Around the work of a command that writes to out: its errors become one line.
+def work(out: Path, option: str = "--out") -> Iterator[None]:
+    """Around the work of a command that writes to out, named by an option: errors become one line.
 
     Raises ClickException for an FMU's refusal, a value that does not fit, and a file or folder
     that cannot be written.
@@ -58,5 +104,26 @@ def work(out: Path) -> Iterator[None]:
     except (FmuError, ValueError) as error:
         raise click.ClickException(str(error)) from error
     except OSError as error:
+        kind = "folder" if option == "--out" else "file"
         where = f"cannot write {error.filename or out}: {error.strerror or error}"
-        raise click.ClickException(f"{where}; choose another folder with --out") from error
+        raise click.ClickException(f"{where}; choose another {kind} with {option}") from error
+
+
+def configuration_of(log: Path) -> Path:
+    """Where the configuration of a log is looked for: in this folder, with the suffix .toml."""
+    return Path(f"{log.stem}.toml")
+
+
+def print_json(values: object) -> None:
+    """Prints values for a script; what is not a number is null."""
+    click.echo(json.dumps(_finite(values), indent=2))
+
+
+def _finite(values: Any) -> Any:
+    if isinstance(values, dict):
+        return {str(key): _finite(value) for key, value in values.items()}
+    if isinstance(values, (list, tuple)):
+        return [_finite(value) for value in values]
+    if isinstance(values, float) and not math.isfinite(values):
+        return None
+    return values

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 import click
@@ -24,9 +25,12 @@ from sigmahat.commands import common
     callback=common.folder,
     help="Folder for figure and CSV file.",
 )
+@common.json_option
+@common.quiet_option
 def compare(seeds: int, out: Path) -> None:
     """Compare the estimation methods where motor data are wrong.
 
+    \b
     Example: sigmahat compare --seeds 20 --out compare
     """
     from sigmahat import results
@@ -44,11 +48,12 @@ def compare(seeds: int, out: Path) -> None:
         save(comparison, lines, folder / "compare")
         results.write_comparison(lines, seeds, folder / "compare.csv")
 
-    click.echo(
+    common.answer(
         f"MSREP [%] of both methods, and of MatchedFilter: sigma_std relative to the true "
         f"stiffness and share of instants\nwithin 1.96 sigma_std, from {CALIBRATED:g} s on; motor "
         f"data found at the end, true 0.001 N.m.s/rad, 2.3e-05 kg.m2.\n"
-        f"Mean over {seeds} seed{'s' if seeds > 1 else ''}.\n"
+        f"Mean over {seeds} seed{'s' if seeds > 1 else ''}.\n\n"
+        f"{results.comparison_table(lines)}\n\n"
+        f"Figure (PNG, SVG) and CSV file are in {out.resolve()}",
+        [asdict(line) for line in lines],
     )
-    click.echo(results.comparison_table(lines))
-    click.echo(f"\nFigure (PNG, SVG) and CSV file are in {out.resolve()}")

@@ -9,8 +9,22 @@ import click
 from sigmahat.commands import common
 
 
+def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
+    """Scenarios, for the completion of the shell."""
+    from sigmahat.scenarios import SCENARIOS
+
+    return [name for name in SCENARIOS if name.startswith(begin)]
+
+
 @click.command()
-@click.option("--scenario", "name", default="table1", show_default=True, help="What to run.")
+@click.option(
+    "--scenario",
+    "name",
+    default="table1",
+    show_default=True,
+    shell_complete=_names,
+    help="What to run.",
+)
 @click.option(
     "--seeds",
     default=1,
@@ -23,9 +37,12 @@ from sigmahat.commands import common
     callback=common.folder,
     help="Folder for figures and CSV files.  [default: sigmahat-results/SCENARIO]",
 )
+@common.json_option
+@common.quiet_option
 def reproduce(name: str, seeds: int, out: Path | None) -> None:
     """Run a scenario; print its table, draw its figures.
 
+    \b
     Example: sigmahat reproduce --scenario as-printed --seeds 20 --out as-printed
     """
     from sigmahat import results
@@ -54,7 +71,8 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
         for modality in chosen.estimators:
             results.write_series(result.recording, modality, folder / f"{modality}.csv")
 
-    click.echo(f"{chosen.name}: {chosen.description}")
-    click.echo(f"{results.conditions(result)}\n")
-    click.echo(results.table(result))
-    click.echo(f"\nFigures (PNG, SVG) and CSV files are in {out.resolve()}")
+    common.answer(
+        f"{chosen.name}: {chosen.description}\n{results.conditions(result)}\n\n"
+        f"{results.table(result)}\n\nFigures (PNG, SVG) and CSV files are in {out.resolve()}",
+        results.as_dict(result),
+    )

@@ -73,9 +73,10 @@ def document(template: Path, out: Path, version: str) -> None:
 @click.argument("plant", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.argument("estimator", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.option("--templates", required=True, type=click.Path(exists=True, path_type=Path))
-def write_system(ssp: Path, plant: Path, estimator: Path, templates: Path) -> None:
+@click.option("--version", required=True, help="Version of the system.")
+def write_system(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str) -> None:
     """Write SSP, the system of FMUs PLANT and ESTIMATOR that gives Table I."""
-    system.write(ssp, plant, estimator, templates)
+    system.write(ssp, plant, estimator, templates, version)
 
 
 @main.command()

@@ -16,7 +16,7 @@ import casadi as ca
 import sigmahat.plants
 from sigmahat.export import description
 from sigmahat.export.elimination import Elimination
-from sigmahat.plants.plant import Plant
+from sigmahat.plants.plant import PlantEquations
 
 _TEMPLATES = Path(__file__).parents[3] / "modelDescription"
 
@@ -29,7 +29,7 @@ _QUIET = """\
 """
 
 
-def find(name: str) -> Plant:
+def find(name: str) -> PlantEquations:
     """The plant of this name among the files of ``sigmahat.plants``.
 
     Raises LookupError if there is none.
@@ -37,7 +37,7 @@ def find(name: str) -> Plant:
     names = []
     for module in iter_modules(sigmahat.plants.__path__, "sigmahat.plants."):
         plant = getattr(import_module(module.name), "plant", None)
-        if isinstance(plant, Plant):
+        if isinstance(plant, PlantEquations):
             if plant.name == name:
                 return plant
             names.append(plant.name)
@@ -45,7 +45,7 @@ def find(name: str) -> Plant:
 
 
 def functions(
-    plant: Plant, parameters: Sequence[str], inputs: Sequence[str], outputs: Sequence[str]
+    plant: PlantEquations, parameters: Sequence[str], inputs: Sequence[str], outputs: Sequence[str]
 ) -> list[ca.Function]:
     """The functions that ``fmu_src/plant.c`` and ``fmu_src/radau.c`` call.
 
@@ -91,7 +91,7 @@ def functions(
 
 
 def write(
-    plant: Plant,
+    plant: PlantEquations,
     parameters: Sequence[str],
     inputs: Sequence[str],
     outputs: Sequence[str],
@@ -135,7 +135,7 @@ def write(
     (folder / "plant_functions.c").write_text(_QUIET + generator.dump(), encoding="utf-8")
 
 
-def _compare(plant: Plant, kind: str, own: Iterable[str], wanted: Iterable[str]) -> None:
+def _compare(plant: PlantEquations, kind: str, own: Iterable[str], wanted: Iterable[str]) -> None:
     """Raises ValueError unless the equations of the plant have exactly the names wanted."""
     own, wanted = set(own), set(wanted)
     if not own:

@@ -12,14 +12,13 @@ from typing import Any
 
 import jinja2
 
-import sigmahat
 from sigmahat.export import archive
 from sigmahat.scenarios import T, scenario
 from sigmahat.slave import Fmu, Value
 
 
-def write(ssp: Path, plant: Path, estimator: Path, templates: Path) -> None:
-    """Write the SSP from the two FMUs and the folder of its Jinja2 templates.
+def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str) -> None:
+    """Write the SSP of this version from the two FMUs and the folder of its Jinja2 templates.
 
     Equal FMUs and templates give equal bytes. Raises ValueError if the scenario sets an
     enumeration to something else than the FMU does.
@@ -34,7 +33,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path) -> None:
         units = {u.name: u for f in (of_plant, of_estimator) for u in f.description.unitDefinitions}
         sent = dict.fromkeys((*connections.values(), "sigma"))
         data = {
-            "version": sigmahat.__version__,
+            "version": version,
             "torques": table1.plant.inputs,
             "connections": connections,
             "duration": table1.duration,

@@ -13,11 +13,11 @@ with initial.theta_i = asinh(gamma tau_i / k_i) / a_i.
 import casadi as ca
 
 from sigmahat.plants.joint import add_link, add_motor, add_torque_sensors, position, velocity
-from sigmahat.plants.plant import Plant
+from sigmahat.plants.plant import PlantEquations
 
 SIDES = ("_1", "_2")
 
-plant = Plant("AntagonisticVsaPlant")
+plant = PlantEquations("AntagonisticVsaPlant")
 
 tau = {side: plant.input(f"tau{side}") for side in SIDES}
 

@@ -3,9 +3,9 @@
 import casadi as ca
 
 from sigmahat.plants.joint import add_link, add_motor, add_torque_sensors, position, velocity
-from sigmahat.plants.plant import Plant, encoder
+from sigmahat.plants.plant import PlantEquations, encoder
 
-plant = Plant("AwasPlant")
+plant = PlantEquations("AwasPlant")
 
 tau = plant.input("tau")
 tau_c = plant.input("tau_c")

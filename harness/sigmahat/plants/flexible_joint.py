@@ -1,9 +1,9 @@
 """A joint with a single flexible transmission, (2)-(4): a spring that hardens, with (32), (33)."""
 
 from sigmahat.plants.joint import add_link, add_motor, add_torque_sensors, position, velocity
-from sigmahat.plants.plant import Plant
+from sigmahat.plants.plant import PlantEquations
 
-plant = Plant("FlexibleJointPlant")
+plant = PlantEquations("FlexibleJointPlant")
 
 tau = plant.input("tau")
 

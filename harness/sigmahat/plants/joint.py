@@ -11,14 +11,14 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from sigmahat.plants.plant import Plant, encoder
+from sigmahat.plants.plant import PlantEquations, encoder
 
 # Coulomb friction is smooth, tau_coulomb tanh(velocity / COULOMB_VELOCITY). What is stuck thus
 # creeps, at this speed [rad/s] under 76 % of the friction torque.
 COULOMB_VELOCITY = 0.02
 
 
-def position(plant: Plant, name: str) -> ca.SX:
+def position(plant: PlantEquations, name: str) -> ca.SX:
     """State `name` [rad] of a link or motor, which starts at the parameter `initial.<name>`.
 
     A deformation of some 0.01 rad may carry the whole torque: so much of a position matters.
@@ -26,12 +26,12 @@ def position(plant: Plant, name: str) -> ca.SX:
     return plant.state(name, plant.parameter(f"initial.{name}"), scale=0.01)
 
 
-def velocity(plant: Plant, name: str) -> ca.SX:
+def velocity(plant: PlantEquations, name: str) -> ca.SX:
     """State `name` [rad/s] of a link or motor, which starts at the parameter `initial.<name>`."""
     return plant.state(name, plant.parameter(f"initial.{name}"), scale=1.0)
 
 
-def add_link(plant: Plant, q: ca.SX, q_dot: ca.SX, tau_e: ca.SX) -> None:
+def add_link(plant: PlantEquations, q: ca.SX, q_dot: ca.SX, tau_e: ca.SX) -> None:
     """The link (2) with g(q) = mgl sin q and Coulomb friction, and its encoder.
 
     It is moved by the input `tau_ext` and against `tau_e`, the sum of the flexibility torques.
@@ -48,7 +48,7 @@ def add_link(plant: Plant, q: ca.SX, q_dot: ca.SX, tau_e: ca.SX) -> None:
 
 
 def add_motor(
-    plant: Plant, theta: ca.SX, theta_dot: ca.SX, tau: ca.SX, tau_e: ca.SX, side: str = ""
+    plant: PlantEquations, theta: ca.SX, theta_dot: ca.SX, tau: ca.SX, tau_e: ca.SX, side: str = ""
 ) -> None:
     """A motor (3) with Coulomb friction, and its encoder; `tau` is on the motor axis."""
     gamma = plant.parameter(f"motor{side}.gamma")
@@ -62,7 +62,7 @@ def add_motor(
     plant.output(f"theta_measured{side}", encoder(theta, plant.parameter(f"encoder.theta{side}")))
 
 
-def add_torque_sensors(plant: Plant, torques: Mapping[str, tuple[ca.SX, ca.SX]]) -> None:
+def add_torque_sensors(plant: PlantEquations, torques: Mapping[str, tuple[ca.SX, ca.SX]]) -> None:
     """Measured motor torque (32) and flexibility torque (33) of every side, each with its noise.
 
     `torques` holds tau and tau_e by side. Variances and the gain of the sensor of tau_e are

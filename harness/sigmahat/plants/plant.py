@@ -17,12 +17,12 @@ class State:
     scale: float
 
 
-class Plant:
+class PlantEquations:
     """Ordinary differential equations with inputs, parameters, noise and outputs.
 
-    A plant file makes one of these, asks it for symbols and hands it equations::
+    A plant file makes one of these, asks it for symbols and hands it equations:
 
-        plant = Plant("MassPlant")
+        plant = PlantEquations("MassPlant")
         force = plant.input("force")
         mass = plant.parameter("mass")
         x = plant.state("x", start=plant.parameter("initial.x"), scale=1.0)
@@ -32,17 +32,25 @@ class Plant:
         plant.output("x", x)
 
     Names of inputs, parameters and outputs are those of the FMU's variables, whose units, start
-    values and ranges stand in ``modelDescription/<name>.xml``. Expressions are CasADi ``SX``.
+    values and ranges stand in ``modelDescription/NAME.xml``, or in the `PlantVariable` of each in
+    `write_plant_fmu`. Expressions are CasADi ``SX``.
     """
 
     def __init__(self, name: str) -> None:
         self.name = name
+        """Of the FMU."""
         self.inputs: dict[str, ca.SX] = {}
+        """Symbols by name."""
         self.parameters: dict[str, ca.SX] = {}
+        """Symbols by name."""
         self.states: dict[str, State] = {}
+        """Symbols, start values and scales by name."""
         self.derivatives: dict[str, ca.SX] = {}
+        """d/dt of each state by its name."""
         self.outputs: dict[str, ca.SX] = {}
+        """Expressions by name."""
         self.normals: list[ca.SX] = []
+        """Noises of variance 1."""
 
     def input(self, name: str) -> ca.SX:
         """Input `name`; held, or linear in time, over a communication step."""
@@ -97,7 +105,7 @@ class Plant:
         return symbols[name]
 
 
-def encoder(angle: ca.SX, counts: ca.SX) -> ca.SX:
+def encoder(angle: ca.SX, counts: ca.SX | float) -> ca.SX:
     """Angle [rad] rounded to the nearest of `counts` per turn; as it is for 0 counts."""
     count = 2 * math.pi / ca.if_else(counts > 0, counts, 1)
     return ca.if_else(counts > 0, count * ca.floor(angle / count + 0.5), angle)

@@ -1,0 +1,142 @@
+"""Stiffness control of the AwAS: its second motor moves the lever arm until the estimated stiffness
+is the one wanted.
+
+The springs of this AwAS are 15 % softer than their data sheet says. Once the loop is closed with
+the estimate, once with the stiffness (29) after the data sheet.
+
+Usage: python stiffness_control.py [FOLDER]     writes stiffness_control.png there
+"""
+
+from __future__ import annotations
+
+import math
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+import sigmahat
+
+T, DURATION = 1e-3, 45.0  # [s]
+K_S, R_0, LEAD = 14220.0, 0.1, 0.0025 / (2 * math.pi)  # data sheet [N/m, m, m/rad]
+START = 2.0  # until then the lever arm rests and the estimate settles [s]
+GAIN = 20.0  # tau_c for an error of one in the square root of the stiffness
+LARGEST = 8.0  # of tau_c, as in the paper [N.m]: up to some 50 N.m/rad in a second
+
+
+class Slave:
+    """One FMU, its variables by name."""
+
+    def __init__(self, name: str, **start: float) -> None:
+        path = str(sigmahat.fmu(name))
+        description: Any = fmpy.read_model_description(path)
+        self._references = {v.name: v.valueReference for v in description.modelVariables}
+        self._folder = fmpy.extract(path)
+        self._fmu: Any = fmpy.instantiate_fmu(self._folder, description, "CoSimulation")
+        self._fmu.setupExperiment(startTime=0.0)
+        self.set(**start)
+        self._fmu.enterInitializationMode()
+        self._fmu.exitInitializationMode()
+
+    def set(self, **values: float) -> None:
+        """Sets variables; in their names "__" stands for a dot."""
+        references = [self._references[name.replace("__", ".")] for name in values]
+        self._fmu.setReal(references, list(values.values()))
+
+    def set_derivative(self, name: str, slope: float) -> None:
+        """Makes an input linear over the next step."""
+        self._fmu.setRealInputDerivatives([self._references[name]], [1], [slope])
+
+    def get(self, *names: str) -> list[float]:
+        """Values of variables."""
+        values: list[float] = self._fmu.getReal([self._references[name] for name in names])
+        return values
+
+    def step(self, t: float) -> None:
+        """From t to t + T."""
+        self._fmu.doStep(t, T)
+
+    def close(self) -> None:
+        """Frees the instance."""
+        self._fmu.terminate()
+        self._fmu.freeInstance()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+
+def wanted(t: float) -> float:
+    """Stiffness that is wanted [N.m/rad]."""
+    if t < 20:
+        return (200.0, 320.0, 150.0)[min(int(t / 7), 2)]
+    return 235.0 + 85.0 * math.sin(2 * math.pi * 0.05 * (t - 20))
+
+
+def torque(t: float) -> float:
+    """Torque of the principal motor [N.m]: without motion nothing can be estimated."""
+    return 0.3 * math.sin(2 * math.pi * 0.5 * t)
+
+
+def run(with_estimate: bool) -> NDArray[np.float64]:
+    """One run; columns t [s], wanted, true and estimated stiffness [N.m/rad], tau_c [N.m]."""
+    plant = Slave("AwasPlant", spring__k_s=0.85 * K_S, initial__theta_c=0.0)
+    estimator = Slave("StiffnessEstimator")
+    rows = []
+    for k in range(round(DURATION / T)):
+        t = k * T
+        theta, q, theta_c, tau, true = plant.get(
+            "theta_measured", "q_measured", "theta_c_measured", "tau_measured", "sigma"
+        )
+        estimator.set(theta=theta, q=q, theta_c=theta_c, tau=tau)
+        estimator.step(t)  # the tick at t
+        (estimated,) = estimator.get("sigma")
+
+        nominal = 2 * K_S * (R_0 - LEAD * theta_c) ** 2 * math.cos(2 * (q - theta))  # (29)
+        used = estimated if with_estimate else nominal
+        # The square root of the stiffness is linear in the lever arm, and the velocity of the
+        # motor nearly in its torque: with a proportional controller the error decays like
+        # exp(-4 t), wherever the lever arm is. A positive torque shortens it.
+        tau_c = 0.0
+        if t >= START:
+            error = math.sqrt(wanted(t)) - math.sqrt(max(used, 0.0))
+            tau_c = min(max(-GAIN * error, -LARGEST), LARGEST)
+        rows.append((t, wanted(t), true, estimated, tau_c))
+
+        plant.set(tau=torque(t), tau_c=tau_c)
+        plant.set_derivative("tau", (torque(t + T) - torque(t)) / T)
+        plant.step(t)
+    plant.close()
+    estimator.close()
+    return np.array(rows)
+
+
+def main(folder: Path) -> None:
+    """Both runs, the error of each over the last period of the sine, and the picture."""
+    figure = Figure(figsize=(8, 7), layout="constrained")
+    above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(2, 2, 1))
+    for axes, title, with_estimate, color in (
+        (above, "controlled with the estimate", True, "#0072B2"),
+        (middle, "controlled with the data sheet, springs 15 % softer", False, "#D55E00"),
+    ):
+        t, reference, true, estimated, tau_c = run(with_estimate).T
+        late = t >= DURATION - 20
+        error = np.mean(np.abs(true - reference)[late] / reference[late])
+        print(f"{title}: mean error of the true stiffness in the last 20 s {100 * error:.1f} %")
+        axes.plot(t, reference, color="black", linewidth=0.8, linestyle=(0, (5, 2)), label="wanted")
+        axes.plot(t, true, color="#aaaaaa", linewidth=3, label="true")
+        axes.plot(t, estimated, color=color, linewidth=1, label="estimated")
+        axes.axvspan(0, START, color="#eeeeee", zorder=0)
+        axes.set(title=title, ylabel="stiffness [N·m/rad]", ylim=(0, 420))
+        axes.legend(ncols=3, loc="lower right")
+        below.plot(t, tau_c, color=color, linewidth=0.8)
+    below.set(ylabel="torque $\\tau_c$ [N·m]", xlabel="time [s]")
+    for axes in (above, middle, below):
+        axes.grid(color="#dddddd")
+    figure.savefig(folder / "stiffness_control.png", dpi=150)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))

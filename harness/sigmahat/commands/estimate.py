@@ -1,0 +1,49 @@
+"""sigmahat estimate"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from sigmahat.commands import common
+
+
+@click.command()
+@click.argument("log", type=click.Path(path_type=Path))
+@click.option(
+    "--config",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="What `sigmahat init` wrote.  [default: LOG with the suffix .toml, in this folder]",
+)
+@click.option(
+    "--out",
+    callback=common.folder,
+    help="Folder for table and figure.  [default: sigmahat-results/LOG]",
+)
+@common.json_option
+@common.quiet_option
+def estimate(log: Path, config: Path | None, out: Path | None) -> None:
+    """Replay LOG through the estimator; add the stiffness to its table.
+
+    LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag; `sigmahat init LOG` writes the
+    configuration. Writes a table (CSV for CSV, else Parquet) and a figure.
+
+    \b
+    Example: sigmahat estimate knee.parquet --config knee.toml --out knee
+    """
+    from sigmahat import results
+    from sigmahat.logs.configuration import read_configuration
+    from sigmahat.logs.estimate import estimate as run
+    from sigmahat.logs.estimate import summary
+    from sigmahat.logs.files import open_log
+
+    common.need_fmu("StiffnessEstimator")
+    out = out or Path("sigmahat-results", log.stem)
+    with common.work(out):
+        configuration = read_configuration(config or common.configuration_of(log))
+        opened = open_log(log)
+        with results.folder(out) as folder, common.progress("Replaying", 1000) as bar:
+            result = run(opened, configuration, folder, progress=bar.update)
+    where = f"Table and figure (PNG, SVG) are in {out.resolve()}"
+    common.answer(f"{summary(result)}\n\n{where}", result.as_dict())

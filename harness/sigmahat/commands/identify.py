@@ -1,0 +1,55 @@
+"""sigmahat identify"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from sigmahat.commands import common
+
+
+@click.command()
+@click.argument("log", type=click.Path(path_type=Path))
+@click.option(
+    "--config",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Read and then updated.  [default: LOG with the suffix .toml, in this folder]",
+)
+@click.option(
+    "--torque-constant",
+    is_flag=True,
+    help="Also find K_t; needs tau in A and a torque sensor, which is believed.",
+)
+@click.option("--dry-run", is_flag=True, help="Leave the configuration as it is.")
+@common.json_option
+@common.quiet_option
+def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: bool) -> None:
+    """Find B, D_theta and Coulomb friction from LOG; write them into the configuration.
+
+    What the motion does not show is not told ("cannot tell") and not written. Comments stay.
+
+    \b
+    Example: sigmahat identify knee.csv --config knee.toml
+    """
+    import sigmahat
+    from sigmahat.identification import as_dict, summary
+    from sigmahat.identification import identify as run
+    from sigmahat.identify_write import write
+    from sigmahat.logs.configuration import read_configuration
+    from sigmahat.logs.files import open_log
+    from sigmahat.slave import Fmu
+
+    common.need_fmu("StiffnessEstimator")
+    config = config or common.configuration_of(log)
+    with common.work(config, "--config"):
+        configuration = read_configuration(config)
+        found = run(open_log(log), configuration, torque_constant)
+        written: list[str] = []
+        if not dry_run:
+            with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
+                written = write(found, config, frozenset(fmu.variables))
+    text = f"{log}\n{summary(found)}"
+    if written:
+        text += f"\n\nWritten into {config}: {', '.join(written)}"
+    common.answer(text, {**as_dict(found), "written": written})

@@ -1,0 +1,49 @@
+"""sigmahat init"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from sigmahat.commands import common
+
+
+@click.command()
+@click.argument("log", type=click.Path(path_type=Path))
+@click.option(
+    "--config",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="File to write.  [default: LOG with the suffix .toml, in this folder]",
+)
+@click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
+@common.quiet_option
+def init(log: Path, config: Path | None, force: bool) -> None:
+    """Write a configuration for LOG to start from.
+
+    LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. Its columns are guessed by name.
+
+    \b
+    Example: sigmahat init knee.csv
+    """
+    import sigmahat
+    from sigmahat.logs import template
+    from sigmahat.logs.files import open_log
+    from sigmahat.slave import Fmu
+
+    common.need_fmu("StiffnessEstimator")
+    config = config or common.configuration_of(log)
+    if config.exists() and not force:
+        raise click.ClickException(
+            f"{config} exists; --force overwrites it, --config names another file"
+        )
+    with common.work(config, "--config"):
+        with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
+            names = ("motor.B", "motor.D_theta", "motor.gamma")
+            motor = {name: float(fmu.variable(name).start) for name in names}
+        opened = open_log(log)
+        config.write_text(template.write(opened, motor), encoding="utf-8")
+        _, found = template.guess(opened)
+    guesses = "\n".join(f"{port:13} {each.column} [{each.unit}]" for port, each in found.items())
+    then = f"Check {config}, fill in what it asks for, then: sigmahat estimate {log}"
+    common.answer(f"{guesses}\n\n{then}")

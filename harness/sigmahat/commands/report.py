@@ -1,0 +1,34 @@
+"""sigmahat report"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from sigmahat.commands import common
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="File to write.  [default: report.html in FOLDER]",
+)
+@common.quiet_option
+def report(folder: Path, out: Path | None) -> None:
+    """Make one HTML file of the results in FOLDER, with plots to zoom.
+
+    FOLDER is what `sigmahat reproduce`, `estimate` or `sweep` wrote. The file opens offline.
+
+    \b
+    Example: sigmahat report sigmahat-results/table1
+    """
+    from sigmahat.report import report as make
+
+    out = out or folder / "report.html"
+    with common.work(out, "--out FILE"):
+        text = make(folder)
+        out.write_text(text, encoding="utf-8")
+    common.answer(f"{out.resolve()} ({len(text.encode()) / 1e6:.1f} MB)")

@@ -1,0 +1,83 @@
+"""sigmahat sweep"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from sigmahat.commands import common
+
+
+def _names(_: click.Context, __: click.Parameter, text: str | None) -> tuple[str, ...]:
+    return tuple(name.strip() for name in text.split(",")) if text else ()
+
+
+@click.command()
+@click.argument("plan", required=False, type=click.Path(path_type=Path, dir_okay=False))
+@click.option("--scenario", callback=_names, help="One or more, a,b.  [default: table1]")
+@click.option(
+    "--seeds", type=click.IntRange(min=1), help="Number of runs of each setting.  [default: 1]"
+)
+@click.option("--modality", callback=_names, help="Estimators to run, a,b.  [default: all]")
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="NAME=VALUES",
+    help="Parameter plant.X, estimator.X or MODALITY.X; values 1,2,3 or first:last:count, or "
+    "drawn for each seed: uniform(low,high), normal(mean,deviation). Repeatable.",
+)
+@click.option(
+    "--scheduler", metavar="ADDRESS", help="Dask scheduler, tcp://host:port.  [default: all cores]"
+)
+@click.option(
+    "--out",
+    callback=common.folder,
+    help="Folder for table and figures.  [default: sigmahat-results/sweep]",
+)
+@common.json_option
+@common.quiet_option
+def sweep(
+    plan: Path | None,
+    scenario: tuple[str, ...],
+    seeds: int | None,
+    modality: tuple[str, ...],
+    settings: tuple[str, ...],
+    scheduler: str | None,
+    out: Path | None,
+) -> None:
+    """Run scenarios over seeds and parameters, in parallel; Monte Carlo.
+
+    PLAN is a TOML file with the keys scenario, seeds, modality and a table [parameters]; options
+    replace what it says. After an interruption the same command goes on where it was.
+
+    \b
+    Example: sigmahat sweep --seeds 100 --modality RESIDUAL \\
+        --set estimator.motor.D_theta=0.9e-3:1.1e-3:5 --out friction
+    """
+    from sigmahat import sweep as job
+    from sigmahat.scenarios import scenario as find
+    from sigmahat.sweep_plan import read_plan
+    from sigmahat.sweep_run import WorkerError
+
+    for name in scenario or ("table1",):
+        try:
+            chosen = find(name)
+        except ValueError as error:
+            raise click.UsageError(str(error)) from error
+        for fmu in {chosen.plant.fmu, *(e.fmu for e in chosen.estimators.values())}:
+            common.need_fmu(fmu)
+    out = out or Path("sigmahat-results", "sweep")
+    with common.work(out):
+        read = read_plan(plan, scenario, seeds, modality, settings)
+        try:
+            with common.progress("Running", len(read)) as bar:
+                result = job.run(read, out, scheduler, progress=bar.update)
+        except WorkerError as error:
+            raise click.ClickException(str(error)) from error
+    common.answer(
+        f"{job.conditions(read, list(read.parameters))}\n\n{job.summary(result)}\n\n"
+        f"Table (Parquet), summary (CSV) and figures (PNG, SVG) are in {out.resolve()}",
+        job.as_dict(result),
+    )

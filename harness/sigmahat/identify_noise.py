@@ -1,0 +1,63 @@
+"""Noise of the signals of a log, and the filters that suit it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.signal import butter, sosfiltfilt
+
+from sigmahat.logs.log import Array
+
+_WINDOWS = 40
+_LOWEST = 5.0  # [Hz]
+_HIGHEST = 0.1  # of the sampling frequency
+
+
+def variance(values: Array, resolution: float = 0.0) -> float:
+    """Variance of the white noise of a signal, in the square of its unit.
+
+    values      samples at even times, finite
+    resolution  step of the encoder, 0 if none: its rounding is noise of at least step^2/12
+
+    Fourth differences hold next to nothing of a motion that is slow beside the samples. Their
+    variance is 70 times that of white noise; the median over windows leaves jumps out.
+    """
+    windows = np.array_split(np.diff(values, 4), min(_WINDOWS, max(1, len(values) // 50)))
+    found = float(np.median([np.mean(each**2) for each in windows])) / 70
+    return max(found, resolution**2 / 12)
+
+
+def bandwidth(torque: float, theta: float, inertia: float, T: float) -> float:
+    """Frequency at which a position twice differentiated becomes noisier than the torque [Hz].
+
+    torque   variance of the noise of the torque [(N.m)2]
+    theta    variance of the noise of the position [rad2]
+    inertia  torque per acceleration: B gamma on the motor's axis [kg.m2]
+
+    Weighting by 1/(1 + (f/f_0)^4), the square of a Butterworth filter of second order, makes the
+    sum of both noises about white below f_0, and takes away what is above it.
+    """
+    highest = _HIGHEST / T
+    if theta <= 0.0:
+        return highest
+    frequency = math.sqrt(math.sqrt(torque / (inertia**2 * theta))) / (2 * math.pi)
+    return min(max(frequency, _LOWEST), highest)
+
+
+def low_pass(values: Array, frequency: float, h: float) -> Array:
+    """Butterworth of second order there and back, so without phase, along the first axis.
+
+    frequency [Hz], samples h [s] apart.
+    """
+    filtered: Array = sosfiltfilt(butter(2, frequency * 2 * h, output="sos"), values, axis=0)
+    return filtered
+
+
+def best_V_a(velocity: Mapping[float, Array], reference: Array) -> float:
+    """The V_a whose velocity is nearest to a reference in the mean square [rad2/s4].
+
+    velocity  of the filter [rad/s] for each V_a; reference of the same shape
+    """
+    return min(velocity, key=lambda V_a: float(np.mean((velocity[V_a] - reference) ** 2)))

@@ -1,0 +1,1 @@
+"""Recorded logs: read, converted to the ports of the estimator, and replayed through its FMU."""

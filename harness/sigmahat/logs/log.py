@@ -1,0 +1,88 @@
+"""What every recorded log offers, whatever its file format."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from sigmahat.logs.errors import LogError
+from sigmahat.suggest import unknown
+
+Array = NDArray[np.float64]
+
+
+class Log(ABC):
+    """Named columns of numbers, not always of the same length."""
+
+    def __init__(self, path: Path, columns: Mapping[str, int]) -> None:
+        self.path = path
+        """The file."""
+        self.columns = columns
+        """Number of samples of each column."""
+
+    def read(self, name: str) -> Array:
+        """One column, shape (samples,); nan where a sample is missing.
+
+        Date and time become seconds since the first row. Raises LogError if there is no such
+        column, or if it holds something other than numbers.
+        """
+        if name not in self.columns:
+            raise LogError(f"{self.path}: {unknown('column', name, self.columns)}")
+        return self._read(name)
+
+    @abstractmethod
+    def _read(self, name: str) -> Array:
+        """One column that exists."""
+
+    @abstractmethod
+    def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
+        """The columns of these names, of one length, as they are, a number of rows at a time."""
+
+
+class LogInMemory(Log):
+    """A log of a format that is read at once."""
+
+    def __init__(self, path: Path, arrays: Mapping[str, NDArray[np.generic]]) -> None:
+        super().__init__(path, {name: len(array) for name, array in arrays.items()})
+        self._arrays = arrays
+
+    def _read(self, name: str) -> Array:
+        return self._arrays[name].astype(np.float64)
+
+    def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
+        for first in range(0, max(self.columns[name] for name in names), rows):
+            yield pa.record_batch(
+                {name: pa.array(self._arrays[name][first : first + rows]) for name in names}
+            )
+
+
+def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
+    """An Arrow column as Log.read gives it. Raises LogError if it does not hold numbers."""
+    kind = column.type
+    if pa.types.is_timestamp(kind):
+        nanoseconds = column.cast(pa.timestamp("ns")).cast(pa.int64())
+        first = next((x.as_py() for x in nanoseconds if x.is_valid), 0)
+        shifted = pa.compute.subtract(nanoseconds, first)
+        return numbers(path, name, shifted) / 1e9
+    if pa.types.is_string(kind) or pa.types.is_large_string(kind):
+        text = next((x.as_py() for x in column if x.is_valid and not _is_number(x.as_py())), "")
+        raise LogError(f"{path}: column {name!r} holds text ({text!r}), expected numbers")
+    if pa.types.is_null(kind):
+        return np.full(len(column), np.nan)
+    if not (pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)):
+        raise LogError(f"{path}: column {name!r} holds {kind}, expected numbers")
+    values: Array = column.cast(pa.float64(), safe=False).to_numpy()
+    return values
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,65 @@
+"""What the figure and the summary of a replay need, kept while it goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from sigmahat.logs.log import Array
+
+_BUCKETS = 4000
+DRAWN = ("sigma", "tau_e", "tau_e_residual", "phi", "setPoint")
+
+
+class Trace:
+    """Least and greatest value of each output in some thousand intervals of equal length.
+
+    They make the same picture as all values, in memory that does not grow with the log.
+    """
+
+    def __init__(self, ticks: int) -> None:
+        self.bucket = -(-ticks // _BUCKETS)
+        """Ticks in an interval; chunks must be whole numbers of them."""
+        self._parts: dict[str, list[Array]] = {name: [] for name in DRAWN}
+        self._half = ticks // 2
+        self._ticks = self._later = self.skipped = 0
+        self._squares = 0.0
+        self._low = {name: np.inf for name in DRAWN}
+        self._high = {name: -np.inf for name in DRAWN}
+        self.last: dict[str, float] = {}
+
+    def add(self, outputs: Mapping[str, np.ndarray[Any, Any]]) -> None:
+        """Takes the outputs of the next ticks."""
+        count = len(outputs["valid"])
+        for name in DRAWN:
+            values = outputs[name]
+            starts = np.arange(0, count, self.bucket)
+            low = np.minimum.reduceat(values, starts)
+            high = np.maximum.reduceat(values, starts)
+            self._parts[name].append(np.column_stack([low, high]))
+        first = max(0, self._half - self._ticks)
+        if first < count:
+            valid = outputs["valid"][first:]
+            self._squares += float(np.sum(outputs["epsilon"][first:][valid] ** 2))
+            self._later += int(np.count_nonzero(valid))
+            for name in DRAWN:
+                self._low[name] = min(self._low[name], float(outputs[name][first:].min()))
+                self._high[name] = max(self._high[name], float(outputs[name][first:].max()))
+        self.skipped += int(np.count_nonzero(~outputs["valid"]))
+        self._ticks += count
+        self.last = {name: float(outputs[name][-1]) for name in DRAWN}
+
+    def ends(self, name: str) -> Array:
+        """Least and greatest value of each interval, [size: intervals x 2]."""
+        return np.concatenate(self._parts[name])
+
+    def later(self, name: str) -> tuple[float, float]:
+        """Least and greatest value in the second half of the log."""
+        return self._low[name], self._high[name]
+
+    @property
+    def rms(self) -> float:
+        """RMS of the prediction error of the torque in the second half [N.m]."""
+        return float(np.sqrt(self._squares / max(self._later, 1)))

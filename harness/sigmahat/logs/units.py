@@ -1,0 +1,123 @@
+"""From the unit of a column to that of a port."""
+
+from __future__ import annotations
+
+import math
+from difflib import get_close_matches
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from sigmahat.logs.configuration import PORTS, Port
+from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import Array
+
+_USUAL = ("rad", "mrad", "deg", "turn", "counts", "N.m", "mN.m", "kN.m", "lbf.in", "A", "mA", "mm")
+_USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")
+
+
+def seconds(unit: str) -> float:
+    """Seconds in a unit of time. Raises LogError for a unit of another kind."""
+    return _in("time.unit", unit, "s", _USUAL_TIMES)
+
+
+def counts_per_turn(port: Port) -> float | None:
+    """Counts of the encoder in a turn of the joint; None if the port is not in counts."""
+    if port.unit != "counts" or port.counts_per_turn is None:
+        return None
+    return port.counts_per_turn * abs(port.gear_ratio)
+
+
+def factor(name: str, port: Port) -> float:
+    """What 1 in the column is at the port of this name, without sign, zero and gear.
+
+    Raises LogError for a unit that is unknown or does not fit, and where a key is missing that
+    the unit needs.
+    """
+    where = f"ports.{name}"
+    target = PORTS[name]
+    if port.scale is not None:
+        if port.unit is not None:
+            raise LogError(f"{where}: scale stands instead of a unit; remove one of them")
+        return port.scale
+    if port.unit is None or port.unit == target:
+        return 1.0
+    if port.unit == "counts":
+        if target != "rad":
+            raise LogError(f"{where}: counts are an angle, expected a torque; use scale")
+        return 2 * math.pi / _needed(where, port, "counts_per_turn", "counts")
+    if target == "N.m" and _is(port.unit, "A"):
+        return _in(where, port.unit, "A") * _needed(where, port, "torque_constant", port.unit)
+    if name == "theta_c" and _is(port.unit, "mm"):
+        per_turn = port.mm_per_turn
+        return _in(where, port.unit, "mm") * (2 * math.pi / per_turn if per_turn else 1.0)
+    return _in(where, port.unit, target)
+
+
+def convert(name: str, port: Port, values: Array) -> Array:
+    """Values of a column, already unwrapped, at the port."""
+    times = port.sign * factor(name, port) / port.gear_ratio
+    converted: Array = values if (times, port.zero) == (1.0, 0.0) else (values - port.zero) * times
+    return converted
+
+
+def unwrap(values: Array, period: float) -> tuple[Array, int]:
+    """A column that starts again after a period, without its jumps, and how many there were.
+
+    Between finite values a jump is more than half a period.
+    """
+    finite = np.isfinite(values)
+    jumps = -np.round(np.diff(values[finite]) / period)
+    unwrapped = values.copy()
+    unwrapped[finite] += period * np.concatenate([[0.0], np.cumsum(jumps)])
+    return unwrapped, int(np.count_nonzero(jumps))
+
+
+def _needed(where: str, port: Port, key: str, unit: str) -> float:
+    value = getattr(port, key)
+    if value is None:
+        raise LogError(f"{where}: unit {unit!r} needs {key}; add it to [{where}]")
+    return float(value)
+
+
+def _is(unit: str, kind: str) -> bool:
+    import pint
+
+    try:
+        return bool(_registry().Unit(_spelled(unit)).is_compatible_with(kind))
+    except (pint.PintError, ValueError, TypeError, AssertionError):
+        return False
+
+
+def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> float:
+    import pint
+
+    try:
+        quantity = _registry().Quantity(1.0, _spelled(unit))
+        return float(quantity.to(_spelled(target)).magnitude)
+    except pint.DimensionalityError as error:
+        raise LogError(
+            f"{where}: unit {unit!r} is no unit of what is expected in {target}"
+            f"{_meant(unit, usual)}"
+        ) from error
+    except Exception as error:  # pint raises what its parser happens to meet
+        raise LogError(f"{where}: unknown unit {unit!r}{_meant(unit, usual)}") from error
+
+
+def _meant(unit: str, usual: tuple[str, ...]) -> str:
+    similar = get_close_matches(unit, usual, n=2, cutoff=0.5)
+    if similar:
+        return "; did you mean " + " or ".join(map(repr, similar)) + "?"
+    return f"; usual ones are {', '.join(usual)}"
+
+
+def _spelled(unit: str) -> str:
+    return unit.replace(".", "*")
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry()

@@ -1,0 +1,77 @@
+"""Chromium without a window, to see reports as a reader does."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from selenium.webdriver import Chrome, ChromeOptions
+from selenium.webdriver.chrome.service import Service
+
+from gate import missing
+
+_IDLE = """
+const done = arguments[0];
+const look = () => typeof Bokeh !== "undefined" && Bokeh.documents.length
+  && Bokeh.documents.every(d => d.is_idle) ? done() : setTimeout(look, 20);
+look();
+"""
+
+
+class Page:
+    """A file that is open."""
+
+    def __init__(self, driver: Chrome) -> None:
+        self.driver = driver
+
+    def run(self, script: str, *arguments: object) -> Any:
+        """Value of a script that ends with return."""
+        return self.driver.execute_script(script, *arguments)
+
+    def complaints(self) -> list[str]:
+        """Errors and warnings on the console since the last call."""
+        entries = self.driver.get_log("browser")  # type: ignore[no-untyped-call]
+        found = [e["message"] for e in entries if e["level"] not in ("INFO", "DEBUG")]
+        # Chromium warns of the tests themselves, which look at the pixels of the plots.
+        return [message for message in found if "getImageData" not in message]
+
+    def requests(self) -> list[str]:
+        """What was asked for since the last call, but for what the file itself holds."""
+        entries = self.driver.get_log("performance")  # type: ignore[no-untyped-call]
+        events = [json.loads(entry["message"])["message"] for entry in entries]
+        urls = [
+            str(event["params"]["request"]["url"])
+            for event in events
+            if event["method"] == "Network.requestWillBeSent"
+        ]
+        return [url for url in urls if not url.startswith(("data:", "blob:"))]
+
+
+@contextmanager
+def opened(file: Path, width: int = 1400, dark: bool = False) -> Iterator[Page]:
+    """Opens a report and waits until its plots are drawn."""
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if chromium is None or driver is None:
+        missing("chromium", "apt-get install chromium chromium-driver")
+    options = ChromeOptions()
+    options.binary_location = chromium
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    chrome = Chrome(options, Service(driver))
+    try:
+        command = chrome.execute_cdp_cmd
+        size = {"width": width, "height": 1000, "deviceScaleFactor": 1, "mobile": False}
+        command("Emulation.setDeviceMetricsOverride", size)
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        command("Emulation.setEmulatedMedia", {"features": [scheme]})
+        chrome.set_script_timeout(60)
+        chrome.get(file.as_uri())
+        chrome.execute_async_script(_IDLE)
+        yield Page(chrome)
+    finally:
+        chrome.quit()

@@ -1,0 +1,80 @@
+"""Logs of the AwAS plant for tests, and the files they are written to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv
+import pyarrow.parquet
+import scipy.io
+from numpy.typing import NDArray
+
+from plant_runs import run_awas, sinusoids, times
+
+Array = NDArray[np.float64]
+T = 1e-3
+LEAD = 0.0025 / (2 * np.pi)
+RETRACTED = {"initial.theta_c": 0.030 / LEAD}  # r(0) = 70 mm
+TRUE = {"B": 2.3e-5, "D_theta": 1e-3, "tau_coulomb": 0.02}
+
+COLUMNS = {
+    "theta": "theta_measured",
+    "q": "q_measured",
+    "theta_c": "theta_c_measured",
+    "tau": "tau_measured",
+    "tau_e_sensor": "tau_e_measured",
+}
+
+CONFIGURATION = """\
+# a comment of mine
+[time]
+column = "t"
+[ports.theta]
+column = "theta"
+[ports.q]
+column = "q"
+[ports.theta_c]
+column = "theta_c"
+[ports.tau]
+column = "tau"   # on the axis of the motor
+[parameters]
+samplePeriod = 0.001
+motor.B = 1.84e-5   # 20 % less than it is
+motor.D_theta = 1.2e-3
+motor.gamma = 50
+"""
+
+
+def awas_log(f: float, amplitude: float, duration: float = 15.0, seed: int = 1) -> dict[str, Array]:
+    """AwAS with friction and noise under tau = amplitude sin(2 pi f t), by port, and t."""
+    t = times(T, duration)
+    start = {**RETRACTED, "motor.tau_coulomb": TRUE["tau_coulomb"], "noise.seed": seed}
+    torques = sinusoids(t, (amplitude, f), (8.0, 0.1), (0.0, 0.0))
+    run = run_awas(T, torques, start, COLUMNS.values())
+    return {"t": t, **{port: run[name] for port, name in COLUMNS.items()}}
+
+
+def write_log(columns: Mapping[str, NDArray[np.generic]], path: Path) -> Path:
+    """Writes a log in the format of the suffix."""
+    if path.suffix == ".csv":
+        pa.csv.write_csv(pa.table(dict(columns)), path)
+    elif path.suffix == ".parquet":
+        pa.parquet.write_table(pa.table(dict(columns)), path)
+    elif path.suffix == ".mat":
+        scipy.io.savemat(path, dict(columns))
+    else:
+        with h5py.File(path, "w") as file:
+            for name, values in columns.items():
+                file[name] = values
+    return path
+
+
+def read_estimate(folder: Path) -> pa.Table:
+    """The table that `sigmahat estimate` wrote."""
+    if (folder / "estimate.csv").exists():
+        return pa.csv.read_csv(folder / "estimate.csv")
+    return pa.parquet.read_table(folder / "estimate.parquet")

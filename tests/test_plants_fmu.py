@@ -1,0 +1,153 @@
+"""A plant of somebody's own as an FMU."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+
+import sigmahat
+from sigmahat import PlantEquations, PlantVariable, encoder, write_plant_fmu
+
+VARIABLES = {
+    "force": PlantVariable("N.m", "Torque"),
+    "mass": PlantVariable("kg.m2", "Inertia", 2.0),
+    "initial.x": PlantVariable("rad", "Position at the start", 0.5),
+    "variance": PlantVariable("N2.m2", "Of the noise", 1e-2),
+    "x": PlantVariable("rad", "Position"),
+    "counted": PlantVariable("rad", "Position through an encoder of 100 counts"),
+    "measured": PlantVariable("N.m", "Torque with noise"),
+}
+
+
+def mass() -> PlantEquations:
+    """A mass under a torque."""
+    plant = PlantEquations("MassPlant")
+    force = plant.input("force")
+    x = plant.state("x", start=plant.parameter("initial.x"), scale=1.0)
+    v = plant.state("v", start=0.0, scale=1.0)
+    plant.derivative(x, v)
+    plant.derivative(v, force / plant.parameter("mass"))
+    plant.output("x", x)
+    plant.output("counted", encoder(x, 100))
+    plant.output("measured", force + plant.noise(plant.parameter("variance")))
+    return plant
+
+
+@pytest.fixture(scope="module")
+def fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("plant") / "in" / "MassPlant.fmu"
+    write_plant_fmu(mass(), VARIABLES, path)
+    return path
+
+
+def run(fmu: Path, seed: int) -> sigmahat.Series:
+    plant = sigmahat.Plant(
+        fmu=str(fmu),
+        start={"mass": 4.0, "noise.seed": seed},
+        inputs={"force": lambda t: 0 * t + 2.0},
+        record=["x", "counted", "measured"],
+    )
+    return sigmahat.simulate(plant, {}, T=1e-2, steps=500).plant
+
+
+def test_moves_as_newton_says(fmu: Path) -> None:
+    series = run(fmu, seed=1)
+    t = 1e-2 * np.arange(501)
+    np.testing.assert_allclose(series["x"], 0.5 + 2.0 / 4.0 * t**2 / 2, rtol=1e-9)
+    count = 2 * np.pi / 100
+    np.testing.assert_allclose(series["counted"], count * np.round(series["x"] / count), rtol=1e-9)
+
+
+def test_noise_is_that_of_the_seed(fmu: Path) -> None:
+    first, again, other = (run(fmu, seed)["measured"][1:] - 2.0 for seed in (1, 1, 2))
+    np.testing.assert_array_equal(first, again)
+    assert not np.any(first == other)
+    assert np.std(first) == pytest.approx(0.1, rel=0.15)  # 500 samples: 3 % standard deviation
+
+
+def test_description_says_what_the_equations_are(fmu: Path) -> None:
+    description = fmpy.read_model_description(str(fmu))
+    variables = {v.name: v for v in description.modelVariables}
+    assert set(variables) == {*VARIABLES, "noise.seed"}
+    for name, variable in VARIABLES.items():
+        assert (variables[name].unit, variables[name].description) == (
+            variable.unit,
+            variable.description,
+        )
+    variability = {name: v.variability for name, v in variables.items()}
+    assert variability == {
+        "force": "continuous",
+        "mass": "tunable",
+        "initial.x": "fixed",
+        "variance": "tunable",
+        "noise.seed": "fixed",
+        "x": "continuous",
+        "counted": "discrete",
+        "measured": "discrete",
+    }
+    unknowns = {
+        u.variable.name: {d.name for d in u.dependencies} for u in description.initialUnknowns
+    }
+    assert unknowns == {
+        "x": {"initial.x"},
+        "counted": {"initial.x"},
+        "measured": {"force", "variance", "noise.seed"},
+    }
+
+
+def test_is_within_the_rules(fmu: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "fmu_manipulation_toolbox.cli.fmutool", "-input", fmu, "-check"],
+        capture_output=True,
+        text=True,
+    )
+    assert "No semantic error against the FMI-2 standard." in done.stdout + done.stderr
+
+
+def test_brings_its_sources(fmu: Path, tmp_path: Path) -> None:
+    """FMPy compiles the binary of another machine from them."""
+    folder = Path(fmpy.extract(str(fmu), unzipdir=str(tmp_path)))
+    assert (folder / "sources" / "plant_functions.c").is_file()
+    xml = (folder / "modelDescription.xml").read_text(encoding="utf-8")
+    assert "AwasPlant" not in xml
+    listed = {path.stem for path in (folder / "binaries" / fmpy.platform).iterdir()}
+    assert listed == {"MassPlant"}
+
+
+def test_a_variable_that_is_missing(tmp_path: Path) -> None:
+    some = {name: each for name, each in VARIABLES.items() if name != "mass"}
+    with pytest.raises(ValueError, match="no entry for the parameter mass"):
+        write_plant_fmu(mass(), some, tmp_path / "x.fmu")
+
+
+def test_a_variable_that_is_not_in_the_equations(tmp_path: Path) -> None:
+    more = {**VARIABLES, "mas": VARIABLES["mass"]}
+    with pytest.raises(
+        ValueError, match="unknown variable of MassPlant 'mas'; did you mean 'mass'"
+    ):
+        write_plant_fmu(mass(), more, tmp_path / "x.fmu")
+
+
+def test_a_unit_that_does_not_exist(tmp_path: Path) -> None:
+    other = {**VARIABLES, "mass": PlantVariable("kg.m", "Inertia")}
+    with pytest.raises(ValueError, match=r"MassPlant\.mass: unknown unit 'kg\.m'.*kg\.m2"):
+        write_plant_fmu(mass(), other, tmp_path / "x.fmu")
+
+
+def test_no_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(RuntimeError, match="no C compiler found"):
+        write_plant_fmu(mass(), VARIABLES, tmp_path / "x.fmu")
+    assert not (tmp_path / "x.fmu").exists()
+
+
+def test_a_compiler_that_does_not_exist(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "no-such-compiler -O2")
+    with pytest.raises(RuntimeError, match="CC=no-such-compiler -O2: No such file"):
+        write_plant_fmu(mass(), VARIABLES, tmp_path / "x.fmu")
