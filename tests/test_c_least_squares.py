@@ -97,6 +97,7 @@ def test_every_sample_against_the_textbook(c: Library, kind: int, size: int) -> 
     assert error(recursion.covariance, want.P) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_many_sizes_against_the_ridge(c: Library, kind: int) -> None:
     # Fewer and more samples than parameters, columns of unlike scale, any P_0
@@ -116,6 +117,7 @@ def test_many_sizes_against_the_ridge(c: Library, kind: int) -> None:
         assert error(recursion.eta, want[:, 0]) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_table1_against_the_ridge(c: Library, kind: int) -> None:
     # The recursion over the whole run, and the closed form of what it minimises
@@ -133,6 +135,7 @@ def test_table1_against_the_ridge(c: Library, kind: int) -> None:
     assert recursion.eta == pytest.approx(oracle.rounded(want[:, 0]), rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [STANDARD, CONSTANT_FACTOR])
 def test_a_large_prior_loses_no_definiteness(c: Library, kind: int) -> None:
     # GIVEN P_0 = 1e20, where the textbook recursion breaks in doubles

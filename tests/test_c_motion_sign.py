@@ -81,3 +81,23 @@ def test_without_rounding_a_reversal_is_placed_within_the_sample(c: Library) -> 
     signs, _ = run(c, 50.0 * (t - turn) ** 2, count=0.0)
     true = 2 * np.clip((t[1:] - turn) / T, 0, 1) - 1
     assert abs(np.sum(signs[1:] - true[1:])) < 1e-6
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_fast_reversal_is_known_both_ways(c: Library, way: float) -> None:
+    motion = c.new("sh_motion_sign")
+    c.lib.sh_motion_sign_start(motion, 0.0)
+    for position in (5.0, 10.0, 15.0, 11.0):
+        c.lib.sh_motion_sign_step(motion, way * position, 1.0, 0.1)
+    assert motion.unknown == 0.0
+    assert motion.direction == -way
+
+
+def test_the_slowest_velocity_is_still_known(c: Library) -> None:
+    motion = c.new("sh_motion_sign")
+    c.lib.sh_motion_sign_start(motion, 0.0)
+    unknown = []
+    for _ in range(4):  # the first one moves, by a count; slow is half a count in a sample
+        c.lib.sh_motion_sign_step(motion, 1.0, 1.0, 0.5)
+        unknown.append(motion.unknown)
+    assert unknown == [1.0, 0.0, 0.0, 1.0]

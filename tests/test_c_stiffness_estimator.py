@@ -429,6 +429,7 @@ def test_stiffness_is_found_from_every_other_sample(
 # Long runs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "values",
     [RLS[ENHANCED], {"rls.kind": STANDARD, "rls.P_0": 1e20}, {"rls.kind": CONSTANT_FACTOR}],
@@ -485,6 +486,7 @@ def compare(got: np.ndarray[Any, Any], want: oracle.Estimate, torque: Array) -> 
     return errors
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("filter_kind", FILTERS)
 @pytest.mark.parametrize("modality", MODALITIES)
 @pytest.mark.parametrize("rls_kind", RLS)
@@ -504,6 +506,7 @@ def test_table1_against_the_oracle(
     assert max(errors.values()) < 1e-9, errors
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("filter_kind", FILTERS)
 def test_filtered_deformation_against_the_oracle(c: Library, filter_kind: int) -> None:
     z = table1_recording().measurements()[:3000]
@@ -519,6 +522,7 @@ def test_filtered_deformation_against_the_oracle(c: Library, filter_kind: int) -
     assert max(errors.values()) < 1e-9, errors
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "changes",
     [
@@ -542,6 +546,7 @@ def test_other_parameters_against_the_oracle(c: Library, changes: Mapping[str, f
     assert max(errors.values()) < 1e-9, errors
 
 
+@pytest.mark.slow
 def test_initial_estimate_against_the_oracle(c: Library) -> None:
     z = table1_recording().measurements()[:300]
     eta_0 = np.zeros((8, 5))
@@ -552,6 +557,7 @@ def test_initial_estimate_against_the_oracle(c: Library) -> None:
     assert max(errors.values()) < 1e-9, errors
 
 
+@pytest.mark.slow
 def test_the_oracle_has_digits_to_spare() -> None:
     # The hardest case, P from 1e20 down to below one, gives the same doubles with twice the digits
     z = table1_recording().measurements()[:1500]

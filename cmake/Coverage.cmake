@@ -1,0 +1,17 @@
+# Target coverage: runs the tests of the C code, then tells how many of its branches they took.
+file(GLOB tests CONFIGURE_DEPENDS tests/test_c_*.py tests/test_fmi_*.py)
+list(FILTER tests EXCLUDE REGEX "stress") # compiles programs of its own
+list(APPEND tests tests/test_antagonistic.py tests/test_noise.py tests/test_plant.py
+     tests/test_plant_radau.py)
+add_custom_target(
+  coverage
+  COMMAND
+    ${CMAKE_COMMAND} -E env SIGMAHAT_BUILD=${PROJECT_BINARY_DIR}
+    ${SIGMAHAT_PYTHON} -m pytest -q -n auto --dist loadscope -m "not slow" ${tests}
+  COMMAND
+    ${SIGMAHAT_PYTHON} -m gcovr --object-directory ${PROJECT_BINARY_DIR} --filter c/
+    --filter fmu_src/ --gcov-exclude-directories .*/CompilerIdC --txt - --txt-metric branch --print-summary --fail-under-branch 95 --delete
+    ${PROJECT_BINARY_DIR}
+  WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+  USES_TERMINAL VERBATIM)
+add_dependencies(coverage sigmahat_test_driver)

@@ -1,0 +1,89 @@
+/* Runs one estimator for any number of ticks: METHOD N M TICKS.
+ *
+ * After every tick, P has to be positive definite and every output finite; if not, it says at
+ * which tick and ends with 1. It prints the outputs at checkpoints, a line each: every time the
+ * number of ticks has grown by a third.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "endurance_input.h"
+#include "stiffness_estimator.h"
+
+static int positive(const sh_least_squares *rls)
+{
+    int j;
+
+    /* P = U D U' with a unit triangular U */
+    for (j = 0; j < rls->size; ++j)
+        if (!(rls->D[j] > 0.0))
+            return 0;
+    return 1;
+}
+
+static int finite_outputs(const sh_estimate *e)
+{
+    return isfinite(e->sigma + e->tau_e + e->tau_e_residual + e->theta_dot + e->phi +
+                    e->setPoint + e->a + e->rho + e->epsilon + e->sigma_std + e->D_theta_hat +
+                    e->B_hat + e->tau_coulomb_hat);
+}
+
+static void print(long tick, const sh_estimate *e)
+{
+    const printed_real out[] = {e->sigma,          e->tau_e,     e->sigma_std,
+                                e->tau_e_residual, e->theta_dot, e->D_theta_hat,
+                                e->B_hat,          e->tau_coulomb_hat};
+    size_t i;
+
+    printf("%ld", tick);
+    for (i = 0; i < sizeof out / sizeof out[0]; ++i)
+        printf(" %.20Lg", out[i]);
+    printf("\n");
+    fflush(stdout);
+}
+
+int main(int argc, char **argv)
+{
+    static sh_parameters p;
+    static sh_estimator estimator;
+    static sh_estimate estimate;
+    static input_stream input;
+    sh_violation violation;
+    long ticks, tick, next = 10;
+
+    if (argc != 5)
+        return 2;
+    sh_parameters_default(&p);
+    p.method = atoi(argv[1]);
+    p.rls.n = atoi(argv[2]);
+    p.rls.m = atoi(argv[3]);
+    ticks = atol(argv[4]);
+    p.encoder.theta = p.encoder.q = 6.283185307179586 / INPUT_COUNT;
+    p.prior.B = 0.1;
+    p.prior.tau_coulomb = 0.02;
+    p.matched.drift = 1e-3;
+    if (sh_parameters_check(&p, &violation)) {
+        fprintf(stderr, "%s has to be %s\n", violation.name, violation.range);
+        return 2;
+    }
+    sh_estimator_start(&estimator, &p, &estimate);
+    input_start(&input);
+    for (tick = 1; tick <= ticks; ++tick) {
+        const input_sample s = input_next(&input);
+        const sh_measurement z = {s.theta, s.q, s.theta_c, s.tau, s.tau_e_sensor};
+
+        p.modality = s.modality;
+        sh_estimator_tick(&estimator, &p, &z, &estimate);
+        if (!positive(&estimator.rls) || !finite_outputs(&estimate)) {
+            print(tick, &estimate);
+            fprintf(stderr, "failed at tick %ld\n", tick);
+            return 1;
+        }
+        if (tick == next || tick == ticks)
+            print(tick, &estimate);
+        if (tick == next)
+            next += next / 3 + 1;
+    }
+    return 0;
+}

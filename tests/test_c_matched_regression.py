@@ -1,0 +1,62 @@
+"""The matched regression by itself: what the estimator around it does not show."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from c_library import Estimator, Library, load
+from matched_joint import Joint, T
+
+VALUES = {"method": 2, "rls.n": 2, "rls.m": 1, "prior.B": 0.1, "prior.tau_coulomb": 0.02}
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+def test_samples_of_unknown_friction_are_counted_from_the_last_known_one(c: Library) -> None:
+    """GIVEN a motor that turns for a second and stops, WHEN its last count is older than that of
+    the slowest motion with a known sign, THEN samples are counted, and not before."""
+    z = np.zeros((1200, 5))
+    turning = 0.4 * T * np.arange(1000)  # some counts in every sample
+    z[:1000, 0] = z[:1000, 1] = np.round(turning / (2 * np.pi) * 40000) / 40000 * 2 * np.pi
+    z[1000:, :2] = z[999, :2]
+    estimator = Estimator(c, VALUES)
+    estimator.run(z[:1000])
+    assert estimator.state.matched.unsure == 0.0
+    estimator.run(z[1000:])
+    count, slow = 2 * np.pi / 40000, 0.05 * T
+    known = int(count / slow)  # a count in so many samples is not yet slow
+    assert estimator.state.matched.unsure == pytest.approx(200 - known, abs=1)
+
+
+def test_a_taken_sample_returns_one(c: Library) -> None:
+    z = Joint(duration=0.1).measurements()
+    estimator = Estimator(c, VALUES)
+    ffi, lib = c.ffi, c.lib
+    settings = c.new("sh_matched_settings", T=T, bandwidth=350.0, noise=0.1, slow=0.05, torque=1.0)
+    settings.motor = estimator.parameters.motor
+    matched, rls = c.new("sh_matched_regression"), c.new("sh_least_squares")
+    lib.sh_matched_start(matched, rls, settings, 1, ffi.new("double[1]"))
+    lib.sh_matched_resume(matched, settings)
+    y, innovation, F = ffi.new("double *"), c.new("sh_innovation"), ffi.new("double[1]", [0.1])
+    learning = []
+    for theta, _, _, tau, _ in z:
+        arguments = (float(theta), float(tau), 0.02, 100.0, F, y, innovation)
+        assert lib.sh_matched_step(matched, rls, settings, *arguments) == 1
+        learning.append(innovation.a)
+    assert set(learning) == {0.0, 1.0}  # both while the filters settle and after
+
+
+def test_the_largest_basis_has_a_prior_of_its_own_size(c: Library) -> None:
+    """Coefficients behind the torque are those of the motor: their prior mean is zero."""
+    eta_0 = np.arange(1.0, 41.0).reshape(8, 5)
+    values = {**VALUES, "rls.n": 8, "rls.m": 5, "rls.eta_0": eta_0.tolist()}
+    estimator = Estimator(c, values)
+    estimator.run(Joint(duration=0.05).measurements())
+    assert estimator.state.rls.size == 43
+    assert np.all(np.isfinite(estimator.covariance()))

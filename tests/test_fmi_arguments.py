@@ -1,0 +1,77 @@
+"""Pointers that are NULL where the standard wants something, and memory that runs out."""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fmpy import fmi2
+
+from fmi_instance import ERROR, OK, Instance
+
+SIZE = ctypes.c_size_t(1)
+BYTES = ctypes.create_string_buffer(1)
+STATE = ctypes.byref(ctypes.c_void_p())
+MISSING: list[tuple[str, str, tuple[Any, ...]]] = [
+    ("fmi2GetFMUstate", "FMUstate", (None,)),
+    ("fmi2SetFMUstate", "FMUstate", (None,)),
+    ("fmi2SerializedFMUstateSize", "FMUstate", (None, ctypes.byref(SIZE))),
+    ("fmi2SerializedFMUstateSize", "size", (BYTES, None)),
+    ("fmi2SerializeFMUstate", "FMUstate", (None, BYTES, SIZE)),
+    ("fmi2SerializeFMUstate", "serializedState", (BYTES, None, SIZE)),
+    ("fmi2DeSerializeFMUstate", "serializedState", (None, SIZE, STATE)),
+    ("fmi2DeSerializeFMUstate", "FMUstate", (BYTES, SIZE, None)),
+    ("fmi2SetDebugLogging", "categories", (1, SIZE, None)),
+]
+
+
+@pytest.mark.parametrize(
+    ("function", "argument", "arguments"), MISSING, ids=lambda value: str(value)[:30]
+)
+def test_an_argument_that_is_missing_is_named(
+    function: str, argument: str, arguments: tuple[Any, ...], estimator_fmu: Path
+) -> None:
+    with Instance(estimator_fmu) as fmu:
+        assert fmu.call(function, *arguments) == ERROR
+        assert function in fmu.messages[-1][2] and argument in fmu.messages[-1][2]
+
+
+@pytest.mark.parametrize("function", sorted({function for function, _, _ in MISSING}))
+def test_no_instance_is_an_error(function: str, estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
+        arguments = next(a for name, _, a in MISSING if name == function)
+        assert getattr(fmu.dll, function)(None, *arguments) == ERROR
+
+
+def test_nothing_to_free_is_fine(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
+        assert fmu.call("fmi2FreeFMUstate", None) == OK
+
+
+def test_no_memory_for_a_state_is_an_error(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu, memory=True) as fmu:
+        fmu.initialise()
+        data = fmu.serialise(fmu.save())
+        full = False
+
+        def allocate(count: int, size: int) -> int | None:
+            return None if full else fmu.allocate(count, size)
+
+        fmu.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(allocate)
+        component = fmu.component
+        fmu.component = fmu.dll.fmi2Instantiate(
+            b"full", 1, fmu.description.guid.encode(), None, ctypes.byref(fmu.callbacks), 0, 1
+        )
+        try:
+            assert fmu.component
+            full = True
+            state = ctypes.c_void_p()
+            assert fmu.call("fmi2GetFMUstate", ctypes.byref(state)) == ERROR
+            assert "out of memory" in fmu.messages[-1][2]
+            assert fmu.deserialise(data)[0] == ERROR
+            assert "out of memory" in fmu.messages[-1][2]
+        finally:
+            fmu.dll.fmi2FreeInstance(ctypes.c_void_p(fmu.component))
+            fmu.component = component
