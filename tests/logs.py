@@ -50,12 +50,12 @@ motor.gamma = 50
 
 
 def awas_log(f: float, amplitude: float, duration: float = 15.0, seed: int = 1) -> dict[str, Array]:
-    """AwAS with friction and noise under tau = amplitude sin(2 pi f t), by port, and t."""
+    """AwAS with friction and noise, tau = amplitude sin(2 pi f t): ports, t, true stiffness."""
     t = times(T, duration)
     start = {**RETRACTED, "motor.tau_coulomb": TRUE["tau_coulomb"], "noise.seed": seed}
     torques = sinusoids(t, (amplitude, f), (8.0, 0.1), (0.0, 0.0))
-    run = run_awas(T, torques, start, COLUMNS.values())
-    return {"t": t, **{port: run[name] for port, name in COLUMNS.items()}}
+    run = run_awas(T, torques, start, (*COLUMNS.values(), "sigma"))
+    return {"t": t, **{port: run[name] for port, name in COLUMNS.items()}, "true": run["sigma"]}
 
 
 def write_log(columns: Mapping[str, NDArray[np.generic]], path: Path) -> Path:

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 import tomlkit
 
-from logs import CONFIGURATION, LEAD, TRUE, Array, awas_log, write_log
+import sigmahat
+from logs import CONFIGURATION, LEAD, TRUE, Array, awas_log, read_estimate, write_log
 from sigmahat.cli import main
 from sigmahat.identification import Identified, identify
 from sigmahat.identify_noise import bandwidth, best_V_a, low_pass, variance
@@ -18,6 +19,7 @@ from sigmahat.identify_regression import Signals, equations, fit
 from sigmahat.identify_write import write
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.log import LogInMemory
+from sigmahat.slave import Fmu
 
 AMPLITUDES = {0.1: 0.3, 0.3: 0.3, 1.0: 0.3, 3.0: 0.3, 8.0: 0.5}  # [Hz]: [N.m]
 
@@ -132,16 +134,56 @@ def test_values_are_written_where_they_stand(
 ) -> None:
     path = tmp_path / "log.toml"
     path.write_text(f'[ports.q]\ncolumn = "q"\n{parameters}\n')
-    known = frozenset({"motor.B", "motor.D_theta", "rls.n", "noise.tau", "prior.tau_coulomb"})
-    written = write(found[1.0], path, known)
-    assert set(written) == {f"parameters.{name}" for name in known}
+    written = write(found[1.0], path)
     read = read_configuration(path).parameters
-    assert set(read) == known
+    assert set(written) == {f"parameters.{name}" for name in read}
+    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
+        fmu.parameters(read)  # they are the FMU's, and in range
     for name, key in (("B", "motor.B"), ("D_theta", "motor.D_theta")):
         assert read[key] == pytest.approx(TRUE[name], rel=0.05)
     assert read["prior.tau_coulomb"] == pytest.approx(TRUE["tau_coulomb"], rel=0.05)
     assert read["noise.tau"] == pytest.approx(np.sqrt(1e-5), rel=0.05)
     assert "# mine" in path.read_text()
+
+
+def test_ranges_hold_what_the_log_shows(found: dict[float, Identified], tmp_path: Path) -> None:
+    log = awas_log(1.0, 0.3)
+    path = tmp_path / "log.toml"
+    path.write_text(CONFIGURATION)
+    write(found[1.0], path)
+    read = read_configuration(path).parameters
+    lever = 100.0 - 1000 * LEAD * log["theta_c"]
+    for name, largest in (
+        ("range.phi", np.max(np.abs(log["q"] - log["theta"]))),
+        ("range.setPoint", np.max(np.abs(lever))),
+        ("prior.tau_e", 50 * np.max(np.abs(log["tau"]))),
+    ):
+        assert largest <= float(read[name]) <= 1.5 * largest
+
+
+@pytest.mark.parametrize("f", [1.0, 8.0])
+def test_matched_filter_with_what_was_identified(
+    f: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # GIVEN motor data wrong by 20 %, and friction that nobody told of
+    monkeypatch.chdir(tmp_path)
+    log = awas_log(f, AMPLITUDES[f])
+    write_log(log, Path("log.parquet"))
+    Path("log.toml").write_text(CONFIGURATION + 'method = "MatchedFilter"\n')
+    assert main(["identify", "log.parquet", "--quiet"]) == 0
+    assert main(["estimate", "log.parquet", "--out", "out", "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    later = slice(len(log["t"]) // 2, None)
+    table = read_estimate(Path("out"))
+    true = log["true"][later]
+    error = np.abs(table["estimate.sigma [N.m/rad]"].to_numpy()[later] - true)
+    std = table["estimate.sigma_std [N.m/rad]"].to_numpy()[later]
+    # THEN the stiffness is found, it knows how well, and so are the motor data
+    assert np.max(error / true) <= 0.05
+    assert np.mean(error <= 1.96 * std) >= 0.8
+    assert summary["confident"] == np.mean(table["estimate.confident"].to_numpy()[later])
+    assert summary["motor"]["D_theta_hat"] == pytest.approx(TRUE["D_theta"], rel=0.02)
+    assert summary["motor"]["tau_coulomb_hat"] == pytest.approx(TRUE["tau_coulomb"], rel=0.05)
 
 
 def test_torque_constant(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -29,7 +29,7 @@ from sigmahat.identify_regression import (
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Array, Log
-from sigmahat.logs.replay import OUTPUTS, parameters, replay
+from sigmahat.logs.replay import parameters, replay
 from sigmahat.logs.sampling import Samples, sample
 from sigmahat.slave import Fmu, Slave, Value
 
@@ -78,6 +78,12 @@ class Identified:
     """Of a filter that balances both [rad/s]."""
     V_a: float
     """For filter.V_a [rad2/s4]."""
+    phi: float
+    """Largest deformation [rad]."""
+    set_point: float
+    """Largest set-point, without its sign [1]."""
+    torque: float
+    """Largest torque of the motor after its gear [N.m]."""
     notes: Sequence[str]
     """What the log needed."""
 
@@ -142,7 +148,23 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
                 found.value["gain"] * constant, found.half_width["gain"] * constant, 0.0
             )
         V_a = _best_V_a(fmu, samples, start, longest, f_0)
-    return Identified(quantities, n, m, tau_variance, theta_variance, 2 * math.pi * f_0, V_a, notes)
+        phi, set_point, torque = (
+            max(float(np.max(np.abs(getattr(piece, name)))) for piece in pieces)
+            for name in ("phi", "set_point", "tau")
+        )
+    return Identified(
+        quantities=quantities,
+        n=n,
+        m=m,
+        tau_variance=tau_variance,
+        theta_variance=theta_variance,
+        bandwidth=2 * math.pi * f_0,
+        V_a=V_a,
+        phi=phi,
+        set_point=set_point,
+        torque=abs(gamma) * torque,
+        notes=notes,
+    )
 
 
 def _with_spread(fits: Sequence[Fit]) -> Fit:
@@ -222,9 +244,10 @@ def _best_V_a(
     velocity = {}
     for V_a in _V_A:
         with Slave(fmu, "filter") as slave:
-            values = {**start, "filter.V_a": V_a, "modality": "Residual"}
+            filtered = {"method": "Paper2011", "filter.V_a": V_a, "modality": "Residual"}
+            values = {**start, **filtered}
             (outputs,) = replay(slave, only, values, len(theta))
-            velocity[V_a] = outputs[OUTPUTS[3]][settled]
+            velocity[V_a] = outputs["theta_dot"][settled]
     return best_V_a(velocity, reference[settled])
 
 
@@ -245,6 +268,9 @@ def as_dict(found: Identified) -> dict[str, Any]:
         "theta noise variance [rad2]": found.theta_variance,
         "filter bandwidth [rad/s]": found.bandwidth,
         "filter.V_a": found.V_a,
+        "largest phi [rad]": found.phi,
+        "largest setPoint [1]": found.set_point,
+        "largest gamma tau [N.m]": found.torque,
         "notes": list(found.notes),
     }
 
@@ -270,6 +296,8 @@ def summary(found: Identified) -> str:
         f"noise           torque {math.sqrt(found.tau_variance):.2g} N.m, "
         f"motor position {math.sqrt(found.theta_variance):.2g} rad (standard deviations)",
         f"filter          V_a = {found.V_a:.2g} rad2/s4; bandwidth {found.bandwidth:.3g} rad/s",
+        f"ranges          deformation {found.phi:.3g} rad, set-point {found.set_point:.3g}, "
+        f"gamma tau {found.torque:.3g} N.m",
         f"friction is     tau_coulomb tanh(theta_dot / ({COULOMB_VELOCITY:g} rad/s))",
     ]
     return "\n".join(lines)

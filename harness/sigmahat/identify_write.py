@@ -15,12 +15,12 @@ from sigmahat.logs.configuration import parse
 
 _ABOVE = 1.4
 """A filter somewhat above the balance of the noises costs nothing and follows faster."""
+_ROOM = 1.2
+"""Ranges above what the log shows: another motion may go further."""
 
 
-def write(found: Identified, path: Path, known: frozenset[str]) -> list[str]:
+def write(found: Identified, path: Path) -> list[str]:
     """Puts what the log tells into [parameters] and [ports.tau], all of it into [identified].
-
-    known   variables of the FMU; what it has no parameter for stays in [identified]
 
     Returns the keys that were written. The file is replaced at once, or left as it was.
     """
@@ -31,12 +31,19 @@ def write(found: Identified, path: Path, known: frozenset[str]) -> list[str]:
         "rls.m": found.m,
         "noise.tau": math.sqrt(found.tau_variance),
         "matched.bandwidth": _ABOVE * found.bandwidth,
+        "range.phi": _ROOM * found.phi,
+        "range.setPoint": _ROOM * found.set_point,
+        "prior.tau_e": _ROOM * found.torque,
     }
     for name, q in found.quantities.items():
         if q.told:
-            key = "prior.tau_coulomb" if name == "tau_coulomb" else f"motor.{name}"
-            values[key] = abs(q.value)
-    values = {name: _short(value) for name, value in values.items() if name in known}
+            if name == "tau_coulomb":
+                values["prior.tau_coulomb"] = max(abs(q.value), q.half_width)
+            else:
+                values[f"motor.{name}"] = q.value
+            if name == "B":  # D_theta changes with the temperature, whatever this log says
+                values["prior.B"] = q.half_width / q.value
+    values = {name: _short(value) for name, value in values.items() if value != 0}
     parameters = document.setdefault("parameters", tomlkit.table())
     for name, value in values.items():
         _set(parameters, name, value)

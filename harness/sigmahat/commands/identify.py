@@ -32,13 +32,11 @@ def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: boo
     \b
     Example: sigmahat identify knee.csv --config knee.toml
     """
-    import sigmahat
     from sigmahat.identification import as_dict, summary
     from sigmahat.identification import identify as run
     from sigmahat.identify_write import write
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.files import open_log
-    from sigmahat.slave import Fmu
 
     common.need_fmu("StiffnessEstimator")
     config = config or common.configuration_of(log)
@@ -47,8 +45,7 @@ def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: boo
         found = run(open_log(log), configuration, torque_constant)
         written: list[str] = []
         if not dry_run:
-            with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
-                written = write(found, config, frozenset(fmu.variables))
+            written = write(found, config)
     text = f"{log}\n{summary(found)}"
     if written:
         text += f"\n\nWritten into {config}: {', '.join(written)}"

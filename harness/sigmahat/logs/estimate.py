@@ -35,6 +35,10 @@ class Estimate:
     """Of the estimator, by its names."""
     sigma: float
     """Stiffness at the end [N.m/rad]."""
+    sigma_std: float
+    """Its standard deviation, as far as the method knows [N.m/rad]."""
+    confident: float
+    """Share of the ticks in the second half at which the estimator was confident."""
     sigma_range: tuple[float, float]
     """Least and greatest in the second half [N.m/rad]."""
     tau_e_range: tuple[float, float]
@@ -45,6 +49,8 @@ class Estimate:
     """Of the prediction error of the torque in the second half [N.m]."""
     eta: Sequence[Sequence[float]]
     """Coefficients at the end, [size: rls.n x rls.m], (21)."""
+    motor: dict[str, float]
+    """Motor data at the end as method MatchedFilter corrected them, by output of the FMU."""
     notes: Sequence[str]
     """What the log needed."""
 
@@ -56,11 +62,14 @@ class Estimate:
             "skipped": self.skipped,
             "samplePeriod [s]": self.T,
             "sigma [N.m/rad]": self.sigma,
+            "sigma_std [N.m/rad]": self.sigma_std,
+            "confident": self.confident,
             "sigma range [N.m/rad]": self.sigma_range,
             "tau_e range [N.m]": self.tau_e_range,
             "phi range [rad]": self.phi_range,
             "epsilon rms [N.m]": self.epsilon_rms,
             "eta": self.eta,
+            "motor": self.motor,
             "notes": self.notes,
             "parameters": self.parameters,
         }
@@ -102,7 +111,11 @@ def estimate(
     from sigmahat.figures import save
     from sigmahat.logs.figure import Replay, draw
 
-    save(draw, Replay(samples, trace, str(every["modality"])), folder / "estimate")
+    save(
+        draw,
+        Replay(samples, trace, str(every["modality"]), str(every["method"])),
+        folder / "estimate",
+    )
     return Estimate(
         log=log.path,
         ticks=len(samples.values),
@@ -110,11 +123,14 @@ def estimate(
         T=samples.T,
         parameters={n: v for n, v in every.items() if not n.startswith("rls.eta_0")},
         sigma=trace.last["sigma"],
+        sigma_std=trace.last["sigma_std"],
+        confident=trace.confident,
         sigma_range=trace.later("sigma"),
         tau_e_range=trace.later("tau_e"),
         phi_range=trace.later("phi"),
         epsilon_rms=trace.rms,
         eta=eta,
+        motor={name: trace.last[name] for name in ("D_theta_hat", "B_hat", "tau_coulomb_hat")},
         notes=samples.notes,
     )
 
@@ -127,7 +143,7 @@ def summary(result: Estimate) -> str:
     relative = 100 * result.epsilon_rms / torque if torque else float("nan")
     lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
     lines += [
-        f"modality {p['modality']}, T = {result.T:g} s, "
+        f"method {p['method']}, modality {p['modality']}, T = {result.T:g} s, "
         f"rls.n = {p['rls.n']}, rls.m = {p['rls.m']}, "
         f"{'odd' if p['rls.symmetric'] else 'general'} polynomial",
         f"motor: B = {p['motor.B']:.4g} kg.m2, D_theta = {p['motor.D_theta']:.4g} N.m.s/rad, "
@@ -139,7 +155,17 @@ def summary(result: Estimate) -> str:
         "N.m",
         f"  deformation phi       {result.phi_range[0]:10.4g} to {result.phi_range[1]:10.4g} rad",
         f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative:.2g} % of the torque)",
-        f"at the end: sigma = {result.sigma:.6g} N.m/rad; "
+        f"at the end: sigma = {result.sigma:.6g} N.m/rad, "
+        f"standard deviation {result.sigma_std:.2g} N.m/rad; "
         f"{result.skipped} of {result.ticks} ticks skipped",
     ]
+    if p["method"] == "MatchedFilter":
+        B, D_theta, tau_coulomb = (
+            result.motor[name] for name in ("B_hat", "D_theta_hat", "tau_coulomb_hat")
+        )
+        lines += [
+            f"motor data found: B = {B:.4g} kg.m2, D_theta = {D_theta:.4g} N.m.s/rad, "
+            f"Coulomb friction {tau_coulomb:.3g} N.m",
+            f"confident {100 * result.confident:.3g} % of the second half",
+        ]
     return "\n".join(lines)

@@ -26,6 +26,8 @@ class Replay:
     trace: Trace
     modality: str
     """What fed the regression."""
+    method: str
+    """How the stiffness was estimated."""
 
 
 def draw(replay: Replay) -> Figure:
@@ -51,11 +53,15 @@ def draw(replay: Replay) -> Figure:
             ends = replay.trace.ends(name)
             if name == "tau_e_residual" and replay.modality == "Sensor":
                 ends, title = _sensor(replay), "sensor"
+            elif name == "tau_e_residual" and replay.method == "MatchedFilter":
+                title = "by the motor data, with friction"
             t = replay.samples.T * replay.trace.bucket * np.arange(len(ends))
             axes.plot(np.repeat(t, 2), ends.ravel(), color=color, label=title)
             settled = ends[int(_SETTLED * len(ends)) :]
             outer = _OUTER if name == "sigma" else 0.0
             limits += np.nanpercentile(settled, [outer, 100 - outer]).tolist()
+        if lines[0][0] == "sigma" and replay.method == "MatchedFilter":
+            _how_sure(axes, replay)
         _scale(axes, min(limits), max(limits))
         _skipped(axes, replay.samples)
         axes.set_ylabel(label)
@@ -74,6 +80,20 @@ def _sensor(replay: Replay) -> Array:
         [np.fmin.reduceat(values, starts), np.fmax.reduceat(values, starts)]
     )
     return ends
+
+
+def _how_sure(axes: Axes, replay: Replay) -> None:
+    """What lies within 1.96 standard deviations of the estimate."""
+    sigma, std = replay.trace.ends("sigma"), replay.trace.ends("sigma_std")[:, 1]
+    axes.fill_between(
+        replay.samples.T * replay.trace.bucket * np.arange(len(sigma)),
+        sigma[:, 0] - 1.96 * std,
+        sigma[:, 1] + 1.96 * std,
+        color=_SKY,
+        alpha=0.4,
+        linewidth=0,
+        label=r"$\pm$ 1.96 standard deviations",
+    )
 
 
 def _scale(axes: Axes, low: float, high: float) -> None:

@@ -24,8 +24,14 @@ OUTPUTS = (
     "a",
     "rho",
     "epsilon",
+    "sigma_std",
+    "D_theta_hat",
+    "B_hat",
+    "tau_coulomb_hat",
 )
-"""What is recorded, besides valid."""
+"""Numbers that are recorded."""
+FLAGS = ("confident", "valid")
+"""What is recorded besides."""
 
 
 def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
@@ -50,7 +56,7 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
 def replay(
     slave: Slave, samples: Samples, start: Mapping[str, Value], chunk: int
 ) -> Iterator[dict[str, Array]]:
-    """Initialises the estimator and yields its outputs, and valid, for a chunk of ticks at a time.
+    """Initialises the estimator and yields its outputs for a chunk of ticks at a time.
 
     The sample at t_k is the input of the tick at t_k; ports that are not configured stay 0.
     Raises FmuError if the FMU refuses a value.
@@ -62,20 +68,20 @@ def replay(
     set_real, do_step, get_real, get_boolean = (getattr(functions[0], f) for f in functions[1:])
     inputs = fmu.references(samples.names, "input")
     outputs = fmu.references(OUTPUTS, "output")
-    valid = (fmi2.fmi2ValueReference * 1)(fmu.variable("valid").valueReference)
-    n, m = len(inputs), len(outputs)
+    n, m, f = len(inputs), len(outputs), len(FLAGS)
+    flags = (fmi2.fmi2ValueReference * f)(*(fmu.variable(name).valueReference for name in FLAGS))
     for first in range(0, len(samples.values), chunk):
         part = np.ascontiguousarray(samples.values[first : first + chunk])
-        table, flags = np.empty((len(part), m)), np.empty((len(part), 1), np.int32)
-        rows = (np.ctypeslib.as_ctypes(a) for a in (part, table, flags))
+        table, raised = np.empty((len(part), m)), np.empty((len(part), f), np.int32)
+        rows = (np.ctypeslib.as_ctypes(a) for a in (part, table, raised))
         for k, (row, out, flag) in enumerate(zip(*rows, strict=True), first):
             set_real(component, inputs, n, row)
             if do_step(component, k * T, T, fmi2.fmi2True) > fmi2.fmi2Warning:
                 raise slave.failure("fmi2DoStep")
             get_real(component, outputs, m, out)
-            get_boolean(component, valid, 1, flag)
+            get_boolean(component, flags, f, flag)
         columns = {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(OUTPUTS)}
-        yield {**columns, "valid": flags[:, 0].astype(bool)}
+        yield {**columns, **dict(zip(FLAGS, raised.T.astype(bool), strict=True))}
 
 
 def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:

@@ -188,6 +188,7 @@ def _parameters(
     yield "[parameters]   # of StiffnessEstimator.fmu, by their names; others keep their start"
     yield f"samplePeriod = {T:.12g}   # [s]"
     sensor = "tau" not in found and "tau_e_sensor" in found
+    yield 'method = "MatchedFilter"   # or Paper2011, which needs exact motor data'
     yield f"modality = {_text('Sensor' if sensor else 'Residual')}   # Residual, Sensor or Model"
     units = {"motor.B": "kg.m2", "motor.D_theta": "N.m.s/rad", "motor.gamma": "gear ratio"}
     if not sensor:

@@ -10,7 +10,8 @@ import numpy as np
 from sigmahat.logs.log import Array
 
 _BUCKETS = 4000
-DRAWN = ("sigma", "tau_e", "tau_e_residual", "phi", "setPoint")
+DRAWN = ("sigma", "sigma_std", "tau_e", "tau_e_residual", "phi", "setPoint")
+_LAST = (*DRAWN, "D_theta_hat", "B_hat", "tau_coulomb_hat")
 
 
 class Trace:
@@ -24,7 +25,7 @@ class Trace:
         """Ticks in an interval; chunks must be whole numbers of them."""
         self._parts: dict[str, list[Array]] = {name: [] for name in DRAWN}
         self._half = ticks // 2
-        self._ticks = self._later = self.skipped = 0
+        self._ticks = self._later = self._confident = self.skipped = 0
         self._squares = 0.0
         self._low = {name: np.inf for name in DRAWN}
         self._high = {name: -np.inf for name in DRAWN}
@@ -44,12 +45,13 @@ class Trace:
             valid = outputs["valid"][first:]
             self._squares += float(np.sum(outputs["epsilon"][first:][valid] ** 2))
             self._later += int(np.count_nonzero(valid))
+            self._confident += int(np.count_nonzero(outputs["confident"][first:]))
             for name in DRAWN:
                 self._low[name] = min(self._low[name], float(outputs[name][first:].min()))
                 self._high[name] = max(self._high[name], float(outputs[name][first:].max()))
         self.skipped += int(np.count_nonzero(~outputs["valid"]))
         self._ticks += count
-        self.last = {name: float(outputs[name][-1]) for name in DRAWN}
+        self.last = {name: float(outputs[name][-1]) for name in _LAST}
 
     def ends(self, name: str) -> Array:
         """Least and greatest value of each interval, [size: intervals x 2]."""
@@ -58,6 +60,11 @@ class Trace:
     def later(self, name: str) -> tuple[float, float]:
         """Least and greatest value in the second half of the log."""
         return self._low[name], self._high[name]
+
+    @property
+    def confident(self) -> float:
+        """Share of the ticks in the second half at which the estimator was confident."""
+        return self._confident / max(self._ticks - self._half, 1)
 
     @property
     def rms(self) -> float:
