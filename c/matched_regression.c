@@ -47,7 +47,8 @@ void sh_matched_resume(sh_matched_regression *matched, const sh_matched_settings
 }
 
 /* Filters begin. The motor is taken to be at rest, at any torque: equations hold from now on. */
-static void begin(sh_matched_regression *matched, sh_real theta, sh_real torque, const sh_real *F)
+static void begin_filters(sh_matched_regression *matched, sh_real theta, sh_real torque,
+                          const sh_real *F)
 {
     int i;
 
@@ -215,7 +216,7 @@ int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
     innovation->rho = 0;
     innovation->epsilon = 0;
     if (matched->samples == 0)
-        begin(matched, theta, torque, F);
+        begin_filters(matched, theta, torque, F);
     else
         filter(matched, settings, theta, torque, F);
     matched->resting = moved(settings, phi - matched->phi) ? 0 : matched->resting + 1;

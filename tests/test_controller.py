@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import os
 import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from controllers import HOST, TARGETS, Target, cross_build, replay, run
+from controllers import HOST, REPOSITORY, TARGETS, Target, cross_build, replay, run
+from gate import missing
 from reference_plant import table1_recording
 
 PAPER, MATCHED = "abcdef", "ghi"
 """Configurations of replay.c by their method."""
+ROUNDING = {"double": 1e-10, "float": 1e-5}
+"""Of the largest value: exp and sin of two C libraries may differ in their last digit."""
 ASKED = {"double": 16 * 1024, "float": 8 * 1024}
 """Largest memory of an instance [bytes]."""
 
@@ -62,12 +68,13 @@ def test_a_processor_computes_what_the_host_computes(
         replay(cross_build("tests/replay", t, real, ninja, folder), z, configuration, tmp_path)
         for t in (HOST, target)
     )
-    for name in here:
-        err = np.abs(there[name] - here[name]).max() / max(np.abs(here[name]).max(), 1e-30)
-        print(name, err)
+    assert 0 < np.count_nonzero(here["valid"] == 0) < 30
+    for name, expected in here.items():
+        largest = np.abs(expected).max()
+        np.testing.assert_allclose(there[name], expected, rtol=0, atol=ROUNDING[real] * largest)
 
 
-@pytest.mark.parametrize("configuration", "abcdghi")
+@pytest.mark.parametrize("configuration", "abcdeghi")  # f: noise, also in double
 def test_single_precision_gives_the_stiffness_of_table1(
     configuration: str, folder: Path, ninja: Path, tmp_path: Path
 ) -> None:
@@ -128,7 +135,7 @@ def test_it_needs_nothing_but_memory_and_math(real: str, folder: Path, ninja: Pa
     needed = set(re.findall(r" U (\w+)", run("arm-none-eabi-nm", str(library))))
     own = set(re.findall(r" [TtDdRrBb] (\w+)", run("arm-none-eabi-nm", str(library))))
     suffix = "f" if real == "float" else ""
-    functions = {f + suffix for f in ("exp", "sin", "sqrt", "fabs", "fmin", "fmax")}
+    functions = {f + suffix for f in ("exp", "sin", "sqrt", "fmin", "fmax")}
     helpers = {f for f in needed if f.startswith("__aeabi_")} if real == "double" else set()
     assert needed - own - helpers <= functions | {"memcpy", "memset"}
 
@@ -138,3 +145,32 @@ def test_it_has_no_globals(real: str, folder: Path, ninja: Path) -> None:
     tree = cross_build("tests/replay", TARGETS["Cortex-M4F"], real, ninja, folder)
     (library,) = tree.rglob("libsigmahat.a")
     assert not re.findall(r" [DdBbCSs] \w+", run("arm-none-eabi-nm", str(library)))
+
+
+def test_the_commands_of_the_page(build: Path, tmp_path: Path) -> None:
+    """docs/controller.md, in a folder of their own, with the build tool of the environment."""
+    for tool in TARGETS["Cortex-M4F"].tools:
+        if shutil.which(tool) is None:
+            missing(tool, TARGETS["Cortex-M4F"].packages)
+    for name in ("c", "cmake", "examples", "pyproject.toml"):
+        (tmp_path / name).symlink_to(REPOSITORY / name)
+    page = (REPOSITORY / "docs" / "controller.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```sh\n(.*?)^```$", page, re.M | re.S)
+    assert len(blocks) == 2
+    done = subprocess.run(
+        ["sh", "-e", "-c", "".join(blocks)],
+        cwd=tmp_path,
+        env={
+            "CMAKE_GENERATOR": "Ninja",
+            "PATH": f"{build / 'venv' / 'bin'}{os.pathsep}{os.environ['PATH']}",
+            "PREFIX": str(tmp_path / "installed"),
+        },
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "sigma = " in done.stdout
+    assert "instructions per tick" in done.stdout
+    assert list((tmp_path / "installed").rglob("sigmahatConfig.cmake"))
+    for target in re.findall(r"\]\(([^)#]+)", page):
+        assert (REPOSITORY / "docs" / target).is_file(), target

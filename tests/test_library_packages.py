@@ -136,7 +136,8 @@ def test_a_pair_of_files(
     for file in ("sigmahat.c", "sigmahat.h"):
         shutil.copy(build / "amalgamation" / file, tmp_path)
     library = tmp_path / "sigmahat.o"
-    run(need(c, c), "-std=c99", *flags, "-c", tmp_path / "sigmahat.c", "-o", library)
+    alone = ["-std=c99", "-ffreestanding", *flags]
+    run(need(c, c), *alone, "-c", tmp_path / "sigmahat.c", "-o", library)
     for compiler, options, file in (
         (c, ["-std=c99", "-Wno-double-promotion"], "main.c"),
         (need(cpp, cpp.replace("clang++", "clang")), ["-Wno-double-promotion"], "main.cpp"),
