@@ -113,6 +113,14 @@ static sh_real regression(const sh_matched_regression *matched, const sh_matched
     return inertial + viscous - motor->gamma * beside_smooth(&matched->torque, design);
 }
 
+/* What the filter leaves of the variance of white noise, as a share: the integral of h^2 for its
+ * impulse response h, of which the integral is 1, times T.
+ */
+static sh_real white(const sh_matched_settings *settings)
+{
+    return (sh_real)(3.0 / 16) * settings->bandwidth * settings->T;
+}
+
 /* Variance of friction whose sign is not known [(N.m)2]. */
 static sh_real friction_variance(const sh_matched_regression *matched, const sh_least_squares *rls,
                                  const sh_matched_settings *settings)
@@ -127,10 +135,14 @@ static sh_real friction_variance(const sh_matched_regression *matched, const sh_
 /* Variance of a sample beside others that are white [(N.m)2]: of the noise of the torque, of the
  * rounding of phi, of friction.
  *
- * Rounding is white while phi moves, but at rest the same in every sample; a wrong sign of friction
- * stays in the filter for some 10/w, and wrong for as long as the motor creeps. With R the variance
- * of one sample and c that of its part that stays, n samples tell 1 / (R / n + c). So the last of
- * them tells as much as one with the variance R (1 + c n / R)^2, and all no more than 1 / c.
+ * A wrong sign of friction in one sample comes out of the filter as its impulse response h, alike in
+ * many samples. What it does to a mean over them is (sum of h)^2 / (sum of h^2) = 1 / white()
+ * times what it would do if they were independent, so it counts so many times.
+ *
+ * Rounding is white while phi moves, but at rest the same in every sample; the sign of friction is
+ * wrong for as long as the motor creeps. With R the variance of one sample and c that of its part
+ * that stays, n samples tell 1 / (R / n + c). So the last of them tells as much as one with the
+ * variance R (1 + c n / R)^2, and all no more than 1 / c.
  */
 static sh_real noise_variance(const sh_matched_regression *matched, const sh_least_squares *rls,
                               const sh_matched_settings *settings, sh_real sigma)
@@ -142,8 +154,7 @@ static sh_real noise_variance(const sh_matched_regression *matched, const sh_lea
 
     if (!settings->measured) {
         const sh_real friction = friction_variance(matched, rls, settings);
-        R = rounding + square(gamma * settings->noise) +
-            friction * (1 + 10 / (settings->bandwidth * settings->T));
+        R = rounding + square(gamma * settings->noise) + friction / white(settings);
         stays += friction * matched->unsure;
     }
     return R * square(1 + stays / R);
@@ -210,8 +221,7 @@ static int was_moving(const sh_matched_regression *matched, sh_least_squares *rl
 {
     const sh_real gamma = settings->motor.gamma;
     const sh_real inertial = square(gamma) * settings->motor.B * settings->count;
-    const sh_real white = (sh_real)(3.0 / 16) * settings->bandwidth * settings->T; /* through H */
-    const sh_real variance = white * square(gamma * settings->noise) +
+    const sh_real variance = white(settings) * square(gamma * settings->noise) +
                              square(inertial) / 12 * matched->rounding +
                              friction_variance(matched, rls, settings);
     sh_real epsilon = y;

@@ -115,15 +115,22 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
     basis(p, 0, set_point, F, dF);
     if (p->method == SH_METHOD_MATCHED_FILTER) {
         const sh_matched_settings settings = matched_settings(p);
+        /* What each coefficient, and the curve, add to sigma. From P the same would follow, but its
+         * rounding depends on coefficients that do not act here.
+         */
+        sh_real each = 0, curve = 0;
 
         sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
         for (i = 0; i < size; ++i) {
             scaled[i] = eta_0[i] * units[i];
             units[i] = 1 / units[i];
+            each += dF[i] * dF[i];
+            curve += dF[i] * scaled[i];
         }
+        each *= p->prior.tau_e * p->prior.tau_e;
+        curve *= p->prior.nominal;
         sh_matched_start(&estimator->matched, &estimator->rls, &settings, size, scaled);
-        evaluate(estimator, p, 0, set_point, scaled,
-                 sh_least_squares_variance(&estimator->rls, dF), estimate);
+        evaluate(estimator, p, 0, set_point, scaled, each + curve * curve, estimate);
         /* The estimate is eta_0 to the last digit, whatever the units. */
         sh_torque_basis(p->rls.symmetric, n, m, set_point, 0, F, dF);
         evaluate_curve(F, dF, eta_0, size, estimate);

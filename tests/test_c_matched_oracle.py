@@ -148,7 +148,7 @@ def matched_filter(
         R, stays = rounding + white, rounding * resting
         if not measured:
             creeping = gamma**2 * (eta[C] ** 2 + P[C, C]) * unknown_f[k] ** 2
-            R += creeping * (1 + 10 / (w * T))
+            R += creeping * 16 / (3 * w * T)
             stays += creeping * unsure
         R *= (1 + stays / R) ** 2
 
@@ -259,11 +259,7 @@ def compare(found: NDArray[np.void], expected: Mapping[str, Array]) -> None:
 @pytest.mark.parametrize("case", CASES)
 def test_every_tick(c: Library, case: str) -> None:
     joint, values = CASES[case]
-    z = (
-        table1_recording().measurements()[:8000]
-        if isinstance(joint, str)
-        else joint.measurements()
-    )
+    z = table1_recording().measurements()[:8000] if isinstance(joint, str) else joint.measurements()
     p = {**START, **values}
     z[:, 3] *= np.sign(p["motor.gamma"])
     compare(Estimator(c, p).run(z), matched_filter(c, p, z))
