@@ -81,3 +81,11 @@ def test_without_rounding_a_reversal_is_placed_within_the_sample(c: Library) -> 
     signs, _ = run(c, 50.0 * (t - turn) ** 2, count=0.0)
     true = 2 * np.clip((t[1:] - turn) / T, 0, 1) - 1
     assert abs(np.sum(signs[1:] - true[1:])) < 1e-6
+
+
+def test_reversal_is_as_unknown_as_the_signs_it_takes_back(c: Library) -> None:
+    """GIVEN a motor that turns between two edges of the encoder, THEN the count that shows it takes
+    back the signs given since the last one; unknown are that many samples and its own."""
+    signs, unknown = run(c, COUNT * np.array([0, 1, 1, 2, 2, 3, 3, 3, 2, 2.0]))
+    assert signs[4:].tolist() == [1, 1, 1, -1 - 2, -1]
+    assert unknown[4:].tolist() == [0, 0, 0, 1 + 2, 0]
