@@ -97,8 +97,8 @@ def test_motor_that_turns_at_the_start(
 
 @pytest.mark.parametrize(("frequency", "bound"), [(8.0, 0.01), (20.0, 0.3)])
 def test_torque_that_is_held_between_samples(c: Library, frequency: float, bound: float) -> None:
-    """GIVEN a drive that holds its torque from one sample to the next, THEN the torque in the middle
-    between the sample before and the one after is what belongs to a sample."""
+    """GIVEN a drive that holds its torque between samples, THEN what belongs to a sample is the mean
+    of the torques before and after it."""
     t = times(T, 6.0)
     tau = 0.5 * np.sin(2 * np.pi * frequency * t)
     torques = np.column_stack([tau, 8 * np.sin(0.2 * np.pi * t), 0 * t])
