@@ -97,7 +97,7 @@ def test_motor_that_turns_at_the_start(
 
 @pytest.mark.parametrize(("frequency", "bound"), [(8.0, 0.01), (20.0, 0.3)])
 def test_torque_that_is_held_between_samples(c: Library, frequency: float, bound: float) -> None:
-    """GIVEN a drive that holds its torque between samples, THEN what belongs to a sample is the mean
+    """GIVEN a drive that holds its torque between samples, THEN to a sample belongs the mean
     of the torques before and after it."""
     t = times(T, 6.0)
     tau = 0.5 * np.sin(2 * np.pi * frequency * t)
