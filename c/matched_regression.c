@@ -29,6 +29,7 @@ void sh_matched_start(sh_matched_regression *matched, sh_least_squares *rls,
     matched->basis = basis;
     matched->design = sh_state_variable_filter_design(settings->bandwidth, settings->T);
     matched->rounding = sh_state_variable_filter_noise(&matched->design);
+    matched->starting = FORGOTTEN / settings->bandwidth;
     for (i = 0; i < basis; ++i) {
         matched->eta_0[i] = eta_0[i];
         prior_mean[i] = eta_0[i];
@@ -42,7 +43,8 @@ void sh_matched_start(sh_matched_regression *matched, sh_least_squares *rls,
 
 void sh_matched_resume(sh_matched_regression *matched, const sh_matched_settings *settings)
 {
-    matched->samples = 0;
+    matched->begun = 0;
+    matched->starting = 0;
     matched->settling = FORGOTTEN / settings->bandwidth;
 }
 
@@ -67,10 +69,6 @@ static void filter(sh_matched_regression *matched, const sh_matched_settings *se
     const sh_filter_design *design = &matched->design;
     int i;
 
-    /* The first step shows whether the motor was at rest, as the filters take it to be. */
-    if (matched->samples == 1 && sh_fabs(theta - matched->theta.input) >
-                                     (sh_real)1.5 * settings->count + settings->slow * settings->T)
-        matched->settling = FORGOTTEN / settings->bandwidth;
     sh_state_variable_filter_step(&matched->theta, design, theta);
     sh_state_variable_filter_step(&matched->torque, design, torque);
     for (i = 0; i < matched->basis; ++i)
@@ -116,6 +114,14 @@ static sh_real regression(const sh_matched_regression *matched, const sh_matched
     return inertial + viscous - motor->gamma * beside_smooth(&matched->torque, design);
 }
 
+/* What the filter leaves of the variance of white noise, as a share: the integral of h^2 for its
+ * impulse response h, of which the integral is 1, times T.
+ */
+static sh_real white(const sh_matched_settings *settings)
+{
+    return (sh_real)(3.0 / 16) * settings->bandwidth * settings->T;
+}
+
 /* Variance of friction whose sign is not known [(N.m)2]. */
 static sh_real friction_variance(const sh_matched_regression *matched, const sh_least_squares *rls,
                                  const sh_matched_settings *settings)
@@ -130,10 +136,14 @@ static sh_real friction_variance(const sh_matched_regression *matched, const sh_
 /* Variance of a sample beside others that are white [(N.m)2]: of the noise of the torque, of the
  * rounding of phi, of friction.
  *
- * Rounding is white while phi moves, but at rest the same in every sample; a wrong sign of friction
- * stays in the filter for some 10/w, and wrong for as long as the motor creeps. With R the variance
- * of one sample and c that of its part that stays, n samples tell 1 / (R / n + c). So the last of
- * them tells as much as one with the variance R (1 + c n / R)^2, and all no more than 1 / c.
+ * A wrong sign of friction in one sample comes out of the filter as its impulse response h, alike in
+ * many samples. What it does to a mean over them is (sum of h)^2 / (sum of h^2) = 1 / white()
+ * times what it would do if they were independent, so it counts so many times.
+ *
+ * Rounding is white while phi moves, but at rest the same in every sample; the sign of friction is
+ * wrong for as long as the motor creeps. With R the variance of one sample and c that of its part
+ * that stays, n samples tell 1 / (R / n + c). So the last of them tells as much as one with the
+ * variance R (1 + c n / R)^2, and all no more than 1 / c.
  */
 static sh_real noise_variance(const sh_matched_regression *matched, const sh_least_squares *rls,
                               const sh_matched_settings *settings, sh_real sigma)
@@ -145,8 +155,7 @@ static sh_real noise_variance(const sh_matched_regression *matched, const sh_lea
 
     if (!settings->measured) {
         const sh_real friction = friction_variance(matched, rls, settings);
-        R = rounding + square(gamma * settings->noise) +
-            friction * (1 + 10 / (settings->bandwidth * settings->T));
+        R = rounding + square(gamma * settings->noise) + friction / white(settings);
         stays += friction * matched->unsure;
     }
     return R * square(1 + stays / R);
@@ -158,7 +167,7 @@ static void compensate(sh_matched_regression *matched, sh_least_squares *rls,
 {
     const sh_real deviation = square(settings->motor.gamma) * settings->motor.B * settings->count;
 
-    if (matched->motion.waiting == 0)
+    if (matched->motion.waiting == 0 && sh_fabs(matched->motion.change) > 0) /* a count came */
         matched->bias.surplus += square(deviation) / 12 * matched->rounding / variance;
     sh_rounding_bias_take_back(&matched->bias, rls, matched->basis + SH_MOTOR_B,
                                square(settings->motor_prior[SH_MOTOR_B]));
@@ -204,6 +213,26 @@ static int moved(const sh_matched_settings *settings, sh_real change)
     return sh_fabs(change) > sh_fmin(settings->count, settings->count_q) / 4;
 }
 
+/* Whether a sample contradicts the motor at rest with which the filters began: by more than five
+ * standard deviations of what the filter leaves of the noise. Here this is the variance asked for,
+ * not what a sample may weigh beside others.
+ */
+static int was_moving(const sh_matched_regression *matched, sh_least_squares *rls,
+                      const sh_matched_settings *settings, const sh_real *F, sh_real y)
+{
+    const sh_real gamma = settings->motor.gamma;
+    const sh_real inertial = square(gamma) * settings->motor.B * settings->count;
+    const sh_real variance = white(settings) * square(gamma * settings->noise) +
+                             square(inertial) / 12 * matched->rounding +
+                             friction_variance(matched, rls, settings);
+    sh_real epsilon = y;
+    int i;
+
+    for (i = 0; i < rls->size; ++i)
+        epsilon -= F[i] * rls->eta[i];
+    return square(epsilon) > 25 * (variance + sh_least_squares_variance(rls, F));
+}
+
 int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
                     const sh_matched_settings *settings, sh_real theta, sh_real torque,
                     sh_real phi, sh_real sigma, const sh_real *F, sh_real *y,
@@ -215,14 +244,13 @@ int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
     innovation->a = 0;
     innovation->rho = 0;
     innovation->epsilon = 0;
-    if (matched->samples == 0)
+    if (!matched->begun)
         begin_filters(matched, theta, torque, F);
     else
         filter(matched, settings, theta, torque, F);
     matched->resting = moved(settings, phi - matched->phi) ? 0 : matched->resting + 1;
     matched->phi = phi;
-    if (matched->samples < 2)
-        ++matched->samples;
+    matched->begun = 1;
     *y = regression(matched, settings, column);
     matched->settling -= settings->T;
     if (matched->settling > 0)
@@ -230,6 +258,14 @@ int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
     matched->settling = 0;
 
     variance = noise_variance(matched, rls, settings, sigma);
+    if (!settings->measured && matched->starting > 0) {
+        matched->starting -= settings->T;
+        if (was_moving(matched, rls, settings, column, *y)) {
+            matched->settling = FORGOTTEN / settings->bandwidth;
+            matched->starting = 0;
+            return 1;
+        }
+    }
     if (!sh_least_squares_weigh(rls, 1 / variance, column, *y, &innovation->epsilon,
                                 &innovation->rho))
         return 0;

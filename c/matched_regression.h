@@ -62,9 +62,10 @@ typedef struct {
     sh_real resting;  /* samples for which it has been the same */
     sh_real unsure;   /* samples for which the sign of the velocity has not been known */
     sh_real settling; /* time until the filters have forgotten what came before [s] */
+    sh_real starting; /* time for which samples may show that the motor was not at rest [s] */
     sh_filter_design design;
     sh_real rounding; /* variance of theta'' filtered for a rounding of one [1/s4] */
-    int samples;      /* since the filters began: 0, 1, 2 (or more) */
+    int begun;        /* 0: the filters begin with the next sample */
     struct {
         sh_real F[SH_MAX_PARAMETERS], direction[SH_MAX_PARAMETERS];
     } work;          /* means nothing between samples; here to spare the stack */

@@ -1,8 +1,8 @@
 /* Start values and ranges of the parameters of the stiffness estimator. */
-#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
+#include "real_math.h"
 #include "stiffness_estimator.h"
 
 void sh_parameters_default(sh_parameters *p)
@@ -51,7 +51,7 @@ void sh_parameters_default(sh_parameters *p)
     p->prior.nominal = 0;
     p->prior.D_theta = (sh_real)0.2;
     p->prior.B = 0;
-    p->prior.tau_coulomb = 0;
+    p->prior.tau_coulomb = (sh_real)0.02;
 }
 
 /* Range of one parameter. */
@@ -101,7 +101,7 @@ static const real_range REALS[] = {
     {AT(confidence), "> 0", 0, INFINITY, 1},
     {AT(matched.bandwidth), "> 0", 0, INFINITY, 1},
     {AT(matched.slow), "> 0", 0, INFINITY, 1},
-    {AT(matched.drift), ">= 0", 0, INFINITY, 0},
+    {AT(matched.drift), "0 to 1e12", 0, (sh_real)1e12, 0},
     {AT(range.phi), "1e-6 to 1e6", (sh_real)1e-6, (sh_real)1e6, 0},
     {AT(range.setPoint), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12, 0},
     {AT(prior.tau_e), "0 to 1e12", 0, (sh_real)1e12, 0},
@@ -141,6 +141,18 @@ static int violates(sh_violation *violation, const char *name, sh_real value, co
     return 1;
 }
 
+/* Whether a nominal curve is given and may be wrong as a whole. */
+static int has_nominal_curve(const sh_parameters *p)
+{
+    int i, j;
+
+    for (i = 0; i < p->rls.n; ++i)
+        for (j = 0; j < p->rls.m; ++j)
+            if (sh_fabs(p->rls.eta_0[i][j]) > 0)
+                return p->prior.nominal > 0;
+    return 0;
+}
+
 int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
 {
     const char *bytes = (const char *)p;
@@ -175,5 +187,8 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
          p->matched.bandwidth * p->samplePeriod >= 2))
         return violates(violation, "matched.bandwidth", p->matched.bandwidth,
                         ">= 1e-4 / samplePeriod and < 2 / samplePeriod");
+    if (p->method == SH_METHOD_MATCHED_FILTER && !(p->prior.tau_e > 0) && !has_nominal_curve(p))
+        return violates(violation, "prior.tau_e", p->prior.tau_e,
+                        "> 0, or 0 with a curve rls.eta_0 and prior.nominal > 0");
     return 0;
 }

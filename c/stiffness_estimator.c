@@ -79,7 +79,7 @@ static void evaluate(const sh_estimator *estimator, const sh_parameters *p, sh_r
     estimate->phi = phi;
     estimate->setPoint = set_point;
     estimate->sigma_std = sh_sqrt(variance);
-    estimate->confident = estimate->sigma_std <= p->confidence * sh_fabs(estimate->sigma);
+    estimate->confident = estimate->sigma_std < p->confidence * sh_fabs(estimate->sigma);
     for (j = 0; j < m; ++j)
         for (i = 0; i < n; ++i)
             estimate->eta[i][j] = eta[j * n + i] * estimator->units[j * n + i];
@@ -115,7 +115,10 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
     basis(p, 0, set_point, F, dF);
     if (p->method == SH_METHOD_MATCHED_FILTER) {
         const sh_matched_settings settings = matched_settings(p);
-        sh_real each = 0, curve = 0; /* what each coefficient, and the curve, add to sigma */
+        /* What each coefficient, and the curve, add to sigma. From P the same would follow, but its
+         * rounding depends on coefficients that do not act here.
+         */
+        sh_real each = 0, curve = 0;
 
         sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
         for (i = 0; i < size; ++i) {
@@ -256,20 +259,22 @@ static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const s
                           : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
                                                              : z->tau;
     sh_innovation innovation;
+    int good;
 
     if (estimator->started && (estimator->skipped > 0 || estimator->modality != p->modality))
         sh_matched_resume(&estimator->matched, &settings);
     basis(p, phi, set_point, F, dF);
-    if (!sh_matched_step(&estimator->matched, &estimator->rls, &settings, z->theta, torque, phi,
-                         estimate->sigma, F, &y, &innovation)) {
-        estimator->matched.samples = 0;
+    good = sh_matched_step(&estimator->matched, &estimator->rls, &settings, z->theta, torque, phi,
+                           estimate->sigma, F, &y, &innovation);
+    variance = sh_matched_belief(&estimator->matched, &estimator->rls, &settings, dF,
+                                 estimator->work.eta);
+    if (!good || !isfinite(y) || !isfinite(variance)) { /* y, variance: while nothing is learned */
+        estimator->matched.begun = 0;
         return 0;
     }
     estimator->started = 1;
     estimator->skipped = 0;
     estimator->modality = p->modality;
-    variance = sh_matched_belief(&estimator->matched, &estimator->rls, &settings, dF,
-                                 estimator->work.eta);
     evaluate(estimator, p, phi, set_point, estimator->work.eta, variance, estimate);
     estimate->tau_e_residual = y;
     estimate->theta_dot =

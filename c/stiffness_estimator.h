@@ -91,13 +91,13 @@ typedef struct {
         sh_real tau_e; /* and of tau_e_sensor, also how far the model is trusted [N.m],
                           1e-12..1e12 */
     } noise;
-    sh_real confidence; /* largest sigma_std / |sigma| that counts as confident [1], > 0 */
+    sh_real confidence; /* sigma_std / |sigma| below which the estimate is confident [1], > 0 */
     /* All below for SH_METHOD_MATCHED_FILTER. */
     struct {
         sh_real bandwidth; /* w of the filter [rad/s], > 0, 1e-4 <= w T < 2 if it is used, fixed */
         sh_real slow;      /* |theta'| below which the sign of friction is unknown [rad/s], > 0 */
         sh_real drift;     /* share of its prior variance by which the torque curve drifts in a
-                              second [1/s], >= 0; 0: it does not change */
+                              second [1/s], 0..1e12; 0: it does not change */
     } matched;
     sh_range_parameters range; /* fixed */
     struct { /* 0..1e12, fixed */
@@ -137,7 +137,7 @@ typedef struct {
                                        [N.m/rad] */
     sh_real D_theta_hat, B_hat;     /* motor data as corrected [N.m.s/rad, kg.m2] */
     sh_real tau_coulomb_hat;        /* Coulomb friction found, on the motor axis [N.m] */
-    int confident;                  /* sigma_std is at most confidence |sigma| */
+    int confident;                  /* sigma_std is below confidence |sigma| */
     int valid;                      /* 0 while the last tick was skipped, see sh_estimator_tick */
 } sh_estimate;
 

@@ -10,7 +10,7 @@ typedef struct {
     double sigma;             /* stiffness of the device [N.m/rad] */
     double sigma_std;         /* its standard deviation, if the errors of the sides are
                                  independent [N.m/rad] */
-    int confident;            /* sigma_std is at most confidence |sigma| */
+    int confident;            /* sigma_std is below confidence |sigma| */
     int valid;
 } AntagonisticStiffnessEstimator;
 
@@ -31,7 +31,7 @@ static void sum(AntagonisticStiffnessEstimator *fmu)
 {
     fmu->sigma = fmu->side[0].output.sigma + fmu->side[1].output.sigma;
     fmu->sigma_std = hypot(fmu->side[0].output.sigma_std, fmu->side[1].output.sigma_std);
-    fmu->confident = fmu->sigma_std <= fmu->side[0].parameters.confidence * fabs(fmu->sigma);
+    fmu->confident = fmu->sigma_std < fmu->side[0].parameters.confidence * fabs(fmu->sigma);
     fmu->valid = fmu->side[0].output.valid && fmu->side[1].output.valid;
 }
 

@@ -84,7 +84,7 @@ def test_bit_identical_to_two_estimators(
             assert pair.get("sigma") == one.get("sigma") + two.get("sigma")
             sigma_std = math.hypot(one.get("sigma_std"), two.get("sigma_std"))
             assert pair.get("sigma_std") == pytest.approx(sigma_std, rel=1e-15)
-            confident = pair.get("sigma_std") <= pair.get("confidence") * abs(pair.get("sigma"))
+            confident = pair.get("sigma_std") < pair.get("confidence") * abs(pair.get("sigma"))
             assert pair.get("confident") == confident
             assert pair.get("valid") == (0 if bad else 1)
         assert pair.get("sigma") != 0.0

@@ -101,3 +101,11 @@ def test_the_slowest_velocity_is_still_known(c: Library) -> None:
         c.lib.sh_motion_sign_step(motion, 1.0, 1.0, 0.5)
         unknown.append(motion.unknown)
     assert unknown == [1.0, 0.0, 0.0, 1.0]
+
+
+def test_reversal_is_as_unknown_as_the_signs_it_takes_back(c: Library) -> None:
+    """GIVEN a motor that turns between two edges of the encoder, THEN the count that shows it takes
+    back the signs given since the last one; unknown are that many samples and its own."""
+    signs, unknown = run(c, COUNT * np.array([0, 1, 1, 2, 2, 3, 3, 3, 2, 2.0]))
+    assert signs[4:].tolist() == [1, 1, 1, -1 - 2, -1]
+    assert unknown[4:].tolist() == [0, 0, 0, 1 + 2, 0]

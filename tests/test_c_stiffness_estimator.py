@@ -87,7 +87,6 @@ NOT_NEGATIVE = [
     "encoder.q",
     "encoder.theta_c",
     "model.k_s",
-    "matched.drift",
 ]
 # What is squared or raised to a power.
 BOUNDED = {
@@ -95,6 +94,7 @@ BOUNDED = {
     "noise.tau_e": (1e-12, 1e12),
     "range.phi": (1e-6, 1e6),
     "range.setPoint": (1e-12, 1e12),
+    "matched.drift": (0.0, 1e12),
     "prior.tau_e": (0.0, 1e12),
     "prior.nominal": (0.0, 1e12),
     "prior.D_theta": (0.0, 1e12),
@@ -175,9 +175,27 @@ def test_limits_by_the_sample_period_hold_for_the_method_that_has_them(c: Librar
         assert c.violation(c.parameters(mended)) is None
 
 
+def test_something_must_be_left_to_be_found(c: Library) -> None:
+    """GIVEN prior.tau_e = 0, so that the shape of the torque curve is exact, THEN MatchedFilter
+    wants a curve, and to be told how far it may be off as a whole."""
+    exact = {"method": 2, "prior.tau_e": 0.0}
+    for values in (exact, {**exact, "prior.nominal": 0.3}):
+        problem = c.violation(c.parameters(values))
+        assert problem is not None
+        name, came, allowed = problem
+        assert (name, came) == ("prior.tau_e", 0.0)
+        assert "rls.eta_0" in allowed and "prior.nominal" in allowed
+    for nominal, i, fine in ((0.3, 1, True), (0.0, 1, False), (0.3, 2, False)):
+        p = c.parameters({**exact, "prior.nominal": nominal, "rls.n": 2})
+        p.rls.eta_0[i][0] = -10.0
+        assert (c.violation(p) is None) == fine
+    assert c.violation(c.parameters({"method": 1, "prior.tau_e": 0.0})) is None
+
+
 @pytest.mark.parametrize("low", [True, False])
 def test_extreme_ranges_and_priors_leave_finite_numbers(c: Library, low: bool) -> None:
     extreme = {name: limits[0 if low else 1] for name, limits in BOUNDED.items()}
+    extreme["prior.tau_e"] = max(extreme["prior.tau_e"], TINY)
     estimator = Estimator(c, {"method": 2, "rls.n": 8, "rls.m": 5, "rls.symmetric": 1, **extreme})
     for k in range(100):
         estimator.tick([0.1 * math.sin(0.01 * k), 0.1, 0.0, 0.1, 0.0])

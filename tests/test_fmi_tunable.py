@@ -29,7 +29,6 @@ CONFIGURATION: dict[str, dict[str, float]] = {
     "model.b": {"modality": 3},
     "noise.tau_e": {"modality": 2},
     "confidence": {"confidence": 1e12},
-    "matched.slow": {"prior.tau_coulomb": 0.02},
 }
 # What each method needs; SIGNALS begin in motion, which a fast filter soon has forgotten.
 METHODS: dict[int, dict[str, float]] = {1: {}, 2: {"method": 2, "matched.bandwidth": 1900}}

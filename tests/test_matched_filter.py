@@ -1,4 +1,5 @@
-"""MatchedFilter on logs of the AwAS: motions it was not made for, springs that age, long rest."""
+"""MatchedFilter on logs of the AwAS: motions it was not made for, odd beginnings, held torque,
+springs that age, long rest."""
 
 from __future__ import annotations
 
@@ -72,6 +73,45 @@ def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
         found.append(msrep(run["sigma"][2000:], estimates["sigma"][2000:]))
     assert np.median(found) <= 0.5
     assert max(found) <= 5.0
+
+
+@pytest.mark.parametrize("period", [1e-3, 1e-4])
+@pytest.mark.parametrize("velocity", [0.3, 0.5, 1.0, 2.4])
+@pytest.mark.parametrize("friction", [0.0, 0.02])
+def test_motor_that_turns_at_the_start(
+    c: Library, period: float, velocity: float, friction: float
+) -> None:
+    """GIVEN a joint that moves at the first sample, in [rad/s], THEN that costs hardly more than to
+    learn nothing for 12/w, at any sample period."""
+    t = times(period, 1.0)
+    torques = np.column_stack([0.3 * np.sin(2 * np.pi * t), 8 * np.sin(0.2 * np.pi * t), 0 * t])
+    start = {"initial.theta_dot": velocity, "initial.q_dot": velocity}
+    start["motor.tau_coulomb"] = friction
+    run = run_awas(period, torques, {**SHORTENED, **start}, (*MEASURED, "sigma"))
+    z = np.column_stack([run[name] for name in MEASURED])
+    found = Estimator(c, {**TOLD, "samplePeriod": period}).run(z)
+    learned = np.flatnonzero(found["a"] == 0)[-1] * period
+    assert learned == pytest.approx(12 / 350, abs=5e-3)
+    assert msrep(run["sigma"], found["sigma"]) <= 2 * 100 * (12 / 350)
+
+
+@pytest.mark.parametrize(("frequency", "bound"), [(8.0, 0.01), (20.0, 0.3)])
+def test_torque_that_is_held_between_samples(c: Library, frequency: float, bound: float) -> None:
+    """GIVEN a drive that holds its torque between samples, THEN to a sample belongs the mean
+    of the torques before and after it."""
+    t = times(T, 6.0)
+    tau = 0.5 * np.sin(2 * np.pi * frequency * t)
+    torques = np.column_stack([tau, 8 * np.sin(0.2 * np.pi * t), 0 * t])
+    run = run_awas(T, torques, SHORTENED, (*MEASURED, "sigma"), held=True)
+    z = np.column_stack([run[name] for name in MEASURED])  # tau as held until t_k
+    middle = z.copy()
+    middle[:-1, 3] = (z[:-1, 3] + z[1:, 3]) / 2
+    as_held, in_the_middle = (
+        msrep(run["sigma"][1000:], Estimator(c, TOLD).run(samples)["sigma"][1000:])
+        for samples in (z, middle)
+    )
+    assert in_the_middle <= bound
+    assert as_held > 10 * in_the_middle
 
 
 @pytest.fixture(scope="module")

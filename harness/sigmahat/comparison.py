@@ -81,7 +81,7 @@ class Line:
 
 
 _OUTPUTS = ("sigma", "sigma_std", "D_theta_hat", "B_hat", "tau_coulomb_hat")
-_MATCHED: Mapping[str, Value] = {"method": "MatchedFilter", "rls.n": 3}
+_MATCHED: Mapping[str, Value] = {"method": "MatchedFilter", "rls.n": 3, "prior.tau_coulomb": 0.0}
 _TRUE_D_THETA, _TRUE_B = 1e-3, 2.3e-5
 _COULOMB = 0.02  # [N.m]
 _UNKNOWN = np.array([np.nan])
