@@ -13,20 +13,26 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from contextlib import redirect_stdout
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
+
+import pytest
 
 TESTS = Path(__file__).resolve().parent
 LIBRARY = TESTS.parent / "c"
 NUMBER, SEED = 66, "1"  # of the sample in the gate
 CPU_SECONDS = 120  # of the tests of one mutant; one that runs longer hangs
 ASKED = 0.9  # share that tests have to notice
+PYTEST = ("-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", "-m", "not slow")
 FLAGS = (
     "-std=gnu99",
     "-O1",
@@ -55,7 +61,7 @@ TOKEN = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 
-# Mutants that no test can notice: file, changed line, why it makes no difference.
+# Mutants that no test can notice: file, changed code, why it makes no difference.
 EQUIVALENT: tuple[tuple[str, str, str], ...] = (
     (
         "least_squares.c",
@@ -94,11 +100,18 @@ class Mutant:
         begin = text.rfind("\n", 0, self.start) + 1
         return text[begin : text.find("\n", self.start)].strip()
 
-    def order(self, seed: str) -> str:
-        return hashlib.sha256(f"{seed} {self.file} {self.line()}".encode()).hexdigest()
+    def makes(self, code: str) -> bool:
+        """Whether this code, of one line or more, is what the change has made."""
+        before, after = (LIBRARY / self.file).read_text(), self.text()
+        return count(after, code) > count(before, code)
 
     def __str__(self) -> str:
         return f"{self.file}: {self.old!r} -> {self.new!r}: {self.line()}"
+
+
+def count(text: str, code: str) -> int:
+    """How often it contains this code, however that is indented."""
+    return " ".join(text.split()).count(" ".join(code.split()))
 
 
 def wrong(kind: str | None, token: str) -> tuple[str, ...]:
@@ -111,12 +124,15 @@ def wrong(kind: str | None, token: str) -> tuple[str, ...]:
 def candidates(file: Path, seed: str) -> list[tuple[Mutant, ...]]:
     """The places of a file, in the order in which they are taken: mutants to try at each."""
     places = []
+    alike: Counter[str] = Counter()
     for match in TOKEN.finditer(file.read_text()):
         if news := wrong(match.lastgroup, match.group()):
-            places.append(
-                tuple(Mutant(file.name, match.start(), match.group(), new) for new in news)
-            )
-    return sorted(places, key=lambda mutants: mutants[0].order(seed))
+            mutants = tuple(Mutant(file.name, match.start(), match.group(), new) for new in news)
+            line = mutants[0].line()
+            alike[line] += 1
+            key = hashlib.sha256(f"{seed} {file.name} {line} {alike[line]}".encode()).hexdigest()
+            places.append((key, mutants))
+    return [mutants for _, mutants in sorted(places, key=lambda place: place[0])]
 
 
 class Bench:
@@ -153,32 +169,47 @@ class Bench:
             return None
         return self.link(tree, {**self.objects, mutant.file: changed})
 
-    def killed(self, mutant: Mutant, tree: Path) -> bool:
-        """Whether a test fails with the mutant, or crashes, or hangs. Removes the tree."""
-        killed = not passes(tree, mutant.file)
-        shutil.rmtree(tree)
-        return killed
 
-
-def passes(tree: Path, file: str = "") -> bool:
-    """Whether the fast tests pass with the library of a build tree, those of a file first."""
+def files_for(file: str) -> list[str]:
+    """The tests of the library, those of a file of it first."""
     own = f"test_c_{Path(file).stem}.py"
-    files = sorted(TESTS.glob("test_c_*.py"), key=lambda path: (path.name != own, path))
-    pytest = [
-        *(sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"),
-        *("--hypothesis-seed=0", "-m", "not slow"),
-        *map(str, files),
-    ]
-    done = subprocess.run(
-        ["sh", "-c", 'ulimit -t "$0"; exec "$@"', str(CPU_SECONDS), *pytest],
-        cwd=tree,
-        env={**os.environ, "SIGMAHAT_BUILD": str(tree)},
-        capture_output=True,
-        text=True,
+    return sorted(
+        map(str, TESTS.glob("test_c_*.py")), key=lambda path: (Path(path).name != own, path)
     )
-    if done.returncode > 1:
-        raise RuntimeError(f"pytest ended with {done.returncode}:\n{done.stdout}{done.stderr}")
-    return done.returncode == 0
+
+
+def start_tests(tree: Path, file: str = "") -> int:
+    """Runs the fast tests with the library of a build tree in a process of their own: its number.
+
+    A fork, because to import what the tests use takes longer than most of them.
+    """
+    child = os.fork()
+    if child:
+        return child
+    os.environ["SIGMAHAT_BUILD"] = str(tree)
+    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
+    output = os.open(tree / "output.txt", os.O_WRONLY | os.O_CREAT)
+    os.dup2(output, 1)
+    os.dup2(output, 2)
+    status = 2
+    try:
+        status = pytest.main([*PYTEST, *files_for(file)])
+    finally:
+        sys.stdout.flush()
+        os._exit(status)
+
+
+def finished(running: dict[int, Path]) -> tuple[int, bool]:
+    """Waits for one of the processes: its number, and whether the tests passed. Removes its tree.
+
+    They did not if one failed, or crashed, or did not end.
+    """
+    child, status = os.wait()
+    tree, code = running.pop(child), os.waitstatus_to_exitcode(status)
+    if code > 1:
+        raise RuntimeError(f"pytest ended with {code}:\n{(tree / 'output.txt').read_text()}")
+    shutil.rmtree(tree)
+    return child, code == 0
 
 
 def shares(number: int) -> dict[str, int]:
@@ -208,6 +239,15 @@ class Outcome:
     equivalent: list[Mutant]
     survived: list[Mutant]
 
+    def add(self, mutant: Mutant, passed: bool) -> None:
+        if not passed:
+            self.killed.append(mutant)
+        elif any(mutant.file == file and mutant.makes(code) for file, code, _ in EQUIVALENT):
+            self.equivalent.append(mutant)
+        else:
+            self.survived.append(mutant)
+            print(f"survived: {mutant}", flush=True)
+
     def share(self) -> float:
         """Killed ones among those that a test could notice."""
         return len(self.killed) / (len(self.killed) + len(self.survived))
@@ -219,25 +259,28 @@ def run(folder: Path, number: int = NUMBER, seed: str = SEED) -> Outcome:
     Raises RuntimeError if the tests do not pass with the code as it is.
     """
     bench = Bench(folder)
+    with redirect_stdout(StringIO()):
+        pytest.main([*PYTEST, "--collect-only", *files_for("")])  # imports what they need
     unchanged = Path(tempfile.mkdtemp(dir=folder))
-    if not passes(bench.link(unchanged, bench.objects)):
+    bench.link(unchanged, bench.objects)
+    if not finished({start_tests(unchanged): unchanged})[1]:
         raise RuntimeError("the tests fail without any change")
-    known = {(file, line) for file, line, _ in EQUIVALENT}
     outcome = Outcome([], [], [])
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        made = [
-            pair for file, n in shares(number).items() for pair in mutants(bench, file, n, seed)
-        ]
-        for (mutant, _), killed in zip(
-            made, pool.map(lambda pair: bench.killed(*pair), made), strict=True
-        ):
-            if killed:
-                outcome.killed.append(mutant)
-            elif (mutant.file, mutant.line()) in known:
-                outcome.equivalent.append(mutant)
-            else:
-                outcome.survived.append(mutant)
-                print(f"survived: {mutant}", flush=True)
+    running: dict[int, Path] = {}
+    tested: dict[int, Mutant] = {}
+
+    def wait() -> None:
+        child, passed = finished(running)
+        outcome.add(tested[child], passed)
+
+    for file, share in shares(number).items():
+        for mutant, tree in mutants(bench, file, share, seed):
+            if len(running) == (os.cpu_count() or 1):
+                wait()
+            child = start_tests(tree, file)
+            running[child], tested[child] = tree, mutant
+    while running:
+        wait()
     return outcome
 
 

@@ -101,3 +101,9 @@ def test_the_slowest_velocity_is_still_known(c: Library) -> None:
         c.lib.sh_motion_sign_step(motion, 1.0, 1.0, 0.5)
         unknown.append(motion.unknown)
     assert unknown == [1.0, 0.0, 0.0, 1.0]
+
+
+def test_before_the_first_step_nothing_is_known(c: Library) -> None:
+    motion = c.new("sh_motion_sign")
+    c.lib.sh_motion_sign_start(motion, 3.0)
+    assert (motion.sign, motion.unknown, motion.position) == (0.0, 1.0, 3.0)

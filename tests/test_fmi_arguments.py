@@ -28,7 +28,7 @@ MISSING: list[tuple[str, str, tuple[Any, ...]]] = [
 
 
 @pytest.mark.parametrize(
-    ("function", "argument", "arguments"), MISSING, ids=lambda value: str(value)[:30]
+    ("function", "argument", "arguments"), MISSING, ids=[f"{row[0]}-{row[1]}" for row in MISSING]
 )
 def test_an_argument_that_is_missing_is_named(
     function: str, argument: str, arguments: tuple[Any, ...], estimator_fmu: Path
