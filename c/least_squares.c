@@ -61,7 +61,7 @@ static void project(sh_least_squares *rls, const sh_real *F)
 
     set(padded, F, size);
     for (j = 0; j + 1 < size; j += 2) { /* two columns share F */
-        const sh_real *u = rls->U + j * SH_PANEL;
+        const sh_real *u = rls->U + place(size, 0, j);
         sh_real one[2] = {0, 0}, next[2] = {0, 0};
         int stride = (size - SH_PANEL) * SH_PANEL; /* from a panel to the next */
 
@@ -78,7 +78,7 @@ static void project(sh_least_squares *rls, const sh_real *F)
         sum[j + 1][1] = next[1];
     }
     if (j < size) {
-        const sh_real *u = rls->U + j * SH_PANEL;
+        const sh_real *u = rls->U + place(size, 0, j);
         int stride = (size - SH_PANEL) * SH_PANEL;
 
         sum[j][0] = 0;
@@ -283,7 +283,7 @@ static void add_up_column(const sh_least_squares *rls, int i, sh_real *sum)
     /* Columns of U before the i-th have nothing in row i. */
     for (k = i; k < rls->size; ++k) {
         const sh_real g = rls->D[k] * rls->U[place(rls->size, i, k)];
-        const sh_real *u = rls->U + k * SH_PANEL;
+        const sh_real *u = rls->U + place(rls->size, 0, k);
         int stride = (rls->size - SH_PANEL) * SH_PANEL; /* from a panel to the next */
 
         for (j = 0; j <= k; j += SH_PANEL) {
@@ -313,7 +313,7 @@ static void widen(sh_least_squares *rls, sh_real c, int first)
         const sh_real before = rls->D[j], v_j = v[j];
         const sh_real after = before + c * v_j * v_j;
         const sh_real gain = after > 0 ? c * v_j / after : 0;
-        sh_real *u = rls->U + j * SH_PANEL;
+        sh_real *u = rls->U + place(rls->size, 0, j);
         int stride = (rls->size - SH_PANEL) * SH_PANEL; /* from a panel to the next */
 
         for (i = 0; i <= j; i += SH_PANEL) {

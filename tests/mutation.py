@@ -19,7 +19,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from io import StringIO
@@ -32,6 +32,20 @@ LIBRARY = TESTS.parent / "c"
 NUMBER, SEED = 66, "1"  # of the sample in the gate
 CPU_SECONDS = 120  # of the tests of one mutant; one that runs longer hangs
 ASKED = 0.9  # share that tests have to notice
+# Tests of other parts that use a part of the library: those of its own are not all.
+USERS = {
+    "kinematic_kalman": ("stiffness_estimator",),
+    "least_squares": ("matched_*", "stiffness_estimator"),
+    "matched_regression": ("matched_*",),
+    "motion_sign": ("matched_*",),
+    "parameters": ("stiffness_estimator",),
+    "rounding_bias": ("matched_*",),
+    "scaled_basis": ("prior", "matched_*"),
+    "state_variable_filter": ("matched_*",),
+    "stiffness_estimator": ("prior", "matched_*"),
+    "torque_basis": ("stiffness_estimator",),
+    "torque_residual": ("stiffness_estimator",),
+}
 PYTEST = ("-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", "-m", "not slow")
 FLAGS = (
     "-std=gnu99",
@@ -170,15 +184,17 @@ class Bench:
         return self.link(tree, {**self.objects, mutant.file: changed})
 
 
-def files_for(file: str) -> list[str]:
-    """The tests of the library, those of a file of it first."""
-    own = f"test_c_{Path(file).stem}.py"
-    return sorted(
-        map(str, TESTS.glob("test_c_*.py")), key=lambda path: (Path(path).name != own, path)
-    )
+def files_for(source: str) -> list[str]:
+    """The tests that a mutant of a source has to pass, its own first."""
+    stem = Path(source).stem
+    return [
+        str(path)
+        for name in (stem, *USERS[stem])
+        for path in sorted(TESTS.glob(f"test_c_{name}.py"))
+    ]
 
 
-def start_tests(tree: Path, file: str = "") -> int:
+def start_tests(tree: Path, files: Sequence[str]) -> int:
     """Runs the fast tests with the library of a build tree in a process of their own: its number.
 
     A fork, because to import what the tests use takes longer than most of them.
@@ -193,7 +209,7 @@ def start_tests(tree: Path, file: str = "") -> int:
     os.dup2(output, 2)
     status = 2
     try:
-        status = pytest.main([*PYTEST, *files_for(file)])
+        status = pytest.main([*PYTEST, *files])
     finally:
         sys.stdout.flush()
         os._exit(status)
@@ -259,11 +275,12 @@ def run(folder: Path, number: int = NUMBER, seed: str = SEED) -> Outcome:
     Raises RuntimeError if the tests do not pass with the code as it is.
     """
     bench = Bench(folder)
+    files = sorted({path for source in shares(number) for path in files_for(source)})
     with redirect_stdout(StringIO()):
-        pytest.main([*PYTEST, "--collect-only", *files_for("")])  # imports what they need
+        pytest.main([*PYTEST, "--collect-only", *files])  # imports what they need
     unchanged = Path(tempfile.mkdtemp(dir=folder))
     bench.link(unchanged, bench.objects)
-    if not finished({start_tests(unchanged): unchanged})[1]:
+    if not finished({start_tests(unchanged, files): unchanged})[1]:
         raise RuntimeError("the tests fail without any change")
     outcome = Outcome([], [], [])
     running: dict[int, Path] = {}
@@ -277,7 +294,7 @@ def run(folder: Path, number: int = NUMBER, seed: str = SEED) -> Outcome:
         for mutant, tree in mutants(bench, file, share, seed):
             if len(running) == (os.cpu_count() or 1):
                 wait()
-            child = start_tests(tree, file)
+            child = start_tests(tree, files_for(file))
             running[child], tested[child] = tree, mutant
     while running:
         wait()
