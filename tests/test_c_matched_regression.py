@@ -56,6 +56,7 @@ def test_the_largest_basis_has_a_prior_of_its_own_size(c: Library) -> None:
     """Coefficients behind the torque are those of the motor: their prior mean is zero."""
     eta_0 = np.arange(1.0, 41.0).reshape(8, 5)
     values = {**VALUES, "rls.n": 8, "rls.m": 5, "rls.eta_0": eta_0.tolist()}
+    values["matched.drift"] = 1e-3
     estimator = Estimator(c, values)
     estimator.run(Joint(duration=0.05).measurements())
     assert estimator.state.rls.size == 43

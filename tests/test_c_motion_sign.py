@@ -104,6 +104,10 @@ def test_the_slowest_velocity_is_still_known(c: Library) -> None:
 
 
 def test_before_the_first_step_nothing_is_known(c: Library) -> None:
+    """And no time has passed, whatever there was before."""
     motion = c.new("sh_motion_sign")
-    c.lib.sh_motion_sign_start(motion, 3.0)
-    assert (motion.sign, motion.unknown, motion.position) == (0.0, 1.0, 3.0)
+    for _ in range(2):
+        c.lib.sh_motion_sign_start(motion, 3.0)
+        assert (motion.sign, motion.unknown, motion.waiting, motion.position) == (0, 1, 0, 3)
+        for position in (3.0, 4.0, 6.0, 6.0):
+            c.lib.sh_motion_sign_step(motion, position, 1.0, 0.1)
