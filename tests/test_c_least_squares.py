@@ -349,3 +349,16 @@ def test_nothing_behind_a_regressor_is_read(c: Library, size: int) -> None:
             c.lib.sh_least_squares_move(recursion.state, 0.1, c.pointer(v))
             assert c.lib.sh_least_squares_variance(recursion.state, c.pointer(v)) > 0.0
     assert guarded.bytes() == plain.bytes()
+
+
+@pytest.mark.parametrize("bad", [math.inf, math.nan, 1e300])
+def test_a_bad_weighted_sample_leaves_no_trace(c: Library, bad: float) -> None:
+    recursion = fitted(c, 3)
+    before = recursion.bytes()
+    epsilon, rho = c.ffi.new("double *"), c.ffi.new("double *")
+    for F, y in (([bad, 1.0, 2.0], 1.0), ([1.0, 1.0, 2.0], bad)):
+        row = np.array(F)
+        assert not c.lib.sh_least_squares_weigh(
+            recursion.state, 2.0, c.pointer(row), y, epsilon, rho
+        )
+        assert recursion.bytes() == before
