@@ -362,3 +362,15 @@ def test_a_bad_weighted_sample_leaves_no_trace(c: Library, bad: float) -> None:
             recursion.state, 2.0, c.pointer(row), y, epsilon, rho
         )
         assert recursion.bytes() == before
+
+
+@pytest.mark.parametrize("size", [1, 2, 3])
+def test_a_prediction_has_the_digits_that_rounding_leaves_out(c: Library, size: int) -> None:
+    recursion = Recursion(c, STANDARD, 1.0, 1.0, np.full(size, 1e8))  # last digit 1.5e-8
+    c.lib.sh_least_squares_move(recursion.state, 5e-9, c.pointer(np.ones(size)))
+    for i in range(size):
+        assert recursion.eta[i] == 1e8
+        probe = Recursion(c, STANDARD, 1.0, 1.0, np.zeros(size))
+        c.ffi.memmove(probe.state, recursion.state, c.ffi.sizeof("sh_least_squares"))
+        assert probe.update(np.eye(size)[i], 1e8)
+        assert probe.innovation.epsilon == pytest.approx(-5e-9, rel=1e-9)
