@@ -103,6 +103,11 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
         "no filter behind the last column is read",
     ),
     (
+        "matched_regression.c",
+        "settings->motor_prior[SH_MOTOR_B] >= 0)",
+        "without a prior there is no variance, and nothing is taken back",
+    ),
+    (
         "motion_sign.c",
         "const sh_real way = change >= 0 ? 1 : -1;",
         "is not used where the change is zero",

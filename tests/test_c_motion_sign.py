@@ -75,11 +75,12 @@ def test_a_reversal_costs_no_impulse(c: Library, acceleration: float, seed: int)
     assert abs(np.sum(signs[50:] - true[50:])) < 1.0
 
 
-def test_without_rounding_a_reversal_is_placed_within_the_sample(c: Library) -> None:
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_without_rounding_a_reversal_is_placed_within_the_sample(c: Library, way: float) -> None:
     turn = 0.0503
     t = T * steps(101)
-    signs, _ = run(c, 50.0 * (t - turn) ** 2, count=0.0)
-    true = 2 * np.clip((t[1:] - turn) / T, 0, 1) - 1
+    signs, _ = run(c, way * 50.0 * (t - turn) ** 2, count=0.0)
+    true = way * (2 * np.clip((t[1:] - turn) / T, 0, 1) - 1)
     assert abs(np.sum(signs[1:] - true[1:])) < 1e-6
 
 
