@@ -10,8 +10,9 @@ add_custom_target(
     ${SIGMAHAT_PYTHON} -m pytest -q -n auto --dist loadscope -m "not slow" ${tests}
   COMMAND
     ${SIGMAHAT_PYTHON} -m gcovr --object-directory ${PROJECT_BINARY_DIR} --filter c/
-    --filter fmu_src/ --gcov-exclude-directories .*/CompilerIdC --txt - --txt-metric branch --print-summary --fail-under-branch 95 --delete
-    ${PROJECT_BINARY_DIR}
+    --filter fmu_src/ --gcov-exclude-directories .*/CompilerIdC --txt - --txt-metric branch
+    --print-summary --fail-under-branch 95 --delete ${PROJECT_BINARY_DIR}
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   USES_TERMINAL VERBATIM)
-add_dependencies(coverage sigmahat_test_driver)
+add_dependencies(coverage sigmahat_test_driver StiffnessEstimator AntagonisticStiffnessEstimator
+                 AwasPlant FlexibleJointPlant AntagonisticVsaPlant awas_system)

@@ -59,8 +59,9 @@ def run(c: Library, z: Array, w_s: float = W_S, dt: float = T, **settings: Any) 
 
 def test_starts_at_the_measurement_at_rest(c: Library) -> None:
     p = c.new("sh_filter_parameters", **{**SETTINGS, "P_0": 7.0})
-    kalman = c.new("sh_kinematic_kalman", lag=1.0, x_dot=2.0, P12=3.0)
+    kalman = c.new("sh_kinematic_kalman", lag=1.0, x_dot=2.0, dx=4.0, dx_dot=5.0, P12=3.0)
     c.lib.sh_kinematic_kalman_start(kalman, p, -0.25)
+    assert (kalman.dx, kalman.dx_dot) == (0.0, 0.0)
     assert (position(kalman), kalman.x_dot) == (-0.25, 0.0)
     assert (kalman.P11, kalman.P12, kalman.P22) == (7.0, 0.0, 7.0)
 

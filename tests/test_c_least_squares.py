@@ -334,3 +334,43 @@ def test_moving_keeps_what_rounding_leaves_out(c: Library) -> None:
         c.lib.sh_least_squares_move(recursion.state, 1e-10, c.pointer(v))
     left = recursion.state.eta[0] - 1e8 + recursion.state.eta_low[0]
     assert left == pytest.approx(1e-5, rel=1e-6)
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 4, 5, 8])
+def test_nothing_behind_a_regressor_is_read(c: Library, size: int) -> None:
+    """GIVEN regressors with NaN behind them in memory, THEN all is as if there were nothing."""
+    rng = np.random.default_rng(size)
+    plain, guarded = (Recursion(c, ENHANCED, 0.5, 2.0, np.zeros(size)) for _ in range(2))
+    for F, y in zip(rng.normal(size=(5, size)), rng.normal(size=5), strict=True):
+        for recursion, behind in ((plain, 0.0), (guarded, math.nan)):
+            v = np.append(F, np.full(4, behind))
+            assert recursion.update(v, y)
+            c.lib.sh_least_squares_widen(recursion.state, 0.1, c.pointer(v))
+            c.lib.sh_least_squares_move(recursion.state, 0.1, c.pointer(v))
+            assert c.lib.sh_least_squares_variance(recursion.state, c.pointer(v)) > 0.0
+    assert guarded.bytes() == plain.bytes()
+
+
+@pytest.mark.parametrize("bad", [math.inf, math.nan, 1e300])
+def test_a_bad_weighted_sample_leaves_no_trace(c: Library, bad: float) -> None:
+    recursion = fitted(c, 3)
+    before = recursion.bytes()
+    epsilon, rho = c.ffi.new("double *"), c.ffi.new("double *")
+    for F, y in (([bad, 1.0, 2.0], 1.0), ([1.0, 1.0, 2.0], bad)):
+        row = np.array(F)
+        assert not c.lib.sh_least_squares_weigh(
+            recursion.state, 2.0, c.pointer(row), y, epsilon, rho
+        )
+        assert recursion.bytes() == before
+
+
+@pytest.mark.parametrize("size", [1, 2, 3])
+def test_a_prediction_has_the_digits_that_rounding_leaves_out(c: Library, size: int) -> None:
+    recursion = Recursion(c, STANDARD, 1.0, 1.0, np.full(size, 1e8))  # last digit 1.5e-8
+    c.lib.sh_least_squares_move(recursion.state, 5e-9, c.pointer(np.ones(size)))
+    for i in range(size):
+        assert recursion.eta[i] == 1e8
+        probe = Recursion(c, STANDARD, 1.0, 1.0, np.zeros(size))
+        c.ffi.memmove(probe.state, recursion.state, c.ffi.sizeof("sh_least_squares"))
+        assert probe.update(np.eye(size)[i], 1e8)
+        assert probe.innovation.epsilon == pytest.approx(-5e-9, rel=1e-9)

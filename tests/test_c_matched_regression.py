@@ -56,7 +56,49 @@ def test_the_largest_basis_has_a_prior_of_its_own_size(c: Library) -> None:
     """Coefficients behind the torque are those of the motor: their prior mean is zero."""
     eta_0 = np.arange(1.0, 41.0).reshape(8, 5)
     values = {**VALUES, "rls.n": 8, "rls.m": 5, "rls.eta_0": eta_0.tolist()}
+    values["matched.drift"] = 1e-3
     estimator = Estimator(c, values)
     estimator.run(Joint(duration=0.05).measurements())
     assert estimator.state.rls.size == 43
     assert np.all(np.isfinite(estimator.covariance()))
+
+
+def test_a_motor_at_rest_anywhere_teaches_at_once(c: Library) -> None:
+    z = np.zeros((50, 5))
+    z[:, 0] = z[:, 1] = 1.0
+    found = Estimator(c, VALUES).run(z)
+    assert np.all(found["valid"] == 1)
+    assert np.all(found["a"] == 1.0)
+
+
+def test_a_motor_that_moves_at_the_first_step_teaches_later(c: Library) -> None:
+    z = np.zeros((50, 5))
+    z[1:, 0] = z[1:, 1] = 3 * 2 * np.pi / 40000 + 0.05 * T
+    found = Estimator(c, VALUES).run(z)
+    settling = 12 / 350.0 / T  # ticks in twelve time constants of the filter
+    assert np.flatnonzero(found["a"][1:])[0] == pytest.approx(settling, abs=2)
+
+
+@pytest.mark.parametrize("sigma", [0.0, 1e3, -1e5])
+def test_a_sample_counts_as_its_noise_and_rounding_say(c: Library, sigma: float) -> None:
+    """GIVEN a joint that holds still, THEN its k-th sample has the variance R (1 + k c / R)^2,
+    with R of torque and rounding, and c of the rounding, which stays."""
+    count, count_q, noise, gamma = 1e-4, 3e-4, 2e-3, 50.0
+    settings = c.new(
+        "sh_matched_settings",
+        **{"T": T, "bandwidth": 350.0, "slow": 0.05, "torque": 3.0},
+        **{"noise": noise, "count": count, "count_q": count_q},
+    )
+    settings.motor.gamma = gamma
+    matched, rls = c.new("sh_matched_regression"), c.new("sh_least_squares")
+    F, y, innovation = c.ffi.new("double[1]", [0.7]), c.ffi.new("double *"), c.new("sh_innovation")
+    c.lib.sh_matched_start(matched, rls, settings, 1, c.ffi.new("double[1]"))
+    rounding = sigma**2 * (count**2 + count_q**2) / 12
+    R = rounding + (gamma * noise) ** 2
+    for k in range(5):
+        P = c.lib.sh_least_squares_covariance(rls, 0, 0)
+        arguments = (0.0, 0.0, 0.2, sigma, F, y, innovation)
+        assert c.lib.sh_matched_step(matched, rls, settings, *arguments) == 1
+        filtered = 0.7 - matched.column[0].behind[2]
+        want = R * (1 + k * rounding / R) ** 2
+        assert innovation.rho == pytest.approx(filtered**2 * P / want, rel=1e-9)

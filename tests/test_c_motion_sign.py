@@ -75,11 +75,12 @@ def test_a_reversal_costs_no_impulse(c: Library, acceleration: float, seed: int)
     assert abs(np.sum(signs[50:] - true[50:])) < 1.0
 
 
-def test_without_rounding_a_reversal_is_placed_within_the_sample(c: Library) -> None:
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_without_rounding_a_reversal_is_placed_within_the_sample(c: Library, way: float) -> None:
     turn = 0.0503
     t = T * steps(101)
-    signs, _ = run(c, 50.0 * (t - turn) ** 2, count=0.0)
-    true = 2 * np.clip((t[1:] - turn) / T, 0, 1) - 1
+    signs, _ = run(c, way * 50.0 * (t - turn) ** 2, count=0.0)
+    true = way * (2 * np.clip((t[1:] - turn) / T, 0, 1) - 1)
     assert abs(np.sum(signs[1:] - true[1:])) < 1e-6
 
 
@@ -109,3 +110,13 @@ def test_reversal_is_as_unknown_as_the_signs_it_takes_back(c: Library) -> None:
     signs, unknown = run(c, COUNT * np.array([0, 1, 1, 2, 2, 3, 3, 3, 2, 2.0]))
     assert signs[4:].tolist() == [1, 1, 1, -1 - 2, -1]
     assert unknown[4:].tolist() == [0, 0, 0, 1 + 2, 0]
+
+
+def test_before_the_first_step_nothing_is_known(c: Library) -> None:
+    """And no time has passed, whatever there was before."""
+    motion = c.new("sh_motion_sign")
+    for _ in range(2):
+        c.lib.sh_motion_sign_start(motion, 3.0)
+        assert (motion.sign, motion.unknown, motion.waiting, motion.position) == (0, 1, 0, 3)
+        for position in (3.0, 4.0, 6.0, 6.0):
+            c.lib.sh_motion_sign_step(motion, position, 1.0, 0.1)

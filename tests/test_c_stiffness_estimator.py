@@ -429,6 +429,44 @@ def test_learning_goes_on_when_the_residual_has_forgotten(c: Library, lost: int)
     assert np.all(a[settled : settled + 100] > 0)
 
 
+def test_a_gap_of_two_time_constants_is_not_bridged(c: Library) -> None:
+    """GIVEN 1 / K_I of two samples, WHEN three are lost, so that the step is 2 / K_I long, THEN
+    the residual stays; WHEN two are lost, it does not."""
+    T = 1.0 / 1024.0
+    for lost, stays in ((2, False), (3, True)):
+        estimator = Estimator(c, {"samplePeriod": T, "residual.K_I": 512.0})
+        for k in range(10):
+            estimator.tick([1e-3 * k, 0.0, 0.0, 0.1, 0.0])
+        before = estimator.estimate.tau_e_residual
+        for _ in range(lost):
+            assert not estimator.tick([math.nan, 0.0, 0.0, 0.1, 0.0])
+        assert estimator.tick([0.02, 0.0, 0.0, 0.3, 0.0])
+        assert (estimator.estimate.tau_e_residual == before) == stays
+
+
+@pytest.mark.parametrize("filter_kind", FILTERS)
+def test_a_filtered_deformation_is_between_two_filtered_positions(
+    c: Library, filter_kind: int
+) -> None:
+    z = table1_recording().measurements()[:200]
+    T, counts = 1e-3, {"theta": 40000.0, "q": 5000.0}
+    values = {"deformation": FILTERED, "filter.kind": filter_kind, "encoder.q": counts["q"]}
+    estimator = Estimator(c, values)
+    found = estimator.run(z)["phi"]
+    filtered = {}
+    for column, (name, of_turn) in enumerate(counts.items()):
+        kalman, settings = c.new("sh_kinematic_kalman"), estimator.parameters.filter
+        x = z[:, column].tolist()
+        c.lib.sh_kinematic_kalman_start(kalman, c.ffi.addressof(settings), x[0])
+        filtered[name] = [x[0]]
+        for position in x[1:]:
+            w_s = 2 * math.pi / of_turn / T
+            c.lib.sh_kinematic_kalman_step(kalman, c.ffi.addressof(settings), position, T, w_s)
+            filtered[name].append(position + kalman.lag)
+    want = np.array(filtered["q"]) - np.array(filtered["theta"])
+    assert found == pytest.approx(want, abs=1e-12)
+
+
 @pytest.mark.parametrize("filter_kind", FILTERS)
 @pytest.mark.parametrize("every", [2, 10])
 def test_stiffness_is_found_from_every_other_sample(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +10,10 @@ import pytest
 
 import endurance
 from c_programs import compiler_with
-from endurance import BOUND, Case, Result
+from endurance import BOUND, Case
 from gate import missing
+
+INPUT_CYCLE = 10**5  # ticks; all phases of the input
 
 
 @pytest.fixture(scope="module")
@@ -34,24 +35,23 @@ def extended(folder: Path) -> Path:
     return endurance.compile_program(folder, "long double")
 
 
-@pytest.mark.parametrize("n,m", [(1, 1), (6, 3)])
-@pytest.mark.parametrize("method", endurance.METHODS)
+@pytest.mark.parametrize(
+    "method,n,m,torque", [(1, 1, 1, 1e6), (1, 6, 3, 1e6), (2, 1, 1, 1e3), (2, 3, 3, 1e3)]
+)
 def test_a_million_ticks_are_those_of_long_double(
-    program: Path, extended: Path, method: int, n: int, m: int
+    folder: Path, program: Path, extended: Path, method: int, n: int, m: int, torque: float
 ) -> None:
-    result = endurance.compare(Case(method, n, m, 10**6, 10**6), program, extended)
-    assert result.run[-1][0] == 10**6
-    difference, output = result.difference()
-    assert difference < BOUND, output
+    case = Case(method, n, m, torque, 10**6, 10**6)
+    largest, output = endurance.compare(case, program, extended, folder)
+    assert largest < BOUND, output
 
 
 @pytest.mark.parametrize("method", endurance.METHODS)
 def test_long_double_has_digits_to_spare(folder: Path, extended: Path, method: int) -> None:
-    # 1e5 ticks are one turn through all phases of the input.
     quad = endurance.compile_program(folder, "quad")
-    result = endurance.compare(Case(method, 2, 1, 10**5, 10**5), extended, quad)
-    difference, output = result.difference()
-    assert difference < BOUND / 1000.0, output
+    case = Case(method, 2, 1, 1e3, INPUT_CYCLE, INPUT_CYCLE)
+    largest, output = endurance.compare(case, extended, quad, folder)
+    assert largest < BOUND / 1000.0, output
 
 
 @pytest.mark.parametrize("n,m", [(1, 1), (8, 5)])
@@ -60,15 +60,16 @@ def test_no_undefined_behaviour(folder: Path, method: int, n: int, m: int) -> No
     flags = ("-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all")
     compiler = compiler_with(flags, folder)
     program = endurance.compile_program(folder, "double", compiler, flags)
-    command = [str(program), *(str(number) for number in (method, n, m, 10**5))]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0 and done.stderr == "", done.stderr
+    checkpoints = endurance.run(
+        program, Case(method, n, m, 1e6, 0, 0), INPUT_CYCLE, folder / f"{method}_{n}"
+    )
+    assert checkpoints[-1][0] == INPUT_CYCLE
 
 
 def test_a_difference_is_seen() -> None:
     first = [np.longdouble(number) for number in (10, 1, 2, 3, 4, 5, 6, 7, 8)]
     second = [np.longdouble(13), *first[1:]]
     other = [*second[:3], second[3] * (1 + 1e-6), *second[4:]]
-    difference, output = Result([first, second], [first, other]).difference()
+    largest, output = endurance.difference([first, second], [first, other])
     assert output == "sigma_std"
-    assert difference == pytest.approx(1e-6, rel=1e-3)
+    assert largest == pytest.approx(1e-6, rel=1e-3)

@@ -28,9 +28,7 @@ MISSING: list[tuple[str, str, tuple[Any, ...]]] = [
 
 
 @pytest.mark.parametrize(
-    ("function", "argument", "arguments"),
-    MISSING,
-    ids=[f"{i}-{m[0]}" for i, m in enumerate(MISSING)],
+    ("function", "argument", "arguments"), MISSING, ids=[f"{row[0]}-{row[1]}" for row in MISSING]
 )
 def test_an_argument_that_is_missing_is_named(
     function: str, argument: str, arguments: tuple[Any, ...], estimator_fmu: Path

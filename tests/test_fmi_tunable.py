@@ -179,5 +179,6 @@ def test_a_plant_goes_on_from_its_state_with_the_parameter_changed(fmu: str, nam
     scale[scale == 0.0] = 1.0
     error = np.abs(with_change[CHANGE:] - expected) / scale
     effect = np.abs(with_change[CHANGE:] - without[CHANGE:]) / scale
-    assert error.max() < 1e-9  # of the integration, which took other internal steps
+    # Of the integration, which took other internal steps: its tolerance for one of them.
+    assert error.max() < 1e-8
     assert effect.max() > 1e-7

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
-import mutation
+import pytest
+
 from gate import missing
 
 
-def test_nearly_every_wrong_token_is_noticed(tmp_path: Path) -> None:
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the mutants are tested in forks")
+def test_nearly_every_wrong_token_is_noticed() -> None:
     if shutil.which("gcc") is None:
         missing("gcc", "apt-get install gcc")
-    outcome = mutation.run(tmp_path)
-    assert len(outcome.killed) + len(outcome.survived) + len(outcome.equivalent) >= 60
-    assert outcome.share() >= mutation.ASKED, "\n".join(map(str, outcome.survived))
+    command = [sys.executable, str(Path(__file__).parent / "mutation.py")]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -1,6 +1,6 @@
-/* Runs one estimator for any number of ticks: METHOD N M TICKS.
+/* Runs one estimator for any number of ticks: METHOD N M TORQUE TICKS.
  *
- * After every tick, P has to be positive definite and every output finite; if not, it says at
+ * TORQUE is how many times the usual torque the huge one is. After every tick, P has to be positive definite and every output finite; if not, it says at
  * which tick and ends with 1. It prints the outputs at checkpoints, a line each: every time the
  * number of ticks has grown by a third.
  */
@@ -31,14 +31,13 @@ static int finite_outputs(const sh_estimate *e)
 
 static void print(long tick, const sh_estimate *e)
 {
-    const printed_real out[] = {e->sigma,          e->tau_e,     e->sigma_std,
-                                e->tau_e_residual, e->theta_dot, e->D_theta_hat,
-                                e->B_hat,          e->tau_coulomb_hat};
+    const sh_real out[] = {e->sigma,     e->tau_e,       e->sigma_std, e->tau_e_residual,
+                           e->theta_dot, e->D_theta_hat, e->B_hat,     e->tau_coulomb_hat};
     size_t i;
 
     printf("%ld", tick);
     for (i = 0; i < sizeof out / sizeof out[0]; ++i)
-        printf(" %.20Lg", out[i]);
+        printf(" %.20Lg", (long double)out[i]);
     printf("\n");
     fflush(stdout);
 }
@@ -52,14 +51,14 @@ int main(int argc, char **argv)
     sh_violation violation;
     long ticks, tick, next = 10;
 
-    if (argc != 5)
+    if (argc != 6)
         return 2;
     sh_parameters_default(&p);
     p.method = atoi(argv[1]);
     p.rls.n = atoi(argv[2]);
     p.rls.m = atoi(argv[3]);
-    ticks = atol(argv[4]);
-    p.encoder.theta = p.encoder.q = 6.283185307179586 / INPUT_COUNT;
+    ticks = atol(argv[5]);
+    p.encoder.theta = p.encoder.q = INPUT_COUNTS;
     p.prior.B = 0.1;
     p.prior.tau_coulomb = 0.02;
     p.matched.drift = 1e-3;
@@ -68,7 +67,7 @@ int main(int argc, char **argv)
         return 2;
     }
     sh_estimator_start(&estimator, &p, &estimate);
-    input_start(&input);
+    input_start(&input, atof(argv[4]));
     for (tick = 1; tick <= ticks; ++tick) {
         const input_sample s = input_next(&input);
         const sh_measurement z = {s.theta, s.q, s.theta_c, s.tau, s.tau_e_sensor};

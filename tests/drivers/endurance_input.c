@@ -34,16 +34,17 @@ static double noise(uint64_t *state)
     return (double)(*state >> 11) / 4503599627370496.0 - 1.0;
 }
 
-static double counted(double angle, double count)
+static double counted(double angle)
 {
-    return floor(angle / count + 0.5) * count;
+    return floor(angle * (INPUT_COUNTS / TURN) + 0.5) * (TURN / INPUT_COUNTS);
 }
 
-void input_start(input_stream *input)
+void input_start(input_stream *input, double torque)
 {
     static const input_stream zero;
 
     *input = zero;
+    input->torque = torque;
     input->fast = pointer(1.7137);
     input->slow = pointer(0.31313);
     input->bend = pointer(0.7713);
@@ -66,9 +67,9 @@ static input_sample moving(input_stream *input)
     const double friction = theta_dot > 0.0 ? COULOMB : -COULOMB;
     input_sample z;
 
-    z.theta = counted(theta, INPUT_COUNT);
-    z.q = counted(theta + phi, INPUT_COUNT);
-    z.theta_c = counted(theta_c, INPUT_COUNT_C);
+    z.theta = counted(theta);
+    z.q = counted(theta + phi);
+    z.theta_c = counted(theta_c);
     z.tau = GAMMA * (B * theta_ddot + D_THETA * theta_dot) + friction - tau_e / GAMMA +
             5e-3 * noise(&input->random);
     z.tau_e_sensor = tau_e + 5e-2 * noise(&input->random);
@@ -98,8 +99,8 @@ input_sample input_next(input_stream *input)
         return z;
     }
     if (phase < 61000) { /* a torque that no joint has */
-        z.tau *= 1e6;
-        z.tau_e_sensor *= 1e6;
+        z.tau *= input->torque;
+        z.tau_e_sensor *= input->torque;
         return z;
     }
     if (phase >= 70000 && phase < 80000) /* what feeds the regression changes */
