@@ -30,7 +30,7 @@ import pytest
 TESTS = Path(__file__).resolve().parent
 LIBRARY = TESTS.parent / "c"
 NUMBER, SEED = 66, "fresh-b"  # of the sample in the gate
-CPU_SECONDS = 40  # of the tests of one mutant; one that runs longer hangs
+CPU_SECONDS = 30  # of the tests of one mutant; one that runs longer hangs
 ASKED = 0.9  # share that tests have to notice
 # Tests of other parts that use a part of the library: those of its own are not all.
 USERS = {
