@@ -72,11 +72,12 @@ static void project(sh_least_squares *rls, const sh_real *F)
         for (i = 0; i <= j; i += SH_PANEL) {
             const sh_real *rows = i + SH_PANEL <= size ? F + i : last;
             const sh_real F_i[SH_PANEL] = {rows[0], rows[1], rows[2], rows[3]};
+            const sh_real *u_1 = u + SH_PANEL, *u_2 = u_1 + SH_PANEL, *u_3 = u_2 + SH_PANEL;
 
             add(u, F_i, sum_0);
-            add(u + SH_PANEL, F_i, sum_1);
-            add(u + 2 * SH_PANEL, F_i, sum_2);
-            add(u + 3 * SH_PANEL, F_i, sum_3);
+            add(u_1, F_i, sum_1);
+            add(u_2, F_i, sum_2);
+            add(u_3, F_i, sum_3);
             u += stride;
             stride -= SH_PANEL * SH_PANEL;
         }
