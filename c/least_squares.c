@@ -52,42 +52,44 @@ static void add(const sh_real *u, const sh_real *F, sh_real *sum)
     sum[1] += u[1] * F[1] + u[3] * F[3];
 }
 
-/* work.f = U' F */
+/* work.f = U' F. SH_PANEL columns share F. Of the columns behind the last one nothing is used: in
+ * memory the next panel lies there.
+ */
 static void project(sh_least_squares *rls, const sh_real *F)
 {
     const int size = rls->size;
-    sh_real *padded = rls->work.F, (*sum)[2] = rls->work.pairs;
+    sh_real (*sum)[2] = rls->work.pairs;
+    sh_real last[SH_PANEL] = {0, 0, 0, 0}; /* F in the last panel, if that has fewer rows */
     int i, j;
 
-    set(padded, F, size);
-    for (j = 0; j + 1 < size; j += 2) { /* two columns share F */
+    for (i = size - size % SH_PANEL; i < size; ++i)
+        last[i % SH_PANEL] = F[i];
+    for (j = 0; j < size; j += SH_PANEL) {
         const sh_real *u = rls->U + place(size, 0, j);
-        sh_real one[2] = {0, 0}, next[2] = {0, 0};
+        sh_real sum_0[2] = {0, 0}, sum_1[2] = {0, 0}, sum_2[2] = {0, 0}, sum_3[2] = {0, 0};
         int stride = (size - SH_PANEL) * SH_PANEL; /* from a panel to the next */
 
         for (i = 0; i <= j; i += SH_PANEL) {
-            const sh_real F_i[SH_PANEL] = {padded[i], padded[i + 1], padded[i + 2], padded[i + 3]};
-            add(u, F_i, one);
-            add(u + SH_PANEL, F_i, next);
-            u += stride;
-            stride -= SH_PANEL * SH_PANEL;
-        }
-        sum[j][0] = one[0];
-        sum[j][1] = one[1];
-        sum[j + 1][0] = next[0];
-        sum[j + 1][1] = next[1];
-    }
-    if (j < size) {
-        const sh_real *u = rls->U + place(size, 0, j);
-        int stride = (size - SH_PANEL) * SH_PANEL;
+            const sh_real *rows = i + SH_PANEL <= size ? F + i : last;
+            const sh_real F_i[SH_PANEL] = {rows[0], rows[1], rows[2], rows[3]};
+            const sh_real *u_1 = u + SH_PANEL, *u_2 = u_1 + SH_PANEL, *u_3 = u_2 + SH_PANEL;
 
-        sum[j][0] = 0;
-        sum[j][1] = 0;
-        for (i = 0; i <= j; i += SH_PANEL) {
-            add(u, padded + i, sum[j]);
+            add(u, F_i, sum_0);
+            add(u_1, F_i, sum_1);
+            add(u_2, F_i, sum_2);
+            add(u_3, F_i, sum_3);
             u += stride;
             stride -= SH_PANEL * SH_PANEL;
         }
+        /* To memory first: gcc 12 transposes what it sees summed up here. */
+        sum[j][0] = sum_0[0];
+        sum[j][1] = sum_0[1];
+        sum[j + 1][0] = sum_1[0];
+        sum[j + 1][1] = sum_1[1];
+        sum[j + 2][0] = sum_2[0];
+        sum[j + 2][1] = sum_2[1];
+        sum[j + 3][0] = sum_3[0];
+        sum[j + 3][1] = sum_3[1];
     }
     for (j = 0; j < size; ++j)
         rls->work.f[j] = sum[j][0] + sum[j][1];
@@ -95,13 +97,18 @@ static void project(sh_least_squares *rls, const sh_real *F)
 
 sh_real sh_least_squares_variance(sh_least_squares *rls, const sh_real *F)
 {
-    sh_real rho = 0;
+    const sh_real *f = rls->work.f, *D = rls->D;
+    sh_real even = 0, odd = 0; /* they do not wait for each other */
     int j;
 
     project(rls, F);
-    for (j = 0; j < rls->size; ++j)
-        rho += rls->work.f[j] * (rls->D[j] * rls->work.f[j]);
-    return rho;
+    for (j = 0; j + 1 < rls->size; j += 2) {
+        even += f[j] * (D[j] * f[j]);
+        odd += f[j + 1] * (D[j + 1] * f[j + 1]);
+    }
+    if (j < rls->size)
+        even += f[j] * (D[j] * f[j]);
+    return even + odd;
 }
 
 sh_real sh_least_squares_covariance(const sh_least_squares *rls, int i, int j)
@@ -133,42 +140,6 @@ static sh_real sample_weight(int kind, sh_real factor, sh_real rho)
     return 1;
 }
 
-/* Begins a sample: f = U' F, and rho before each column. Returns the whole rho = F' P F. */
-static sh_real begin(sh_least_squares *rls, const sh_real *F)
-{
-    sh_real *f = rls->work.f, *rho = rls->work.rho, before = 0;
-    int j;
-
-    project(rls, F);
-    for (j = 0; j + 1 < rls->size; j += 2) { /* two at a time wait for each other half as long */
-        const sh_real one = f[j] * (rls->D[j] * f[j]);
-        const sh_real both = one + f[j + 1] * (rls->D[j + 1] * f[j + 1]);
-
-        rho[j] = before;
-        rho[j + 1] = before + one;
-        before += both;
-    }
-    if (j < rls->size) {
-        rho[j] = before;
-        before += f[j] * (rls->D[j] * f[j]);
-    }
-    return before;
-}
-
-/* eta += c v */
-static void move(sh_real *eta, sh_real *eta_low, sh_real c, const sh_real *v, int size)
-{
-    int j;
-
-    for (j = 0; j < size; ++j) {
-        const sh_real before = eta[j];
-        const sh_real change = c * v[j] + eta_low[j];
-        const sh_real after = before + change;
-        eta[j] = after;
-        eta_low[j] = change - (after - before);
-    }
-}
-
 /* y - F' eta */
 static sh_real prediction_error(const sh_least_squares *rls, const sh_real *F, sh_real y)
 {
@@ -188,14 +159,70 @@ static sh_real prediction_error(const sh_least_squares *rls, const sh_real *F, s
     return y - (high[0] + high[1]) - (low[0] + low[1]);
 }
 
+/* Begins a sample: the prediction error, f = U' F, g = D f in the place of F, and rho before each
+ * column. Returns the whole rho = F' P F.
+ */
+static sh_real begin(sh_least_squares *rls, const sh_real *F, sh_real y, sh_real *epsilon)
+{
+    const sh_real *f = rls->work.f;
+    sh_real *g = rls->work.F, *rho = rls->work.rho, before = 0;
+    int j;
+
+    project(rls, F);
+    *epsilon = prediction_error(rls, F, y);
+    for (j = 0; j + 1 < rls->size; j += 2) { /* two at a time wait for each other half as long */
+        const sh_real g_0 = rls->D[j] * f[j], g_1 = rls->D[j + 1] * f[j + 1];
+        const sh_real one = f[j] * g_0, both = one + f[j + 1] * g_1;
+
+        g[j] = g_0;
+        g[j + 1] = g_1;
+        rho[j] = before;
+        rho[j + 1] = before + one;
+        before += both;
+    }
+    if (j < rls->size) {
+        g[j] = rls->D[j] * f[j];
+        rho[j] = before;
+        before += f[j] * g[j];
+    }
+    rho[rls->size] = before;
+    return before;
+}
+
+/* eta += c v */
+static void move(sh_real *eta, sh_real *eta_low, sh_real c, const sh_real *v, int size)
+{
+    int j;
+
+    for (j = 0; j < size; ++j) {
+        const sh_real before = eta[j];
+        const sh_real change = c * v[j] + eta_low[j];
+        const sh_real after = before + change;
+        eta[j] = after;
+        eta_low[j] = change - (after - before);
+    }
+}
+
+/* One column u of a panel in the update of take. */
+static void rotate(sh_real *u, sh_real s, sh_real g, sh_real *p)
+{
+    const sh_real u_0 = u[0], u_1 = u[1], u_2 = u[2], u_3 = u[3];
+
+    u[0] = u_0 - s * p[0];
+    u[1] = u_1 - s * p[1];
+    u[2] = u_2 - s * p[2];
+    u[3] = u_3 - s * p[3];
+    p[0] += g * u_0;
+    p[1] += g * u_1;
+    p[2] += g * u_2;
+    p[3] += g * u_3;
+}
+
 /* Takes a sample that was begun. */
-static int take(sh_least_squares *rls, sh_real w, const sh_real *F, sh_real y, sh_real rho,
-                sh_real *epsilon)
+static int take(sh_least_squares *rls, sh_real w, sh_real rho, sh_real error)
 {
     const int size = rls->size;
-    sh_real *f = rls->work.f, *beta = rls->work.rho, (*sg)[2] = rls->work.pairs;
-    const sh_real error = prediction_error(rls, F, y);
-    sh_real *u = rls->U;
+    sh_real *u = rls->U, *g = rls->work.F, *s = rls->work.f;
     int i, j;
 
     if (!(w * rho <= LARGEST) || !(sh_fabs(error) <= LARGEST))
@@ -205,53 +232,42 @@ static int take(sh_least_squares *rls, sh_real w, const sh_real *F, sh_real y, s
      * beta_j = 1 + w (f_0 g_0 + ... + f_{j-1} g_{j-1}), D_j shrinks by beta_j / beta_{j+1}, and
      * column j of U by s_j = w f_j / beta_j times the product of the blocks of P and F before it.
      */
-    for (j = 0; j < size; ++j)
-        beta[j] = 1 + w * beta[j];
-    beta[size] = 1 + w * rho;
     for (j = 0; j < size; ++j) {
-        sg[j][0] = w * f[j] / beta[j];
-        sg[j][1] = rls->D[j] * f[j];
-        rls->D[j] *= beta[j] / beta[j + 1];
+        const sh_real beta = 1 + w * rls->work.rho[j];
+
+        rls->D[j] *= beta / (1 + w * rls->work.rho[j + 1]);
+        rls->work.f[j] = w * rls->work.f[j] / beta;
     }
     /* Panel after panel, as an entry p of the product needs those of its row alone. In column i of
      * the panel only the one on the diagonal is not zero.
      */
     for (i = 0; i < size; i += SH_PANEL) {
-        sh_real p_0 = sg[i][1], p_1 = 0, p_2 = 0, p_3 = 0;
+        sh_real p[SH_PANEL] = {g[i], 0, 0, 0};
 
         u += SH_PANEL;
         for (j = i + 1; j < size; ++j) {
-            const sh_real s_j = sg[j][0], g_j = sg[j][1];
-            const sh_real u_0 = u[0], u_1 = u[1], u_2 = u[2], u_3 = u[3];
-
-            u[0] = u_0 - s_j * p_0;
-            u[1] = u_1 - s_j * p_1;
-            u[2] = u_2 - s_j * p_2;
-            u[3] = u_3 - s_j * p_3;
-            p_0 += g_j * u_0;
-            p_1 += g_j * u_1;
-            p_2 += g_j * u_2;
-            p_3 += g_j * u_3;
+            rotate(u, s[j], g[j], p);
             u += SH_PANEL;
         }
-        f[i] = p_0; /* f itself is not needed any more */
-        f[i + 1] = p_1;
-        f[i + 2] = p_2;
-        f[i + 3] = p_3;
+        g[i] = p[0];
+        g[i + 1] = p[1];
+        g[i + 2] = p[2];
+        g[i + 3] = p[3];
     }
     /* eta += a K epsilon with a K = w P F / (1 + w rho), (25) */
-    move(rls->eta, rls->eta_low, w * error / beta[size], f, size);
-    *epsilon = error;
+    move(rls->eta, rls->eta_low, w * error / (1 + w * rho), g, size);
     return 1;
 }
 
 int sh_least_squares_weigh(sh_least_squares *rls, sh_real w, const sh_real *F, sh_real y,
                            sh_real *epsilon, sh_real *rho)
 {
-    const sh_real variance = begin(rls, F);
+    sh_real error;
+    const sh_real variance = begin(rls, F, y, &error);
 
-    if (!take(rls, w, F, y, variance, epsilon))
+    if (!take(rls, w, variance, error))
         return 0;
+    *epsilon = error;
     *rho = variance;
     return 1;
 }
@@ -259,10 +275,12 @@ int sh_least_squares_weigh(sh_least_squares *rls, sh_real w, const sh_real *F, s
 int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
                             sh_real y, sh_innovation *innovation)
 {
-    const sh_real rho = begin(rls, F);
+    sh_real error;
+    const sh_real rho = begin(rls, F, y, &error);
 
-    if (!take(rls, sample_weight(kind, factor, rho), F, y, rho, &innovation->epsilon))
+    if (!take(rls, sample_weight(kind, factor, rho), rho, error))
         return 0;
+    innovation->epsilon = error;
     innovation->rho = rho;
     innovation->a = stability_factor(kind, factor, rho);
     return 1;

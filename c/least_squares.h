@@ -33,7 +33,8 @@ enum {
 enum {
     SH_PANEL = 4,                                         /* rows of U side by side in memory */
     SH_MAX_ROWS = (SH_MAX_PARAMETERS + SH_PANEL - 1) / SH_PANEL * SH_PANEL,
-    SH_MAX_U = SH_MAX_ROWS * SH_MAX_PARAMETERS - SH_MAX_ROWS * (SH_MAX_ROWS - SH_PANEL) / 2
+    SH_MAX_U = SH_MAX_ROWS * SH_MAX_PARAMETERS - SH_MAX_ROWS * (SH_MAX_ROWS - SH_PANEL) / 2 +
+               SH_PANEL /* one more column: it is read with the last ones, and not used */
 };
 
 /* State of the recursion. */

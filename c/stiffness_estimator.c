@@ -55,14 +55,21 @@ static sh_matched_settings matched_settings(const sh_parameters *p)
 static void evaluate_curve(const sh_real *F, const sh_real *dF, const sh_real *eta, int size,
                            sh_estimate *estimate)
 {
+    sh_real tau_e[2] = {0, 0}, sigma[2] = {0, 0}; /* even and odd do not wait for each other */
     int i;
 
-    estimate->tau_e = 0;
-    estimate->sigma = 0;
-    for (i = 0; i < size; ++i) {
-        estimate->tau_e += F[i] * eta[i];
-        estimate->sigma += dF[i] * eta[i];
+    for (i = 0; i + 1 < size; i += 2) {
+        tau_e[0] += F[i] * eta[i];
+        tau_e[1] += F[i + 1] * eta[i + 1];
+        sigma[0] += dF[i] * eta[i];
+        sigma[1] += dF[i + 1] * eta[i + 1];
     }
+    if (i < size) {
+        tau_e[0] += F[i] * eta[i];
+        sigma[0] += dF[i] * eta[i];
+    }
+    estimate->tau_e = tau_e[0] + tau_e[1];
+    estimate->sigma = sigma[0] + sigma[1];
 }
 
 /* All that follows from parameters eta, of which dF' eta has the given variance, at the operating
