@@ -2,6 +2,11 @@
 
 #include "real_math.h"
 
+/* Far below any velocity [rad/s] and lag [rad], and far above the numbers that processors are slow
+ * with, to which both would decay at rest.
+ */
+static const sh_real AT_REST = (sh_real)1e-30;
+
 sh_real sh_measurement_variance(const sh_filter_parameters *filter, sh_real x_dot, sh_real w_s)
 {
     const sh_real speed = sh_fabs(x_dot);
@@ -60,6 +65,10 @@ void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_param
     kalman->dx_dot = P12 / S * innovation;
     kalman->lag = lag;
     kalman->x_dot += kalman->dx_dot;
+    if (sh_fabs(kalman->lag) < AT_REST && sh_fabs(kalman->x_dot) < AT_REST) {
+        kalman->lag = 0;
+        kalman->x_dot = 0;
+    }
     /* P11 - P11^2/S without the subtraction, which would lose digits where P11 >> R */
     kalman->P11 = P11 * (R / S);
     kalman->P12 = P12 * (R / S);

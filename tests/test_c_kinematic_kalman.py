@@ -73,6 +73,14 @@ def test_a_motor_at_rest_has_no_velocity(c: Library, kind: int) -> None:
     assert np.all(track == [18.0, 0.0])
 
 
+def test_rest_ends_at_zero_and_not_among_denormal_numbers(c: Library) -> None:
+    z = np.concatenate([0.1 * np.arange(100), np.full(5000, 9.9)])
+    track = run(c, z)
+    assert track[-1].tolist() == [9.9, 0.0]
+    velocities = np.abs(track[:, 1])
+    assert np.all((velocities == 0.0) | (velocities > 1e-100))
+
+
 @pytest.mark.parametrize("kind", [1, 2, 3])
 @pytest.mark.parametrize("slope", [-4.0, 0.05, 12.0])
 def test_a_ramp_is_followed_without_error(c: Library, kind: int, slope: float) -> None:
