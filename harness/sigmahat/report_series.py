@@ -25,7 +25,7 @@ _QUANTITIES = (
         "Flexibility torque",
         "tau_e [N.m]",
         {
-            "tau_e_residual{}": "residual gamma r_e",
+            "tau_e_residual{}": "by the motor data",
             "plant.tau_e_measured{}": "sensor",
             "plant.tau_e{}": "true",
             "tau_e{}": "fitted, f(theta_c, phi)",
