@@ -6,10 +6,10 @@ void sh_rounding_bias_take_back(sh_rounding_bias *bias, sh_least_squares *rls, i
                                 sh_real prior_variance)
 {
     const sh_real *P_b = sh_least_squares_column(rls, at);
-    sh_real variance, back, left;
+    const sh_real variance = P_b[at];
+    const sh_real back = sh_fmin(bias->surplus, 1 / variance - 1 / prior_variance);
+    sh_real left;
 
-    variance = P_b[at];
-    back = sh_fmin(bias->surplus, 1 / variance - 1 / prior_variance);
     if (!(back > 0) || !(variance > 0))
         return;
     /* P^-1 -= back at b, and the sum of squares loses back (1 + b)^2. */

@@ -200,6 +200,14 @@ static sh_real nominal_torque(const sh_parameters *p, const sh_measurement *z)
     return p->model.k_s * r * r * sh_sin(2 * (z->q - z->theta));
 }
 
+/* Torque that feeds the regression: that of a sensor, of the model, or by the motor. */
+static sh_real torque_of(const sh_parameters *p, const sh_measurement *z, sh_real by_motor)
+{
+    return p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
+           : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
+                                              : by_motor;
+}
+
 static int skip(sh_estimator *estimator, sh_estimate *estimate)
 {
     estimator->skipped += 1;
@@ -225,9 +233,7 @@ static int tick_paper(sh_estimator *estimator, const sh_parameters *p, const sh_
     if (p->deformation == SH_DEFORMATION_FILTERED)
         phi += estimator->q.lag - estimator->theta.lag;
     basis(p, phi, set_point, F, estimator->work.dF);
-    tau_e_hat = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
-                : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
-                                                   : tau_e_residual;
+    tau_e_hat = torque_of(p, z, tau_e_residual);
     factor = kind == SH_RLS_ENHANCED ? p->rls.c : p->rls.a;
     if (p->modality == SH_MODALITY_RESIDUAL && estimator->settling > 0) {
         kind = SH_RLS_CONSTANT_FACTOR; /* a = 0 learns nothing, (25) */
@@ -261,10 +267,8 @@ static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const s
     sh_real *const F = estimator->work.F, *const dF = estimator->work.dF;
     const sh_matched_settings settings = matched_settings(p);
     const sh_real phi = z->q - z->theta;
+    const sh_real torque = torque_of(p, z, z->tau);
     sh_real y, variance;
-    const sh_real torque = p->modality == SH_MODALITY_SENSOR  ? z->tau_e_sensor
-                          : p->modality == SH_MODALITY_MODEL ? nominal_torque(p, z)
-                                                             : z->tau;
     sh_innovation innovation;
     int good;
 

@@ -8,6 +8,8 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from command_line import one_line
+
 COMMAND = [sys.executable, "-m", "sigmahat", "sweep"]
 QUICK = ["--modality", "RESIDUAL"]
 """One run takes a fraction of a second."""
@@ -29,11 +31,7 @@ def start(arguments: Sequence[str], cwd: Path) -> subprocess.Popen[str]:
 
 def refused(*arguments: str, cwd: Path) -> str:
     """Runs a sweep that must fail with one line, and returns that line."""
-    done = run(*arguments, cwd=cwd)
-    assert (done.returncode, done.stdout) == (2, "")
-    (line,) = done.stderr.splitlines()
-    assert line.startswith("sigmahat: error: ")
-    return line
+    return one_line(run(*arguments, cwd=cwd))
 
 
 def records(path: Path) -> list[bytes]:

@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 
 import sigmahat
+from command_line import one_line
 from gate import missing
 from sigmahat.cli import cli, main
 from sigmahat.scenarios import SCENARIOS
@@ -30,11 +31,7 @@ def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
 
 def refused(*arguments: str, cwd: Path) -> str:
     """Runs a command that must fail with one line, and returns that line."""
-    done = run(*arguments, cwd=cwd)
-    assert (done.returncode, done.stdout) == (2, "")
-    (line,) = done.stderr.splitlines()
-    assert line.startswith("sigmahat: error: ")
-    return line
+    return one_line(run(*arguments, cwd=cwd))
 
 
 def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> None:

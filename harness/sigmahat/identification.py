@@ -30,7 +30,7 @@ from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Array, Log
 from sigmahat.logs.replay import parameters, replay
-from sigmahat.logs.sampling import Samples, sample
+from sigmahat.logs.sampling import Samples, sample, stretches
 from sigmahat.slave import Fmu, Slave, Value
 
 UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m", "torque_constant": "N.m/A"}
@@ -193,9 +193,8 @@ def _pieces(samples: Samples, every: dict[str, Value], sensor: bool) -> Iterator
     """Stretches of the log without gaps that are long enough."""
     columns = dict(zip(samples.names, samples.values.T, strict=True))
     good = np.isfinite(samples.values).all(axis=1)
-    edges = np.diff(np.concatenate([[0], good.astype(np.int8), [0]]))
     scale, offset = float(every.get("setPoint.scale", 0.0)), float(every["setPoint.offset"])
-    for first, last in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+    for first, last in zip(*stretches(good), strict=True):
         if last - first < shortest(samples.T):
             continue
         part = {name: np.ascontiguousarray(each[first:last]) for name, each in columns.items()}

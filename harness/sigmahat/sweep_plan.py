@@ -30,6 +30,7 @@ from tomlkit.exceptions import ParseError
 
 import sigmahat
 from sigmahat.cosimulation import Estimator, Plant
+from sigmahat.dotted import flat
 from sigmahat.scenarios import Comparison, Scenario, scenario
 from sigmahat.slave import Fmu, Slave, Value
 from sigmahat.suggest import unknown
@@ -106,7 +107,7 @@ def read_plan(
     content = {} if path is None else _content(path)
     parameters = {}
     try:
-        for name, given in _flat(content.get("parameters", {})):
+        for name, given in flat(content.get("parameters", {})):
             parameters[name] = _values(name, given)
         plan = Plan(
             tuple(scenarios) or _names(content, "scenario") or ("table1",),
@@ -140,15 +141,6 @@ def _content(path: Path) -> dict[str, Any]:
     if not isinstance(content.get("parameters", {}), dict):
         raise ValueError(f"{path}: parameters: expected a table [parameters]")
     return content
-
-
-def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Items of nested tables by their dotted names."""
-    for key, value in table.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value
 
 
 def _values(name: str, given: Any) -> Values:

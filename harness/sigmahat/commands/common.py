@@ -14,9 +14,12 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+
+if TYPE_CHECKING:
+    from sigmahat.scenarios import Scenario
 
 _Command = TypeVar("_Command", bound=Callable[..., object])
 _JSON, _QUIET = "sigmahat.json", "sigmahat.quiet"
@@ -88,6 +91,22 @@ def need_fmu(name: str) -> None:
         if not any(map(shutil.which, ("cc", "gcc", "clang"))):
             build = f"install a C compiler (gcc or clang), then {build}"
         raise click.ClickException(f"{name}.fmu is not built: {build}") from error
+
+
+def ready_scenario(name: str) -> Scenario:
+    """The scenario of a name, whose FMUs are there.
+
+    Raises UsageError for a name that does not exist, ClickException for an FMU that is not built.
+    """
+    from sigmahat.scenarios import scenario
+
+    try:
+        found = scenario(name)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from error
+    for fmu in {found.plant.fmu, *(each.fmu for each in found.estimators.values())}:
+        need_fmu(fmu)
+    return found
 
 
 @contextmanager

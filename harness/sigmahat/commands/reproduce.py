@@ -47,15 +47,8 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
     """
     from sigmahat import results
     from sigmahat.reproduce import reproduce, work
-    from sigmahat.scenarios import scenario
 
-    try:
-        chosen = scenario(name)
-    except ValueError as error:
-        raise click.UsageError(str(error)) from error
-    for fmu in {chosen.plant.fmu, *(e.fmu for e in chosen.estimators.values())}:
-        common.need_fmu(fmu)
-
+    chosen = common.ready_scenario(name)
     out = out or Path("sigmahat-results", name)
     numbers = range(1, seeds + 1)
     with common.work(out), results.folder(out) as folder:

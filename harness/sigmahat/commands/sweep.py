@@ -57,17 +57,11 @@ def sweep(
         --set estimator.motor.D_theta=0.9e-3:1.1e-3:5 --out friction
     """
     from sigmahat import sweep as job
-    from sigmahat.scenarios import scenario as find
     from sigmahat.sweep_plan import read_plan
     from sigmahat.sweep_run import WorkerError
 
     for name in scenario or ("table1",):
-        try:
-            chosen = find(name)
-        except ValueError as error:
-            raise click.UsageError(str(error)) from error
-        for fmu in {chosen.plant.fmu, *(e.fmu for e in chosen.estimators.values())}:
-            common.need_fmu(fmu)
+        common.ready_scenario(name)
     out = out or Path("sigmahat-results", "sweep")
     with common.work(out):
         read = read_plan(plan, scenario, seeds, modality, settings)

@@ -20,7 +20,7 @@ TOML, because Python reads it, a person too, and tomlkit keeps the comments when
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from typing import Any
 import tomlkit
 from tomlkit.exceptions import ParseError
 
+from sigmahat.dotted import flat
 from sigmahat.logs.errors import LogError
 from sigmahat.slave import Value
 from sigmahat.suggest import unknown
@@ -117,7 +118,7 @@ def read_configuration(path: Path) -> Configuration:
             name: Port(**_options(path, f"ports.{name}", _table(path, name, port), Port))
             for name, port in ports.items()
         },
-        dict(_flat(_table(path, "parameters", data.get("parameters", {})))),
+        dict(flat(_table(path, "parameters", data.get("parameters", {})))),
     )
 
 
@@ -130,15 +131,6 @@ def parse(path: Path) -> tomlkit.TOMLDocument:
         raise LogError(f"{path}: {error.strerror}; {hint}") from error
     except (ParseError, UnicodeDecodeError) as error:
         raise LogError(f"{path}: not TOML ({error})") from error
-
-
-def _flat(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Value]]:
-    """motor.B = 1 is a table in a table to TOML."""
-    for name, value in table.items():
-        if isinstance(value, Mapping):
-            yield from _flat(value, f"{above}{name}.")
-        else:
-            yield f"{above}{name}", value
 
 
 def _table(path: Path, name: str, value: Any) -> Mapping[str, Any]:

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sigmahat.logs.log import Array
-from sigmahat.logs.sampling import Samples
+from sigmahat.logs.sampling import Samples, stretches
 from sigmahat.logs.trace import Trace
 
 _BLUE, _SKY, _VERMILION = "#0072B2", "#56B4E9", "#D55E00"
@@ -103,9 +103,7 @@ def _scale(axes: Axes, low: float, high: float) -> None:
 
 def _skipped(axes: Axes, samples: Samples) -> None:
     """Grey where the estimator skipped ticks."""
-    skipped = np.isnan(samples.values).any(axis=1)
-    edges = np.diff(np.concatenate([[0], skipped.astype(np.int8), [0]]))
-    first, last = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    first, last = stretches(np.isnan(samples.values).any(axis=1))
     longest = np.argsort(last - first)[::-1][:200]
     for i, (a, b) in enumerate(zip(first[longest], last[longest], strict=True)):
         axes.axvspan(

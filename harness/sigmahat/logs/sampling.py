@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sigmahat.logs.configuration import PORTS, Configuration, Port
 from sigmahat.logs.errors import LogError
@@ -190,12 +190,17 @@ def _note(
         notes.append(f"{name}: {missing} samples missing or not finite")
 
 
+def stretches(mask: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Where the stretches of true values begin, and where each ends: the index behind its last."""
+    edges = np.diff(np.concatenate([[0], np.asarray(mask, dtype=np.int8), [0]]))
+    return np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+
+
 def _note_skipped(values: Array, T: float, notes: list[str]) -> None:
     skipped = np.isnan(values).any(axis=1)
     if not skipped.any():
         return
-    edges = np.diff(np.concatenate([[0], skipped.astype(np.int8), [0]]))
-    first, last = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    first, last = stretches(skipped)
     longest = int(np.argmax(last - first))
     notes.append(
         f"{np.count_nonzero(skipped)} ticks skipped in {len(first)} gaps, the longest of "
