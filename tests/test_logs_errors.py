@@ -78,6 +78,8 @@ def test_missing_file_and_folder(folder: Path, capsys: pytest.CaptureFixture[str
     assert "No such file" in refused(["log.csv"], capsys)
     (folder / "log").mkdir()
     assert "ROS 2 bag" in refused(["log"], capsys)
+    for command in ("estimate", "identify"):  # the log is what a mistyped name is about
+        assert "error: nothere.csv: No such file" in refused(["nothere.csv"], capsys, command)
 
 
 def text(log: dict[str, Array]) -> dict[str, np.ndarray]:

@@ -41,8 +41,8 @@ def estimate(log: Path, config: Path | None, out: Path | None) -> None:
     common.need_fmu("StiffnessEstimator")
     out = out or Path("sigmahat-results", log.stem)
     with common.work(out):
-        configuration = read_configuration(config or common.configuration_of(log))
         opened = open_log(log)
+        configuration = read_configuration(config or common.configuration_of(log))
         with results.folder(out) as folder, common.progress("Replaying", 1000) as bar:
             result = run(opened, configuration, folder, progress=bar.update)
     where = f"Table and figure (PNG, SVG) are in {out.resolve()}"

@@ -41,8 +41,8 @@ def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: boo
     common.need_fmu("StiffnessEstimator")
     config = config or common.configuration_of(log)
     with common.work(config, "--config"):
-        configuration = read_configuration(config)
-        found = run(open_log(log), configuration, torque_constant)
+        opened = open_log(log)
+        found = run(opened, read_configuration(config), torque_constant)
         written: list[str] = []
         if not dry_run:
             written = write(found, config)
