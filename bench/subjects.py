@@ -17,8 +17,8 @@ from fmpy import fmi2
 from numpy.typing import NDArray
 
 import sigmahat
-from sigmahat.cosimulation import simulate
-from sigmahat.scenarios import SCENARIOS, Sine, T
+from sigmahat.fmi.master import simulate
+from sigmahat.paper.scenarios import SCENARIOS, Sine, T
 
 Array = NDArray[np.float64]
 

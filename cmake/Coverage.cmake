@@ -1,8 +1,8 @@
 # Target coverage: runs the tests of the C code, then tells how many of its branches they took.
-file(GLOB tests CONFIGURE_DEPENDS tests/test_c_*.py tests/test_fmi_*.py)
+file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py)
 list(FILTER tests EXCLUDE REGEX "stress") # compiles programs of its own
-list(APPEND tests tests/test_antagonistic.py tests/test_noise.py tests/test_plant.py
-     tests/test_plant_radau.py)
+list(APPEND tests tests/fmi/test_antagonistic.py tests/plants/test_noise.py tests/plants/test_awas.py
+     tests/plants/test_radau.py)
 add_custom_target(
   coverage
   COMMAND

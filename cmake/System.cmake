@@ -4,7 +4,7 @@
 # with the parameters of Table I.
 function(sigmahat_add_system ssp plant estimator)
   set(templates ${PROJECT_SOURCE_DIR}/modelDescription/system)
-  file(GLOB sources CONFIGURE_DEPENDS ${templates}/* ${PROJECT_SOURCE_DIR}/harness/sigmahat/*.py
+  file(GLOB sources CONFIGURE_DEPENDS ${templates}/* ${PROJECT_SOURCE_DIR}/harness/sigmahat/fmi/*.py ${PROJECT_SOURCE_DIR}/harness/sigmahat/paper/*.py
        ${PROJECT_SOURCE_DIR}/harness/sigmahat/export/*.py)
   cmake_path(GET ssp FILENAME name)
   add_custom_command(

@@ -23,25 +23,24 @@ What is on this page is public, and nothing else: other modules may change with 
 
 from __future__ import annotations
 
-import sysconfig
-from importlib import import_module, metadata
-from pathlib import Path
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sigmahat.cosimulation import Estimator, Plant, Recording, Series, simulate
-    from sigmahat.identification import Identified, Quantity, identify
+    from sigmahat.export.plant_fmu import PlantVariable, write_plant_fmu
+    from sigmahat.fmi.installed import fmu
+    from sigmahat.fmi.instance import FmuError
+    from sigmahat.fmi.master import Estimator, Plant, Recording, Series, simulate
+    from sigmahat.identification.identify import Identified, Quantity, identify
     from sigmahat.logs.configuration import Configuration, Port, Time, read_configuration
     from sigmahat.logs.errors import LogError
     from sigmahat.logs.estimate import Estimate, estimate
-    from sigmahat.logs.files import open_log
     from sigmahat.logs.log import Log
-    from sigmahat.metrics import Indices, indices, mean_error, mse, msrep
-    from sigmahat.plants.fmu import PlantVariable, write_plant_fmu
-    from sigmahat.plants.plant import PlantEquations, encoder
-    from sigmahat.reproduce import run
-    from sigmahat.scenarios import Comparison, Scenario, Sine, Sines, scenario
-    from sigmahat.slave import FmuError
+    from sigmahat.logs.readers.formats import open_log
+    from sigmahat.paper.metrics import Indices, indices, mean_error, mse, msrep
+    from sigmahat.paper.reproduction import run
+    from sigmahat.paper.scenarios import Comparison, Scenario, Sine, Sines, scenario
+    from sigmahat.plants.equations import PlantEquations, encoder
 
     __version__: str
 
@@ -84,41 +83,29 @@ __all__ = [
 ]
 
 _HOMES = {
-    "cosimulation": ("Estimator", "Plant", "Recording", "Series", "simulate"),
-    "identification": ("Identified", "Quantity", "identify"),
+    "fmi.installed": ("fmu",),
+    "fmi.master": ("Estimator", "Plant", "Recording", "Series", "simulate"),
+    "identification.identify": ("Identified", "Quantity", "identify"),
     "logs.configuration": ("Configuration", "Port", "Time", "read_configuration"),
     "logs.errors": ("LogError",),
     "logs.estimate": ("Estimate", "estimate"),
-    "logs.files": ("open_log",),
+    "logs.readers.formats": ("open_log",),
     "logs.log": ("Log",),
-    "metrics": ("Indices", "indices", "mean_error", "mse", "msrep"),
-    "plants.fmu": ("PlantVariable", "write_plant_fmu"),
-    "plants.plant": ("PlantEquations", "encoder"),
-    "reproduce": ("run",),
-    "scenarios": ("Comparison", "Scenario", "Sine", "Sines", "scenario"),
-    "slave": ("FmuError",),
+    "paper.metrics": ("Indices", "indices", "mean_error", "mse", "msrep"),
+    "export.plant_fmu": ("PlantVariable", "write_plant_fmu"),
+    "plants.equations": ("PlantEquations", "encoder"),
+    "paper.reproduction": ("run",),
+    "paper.scenarios": ("Comparison", "Scenario", "Sine", "Sines", "scenario"),
+    "fmi.instance": ("FmuError",),
 }
-
-
-def fmu(name: str) -> Path:
-    """Path of an FMU of this installation, for example ``fmu("StiffnessEstimator")``.
-
-    Raises ``FileNotFoundError`` if it was not built or there is no FMU of this name.
-    """
-    folder = Path(__file__).with_name("fmus")
-    if not folder.is_dir():  # the package runs from its sources, see cmake/PythonEnvironment.cmake
-        folder = Path(sysconfig.get_path("data")) / "share" / "sigmahat"
-    path = folder / f"{name}.fmu"
-    if not path.is_file():
-        found = ", ".join(sorted(p.stem for p in folder.glob("*.fmu"))) or "no FMU"
-        raise FileNotFoundError(f"no {name}.fmu in {folder}, which holds {found}")
-    return path
 
 
 def __getattr__(name: str) -> Any:
     """Public names are imported when they are used: the command line has to start at once."""
     if name == "__version__":
-        return metadata.version("sigmahat")
+        from sigmahat.fmi.installed import version
+
+        return version()
     for home, names in _HOMES.items():
         if name in names:
             return getattr(import_module(f"sigmahat.{home}"), name)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 if TYPE_CHECKING:
-    from sigmahat.scenarios import Scenario
+    from sigmahat.paper.scenarios import Scenario
 
 _Command = TypeVar("_Command", bound=Callable[..., object])
 _JSON, _QUIET = "sigmahat.json", "sigmahat.quiet"
@@ -82,10 +82,10 @@ def progress(label: str, length: int) -> Any:
 
 def need_fmu(name: str) -> None:
     """Raises ClickException, which says what to do, if an FMU is not built."""
-    import sigmahat
+    from sigmahat.fmi.installed import fmu
 
     try:
-        sigmahat.fmu(name)
+        fmu(name)
     except FileNotFoundError as error:
         build = "run `cmake --workflow --preset build`"
         if not any(map(shutil.which, ("cc", "gcc", "clang"))):
@@ -98,7 +98,7 @@ def ready_scenario(name: str) -> Scenario:
 
     Raises UsageError for a name that does not exist, ClickException for an FMU that is not built.
     """
-    from sigmahat.scenarios import scenario
+    from sigmahat.paper.scenarios import scenario
 
     try:
         found = scenario(name)
@@ -116,7 +116,7 @@ def work(out: Path, option: str = "--out") -> Iterator[None]:
     Raises ClickException for an FMU's refusal, a value that does not fit, and a file or folder
     that cannot be written.
     """
-    from sigmahat.slave import FmuError
+    from sigmahat.fmi.instance import FmuError
 
     try:
         yield

@@ -33,8 +33,8 @@ def compare(seeds: int, out: Path) -> None:
     \b
     Example: sigmahat compare --seeds 20 --out compare
     """
-    from sigmahat import results
-    from sigmahat.comparison import CALIBRATED, JOINTS, compare
+    from sigmahat.paper import results
+    from sigmahat.paper.comparisons import CALIBRATED, JOINTS, compare
 
     estimators = (e.fmu for j in JOINTS for case in j.cases for e in case.estimators.values())
     for fmu in {*(joint.plant.fmu for joint in JOINTS), *estimators}:
@@ -43,7 +43,7 @@ def compare(seeds: int, out: Path) -> None:
     with common.work(out), results.folder(out) as folder:
         with common.progress("Running", len(JOINTS) * seeds) as bar:
             lines = compare(JOINTS, range(1, seeds + 1), progress=bar.update)
-        from sigmahat.figures import comparison, save
+        from sigmahat.paper.figures import comparison, save
 
         save(comparison, lines, folder / "compare")
         results.write_comparison(lines, seeds, folder / "compare.csv")

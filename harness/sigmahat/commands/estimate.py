@@ -32,11 +32,11 @@ def estimate(log: Path, config: Path | None, out: Path | None) -> None:
     \b
     Example: sigmahat estimate knee.parquet --config knee.toml --out knee
     """
-    from sigmahat import results
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.estimate import estimate as run
     from sigmahat.logs.estimate import summary
-    from sigmahat.logs.files import open_log
+    from sigmahat.logs.readers.formats import open_log
+    from sigmahat.paper import results
 
     common.need_fmu("StiffnessEstimator")
     out = out or Path("sigmahat-results", log.stem)

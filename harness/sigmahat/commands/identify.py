@@ -32,11 +32,11 @@ def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: boo
     \b
     Example: sigmahat identify knee.csv --config knee.toml
     """
-    from sigmahat.identification import as_dict, summary
-    from sigmahat.identification import identify as run
-    from sigmahat.identify_write import write
+    from sigmahat.identification.identify import as_dict, summary
+    from sigmahat.identification.identify import identify as run
+    from sigmahat.identification.write import write
     from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.files import open_log
+    from sigmahat.logs.readers.formats import open_log
 
     common.need_fmu("StiffnessEstimator")
     config = config or common.configuration_of(log)

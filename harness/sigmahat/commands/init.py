@@ -26,10 +26,10 @@ def init(log: Path, config: Path | None, force: bool) -> None:
     \b
     Example: sigmahat init knee.csv
     """
-    import sigmahat
+    from sigmahat.fmi.installed import fmu as installed_fmu
+    from sigmahat.fmi.instance import Fmu
     from sigmahat.logs import template
-    from sigmahat.logs.files import open_log
-    from sigmahat.slave import Fmu
+    from sigmahat.logs.readers.formats import open_log
 
     common.need_fmu("StiffnessEstimator")
     config = config or common.configuration_of(log)
@@ -38,7 +38,7 @@ def init(log: Path, config: Path | None, force: bool) -> None:
             f"{config} exists; --force overwrites it, --config names another file"
         )
     with common.work(config, "--config"):
-        with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
+        with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
             names = ("motor.B", "motor.D_theta", "motor.gamma")
             motor = {name: float(fmu.variable(name).start) for name in names}
         opened = open_log(log)

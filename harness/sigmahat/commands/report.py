@@ -25,7 +25,7 @@ def report(folder: Path, out: Path | None) -> None:
     \b
     Example: sigmahat report sigmahat-results/table1
     """
-    from sigmahat.report import report as make
+    from sigmahat.report.page import report as make
 
     out = out or folder / "report.html"
     with common.work(out, "--out FILE"):

@@ -11,7 +11,7 @@ from sigmahat.commands import common
 
 def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
     """Scenarios, for the completion of the shell."""
-    from sigmahat.scenarios import SCENARIOS
+    from sigmahat.paper.scenarios import SCENARIOS
 
     return [name for name in SCENARIOS if name.startswith(begin)]
 
@@ -45,8 +45,8 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
     \b
     Example: sigmahat reproduce --scenario as-printed --seeds 20 --out as-printed
     """
-    from sigmahat import results
-    from sigmahat.reproduce import reproduce, work
+    from sigmahat.paper import results
+    from sigmahat.paper.reproduction import reproduce, work
 
     chosen = common.ready_scenario(name)
     out = out or Path("sigmahat-results", name)
@@ -54,7 +54,7 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
     with common.work(out), results.folder(out) as folder:
         with common.progress("Running", work(chosen, numbers)) as bar:
             result = reproduce(chosen, numbers, progress=bar.update)
-        from sigmahat.figures import FIGURES, save
+        from sigmahat.paper.figures import FIGURES, save
 
         with common.progress("Drawing", len(chosen.figures)) as bar:
             for title in chosen.figures:

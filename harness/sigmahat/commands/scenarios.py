@@ -15,7 +15,7 @@ def scenarios() -> None:
     \b
     Example: sigmahat scenarios --json
     """
-    from sigmahat.scenarios import SCENARIOS
+    from sigmahat.paper.scenarios import SCENARIOS
 
     width = max(map(len, SCENARIOS)) + 2
     every = SCENARIOS.values()

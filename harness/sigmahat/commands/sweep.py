@@ -56,9 +56,9 @@ def sweep(
     Example: sigmahat sweep --seeds 100 --modality RESIDUAL \\
         --set estimator.motor.D_theta=0.9e-3:1.1e-3:5 --out friction
     """
-    from sigmahat import sweep as job
-    from sigmahat.sweep_plan import read_plan
-    from sigmahat.sweep_run import WorkerError
+    from sigmahat.sweep import job
+    from sigmahat.sweep.plan import read_plan
+    from sigmahat.sweep.workers import WorkerError
 
     for name in scenario or ("table1",):
         common.ready_scenario(name)

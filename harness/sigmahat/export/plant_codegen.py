@@ -13,10 +13,10 @@ from pkgutil import iter_modules
 
 import casadi as ca
 
-import sigmahat.plants
+from sigmahat import plants
 from sigmahat.export import description
 from sigmahat.export.elimination import Elimination
-from sigmahat.plants.plant import PlantEquations
+from sigmahat.plants.equations import PlantEquations
 
 _TEMPLATES = Path(__file__).parents[3] / "modelDescription"
 
@@ -35,7 +35,7 @@ def find(name: str) -> PlantEquations:
     Raises LookupError if there is none.
     """
     names = []
-    for module in iter_modules(sigmahat.plants.__path__, "sigmahat.plants."):
+    for module in iter_modules(plants.__path__, "sigmahat.plants."):
         plant = getattr(import_module(module.name), "plant", None)
         if isinstance(plant, PlantEquations):
             if plant.name == name:

@@ -13,8 +13,8 @@ from typing import Any
 import jinja2
 
 from sigmahat.export import archive
-from sigmahat.scenarios import T, scenario
-from sigmahat.slave import Fmu, Value
+from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.paper.scenarios import T, scenario
 
 
 def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str) -> None:

@@ -28,10 +28,10 @@ from typing import Any
 import tomlkit
 from tomlkit.exceptions import ParseError
 
-from sigmahat.dotted import flat
+from sigmahat.fmi.instance import Value
 from sigmahat.logs.errors import LogError
-from sigmahat.slave import Value
-from sigmahat.suggest import unknown
+from sigmahat.toml_names import flat
+from sigmahat.unknown_name import unknown
 
 PORTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sensor": "N.m"}
 """Inputs of StiffnessEstimator and their units."""

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import sigmahat
+from sigmahat.fmi.installed import fmu as installed_fmu
+from sigmahat.fmi.instance import Fmu, Slave, Value
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Log
 from sigmahat.logs.output import Table
 from sigmahat.logs.replay import OUTPUTS, coefficients, parameters, replay
 from sigmahat.logs.sampling import sample
 from sigmahat.logs.trace import Trace
-from sigmahat.slave import Fmu, Slave, Value
 
 _CHUNK = 1 << 16  # ticks, about
 
@@ -87,7 +87,7 @@ def estimate(
 
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
     """
-    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
+    with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
         start = parameters(fmu, configuration)
         every = fmu.parameters(start)
         configuration.need_ports(str(every["modality"]))
@@ -108,8 +108,8 @@ def estimate(
                 done = now
             eta = coefficients(slave, int(every["rls.n"]), int(every["rls.m"]))
 
-    from sigmahat.figures import save
     from sigmahat.logs.figure import Replay, draw
+    from sigmahat.paper.figures import save
 
     save(
         draw,

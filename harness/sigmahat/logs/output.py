@@ -14,8 +14,8 @@ import pyarrow.csv
 import pyarrow.parquet
 
 from sigmahat.logs.log import Log
+from sigmahat.logs.readers.tables import CsvLog
 from sigmahat.logs.sampling import Samples
-from sigmahat.logs.tables import CsvLog
 
 _ROWS = 1 << 16
 

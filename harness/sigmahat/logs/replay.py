@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from fmpy import fmi2
 
+from sigmahat.fmi.instance import Fmu, Slave, Value
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Array
 from sigmahat.logs.sampling import Samples
 from sigmahat.logs.units import counts_per_turn
-from sigmahat.slave import Fmu, Slave, Value
 
 OUTPUTS = (
     "sigma",

@@ -2,8 +2,8 @@
 
 import casadi as ca
 
+from sigmahat.plants.equations import PlantEquations, encoder
 from sigmahat.plants.joint import add_link, add_motor, add_torque_sensors, position, velocity
-from sigmahat.plants.plant import PlantEquations, encoder
 
 plant = PlantEquations("AwasPlant")
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from sigmahat.plants.plant import PlantEquations, encoder
+from sigmahat.plants.equations import PlantEquations, encoder
 
 # Coulomb friction is smooth, tau_coulomb tanh(velocity / COULOMB_VELOCITY). What is stuck thus
 # creeps, at this speed [rad/s] under 76 % of the friction torque.

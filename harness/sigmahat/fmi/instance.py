@@ -1,0 +1,227 @@
+"""One FMU in a co-simulation: variables by name on top of FMPy's FMI 2.0 calls."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable, Mapping
+from ctypes import byref
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import fmpy
+import numpy as np
+from fmpy import fmi2
+from numpy.typing import NDArray
+
+from sigmahat.unknown_name import unknown
+
+try:  # FMPy ships it for some platforms only; without it messages arrive unformatted
+    from fmpy.logging import addLoggerProxy
+except (ImportError, OSError):
+    addLoggerProxy = None
+
+Value = float | int | bool | str
+"""Value of a variable. An enumeration takes the name of its item."""
+
+_log = logging.getLogger("sigmahat")
+
+
+class FmuError(RuntimeError):
+    """An FMU refused a call. The message is the FMU's own."""
+
+
+class Fmu:
+    """An unpacked FMU and the variables of its model description, for any number of slaves.
+
+    Use it as a context manager: the unpacked files are removed at the end.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Unpacks the FMU. Raises FileNotFoundError, or FmuError if it is not for co-simulation."""
+        try:  # FMPy raises plain Exception for a description that is not valid
+            self.description = fmpy.read_model_description(path)
+        except OSError:
+            raise
+        except Exception as error:
+            raise FmuError(f"{path}: not a readable FMU ({error}); build it again") from error
+        self.name: str = self.description.modelName
+        if self.description.fmiVersion != "2.0" or self.description.coSimulation is None:
+            raise FmuError(f"{path}: expected an FMU for FMI 2.0 Co-Simulation")
+        self.variables = {v.name: v for v in self.description.modelVariables}
+        self._unpacked = TemporaryDirectory(prefix="sigmahat-", ignore_cleanup_errors=True)
+        self.folder = fmpy.extract(path, self._unpacked.name)
+
+    def __enter__(self) -> Fmu:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._unpacked.cleanup()
+
+    def variable(self, name: str, causality: str | None = None) -> Any:
+        """Returns FMPy's description of a variable. Raises ValueError if there is none."""
+        variable = self.variables.get(name)
+        if variable is None or causality not in (None, variable.causality):
+            known = [n for n, v in self.variables.items() if causality in (None, v.causality)]
+            kind = f"{causality or 'variable'} of {self.name}"
+            raise ValueError(unknown(kind, name, known))
+        return variable
+
+    def references(self, names: Iterable[str], causality: str | None = None) -> Any:
+        """Returns the value references of Real variables as an array for FMI calls."""
+        variables = [self.variable(name, causality) for name in names]
+        for v in variables:
+            if v.type != "Real":
+                raise ValueError(f"{self.name}.{v.name}: expected a Real variable, it is {v.type}")
+        return _references(variables)
+
+    def number(self, name: str, value: Value) -> float | int:
+        """Returns the value as FMI takes it. Raises ValueError if it does not fit the variable."""
+        variable = self.variable(name)
+        if variable.type == "Enumeration" and isinstance(value, str):
+            items = {item.name: int(item.value) for item in variable.declaredType.items}
+            if value not in items:
+                raise ValueError(unknown(f"value of {self.name}.{name}", value, items))
+            return items[value]
+        if isinstance(value, str):
+            raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {value!r}")
+        if variable.type == "Real":
+            return float(value)
+        if value != int(value):
+            raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {value!r}")
+        return int(value)
+
+    def parameters(self, start: Mapping[str, Value]) -> dict[str, Value]:
+        """Returns the parameters of a slave with these start values: given ones, else the FMU's."""
+        values: dict[str, Value] = {}
+        for name, variable in self.variables.items():
+            if variable.causality != "parameter":
+                continue
+            boolean = variable.type == "Boolean"
+            default = variable.start == "true" if boolean else float(variable.start)
+            value: Value = self.number(name, start.get(name, default))
+            if variable.type == "Enumeration":
+                items = variable.declaredType.items
+                value = next(item.name for item in items if int(item.value) == value)
+            values[name] = value
+        return values
+
+
+class Slave:
+    """One instance of an FMU, in the state "instantiated" at first.
+
+    Use it as a context manager: the instance is freed at the end.
+    """
+
+    def __init__(self, fmu: Fmu, name: str) -> None:
+        """Instantiates the FMU. Raises FmuError with the FMU's own message if it refuses."""
+        self.fmu = fmu
+        self.name = name
+        self._messages: list[str] = []
+        self._callbacks = fmi2.fmi2CallbackFunctions()
+        self._callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._on_message)
+        self._callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+        self._callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
+        if addLoggerProxy is not None:
+            addLoggerProxy(byref(self._callbacks))
+        try:  # FMPy raises plain Exception here
+            self.fmi = fmi2.FMU2Slave(
+                guid=fmu.description.guid,
+                modelIdentifier=fmu.description.coSimulation.modelIdentifier,
+                unzipDirectory=fmu.folder,
+                instanceName=name,
+            )
+            self.fmi.instantiate(callbacks=self._callbacks, loggingOn=True)
+        except Exception as error:
+            raise FmuError(self._explain(str(error))) from error
+        self.component = self.fmi.component
+        self.functions: Any = self.fmi.dll
+        """The FMI functions themselves, with the types that FMPy gave them, for call()."""
+
+    def __enter__(self) -> Slave:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.fmi.freeInstance()
+
+    def call(self, function: Callable[..., int], *arguments: Any) -> None:
+        """Calls one of the functions for this instance. Raises FmuError if it fails."""
+        if function(self.component, *arguments) > fmi2.fmi2Warning:
+            raise self.failure(function.__name__)
+
+    def failure(self, function: str) -> FmuError:
+        """What to raise where an FMI function that was not called through call() failed."""
+        return FmuError(self._explain(f"{function} failed"))
+
+    def initialize(self, start: Mapping[str, Value]) -> None:
+        """Sets start values by name and initialises at time 0.
+
+        Raises ValueError for an unknown name or a value that does not fit its variable, FmuError
+        if the FMU refuses a value.
+        """
+        numbers = {name: self.fmu.number(name, value) for name, value in start.items()}
+        self.call(self.functions.fmi2SetupExperiment, 0, 0.0, 0.0, 0, 0.0)
+        for name, number in numbers.items():
+            variable = self.fmu.variables[name]
+            setter, kind = {
+                "Real": (self.functions.fmi2SetReal, fmi2.fmi2Real),
+                "Integer": (self.functions.fmi2SetInteger, fmi2.fmi2Integer),
+                "Enumeration": (self.functions.fmi2SetInteger, fmi2.fmi2Integer),
+                "Boolean": (self.functions.fmi2SetBoolean, fmi2.fmi2Boolean),
+            }[variable.type]
+            self.call(setter, _references([variable]), 1, (kind * 1)(number))
+        self.call(self.functions.fmi2EnterInitializationMode)
+        self.call(self.functions.fmi2ExitInitializationMode)
+
+    def _on_message(
+        self, _environment: int, _instance: bytes, status: int, _category: bytes, message: bytes
+    ) -> None:
+        text = message.decode("utf-8", "replace")
+        if status == fmi2.fmi2Warning:
+            _log.warning("%s: %s", self.name, text)
+        elif status > fmi2.fmi2Warning:
+            self._messages.append(text)
+
+    def _explain(self, failure: str) -> str:
+        return f"{self.name}: {'; '.join(self._messages) or failure}"
+
+
+class Recorder:
+    """Values of some variables of a slave, one row per sample, written there by the FMU itself."""
+
+    def __init__(self, slave: Slave, names: Iterable[str], samples: int) -> None:
+        """Raises ValueError for an unknown name."""
+        self._slave = slave
+        self._tables: list[tuple[list[str], NDArray[Any]]] = []
+        self._reads: list[tuple[Callable[..., int], Any, int, Any]] = []
+        variables = [slave.fmu.variable(name) for name in names]
+        for types, getter, dtype in (
+            (("Real",), slave.functions.fmi2GetReal, np.float64),
+            (("Integer", "Enumeration"), slave.functions.fmi2GetInteger, np.int32),
+            (("Boolean",), slave.functions.fmi2GetBoolean, np.int32),
+        ):
+            group = [v for v in variables if v.type in types]
+            if group:
+                table = np.empty((samples, len(group)), dtype)
+                rows = np.ctypeslib.as_ctypes(table)
+                self._tables.append(([v.name for v in group], table))
+                self._reads.append((getter, _references(group), len(group), rows))
+        self.units = {v.name: v.unit for v in variables if v.unit is not None}
+
+    def sample(self, k: int) -> None:
+        """Reads row k."""
+        for getter, references, count, rows in self._reads:
+            self._slave.call(getter, references, count, rows[k])
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """Returns the recorded values by name, each of shape (samples,)."""
+        return {
+            name: np.ascontiguousarray(table[:, i])
+            for names, table in self._tables
+            for i, name in enumerate(names)
+        }
+
+
+def _references(variables: Iterable[Any]) -> Any:
+    references = [v.valueReference for v in variables]
+    return (fmi2.fmi2ValueReference * len(references))(*references)

@@ -1,0 +1,1 @@
+"""Motor data, orders and noise from a log."""

@@ -1,0 +1,232 @@
+"""Instrumental variables against the noise of encoders: the two halves of a log fit each other.
+
+The motor (3) with Coulomb friction, on its axis, with the flexibility torque as a polynomial (16)
+that is not known either:
+
+    tau = B gamma theta'' + D_theta gamma theta' + tau_coulomb tanh(theta'/v_s) - tau_e/gamma
+
+is linear in everything unknown. Least squares would be biased: theta'' of a rounded position is
+noise to a good part, and noise in a regressor makes its coefficient small. So even and odd samples
+are filtered and differentiated apart. Their rounding is independent while the joint moves, and the
+regressors of one half are the instruments of the other: sums Z'X have no noise squared in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sigmahat.identification.noise import low_pass
+from sigmahat.logs.log import Array
+
+COULOMB_VELOCITY = 0.02
+"""v_s: where friction has turned its sign [rad/s]."""
+_BLOCK = 0.25  # [s]; errors further apart are taken as independent
+_EDGE = 0.1  # [s] at both ends of a piece, where the filter has seen half of what it needs
+
+
+@dataclass(frozen=True)
+class Signals:
+    """A piece of a log without gaps; arrays of one size, T apart."""
+
+    theta: Array
+    phi: Array
+    set_point: Array
+    tau: Array
+    tau_e: Array | None
+    """Of the sensor, if the torque constant is asked for."""
+
+
+@dataclass(frozen=True)
+class Equations:
+    """y = X p + error, with instruments Z; both halves of all pieces, one after another."""
+
+    y: Array
+    X: Array
+    Z: Array
+    block: NDArray[np.int64]
+    """Stretch of time of each row, [size: rows]."""
+    names: Sequence[str]
+    """What each column stands for; "eta[i,j]" for the polynomial."""
+
+    def only(self, names: Sequence[str]) -> Equations:
+        """The equations with some of the columns."""
+        kept = [self.names.index(name) for name in names]
+        return Equations(self.y, self.X[:, kept], self.Z[:, kept], self.block, list(names))
+
+
+def equations(
+    pieces: Sequence[Signals],
+    T: float,
+    gamma: float,
+    n: int,
+    m: int,
+    symmetric: bool,
+    f_0: float,
+    wide: float,
+) -> Equations:
+    """The equations of all pieces, weighted by the low pass at f_0 [Hz].
+
+    T [s] between samples; polynomial orders n, m as rls.n, rls.m; wide [Hz] is the low pass of
+    the velocity whose sign is that of the Coulomb friction, which turns fast.
+    With a sensor the polynomial is not needed, and the torque gets a gain: column "gain".
+    """
+    units = _unit([p.phi for p in pieces]), _unit([p.set_point for p in pieces])
+    parts = []
+    blocks = 0
+    for piece in pieces:
+        orders = n, m, symmetric
+        halves = [_half(piece, s, 2 * T, gamma, orders, units, f_0, wide) for s in (0, 1)]
+        rows = min(len(y) for y, _ in halves)
+        (y_0, X_0), (y_1, X_1) = ((y[:rows], X[:rows]) for y, X in halves)
+        between_1 = np.vstack([X_1[:1], (X_1[1:] + X_1[:-1]) / 2])  # at the times of half 0
+        between_0 = np.vstack([(X_0[1:] + X_0[:-1]) / 2, X_0[-1:]])
+        edge = round(_EDGE / (2 * T))
+        inner = slice(edge, rows - edge)
+        block = blocks + np.arange(rows)[inner] // round(_BLOCK / (2 * T))
+        blocks = int(block[-1]) + 1
+        parts += [
+            (y_0[inner], X_0[inner], between_1[inner], block),
+            (y_1[inner], X_1[inner], between_0[inner], block),
+        ]
+    y, X, Z, block = (np.concatenate(each) for each in zip(*parts, strict=True))
+    sensor = pieces[0].tau_e is not None
+    polynomial = [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
+    names = ["B", "D_theta", "tau_coulomb", *(["gain"] if sensor else polynomial)]
+    return Equations(y, X, Z, block, names)
+
+
+def shortest(T: float) -> int:
+    """Samples that a piece must have at least."""
+    return round((2 * _EDGE + 2 * _BLOCK) / T)
+
+
+def _half(
+    s: Signals,
+    first: int,
+    h: float,
+    gamma: float,
+    orders: tuple[int, int, bool],
+    units: tuple[float, float],
+    f_0: float,
+    wide: float,
+) -> tuple[Array, Array]:
+    """Response and regressors of every second sample from the first on, h [s] apart."""
+    n, m, symmetric = orders
+    kept = slice(first, None, 2)
+    theta = s.theta[kept]
+    friction = _direction(s.theta, h / 2, wide)[kept]
+    tau = s.tau[kept]
+    if s.tau_e is not None:  # tau_e/gamma = B gamma theta'' + ... - gain tau
+        raw = [s.tau_e[kept] / gamma, friction, -tau]
+    else:
+        phi, set_point = s.phi[kept], s.set_point[kept]
+        powers = [2 * i + 1 if symmetric else i for i in range(n)]
+        raw = [tau, friction]
+        x, y = phi / units[0], set_point / units[1]
+        raw += [x**e * y**j for e in powers for j in range(m)]
+    filtered = low_pass(np.column_stack(raw), f_0, h)
+    smooth = low_pass(theta, f_0, h)
+    motion = [gamma * _second(smooth, h), gamma * _first(smooth, h)]
+    return filtered[:, 0], np.column_stack([*motion, filtered[:, 1:]])
+
+
+def _direction(theta: Array, T: float, wide: float) -> Array:
+    """Mean of tanh(theta'/v_s) around each sample, the velocity being linear in between.
+
+    A fast reversal is over between two samples; the value at one of them would be off by up to
+    half a sample in time. For the same reason theta is not halved here, T [s] apart.
+    """
+    x = _first(low_pass(theta, wide, T), T) / COULOMB_VELOCITY
+    middle = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
+    integral = np.logaddexp(middle, -middle)  # of tanh
+    step = np.diff(middle)
+    flat = np.abs(step) < 1e-3
+    mean: Array = np.where(flat, np.tanh(x), np.diff(integral) / np.where(flat, 1.0, step))
+    near = np.concatenate([mean[:1], mean, mean[-1:]])
+    half: Array = (near[:-2] + 2 * mean + near[2:]) / 4  # around a sample of the half
+    return half
+
+
+def _unit(pieces: Sequence[Array]) -> float:
+    """Largest magnitude, so that powers of all pieces are of order 1."""
+    return max(float(np.max(np.abs(values))) for values in pieces) or 1.0
+
+
+def _first(x: Array, h: float) -> Array:
+    """First derivative, of fourth order in h; the two values at each end are of no use."""
+    r = np.roll
+    d: Array = (r(x, 2) - 8 * r(x, 1) + 8 * r(x, -1) - r(x, -2)) / (12 * h)
+    return d
+
+
+def _second(x: Array, h: float) -> Array:
+    """Second derivative, as _first."""
+    r = np.roll
+    d: Array = (-r(x, 2) + 16 * r(x, 1) - 30 * x + 16 * r(x, -1) - r(x, -2)) / (12 * h**2)
+    return d
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Coefficients and their 95 % intervals; inf where the data do not determine them."""
+
+    value: dict[str, float]
+    half_width: dict[str, float]
+    rms: float
+    """Of what is left of the response."""
+
+
+def fit(e: Equations) -> Fit:
+    """Solves Z'X p = Z'y, symmetrised over the halves.
+
+    Intervals come from the sums of z times error over blocks of time, so they hold for errors
+    of any colour and also where the polynomial does not quite fit.
+    """
+    scale = np.sqrt(np.mean(e.X**2, axis=0))
+    if not np.all(scale > 0):
+        return _nothing(e)
+    X, Z = e.X / scale, e.Z / scale
+    A = Z.T @ X
+    if np.linalg.matrix_rank(A, tol=1e-13 * len(X)) < len(scale):
+        return _nothing(e)
+    p = np.linalg.solve(A, Z.T @ e.y)
+    error = e.y - X @ p
+    blocks = int(e.block[-1]) + 1
+    scores = np.column_stack([np.bincount(e.block, z * error, blocks) for z in Z.T])
+    freedom = blocks - len(p)
+    if freedom < 5:
+        return _nothing(e)
+    from scipy.special import stdtrit
+
+    inverse = np.linalg.inv(A)
+    covariance = inverse @ (scores.T @ scores) @ inverse.T * blocks / freedom
+    half = float(stdtrit(freedom, 0.975)) * np.sqrt(np.diag(covariance)) / scale
+    names = e.names
+    return Fit(
+        dict(zip(names, (p / scale).tolist(), strict=True)),
+        dict(zip(names, half.tolist(), strict=True)),
+        float(np.sqrt(np.mean(error**2))),
+    )
+
+
+def _nothing(e: Equations) -> Fit:
+    return Fit(dict.fromkeys(e.names, np.nan), dict.fromkeys(e.names, np.inf), np.nan)
+
+
+def left_out(e: Equations, parts: int = 8) -> Array:
+    """Mean square error on each of some parts of the log, fitted to the others; [size: parts]."""
+    scale = np.sqrt(np.mean(e.X**2, axis=0))
+    scale[scale == 0] = 1.0
+    X, Z = e.X / scale, e.Z / scale
+    part = e.block * parts // (int(e.block[-1]) + 1)
+    A = [Z[part == i].T @ X[part == i] for i in range(parts)]
+    b = [Z[part == i].T @ e.y[part == i] for i in range(parts)]
+    errors = []
+    for i in range(parts):
+        p = np.linalg.lstsq(sum(A) - A[i], sum(b) - b[i], rcond=1e-12)[0]
+        errors.append(np.mean((e.y[part == i] - X[part == i] @ p) ** 2))
+    return np.array(errors)

@@ -1,0 +1,61 @@
+"""Opens a log by what is in the file, whatever its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import Log
+
+_HEAD = 520  # bytes; the mark of HDF5 is behind the 512 bytes that MATLAB puts before it
+
+
+def open_log(path: Path) -> Log:
+    """A log in CSV, Parquet, MAT (v5 to v7.3), HDF5, MCAP, or a ROS 2 bag.
+
+    Raises LogError if the file is missing, empty, damaged, or of another format.
+    """
+    if path.is_dir():
+        if not (path / "metadata.yaml").is_file():
+            raise LogError(f"{path}: a folder without metadata.yaml is no ROS 2 bag; name a file")
+        from sigmahat.logs.readers.bags import read_bag
+
+        return read_bag(path)
+    try:
+        with path.open("rb") as file:
+            head = file.read(_HEAD)
+    except OSError as error:
+        raise LogError(f"{path}: {error.strerror}; name a log that can be read") from error
+    if not head:
+        raise LogError(f"{path}: the file is empty; record it again")
+    log = _reader(path, head)
+    if not log.columns or max(log.columns.values()) == 0:
+        raise LogError(f"{path}: no rows in it; record it again")
+    return log
+
+
+def _reader(path: Path, head: bytes) -> Log:
+    if head.startswith(b"PAR1"):
+        from sigmahat.logs.readers.tables import ParquetLog
+
+        return ParquetLog(path)
+    if b"\x89HDF\r\n\x1a\n" in (head[:8], head[512:520]):
+        from sigmahat.logs.readers.matrices import read_hdf5
+
+        return read_hdf5(path)
+    if head.startswith(b"MATLAB 5.0 MAT-file"):
+        from sigmahat.logs.readers.matrices import read_mat
+
+        return read_mat(path)
+    if head.startswith((b"\x89MCAP0\r\n", b"SQLite format 3\0")):
+        from sigmahat.logs.readers.bags import read_bag
+
+        return read_bag(path)
+    if b"\0" in head:
+        raise LogError(
+            f"{path}: not a format that is known; expected CSV, Parquet, MAT, HDF5, MCAP "
+            "or a ROS 2 bag"
+        )
+    from sigmahat.logs.readers.tables import CsvLog
+
+    return CsvLog(path)

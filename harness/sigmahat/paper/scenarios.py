@@ -1,0 +1,401 @@
+"""Scenarios as plain data: plant, inputs, estimators, duration, comparisons, figures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sigmahat.fmi.instance import Value
+from sigmahat.fmi.master import Estimator, Plant
+from sigmahat.unknown_name import unknown
+
+T = 1e-3
+"""Sampling time [s], section VI.B."""
+
+_LEAD = 0.0025 / (2 * math.pi)  # b of (30) [m/rad]
+
+
+@dataclass(frozen=True)
+class Sine:
+    """amplitude sin(2 pi frequency t)."""
+
+    amplitude: float
+    """In the unit of the input."""
+    frequency: float
+    """[Hz]"""
+
+    def __call__(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.amplitude * np.sin(2 * math.pi * self.frequency * t)
+
+
+@dataclass(frozen=True)
+class Sines:
+    """Constant plus sines."""
+
+    offset: float
+    """In the unit of the input."""
+    terms: Sequence[Sine]
+    """Of any number."""
+
+    def __call__(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.offset + sum((term(t) for term in self.terms), np.zeros_like(t))
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One stiffness against another.
+
+    A signal is `"SOURCE.VARIABLE"`: the source is "plant", an estimator, or "nominal", the AwAS
+    as its nominal data say it is.
+    """
+
+    name: str
+    """Row of the table."""
+    estimate: str
+    """Signal that is judged."""
+    reference: str
+    """Signal that it is judged by."""
+    relative_to: str | None = None
+    """Signal that errors are relative to; the reference if not given."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One run of a plant and its estimators."""
+
+    name: str
+    """For `sigmahat reproduce --scenario`, and for folders."""
+    description: str
+    """One line."""
+    duration: float
+    """Simulated time [s], a multiple of T."""
+    plant: Plant
+    """What is estimated."""
+    estimators: Mapping[str, Estimator]
+    """By modality."""
+    comparisons: Sequence[Comparison]
+    """Rows of the table. The estimators in them are not variants."""
+    figures: Sequence[str]
+    """Names in sigmahat.figures.FIGURES."""
+    variants: Mapping[str, Estimator] = field(default_factory=dict)
+    """Further estimators, for the figures only."""
+    paper: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Indices that the paper gives for a comparison: MSE [(N.m/rad)2], MSREP [%]."""
+    settled: float = 1.0
+    """Time after which an estimate is judged without its start-up [s]."""
+    tables: Sequence[Sequence[str]] = (("mse", "msrep", "msrep_settled"),)
+    """Columns of each printed table, fields of sigmahat.metrics.Indices."""
+
+    @property
+    def steps(self) -> int:
+        """Number of sampling times T from the start to the end."""
+        return round(self.duration / T)
+
+
+_AWAS_OUTPUTS = (
+    "q_measured",
+    "theta_measured",
+    "theta_c_measured",
+    "tau_measured",
+    "tau_e_measured",
+    "theta_dot",
+    "phi",
+    "r",
+    "tau_e",
+    "sigma",
+)
+
+
+SECTION_VI_B = Sine(0.3, 0.1)
+"""Torque of the principal motor there [N.m, Hz]."""
+
+
+def awas(retraction: float, tau: Sine = SECTION_VI_B) -> Plant:
+    """The AwAS under the torques of section VI.B or another one of the principal motor.
+
+    Its lever arm is shortened by retraction [m] at first.
+    """
+    return Plant(
+        fmu="AwasPlant",
+        start={"initial.theta_c": retraction / _LEAD},
+        inputs={"tau": tau, "tau_c": Sine(8.0, 0.1)},
+        record=_AWAS_OUTPUTS,
+    )
+
+
+_OUTPUTS = (
+    "sigma",
+    "tau_e",
+    "tau_e_residual",
+    "theta_dot",
+    "phi",
+    "setPoint",
+    "a",
+    "rho",
+    "epsilon",
+    "valid",
+)
+
+
+def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> Estimator:
+    """The estimator of the AwAS with the start values of its FMU but those given."""
+    return Estimator(
+        fmu="StiffnessEstimator",
+        start={"samplePeriod": T, **start},
+        connections={
+            "theta": "theta_measured",
+            "q": "q_measured",
+            "theta_c": "theta_c_measured",
+            "tau": "tau_measured",
+            "tau_e_sensor": sensor,
+        },
+        record=_OUTPUTS,
+    )
+
+
+def _modalities(start: Mapping[str, Value]) -> dict[str, Estimator]:
+    """The three modalities of section VI.B, and the modality Model of the FMU.
+
+    The MODEL of the paper is fed with (28) at the actual deformation (its footnote 1), like a
+    sensor without noise. The modality Model of the FMU has only the measured positions.
+    """
+    return {
+        "MODEL": estimator({"modality": "Sensor", **start}, sensor="tau_e"),
+        "SENSOR": estimator({"modality": "Sensor", **start}),
+        "RESIDUAL": estimator({"modality": "Residual", **start}),
+        "MODEL-measured": estimator({"modality": "Model", **start}),
+    }
+
+
+def _constant_factors(start: Mapping[str, Value]) -> dict[str, Estimator]:
+    """RESIDUAL with constant stability factors, one too small and one too large, for figure 8."""
+    return {
+        f"RESIDUAL, a = {a:g}": estimator(
+            {"modality": "Residual", "rls.kind": "ConstantFactor", "rls.a": a, **start}
+        )
+        for a in (1e-4, 1e-2)
+    }
+
+
+def _truth(estimators: Iterable[str]) -> list[Comparison]:
+    """Each estimator against the plant."""
+    return [Comparison(name, f"{name}.sigma", "plant.sigma") for name in estimators]
+
+
+def _simulation(
+    name: str, description: str, duration: float, retraction: float, start: Mapping[str, Value]
+) -> Scenario:
+    """Section VI.B."""
+    estimators = _modalities(start)
+    return Scenario(
+        name=name,
+        description=description,
+        duration=duration,
+        plant=awas(retraction),
+        estimators=estimators,
+        comparisons=_truth(estimators),
+        figures=(
+            "fig3-deformation",
+            "fig4-velocity",
+            "fig5-flexibility-torque",
+            "fig6-stiffness",
+            "fig7-stability-factor",
+            "fig8-constant-factors",
+            "summary",
+        ),
+        variants=_constant_factors(start),
+        paper={"MODEL": (24.1365, 0.12), "SENSOR": (24.3630, 0.12), "RESIDUAL": (128.1614, 0.58)},
+    )
+
+
+def _experiment() -> Scenario:
+    """Section VI.C: the plant differs from the nominal data as a real device does."""
+    plant = Plant(
+        fmu="AwasPlant",
+        start={
+            "spring.k_s": 0.85 * 14220,
+            "spring.r_0": 0.102,
+            "link.D_q": 1.5 * 0.15,
+            "link.tau_coulomb": 0.05,
+            "sensor.gain": 1.03,
+            "initial.theta_c": 0.0,
+            # The link swings from one turning point to the other; these are as far from 0.
+            "initial.q": -1.75,
+            "initial.theta": -1.75,
+        },
+        inputs={"tau": Sine(0.3, 0.5), "tau_c": Sine(8.0, 0.05)},
+        record=(*_AWAS_OUTPUTS, "theta_c"),
+    )
+    against_sensor = Comparison("RESIDUAL against SENSOR", "RESIDUAL.sigma", "SENSOR.sigma")
+    return Scenario(
+        name="experiment",
+        description="AwAS that is not as its data say, for 60 s: the experiment of section VI.C",
+        duration=60.0,
+        plant=plant,
+        estimators={
+            "MODEL": estimator({"modality": "Model"}),
+            "SENSOR": estimator({"modality": "Sensor"}),
+            "RESIDUAL": estimator({"modality": "Residual"}),
+        },
+        comparisons=[
+            Comparison("MODEL against nominal", "MODEL.sigma", "nominal.sigma"),
+            against_sensor,
+            # SENSOR is 0 until the joint deforms, and nothing is relative to that.
+            replace(
+                against_sensor,
+                name=f"{against_sensor.name}, relative to true",
+                relative_to="plant.sigma",
+            ),
+            Comparison("MODEL against true", "MODEL.sigma", "plant.sigma"),
+            Comparison("SENSOR against true", "SENSOR.sigma", "plant.sigma"),
+            Comparison("RESIDUAL against true", "RESIDUAL.sigma", "plant.sigma"),
+        ],
+        figures=(
+            "fig9-deformation",
+            "fig10-lever-arm",
+            "fig11-flexibility-torque",
+            "fig12-stiffness",
+            "experiment",
+        ),
+        paper={"MODEL against nominal": (9.36, 0.034), "RESIDUAL against SENSOR": (63.02, 1.55)},
+        tables=(
+            ("mse_settled", "msrep_settled", "error_settled"),
+            ("mse", "msrep", "error"),
+        ),
+    )
+
+
+def _single(k_3: float, frequency: float) -> Scenario:
+    """Section III: one flexible transmission, linear or hardening [N.m/rad3]."""
+    spring = "hardening" if k_3 else "linear"
+    name = f"single-{spring}" + ("" if frequency == 0.5 else f"-{frequency:g}hz")
+    # The regressors are powers of phi alone, of 0.01 rad; for the AwAS they go up to r^2 phi, of
+    # 100 mm2 rad. So the paper's ridge 1/(c P_0) = 1, harmless there, is far too strong here.
+    start: dict[str, Value] = {"rls.m": 1}
+    estimators = {
+        "RESIDUAL": {**start, "rls.P_0": 1e24},
+        "RESIDUAL-paper-prior": start,
+    }
+    return Scenario(
+        name=name,
+        description=f"one flexible transmission, {spring} spring, {frequency:g} Hz for 15 s",
+        duration=15.0,
+        plant=Plant(
+            fmu="FlexibleJointPlant",
+            start={"spring.k_1": 150.0, "spring.k_3": k_3},
+            inputs={"tau": Sine(0.3, frequency)},
+            record=(
+                "q_measured",
+                "theta_measured",
+                "tau_measured",
+                "tau_e_measured",
+                "theta_dot",
+                "phi",
+                "tau_e",
+                "sigma",
+            ),
+        ),
+        estimators={
+            modality: Estimator(
+                fmu="StiffnessEstimator",
+                start={"samplePeriod": T, "modality": "Residual", **values},
+                connections={"theta": "theta_measured", "q": "q_measured", "tau": "tau_measured"},
+                record=_OUTPUTS,
+            )
+            for modality, values in estimators.items()
+        },
+        comparisons=_truth(estimators),
+        figures=("summary",),
+    )
+
+
+def _antagonistic() -> Scenario:
+    """Sections II and III: two motors, each behind a spring, pull at one link."""
+    sides = (1, 2)
+    pull = Sine(0.025, 0.1)  # co-contraction, added to its mean of 0.04 N.m
+    move = Sine(0.012, 0.25)  # of the link
+    return Scenario(
+        name="antagonistic",
+        description="two antagonistic transmissions, slow co-contraction under a moving link, 30 s",
+        duration=30.0,
+        plant=Plant(
+            fmu="AntagonisticVsaPlant",
+            # At rest, with the transmissions stretched by the mean co-contraction.
+            start={"initial.theta_1": -0.81543848, "initial.theta_2": 0.91108241},
+            inputs={
+                "tau_1": Sines(-0.04, (Sine(-pull.amplitude, pull.frequency), move)),
+                "tau_2": Sines(+0.04, (pull, move)),
+            },
+            record=(
+                "q",
+                "q_measured",
+                *(
+                    f"{output}_{i}"
+                    for i in sides
+                    for output in (
+                        "theta_measured",
+                        "tau_measured",
+                        "tau_e_measured",
+                        "phi",
+                        "tau_e",
+                        "sigma",
+                    )
+                ),
+                "sigma",
+            ),
+        ),
+        estimators={
+            "RESIDUAL": Estimator(
+                fmu="AntagonisticStiffnessEstimator",
+                start={"samplePeriod": T, "modality": "Residual", "rls.P_0": 1e24, "rls.m": 1},
+                connections={
+                    "q": "q_measured",
+                    **{f"theta_{i}": f"theta_measured_{i}" for i in sides},
+                    **{f"tau_{i}": f"tau_measured_{i}" for i in sides},
+                },
+                record=("sigma", *(f"{output}_{i}" for i in sides for output in _OUTPUTS)),
+            )
+        },
+        comparisons=[
+            Comparison("device", "RESIDUAL.sigma", "plant.sigma"),
+            *(Comparison(f"side {i}", f"RESIDUAL.sigma_{i}", f"plant.sigma_{i}") for i in sides),
+        ],
+        figures=("antagonistic",),
+        settled=10.0,
+    )
+
+
+SCENARIOS = {
+    s.name: s
+    for s in (
+        _simulation(
+            "table1",
+            "AwAS from r(0) = 70 mm for 15 s: the conditions that give Table I",
+            duration=15.0,
+            retraction=0.030,
+            start={},
+        ),
+        _simulation(
+            "as-printed",
+            "AwAS from r(0) = 130 mm for 20 s, velocity weighting as printed in (11)",
+            duration=20.0,
+            retraction=-0.030,
+            start={"filter.weighting": "AsPrinted"},
+        ),
+        _experiment(),
+        *(_single(k_3, frequency) for frequency in (0.5, 2.0, 4.0) for k_3 in (0.0, 3000.0)),
+        _antagonistic(),
+    )
+}
+"""All scenarios by name."""
+
+
+def scenario(name: str) -> Scenario:
+    """Returns the scenario of that name. Raises ValueError if there is none."""
+    if name not in SCENARIOS:
+        raise ValueError(unknown("scenario", name, SCENARIOS))
+    return SCENARIOS[name]

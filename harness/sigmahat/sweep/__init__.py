@@ -1,0 +1,1 @@
+"""Runs of scenarios over seeds and parameters, in parallel."""

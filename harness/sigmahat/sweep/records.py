@@ -1,0 +1,110 @@
+"""What is known of a sweep that is not complete: one line on disk for each run that is done.
+
+A line is the CRC-32 of a JSON text, a space and the text. The first says which sweep it is.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from pathlib import Path
+from shutil import rmtree
+from typing import Any
+from zlib import crc32
+
+from filelock import FileLock, Timeout
+
+from sigmahat.sweep.plan import Plan
+from sigmahat.sweep.workers import Outcome
+
+NAME = "runs.jsonl"
+
+
+class Records:
+    """The outcomes of a sweep so far, by the number of the run."""
+
+    def __init__(self, path: Path, plan: Plan) -> None:
+        """Reads the file if it exists.
+
+        Raises ValueError, which says where and what to do, if it is damaged or of another sweep.
+        """
+        self.path = path
+        self.outcomes: dict[int, Outcome] = {}
+        head = {"sweep": plan.digest, "runs": len(plan)}
+        lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
+        if lines and not lines[-1].endswith(b"\n"):
+            lines.pop()  # what a kill cut off; that run is done again
+        whole = sum(map(len, lines))
+        for i, line in enumerate(lines, 1):
+            content = self._parse(line, i)
+            if i > 1:
+                self._take(content, i, len(plan))
+            elif content != head:
+                raise ValueError(
+                    f"{path} is of another sweep, or of other FMUs; "
+                    "choose another folder with --out, or delete this file"
+                )
+        self._file = path.open("ab")
+        self._file.truncate(whole)
+        if not lines:
+            self._write(head)
+
+    def add(self, outcome: Outcome) -> None:
+        """Writes an outcome; it is on the disk before this returns."""
+        self.outcomes[outcome.number] = outcome
+        self._write(asdict(outcome))
+
+    def close(self) -> None:
+        """Closes the file."""
+        self._file.close()
+
+    def _write(self, content: dict[str, Any]) -> None:
+        text = json.dumps(content).encode()
+        self._file.write(b"%08x %s\n" % (crc32(text), text))
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def _parse(self, line: bytes, number: int) -> Any:
+        crc, _, text = line.rstrip(b"\n").partition(b" ")
+        if crc != b"%08x" % crc32(text):
+            what = "delete this file" if number == 1 else "delete this line"
+            raise ValueError(f"{self.path}, line {number}: damaged; {what} and start again")
+        return json.loads(text)
+
+    def _take(self, content: Any, line: int, runs: int) -> None:
+        outcome = Outcome(**content)
+        if outcome.number in self.outcomes or not 0 <= outcome.number < runs:
+            raise ValueError(
+                f"{self.path}, line {line}: run {outcome.number} is there twice; "
+                "delete this line and start again"
+            )
+        indices = {name: tuple(values) for name, values in outcome.indices.items()}
+        self.outcomes[outcome.number] = Outcome(outcome.number, indices, outcome.failure)
+
+
+@contextmanager
+def records(folder: Path, plan: Plan) -> Iterator[Records]:
+    """The records of a sweep in a folder, for one process at a time. Raises as Records does."""
+    missing = [p for p in (folder, *folder.parents) if not p.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = folder / f".{NAME}.lock"
+    try:
+        with FileLock(lock, timeout=0):
+            opened = Records(folder / NAME, plan)
+            try:
+                yield opened
+            finally:
+                opened.close()
+                if not opened.outcomes:
+                    opened.path.unlink()
+    except Timeout as error:
+        raise ValueError(f"another sweep is writing to {folder}; wait for it") from error
+    finally:
+        if missing and not any(p.name != lock.name for p in folder.iterdir()):
+            rmtree(folder)
+            for p in missing:
+                with suppress(OSError):
+                    p.rmdir()

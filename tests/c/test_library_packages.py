@@ -1,0 +1,148 @@
+"""The C library in a program of somebody else: find_package, pkg-config, a pair of files."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from c_library import Estimator, load
+from gate import missing
+from reference_plant import table1_recording
+
+REPOSITORY = Path(__file__).parents[2]
+WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
+PROGRAM = """
+#include <stdio.h>
+#include "{header}"
+
+/* Size of a number, and the stiffness after the log on standard input, to its last digit. */
+int main(void)
+{{
+    static sh_parameters parameters;
+    static sh_estimator estimator;
+    static sh_estimate estimate;
+    double z[5];
+
+    sh_parameters_default(&parameters);
+    sh_estimator_start(&estimator, &parameters, &estimate);
+    while (fread(z, sizeof z, 1, stdin) == 1) {{
+        sh_measurement measurement;
+        measurement.theta = (sh_real)z[0];
+        measurement.q = (sh_real)z[1];
+        measurement.theta_c = (sh_real)z[2];
+        measurement.tau = (sh_real)z[3];
+        measurement.tau_e_sensor = (sh_real)z[4];
+        sh_estimator_tick(&estimator, &parameters, &measurement, &estimate);
+    }}
+    printf("%u %.17g", (unsigned)sizeof estimate.sigma, (double)estimate.sigma);
+    return 0;
+}}
+"""
+PROJECT = """
+cmake_minimum_required(VERSION 3.25)
+project(consumer LANGUAGES C)
+find_package(sigmahat 0.1 REQUIRED)
+add_executable(consumer main.c)
+target_link_libraries(consumer PRIVATE sigmahat::sigmahat)
+"""
+
+
+def run(*command: str | Path, **environment: str) -> str:
+    """Runs a command, which must succeed; what it printed."""
+    done = subprocess.run(
+        [str(part) for part in command],
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def need(tool: str, package: str) -> str:
+    """The tool itself, if it is installed."""
+    if shutil.which(tool) is None:
+        missing(tool, f"apt-get install {package}")
+    return tool
+
+
+def check(program: Path, build: Path, size: int) -> None:
+    """The program gives what the library gives: in double to the last bit."""
+    log = table1_recording().measurements()[:2000].copy()
+    done = subprocess.run([program], input=log.tobytes(), capture_output=True, check=True)
+    found, sigma = done.stdout.split()
+    expected = Estimator(load(build), {}).run(log)["sigma"][-1]
+    assert int(found) == size
+    assert float(sigma) == (expected if size == 8 else pytest.approx(expected, rel=1e-3))
+
+
+@pytest.fixture(scope="module", params=[("double", 8), ("float", 4)], ids=["double", "float"])
+def installed(
+    request: pytest.FixtureRequest, build: Path, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Path, int]:
+    """Where the library was installed and then moved to, and the size of its numbers."""
+    real, size = request.param
+    folder = tmp_path_factory.mktemp(f"installed-{real}")
+    run(
+        *("cmake", "-S", REPOSITORY / "c", "-B", folder / "build", "-G", "Ninja"),
+        f"-DCMAKE_MAKE_PROGRAM={build / 'venv' / 'bin' / 'ninja'}",
+        *("-DCMAKE_BUILD_TYPE=Release", f"-DSH_REAL={real}"),
+    )
+    run("cmake", "--build", folder / "build")
+    run("cmake", "--install", folder / "build", "--prefix", folder / "first")
+    return (folder / "first").rename(folder / "moved"), size
+
+
+def test_find_package(installed: tuple[Path, int], build: Path, tmp_path: Path) -> None:
+    prefix, size = installed
+    (tmp_path / "main.c").write_text(PROGRAM.format(header="stiffness_estimator.h"))
+    (tmp_path / "CMakeLists.txt").write_text(PROJECT)
+    run(
+        *("cmake", "-S", tmp_path, "-B", tmp_path / "build", "-G", "Ninja"),
+        f"-DCMAKE_MAKE_PROGRAM={build / 'venv' / 'bin' / 'ninja'}",
+        *("-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_PREFIX_PATH={prefix}"),
+    )
+    run("cmake", "--build", tmp_path / "build")
+    check(tmp_path / "build" / "consumer", build, size)
+
+
+def test_pkg_config(installed: tuple[Path, int], build: Path, tmp_path: Path) -> None:
+    prefix, size = installed
+    need("pkg-config", "pkg-config")
+    (described,) = prefix.rglob("sigmahat.pc")
+    flags = run(
+        *("pkg-config", "--cflags", "--libs", "sigmahat"), PKG_CONFIG_PATH=str(described.parent)
+    )
+    (tmp_path / "main.c").write_text(PROGRAM.format(header="stiffness_estimator.h"))
+    run("cc", tmp_path / "main.c", "-o", tmp_path / "consumer", *shlex.split(flags))
+    check(tmp_path / "consumer", build, size)
+
+
+@pytest.mark.parametrize("real", [("double", 8), ("float", 4)], ids=["double", "float"])
+@pytest.mark.parametrize("c, cpp", [("gcc", "g++"), ("clang", "clang++")])
+def test_a_pair_of_files(
+    c: str, cpp: str, real: tuple[str, int], build: Path, tmp_path: Path
+) -> None:
+    """They compile alone and without a warning; the header serves C and C++."""
+    name, size = real
+    flags = ["-O2", "-ffp-contract=off", *WARNINGS, f"-DSH_REAL={name}"]
+    if name == "float":
+        flags += ["-Wdouble-promotion", "-Wfloat-conversion"]
+    for file in ("sigmahat.c", "sigmahat.h"):
+        shutil.copy(build / "amalgamation" / file, tmp_path)
+    library = tmp_path / "sigmahat.o"
+    alone = ["-std=c99", "-ffreestanding", *flags]
+    run(need(c, c), *alone, "-c", tmp_path / "sigmahat.c", "-o", library)
+    for compiler, options, file in (
+        (c, ["-std=c99", "-Wno-double-promotion"], "main.c"),
+        (need(cpp, cpp.replace("clang++", "clang")), ["-Wno-double-promotion"], "main.cpp"),
+    ):
+        (tmp_path / file).write_text(PROGRAM.format(header="sigmahat.h"))
+        program = tmp_path / f"{file}.exe"
+        run(compiler, *flags, *options, tmp_path / file, library, "-lm", "-o", program)
+        check(program, build, size)

@@ -1,0 +1,24 @@
+"""Would the tests of the library notice a wrong token?"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from gate import missing
+
+REPOSITORY = Path(__file__).parents[2]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the mutants are tested in forks")
+def test_nearly_every_wrong_token_is_noticed() -> None:
+    if shutil.which("gcc") is None:
+        missing("gcc", "apt-get install gcc")
+    command = [sys.executable, str(REPOSITORY / "tests" / "studies" / "mutation.py")]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -1,0 +1,302 @@
+"""The command line, as a user meets it."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+import sigmahat
+from command_line import one_line
+from gate import missing
+from sigmahat.cli import cli, main
+from sigmahat.paper.scenarios import SCENARIOS
+
+COMMAND = [sys.executable, "-m", "sigmahat"]
+
+
+def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([*COMMAND, *arguments], cwd=cwd, capture_output=True, text=True)
+
+
+def refused(*arguments: str, cwd: Path) -> str:
+    """Runs a command that must fail with one line, and returns that line."""
+    return one_line(run(*arguments, cwd=cwd))
+
+
+def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> None:
+    done = run("reproduce", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    out = tmp_path / "sigmahat-results" / "table1"
+    assert str(out) in done.stdout
+    for words in ("table1", "V_a", "MODEL", "24.14", "SENSOR", "24.36", "RESIDUAL", "128.16"):
+        assert words in done.stdout
+    expected = {f"{name}.{kind}" for name in SCENARIOS["table1"].figures for kind in ("png", "svg")}
+    expected |= {"MODEL.csv", "MODEL-measured.csv", "SENSOR.csv", "RESIDUAL.csv", "table.csv"}
+    assert {path.name for path in out.iterdir()} == expected
+
+
+def test_another_scenario_has_its_own_files(tmp_path: Path) -> None:
+    done = run("reproduce", "--scenario", "single-hardening", "--out", "here", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert {path.name for path in (tmp_path / "here").iterdir()} == {
+        "summary.png",
+        "summary.svg",
+        "RESIDUAL.csv",
+        "RESIDUAL-paper-prior.csv",
+        "table.csv",
+    }
+
+
+def test_scenario_seeds_and_folder_are_taken(tmp_path: Path) -> None:
+    done = run(
+        "reproduce", "--scenario", "as-printed", "--seeds", "2", "--out", "here", cwd=tmp_path
+    )
+    assert done.returncode == 0
+    assert "as-printed" in done.stdout
+    assert "2 seeds" in done.stdout
+    assert " +- " in done.stdout
+    assert [path.name for path in tmp_path.iterdir()] == ["here"]
+
+
+def test_scenarios_are_listed_one_a_line(tmp_path: Path) -> None:
+    done = run("scenarios", cwd=tmp_path)
+    lines = done.stdout.splitlines()
+    assert [line.split()[0] for line in lines] == list(SCENARIOS)
+    for line, scenario in zip(lines, SCENARIOS.values(), strict=True):
+        assert line.endswith(scenario.description)
+
+
+def test_version(tmp_path: Path) -> None:
+    assert run("--version", cwd=tmp_path).stdout == f"sigmahat {version('sigmahat')}\n"
+
+
+def test_help_names_every_command_and_option(tmp_path: Path) -> None:
+    help_ = run("--help", cwd=tmp_path).stdout
+    options = {"reproduce": ["--scenario", "--seeds", "--out"], "compare": ["--seeds", "--out"]}
+    for command in (*options, "scenarios"):
+        assert command in help_
+    for command, named in options.items():
+        help_ = run(command, "--help", cwd=tmp_path).stdout
+        assert all(option in help_ for option in named)
+
+
+@pytest.mark.parametrize("name", ["", *sorted(cli.commands)])
+def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
+    done = run(*name.split(), "--help", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    help_ = (cli.commands[name] if name else cli).help or ""
+    (example,) = re.findall(r"Example: sigmahat (.*?)(?:\n\n|$)", help_, re.DOTALL)
+    assert f"Example: sigmahat {example.split()[0]}" in done.stdout
+    command, *arguments = example.split()
+    assert command == name or not name
+    with cli.commands[command].make_context(command, arguments):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("reproduce", {"--json", "--quiet"}),
+        ("estimate", {"--json", "--quiet"}),
+        ("identify", {"--json", "--quiet"}),
+        ("init", {"--quiet"}),  # it writes a file for people
+        ("scenarios", {"--json"}),  # it is asked for nothing but what it prints
+    ],
+)
+def test_options_for_scripts(name: str, options: set[str]) -> None:
+    have = {option for parameter in cli.commands[name].params for option in parameter.opts}
+    assert have & {"--json", "--quiet"} == options
+
+
+def test_json_of_reproduce_is_its_table(tmp_path: Path) -> None:
+    done = run("reproduce", "--scenario", "single-linear", "--json", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    printed = json.loads(done.stdout)
+    assert (printed["scenario"], printed["seeds"]) == ("single-linear", [1])
+    with (tmp_path / "sigmahat-results" / "single-linear" / "table.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    as_text = [{k: "" if v is None else str(v) for k, v in row.items()} for row in printed["table"]]
+    assert as_text == rows
+
+
+def test_quiet_reproduce_prints_nothing_and_writes_all(tmp_path: Path) -> None:
+    done = run("reproduce", "--scenario", "single-linear", "--quiet", cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (tmp_path / "sigmahat-results" / "single-linear" / "table.csv").is_file()
+
+
+@pytest.mark.parametrize("option", ["--quiet", "--json"])
+def test_an_error_is_printed_nevertheless(option: str, tmp_path: Path) -> None:
+    assert "tabel1" in refused("reproduce", "--scenario", "tabel1", option, cwd=tmp_path)
+
+
+def test_json_of_scenarios(tmp_path: Path) -> None:
+    listed = json.loads(run("scenarios", "--json", cwd=tmp_path).stdout)
+    assert {each["name"]: each["description"] for each in listed} == {
+        name: scenario.description for name, scenario in SCENARIOS.items()
+    }
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ("sigmahat rep", {"report", "reproduce"}),
+        ("sigmahat sweep --sc", {"--scenario", "--scheduler"}),
+        ("sigmahat reproduce --se", {"--seeds"}),
+        ("sigmahat reproduce --scenario as", {name for name in SCENARIOS if name[:2] == "as"}),
+    ],
+)
+def test_bash_completes(words: str, expected: set[str], tmp_path: Path) -> None:
+    """With the line that the README says belongs into .bashrc."""
+    bash = shutil.which("bash")
+    if bash is None:
+        missing("bash", "apt-get install bash")
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    (line,) = re.findall(r"`(eval [^`]*bash_source[^`]*)`", readme)
+    script = f"{line}\nCOMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n"
+    script += '_sigmahat_completion sigmahat; printf "%s\\n" "${COMPREPLY[@]}"'
+    programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        [bash, "-c", script],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": programs},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert set(done.stdout.split()) == expected
+
+
+def test_help_imports_nothing_slow() -> None:
+    code = (
+        "import sys, sigmahat.cli; sigmahat.cli.main(['--help'])\n"
+        "slow = {'numpy', 'fmpy', 'matplotlib', 'casadi', 'scipy', 'pyarrow', 'bokeh', 'dask'}\n"
+        "print(sorted(slow & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_unknown_scenario(tmp_path: Path) -> None:
+    line = refused("reproduce", "--scenario", "tabel1", cwd=tmp_path)
+    assert "did you mean 'table1'?" in line
+    assert all(name in line for name in SCENARIOS)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", ["reproduce", "compare"])
+@pytest.mark.parametrize("seeds", ["0", "-3", "two", "1.5"])
+def test_bad_number_of_seeds(command: str, seeds: str, tmp_path: Path) -> None:
+    assert "--seeds" in refused(command, "--seeds", seeds, cwd=tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("arguments", [["reprodce"], ["reproduce", "--sedes", "2"]])
+def test_unknown_command_and_option(arguments: list[str], tmp_path: Path) -> None:
+    line = refused(*arguments, cwd=tmp_path)
+    assert "reproduce" in line or "--seeds" in line
+
+
+@pytest.mark.parametrize("out", ["file", "file/below"])
+def test_folder_that_is_a_file(out: str, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    started = time.monotonic()
+    line = refused("reproduce", "--seeds", "500", "--out", out, cwd=tmp_path)
+    assert "file is a file" in line or "choose another folder with --out" in line
+    assert time.monotonic() - started < 30  # refused before anything is computed
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+def test_folder_without_a_name(tmp_path: Path) -> None:
+    assert "empty name" in refused("reproduce", "--out", "", cwd=tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_output_that_cannot_be_written(tmp_path: Path) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [*COMMAND, "scenarios"], cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True
+        )
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert "cannot write the output" in line
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder that nobody may write to")
+def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
+    line = refused("reproduce", "--out", "/proc/sigmahat", cwd=tmp_path)
+    assert "cannot write /proc/sigmahat" in line
+
+
+def test_folder_without_permission(tmp_path: Path) -> None:
+    locked = tmp_path / "locked"
+    locked.mkdir(mode=0o500)
+    if os.access(locked, os.W_OK):
+        pytest.skip("this user may write everywhere")
+    assert "locked" in refused("reproduce", "--out", "locked/results", cwd=tmp_path)
+    assert list(locked.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", ["reproduce", "compare"])
+@pytest.mark.parametrize("compiler", [None, "/usr/bin/cc"])
+def test_fmus_not_built(
+    command: str,
+    compiler: str | None,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def missing(name: str) -> Path:
+        raise FileNotFoundError(name)
+
+    monkeypatch.setattr(sigmahat, "fmu", missing)
+    monkeypatch.setattr(shutil, "which", lambda name: compiler)
+    assert main([command, "--out", str(tmp_path / "out")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "cmake --workflow --preset build" in line
+    assert ("install a C compiler" in line) == (compiler is None)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("command", "seeds", "delay"),
+    [
+        *(("reproduce", "1", 0.2), ("reproduce", "100", 0.0), ("reproduce", "100", 0.3)),
+        *(("reproduce", "100", 1.0), ("reproduce", "100", 3.5), ("compare", "100", 3.5)),
+    ],
+)
+def test_interrupt(command: str, seeds: str, delay: float, tmp_path: Path) -> None:
+    """Ctrl-C reaches the whole process group, at any time after the start of Python."""
+    started = (
+        "import sys, sigmahat.cli as c; run = c.cli.main; "
+        "c.cli.main = lambda *a, **k: print(flush=True) or run(*a, **k); sys.exit(c.main())"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", started, command, "--seeds", seeds],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    assert process.stdout is not None and process.stdout.readline() == "\n"
+    time.sleep(delay)
+    os.killpg(process.pid, signal.SIGINT)
+    output, errors = process.communicate(timeout=30)
+    # Python ends by the signal itself if that came while it was importing; to a shell it is 130.
+    assert process.returncode in (130, -signal.SIGINT)
+    assert output == ""
+    assert errors.strip() == "sigmahat: interrupted"
+    assert list(tmp_path.iterdir()) == []

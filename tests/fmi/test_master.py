@@ -1,0 +1,195 @@
+"""The co-simulation master."""
+
+from __future__ import annotations
+
+import logging
+import math
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+import pytest
+
+import sigmahat
+from recordings import one_seed
+from sigmahat.fmi.instance import Fmu, FmuError, Slave
+from sigmahat.fmi.master import Estimator, Plant, simulate
+from sigmahat.paper.scenarios import T, scenario
+
+PLANT = scenario("table1").plant
+ESTIMATORS = scenario("table1").estimators
+RESIDUAL = ESTIMATORS["RESIDUAL"]
+
+
+def changed(start: dict[str, Any]) -> Estimator:
+    return replace(RESIDUAL, start={**RESIDUAL.start, **start})
+
+
+@pytest.mark.parametrize("name", ["MODEL", "SENSOR", "RESIDUAL"])
+def test_same_estimate_as_fmpy_gives_from_the_recorded_measurements(name: str) -> None:
+    recording = one_seed("table1").recording
+    estimator = ESTIMATORS[name]
+    inputs = np.zeros(
+        len(recording.t), [("time", float), *((n, float) for n in estimator.connections)]
+    )
+    inputs["time"] = recording.t
+    for to, source in estimator.connections.items():
+        inputs[to] = recording.plant[source]
+    path = sigmahat.fmu("StiffnessEstimator")
+    with Fmu(path) as fmu:  # FMPy wants the numbers of enumerations
+        start = {name: fmu.number(name, value) for name, value in estimator.start.items()}
+    alone = fmpy.simulate_fmu(
+        path,
+        start_values=start,
+        stop_time=recording.t[-1],
+        output_interval=T,
+        step_size=T,
+        input=inputs,
+        output=["sigma", "tau_e", "a"],
+    )
+    # FMPy's row k + 1 is what the step from t_k, hence the tick at t_k, has left.
+    for output in ("sigma", "tau_e", "a"):
+        ours = recording.estimators[name][output][: len(alone) - 1]
+        np.testing.assert_array_equal(ours, alone[output][1:])
+
+
+def test_every_tick_sees_the_plant_at_its_own_time() -> None:
+    recording = one_seed("table1").recording
+    plant, estimator = recording.plant, recording.estimators["RESIDUAL"]
+    assert len(recording.t) == 15001
+    phi = plant["q_measured"] - plant["theta_measured"]
+    np.testing.assert_array_equal(estimator["phi"], phi)
+    assert estimator["valid"].all()
+
+
+def test_inputs_are_linear_between_samples() -> None:
+    quiet = {"noise.tau_variance": 0.0, "noise.tau_e_variance": 0.0}
+    plant = replace(PLANT, start={**PLANT.start, **quiet}, record=("tau_measured", "theta"))
+    coarse, fine = (simulate(plant, {}, h, round(0.5 / h)) for h in (1e-2, 1e-4))
+    tau = PLANT.inputs["tau"]
+    np.testing.assert_allclose(coarse.plant["tau_measured"], tau(coarse.t), rtol=0, atol=1e-15)
+    # Steps that hold the torque would be late by 5 ms: 4 % of the position reached here.
+    np.testing.assert_allclose(coarse.plant["theta"], fine.plant["theta"][::100], rtol=0, atol=1e-5)
+
+
+def test_estimators_do_not_disturb_each_other() -> None:
+    together = simulate(PLANT, ESTIMATORS, T, 300)
+    for name, estimator in ESTIMATORS.items():
+        alone = simulate(PLANT, {name: estimator}, T, 300)
+        np.testing.assert_array_equal(
+            together.estimators[name]["sigma"], alone.estimators[name]["sigma"]
+        )
+
+
+def test_recording_holds_units_and_parameters() -> None:
+    recording = simulate(PLANT, {"one": changed({"rls.kind": "Standard"})}, T, 1)
+    series = recording.estimators["one"]
+    assert series.units["sigma"] == "N.m/rad"
+    assert recording.plant.units["theta_dot"] == "rad/s"
+    assert series.parameters["rls.kind"] == "Standard"
+    assert series.parameters["rls.n"] == 6
+    assert series.parameters["motor.gamma"] == 50.0
+    assert recording.plant.parameters["initial.theta_c"] == PLANT.start["initial.theta_c"]
+
+
+@pytest.mark.parametrize("steps", [1, 99, 100, 250])
+def test_progress_adds_up_to_the_steps(steps: int) -> None:
+    done: list[int] = []
+    simulate(PLANT, {}, T, steps, progress=done.append)
+    assert sum(done) == steps
+
+
+@pytest.mark.parametrize(
+    ("plant", "estimator", "message"),
+    [
+        (
+            replace(PLANT, start={"initial.thetac": 1.0}),
+            RESIDUAL,
+            r"variable of AwasPlant 'initial.thetac'; did you mean 'initial.theta_c'",
+        ),
+        (
+            replace(PLANT, inputs={"tau_d": PLANT.inputs["tau"]}),
+            RESIDUAL,
+            r"input of AwasPlant 'tau_d'; .*\(there are: tau, tau_c, tau_ext\)",
+        ),
+        (replace(PLANT, record=("sigmaa",)), RESIDUAL, "'sigmaa'; did you mean 'sigma'"),
+        (
+            PLANT,
+            changed({"modality": "Sensr"}),
+            r"value of StiffnessEstimator.modality 'Sensr'; did you mean 'Sensor'\?"
+            r" \(there are: Model, Residual, Sensor\)",
+        ),
+        (PLANT, changed({"rls.n": "six"}), "rls.n: expected Integer, got 'six'"),
+        (PLANT, changed({"rls.n": 2.5}), "rls.n: expected Integer, got 2.5"),
+        (
+            PLANT,
+            replace(RESIDUAL, connections={"theta_d": "theta"}),
+            r"input of StiffnessEstimator 'theta_d'; did you mean 'theta_c' or 'theta'\?",
+        ),
+        (
+            PLANT,
+            replace(RESIDUAL, connections={"theta": "noise.seed"}),
+            "output of AwasPlant 'noise.seed'",
+        ),
+    ],
+)
+def test_wrong_names_are_refused(plant: Plant, estimator: Estimator, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        simulate(plant, {"one": estimator}, T, 1)
+
+
+def test_an_error_of_an_fmu_comes_with_its_own_message() -> None:
+    with pytest.raises(FmuError, match=r"^one: .*residual\.K_I") as caught:
+        simulate(PLANT, {"one": changed({"residual.K_I": -1.0})}, T, 1)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_fmu_is_named() -> None:
+    with pytest.raises(FileNotFoundError, match="NoSuchPlant"):
+        simulate(replace(PLANT, fmu="NoSuchPlant"), {}, T, 1)
+
+
+@pytest.mark.parametrize("K_I", [300.0, -1.0])
+def test_unpacked_files_are_removed(
+    K_I: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    seen: list[list[Path]] = []
+    try:
+        simulate(
+            PLANT,
+            {"one": changed({"residual.K_I": K_I})},
+            T,
+            1,
+            progress=lambda steps: seen.append(list(tmp_path.iterdir())),
+        )
+    except FmuError:
+        assert K_I < 0
+    else:
+        assert [len(folders) for folders in seen] == [2]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_warning_of_an_fmu_goes_to_the_log(caplog: pytest.LogCaptureFixture) -> None:
+    with (
+        caplog.at_level(logging.WARNING, "sigmahat"),
+        Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu,
+        Slave(fmu, "one") as slave,
+    ):
+        slave.initialize({})
+        value = fmpy.fmi2.fmi2Real * 1
+        slave.call(slave.functions.fmi2SetReal, fmu.references(["theta"]), 1, value(math.nan))
+        slave.call(slave.functions.fmi2DoStep, 0.0, T, 1)
+    assert [r.levelname for r in caplog.records] == ["WARNING"]
+    assert caplog.records[0].getMessage().startswith("one: ")
+
+
+@pytest.mark.parametrize("content", [b"", b"not a zip file", b"PK\x05\x06" + bytes(18)])
+def test_a_file_that_is_no_fmu(content: bytes, tmp_path: Path) -> None:
+    file = tmp_path / "broken.fmu"
+    file.write_bytes(content)
+    with pytest.raises(FmuError, match=r"broken\.fmu: not a readable FMU"):
+        Fmu(file)

@@ -1,0 +1,168 @@
+"""The C library from Python: declarations come from its headers, arrays are numpy's."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import cffi
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+REPOSITORY = Path(__file__).resolve().parents[2]
+HEADERS = [  # in the order in which they need each other
+    REPOSITORY / "c" / "real.h",
+    REPOSITORY / "c" / "kinematic_kalman.h",
+    REPOSITORY / "c" / "torque_basis.h",
+    REPOSITORY / "c" / "torque_residual.h",
+    REPOSITORY / "c" / "least_squares.h",
+    REPOSITORY / "c" / "scaled_basis.h",
+    REPOSITORY / "c" / "motion_sign.h",
+    REPOSITORY / "c" / "state_variable_filter.h",
+    REPOSITORY / "c" / "rounding_bias.h",
+    REPOSITORY / "c" / "matched_regression.h",
+    REPOSITORY / "c" / "stiffness_estimator.h",
+    REPOSITORY / "tests" / "drivers" / "run.h",
+]
+MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
+
+
+def declarations(header: Path) -> str:
+    """The C declarations of a header, without its preprocessor lines, for double."""
+    text = re.sub(r"#ifdef __cplusplus.*?#endif", "", header.read_text(), flags=re.DOTALL)
+    return re.sub(r"^#.*$", "", text, flags=re.MULTILINE).replace("SH_REAL", "double")
+
+
+@cache
+def load(build: Path) -> Library:
+    """The library of a build tree."""
+    return Library(build)
+
+
+class Library:
+    """The estimator library with the loops of `drivers/` beside it."""
+
+    def __init__(self, build: Path) -> None:
+        self.ffi = cffi.FFI()
+        for header in HEADERS:
+            self.ffi.cdef(declarations(header))
+        suffix = ".dylib" if sys.platform == "darwin" else ".so"
+        self.lib: Any = self.ffi.dlopen(str(build / f"libsigmahat_test_driver{suffix}"))
+
+    def new(self, struct: str, **values: Any) -> Any:
+        """A struct, zero but for the given fields."""
+        return self.ffi.new(f"{struct} *", values)
+
+    def pointer(self, array: Array) -> Any:
+        """A `double *` to a contiguous array, which must outlive it."""
+        return self.ffi.cast("double *", self.ffi.from_buffer(array, require_writable=False))
+
+    def dtype(self, struct: str) -> np.dtype[Any]:
+        """The numpy type with the layout of a struct of doubles, integers and arrays of them."""
+        declared = self.ffi.typeof(struct)
+        names, formats, offsets = [], [], []
+        for name, field in declared.fields or []:
+            item, shape = field.type, []
+            while item.kind == "array":
+                shape.append(item.length)
+                item = item.item
+            names.append(name)
+            formats.append(({"double": "f8", "int": "i4"}[item.cname], tuple(shape)))
+            offsets.append(field.offset)
+        size = self.ffi.sizeof(struct)
+        return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
+
+    def parameters(self, values: Mapping[str, Any]) -> Any:
+        """A `sh_parameters *`: the defaults, then `values` by their dotted names."""
+        p = self.ffi.new("sh_parameters *")
+        self.lib.sh_parameters_default(p)
+        for name, value in values.items():
+            self.set(p, name, value)
+        return p
+
+    def set(self, p: Any, name: str, value: Any) -> None:
+        """Sets a parameter by its dotted name."""
+        *groups, last = name.split(".")
+        for group in groups:
+            p = getattr(p, group)
+        setattr(p, last, value)
+
+    def violation(self, p: Any) -> tuple[str, float, str] | None:
+        """Name, value and range of the first parameter out of range, None if there is none."""
+        violation = self.new("sh_violation")
+        if self.lib.sh_parameters_check(p, violation) == 0:
+            return None
+        name, allowed = (
+            self.ffi.string(text).decode() for text in (violation.name, violation.range)
+        )
+        return name, violation.value, allowed
+
+
+class Estimator:
+    """One estimator with its parameters and its last estimate."""
+
+    def __init__(self, library: Library, values: Mapping[str, Any]) -> None:
+        self.library = library
+        self.parameters = library.parameters(values)
+        problem = library.violation(self.parameters)
+        if problem:
+            raise ValueError("{} is {}, allowed: {}".format(*problem))
+        self.state = library.new("sh_estimator")
+        self.estimate = library.new("sh_estimate")
+        library.lib.sh_estimator_start(self.state, self.parameters, self.estimate)
+
+    def tick(self, measurement: Sequence[float] | Array) -> bool:
+        """Runs one tick on theta, q, theta_c, tau, tau_e_sensor; false if it was skipped."""
+        z = self.library.new(
+            "sh_measurement", **dict(zip(MEASUREMENTS, map(float, measurement), strict=True))
+        )
+        lib = self.library.lib
+        return bool(lib.sh_estimator_tick(self.state, self.parameters, z, self.estimate))
+
+    def lasting(self) -> bytes:
+        """The state without what was at work in the last tick."""
+        ffi = self.library.ffi
+        state = ffi.new("sh_estimator *", self.state[0])
+        for part in (state, state.rls, state.matched):
+            size = ffi.sizeof(part.work)
+            ffi.memmove(ffi.addressof(part, "work"), bytes(size), size)
+        return bytes(ffi.buffer(state))
+
+    def run(self, measurements: Array) -> NDArray[np.void]:
+        """Runs ticks over measurements [size: ticks x 5]; the estimates by field name."""
+        record = np.zeros(len(measurements), self.library.dtype("sh_estimate"))
+        self._drive(measurements, len(measurements), record)
+        return record
+
+    def repeat(self, measurements: Array, ticks: int) -> int:
+        """Runs ticks over measurements again and again; how many were not skipped."""
+        return self._drive(measurements, ticks, None)
+
+    def _drive(self, measurements: Array, ticks: int, record: NDArray[np.void] | None) -> int:
+        ffi = self.library.ffi
+        z = np.zeros(len(measurements), self.library.dtype("sh_measurement"))
+        for i, name in enumerate(MEASUREMENTS):
+            z[name] = measurements[:, i]
+        good: int = self.library.lib.test_run(
+            self.state,
+            self.parameters,
+            ffi.cast("sh_measurement *", ffi.from_buffer(z)),
+            len(z),
+            ticks,
+            self.estimate,
+            ffi.NULL
+            if record is None
+            else ffi.cast("sh_estimate *", ffi.from_buffer(record, require_writable=True)),
+        )
+        return good
+
+    def covariance(self) -> Array:
+        """P of the regression [size: n m x n m]."""
+        rls = self.library.ffi.addressof(self.state, "rls")
+        at = self.library.lib.sh_least_squares_covariance
+        return np.array([[at(rls, i, j) for j in range(rls.size)] for i in range(rls.size)])

@@ -1,0 +1,84 @@
+"""The programs of `drivers/`, each linked with the sources of one FMU.
+
+Where a compiler or a checker is missing the test is skipped, but fails in the gate, which sets
+SIGMAHAT_GATE=1.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import fmpy
+
+from fmi_runs import ESTIMATORS
+from gate import missing
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PLANT_SOURCES = ("plant.c", "radau.c", "noise.c")
+
+
+def sources(fmu: str, build: Path) -> list[Path]:
+    """The C files of an FMU."""
+    shell = REPOSITORY / "fmu_src"
+    files = [*sorted(shell.glob("fmi2_*.c")), shell / "instance.c"]
+    if fmu in ESTIMATORS:
+        own = [shell / name for name in (f"{fmu}.c", "estimator_fmu.c", "sample_clock.c")]
+        return files + own + sorted((REPOSITORY / "c").glob("*.c"))
+    return [
+        *files,
+        *(shell / name for name in PLANT_SOURCES),
+        build / f"fmu/{fmu}/plant_functions.c",
+    ]
+
+
+@cache
+def compile_driver(
+    driver: str, fmu: str, build: Path, folder: Path, compiler: str, flags: tuple[str, ...] = ()
+) -> Path:
+    """A program made of drivers/DRIVER.c and an FMU, in a new folder inside the one given."""
+    program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{fmu}"
+    here = REPOSITORY / "tests" / "drivers"
+    common = (
+        [here / "drive.c"] if '#include "drive.h"' in (here / f"{driver}.c").read_text() else []
+    )
+    folders = [REPOSITORY / "c", REPOSITORY / "fmu_src", build / "fmu" / fmu]
+    command = [
+        *(compiler, "-gdwarf-4", "-O1", "-ffp-contract=off", *flags),  # valgrind reads no newer
+        *(f"-I{path}" for path in folders),
+        f"-isystem{Path(fmpy.__file__).parent / 'c-code'}",
+        *(str(path) for path in (here / f"{driver}.c", *common, *sources(fmu, build))),
+        *("-lm", "-o", str(program)),
+    ]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return program
+
+
+@cache
+def _works(compiler: str, flags: tuple[str, ...], folder: Path, text: str) -> bool:
+    source = folder / "probe.c"
+    source.write_text(text)
+    build = [compiler, *flags, str(source), "-o", str(folder / "probe")]
+    run = [str(folder / "probe"), "-runs=1"]
+    return all(
+        subprocess.run(command, capture_output=True, cwd=folder).returncode == 0
+        for command in (build, run)
+    )
+
+
+def compiler_with(flags: tuple[str, ...], folder: Path) -> str:
+    """A compiler whose programs built with these flags run; the runtimes are often missing."""
+    text = "int main(void) { return 0; }\n"
+    if any("fuzzer" in flag for flag in flags):
+        text = "int LLVMFuzzerTestOneInput(void) { return 0; }\n"
+    for compiler in ("clang", "gcc"):
+        if shutil.which(compiler) and _works(compiler, flags, folder, text):
+            return compiler
+    missing(
+        f"a compiler that builds programs with {' '.join(flags) or 'no options'}",
+        "apt-get install clang libclang-rt-dev",
+    )

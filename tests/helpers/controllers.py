@@ -1,0 +1,88 @@
+"""Programs for other processors: built with the toolchains of cmake/, run in QEMU."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gate import missing
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+OUTPUTS = (
+    *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),
+    *("eta", "sigma_std", "D_theta_hat", "B_hat", "tau_coulomb_hat", "confident", "valid"),
+)
+"""What replay.c writes of each tick, in its order."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """A processor with its compiler and emulator, which must be installed."""
+
+    toolchain: str | None
+    """File in cmake/toolchains; None for this machine."""
+    tools: tuple[str, ...] = ()
+    packages: str = ""
+
+
+_CORTEX_M = (
+    ("arm-none-eabi-gcc", "qemu-system-arm"),
+    ("apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm"),
+)
+_AARCH64 = (
+    ("aarch64-linux-gnu-gcc", "qemu-aarch64"),
+    ("apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"),
+)
+HOST = Target(None)
+TARGETS = {
+    "Cortex-M4F": Target("cortex-m4", *_CORTEX_M),
+    "Cortex-M7": Target("cortex-m7", *_CORTEX_M),
+    "aarch64": Target("aarch64", *_AARCH64),
+}
+
+
+@cache
+def cross_build(project: str, target: Target, real: str, ninja: Path, folder: Path) -> Path:
+    """The build tree of a project of the repository for a target, with SH_REAL."""
+    for tool in target.tools:
+        if shutil.which(tool) is None:
+            missing(tool, target.packages)
+    tree = Path(tempfile.mkdtemp(dir=folder))
+    toolchain = REPOSITORY / "cmake" / "toolchains" / f"{target.toolchain}.cmake"
+    run(
+        *("cmake", "-S", str(REPOSITORY / project), "-B", str(tree), "-G", "Ninja"),
+        *(f"-DCMAKE_MAKE_PROGRAM={ninja}", "-DCMAKE_BUILD_TYPE=Release", f"-DSH_REAL={real}"),
+        *(["--toolchain", str(toolchain)] if target.toolchain else []),
+    )
+    run("cmake", "--build", str(tree))
+    return tree
+
+
+def run(*command: str, cwd: Path | None = None) -> str:
+    """Runs a command, which must succeed within minutes; what it printed."""
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def replay(
+    tree: Path, measurements: NDArray[np.float64], configuration: str, folder: Path
+) -> dict[str, NDArray[np.float64]]:
+    """What the estimator of a build of tests/replay gives in each tick, by OUTPUTS."""
+    measurements.astype("<f8").tofile(folder / "log")
+    program, arguments = str(tree / "replay"), ["log", "out", configuration]
+    command = [part for part in (tree / "emulator.txt").read_text().split(";") if part]
+    if command and command[-1] == "-kernel":  # no operating system that has arguments
+        run(*command, program, "-append", " ".join(arguments), cwd=folder)
+    else:
+        run(*command, program, *arguments, cwd=folder)
+    rows = np.fromfile(folder / "out", "<f8").reshape(-1, len(OUTPUTS))
+    assert len(rows) == len(measurements)
+    return dict(zip(OUTPUTS, rows.T, strict=True))

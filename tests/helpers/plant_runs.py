@@ -1,0 +1,114 @@
+"""Runs of a plant FMU under given torques."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+from fmpy import fmi2
+from numpy.typing import NDArray
+
+import sigmahat
+from sigmahat.fmi.instance import Fmu, Recorder, Slave
+
+Array = NDArray[np.float64]
+
+INPUTS = ("tau", "tau_c", "tau_ext")
+STATES = ("q", "theta", "theta_c", "q_dot", "theta_dot", "theta_c_dot")
+QUIET = {"noise.tau_variance": 0.0, "noise.tau_e_variance": 0.0}
+
+
+def run_plant(
+    name: str,
+    inputs: Sequence[str],
+    h: float,
+    torques: Array,
+    start: Mapping[str, float] | None = None,
+    record: Iterable[str] = (),
+    *,
+    held: bool = False,
+) -> dict[str, Array]:
+    """A plant in communication steps of h [s] under torques [size: steps + 1 x inputs].
+
+    Torques are linear from one row to the next, or each is held until the next. Gives each
+    recorded variable [size: steps + 1].
+    """
+    steps, count = len(torques) - 1, len(inputs)
+    slopes = np.zeros_like(torques) if held else np.diff(torques, axis=0, append=0.0) / h
+    values_c, slopes_c = (
+        np.ctypeslib.as_ctypes(np.ascontiguousarray(a)) for a in (torques, slopes)
+    )
+    orders = (fmi2.fmi2Integer * count)(*[1] * count)
+    with Fmu(sigmahat.fmu(name)) as fmu, Slave(fmu, "plant") as plant:
+        references = fmu.references(inputs, "input")
+        fmi = plant.functions
+        first = dict(zip(inputs, torques[0].tolist(), strict=True))
+        plant.initialize({**first, **(start or {})})
+        recorder = Recorder(plant, record, steps + 1)
+        recorder.sample(0)
+        for k in range(steps):
+            plant.call(fmi.fmi2SetReal, references, count, values_c[k])
+            plant.call(fmi.fmi2SetRealInputDerivatives, references, count, orders, slopes_c[k])
+            plant.call(fmi.fmi2DoStep, k * h, h, fmi2.fmi2True)
+            recorder.sample(k + 1)
+    return recorder.columns()
+
+
+def run_awas(
+    h: float,
+    torques: Array,
+    start: Mapping[str, float] | None = None,
+    record: Iterable[str] = STATES,
+    *,
+    held: bool = False,
+) -> dict[str, Array]:
+    """AwasPlant as in `run_plant`, torques in the order of INPUTS."""
+    return run_plant("AwasPlant", INPUTS, h, torques, start, record, held=held)
+
+
+def times(h: float, duration: float) -> Array:
+    """0, h, 2 h, ..., duration [size: duration / h + 1]."""
+    return h * np.arange(round(duration / h) + 1, dtype=np.float64)
+
+
+def sinusoids(
+    t: Array,
+    tau: tuple[float, float],
+    tau_c: tuple[float, float],
+    tau_ext: tuple[float, float],
+) -> Array:
+    """Torques [size: p x 3] at times t, each given by its amplitude [N.m] and frequency [Hz]."""
+    return np.column_stack([A * np.sin(2 * np.pi * f * t) for A, f in (tau, tau_c, tau_ext)])
+
+
+def between(torques: Array, steps: int) -> Array:
+    """Torques at `steps` times as many times, on the straight lines between the rows."""
+    rows = np.arange(len(torques))
+    finer = np.arange((len(torques) - 1) * steps + 1) / steps
+    return np.column_stack([np.interp(finer, rows, column) for column in torques.T])
+
+
+def relative_error(run: Mapping[str, Array], reference: Array, steps: int = 1) -> Array:
+    """Largest error of each state over its range, at every steps-th sample of a run.
+
+    The run has the states of the reference [size: p x states] first, in the same order.
+    """
+    states = np.column_stack(list(run.values())[: reference.shape[1]])[::steps]
+    error: Array = np.abs(states - reference).max(axis=0) / np.ptp(reference, axis=0)
+    return error
+
+
+def slope(name: str, start: Mapping[str, float], phi: float, side: str = "") -> tuple[float, float]:
+    """Stiffness of a transmission at a deformation, and the difference quotient of its torque."""
+    small = 1e-4
+    tau_e, sigma = f"tau_e{side}", f"sigma{side}"
+    values = []
+    with Fmu(sigmahat.fmu(name)) as fmu:
+        for deformation in (phi, phi + small, phi - small):
+            with Slave(fmu, "plant") as plant:
+                plant.initialize({**start, f"initial.theta{side}": -deformation})
+                recorder = Recorder(plant, [tau_e, sigma], 1)
+                recorder.sample(0)
+                values.append({n: float(v[0]) for n, v in recorder.columns().items()})
+    here, above, below = values
+    return here[sigma], (above[tau_e] - below[tau_e]) / (2 * small)

@@ -1,0 +1,286 @@
+"""A real variable-stiffness joint, replayed through the estimator FMU.
+
+    python tests/helpers/real_joint.py FIGURE.png
+
+prints the tables of docs/real-joint.md and draws its figure. The data are looked for in
+../shared/data/desr beside the checkout, or where the environment variable SIGMAHAT_DESR says.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from fmpy import fmi2
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+import sigmahat
+from sigmahat.fmi.instance import Fmu, Recorder, Slave, Value
+
+Array = NDArray[np.float64]
+
+SETTINGS = (0, 10, 25, 33, 35, 45)  # position of the support [mm]
+SAMPLE_PERIOD = 1.2e-3  # [s]
+DYNAMOMETER = 218 * 180 / math.pi  # its stiffness [N.m/rad]
+N, M = 6, 3
+PARAMETERS: dict[str, Value] = {
+    "samplePeriod": SAMPLE_PERIOD,
+    "modality": "Sensor",
+    "encoder.theta": 0.0,
+    "encoder.q": 0.0,
+    "encoder.theta_c": 0.0,
+    "setPoint.offset": 0.0,
+    "setPoint.scale": 1.0,
+    "rls.n": N,
+    "rls.m": M,
+    "rls.P_0": 1e32,
+}
+PAPER2011: dict[str, Value] = {}
+MATCHED_FILTER: dict[str, Value] = {
+    "method": "MatchedFilter",
+    "range.phi": 0.25,
+    "range.setPoint": 45.0,
+    "prior.tau_e": 100.0,
+    "noise.tau_e": 0.1,
+}
+BIN = 5e-3  # width over which the measured curve is averaged [rad]
+POINTS = (-0.1, 0.1)  # where the stiffness is compared [rad]
+HALF_WIDTH = 0.05  # of the window in which the slope is taken, see docs/real-joint.md [rad]
+
+
+@dataclass(frozen=True)
+class Log:
+    """One setting of the joint; arrays of one size, a sample each."""
+
+    setting: int
+    """Position of the support [mm]."""
+    q: Array
+    """Angle of the dynamometer [rad]."""
+    torque: Array
+    """Torque of the transmission [N.m]."""
+
+    @property
+    def theta(self) -> Array:
+        """What the dynamometer itself yields [rad]."""
+        return self.torque / DYNAMOMETER
+
+    @property
+    def phi(self) -> Array:
+        """Deformation of the transmission [rad]."""
+        return self.q - self.theta
+
+    def rms(self, fit: Fit) -> float:
+        """RMS error of the fitted torque in percent of the torque range."""
+        error = fit.torque(self.setting, self.phi) - self.torque
+        return float(100 * np.sqrt(np.mean(error**2)) / np.ptp(self.torque))
+
+    def hysteresis(self) -> float:
+        """RMS of the torque around its mean at each deformation, in percent of its range.
+
+        No function of the deformation, whatever its form, comes nearer to the torque.
+        """
+        _, number = np.unique(np.floor(self.phi / BIN), return_inverse=True)
+        mean = np.bincount(number, self.torque) / np.bincount(number)
+        error = self.torque - mean[number]
+        return float(100 * np.sqrt(np.mean(error**2)) / np.ptp(self.torque))
+
+    def mean_curve(self) -> tuple[Array, Array]:
+        """Deformation [rad] and torque [N.m], the mean of loading and unloading.
+
+        Each branch is averaged in bins of deformation; bins that only one branch reaches are left
+        out. The log swings once, to its least angle, to its greatest and back.
+        """
+        numbers = np.floor(self.phi / BIN).astype(int)
+        rising = np.zeros(len(self.q), dtype=bool)
+        rising[np.argmin(self.q) : np.argmax(self.q)] = True
+        both = np.intersect1d(numbers[rising], numbers[~rising])
+        branches = [
+            [np.mean(self.torque[branch & (numbers == number)]) for number in both]
+            for branch in (rising, ~rising)
+        ]
+        return (both + 0.5) * BIN, np.mean(branches, axis=0)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What the estimator has learned at the end of a replay."""
+
+    symmetric: bool
+    eta: Array
+    """Coefficients [size: N x M]."""
+    tau_e: float
+    sigma: float
+    """Outputs of the FMU at the last sample [N.m], [N.m/rad]."""
+
+    def torque(self, setting: float, phi: Array) -> Array:
+        """Torque of the polynomial [N.m]."""
+        torque: Array = phi[:, None] ** self._powers @ self._of(setting)
+        return torque
+
+    def stiffness(self, setting: float, phi: float) -> float:
+        """Stiffness of the polynomial [N.m/rad]."""
+        e = self._powers
+        return float(e * phi ** np.maximum(e - 1, 0) @ self._of(setting))
+
+    @property
+    def _powers(self) -> NDArray[np.int64]:
+        return 2 * np.arange(N) + 1 if self.symmetric else np.arange(N)
+
+    def _of(self, setting: float) -> Array:
+        coefficients: Array = self.eta @ float(setting) ** np.arange(M)
+        return coefficients
+
+
+def slope(x: Array, y: Array, at: float, half_width: float) -> float:
+    """Slope of the straight line through the points of y(x) within half_width of x = at."""
+    near = np.abs(x - at) < half_width
+    return float(np.polyfit(x[near], y[near], 1)[0])
+
+
+def folder() -> Path:
+    """Where the data are. Raises FileNotFoundError if they are not there."""
+    beside = Path(__file__).resolve().parents[3] / "shared" / "data" / "desr"
+    path = Path(os.environ.get("SIGMAHAT_DESR", beside))
+    if not (path / "desr_x00.csv").is_file():
+        raise FileNotFoundError(f"no DESR data in {path}; SIGMAHAT_DESR can say where they are")
+    return path
+
+
+def logs(path: Path) -> list[Log]:
+    """The six logs, by setting."""
+    found = []
+    for setting in SETTINGS:
+        table = np.loadtxt(path / f"desr_x{setting:02d}.csv", delimiter=",", skiprows=1)
+        found.append(Log(setting, table[:, 1], table[:, 2]))
+    return found
+
+
+def replay(
+    fmu: Fmu, played: Sequence[Log], symmetric: bool, method: Mapping[str, Value] = PAPER2011
+) -> Fit:
+    """Plays logs through a new instance of the estimator, one after another."""
+    names = ["theta", "q", "theta_c", "tau_e_sensor"]
+    columns = [
+        np.concatenate([log.theta for log in played]),
+        np.concatenate([log.q for log in played]),
+        np.concatenate([np.full(len(log.q), float(log.setting)) for log in played]),
+        np.concatenate([log.torque for log in played]),
+    ]
+    rows = np.ctypeslib.as_ctypes(np.column_stack(columns))
+    with Slave(fmu, "real joint") as slave:
+        slave.initialize({**PARAMETERS, **method, "rls.symmetric": symmetric})
+        inputs = fmu.references(names, "input")
+        set_real, do_step = slave.functions.fmi2SetReal, slave.functions.fmi2DoStep
+        for k, row in enumerate(rows):
+            slave.call(set_real, inputs, len(names), row)
+            slave.call(do_step, k * SAMPLE_PERIOD, SAMPLE_PERIOD, fmi2.fmi2True)
+        coefficients = [f"eta[{i},{j}]" for i in range(N) for j in range(M)]
+        end = Recorder(slave, [*coefficients, "tau_e", "sigma"], 1)
+        end.sample(0)
+        values = {name: float(column[0]) for name, column in end.columns().items()}
+    eta = np.array([values[name] for name in coefficients]).reshape(N, M)
+    return Fit(symmetric, eta, values["tau_e"], values["sigma"])
+
+
+def leave_one_out(fmu: Fmu, measured: Sequence[Log]) -> dict[int, float]:
+    """RMS [%] of the torque at each setting but the outer two, learned from the other five."""
+    return {
+        log.setting: log.rms(replay(fmu, [each for each in measured if each is not log], False))
+        for log in measured[1:-1]
+    }
+
+
+def worst(measured: Sequence[Log], fit: Fit, half_width: float, line: bool = False) -> float:
+    """Largest error [%] of the stiffness at +-0.1 rad against the slope of the measured curve.
+
+    line  compares the slope of a line through the fitted torque over the same window instead
+    """
+    errors = []
+    for log in measured:
+        x, y = log.mean_curve()
+        for phi in POINTS:
+            sigma = fit.stiffness(log.setting, phi)
+            if line:
+                sigma = slope(x, fit.torque(log.setting, x), phi, half_width)
+            errors.append(abs(100 * (sigma / slope(x, y, phi, half_width) - 1)))
+    return max(errors)
+
+
+def torque_table(
+    measured: Sequence[Log], general: Fit, odd: Fit, left_out: Mapping[int, float]
+) -> str:
+    """RMS of the torque, as a table in Markdown."""
+    rows = ["| setting [mm] | range [N.m] | general basis | left out | odd basis | hysteresis |"]
+    rows.append("|---|---|---|---|---|---|")
+    for log in measured:
+        left = f"{left_out[log.setting]:.2f}" if log.setting in left_out else ""
+        errors = [f"{log.rms(general):.2f}", left, f"{log.rms(odd):.2f}", f"{log.hysteresis():.2f}"]
+        rows.append(f"| {log.setting} | {np.ptp(log.torque):.0f} | {' | '.join(errors)} |")
+    return "\n".join(["torque, RMS in % of its range:", *rows, ""])
+
+
+def stiffness_table(measured: Sequence[Log], general: Fit, odd: Fit) -> str:
+    """Stiffness at +-0.1 rad and what depends on the window, as tables in Markdown."""
+    rows = ["| setting [mm] | phi [rad] | measured | general basis | odd basis |"]
+    rows.append("|---|---|---|---|---|")
+    for log in measured:
+        for phi in POINTS:
+            truth = slope(*log.mean_curve(), phi, HALF_WIDTH)
+            cells = [
+                f"{sigma:.0f} ({100 * (sigma / truth - 1):+.1f} %)"
+                for sigma in (fit.stiffness(log.setting, phi) for fit in (general, odd))
+            ]
+            rows.append(f"| {log.setting} | {phi:+.1f} | {truth:.0f} | {' | '.join(cells)} |")
+    rows += ["", "largest error in %, over the half-width of the window:"]
+    rows += ["| half-width [rad] | stiffness | line through the fitted torque |", "|---|---|---|"]
+    for width in (0.02, 0.03, 0.04, HALF_WIDTH, 0.055, 0.06, 0.065, 0.07):
+        errors = [worst(measured, general, width, line) for line in (False, True)]
+        rows.append(f"| {width:g} | {errors[0]:.1f} | {errors[1]:.1f} |")
+    return "\n".join(["stiffness in N.m/rad:", *rows])
+
+
+def draw(measured: Sequence[Log], general: Fit, odd: Fit) -> Figure:
+    """Torque over deformation, measured and fitted, a panel for each setting."""
+    figure = Figure(figsize=(9.0, 6.0), layout="constrained")
+    panels = figure.subplots(2, 3, sharex=True)
+    for axes in panels[1]:
+        axes.set_xlabel(r"deformation $\phi$ [rad]")
+    for axes in panels[:, 0]:
+        axes.set_ylabel(r"torque $\tau_e$ [N$\cdot$m]")
+    for log, axes in zip(measured, panels.flat, strict=True):
+        x = np.linspace(log.phi.min(), log.phi.max(), 200)
+        axes.plot(log.phi[::10], log.torque[::10], color="#aaaaaa", linewidth=1.2, label="measured")
+        for fit, color, line, name in (
+            (odd, "#D55E00", "--", "odd basis, RMS"),
+            (general, "#0072B2", "-", "general basis, RMS"),
+        ):
+            label = f"{name}: {log.rms(fit):.1f} %"
+            axes.plot(x, fit.torque(log.setting, x), color=color, linestyle=line, label=label)
+        axes.set_title(f"support at {log.setting} mm", fontsize=10)
+        axes.grid(color="#dddddd", linewidth=0.6)
+        axes.legend(fontsize=7.5, loc="upper left")
+        axes.margins(y=0.15)
+    return figure
+
+
+def main(figure: str) -> None:
+    """Prints the tables and draws the figure."""
+    measured = logs(folder())
+    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
+        general, odd = (replay(fmu, measured, symmetric) for symmetric in (False, True))
+        left_out = leave_one_out(fmu, measured)
+    print(torque_table(measured, general, odd, left_out))
+    print(stiffness_table(measured, general, odd))
+    draw(measured, general, odd).savefig(figure, dpi=100)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])

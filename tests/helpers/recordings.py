@@ -1,0 +1,20 @@
+"""Runs that several tests look at, each made once."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from sigmahat.paper.reproduction import Result, reproduce
+from sigmahat.paper.scenarios import scenario
+
+
+@cache
+def one_seed(name: str) -> Result:
+    """A scenario with seed 1."""
+    return reproduce(scenario(name), [1])
+
+
+@cache
+def twenty_seeds(name: str) -> Result:
+    """A scenario with seeds 1 to 20."""
+    return reproduce(scenario(name), range(1, 21), processes=2)

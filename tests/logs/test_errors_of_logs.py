@@ -1,0 +1,160 @@
+"""Bad logs and configurations: one line that says where and what to do, exit 2."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recorded_logs import CONFIGURATION, Array, write_log
+from sigmahat.cli import main
+
+
+def columns(rows: int = 2000) -> dict[str, Array]:
+    t = 1e-3 * np.arange(rows, dtype=np.float64)
+    motion = np.sin(5 * t)
+    return {"t": t, "theta": motion, "q": 1.01 * motion, "theta_c": 75 + t, "tau": 0.1 * motion}
+
+
+def refused(
+    arguments: list[str], capsys: pytest.CaptureFixture[str], command: str = "estimate"
+) -> str:
+    assert main([command, *arguments]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    (line,) = captured.err.splitlines()
+    assert line.startswith("sigmahat: error: ")
+    return line
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    Path("log.toml").write_text(CONFIGURATION)
+    return tmp_path
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet", ".mat", ".h5"])
+def test_file_cut_in_the_middle(
+    suffix: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write_log(columns(), folder / f"log{suffix}")
+    whole = path.read_bytes()
+    path.write_bytes(
+        whole[: len(whole) // 2].rsplit(b",", 2)[0]
+        if suffix == ".csv"
+        else whole[: len(whole) // 2]
+    )
+    line = refused([path.name], capsys)
+    assert path.name in line
+    assert "cut" in line or "copy it again" in line or "save it again" in line
+    assert [p.name for p in folder.iterdir() if p.is_dir()] == []
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "empty"),
+        (b"%PDF-1.7\n\xff\xfe\x00", "expected CSV, Parquet"),
+        (b"\xff\xfe\x41\x41, \xff", "expected CSV, Parquet"),
+        (b"just a letter\nto you\n", "names of several columns"),
+        (b"0,1,2\n0.1,1,2\n", "names of the columns"),
+        (b"t,theta,q,tau\n", "no rows"),
+        (b"t,t,q\n0,1,2\n", "twice"),
+    ],
+)
+def test_file_of_another_kind(
+    content: bytes, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("log.csv").write_bytes(content)
+    assert words in refused(["log.csv"], capsys)
+    assert words in refused(["log.csv", "--config", "new.toml"], capsys, "init")
+    assert not Path("new.toml").exists()
+
+
+def test_missing_file_and_folder(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert "No such file" in refused(["log.csv"], capsys)
+    (folder / "log").mkdir()
+    assert "ROS 2 bag" in refused(["log"], capsys)
+    for command in ("estimate", "identify"):  # the log is what a mistyped name is about
+        assert "error: nothere.csv: No such file" in refused(["nothere.csv"], capsys, command)
+
+
+def text(log: dict[str, Array]) -> dict[str, np.ndarray]:
+    return {**log, "q": np.array(["1.0", *["fast"] * 1999])}
+
+
+def back(log: dict[str, Array]) -> dict[str, Array]:
+    log["t"][1500] = log["t"][1400]
+    return log
+
+
+def nothing(log: dict[str, Array]) -> dict[str, Array]:
+    return {**log, "q": np.full(2000, np.nan)}
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (text, "column 'q' holds text ('fast')"),
+        (back, "does not increase: 1.4 s in row 1501 after 1.499 s"),
+        (nothing, "no number"),
+    ],
+)
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_values_that_do_not_fit(
+    change: Callable[[dict[str, Array]], dict[str, Array]],
+    words: str,
+    suffix: str,
+    folder: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = write_log(change(columns()), folder / f"log{suffix}")
+    assert words in refused([path.name], capsys)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('column = "q"', 'column = "qq"', "unknown column 'qq'; did you mean 'q'"),
+        ("[ports.theta_c]", "[ports.thetac]", "did you mean 'theta_c'"),
+        ("[parameters]", "[parameter]", "did you mean 'parameters'"),
+        ("motor.B", "motor.b", "did you mean 'motor.B'"),
+        ("motor.gamma = 50", 'motor.gamma = "50"', "motor.gamma"),
+        ("motor.gamma = 50", "motor.gamma = ", "not TOML"),
+        ('column = "q"', 'colum = "q"', "did you mean 'column'"),
+        ('column = "q"', 'column = "q"\nunit = "degg"', "unknown unit 'degg'; did you mean 'deg'"),
+        ('column = "q"', 'column = "q"\nunit = "A"', "unit 'A' is no unit of what is expected"),
+        ('column = "q"', 'column = "q"\nunit = "counts"', "counts_per_turn"),
+        ('column = "q"', 'column = "q"\nsign = 2', "expected 1 or -1"),
+        ('column = "q"', 'column = "q"\nscale = "x"', "expected a number"),
+        ('column = "t"', 'column = "t"\nunit = "sec."', "unknown unit"),
+        ('[ports.q]\ncolumn = "q"', "", "needs [ports.q]"),
+        ("samplePeriod = 0.001", "samplePeriod = 0", "samplePeriod"),
+        ("samplePeriod = 0.001", "samplePeriod = 1e-12", "samplePeriod"),
+        ("motor.gamma = 50", "modality = 'Sensr'", "did you mean 'Sensor'"),
+    ],
+)
+def test_configuration_that_does_not_fit(
+    old: str, new: str, words: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_log(columns(), folder / "log.parquet")
+    assert old in CONFIGURATION
+    Path("log.toml").write_text(CONFIGURATION.replace(old, new))
+    assert words in refused(["log.parquet"], capsys)
+    assert sorted(p.name for p in folder.iterdir()) == ["log.parquet", "log.toml"]
+
+
+def test_no_configuration(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_log(columns(), folder / "other.csv")
+    assert "sigmahat init" in refused(["other.csv"], capsys)
+
+
+def test_identify_needs_its_ports(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_log(columns(), folder / "log.csv")
+    line = refused(["log.csv", "--torque-constant"], capsys, "identify")
+    assert "tau_e_sensor" in line
+    write_log(columns(rows=200), folder / "log.csv")
+    assert "without a gap" in refused(["log.csv"], capsys, "identify")

@@ -1,0 +1,114 @@
+"""The torque and the stiffness of a real joint, learned from its log by the estimator FMU.
+
+What is asked comes from the first look at the data: see docs/real-joint.md.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import real_joint
+from real_joint import SETTINGS, Fit, Log, M, N
+from sigmahat.fmi.instance import Fmu
+
+
+@pytest.fixture(scope="module")
+def measured() -> list[Log]:
+    try:
+        folder = real_joint.folder()
+    except FileNotFoundError as error:
+        if "SIGMAHAT_DESR" in os.environ:
+            raise
+        pytest.skip(str(error))
+    return real_joint.logs(folder)
+
+
+@pytest.fixture(scope="module")
+def fmu(estimator_fmu: Path) -> Iterator[Fmu]:
+    with Fmu(estimator_fmu) as fmu:
+        yield fmu
+
+
+@pytest.fixture(scope="module")
+def general(fmu: Fmu, measured: list[Log]) -> Fit:
+    return real_joint.replay(fmu, measured, symmetric=False)
+
+
+@pytest.fixture(scope="module")
+def odd(fmu: Fmu, measured: list[Log]) -> Fit:
+    return real_joint.replay(fmu, measured, symmetric=True)
+
+
+def test_the_general_basis_fits_the_torque(measured: list[Log], general: Fit) -> None:
+    assert [log.setting for log in measured] == list(SETTINGS)
+    assert max(log.rms(general) for log in measured) <= 4.5
+
+
+def test_the_odd_basis_does_not(measured: list[Log], general: Fit, odd: Fit) -> None:
+    for log in measured:
+        assert 6.2 < log.rms(odd) < 9.0
+        assert log.rms(general) < 0.5 * log.rms(odd)
+
+
+def test_the_recursion_ends_at_the_batch_fit(measured: list[Log], general: Fit) -> None:
+    # GIVEN all samples at once THEN linear least squares, scaled to be well conditioned, fit alike
+    unit_phi, unit_l = 0.2, 45.0
+    F = np.concatenate(
+        [
+            np.kron(
+                (log.setting / unit_l) ** np.arange(M),
+                (log.phi[:, None] / unit_phi) ** np.arange(N),
+            )
+            for log in measured
+        ]
+    )
+    solution = np.linalg.lstsq(F, np.concatenate([log.torque for log in measured]), rcond=None)[0]
+    eta = solution.reshape(M, N).T / np.outer(unit_phi ** np.arange(N), unit_l ** np.arange(M))
+    batch = Fit(False, eta, 0.0, 0.0)
+    for log in measured:
+        span = np.ptp(log.torque)
+        difference = general.torque(log.setting, log.phi) - batch.torque(log.setting, log.phi)
+        assert np.max(np.abs(difference)) < 1e-4 * span
+
+
+@pytest.mark.parametrize("basis", ["general", "odd"])
+def test_outputs_are_those_of_the_coefficients(
+    basis: str, measured: list[Log], request: pytest.FixtureRequest
+) -> None:
+    fit: Fit = request.getfixturevalue(basis)
+    last = measured[-1]
+    assert fit.tau_e == pytest.approx(fit.torque(last.setting, last.phi[-1:])[0], rel=1e-9)
+    assert fit.sigma == pytest.approx(fit.stiffness(last.setting, last.phi[-1]), rel=1e-9)
+
+
+def test_a_setting_left_out_is_predicted(
+    fmu: Fmu, measured: list[Log], general: Fit, odd: Fit
+) -> None:
+    left_out = real_joint.leave_one_out(fmu, measured)
+    print(real_joint.torque_table(measured, general, odd, left_out))
+    assert list(left_out) == [10, 25, 33, 35]
+    assert max(left_out.values()) <= 4.5
+
+
+def test_stiffness_is_the_slope_of_the_measured_curve(
+    measured: list[Log], general: Fit, odd: Fit
+) -> None:
+    # Holds for windows of +-0.05 to +-0.06 rad, which were chosen with the data in view
+    print(real_joint.stiffness_table(measured, general, odd))
+    for half_width in (0.05, 0.055, 0.06):
+        assert real_joint.worst(measured, general, half_width) <= 10.0
+    assert real_joint.worst(measured, odd, real_joint.HALF_WIDTH) > 50.0
+
+
+def test_matched_filter_is_no_worse(fmu: Fmu, measured: list[Log], general: Fit) -> None:
+    matched = real_joint.replay(fmu, measured, False, real_joint.MATCHED_FILTER)
+    for log in measured:
+        assert log.rms(matched) <= 1.001 * log.rms(general)
+    assert real_joint.worst(measured, matched, real_joint.HALF_WIDTH) <= real_joint.worst(
+        measured, general, real_joint.HALF_WIDTH
+    )

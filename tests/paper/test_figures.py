@@ -1,0 +1,177 @@
+"""Figures: content, labels, units, files."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from PIL import Image
+
+from recordings import one_seed
+from sigmahat.paper.figures import FIGURES, save
+from sigmahat.paper.nominal_awas import nominal
+from sigmahat.paper.scenarios import SCENARIOS
+
+# One scenario of each kind, and its figures.
+DRAWN = [
+    (scenario, name)
+    for scenario in ("table1", "experiment", "single-hardening", "antagonistic")
+    for name in SCENARIOS[scenario].figures
+]
+
+
+def draw(scenario: str, name: str) -> Figure:
+    return FIGURES[name](one_seed(scenario).recording)
+
+
+def line(
+    name: str, label: str, panel: int = 0, scenario: str = "table1"
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    axes = draw(scenario, name).axes[panel]
+    (found,) = (each for each in axes.get_lines() if label in str(each.get_label()))
+    return np.asarray(found.get_xdata()), np.asarray(found.get_ydata())
+
+
+def test_every_figure_belongs_to_a_scenario_and_every_scenario_has_one() -> None:
+    assert {name for scenario in SCENARIOS.values() for name in scenario.figures} == set(FIGURES)
+    assert all(scenario.figures for scenario in SCENARIOS.values())
+    assert {name for _, name in DRAWN} == set(FIGURES)
+
+
+@pytest.mark.parametrize(("scenario", "name"), DRAWN)
+def test_axes_have_labels_with_units_and_the_figure_a_legend(scenario: str, name: str) -> None:
+    figure = draw(scenario, name)
+    for axes in figure.axes:
+        assert axes.get_xlabel() == "time $t$ [s]"
+        assert re.search(r"\[.+\]", axes.get_ylabel())
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    assert all(text.get_text().strip() for text in legend.get_texts())
+    for axes in figure.axes:
+        for each in axes.get_lines():
+            assert not str(each.get_label()).startswith("_")
+
+
+@pytest.mark.parametrize(("scenario", "name"), DRAWN)
+def test_lines_cover_the_whole_run(scenario: str, name: str) -> None:
+    for each in draw(scenario, name).axes[0].get_lines():
+        t = np.asarray(each.get_xdata())
+        assert (t[0], t[-1]) == (0.0, SCENARIOS[scenario].duration)
+        assert np.all(np.diff(t) > 0)
+
+
+@pytest.mark.parametrize(
+    ("scenario", "name", "lines"),
+    [
+        ("table1", "fig3-deformation", [1]),
+        ("table1", "fig4-velocity", [3, 3]),
+        ("table1", "fig5-flexibility-torque", [4, 4]),
+        ("table1", "fig6-stiffness", [4, 4]),
+        ("table1", "fig7-stability-factor", [1]),
+        ("table1", "fig8-constant-factors", [4]),
+        ("table1", "summary", [4, 3]),
+        ("experiment", "fig9-deformation", [1]),
+        ("experiment", "fig10-lever-arm", [2]),
+        ("experiment", "fig11-flexibility-torque", [3, 3]),
+        ("experiment", "fig12-stiffness", [5, 5]),
+        ("experiment", "experiment", [1, 2, 3, 5, 3]),
+        ("single-hardening", "summary", [3, 2]),
+        ("antagonistic", "antagonistic", [3, 4, 3]),
+    ],
+)
+def test_every_trace_is_there(scenario: str, name: str, lines: list[int]) -> None:
+    figure = draw(scenario, name)
+    labels = [{str(each.get_label()) for each in axes.get_lines()} for axes in figure.axes]
+    assert [len(each) for each in labels] == lines
+
+
+def test_drawn_values_are_those_of_the_recording() -> None:
+    recording = one_seed("table1").recording
+    for name, label, values in (
+        ("fig3-deformation", "phi", recording.plant["phi"]),
+        ("fig4-velocity", "Kalman", recording.estimators["RESIDUAL"]["theta_dot"]),
+        ("fig4-velocity", "true", recording.plant["theta_dot"]),
+        ("fig5-flexibility-torque", "sensor", recording.plant["tau_e_measured"]),
+        ("fig5-flexibility-torque", "true", recording.plant["tau_e"]),
+        ("fig5-flexibility-torque", "fitted", recording.estimators["RESIDUAL"]["tau_e"]),
+        ("fig5-flexibility-torque", "residual", recording.estimators["RESIDUAL"]["tau_e_residual"]),
+        ("fig6-stiffness", "SENSOR", recording.estimators["SENSOR"]["sigma"]),
+        ("fig6-stiffness", "MODEL", recording.estimators["MODEL"]["sigma"]),
+        ("fig7-stability-factor", "RESIDUAL", recording.estimators["RESIDUAL"]["a"]),
+        ("fig8-constant-factors", "enhanced", recording.estimators["RESIDUAL"]["sigma"]),
+    ):
+        t, drawn = line(name, label)
+        np.testing.assert_array_equal(drawn, values[np.searchsorted(recording.t, t)])
+        assert (drawn.min(), drawn.max()) == (values.min(), values.max())
+
+
+def test_drawn_values_of_the_experiment() -> None:
+    recording = one_seed("experiment").recording
+    plant, estimators = recording.plant, recording.estimators
+    for name, label, values in (
+        ("fig9-deformation", "phi", plant["phi"]),
+        ("fig10-lever-arm", "true", plant["r"]),
+        ("fig10-lever-arm", "nominal", plant["r"] - 0.002),  # the real one is 2 mm longer
+        ("fig11-flexibility-torque", "sensor", plant["tau_e_measured"]),
+        ("fig11-flexibility-torque", "nominal", nominal(recording)["tau_e"]),
+        ("fig12-stiffness", "true", plant["sigma"]),
+        ("fig12-stiffness", "nominal", nominal(recording)["sigma"]),
+        ("fig12-stiffness", "MODEL", estimators["MODEL"]["sigma"]),
+        ("fig12-stiffness", "SENSOR", estimators["SENSOR"]["sigma"]),
+        ("fig12-stiffness", "RESIDUAL", estimators["RESIDUAL"]["sigma"]),
+    ):
+        t, drawn = line(name, label, scenario="experiment")
+        np.testing.assert_allclose(drawn, values[np.searchsorted(recording.t, t)], rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("label", "signal"), [("device", "sigma"), ("side 1", "sigma_1"), ("side 2", "sigma_2")]
+)
+def test_drawn_values_of_the_antagonistic_pair(label: str, signal: str) -> None:
+    recording = one_seed("antagonistic").recording
+    t, drawn = line("antagonistic", label, panel=1, scenario="antagonistic")
+    estimate = recording.estimators["RESIDUAL"][signal]
+    np.testing.assert_array_equal(drawn, estimate[np.searchsorted(recording.t, t)])
+    t, worst = line("antagonistic", label, panel=2, scenario="antagonistic")
+    error = np.abs(estimate - recording.plant[signal]) / recording.plant[signal] * 100
+    for k, start in enumerate(np.searchsorted(recording.t, t)):
+        assert worst[k] == pytest.approx(error[start : start + 100].max(), rel=1e-9)
+
+
+def test_zoom_shows_the_quantisation() -> None:
+    count = 2 * np.pi / 40000 / 1e-3  # one count per sample [rad/s]
+    _, differenced = line("fig4-velocity", "differenced", panel=1)
+    steps = differenced / count
+    np.testing.assert_allclose(steps, np.round(steps), atol=1e-6)
+    assert set(np.round(steps)) >= {-1.0, 0.0, 1.0}
+
+
+def test_start_up_shows_every_sample() -> None:
+    recording = one_seed("table1").recording
+    t, sigma = line("fig6-stiffness", "RESIDUAL", panel=1)
+    np.testing.assert_array_equal(t, recording.t[: len(t)])
+    np.testing.assert_array_equal(sigma, recording.estimators["RESIDUAL"]["sigma"][: len(t)])
+    assert t[-1] == pytest.approx(0.3)
+
+
+def test_stability_factor_is_on_a_log_axis() -> None:
+    figure = draw("table1", "fig7-stability-factor")
+    assert figure.axes[0].get_yscale() == "log"
+
+
+@pytest.mark.parametrize(("scenario", "name"), DRAWN)
+def test_files_open_are_small_and_reproducible(scenario: str, name: str, tmp_path: Path) -> None:
+    for folder in ("one", "two"):
+        (tmp_path / folder).mkdir()
+        save(FIGURES[name], one_seed(scenario).recording, tmp_path / folder / name)
+    with Image.open(tmp_path / "one" / f"{name}.png") as image:
+        image.load()
+        assert image.width >= 1000
+    svg = (tmp_path / "one" / f"{name}.svg").read_bytes()
+    assert svg.startswith(b"<?xml")
+    assert len(svg) < 1_000_000
+    assert svg == (tmp_path / "two" / f"{name}.svg").read_bytes()

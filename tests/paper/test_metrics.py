@@ -1,0 +1,123 @@
+"""Performance indices (35), (36) and their mean over seeds."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sigmahat.paper.metrics import indices, mean_error, mean_interval, mse, msrep
+
+
+def test_indices_by_hand() -> None:
+    # Errors 0, 1, 2; relative 0, 1/2, 1/2; p = 2.
+    assert mse([1.0, 2.0, 4.0], [1.0, 1.0, 2.0]) == 2.5
+    assert msrep([1.0, 2.0, 4.0], [1.0, 1.0, 2.0]) == 25.0
+    assert mean_error([1.0, 2.0, 4.0], [1.0, 1.0, 2.0]) == pytest.approx(-100 / 3, rel=1e-15)
+
+
+def test_mean_error_keeps_the_sign() -> None:
+    assert mean_error([10.0, 20.0], [11.0, 22.0]) == pytest.approx(10.0, rel=1e-14)
+    assert mean_error([10.0, 20.0], [11.0, 18.0]) == pytest.approx(0.0, abs=1e-14)
+
+
+def test_errors_relative_to_another_stiffness_by_hand() -> None:
+    # Errors +1, -1, +2, the reference zero at first; relative 1/2, -1/4, 2/8; p = 2.
+    arguments = [0.0, 3.0, 6.0], [1.0, 2.0, 8.0], [2.0, 4.0, 8.0]
+    assert msrep(*arguments) == pytest.approx((1 / 4 + 1 / 16 + 1 / 16) / 2 * 100, rel=1e-14)
+    assert mean_error(*arguments) == pytest.approx((1 / 2 - 1 / 4 + 1 / 4) / 3 * 100, rel=1e-14)
+
+
+@pytest.mark.parametrize("p", [1, 10, 15000])
+def test_p_plus_one_squares_are_divided_by_p(p: int) -> None:
+    sigma = np.linspace(40.0, 140.0, p + 1)
+    assert mse(sigma, sigma + 3.0) == pytest.approx(9.0 * (p + 1) / p, rel=1e-12)
+    assert msrep(sigma, 0.9 * sigma) == pytest.approx(1.0 * (p + 1) / p, rel=1e-12)
+
+
+def test_indices_of_an_estimate_that_starts_late() -> None:
+    t = 1e-3 * np.arange(2001, dtype=np.float64)
+    sigma = np.full(2001, 50.0)
+    estimate = np.where(t < 0.02, 0.0, np.where(t < 1.0, 50.0, 50.5))
+    # 20 samples of 100 % and 1001 of 1 %, the latter from t = 1 s to 2 s.
+    found = indices(t, sigma, estimate)
+    assert found.mse == pytest.approx((20 * 2500.0 + 1001 * 0.25) / 2000)
+    assert found.msrep == pytest.approx((20 + 1001 * 1e-4) / 2000 * 100)
+    assert found.error == pytest.approx((-20 * 1.0 + 1001 * 0.01) / 2001 * 100)
+    assert found.mse_settled == pytest.approx(1001 * 0.25 / 1000)
+    assert found.msrep_settled == pytest.approx(1001 * 1e-4 / 1000 * 100)
+    assert found.error_settled == pytest.approx(1.0)
+
+
+def test_start_up_ends_where_asked() -> None:
+    t = 0.5 * np.arange(6, dtype=np.float64)
+    estimate = np.where(t < 2.0, 11.0, 10.0)
+    assert indices(t, np.full(6, 10.0), estimate, settled=1.5).mse_settled == 1.0 / 2
+    assert indices(t, np.full(6, 10.0), estimate, settled=2.0).mse_settled == 0.0
+
+
+def test_relative_indices_are_unknown_where_the_reference_is_zero() -> None:
+    t = 1e-3 * np.arange(2001, dtype=np.float64)
+    true = np.full(2001, 50.0)
+    reference, estimate = np.where(t < 0.5, 0.0, 50.0), np.where(t < 0.5, 5.0, 50.0)
+    found = indices(t, reference, estimate)
+    assert found.mse == pytest.approx(500 * 25.0 / 2000)
+    assert math.isnan(found.msrep) and math.isnan(found.error)
+    assert (found.mse_settled, found.msrep_settled, found.error_settled) == (0.0, 0.0, 0.0)
+    found = indices(t, reference, estimate, relative_to=true)
+    assert found.msrep == pytest.approx(500 * 0.01 / 2000 * 100)
+    assert found.error == pytest.approx(500 * 0.1 / 2001 * 100)
+
+
+@pytest.mark.parametrize(
+    ("sigma", "estimate", "message"),
+    [
+        ([1.0, 2.0], [1.0], "same shape"),
+        ([1.0], [1.0], "same shape"),
+        ([[1.0, 2.0]], [[1.0, 2.0]], "same shape"),
+        ([1.0, 2.0], [1.0, math.nan], "finite"),
+        ([1.0, math.inf], [1.0, 2.0], "finite"),
+    ],
+)
+def test_bad_arguments_are_refused(sigma: object, estimate: object, message: str) -> None:
+    for index in (mse, msrep, mean_error):
+        with pytest.raises(ValueError, match=message):
+            index(sigma, estimate)  # type: ignore[arg-type]
+
+
+def test_relative_error_of_zero_stiffness_is_refused() -> None:
+    for index in (msrep, mean_error):
+        with pytest.raises(ValueError, match="zero"):
+            index([0.0, 1.0], [0.0, 1.0])
+        with pytest.raises(ValueError, match="zero"):
+            index([1.0, 1.0], [1.0, 1.0], [1.0, 0.0])
+
+
+def test_stiffness_of_another_shape_to_relate_to_is_refused() -> None:
+    with pytest.raises(ValueError, match="same shape"):
+        msrep([1.0, 1.0], [1.0, 1.0], [1.0, 1.0, 1.0])
+
+
+def test_interval_by_hand() -> None:
+    # Quantile 0.975 of Student's t with 2 degrees of freedom: 4.30265.
+    mean, half_width = mean_interval([1.0, 2.0, 3.0])
+    assert mean == 2.0
+    assert half_width == pytest.approx(4.302652730 / math.sqrt(3), rel=1e-9)
+
+
+def test_interval_covers_the_mean_in_95_percent_of_experiments() -> None:
+    samples = np.random.default_rng(1).normal(7.0, 2.0, (4000, 5))
+    covered = [abs(m - 7.0) <= h for m, h in map(mean_interval, samples.tolist())]
+    assert np.mean(covered) == pytest.approx(0.95, abs=0.01)  # its standard deviation: 0.0034
+
+
+def test_interval_of_equal_values_is_exactly_zero() -> None:
+    assert float(np.std([0.1] * 20)) > 0  # what rounding would make of it
+    assert mean_interval([0.1] * 20) == (0.1, 0.0)
+
+
+def test_interval_of_one_run_is_unknown() -> None:
+    mean, half_width = mean_interval([3.0])
+    assert mean == 3.0
+    assert math.isnan(half_width)

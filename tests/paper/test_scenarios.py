@@ -1,0 +1,256 @@
+"""The scenarios, and the figures that the paper gives for them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from recordings import one_seed, twenty_seeds
+from sigmahat.paper.metrics import mean_interval
+from sigmahat.paper.nominal_awas import nominal
+from sigmahat.paper.reproduction import Result, reproduce, signal_of
+from sigmahat.paper.scenarios import SCENARIOS, Sine, Sines, scenario
+
+
+def worst(result: Result, name: str, index: str) -> float:
+    return max(abs(float(getattr(each[name], index))) for each in result.indices)
+
+
+def mean(result: Result, name: str, index: str) -> float:
+    return mean_interval([getattr(each[name], index) for each in result.indices])[0]
+
+
+@pytest.mark.parametrize(("name", "lever_arm"), [("table1", 0.070), ("as-printed", 0.130)])
+def test_initial_lever_arm(name: str, lever_arm: float) -> None:
+    assert one_seed(name).recording.plant["r"][0] == pytest.approx(lever_arm, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["table1", "as-printed"])
+def test_torques_are_those_of_the_paper(name: str) -> None:
+    t = np.array([0.0, 1.0, 2.5, 7.5])
+    inputs = scenario(name).plant.inputs
+    wave = [math.sin(0.2 * math.pi * x) for x in t]
+    np.testing.assert_allclose(inputs["tau"](t), 0.3 * np.array(wave), rtol=1e-15)
+    np.testing.assert_allclose(inputs["tau_c"](t), 8.0 * np.array(wave), rtol=1e-15)
+
+
+def test_sum_of_sines_by_hand() -> None:
+    signal = Sines(-1.0, (Sine(2.0, 0.25), Sine(0.5, 0.5)))
+    t = np.array([0.0, 0.5, 1.0, 3.0])
+    half = math.sqrt(0.5)
+    np.testing.assert_allclose(signal(t), [-1.0, 2 * half - 0.5, 1.0, -3.0], atol=1e-14)
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_description_is_one_short_line(name: str) -> None:
+    assert SCENARIOS[name].name == name
+    assert 20 < len(SCENARIOS[name].description) < 100
+    assert "\n" not in SCENARIOS[name].description
+
+
+def test_unknown_scenario_is_refused_with_a_suggestion() -> None:
+    with pytest.raises(ValueError, match=r"'tabel1'; did you mean 'table1'\?.*as-printed"):
+        scenario("tabel1")
+
+
+def test_table_1_model() -> None:
+    model = one_seed("table1").indices[0]["MODEL"]
+    assert model.mse == pytest.approx(23.5, abs=1.0)
+    assert model.msrep == pytest.approx(0.12, abs=0.01)
+
+
+def test_table_1_modality_model_of_the_fmu() -> None:
+    """(28) at the measured positions, which are quantised but carry no noise."""
+    measured = one_seed("table1").indices[0]["MODEL-measured"]
+    assert measured.msrep == pytest.approx(0.12, abs=0.01)
+    assert measured.msrep_settled < 0.01
+
+
+def test_table_1_residual_over_20_seeds() -> None:
+    assert mean(twenty_seeds("table1"), "RESIDUAL", "mse") <= 128.16
+    assert mean(twenty_seeds("table1"), "RESIDUAL", "msrep") <= 0.58
+
+
+@pytest.mark.parametrize("name", ["MODEL", "SENSOR", "RESIDUAL"])
+def test_table_1_is_start_up(name: str) -> None:
+    assert mean(twenty_seeds("table1"), name, "msrep_settled") < 0.01
+
+
+@pytest.mark.parametrize("name", ["MODEL", "SENSOR", "RESIDUAL"])
+def test_as_printed(name: str) -> None:
+    assert one_seed("as-printed").indices[0][name].msrep < 0.25
+
+
+def test_noise_differs_between_seeds_and_nothing_else_does() -> None:
+    assert len({each["RESIDUAL"].mse for each in twenty_seeds("table1").indices}) == 20
+    assert (
+        len({each["MODEL"].mse for each in twenty_seeds("table1").indices}) == 1
+    )  # it sees no noise
+
+
+def test_result_does_not_depend_on_the_number_of_processes() -> None:
+    alone = one_seed("table1")
+    assert alone.indices[0] == twenty_seeds("table1").indices[0]
+    one_process = reproduce(scenario("table1"), [1, 2], processes=1)
+    assert one_process.indices == list(twenty_seeds("table1").indices[:2])
+    for series, other in (
+        (alone.recording.plant, one_process.recording.plant),
+        (
+            alone.recording.estimators["RESIDUAL"],
+            one_process.recording.estimators["RESIDUAL"],
+        ),
+    ):
+        for output in series.values:
+            np.testing.assert_array_equal(series[output], other[output])
+
+
+def test_progress_counts_runs() -> None:
+    done: list[int] = []
+    reproduce(scenario("table1"), [1, 2, 3], progress=done.append)
+    assert done == [1, 1, 1]
+
+
+def test_constant_factors_show_what_the_enhanced_one_is_for() -> None:
+    """Figure 8: one converges too slowly, the other quickly and then goes astray."""
+    recording = one_seed("table1").recording
+    error = {
+        series.parameters["rls.a"]: np.abs(series["sigma"] / recording.plant["sigma"] - 1)
+        for series in recording.estimators.values()
+        if series.parameters["rls.kind"] == "ConstantFactor"
+    }
+    small, large = (error[a] for a in sorted(error))
+    second = slice(1000, 2000)
+    assert small[second].min() > 0.5
+    assert large[second].max() < 0.1
+    assert large[2000:].max() > 0.5
+    assert np.abs(np.diff(small[1000:])).max() < 0.01  # slow, but undisturbed
+
+
+@pytest.mark.parametrize("spring", ["linear", "hardening"])
+def test_single_transmission_over_20_seeds(spring: str) -> None:
+    result = twenty_seeds(f"single-{spring}")
+    assert worst(result, "RESIDUAL", "msrep_settled") < 0.1
+    assert worst(result, "RESIDUAL", "msrep") <= 1.5
+
+
+def test_ridge_of_the_paper_is_too_strong_without_set_point() -> None:
+    for each in twenty_seeds("single-linear").indices:
+        assert each["RESIDUAL-paper-prior"].msrep_settled > 30
+
+
+@pytest.mark.parametrize(("spring", "k_3"), [("linear", 0.0), ("hardening", 3000.0)])
+def test_spring_of_the_single_transmission(spring: str, k_3: float) -> None:
+    plant = one_seed(f"single-{spring}").recording.plant
+    np.testing.assert_allclose(plant["sigma"], 150 + 3 * k_3 * plant["phi"] ** 2, rtol=1e-12)
+    assert np.ptp(plant["phi"]) > 0.02
+
+
+@pytest.mark.parametrize("frequency", [0.5, 2.0, 4.0])
+@pytest.mark.parametrize("spring", ["linear", "hardening"])
+def test_torque_of_the_single_transmission(spring: str, frequency: float) -> None:
+    name = f"single-{spring}" + ("" if frequency == 0.5 else f"-{frequency:g}hz")
+    t = np.linspace(0.0, 1.0, 17)
+    expected = [0.3 * math.sin(2 * math.pi * frequency * x) for x in t]
+    np.testing.assert_allclose(scenario(name).plant.inputs["tau"](t), expected, atol=1e-14)
+
+
+def test_antagonistic_device_after_the_first_co_contraction() -> None:
+    assert scenario("antagonistic").settled == 10.0
+    assert worst(twenty_seeds("antagonistic"), "device", "msrep_settled") < 1.0
+
+
+def test_sides_of_the_antagonistic_pair_are_compared_with_themselves() -> None:
+    """Their sum is the device, in the plant and in the estimate."""
+    result = one_seed("antagonistic")
+    for source in (result.recording.plant, result.recording.estimators["RESIDUAL"]):
+        np.testing.assert_allclose(
+            source["sigma"], source["sigma_1"] + source["sigma_2"], rtol=1e-13
+        )
+    error = {
+        each.name: signal_of(result.recording, each.estimate)
+        - signal_of(result.recording, each.reference)
+        for each in result.scenario.comparisons
+    }
+    np.testing.assert_allclose(error["device"], error["side 1"] + error["side 2"], atol=1e-9)
+
+
+def test_co_contraction_changes_the_stiffness_while_the_link_moves() -> None:
+    recording = one_seed("antagonistic").recording
+    cycle = recording.t >= 10.0
+    sigma, q = recording.plant["sigma"][cycle], recording.plant["q"][cycle]
+    assert sigma.max() / sigma.min() > 4
+    assert np.ptp(q) > 0.2
+
+
+def test_antagonistic_pair_starts_at_rest_in_equilibrium() -> None:
+    plant = one_seed("antagonistic").recording.plant
+    for i, tau in ((1, -0.04), (2, 0.04)):
+        assert plant[f"tau_e_{i}"][0] == pytest.approx(-50 * tau, rel=1e-6)
+    assert plant["q"][0] == 0.0
+
+
+def test_experiment_paper_figures() -> None:
+    result = twenty_seeds("experiment")
+    assert worst(result, "RESIDUAL against SENSOR", "msrep_settled") <= 1.55
+    assert worst(result, "RESIDUAL against SENSOR", "mse_settled") <= 63.02
+    assert worst(result, "MODEL against nominal", "msrep_settled") <= 0.034
+    assert worst(result, "MODEL against nominal", "msrep") <= 0.034
+
+
+def test_experiment_model_confirms_wrong_data_and_residual_finds_the_truth() -> None:
+    result = twenty_seeds("experiment")
+    assert worst(result, "MODEL against nominal", "error_settled") < 0.1
+    assert worst(result, "RESIDUAL against true", "error_settled") < 1
+    for each in result.indices:
+        assert each["MODEL against true"].error_settled > 5
+        assert each["SENSOR against true"].error_settled == pytest.approx(3.0, abs=0.2)  # its gain
+
+
+def test_experiment_sensor_has_no_stiffness_at_first() -> None:
+    """So nothing is relative to it over the whole run; relative to the truth there is a figure."""
+    indices = one_seed("experiment").indices[0]
+    assert one_seed("experiment").recording.estimators["SENSOR"]["sigma"][0] == 0.0
+    assert math.isnan(indices["RESIDUAL against SENSOR"].msrep)
+    other = indices["RESIDUAL against SENSOR, relative to true"]
+    assert other.mse == indices["RESIDUAL against SENSOR"].mse
+    assert math.isfinite(other.msrep)
+
+
+def test_device_of_the_experiment_differs_from_its_data_as_asked() -> None:
+    recording = one_seed("experiment").recording
+    plant, data = recording.plant, nominal(recording)
+    np.testing.assert_allclose(plant["r"] - data["r"], 0.002, rtol=1e-9)
+    spring = plant["sigma"] / plant["r"] ** 2 / (data["sigma"] / data["r"] ** 2)
+    np.testing.assert_allclose(spring, 0.85, rtol=1e-9)
+    start = scenario("experiment").plant.start
+    assert start["link.D_q"] == pytest.approx(0.225)
+    assert (start["link.tau_coulomb"], start["sensor.gain"]) == (0.05, 1.03)
+    error = plant["tau_e_measured"] - 1.03 * plant["tau_e"]
+    assert np.mean(error) == pytest.approx(0.0, abs=5 * math.sqrt(1e-3 / len(error)))
+    assert np.var(error) == pytest.approx(1e-3, rel=0.05)
+
+
+def test_nominal_data_by_hand() -> None:
+    """(28)-(30) with the figures of section VI.A."""
+    recording = one_seed("experiment").recording
+    for k in (0, 9250, 33333):
+        phi = float(recording.plant["phi"][k])
+        r = 0.1 - 0.0025 / (2 * math.pi) * float(recording.plant["theta_c"][k])
+        found = {name: float(values[k]) for name, values in nominal(recording).items()}
+        assert found["r"] == pytest.approx(r, rel=1e-12)
+        assert found["tau_e"] == pytest.approx(14220 * r * r * math.sin(2 * phi), rel=1e-12)
+        assert found["sigma"] == pytest.approx(2 * 14220 * r * r * math.cos(2 * phi), rel=1e-12)
+
+
+def test_signals_of_a_comparison() -> None:
+    recording = one_seed("experiment").recording
+    assert signal_of(recording, "plant.sigma") is recording.plant["sigma"]
+    assert signal_of(recording, "MODEL.sigma") is recording.estimators["MODEL"]["sigma"]
+    np.testing.assert_array_equal(
+        signal_of(recording, "nominal.sigma"), nominal(recording)["sigma"]
+    )
+    for name in ("MODEL.sgima", "sensor.sigma", "nominal.phi"):
+        with pytest.raises(KeyError):
+            signal_of(recording, name)

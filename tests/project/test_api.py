@@ -1,0 +1,73 @@
+"""The public API is what its page says: named, documented and typed, all of it."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import sigmahat
+
+REPOSITORY = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """What `cmake --build build --target api` makes."""
+    path = tmp_path_factory.mktemp("api") / "api.html"
+    subprocess.run([sys.executable, REPOSITORY / "docs" / "api.py", path], check=True)
+    return path.read_text(encoding="utf-8")
+
+
+def test_page_opens_without_network(page: str) -> None:
+    assert not re.search(r"""(?:src|href)=["']?(?:https?:)?//(?!pdoc\.dev)""", page)
+    assert "<title>sigmahat API documentation</title>" in page
+
+
+@pytest.mark.parametrize("name", sorted(sigmahat.__all__))
+def test_page_names_it(name: str, page: str) -> None:
+    assert f'<section id="{name}">' in page
+
+
+def members() -> list[tuple[str, object]]:
+    """Public classes and functions, and public methods of the classes."""
+    found = [(name, getattr(sigmahat, name)) for name in sigmahat.__all__ if name[0] != "_"]
+    for name, each in list(found):
+        if inspect.isclass(each):
+            own = (item for item in vars(each).items() if item[0][0] != "_")
+            found += [(f"{name}.{key}", item) for key, item in own if inspect.isfunction(item)]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("name", "member"), [pytest.param(*each, id=each[0]) for each in members()]
+)
+def test_it_is_documented_and_typed(name: str, member: object) -> None:
+    text = inspect.getdoc(member) or ""
+    assert text and not text.startswith(f"{name.split('.')[-1]}("), "a docstring of our own"
+    if inspect.isfunction(member):
+        signature = inspect.signature(member)
+        assert signature.return_annotation is not inspect.Signature.empty
+        for parameter in signature.parameters.values():
+            typed = parameter.annotation is not inspect.Parameter.empty
+            assert typed or parameter.name == "self", parameter.name
+
+
+def test_names_are_listed_once_for_people_and_once_for_type_checkers() -> None:
+    lazy = [name for names in sigmahat._HOMES.values() for name in names]
+    assert sorted([*lazy, "__version__", "fmu"]) == sorted(sigmahat.__all__)
+    assert dir(sigmahat) == sorted(sigmahat.__all__)
+
+
+def test_unknown_name() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'estimator'"):
+        sigmahat.estimator  # noqa: B018
+
+
+def test_unknown_fmu_says_which_there_are() -> None:
+    with pytest.raises(FileNotFoundError, match=r"no Stiffness\.fmu in .*StiffnessEstimator"):
+        sigmahat.fmu("Stiffness")

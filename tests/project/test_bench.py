@@ -1,0 +1,47 @@
+"""The bench: everything it compares works and computes the same. Nothing is timed here."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import fmpy
+import pytest
+
+from gate import missing
+
+BENCH = Path(__file__).parents[2] / "bench"
+SIGMAHAT_FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
+
+
+def test_what_is_compared_computes_the_same(build: Path, tmp_path: Path) -> None:
+    for module in ("padasip", "pythonfmu"):
+        if find_spec(module) is None:
+            missing(module, "cmake --workflow --preset build")
+    if shutil.which("c++") is None:
+        missing("a C++ compiler", "apt-get install g++")
+    if not sys.platform.startswith("linux"):
+        pytest.skip("the bench is for Linux")
+    configured = subprocess.run(
+        [
+            *("cmake", "-S", str(BENCH), "-B", str(tmp_path), "-G", "Ninja"),
+            "-DCMAKE_BUILD_TYPE=Release",
+            f"-DCMAKE_MAKE_PROGRAM={build / 'venv' / 'bin' / 'ninja'}",
+            f"-DSIGMAHAT_FMI_HEADERS={SIGMAHAT_FMI_HEADERS}",
+        ],
+        capture_output=True,
+        text=True,
+    )
+    if "apt-get install" in configured.stderr:
+        missing("a library of the bench", "apt-get install libdlib-dev libeigen3-dev libliquid-dev")
+    assert configured.returncode == 0, configured.stderr
+    for command in (
+        ["cmake", "--build", str(tmp_path)],
+        [sys.executable, str(BENCH / "run.py"), "--build", str(tmp_path), "--check"],
+    ):
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert "subjects work" in done.stdout

@@ -1,0 +1,73 @@
+"""The code as compilers, linter and type checker see it."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import fmpy
+import pytest
+
+from gate import missing
+
+REPOSITORY = Path(__file__).parents[2]
+WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
+ESTIMATOR = sorted((REPOSITORY / "c").glob("*.c"))
+FMU = sorted((REPOSITORY / "fmu_src").glob("*.c"))
+
+
+@pytest.mark.parametrize("source", ESTIMATOR + FMU, ids=lambda path: path.name)
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_no_warning(compiler: str, source: Path, build: Path, tmp_path: Path) -> None:
+    if shutil.which(compiler) is None:
+        missing(compiler, f"apt-get install {compiler}")
+    own = build / "fmu" / source.stem  # what is generated for this file, or for every plant
+    generated = own if own.is_dir() else build / "fmu" / "AwasPlant"
+    done = subprocess.run(
+        [
+            compiler,
+            *WARNINGS,
+            "-O2",  # some warnings need the optimiser's analysis
+            "-c",
+            str(source),
+            "-o",
+            str(tmp_path / "object.o"),
+            f"-I{REPOSITORY / 'c'}",
+            f"-I{REPOSITORY / 'fmu_src'}",
+            f"-I{generated}",
+            f"-isystem{Path(fmpy.__file__).parent / 'c-code'}",
+        ],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("source", ESTIMATOR, ids=lambda path: path.name)
+def test_the_library_needs_no_heap_and_no_output(source: Path) -> None:
+    text = source.read_text()
+    included = {line.split()[1] for line in text.splitlines() if line.startswith("#include <")}
+    assert included <= {"<math.h>", "<stddef.h>", "<string.h>"}
+
+
+@pytest.mark.parametrize("command", [["ruff", "check"], ["ruff", "format", "--check"]])
+def test_ruff(command: list[str]) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", *command, "harness", "tests", "examples", "docs/api.py"],
+        cwd=REPOSITORY,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_mypy() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "harness/sigmahat", "tests", "examples", "docs"],
+        cwd=REPOSITORY,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr

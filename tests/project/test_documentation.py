@@ -1,0 +1,154 @@
+"""Documentation and icons inside the FMUs."""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import matplotlib.image
+import numpy as np
+import pytest
+from lxml import etree
+
+import sigmahat
+from sigmahat.export import documentation
+
+FMUS = [
+    "StiffnessEstimator",
+    "AntagonisticStiffnessEstimator",
+    "AwasPlant",
+    "FlexibleJointPlant",
+    "AntagonisticVsaPlant",
+]
+INDEX = "documentation/index.html"
+ICON = "documentation/icon.svg"
+SHOWN = {INDEX, ICON, "model.png"}
+TEMPLATES = Path(__file__).parents[2] / "modelDescription"
+
+
+@pytest.fixture(scope="module", params=FMUS)
+def files(request: pytest.FixtureRequest) -> dict[str, bytes]:
+    """Contents of an FMU by name."""
+    with zipfile.ZipFile(sigmahat.fmu(request.param)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def text(element: Any) -> str:
+    """What a reader sees, without the items of an enumeration."""
+    parts = [element.text or ""]
+    parts += [text(e) + (e.tail or "") for e in element if e.get("class") != "items"]
+    return "".join(parts)
+
+
+def test_the_tables_are_the_variables_of_the_model_description(files: dict[str, bytes]) -> None:
+    page = etree.fromstring(files[INDEX])
+    rows = {}
+    for row in page.iterfind(".//tbody/tr"):
+        name, unit, start, limits, variability, description = map(text, row)
+        assert name not in rows
+        rows[name] = (unit, start, limits, variability, description)
+    variables = etree.fromstring(files["modelDescription.xml"]).findall("ModelVariables/*")
+    assert set(rows) == {v.get("name") for v in variables}
+    for v in variables:
+        unit, start, limits, variability, description = rows[v.get("name")]
+        assert unit == v[0].get("unit", "")
+        assert (variability, description) == (v.get("variability"), v.get("description"))
+        for limit in (v[0].get("min"), v[0].get("max")):
+            assert limit is None or limit in limits
+        if v[0].tag == "Real" and v[0].get("start") is not None:
+            assert float(start.split()[0]) == pytest.approx(float(v[0].get("start")), rel=1e-5)
+        else:
+            assert bool(start) == (v[0].get("start") is not None)
+
+
+def test_enumerations_are_listed_with_their_items(files: dict[str, bytes]) -> None:
+    page = etree.fromstring(files[INDEX])
+    root = etree.fromstring(files["modelDescription.xml"])
+    for enumeration in root.iterfind("ModelVariables/*/Enumeration"):
+        name = enumeration.getparent().get("name")
+        (row,) = [r for r in page.iterfind(".//tbody/tr") if text(r[0]) == name]
+        path = f"TypeDefinitions/SimpleType[@name='{enumeration.get('declaredType')}']//Item"
+        items = [
+            (f"{item.get('value')} {item.get('name')}", item.get("description"))
+            for item in root.iterfind(path)
+        ]
+        found = [e.text for e in row.iterfind(".//dl[@class='items']/*")]
+        assert found == [part for item in items for part in item]
+        assert f"{enumeration.get('start')} {text(row[2])}" in [title for title, _ in items]
+
+
+def test_every_name_in_the_text_is_a_variable(files: dict[str, bytes]) -> None:
+    """Names in `code` outside the tables, which are written by hand."""
+    page = etree.fromstring(files[INDEX])
+    root = etree.fromstring(files["modelDescription.xml"])
+    names = {v.get("name") for v in root.iterfind("ModelVariables/*")}
+    names |= {re.sub(r"_1\b", "_i", name) for name in names}
+    names |= {name.split("[")[0] for name in names}
+    checked = 0
+    for code in page.iterfind(".//code"):
+        if code.xpath("ancestor::table | ancestor::summary") or code.text[0] in "._":
+            continue
+        name = code.text.removesuffix(".*")
+        assert name in names or any(n.startswith(f"{name}.") for n in names), name
+        checked += 1
+    assert checked > 5
+
+
+@pytest.mark.parametrize(
+    "section", ["what", "diagram", "ports", "timing", "parameters", "limits", "licence"]
+)
+def test_sections(files: dict[str, bytes], section: str) -> None:
+    page = etree.fromstring(files[INDEX])
+    (heading,) = page.findall(f".//h2[@id='{section}']")
+    assert heading.getnext() is not None
+    if section == "diagram":
+        assert len(page.findall(".//svg//text")) > 5
+
+
+def test_nothing_is_loaded_from_elsewhere(files: dict[str, bytes]) -> None:
+    """A page opened offline: only files of the FMU, and anchors that exist."""
+    for name in (INDEX, ICON):
+        content = files[name].decode()
+        root = etree.fromstring(files[name])
+        assert not root.findall(".//{*}script") and "@import" not in content
+        for url in re.findall(r"url\(([^)]*)\)", content):
+            assert url.strip("\"'").startswith("#")
+        for element in root.iter(etree.Element):
+            for key, value in element.attrib.items():
+                if etree.QName(key).localname not in ("src", "href", "srcset", "data", "action"):
+                    continue
+                if value.startswith("#"):
+                    assert root.xpath("//*[@id=$id]", id=value[1:]), value
+                else:
+                    assert f"documentation/{value}" in files, value
+
+
+def test_icon(files: dict[str, bytes]) -> None:
+    pixels = matplotlib.image.imread(io.BytesIO(files["model.png"]), format="png")
+    assert pixels.shape == (256, 256, 4)
+    assert pixels[0, 0, 3] == 0  # outside of the frame, so that it looks right on any colour
+    inside = pixels[20:-20, 20:-20]
+    assert np.all(inside[..., 3] == 1)
+    drawn = np.any(inside[..., :3] < 0.9, axis=-1)
+    assert 0.05 < drawn.mean() < 0.5
+    svg = etree.fromstring(files[ICON])
+    assert svg.get("viewBox") and not svg.findall(".//{*}text")  # it needs no font
+
+
+def test_each_fmu_has_an_icon_of_its_own() -> None:
+    icons = set()
+    for name in FMUS:
+        with zipfile.ZipFile(sigmahat.fmu(name)) as archive:
+            icons.add(archive.read("model.png"))
+    assert len(icons) == len(FMUS)
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_same_bytes_again(name: str, tmp_path: Path) -> None:
+    documentation.write(TEMPLATES / f"{name}.xml", tmp_path, sigmahat.__version__)
+    with zipfile.ZipFile(sigmahat.fmu(name)) as archive:
+        for file in SHOWN:
+            assert (tmp_path / file).read_bytes() == archive.read(file), file

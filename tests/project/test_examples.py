@@ -1,0 +1,146 @@
+"""The examples run, and what they show is true."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import re
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+import fmpy.validation
+import nbclient
+import nbformat
+import numpy as np
+import pyarrow.csv
+import pytest
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+import sigmahat
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def load(name: str) -> ModuleType:
+    """An example as a module."""
+    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def run(name: str, folder: Path) -> str:
+    """Runs an example as a user does, and returns what it prints."""
+    done = subprocess.run(
+        [sys.executable, EXAMPLES / f"{name}.py"], cwd=folder, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+def test_fmpy_ten_lines(tmp_path: Path) -> None:
+    value, unit = run("fmpy_ten_lines", tmp_path).split()
+    assert unit == "N.m/rad"
+    assert float(value) == pytest.approx(1000.0, abs=1.0)  # the joint its log is computed from
+    readme = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
+    assert f"It prints {float(value):.1f}:" in readme
+
+
+def test_own_log(tmp_path: Path) -> None:
+    printed = run("own_log", tmp_path)
+    for name, true in {"B": 2.3e-5, "D_theta": 1e-3}.items():  # of AwasPlant
+        found = re.search(rf"^{name}: (\S+) \+- (\S+)$", printed, re.M)
+        assert found and abs(float(found[1]) - true) <= float(found[2])
+    table = pyarrow.csv.read_csv(tmp_path / "knee" / "estimate.csv")
+    estimate = table["estimate.sigma [N.m/rad]"].to_numpy()
+    joint = load("own_log").record(tmp_path / "again.csv")
+    assert (tmp_path / "again.csv").read_bytes() == (tmp_path / "knee.csv").read_bytes()
+    late = joint.t >= joint.t[-1] / 2
+    true = joint.plant["sigma"][late]
+    assert np.max(np.abs(estimate[late] - true) / true) < 0.02
+    assert f"the true one: {true.min():.1f} to {true.max():.1f} N.m/rad" in printed
+    assert (tmp_path / "knee" / "estimate.png").stat().st_size > 0
+
+
+def pendulum(t: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The plant of own_plant.py by another integrator: stiffness at the times t [N.m/rad]."""
+    M, D_q, mgl, B, D_theta, gamma, k_1, phi_0 = 0.1, 0.15, 5.0, 2.3e-5, 1e-3, 50.0, 80.0, 0.08
+
+    def f(time: float, x: NDArray[np.float64]) -> list[float]:
+        q, theta, q_dot, theta_dot = x
+        tau = sum(a * math.sin(2 * math.pi * h * time) for a, h in ((0.2, 0.5), (0.1, 1.3)))
+        tau_e = k_1 * phi_0 * math.sinh((q - theta) / phi_0)
+        return [
+            q_dot,
+            theta_dot,
+            (-D_q * q_dot - mgl * math.sin(q) - tau_e) / M,
+            (tau - D_theta * gamma * theta_dot + tau_e / gamma) / (B * gamma),
+        ]
+
+    x = solve_ivp(f, (0.0, t[-1]), [0.0] * 4, "LSODA", t, rtol=1e-10, atol=1e-12).y
+    stiffness: NDArray[np.float64] = k_1 * np.cosh((x[0] - x[1]) / phi_0)
+    return stiffness
+
+
+def test_own_plant(tmp_path: Path) -> None:
+    printed = run("own_plant", tmp_path)
+    found = re.search(r"after 1 s, MSREP (\S+) %", printed)
+    assert found and float(found[1]) < 0.01  # root mean square below 1 %
+    assert (tmp_path / "own_plant.png").stat().st_size > 0
+
+    fmu = tmp_path / "PendulumPlant.fmu"
+    assert fmpy.validation.validate_fmu(str(fmu)) == []
+    recording = sigmahat.simulate(
+        sigmahat.Plant(
+            fmu=str(fmu),
+            start={},
+            inputs={"tau": sigmahat.Sines(0.0, [sigmahat.Sine(0.2, 0.5), sigmahat.Sine(0.1, 1.3)])},
+            record=["sigma"],
+        ),
+        {},
+        T=1e-3,
+        steps=10_000,
+    )
+    # The torque of the run is linear between samples: its error is (omega T)^2 / 8, some 1e-5.
+    np.testing.assert_allclose(recording.plant["sigma"], pendulum(recording.t), rtol=1e-5)
+
+
+def test_stiffness_control(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    example = load("stiffness_control")
+    monkeypatch.setattr(example, "run", cache(example.run))
+    example.main(tmp_path)
+    assert (tmp_path / "stiffness_control.png").stat().st_size > 0
+    t, wanted, true, _, _ = example.run(True).T
+    for last, stiffness in ((7, 200.0), (14, 320.0), (20, 150.0)):  # each step in its last second
+        settled = (t >= last - 1) & (t < last)
+        assert set(wanted[settled]) == {stiffness}
+        np.testing.assert_allclose(true[settled], stiffness, rtol=0.01)
+    sine = t >= example.DURATION - 20
+    assert np.mean(np.abs(true - wanted)[sine] / wanted[sine]) < 0.03
+    # Without the estimate nothing knows that the springs are 15 % softer.
+    t, wanted, true, _, _ = example.run(False).T
+    settled = (t >= 13) & (t < 14)
+    np.testing.assert_allclose(true[settled], 0.85 * wanted[settled], rtol=0.01)
+
+
+def test_notebook(tmp_path: Path) -> None:
+    notebook = nbformat.read(EXAMPLES / "stiffness.ipynb", as_version=4)  # type: ignore[no-untyped-call]
+    for cell in notebook.cells:  # they are kept without what they printed
+        assert not cell.get("outputs") and cell.get("execution_count") is None
+    resources = {"metadata": {"path": str(tmp_path)}}
+    nbclient.NotebookClient(notebook, resources=resources).execute()
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    (text,) = (output["text"] for output in outputs if output.get("name") == "stdout")
+    (picture,) = (output["data"] for output in outputs if "data" in output)
+    assert "image/png" in picture
+    exact, wrong = (float(found) for found in re.findall(r"after 1 s (\S+) %", text))
+    once = sigmahat.run(sigmahat.scenario("table1"), seed=1)
+    own = once.estimators["RESIDUAL"]["sigma"]
+    found = sigmahat.indices(once.t, once.plant["sigma"], own)
+    assert exact == float(f"{found.msrep_settled:.3g}")
+    assert wrong > 25  # the root mean square error is above 50 %, as the notebook says: far above 5

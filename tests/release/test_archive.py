@@ -1,0 +1,99 @@
+"""The released FMUs as archives: contents, size, and the same bytes from every build."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from zipfile import ZipFile
+
+import fmpy
+import pytest
+
+import sigmahat
+from released_fmus import FMUS, Run
+from sigmahat.export import archive, cross_compiler
+
+each_fmu = pytest.mark.parametrize("name", FMUS)
+
+
+def binaries(fmu: Path) -> set[str]:
+    with ZipFile(fmu) as opened:
+        return {name for name in opened.namelist() if name.startswith("binaries/")}
+
+
+@each_fmu
+def test_binaries_of_all_platforms(name: str, released: Path) -> None:
+    assert binaries(released / f"{name}.fmu") == {
+        f"binaries/linux64/{name}.so",
+        f"binaries/win64/{name}.dll",
+        f"binaries/darwin64/{name}.dylib",
+    }
+
+
+@each_fmu
+def test_a_build_for_development_holds_the_hosts_binary(name: str) -> None:
+    extension = fmpy.sharedLibraryExtension
+    assert binaries(sigmahat.fmu(name)) == {f"binaries/{fmpy.platform}/{name}{extension}"}
+
+
+@each_fmu
+def test_at_most_1_mb(name: str, released: Path) -> None:
+    assert (released / f"{name}.fmu").stat().st_size <= 1e6
+
+
+@each_fmu
+def test_nothing_in_it_tells_where_it_was_built(name: str, released: Path) -> None:
+    places = [str(path).encode() for path in (Path.home(), released.resolve().parent)]
+    with ZipFile(released / f"{name}.fmu") as opened:
+        for entry in opened.namelist():
+            assert not any(place in opened.read(entry) for place in places), entry
+
+
+@pytest.mark.parametrize("name", ["StiffnessEstimator", "AwasPlant"])
+def test_built_again_it_is_the_same_bytes(
+    name: str, released: Path, build: Path, tmp_path: Path
+) -> None:
+    again = tmp_path / "again.fmu"
+    cross_compiler.release(sigmahat.fmu(name), again, build / "cross-compiler")
+    assert again.read_bytes() == (released / f"{name}.fmu").read_bytes()
+
+
+@each_fmu
+def test_the_released_binary_computes_what_the_hosts_compiler_made(
+    name: str, released: Path
+) -> None:
+    run = Run(released / f"{name}.fmu")
+    run.assert_same(run.simulate(sigmahat.fmu(name)))
+
+
+@each_fmu
+def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: Path) -> None:
+    run = Run(released / f"{name}.fmu")
+    folder = Path(fmpy.extract(str(run.fmu), unzipdir=str(tmp_path / "unpacked")))
+    files = [f for f in folder.rglob("*") if f.is_file()]
+    contents = {f.relative_to(folder).as_posix(): f for f in files}
+    rebuilt = tmp_path / f"{name}.fmu"
+    archive.write(rebuilt, {n: f for n, f in contents.items() if not n.startswith("binaries/")})
+    done = subprocess.run(
+        [sys.executable, "-m", "fmpy", "compile", str(rebuilt)],
+        env={  # with the build tool of the environment: make may not be there
+            **os.environ,
+            "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+            "CMAKE_GENERATOR": "Ninja",
+        },
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    run.assert_same(run.simulate(rebuilt))
+
+
+def test_the_source_files_are_all_there_and_no_other(released: Path) -> None:
+    for name in FMUS:
+        fmu = released / f"{name}.fmu"
+        listed = fmpy.read_model_description(str(fmu)).buildConfigurations[0].sourceFileSets[0]
+        with ZipFile(fmu) as opened:
+            present = {Path(n).name for n in opened.namelist() if n.startswith("sources/")}
+        assert set(listed.sourceFiles) == {n for n in present if n.endswith(".c")}

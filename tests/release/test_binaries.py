@@ -1,0 +1,117 @@
+"""What the released binaries offer and need, read from the files."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from zipfile import ZipFile
+
+import fmpy
+import lief
+import pytest
+
+from released_fmus import FMUS
+
+each_fmu = pytest.mark.parametrize("name", FMUS)
+
+# In the header, but not for co-simulation.
+MODEL_EXCHANGE = {
+    "fmi2EnterEventMode",
+    "fmi2NewDiscreteStates",
+    "fmi2EnterContinuousTimeMode",
+    "fmi2CompletedIntegratorStep",
+    "fmi2SetTime",
+    "fmi2SetContinuousStates",
+    "fmi2GetDerivatives",
+    "fmi2GetEventIndicators",
+    "fmi2GetContinuousStates",
+    "fmi2GetNominalsOfContinuousStates",
+}
+
+
+@pytest.fixture(scope="module")
+def functions() -> set[str]:
+    """The functions of FMI 2.0 for Co-Simulation, from the header of the standard."""
+    header = Path(fmpy.__file__).parent / "c-code" / "fmi2Functions.h"
+    declared = set(re.findall(r"^#define \w+\s+fmi2FullName\((\w+)\)", header.read_text(), re.M))
+    assert declared > MODEL_EXCHANGE
+    return declared - MODEL_EXCHANGE
+
+
+def binary(released: Path, name: str, platform: str, extension: str) -> list[int]:
+    with ZipFile(released / f"{name}.fmu") as archive:
+        return list(archive.read(f"binaries/{platform}/{name}{extension}"))
+
+
+# The objects below are valid only while the one they come from is: each has a name.
+
+
+def linux(released: Path, name: str) -> lief.ELF.Binary:
+    parsed = lief.ELF.parse(binary(released, name, "linux64", ".so"))
+    assert isinstance(parsed, lief.ELF.Binary)
+    return parsed
+
+
+def windows(released: Path, name: str) -> lief.PE.Binary:
+    parsed = lief.PE.parse(binary(released, name, "win64", ".dll"))
+    assert isinstance(parsed, lief.PE.Binary)
+    return parsed
+
+
+@each_fmu
+def test_linux_exports_the_fmi_functions_alone(
+    name: str, released: Path, functions: set[str]
+) -> None:
+    elf = linux(released, name)
+    assert {symbol.name for symbol in elf.exported_symbols} == functions
+
+
+@each_fmu
+def test_linux_needs_glibc_2_17_at_most(name: str, released: Path) -> None:
+    elf = linux(released, name)
+    assert set(elf.libraries) <= {"libc.so.6", "libm.so.6"}
+    versions = [
+        needed.name
+        for library in elf.symbols_version_requirement
+        for needed in library.get_auxiliary_symbols()
+    ]
+    assert versions
+    for version in versions:
+        numbers = re.fullmatch(r"GLIBC_(\d+)\.(\d+)(?:\.\d+)?", str(version))
+        assert numbers is not None, version
+        assert (int(numbers[1]), int(numbers[2])) <= (2, 17), version
+
+
+@each_fmu
+def test_windows_exports_the_fmi_functions_alone(
+    name: str, released: Path, functions: set[str]
+) -> None:
+    dll = windows(released, name)
+    export = dll.get_export()
+    assert export is not None
+    assert {str(entry.name) for entry in export.entries} == functions
+
+
+@each_fmu
+def test_windows_needs_the_system_alone(name: str, released: Path) -> None:
+    dll = windows(released, name)
+    imported = [str(library.name) for library in dll.imports]
+    assert imported
+    for library in imported:
+        assert re.fullmatch(r"KERNEL32\.dll|msvcrt\.dll|api-ms-win-crt-[-a-z0-9]+\.dll", library)
+
+
+@each_fmu
+def test_macos_exports_the_fmi_functions_and_needs_the_system(
+    name: str, released: Path, functions: set[str]
+) -> None:
+    universal = lief.MachO.parse(binary(released, name, "darwin64", ".dylib"))
+    assert universal is not None and universal.size == 1
+    macho = universal.at(0)
+    assert macho is not None
+    by_the_linker = {"__mh_dylib_header", "___dso_handle"}
+    exported = {str(symbol.name) for symbol in macho.exported_symbols} - by_the_linker
+    assert exported == {"_" + function for function in functions}
+    own_name, *needed = [library.name for library in macho.libraries]
+    assert own_name == f"{name}.dylib"
+    assert needed == ["/usr/lib/libSystem.B.dylib"]

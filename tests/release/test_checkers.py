@@ -1,0 +1,69 @@
+"""The released FMUs under tools that check the archive and its model description."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from zipfile import ZipFile
+
+import pytest
+
+from gate import missing
+from released_fmus import FMUS
+
+each_fmu = pytest.mark.parametrize("name", FMUS)
+
+
+def output_of(command: list[str], cwd: Path | None = None) -> str:
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+@each_fmu
+def test_fmpy(name: str, released: Path) -> None:
+    text = output_of([sys.executable, "-m", "fmpy", "validate", str(released / f"{name}.fmu")])
+    assert text.strip() == "No problems found."
+
+
+@each_fmu
+def test_fmu_manipulation_toolbox(name: str, released: Path) -> None:
+    text = output_of(
+        [
+            *(sys.executable, "-m", "fmu_manipulation_toolbox.cli.fmutool"),
+            *("-input", str(released / f"{name}.fmu"), "-check"),
+        ]
+    )
+    assert "This FMU seems to be compliant with FMI-2.0." in text
+    assert "No semantic error against the FMI-2 standard." in text
+    assert "WARNING" not in text and "ERROR" not in text, text
+
+
+@pytest.fixture(scope="module")
+def vdmcheck(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with VDMCheck2 as it wants to be run: beside its libraries and its model."""
+    jars = build / "checkers" / "vdmcheck2"
+    if not (jars / "vdmcheck2.jar").exists():
+        missing("VDMCheck2", "mvn -f tests/checkers/pom.xml dependency:copy-dependencies")
+    if shutil.which("java") is None:
+        missing("java, which VDMCheck2 needs,", "apt-get install default-jre-headless")
+    folder = tmp_path_factory.mktemp("vdmcheck2")
+    for jar in jars.glob("*.jar"):
+        shutil.copy(jar, folder)
+    for jar_with_files in ("static-model.jar", "vdmcheck2.jar"):
+        with ZipFile(folder / jar_with_files) as archive:
+            archive.extractall(folder)
+    return folder
+
+
+@each_fmu
+def test_vdmcheck2(name: str, released: Path, vdmcheck: Path) -> None:
+    text = output_of(
+        ["java", "-jar", "vdmcheck2.jar", str(released.resolve() / f"{name}.fmu")], cwd=vdmcheck
+    )
+    # FMI 3 files that an FMU of FMI 2.0 may carry are named when they are not there.
+    lines = [line for line in text.splitlines() if not line.startswith("FMU has no ")]
+    assert lines[-1] == "No errors found."
+    assert all(line == "Checking modelDescription.xml" for line in lines[:-1]), text

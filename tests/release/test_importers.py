@@ -1,0 +1,135 @@
+"""The released FMUs in other importers, and their Windows binaries: the trajectories of FMPy."""
+
+from __future__ import annotations
+
+import csv
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+
+from gate import missing
+from released_fmus import FMUS, STEP, Run
+
+each_fmu = pytest.mark.parametrize("run", FMUS, indirect=True)
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[str, Run]:
+    return {}
+
+
+@pytest.fixture
+def run(request: pytest.FixtureRequest, released: Path, runs: dict[str, Run]) -> Run:
+    """One run for all tests of an FMU."""
+    name: str = request.param
+    if name not in runs:
+        runs[name] = Run(released / f"{name}.fmu")
+    return runs[name]
+
+
+@each_fmu
+def test_fmi_sim(run: Run, build: Path, tmp_path: Path) -> None:
+    program = shutil.which("fmi-sim", path=build / "checkers" / "bin")
+    if program is None:
+        missing(
+            "fmi-sim", f"cargo install --locked --version 0.7.0 --root {build / 'checkers'} fmi-sim"
+        )
+    table = run.table()
+    with (tmp_path / "in.csv").open("w", newline="") as file:
+        csv.writer(file).writerows([table.dtype.names or (), *table.tolist()])
+    done = subprocess.run(
+        [
+            *(program, "--model", str(run.fmu)),
+            *("-i", str(tmp_path / "in.csv"), "-o", str(tmp_path / "out.csv")),
+            *("co-simulation", "--output-interval", str(STEP), "-f", str(run.time[-1])),
+        ],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0 and done.stderr == "", done.stderr
+    with (tmp_path / "out.csv").open(newline="") as file:
+        names, *rows = csv.reader(file)
+    columns = [names.index(v.name) for v in run.outputs]
+    run.assert_same(np.array([[float(row[c]) for c in columns] for row in rows]))
+
+
+@each_fmu
+def test_libcosim(run: Run, capfd: pytest.CaptureFixture[str]) -> None:
+    try:
+        from libcosimpy.CosimExecution import CosimExecution
+        from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+        from libcosimpy.CosimManipulator import CosimManipulator
+        from libcosimpy.CosimObserver import CosimObserver
+        from libcosimpy.CosimSlave import CosimLocalSlave
+    except ImportError:
+        missing("libcosimpy", "pip install libcosimpy==0.0.6, on Linux with Python 3.11 or newer")
+    log_output_level(CosimLogLevel.WARNING)
+    execution = CosimExecution.from_step_size(round(STEP * 1e9))  # in ns
+    slave = execution.add_local_slave(CosimLocalSlave(str(run.fmu.resolve()), "fmu"))
+    manipulator = CosimManipulator.create_override()
+    observer = CosimObserver.create_last_value()
+    assert execution.add_manipulator(manipulator) and execution.add_observer(observer)
+    inputs = [v.valueReference for v in run.inputs]
+    outputs = [v.valueReference for v in run.outputs]
+    rows = [observer.last_real_values(slave, outputs)]
+    for held in run.signals[:-1]:
+        assert manipulator.slave_real_values(slave, inputs, held.tolist())
+        assert execution.step()
+        rows.append(observer.last_real_values(slave, outputs))
+    text = capfd.readouterr()
+    own_limit = "FMI 2.0 Enumeration variable type not supported"
+    assert [line for line in (text.out + text.err).splitlines() if own_limit not in line] == []
+    # Values before the first step are not read from the FMU.
+    run.assert_same(np.array([run.trajectory[0], *rows[1:]]))
+
+
+@pytest.fixture(scope="module")
+def windows_master(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """``drivers/windows_master.c`` for Windows."""
+    program = tmp_path_factory.mktemp("windows") / "master.exe"
+    cache = str((build / "cross-compiler").resolve())
+    subprocess.run(
+        [
+            *(sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu"),
+            *("-std=c99", "-O2", f"-I{Path(fmpy.__file__).parent / 'c-code'}"),
+            *(str(Path(__file__).parents[1] / "drivers" / "windows_master.c"), "-o", str(program)),
+        ],
+        env={**os.environ, "ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache},
+        check=True,
+    )
+    return program
+
+
+@each_fmu
+def test_windows_binary(run: Run, windows_master: Path, build: Path, tmp_path: Path) -> None:
+    # Debian puts it where no shell looks.
+    wine = shutil.which("wine64", path=f"{os.environ['PATH']}{os.pathsep}/usr/lib/wine")
+    if wine is None:
+        missing("wine64", "apt-get install wine64")
+    fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))
+    done = subprocess.run(
+        [
+            *(wine, str(windows_master), f"binaries/win64/{run.fmu.stem}.dll"),
+            *(run.description.guid, repr(STEP), str(len(run.inputs))),
+            *(str(v.valueReference) for v in run.inputs + run.outputs),
+        ],
+        input="\n".join(",".join(map(repr, row)) for row in run.signals[:-1].tolist()),
+        cwd=tmp_path,
+        env={
+            **os.environ,
+            "WINEPREFIX": str((build / "wine").resolve()),  # its own, not the user's
+            "WINEDLLOVERRIDES": "mscoree,mshtml=",  # not to offer a download of them
+            "WINEDEBUG": "-all",
+        },
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert [line for line in done.stderr.splitlines() if not line.startswith("wine: ")] == []
+    run.assert_same(np.array([line.split(",") for line in done.stdout.split()], np.float64))

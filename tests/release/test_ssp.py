@@ -1,0 +1,197 @@
+"""The system sigmahat-awas.ssp: valid, reproducible, and what FMPy makes of it."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fmpy.ssp.simulation import simulate_ssp
+from fmpy.ssp.ssd import read_ssd, read_ssv
+from lxml import etree
+
+import sigmahat
+from fmi_master import run, torques
+from sigmahat.export import system
+from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.master import simulate
+from sigmahat.paper.scenarios import T, scenario
+
+TABLE1 = scenario("table1")
+RESIDUAL = TABLE1.estimators["RESIDUAL"]
+STEPS = 1500  # the first half of the motion to one side
+TEMPLATES = Path(__file__).parents[2] / "modelDescription" / "system"
+NAMESPACES = {
+    "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
+    "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
+    "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
+}
+
+
+@pytest.fixture(scope="module", params=["development", "release"])
+def ssp(request: pytest.FixtureRequest) -> Path:
+    """The system as the build makes it for this machine, and as it is released."""
+    if request.param == "release":
+        released: Path = request.getfixturevalue("released")
+        path = released / "sigmahat-awas.ssp"
+    else:
+        path = sigmahat.fmu("StiffnessEstimator").with_name("sigmahat-awas.ssp")
+    assert path.is_file()
+    return path
+
+
+def read(ssp: Path, name: str) -> Any:
+    with zipfile.ZipFile(ssp) as archive:
+        return etree.fromstring(archive.read(name))
+
+
+def test_valid_against_the_schema(ssp: Path) -> None:
+    assert read_ssd(str(ssp), validate=True).version == "1.0"
+    assert read_ssv(str(ssp), "resources/table1.ssv", validate=True).name == "table1"
+
+
+def test_opens_in_omsimulator_2(ssp: Path) -> None:
+    """Its importer goes by prefixed names, and refuses what it does not know.
+
+    OMSimulator 2.1.3, src/OMSimulatorLib: Model.cpp and System.cpp (importFromSnapshot), ComRef.cpp
+    (isValidIdent), SystemWC.cpp (importFromSSD_SimulationInformation).
+    """
+    root = read(ssp, "SystemStructure.ssd")
+    (system,) = root.findall("ssd:System", NAMESPACES)
+    components = root.findall("ssd:System/ssd:Elements/ssd:Component", NAMESPACES)
+    assert len(components) == 2
+    for element in (root, system, *components):
+        assert re.fullmatch("[a-zA-Z][a-zA-Z0-9_]*", element.get("name"))
+    assert {c.get("type") for c in components} == {"application/x-fmu-sharedlibrary"}
+    known = {
+        root: {"ssd:System", "ssd:Units", "ssd:Enumerations", "ssd:DefaultExperiment"},
+        system: {
+            *("ssd:ElementGeometry", "ssd:ParameterBindings", "ssd:Connections", "ssd:Connectors"),
+            *("ssd:Elements", "ssd:Annotations"),
+        },
+        **{
+            component: {"ssd:Connectors", "ssd:ElementGeometry", "ssd:ParameterBindings"}
+            for component in components
+        },
+    }
+    for element, tags in known.items():
+        assert {prefixed(child) for child in element} <= tags
+    (annotation,) = system.findall("ssd:Annotations/ssc:Annotation", NAMESPACES)
+    assert annotation.get("type") == "org.openmodelica"
+    names = []
+    while len(annotation):
+        (annotation,) = annotation
+        names.append(prefixed(annotation))
+    assert names == ["oms:Annotations", "oms:SimulationInformation", "oms:FixedStepMaster"]
+    assert annotation.get("description") == "oms-ma"
+    assert float(annotation.get("stepSize")) == T
+
+
+def prefixed(element: Any) -> str:
+    return f"{element.prefix}:{etree.QName(element).localname}"
+
+
+def test_holds_the_fmus_beside_it(ssp: Path) -> None:
+    with zipfile.ZipFile(ssp) as archive:
+        for name in ("AwasPlant", "StiffnessEstimator"):
+            fmu = ssp.with_name(f"{name}.fmu")
+            assert archive.read(f"resources/{name}.fmu") == fmu.read_bytes()
+
+
+def test_same_bytes_again(ssp: Path, tmp_path: Path) -> None:
+    again = tmp_path / "again.ssp"
+    plant, estimator = ssp.with_name("AwasPlant.fmu"), ssp.with_name("StiffnessEstimator.fmu")
+    system.write(again, plant, estimator, TEMPLATES, sigmahat.__version__)
+    assert hashlib.sha256(again.read_bytes()).digest() == hashlib.sha256(ssp.read_bytes()).digest()
+
+
+def test_every_connection_has_its_ends_with_one_unit(ssp: Path) -> None:
+    root = read(ssp, "SystemStructure.ssd").find("ssd:System", NAMESPACES)
+    owners = [(None, root), *((e.get("name"), e) for e in root.find("ssd:Elements", NAMESPACES))]
+    units = {
+        (owner, c.get("name"), c.get("kind")): c.find("ssc:Real", NAMESPACES).get("unit")
+        for owner, element in owners
+        for c in element.iterfind("ssd:Connectors/ssd:Connector", NAMESPACES)
+    }
+    connections = root.findall("ssd:Connections/ssd:Connection", NAMESPACES)
+    ends = set()
+    for c in connections:
+        source, sink = c.get("startElement"), c.get("endElement")
+        start = (source, c.get("startConnector"), "output" if source else "input")
+        end = (sink, c.get("endConnector"), "input" if sink else "output")
+        assert units[start] == units[end]
+        ends |= {start, end}
+    assert ends == set(units)  # no connector is left open
+    wires = {
+        c.get("endConnector"): c.get("startConnector")
+        for c in connections
+        if c.get("endElement") == "estimator"
+    }
+    assert wires == RESIDUAL.connections
+
+
+def test_parameters_are_those_of_the_scenario(ssp: Path) -> None:
+    found = {}
+    for p in read(ssp, "resources/table1.ssv").iterfind("ssv:Parameters/*", NAMESPACES):
+        found[p.get("name")] = p[0].get("value")
+    for element, name, start in (
+        ("plant", "AwasPlant", TABLE1.plant.start),
+        ("estimator", "StiffnessEstimator", RESIDUAL.start),
+    ):
+        with Fmu(sigmahat.fmu(name)) as fmu:
+            for parameter, value in fmu.parameters(start).items():
+                text = found.pop(f"{element}.{parameter}", None)
+                if fmu.variables[parameter].type == "Enumeration" or "eta_0" in parameter:
+                    assert text is None and value == fmu.parameters({})[parameter]
+                elif fmu.variables[parameter].type == "Boolean":
+                    assert text == str(bool(value)).lower()
+                else:
+                    assert text is not None and float(text) == value
+    assert found == {}
+
+
+def test_a_scenario_with_another_enumeration_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(RESIDUAL.start, "modality", "Sensor")
+    with pytest.raises(ValueError, match="modality: the SSP leaves it at Residual"):
+        system.write(
+            tmp_path / "x.ssp",
+            sigmahat.fmu("AwasPlant"),
+            sigmahat.fmu("StiffnessEstimator"),
+            TEMPLATES,
+            sigmahat.__version__,
+        )
+
+
+def test_fmpy_gives_what_its_rules_say(ssp: Path) -> None:
+    """FMPy's master, written anew from its three rules (docs/how-to/fmpy.md): bit-identical."""
+    result = simulate_ssp(
+        str(ssp),
+        stop_time=STEPS * T,
+        step_size=T,
+        parameter_set=read_ssv(str(ssp), "resources/table1.ssv"),
+        input={
+            name: lambda t, signal=signal: float(signal(np.array(t)))
+            for name, signal in TABLE1.plant.inputs.items()
+        },
+    )
+    own = run(torques(result["time"]), late=True, linear=False, times=result["time"])
+    # FMPy notes the plant at the end of the step, under the time of its begin.
+    np.testing.assert_array_equal(result["plant.sigma"][:-1], own["plant.sigma"][1:])
+    np.testing.assert_array_equal(result["estimator.sigma"], own["estimator.sigma"])
+    np.testing.assert_array_equal(result["sigma_hat"], own["estimator.sigma"])
+    assert own["estimator.sigma"].any()
+
+
+def test_without_those_rules_it_is_the_run_of_the_harness() -> None:
+    """The same calls with torques in time and linear, as `sigmahat reproduce` has them."""
+    recording = simulate(TABLE1.plant, {"RESIDUAL": RESIDUAL}, T, STEPS)
+    own = run(torques(recording.t), late=False, linear=True, times=recording.t)
+    np.testing.assert_array_equal(recording.plant["sigma"], own["plant.sigma"])
+    np.testing.assert_array_equal(recording.estimators["RESIDUAL"]["sigma"], own["estimator.sigma"])
+    assert own["estimator.sigma"].any()

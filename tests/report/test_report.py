@@ -1,0 +1,275 @@
+"""Reports: one file that shows what the results are, in a browser without a network."""
+
+from __future__ import annotations
+
+import csv
+import html
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet
+import pytest
+from selenium.webdriver import ActionChains
+from selenium.webdriver.common.by import By
+
+from browser import opened
+from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
+from sigmahat.report.reduction import reduce
+
+DATA = """
+const model = [...Bokeh.documents[0]._all_models.values()]
+  .find(m => m.name === arguments[0] && m.data_source);
+return Array.from(model.data_source.data[arguments[1]]);
+"""
+"""Values of a trace that is a line or points."""
+PICTURE = """
+const view = [...Object.values(Bokeh.index.roots ?? Bokeh.index)][arguments[0]];
+const {canvas, ctx} = view.canvas_view.primary;
+const picture = ctx.getImageData(0, 0, canvas.width, canvas.height).data;
+"""
+CHANGED = f"""{PICTURE}
+const before = window.before;
+window.before = picture;
+return before?.length === picture.length ? picture.filter((x, i) => x !== before[i]).length : 0;
+"""
+"""How much of the picture of a plot has changed since this was last asked."""
+COLORS_OF_PLOT = f"""{PICTURE}
+const counts = {{}};
+for (let i = 0; i < picture.length; i += 4) {{
+  const color = picture.slice(i, i + 3).join();
+  counts[color] = (counts[color] ?? 0) + 1;
+}}
+return counts;
+"""
+"""How many pixels of a plot have each colour."""
+SHOW = """
+const [plot, shown, done] = arguments;
+for (const box of document.querySelectorAll(`[data-trace^="trace-${plot}-"]`))
+  if (box.checked !== (shown === box.dataset.trace)) box.click();
+requestAnimationFrame(() => setTimeout(done, 50));
+"""
+"""Switches all traces of a plot off but one."""
+RANGES = "return Bokeh.documents[0].roots().map(p => [p.x_range.start, p.x_range.end]);"
+
+
+def command(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "sigmahat", *arguments], cwd=cwd, capture_output=True, text=True
+    )
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Folder of results with their report, by kind; each is made once."""
+
+    @cache
+    def make(kind: str) -> Path:
+        cwd = tmp_path_factory.mktemp(kind)
+        if kind == "log":
+            write_log(awas_log(0.5, 0.1), cwd / "knee.parquet")
+            (cwd / "knee.toml").write_text(CONFIGURATION)
+        done = command(
+            *{
+                "reproduction": ("reproduce",),
+                "pair": ("reproduce", "--scenario", "antagonistic"),
+                "log": ("estimate", "knee.parquet"),
+                "sweep": (
+                    "sweep", "--modality", "RESIDUAL,SENSOR", "--seeds", "4", "--set",
+                    "estimator.motor.D_theta=0.9e-3,1e-3", "--set", "plant.link.M=normal(0.1,0.01)",
+                ),
+            }[kind], "--out", "out", cwd=cwd,
+        )  # fmt: skip
+        assert (done.returncode, done.stderr) == (0, "")
+        done = command("report", "out", cwd=cwd)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert str(cwd / "out" / "report.html") in done.stdout
+        return cwd / "out"
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("kind", "plots"), [("reproduction", 7), ("pair", 14), ("log", 5), ("sweep", 4)]
+)
+def test_the_file_alone_shows_every_plot(
+    kind: str, plots: int, results: Callable[[str], Path], tmp_path: Path
+) -> None:
+    file = results(kind) / "report.html"
+    assert file.stat().st_size < 5_000_000
+    alone = tmp_path / "moved.html"
+    alone.write_bytes(file.read_bytes())
+    with opened(alone) as page:
+        assert page.complaints() == []
+        assert page.requests() == [alone.as_uri()]
+        assert len(page.run(RANGES)) == plots
+        boxes = page.driver.find_elements(By.CSS_SELECTOR, ".plots input")
+        for box in boxes:
+            trace = str(box.get_attribute("data-trace"))
+            plot = int(trace.split("-")[1])
+            for shown in ("", trace):
+                page.driver.execute_async_script(SHOW, plot, shown)
+                changed = page.run(CHANGED, plot)
+            assert changed > 0, trace
+        assert page.complaints() == []
+
+
+def test_a_drag_of_the_mouse_zooms_all_plots_over_time(results: Callable[[str], Path]) -> None:
+    with opened(results("reproduction") / "report.html") as page:
+        assert page.run(RANGES) == [[0.0, 15.0]] * 7
+        plot = page.driver.find_elements(By.CSS_SELECTOR, ".plots section")[0]
+        actions = ActionChains(page.driver)
+        actions.move_to_element(plot).click_and_hold().move_by_offset(60, 60).release().perform()
+        ranges = page.run(RANGES)
+        assert 0.0 < ranges[0][0] < ranges[0][1] < 15.0
+        assert ranges == [ranges[0]] * 7
+        assert page.complaints() == []
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_a_narrow_window_light_and_dark(dark: bool, results: Callable[[str], Path]) -> None:
+    with opened(results("sweep") / "report.html", width=400, dark=dark) as page:
+        assert page.run("return document.documentElement.scrollWidth") <= 400
+        rights = "return [...document.querySelectorAll('.plots section')].map(s => s.%s)"
+        assert all(0 < w <= 400 for w in page.run(rights % "getBoundingClientRect().right"))
+        page_color = page.run("return getComputedStyle(document.body).backgroundColor")
+        assert page_color == ("rgb(20, 23, 27)" if dark else "rgb(255, 255, 255)")
+        dots = page.run(COLORS_OF_PLOT, 0)
+        assert dots.get("20,23,27" if dark else "255,255,255", 0) > 10_000
+
+
+def test_the_plots_have_the_numbers_of_the_files(results: Callable[[str], Path]) -> None:
+    folder = results("reproduction")
+    table = pa.csv.read_csv(folder / "SENSOR.csv")
+    with opened(folder / "report.html") as page:
+        time = np.array(page.run(DATA, "trace-0-2", "x"))
+        sigma = np.array(page.run(DATA, "trace-0-2", "trace-0-2"))
+        label = page.run("""
+            return document.querySelector('[data-trace="trace-0-2"]').parentElement.innerText""")
+    assert label.strip() == "SENSOR"
+    assert np.array_equal(time, table["t [s]"].to_numpy())
+    assert np.array_equal(sigma, table["sigma [N.m/rad]"].to_numpy().astype(np.float32))
+
+
+def test_a_log_has_the_numbers_of_its_table(results: Callable[[str], Path]) -> None:
+    folder = results("log")
+    table = read_estimate(folder)
+    sigma = table["estimate.sigma [N.m/rad]"].to_numpy()
+    later = sigma[len(sigma) // 2 :]
+    rms = np.sqrt(np.mean(later**2))
+    cells = [f"{x:.4g}" for x in (sigma[-1], later.min(), later.max(), rms)]
+    with opened(folder / "report.html") as page:
+        rows = page.driver.find_elements(By.CSS_SELECTOR, "tbody tr")
+        assert rows[0].text.split() == ["sigma", "[N.m/rad]", *cells]
+        drawn = np.array(page.run(DATA, "trace-0-0", "trace-0-0"))
+    assert np.array_equal(drawn, sigma.astype(np.float32))
+
+
+def test_a_sweep_has_the_numbers_of_its_summary(results: Callable[[str], Path]) -> None:
+    folder = results("sweep")
+    with (folder / "summary.csv").open() as file:
+        summary = list(csv.DictReader(file))
+    table = pa.parquet.read_table(folder / "sweep.parquet").to_pylist()
+    with opened(folder / "report.html") as page:
+        rows = [r.text for r in page.driver.find_elements(By.CSS_SELECTOR, "tbody tr")]
+        masses = page.run(DATA, "trace-3-1", "x")
+        errors = page.run(DATA, "trace-3-1", "trace-3-1")
+    assert len(rows) == len(summary) == 4
+    for row, each in zip(rows, summary, strict=True):
+        assert each["estimation"] in row
+        assert f"{float(each['msrep [%]']):.4g} +- " in row
+    points = [
+        (row["plant.link.M [kg.m2]"], row["msrep_settled [%]"])
+        for row in table
+        if row["estimation"] == "RESIDUAL"
+    ]
+    assert list(zip(masses, errors, strict=True)) == points
+
+
+def test_names_are_not_taken_for_html(results: Callable[[str], Path], tmp_path: Path) -> None:
+    folder = tmp_path / "<b>&"
+    folder.mkdir()
+    (folder / "sweep.parquet").write_bytes((results("sweep") / "sweep.parquet").read_bytes())
+    done = command("report", "<b>&", "--out", "r.html", "--quiet", cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert html.escape("Sweep: <b>&") in (tmp_path / "r.html").read_text()
+
+
+@pytest.mark.parametrize("samples", [1, 2, 5, 4000, 4001, 4321, 100_000, 123_457])
+def test_fewer_points_of_a_long_signal_keep_every_peak(samples: int) -> None:
+    generator = np.random.default_rng(samples)
+    t = np.arange(samples) * 1e-3
+    x = generator.normal(size=samples).astype(np.float32)
+    x[generator.integers(samples)] = 100.0
+    x[generator.integers(samples)] = -100.0
+    reduced = reduce(t, {"x": x, "minus": -x}, budget=8000)
+    shown = reduced.signals["x"]
+    assert len(reduced.t) == len(shown) <= 4002
+    assert (shown.max(), shown.min()) == (x.max(), x.min())
+    assert np.all(np.diff(reduced.t) >= 0)
+    # Each value stands within a bucket of its time.
+    width = reduced.bucket * 1e-3
+    for value in (x.max(), x.min()):
+        (at,) = t[x == value]
+        assert np.abs(reduced.t[shown == value] - at).min() <= width
+    # Around the middle there is every sample.
+    inside = (t >= reduced.every[0]) & (t <= reduced.every[1])
+    start = int(np.searchsorted(reduced.t, reduced.every[0]))
+    middle = slice(start, start + int(np.count_nonzero(inside)))
+    assert np.array_equal(reduced.t[middle], t[inside])
+    assert np.array_equal(shown[middle], x[inside])
+
+
+def test_an_hour_is_a_file_of_the_same_size(tmp_path: Path) -> None:
+    t = np.arange(1_200_000) * 1e-3
+    names = [
+        "sigma [N.m/rad]", "tau_e [N.m]", "tau_e_residual [N.m]", "theta_dot [rad/s]",
+        "phi [rad]", "setPoint [1]", "a [1]", "rho [1]", "epsilon [N.m]",
+    ]  # fmt: skip
+    columns = {f"estimate.{name}": np.sin((i + 1) * t) for i, name in enumerate(names)}
+    table = {"estimate.t [s]": t, **columns, "estimate.valid": t > 1.0}
+    pa.parquet.write_table(pa.table(table), tmp_path / "estimate.parquet")
+    done = command("report", ".", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    text = (tmp_path / "report.html").read_text()
+    assert len(text) < 5_000_000
+    assert "in 1001 of them the estimator skipped the tick" in text
+    assert "least and the greatest of every" in text
+
+
+@pytest.mark.parametrize(
+    ("files", "words"),
+    [
+        (None, "expected a folder of `sigmahat reproduce`, `estimate` or `sweep`"),
+        ({}, "no result of"),
+        ({"runs.jsonl": b""}, "a sweep that is not complete; run its command again"),
+        ({"sweep.parquet": b"PAR1 cut off"}, "not the table of a sweep; run the sweep again"),
+        ({"estimate.parquet": b"PAR1 cut off"}, "damaged; run `sigmahat estimate` again"),
+        ({"estimate.csv": b""}, "not readable as CSV"),
+        ({"estimate.csv": b"t,x\n1,2\n"}, "no table of `sigmahat estimate`"),
+        ({"table.csv": b"estimation,seeds\nRESIDUAL,1\n"}, "no result of `sigmahat reproduce`"),
+        ({"table.csv": b"a,b\n1\n"}, "not readable as CSV"),
+    ],
+)
+def test_bad_input(files: dict[str, bytes] | None, words: str, tmp_path: Path) -> None:
+    if files is not None:
+        (tmp_path / "in").mkdir()
+        for name, content in files.items():
+            (tmp_path / "in" / name).write_bytes(content)
+    done = command("report", "in", "--out", "r.html", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("sigmahat: error: in")
+    assert words in line
+    assert not (tmp_path / "r.html").exists()
+
+
+def test_a_file_that_cannot_be_written(results: Callable[[str], Path], tmp_path: Path) -> None:
+    done = command("report", str(results("sweep")), "--out", "no/r.html", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert "cannot write no/r.html: No such file or directory; choose another file" in line

@@ -1,0 +1,60 @@
+"""How often the truth lies within 1.96 sigma_std of the estimate of MatchedFilter.
+
+    python tests/studies/calibration.py RUNS
+
+prints the share of instants after 2 s, and the 95 % interval of its mean over runs: with errors of
+D_theta and Coulomb friction drawn from their priors, and with an error of B, too.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from sigmahat.fmi.instance import Value
+from sigmahat.paper import comparisons
+from sigmahat.paper.comparisons import Case, Joint
+from sigmahat.paper.metrics import mean_interval
+from sigmahat.paper.processes import spread
+from sigmahat.paper.scenarios import Sine, awas, estimator
+
+METHOD = "MatchedFilter"
+OUTPUTS = ("sigma", "sigma_std", "D_theta_hat", "B_hat", "tau_coulomb_hat")
+
+
+def drawn(run: int, with_inertia: bool) -> Joint:
+    """The AwAS at 0.3 to 8 Hz, and an estimator that is told motor data with errors."""
+    rng = np.random.default_rng([4, run])
+    frequency = math.exp(rng.uniform(math.log(0.3), math.log(8.0)))
+    d, friction, b = rng.standard_normal(3) * (0.2, 0.02, 0.1)
+    plant = awas(0.030, Sine(0.3 if frequency < 5 else 0.5, frequency))
+    told: dict[str, Value] = {
+        "method": METHOD,
+        "rls.n": 3,
+        "motor.D_theta": 1e-3 / (1 + d),
+        "prior.D_theta": 0.2,
+        "prior.tau_coulomb": 0.02,
+    }
+    if with_inertia:
+        told |= {"motor.B": 2.3e-5 / (1 + b), "prior.B": 0.1}
+    start = {**plant.start, "motor.tau_coulomb": abs(friction)}
+    case = Case("drawn", {METHOD: replace(estimator(told), record=OUTPUTS)}, (0.0,), {"": ""})
+    return Joint("drawn", str(run), replace(plant, start=start), 15.0, [case])
+
+
+def share(runs: Sequence[int], with_inertia: bool) -> tuple[float, float]:
+    """Mean share over runs, and half the width of its 95 % interval [%]."""
+    jobs = [partial(comparisons.run, drawn(k, with_inertia), k + 1) for k in runs]
+    found = [lines[0].found[METHOD].inside for lines in spread(jobs, processes=2)]
+    return mean_interval(found)
+
+
+if __name__ == "__main__":
+    for with_inertia in (False, True):
+        mean, half_width = share(range(int(sys.argv[1])), with_inertia)
+        print(f"{'with' if with_inertia else 'without'} B: {mean:.1f} +- {half_width:.1f} %")

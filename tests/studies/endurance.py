@@ -1,0 +1,134 @@
+"""Estimators that run for a very long time, beside the same in higher precision.
+
+    build/venv/bin/python tests/studies/endurance.py
+
+runs every case of CASES in full, one after the other, and prints the table of docs/endurance.md.
+What the runs print at their checkpoints is in build/endurance/. The C program is in
+drivers/endurance*.c.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+DRIVERS = REPOSITORY / "tests" / "drivers"
+METHODS = {1: "Paper2011", 2: "MatchedFilter"}
+OUTPUTS = (
+    "sigma", "tau_e", "sigma_std", "tau_e_residual", "theta_dot", "D_theta", "B", "tau_coulomb",
+)  # fmt: skip
+FLAGS = ("-std=gnu99", "-D_GNU_SOURCE", "-O2", "-ffp-contract=off")
+# The type of the library, and with it the names of functions and constants in c/real_math.h.
+PRECISIONS = {
+    "double": (),
+    "long double": ("-DSH_REAL=_Float64x", "-DSH_FOR__Float64x(a,b)=a##f64x"),
+    "quad": ("-DSH_REAL=_Float128", "-DSH_FOR__Float128(a,b)=a##f128"),
+}
+# Largest difference between double and long double over a million ticks, relative to the output.
+BOUND = 1e-9
+
+
+@dataclass(frozen=True)
+class Case:
+    """An estimator with n x m coefficients of the torque, how many times the usual torque the
+    huge one is, and how long it and its reference run.
+    """
+
+    method: int
+    n: int
+    m: int
+    torque: float
+    ticks: int
+    reference_ticks: int
+
+
+CASES = (
+    Case(1, 6, 3, 1e6, 10**9, 10**8),
+    Case(2, 3, 3, 1e3, 10**9, 10**8),
+    Case(2, 3, 3, 1e6, 10**8, 10**7),
+)
+
+
+def compile_program(
+    folder: Path, precision: str, compiler: str = "gcc", flags: Sequence[str] = ()
+) -> Path:
+    """drivers/endurance.c with the estimator in a precision of PRECISIONS, in a new folder."""
+    program = Path(tempfile.mkdtemp(dir=folder)) / precision.replace(" ", "_")
+    sources = [*DRIVERS.glob("endurance*.c"), *(REPOSITORY / "c").glob("*.c")]
+    command = [
+        *(compiler, *FLAGS, *PRECISIONS[precision], *flags),
+        *(f"-I{REPOSITORY / 'c'}", f"-I{DRIVERS}"),
+        *map(str, sources),
+        *("-lm", "-o", str(program)),
+    ]
+    subprocess.run(command, check=True)
+    return program
+
+
+def scaled(value: NDArray[np.longdouble], reference: NDArray[np.longdouble]) -> float:
+    """Largest difference relative to the reference, or to its median where it is less."""
+    size = np.maximum(abs(reference), np.median(abs(reference), axis=0))
+    size[size == 0.0] = 1.0
+    return float(np.max(abs(value - reference) / size))
+
+
+Checkpoints = list[list[np.longdouble]]  # [checkpoint][tick, outputs...]
+
+
+def run(program: Path, case: Case, ticks: int, output: Path) -> Checkpoints:
+    """Runs an estimator, which prints its checkpoints to a file.
+
+    Raises CalledProcessError if P or an output is no longer what it has to be.
+    """
+    arguments = [str(number) for number in (case.method, case.n, case.m, case.torque, ticks)]
+    with output.open("w") as file:
+        subprocess.run([str(program), *arguments], stdout=file, check=True)
+    return [[np.longdouble(word) for word in line.split()] for line in output.open()]
+
+
+def difference(run: Checkpoints, reference: Checkpoints) -> tuple[float, str]:
+    """The largest one of all outputs at the checkpoints that both have, and the output."""
+    known = {row[0]: row[1:] for row in reference}
+    pairs = [(row[1:], known[row[0]]) for row in run if row[0] in known]
+    of_run, of_reference = (np.array(rows) for rows in zip(*pairs, strict=True))
+    of = [scaled(of_run[:, i], of_reference[:, i]) for i in range(len(OUTPUTS))]
+    return max(of), OUTPUTS[int(np.argmax(of))]
+
+
+def compare(case: Case, program: Path, reference: Path, folder: Path) -> tuple[float, str]:
+    """The largest difference between a run and its reference, and the output that has it."""
+    name = f"{METHODS[case.method]}_{case.n}x{case.m}_{case.torque:.0e}"
+    return difference(
+        run(program, case, case.ticks, folder / f"{name}_{program.name}.txt"),
+        run(reference, case, case.reference_ticks, folder / f"{name}_{reference.name}.txt"),
+    )
+
+
+def main() -> int:
+    folder = REPOSITORY / "build" / "endurance"
+    folder.mkdir(parents=True, exist_ok=True)
+    print("| method | parameters | huge torque | ticks | reference | largest difference | of |")
+    print("|---|---|---|---|---|---|---|", flush=True)
+    program = compile_program(folder, "double")
+    reference = compile_program(folder, "long double")
+    for case in CASES:
+        largest, output = compare(case, program, reference, folder)
+        size = case.n * case.m + (3 if case.method == 2 else 0)
+        print(
+            f"| {METHODS[case.method]} | {size} | {case.torque:.0e} | {case.ticks:.0e} | "
+            f"{case.reference_ticks:.0e} | {largest:.1e} | {output} |",
+            flush=True,
+        )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

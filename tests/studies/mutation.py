@@ -1,0 +1,353 @@
+"""Mutation testing of c/: would the tests notice one wrong token?
+
+    build/venv/bin/python tests/studies/mutation.py [NUMBER [SEED]]
+
+changes one token (operator, comparison, constant, index, function) at NUMBER places, spread over
+all files of c/, one at a time, and runs the tests of the library against each. It prints those
+that no test noticed. Places are chosen by a hash of SEED and their line, so they stay the same
+when the code changes elsewhere.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+
+import pytest
+
+TESTS = Path(__file__).resolve().parents[1]
+LIBRARY = TESTS.parent / "c"
+NUMBER, SEED = 66, "fresh-b"  # of the sample in the gate
+CPU_SECONDS = 30  # of the tests of one mutant; one that runs longer hangs
+ASKED = 0.9  # share that tests have to notice
+# Tests of other parts that use a part of the library: those of its own are not all.
+USERS = {
+    "kinematic_kalman": ("stiffness_estimator",),
+    "least_squares": ("matched_*", "stiffness_estimator"),
+    "matched_regression": ("matched_*",),
+    "motion_sign": ("matched_*",),
+    "parameters": ("stiffness_estimator",),
+    "rounding_bias": ("matched_*",),
+    "scaled_basis": ("prior", "matched_*"),
+    "state_variable_filter": ("matched_*",),
+    "stiffness_estimator": ("prior", "matched_*"),
+    "torque_basis": ("stiffness_estimator",),
+    "torque_residual": ("stiffness_estimator",),
+}
+PYTEST = ("-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", "-m", "not slow")
+FLAGS = (
+    "-std=gnu99",
+    "-O1",
+    "-ffp-contract=off",
+    "-fPIC",
+    "-w",
+    "-fsanitize=bounds",
+    "-fsanitize-undefined-trap-on-error",
+    f"-I{LIBRARY}",
+)
+
+# What is wrong with a token instead: the first that compiles to something else.
+SWAPS = {
+    "<": ("<=", ">"), "<=": ("<", ">="), ">": (">=", "<"), ">=": (">", "<="),
+    "==": ("!=",), "!=": ("==",), "&&": ("||",), "||": ("&&",),
+    "+": ("-",), "-": ("+",), "*": ("/", "+"), "/": ("*",),
+    "+=": ("-=",), "-=": ("+=",), "*=": ("/=",), "/=": ("*=",), "++": ("--",),
+    "i": ("j",), "j": ("i", "k"), "k": ("j",),
+    "sh_fmin": ("sh_fmax",), "sh_fmax": ("sh_fmin",), "sh_fabs": ("-",), "sh_sqrt": ("sh_fabs",),
+    "sh_exp": ("cos",), "sh_sin": ("cos",), "!": ("",),
+    "break": ("continue",), "continue": ("break",),
+}  # fmt: skip
+TOKEN = re.compile(
+    r"(?P<skip>/\*.*?\*/|^\s*#.*?$|\"[^\"\n]*\")|(?P<name>[A-Za-z_]\w*)"
+    r"|(?P<number>\d+\.?\d*(?:e[-+]?\d+)?)|(?P<operator>[-+*/<>=!&|]{1,2})",
+    re.DOTALL | re.MULTILINE,
+)
+
+# Mutants that no test can notice: file, changed code, why it makes no difference.
+EQUIVALENT: tuple[tuple[str, str, str], ...] = (
+    (
+        "least_squares.c",
+        "high[1] += F[j] * rls->eta[j];",
+        "the two sums are added in the end",
+    ),
+    (
+        "least_squares.c",
+        "for (i = 0; i < j; i += SH_PANEL) { const sh_real v_0",
+        "where i = j, nothing is left of v, and U beyond is zero",
+    ),
+    (
+        "least_squares.c",
+        "if (j <= rls->size) { rho[j] = before;",
+        "D behind the last one is zero",
+    ),
+    (
+        "matched_regression.c",
+        "for (i = 0; i <= matched->basis; ++i) F[i] =",
+        "what is written behind the basis is overwritten by the motor's",
+    ),
+    (
+        "matched_regression.c",
+        "for (i = 0; i <= matched->basis; ++i) sh_state_variable_filter_",
+        "no filter behind the last column is read",
+    ),
+    (
+        "matched_regression.c",
+        "settings->motor_prior[SH_MOTOR_B] >= 0)",
+        "without a prior there is no variance, and nothing is taken back",
+    ),
+    (
+        "motion_sign.c",
+        "const sh_real way = change >= 0 ? 1 : -1;",
+        "is not used where the change is zero",
+    ),
+    (
+        "state_variable_filter.c",
+        "sh_fabs(behind[1]) <= SMALL",
+        "exactly 1e-30 does not come",
+    ),
+    (
+        "matched_regression.c",
+        "if (settings->drift >= 0)",
+        "without drift the covariance is widened by zero and is not above the prior",
+    ),
+    (
+        "matched_regression.c",
+        "if (matched->samples < 3)",
+        "is compared with 0 and 1 alone",
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One file of c/ with one token changed."""
+
+    file: str
+    start: int
+    old: str
+    new: str
+
+    def text(self) -> str:
+        original = (LIBRARY / self.file).read_text()
+        return original[: self.start] + self.new + original[self.start + len(self.old) :]
+
+    def line(self) -> str:
+        """The changed line as it now reads."""
+        text = self.text()
+        begin = text.rfind("\n", 0, self.start) + 1
+        return text[begin : text.find("\n", self.start)].strip()
+
+    def makes(self, code: str) -> bool:
+        """Whether this code, of one line or more, is what the change has made."""
+        before, after = (LIBRARY / self.file).read_text(), self.text()
+        return count(after, code) > count(before, code)
+
+    def __str__(self) -> str:
+        return f"{self.file}: {self.old!r} -> {self.new!r}: {self.line()}"
+
+
+def count(text: str, code: str) -> int:
+    """How often it contains this code, however that is indented."""
+    return " ".join(text.split()).count(" ".join(code.split()))
+
+
+def wrong(kind: str | None, token: str) -> tuple[str, ...]:
+    if kind == "number":
+        real = "." in token or "e" in token
+        return (str(1.5 * float(token) + 1.0) if real else str(int(token) + 1),)
+    return SWAPS.get(token, ())
+
+
+def candidates(file: Path, seed: str) -> list[tuple[Mutant, ...]]:
+    """The places of a file, in the order in which they are taken: mutants to try at each."""
+    places = []
+    alike: Counter[str] = Counter()
+    for match in TOKEN.finditer(file.read_text()):
+        if news := wrong(match.lastgroup, match.group()):
+            mutants = tuple(Mutant(file.name, match.start(), match.group(), new) for new in news)
+            line = mutants[0].line()
+            alike[line] += 1
+            key = hashlib.sha256(f"{seed} {file.name} {line} {alike[line]}".encode()).hexdigest()
+            places.append((key, mutants))
+    return [mutants for _, mutants in sorted(places, key=lambda place: place[0])]
+
+
+class Bench:
+    """Compiles mutants beside the objects of the other files, and runs tests against them."""
+
+    def __init__(self, folder: Path, compiler: str = "gcc") -> None:
+        self.folder, self.compiler = folder, compiler
+        run = TESTS / "drivers" / "run.c"
+        self.objects: dict[str, Path] = {}
+        for file in (*sorted(LIBRARY.glob("*.c")), run):
+            self.objects[file.name] = folder / f"{file.stem}.o"
+            if not self.compile(file, self.objects[file.name]):
+                raise RuntimeError(f"{file} does not compile")
+
+    def compile(self, source: Path, target: Path) -> bool:
+        command = [self.compiler, *FLAGS, "-c", str(source), "-o", str(target)]
+        return subprocess.run(command, capture_output=True).returncode == 0
+
+    def link(self, tree: Path, objects: Mapping[str, Path]) -> Path:
+        library = tree / "libsigmahat_test_driver.so"
+        command = [self.compiler, "-shared", *map(str, objects.values()), "-lm", "-o", str(library)]
+        subprocess.run(command, check=True)
+        return tree
+
+    def build(self, mutant: Mutant) -> Path | None:
+        """A build tree with the mutant's library, None if it is no C or the same program."""
+        tree = Path(tempfile.mkdtemp(dir=self.folder))
+        source = tree / mutant.file
+        source.write_text(mutant.text())
+        changed = tree / "mutant.o"
+        original = self.objects[mutant.file].read_bytes()
+        if not self.compile(source, changed) or changed.read_bytes() == original:
+            shutil.rmtree(tree)
+            return None
+        return self.link(tree, {**self.objects, mutant.file: changed})
+
+
+def files_for(source: str) -> list[str]:
+    """The tests that a mutant of a source has to pass, its own first."""
+    stem = Path(source).stem
+    return [
+        str(path)
+        for name in (stem, *USERS[stem])
+        for path in sorted(TESTS.glob(f"c/test_{name}.py"))
+    ]
+
+
+def start_tests(tree: Path, files: Sequence[str]) -> int:
+    """Runs the fast tests with the library of a build tree in a process of their own: its number.
+
+    A fork, because to import what the tests use takes longer than most of them.
+    """
+    child = os.fork()
+    if child:
+        return child
+    os.environ["SIGMAHAT_BUILD"] = str(tree)
+    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
+    output = os.open(tree / "output.txt", os.O_WRONLY | os.O_CREAT)
+    os.dup2(output, 1)
+    os.dup2(output, 2)
+    status = 2
+    try:
+        status = pytest.main([*PYTEST, *files])
+    finally:
+        sys.stdout.flush()
+        os._exit(status)
+
+
+def finished(running: dict[int, Path]) -> tuple[int, bool]:
+    """Waits for one of the processes: its number, and whether the tests passed. Removes its tree.
+
+    They did not if one failed, or crashed, or did not end.
+    """
+    child, status = os.wait()
+    tree, code = running.pop(child), os.waitstatus_to_exitcode(status)
+    if code > 1:
+        raise RuntimeError(f"pytest ended with {code}:\n{(tree / 'output.txt').read_text()}")
+    shutil.rmtree(tree)
+    return child, code == 0
+
+
+def shares(number: int) -> dict[str, int]:
+    """How many mutants each file gets: at least three, else by its number of places."""
+    places = {file.name: len(candidates(file, "")) for file in sorted(LIBRARY.glob("*.c"))}
+    total = sum(places.values())
+    return {file: max(3, round(number * count / total)) for file, count in places.items()}
+
+
+def mutants(bench: Bench, file: str, number: int, seed: str) -> Iterator[tuple[Mutant, Path]]:
+    """The first mutants of a file that are programs of their own, with their build trees."""
+    for choices in candidates(LIBRARY / file, seed):
+        if number == 0:
+            return
+        for mutant in choices:
+            if tree := bench.build(mutant):
+                yield mutant, tree
+                number -= 1
+                break
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of the mutants."""
+
+    killed: list[Mutant]
+    equivalent: list[Mutant]
+    survived: list[Mutant]
+
+    def add(self, mutant: Mutant, passed: bool) -> None:
+        if not passed:
+            self.killed.append(mutant)
+        elif any(mutant.file == file and mutant.makes(code) for file, code, _ in EQUIVALENT):
+            self.equivalent.append(mutant)
+        else:
+            self.survived.append(mutant)
+            print(f"survived: {mutant}", flush=True)
+
+    def share(self) -> float:
+        """Killed ones among those that a test could notice."""
+        return len(self.killed) / (len(self.killed) + len(self.survived))
+
+
+def run(folder: Path, number: int = NUMBER, seed: str = SEED) -> Outcome:
+    """Makes at least `number` mutants in a scratch folder and runs the tests against each.
+
+    Raises RuntimeError if the tests do not pass with the code as it is.
+    """
+    bench = Bench(folder)
+    files = sorted({path for source in shares(number) for path in files_for(source)})
+    with redirect_stdout(StringIO()):
+        pytest.main([*PYTEST, "--collect-only", *files])  # imports what they need
+    unchanged = Path(tempfile.mkdtemp(dir=folder))
+    bench.link(unchanged, bench.objects)
+    if not finished({start_tests(unchanged, files): unchanged})[1]:
+        raise RuntimeError("the tests fail without any change")
+    outcome = Outcome([], [], [])
+    running: dict[int, Path] = {}
+    tested: dict[int, Mutant] = {}
+
+    def wait() -> None:
+        child, passed = finished(running)
+        outcome.add(tested[child], passed)
+
+    for file, share in shares(number).items():
+        for mutant, tree in mutants(bench, file, share, seed):
+            if len(running) == (os.cpu_count() or 1):
+                wait()
+            child = start_tests(tree, files_for(file))
+            running[child], tested[child] = tree, mutant
+    while running:
+        wait()
+    return outcome
+
+
+def main() -> int:
+    number, seed = (*sys.argv[1:], *(str(NUMBER), SEED)[len(sys.argv) - 1 :])
+    with tempfile.TemporaryDirectory() as folder:
+        outcome = run(Path(folder), int(number), seed)
+    for mutant in outcome.equivalent:
+        print(f"equivalent: {mutant}")
+    print(
+        f"killed {len(outcome.killed)}, survived {len(outcome.survived)}, "
+        f"equivalent {len(outcome.equivalent)}: {100.0 * outcome.share():.1f} % killed"
+    )
+    return int(outcome.share() < ASKED)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

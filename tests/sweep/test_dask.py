@@ -1,0 +1,122 @@
+"""Sweeps on a Dask cluster of this machine, started as a user starts one."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import distributed
+import pytest
+
+from sigmahat.sweep.plan import fmu_digest, read_plan
+from sigmahat.sweep.workers import WorkerError, execute
+from sweeps import QUICK, records, refused, run, start, wait_for_records
+
+DASK = [sys.executable, "-m", "dask"]
+HERE = ["--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", "scheduler.json"]
+
+
+@contextmanager
+def background(*arguments: str, cwd: Path) -> Iterator[subprocess.Popen[bytes]]:
+    process = subprocess.Popen(
+        [*DASK, *arguments], cwd=cwd, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+@pytest.fixture
+def scheduler(tmp_path: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """One without workers."""
+    with background("scheduler", "--port", "0", *HERE, cwd=tmp_path) as process:
+        yield process
+
+
+@pytest.fixture
+def address(scheduler: subprocess.Popen[bytes], tmp_path: Path) -> str:
+    """Of the scheduler, once it is there."""
+    file = tmp_path / "scheduler.json"
+    deadline = time.monotonic() + 300
+    while not file.exists() or not file.read_text():
+        assert scheduler.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.1)
+    found: str = json.loads(file.read_text())["address"]
+    return found
+
+
+@contextmanager
+def worker(folder: Path, name: str, runs: int = 1) -> Iterator[subprocess.Popen[bytes]]:
+    """A process that does so many runs at a time."""
+    options = ["--nthreads", str(runs), "--no-nanny", "--name", name, "--local-directory", name]
+    with background("worker", *HERE, *options, cwd=folder) as process:
+        yield process
+
+
+def wait_for_workers(address: str, count: int) -> None:
+    """Waits until so many processes have come to the scheduler."""
+    with distributed.Client(address, timeout=300, set_as_default=False) as client:
+        client.wait_for_workers(count, timeout=300)
+
+
+def test_one_of_two_workers_killed(address: str, tmp_path: Path) -> None:
+    arguments = [*QUICK, "--seeds", "24"]
+    with worker(tmp_path, "one") as one, worker(tmp_path, "two", runs=2):
+        wait_for_workers(address, 2)
+        process = start([*arguments, "--scheduler", address, "--out", "cluster"], tmp_path)
+        # WHEN a worker is killed while both have work
+        path = tmp_path / "cluster" / "runs.jsonl"
+        wait_for_records(path, 6, process)
+        one.kill()
+        done_before = len(records(path))
+        output, errors = process.communicate(timeout=600)
+    assert (process.returncode, errors) == (0, "")
+    assert 6 <= done_before < 24
+    # THEN every run is there once, as without a cluster
+    numbers = [json.loads(line.partition(b" ")[2])["number"] for line in records(path)]
+    assert sorted(numbers) == list(range(24))
+    here = run(*arguments, "--out", "here", cwd=tmp_path)
+    assert here.stdout.splitlines()[:-1] == output.splitlines()[:-1]
+    for name in ("sweep.parquet", "summary.csv", "distributions.svg"):
+        assert (tmp_path / "cluster" / name).read_bytes() == (tmp_path / "here" / name).read_bytes()
+
+
+def test_a_scheduler_without_workers(address: str, tmp_path: Path) -> None:
+    line = refused(*QUICK, "--scheduler", address, "--out", "out", cwd=tmp_path)
+    assert f"start one with `dask worker {address}`" in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_scheduler_is_lost(
+    scheduler: subprocess.Popen[bytes], address: str, tmp_path: Path
+) -> None:
+    arguments = [*QUICK, "--seeds", "200", "--out", "out"]
+    path = tmp_path / "out" / "runs.jsonl"
+    with worker(tmp_path, "one"):
+        wait_for_workers(address, 1)
+        process = start([*arguments, "--scheduler", address], tmp_path)
+        wait_for_records(path, 3, process)
+        scheduler.kill()
+        output, errors = process.communicate(timeout=300)
+    assert (process.returncode, output) == (2, "")
+    (line,) = errors.splitlines()
+    assert line == (
+        f"sigmahat: error: the scheduler at {address} was lost; "
+        "the same command goes on from what is done"
+    )
+    assert 3 <= len(records(path)) < 200
+
+
+def test_a_worker_with_other_fmus() -> None:
+    (first,) = read_plan(None, ("table1",), 1, ("RESIDUAL",)).runs()
+    with pytest.raises(WorkerError, match="install the same sigmahat on both"):
+        execute(first, "of other FMUs")
+    assert execute(first, fmu_digest(["table1"])).failure is None

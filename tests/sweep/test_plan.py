@@ -1,0 +1,159 @@
+"""The plan of a sweep, from a file and the command line."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sigmahat.fmi.instance import FmuError
+from sigmahat.sweep.plan import Plan, read_plan
+from sigmahat.sweep.values import Drawn, values
+
+PLAN = """\
+scenario = ["table1", "as-printed"]
+seeds = 2
+modality = "RESIDUAL"
+[parameters]
+plant.motor.D_theta = [0.9e-3, 1.1e-3]
+estimator.rls.kind = "Enhanced,Standard"
+RESIDUAL.motor.B = "normal(2.3e-5, 1e-6)"
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("0.9e-3,1.1e-3", (0.9e-3, 1.1e-3)),
+        ("4, 6", (4, 6)),
+        (3, (3,)),
+        ([1.5, 2], (1.5, 2)),
+        ("Enhanced", ("Enhanced",)),
+        ("true,false", (True, False)),
+        ("1:2:5", (1.0, 1.25, 1.5, 1.75, 2.0)),
+        ("uniform(1, 2)", Drawn("uniform", 1.0, 2.0)),
+        ("normal(-1e-3,5e-5)", Drawn("normal", -1e-3, 5e-5)),
+    ],
+)
+def test_values(text: object, expected: object) -> None:
+    assert values(text) == expected
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "1,,2", "1:2:1", "1:1:3", "1:2:x", "1:2:1000000000", "uniform(2,1)", "normal(1,0)",
+     "normal(1)", "uniform(a,b)", "gauss(1,2)", "1,1", [], [[1]], "nan:1:2", "uniform(1,inf)"],
+)  # fmt: skip
+def test_values_that_do_not_fit(text: object) -> None:
+    with pytest.raises(ValueError, match=r"expected|given twice"):
+        values(text)
+
+
+def test_runs_in_the_order_of_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(PLAN)
+    runs = list(read_plan(path).runs())
+    assert [run.number for run in runs] == list(range(16))
+    settings = [
+        (
+            r.scenario,
+            r.parameters["plant.motor.D_theta"],
+            r.parameters["estimator.rls.kind"],
+            r.seed,
+        )
+        for r in runs
+    ]
+    assert settings == [
+        (scenario, D, kind, seed)
+        for scenario in ("table1", "as-printed")
+        for D in (0.9e-3, 1.1e-3)
+        for kind in ("Enhanced", "Standard")
+        for seed in (1, 2)
+    ]
+    # What is drawn is the same for the same seed, whatever else differs.
+    drawn = {seed: {r.parameters["RESIDUAL.motor.B"] for r in runs if r.seed == seed}
+             for seed in (1, 2)}  # fmt: skip
+    assert [len(values) for values in drawn.values()] == [1, 1]
+    assert drawn[1] != drawn[2]
+
+
+def test_the_plan_of_the_documentation(tmp_path: Path) -> None:
+    page = Path(__file__).parents[2] / "docs" / "sweeps.md"
+    (text,) = re.findall(r"```toml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    (tmp_path / "plan.toml").write_text(text)
+    plan = read_plan(tmp_path / "plan.toml")
+    assert (len(plan), plan.modalities) == (100, ("RESIDUAL",))
+    assert plan.parameters == {
+        "estimator.motor.D_theta": tuple(np.linspace(0.9e-3, 1.1e-3, 5).tolist()),
+        "plant.link.M": Drawn("normal", 0.1, 0.005),
+    }
+
+
+def test_options_replace_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(PLAN)
+    settings = ["plant.motor.D_theta=1e-3", "plant.link.M=0.1,0.2"]
+    plan = read_plan(path, ("table1",), 3, ("RESIDUAL", "SENSOR"), settings)
+    assert plan.scenarios == ("table1",)
+    assert plan.modalities == ("RESIDUAL", "SENSOR")
+    assert len(plan) == len(list(plan.runs())) == 1 * 3 * 1 * 2 * 2
+
+
+@pytest.mark.parametrize(
+    ("drawn", "mean", "deviation"),
+    [(Drawn("normal", 3.0, 0.5), 3.0, 0.5), (Drawn("uniform", 1.0, 3.0), 2.0, 1 / np.sqrt(3))],
+)
+def test_what_is_drawn_is_distributed_as_said(drawn: Drawn, mean: float, deviation: float) -> None:
+    count = 2000
+    x = np.array([drawn.value("a", seed) for seed in range(1, count + 1)])
+    y = np.array([drawn.value("b", seed) for seed in range(1, count + 1)])
+    five = 5 / np.sqrt(count)  # standard errors
+    assert abs(x.mean() - mean) < five * deviation
+    assert abs(x.std() / deviation - 1) < five
+    assert abs(np.corrcoef(x, y)[0, 1]) < five
+    if drawn.kind == "uniform":
+        assert 1.0 <= x.min() < 1.01 < 2.99 < x.max() <= 3.0
+
+
+def test_a_sweep_is_told_from_another() -> None:
+    plans = [
+        Plan(("table1",), seeds, modalities, parameters)
+        for seeds in (1, 2)
+        for modalities in ((), ("RESIDUAL",))
+        for parameters in ({}, {"plant.link.M": (0.1,)}, {"plant.link.M": (0.2,)})
+    ]
+    assert len({plan.digest for plan in plans}) == len(plans)
+    assert Plan(("table1",), 1, (), {}).digest == plans[0].digest
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("sceanrio = 'table1'", "did you mean 'scenario'"),
+        ("scenario = 'tabel1'", "did you mean 'table1'"),
+        ("scenario = 3", "scenario: expected a list of names"),
+        ("seeds = 0", "seeds: expected"),
+        ("seeds = [1, 2]", "seeds: expected"),
+        ("modality = ['RESIDAUL']", "did you mean 'RESIDUAL'"),
+        ("scenario = ['table1', 'table1']", "once"),
+        ("[parameters]\nplant.motor.D_teta = 1", "did you mean 'motor.D_theta'"),
+        ("[parameters]\nplnt.motor.D_theta = 1", "did you mean 'plant'"),
+        ("[parameters]\nplant.tau = 1", "unknown parameter of AwasPlant 'tau'"),
+        ("[parameters]\nestimator.rls.kind = 'Standrad'", "did you mean 'Standard'"),
+        ("[parameters]\nestimator.rls.n = 2.5", "expected Integer"),
+        ("[parameters]\nestimator.motor.B = -1", "motor.B"),
+        ("[parameters]\nplant.noise.seed = 3", "--seeds"),
+        ("[parameters]\nplant.link.M = 'normal(1)'", "plant.link.M: expected"),
+        ("[parameters]\nplant.link.M = '1:2:900000'\nplant.link.D_q = '1:2:9'", "at most"),
+        ("parameters = 3", "expected a table"),
+        ("= 3", "not readable as TOML"),
+    ],
+)
+def test_a_plan_that_does_not_fit(content: str, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(content)
+    with pytest.raises((ValueError, FmuError)) as error:
+        read_plan(path)
+    assert words in str(error.value)
