@@ -1,7 +1,8 @@
-"""The estimator of the paper in numpy, as PythonFMU exports it: (8)-(11), (21)-(27) as printed.
+"""The estimator of the paper in numpy, exported by PythonFMU: (8)-(11), (21)-(27) as printed.
 
-What one gets by writing the estimator in Python in an afternoon. PythonFMU copies this file alone
-into the FMU, so it stands on its own. Start values are those of StiffnessEstimator.fmu.
+A direct implementation, as one would write it in an afternoon. PythonFMU copies only this file
+into the FMU, so it imports nothing of the project. Start values are those of
+StiffnessEstimator.fmu.
 """
 
 import math
@@ -23,7 +24,7 @@ powers = np.repeat(np.arange(m), n)
 
 
 class Paper2011(Fmi2Slave):
-    """Inputs and outputs are named as those of StiffnessEstimator.fmu."""
+    """Inputs and outputs have the names of those of StiffnessEstimator.fmu."""
 
     def __init__(self, **kwargs):
         super().__init__(**kwargs)

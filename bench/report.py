@@ -1,4 +1,4 @@
-"""Table and figure of the times."""
+"""Table and figure of the measured times."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 Times = Mapping[str, NDArray[np.float64]]
-"""Of one piece of work in each round [ns], by subject; NaN where it did not take part."""
+"""By name of the subject: time for one piece of work in each round [ns]. NaN in a round in which
+the subject did not run."""
 
 SIZES = (3, 6, 18, 40)
 MAKES = ("sigmahat", "eigen", "dlib", "liquid", "numpy", "padasip", "covariance")
@@ -24,10 +25,10 @@ _BEGIN, _END = "<!-- bench -->", "<!-- /bench -->"
 
 @dataclass(frozen=True)
 class Footprint:
-    """What a tick needs besides time."""
+    """Memory and number of instructions of a tick."""
 
     instructions: float | None
-    """None without valgrind."""
+    """None if valgrind is not installed."""
     stack: int
     """[bytes]"""
     code: int
@@ -37,22 +38,24 @@ class Footprint:
 
 
 def update_flops(n: int) -> int:
-    """Multiplications and additions of a UD update: 6 for an entry of U, 16 for a parameter."""
+    """Multiplications and additions of a UD update: 6 per entry of U, 16 per parameter."""
     return 6 * n * (n - 1) // 2 + 16 * n
 
 
 def ratio(times: Times, one: str, other: str) -> float:
-    """Median over the rounds of the ratio of two neighbours in time."""
+    """Median over the rounds of the ratio of two times of the same round."""
     return float(np.nanmedian(times[one] / times[other]))
 
 
 def difference(times: Times, one: str, other: str) -> float:
-    """Median over the rounds of the difference [ns]."""
+    """Median over the rounds of the difference of two times of the same round [ns]."""
     return float(np.nanmedian(times[one] - times[other]))
 
 
-def _asked(times: Times, footprints: Mapping[str, Footprint]) -> list[tuple[str, str, str, bool]]:
-    """Figure, asked, measured, met."""
+def _requirements(
+    times: Times, footprints: Mapping[str, Footprint]
+) -> list[tuple[str, str, str, bool]]:
+    """Rows of the table: figure, required value, measured value, whether it is met."""
     rows: list[tuple[str, str, str, bool]] = []
 
     def at_most(what: str, value: float, limit: float, unit: str) -> None:
@@ -64,32 +67,35 @@ def _asked(times: Times, footprints: Mapping[str, Footprint]) -> list[tuple[str,
     at_most("least squares, 18 parameters, against dlib", ratio(times, own, "dlib 18"), 0.5, "x")
     at_most("least squares, 18 parameters, against Eigen", ratio(times, own, "eigen 18"), 1.0, "x")
     at_most(
-        "tick Paper2011 against the covariance update alone",
+        "tick of Paper2011, relative to the covariance update alone",
         ratio(times, tick, "covariance 18"),
         1.5,
         "x",
     )
     if "tick MatchedFilter" in times:
         at_most(
-            "tick MatchedFilter, 3 motor data, against Paper2011",
+            "tick of MatchedFilter with 3 motor data, relative to Paper2011",
             ratio(times, "tick MatchedFilter", tick),
             2.0,
             "x",
         )
     at_most(
-        "FMU through the C interface, over the tick", difference(times, "FMU, C", tick), 60, "ns"
+        "FMU through the C interface, time in addition to the tick",
+        difference(times, "FMU, C", tick),
+        60,
+        "ns",
     )
     python = ratio(times, "PythonFMU, C", "FMU, C")
     rows.append(
         (
-            "FMU faster than PythonFMU's, both through the C interface",
+            "FMU, how much faster than that of PythonFMU, both through the C interface",
             ">= 50 x",
             f"{python:.0f} x",
             python >= 50,
         )
     )
     growth = np.log(ratio(times, "sigmahat 40", own)) / np.log(40 / 18)
-    at_most("growth from 18 to 40 parameters, exponent", float(growth), 2.0, "")
+    at_most("exponent of the growth of time from 18 to 40 parameters", float(growth), 2.0, "")
     for name in ("held", "linear"):
         median = float(np.nanmedian(times[f"plant, {name}"])) / 1e3
         at_most(f"AwAS plant, step of 1 ms, inputs {name}", median, 3, "us")
@@ -109,11 +115,11 @@ def _duration(ns: float) -> str:
 
 
 def table(times: Times, footprints: Mapping[str, Footprint]) -> str:
-    """All figures as Markdown."""
-    lines = [f"Measured on {_processor()}.", "", "| figure | asked | measured | met |"]
+    """All tables as Markdown."""
+    lines = [f"Measured on {_processor()}.", "", "| figure | required | measured | met |"]
     lines += ["|---|---|---|---|"]
-    for what, asked, measured, met in _asked(times, footprints):
-        lines.append(f"| {what} | {asked} | {measured} | {'yes' if met else 'no'} |")
+    for what, required, measured, met in _requirements(times, footprints):
+        lines.append(f"| {what} | {required} | {measured} | {'yes' if met else 'no'} |")
 
     lines += ["", "Least squares, one sample, median (min) [ns]:", ""]
     lines += ["| | " + " | ".join(f"{n} parameters" for n in SIZES) + " |", "|---" * 5 + "|"]
@@ -126,7 +132,7 @@ def table(times: Times, footprints: Mapping[str, Footprint]) -> str:
 
     lines += [
         "",
-        "| one tick, step or run | median | min | against the bare tick |",
+        "| one tick, step or run | median | min | relative to the bare tick |",
         "|---" * 4 + "|",
     ]
     for name, of_name in times.items():
@@ -168,7 +174,7 @@ def _read(path: Path) -> str:
 
 
 def figure(times: Times) -> Figure:
-    """Growth with the number of parameters, and what an FMU adds to a tick."""
+    """Time over the number of parameters, and times of ticks and steps with and without an FMU."""
     drawing = Figure(figsize=(10, 4.8), layout="constrained")
     growth, bars = drawing.subplots(1, 2)
     for make in MAKES:
@@ -200,12 +206,12 @@ def figure(times: Times) -> Figure:
 
 
 def page(text: str) -> str:
-    """The table between the marks of a page."""
+    """The tables between the two marks that a page has for them."""
     return f"{_BEGIN}\n\n{text}\n{_END}"
 
 
 def update(path: Path, block: str) -> None:
-    """Replaces what stands between the marks of a page. Raises ValueError if it has none."""
+    """Replaces the text between the two marks of a page. Raises ValueError if it has none."""
     before, begin, rest = path.read_text(encoding="utf-8").partition(_BEGIN)
     _, end, after = rest.partition(_END)
     if not begin or not end:

@@ -1,4 +1,4 @@
-"""Measures everything in one run and writes a table and a figure: python bench/run.py --help."""
+"""Measures all times in one run and writes tables and a figure: python bench/run.py --help."""
 
 from __future__ import annotations
 
@@ -20,14 +20,17 @@ SAMPLES = 10000  # one period of the torques
 
 
 def verify(library: Library, fmus: Fmus) -> None:
-    """Whether what is compared computes the same. Raises AssertionError with what does not."""
+    """Checks that all subjects compute the same results.
+
+    Raises AssertionError, which names the subject that does not.
+    """
     for size in subjects.SIZES:
         data = subjects.regression(size, 2000)
         information = np.eye(size) / subjects.P_0 + data.F.T @ data.F
         closed_form = np.linalg.solve(information, data.F.T @ data.y)
         for make, rls in subjects.recursions(library, size).items():
             rls.run(data)
-            tolerance = 0.05 if make == "liquid" else 1e-9  # float, and another P_0
+            tolerance = 0.05 if make == "liquid" else 1e-9  # single precision, other P_0
             np.testing.assert_allclose(rls.eta, closed_form, 0, tolerance, err_msg=make)
 
     z = subjects.measurements(500)
@@ -44,12 +47,15 @@ def verify(library: Library, fmus: Fmus) -> None:
 
 
 def measure(every: list[Subject], rounds: int) -> Times:
-    """Time of one piece of work of each subject in each round [ns], NaN where it had none."""
+    """Time for one piece of work of each subject in each round [ns].
+
+    NaN in a round in which the subject did not run.
+    """
     times = {subject.name: np.full(rounds, np.nan) for subject in every}
     for subject in every:
-        subject.batch()  # caches and predictors warm, files loaded
+        subject.batch()  # warms caches and branch predictors, loads files
     for k in range(rounds):
-        # Another first one in every round: nobody is always behind the same neighbour.
+        # Each round begins with another subject, so the order is not always the same.
         for subject in every[k % len(every) :] + every[: k % len(every)]:
             if k % subject.every == 0:
                 begin = time.perf_counter_ns()
@@ -59,7 +65,7 @@ def measure(every: list[Subject], rounds: int) -> Times:
 
 
 def all_subjects(library: Library, fmus: Fmus, samples: int) -> list[Subject]:
-    """Everything that is timed."""
+    """All subjects whose time is measured."""
     z: Array = subjects.measurements(samples)
     return [
         subjects.peak(library, samples),
@@ -71,7 +77,7 @@ def all_subjects(library: Library, fmus: Fmus, samples: int) -> list[Subject]:
 
 
 def footprint(build: Path, method: str, library: Library) -> Footprint:
-    """Instructions, stack and memory of one tick."""
+    """Instructions, stack and memory of one tick of a method."""
     program = str(build / "sigmahat_bench_footprint")
 
     def output(*command: str) -> str:
@@ -101,14 +107,14 @@ def footprint(build: Path, method: str, library: Library) -> Footprint:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--build", type=Path, required=True, help="where bench was built")
-    parser.add_argument("--out", type=Path, help="folder for table and figure")
+    parser.add_argument("--build", type=Path, required=True, help="folder in which bench was built")
+    parser.add_argument("--out", type=Path, help="folder for the tables and the figure")
     parser.add_argument(
         "--page",
         type=Path,
-        help="page for the table, between its marks; the figure goes to images/ beside it",
+        help="Markdown page whose tables are replaced; the figure goes to its folder images/",
     )
-    parser.add_argument("--check", action="store_true", help="only see whether everything works")
+    parser.add_argument("--check", action="store_true", help="only check that every subject works")
     arguments = parser.parse_args()
     library = Library(arguments.build)
     with tempfile.TemporaryDirectory(prefix="sigmahat-bench-") as name:

@@ -1,4 +1,4 @@
-"""What is measured: each subject does the same work again and again, on the same inputs."""
+"""The subjects whose time is measured. Each repeats the same work on the same inputs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 HERE = Path(__file__).parent
 SIZES = (3, 6, 18, 40)
-P_0 = 1e3  # BENCH_P_0
+P_0 = 1e3  # as BENCH_P_0 in least_squares.h
 METHODS = ("Paper2011", "MatchedFilter")
 MODALITIES = ("RESIDUAL", "SENSOR", "MODEL")
 MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
@@ -33,38 +33,38 @@ OUTPUTS = ("sigma", "tau_e", "theta_dot")
 
 @dataclass(frozen=True)
 class Subject:
-    """Something to be timed."""
+    """A piece of work whose time is measured."""
 
     name: str
     batch: Callable[[], object]
-    """Does the work `count` times."""
+    """Does the piece of work `count` times."""
     count: int
     every: int = 1
-    """Takes part in every so many rounds."""
+    """It runs only in every round whose number is a multiple of this."""
 
 
 class Library:
-    """The subjects in C and C++."""
+    """The shared library with the subjects in C and C++."""
 
     def __init__(self, build: Path) -> None:
         self._library: Any = ctypes.CDLL(str(build / "libsigmahat_bench.so"))
 
     def start(self, maker: str, *arguments: Any) -> int:
-        """What <maker>_start makes. Raises RuntimeError if it refuses."""
+        """Address of the object that <maker>_start makes. Raises RuntimeError if it is NULL."""
         made: int | None = self.function(f"{maker}_start", ctypes.c_void_p)(*arguments)
         if not made:
             raise RuntimeError(f"{maker}_start{arguments} refused")
         return made
 
     def function(self, name: str, result: Any = None) -> Any:
-        """A function of the library; pointers are passed as ctypes objects."""
+        """A function of the library. Pointers are passed to it as ctypes objects."""
         function = self._library[name]
         function.restype = result
         return function
 
 
 def doubles(array: Array) -> Any:
-    """A contiguous array as a pointer, which must not outlive it."""
+    """Pointer to a contiguous array. It is valid only as long as the array exists."""
     assert array.flags.c_contiguous and array.dtype == np.float64
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
@@ -74,14 +74,14 @@ def doubles(array: Array) -> Any:
 
 @dataclass(frozen=True)
 class Regression:
-    """Samples of a delay line: F(k) = (x(k), x(k-1), ...)."""
+    """Samples of a regression whose regressor is a delay line: F(k) = (x(k), x(k-1), ...)."""
 
     F: Array
     y: Array
 
 
 def regression(size: int, samples: int) -> Regression:
-    """White noise through a filter with `size` taps, with some noise."""
+    """Identification of a filter with `size` taps from white noise, with noise on the output."""
     random = np.random.default_rng(size)
     x = random.standard_normal(samples + size - 1)
     F = np.lib.stride_tricks.sliding_window_view(x, size)[:, ::-1]
@@ -90,13 +90,13 @@ def regression(size: int, samples: int) -> Regression:
 
 
 class Numpy:
-    """Recursive least squares in numpy."""
+    """Recursive least squares as written by hand in numpy."""
 
     def __init__(self, size: int) -> None:
         self.eta, self.P = np.zeros(size), P_0 * np.eye(size)
 
     def run(self, data: Regression) -> None:
-        """Takes all samples."""
+        """Processes all samples."""
         for F, y in zip(data.F, data.y, strict=True):
             PF = self.P @ F
             K = PF / (1 + F @ PF)
@@ -105,7 +105,7 @@ class Numpy:
 
 
 class Padasip:
-    """FilterRLS of padasip, without forgetting."""
+    """FilterRLS of padasip without forgetting."""
 
     def __init__(self, size: int) -> None:
         self._filter = padasip.filters.FilterRLS(size, mu=1.0, eps=1 / P_0, w="zeros")
@@ -117,13 +117,13 @@ class Padasip:
         return weights
 
     def run(self, data: Regression) -> None:
-        """Takes all samples."""
+        """Processes all samples."""
         for F, y in zip(data.F, data.y, strict=True):
             self._filter.adapt(y, F)
 
 
 class Compiled:
-    """A recursion of the library."""
+    """A recursion of the shared library."""
 
     def __init__(self, library: Library, make: str, size: int) -> None:
         self._library, self._make, self._size = library, make, size
@@ -138,12 +138,12 @@ class Compiled:
         return eta
 
     def run(self, data: Regression) -> None:
-        """Takes all samples."""
+        """Processes all samples."""
         self._run(self._state, doubles(data.F), doubles(data.y), len(data.y))
 
 
 def recursions(library: Library, size: int) -> dict[str, Any]:
-    """A new recursion of every make that has an estimate."""
+    """A new recursion of every make that computes an estimate, by name."""
     makes = {
         make: Compiled(library, make, size) for make in ("sigmahat", "eigen", "dlib", "liquid")
     }
@@ -151,7 +151,7 @@ def recursions(library: Library, size: int) -> dict[str, Any]:
 
 
 def least_squares(library: Library, size: int, samples: int) -> Iterator[Subject]:
-    """Every recursion and the yardstick."""
+    """All recursions, and the covariance update alone as the reference."""
     whole, short = regression(size, samples), regression(size, max(samples // 50, 1))
     every = recursions(library, size) | {"covariance": Compiled(library, "covariance", size)}
     for make, rls in every.items():
@@ -160,7 +160,7 @@ def least_squares(library: Library, size: int, samples: int) -> Iterator[Subject
 
 
 def peak(library: Library, times: int) -> Subject:
-    """Multiplications and additions, without memory."""
+    """Multiplications and additions in registers, without access to memory."""
     function = library.function("peak_run", ctypes.c_double)
     return Subject("peak", lambda: function(times), 2 * 24 * times)
 
@@ -169,7 +169,7 @@ def peak(library: Library, times: int) -> Subject:
 
 
 def measurements(samples: int) -> Array:
-    """What the estimator measures at the begin of scenario table1 [size: samples x 5]."""
+    """Measurements of the estimator at the begin of scenario table1 [size: samples x 5]."""
     plant = SCENARIOS["table1"].plant
     record = [
         *("theta_measured", "q_measured", "theta_c_measured", "tau_measured", "tau_e_measured")
@@ -179,7 +179,7 @@ def measurements(samples: int) -> Array:
 
 
 class Ticks:
-    """The estimator in C without an FMU."""
+    """The estimator of the C library, called without an FMU."""
 
     def __init__(self, library: Library, method: str) -> None:
         self._state = ctypes.c_void_p(library.start("tick", method.encode()))
@@ -187,12 +187,12 @@ class Ticks:
         self.outputs = np.zeros(len(OUTPUTS))
 
     def run(self, z: Array) -> None:
-        """Takes all samples."""
+        """Processes all samples."""
         self._run(self._state, doubles(z), len(z), doubles(self.outputs))
 
 
 class Master:
-    """An FMU under the master in C."""
+    """An FMU, run by the master in C."""
 
     def __init__(
         self,
@@ -223,14 +223,14 @@ class Master:
         self.outputs = np.zeros(len(outputs))
 
     def run(self, u: Array) -> None:
-        """One step for each row. Raises RuntimeError if the FMU refuses one."""
+        """Makes one step for each row of inputs. Raises RuntimeError if the FMU refuses one."""
         h = ctypes.c_double(T)
         if self._run(self._state, doubles(u), len(u), h, doubles(self.outputs)) != 0:
             raise RuntimeError("the FMU refused a call")
 
 
 class Fmpy:
-    """An FMU under FMPy, with the calls of its documentation."""
+    """An FMU, run by FMPy with the calls that its documentation shows."""
 
     def __init__(self, folder: Path) -> None:
         description = fmpy.read_model_description(str(folder))
@@ -251,7 +251,7 @@ class Fmpy:
         self._fmu.exitInitializationMode()
 
     def run(self, z: list[list[float]]) -> None:
-        """One step for each row."""
+        """Makes one step for each row of inputs."""
         fmu = self._fmu
         for row in z:
             fmu.setReal(self._inputs, row)
@@ -262,16 +262,16 @@ class Fmpy:
 
 @dataclass(frozen=True)
 class Fmus:
-    """Folders of the FMUs. They are loaded from there and must stay as they are."""
+    """Folders of the unpacked FMUs. They must not change while the FMUs are loaded."""
 
     estimator: Path
     plant: Path
     pythonfmu: Path
-    """The estimator in Python."""
+    """The estimator in Python, `paper2011_slave.py`."""
 
 
 def unpack(folder: Path) -> Fmus:
-    """Unpacks the FMUs into a folder, the one of PythonFMU after making it."""
+    """Builds the FMU of PythonFMU, and unpacks all FMUs into a folder."""
     script = HERE / "paper2011_slave.py"
     subprocess.run(
         [sys.executable, "-m", "pythonfmu", "build", "-f", script, "-d", folder],
@@ -287,7 +287,7 @@ def unpack(folder: Path) -> Fmus:
 
 
 def ticks(library: Library, fmus: Fmus, z: Array) -> Iterator[Subject]:
-    """The tick by itself, and in FMUs."""
+    """The tick of the C library, and the same in FMUs."""
     few = np.ascontiguousarray(z[: max(len(z) // 100, 1)])
     rows = few.tolist()
     for method in available_methods(library):
@@ -301,7 +301,7 @@ def ticks(library: Library, fmus: Fmus, z: Array) -> Iterator[Subject]:
 
 
 def available_methods(library: Library) -> list[str]:
-    """The methods that the estimator has."""
+    """The methods of METHODS that the built library supports."""
     found = []
     for method in METHODS:
         try:
@@ -316,7 +316,7 @@ def available_methods(library: Library) -> list[str]:
 
 
 def plant(library: Library, fmus: Fmus, samples: int) -> Iterator[Subject]:
-    """Steps of 1 ms of the AwAS under the torques of table1, held and linear over the step."""
+    """Steps of 1 ms of the AwAS with the torques of table1, held or linear over the step."""
     inputs = {"tau": Sine(0.3, 0.1), "tau_c": Sine(8.0, 0.1)}
     outputs = ("q_measured", "theta_measured", "theta_c_measured", "tau_measured", "tau_e_measured")
     t = T * np.arange(samples, dtype=np.float64)
@@ -327,7 +327,7 @@ def plant(library: Library, fmus: Fmus, samples: int) -> Iterator[Subject]:
 
 
 def table1(steps: int) -> Iterator[Subject]:
-    """The scenario with one estimator, as `sigmahat` runs it; without its process to start."""
+    """The scenario with one estimator, as `sigmahat` runs it, without the start of a process."""
     scenario = SCENARIOS["table1"]
     for modality in MODALITIES:
         estimators = {modality: scenario.estimators[modality]}
