@@ -1,6 +1,6 @@
-# Target coverage: runs the tests of the C code, then tells how many of its branches they took.
+# Target coverage: runs the tests of the C code, then prints the share of its branches that they ran.
 file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py)
-list(FILTER tests EXCLUDE REGEX "stress") # compiles programs of its own
+list(FILTER tests EXCLUDE REGEX "stress") # compiles programs of its own, without coverage
 list(APPEND tests tests/fmi/test_antagonistic.py tests/plants/test_noise.py tests/plants/test_awas.py
      tests/plants/test_radau.py)
 add_custom_target(

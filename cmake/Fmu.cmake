@@ -2,8 +2,8 @@
 #                  [LIBRARY target])
 #
 # Adds a target NAME that builds NAME.fmu from modelDescription/NAME.xml, the FMI shell, the
-# given sources and those of the library. It holds the binary of the host and the sources.
-# STRUCT is the C type that holds the variables, STORAGE says how: see
+# given sources and those of the library. The FMU contains the binary of the host and the sources.
+# STRUCT is the C type that contains the variables, STORAGE how they are stored in it: see
 # harness/sigmahat/export/description.py.
 function(sigmahat_add_fmu name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "STRUCT;STORAGE;LIBRARY" "SOURCES")
@@ -28,7 +28,7 @@ function(sigmahat_add_fmu name)
     DEPENDS ${shared}
     COMMENT "Model description of ${name}" VERBATIM)
 
-  # What people see of it: documentation and icons.
+  # The files for people: documentation and icons.
   file(GLOB pages ${source_dir}/modelDescription/documentation/*.html)
   set(shown ${dir}/shown)
   set(shown_files ${shown}/model.png ${shown}/documentation/index.html
@@ -67,13 +67,13 @@ function(sigmahat_add_fmu name)
   set_property(GLOBAL APPEND PROPERTY SIGMAHAT_FMUS ${fmu})
 endfunction()
 
-# sigmahat_add_estimator(NAME STRUCT type STORAGE struct|sides): an FMU around the library.
+# sigmahat_add_estimator(NAME STRUCT type STORAGE struct|sides): an FMU of the C library.
 function(sigmahat_add_estimator name)
   sigmahat_add_fmu(${name} ${ARGN} SOURCES fmu_src/${name}.c fmu_src/estimator_fmu.c
                    fmu_src/sample_clock.c LIBRARY sigmahat_c)
 endfunction()
 
-# sigmahat_add_plant(NAME): the FMU of the plant written in harness/sigmahat/plants.
+# sigmahat_add_plant(NAME): the FMU of a plant whose equations are in harness/sigmahat/plants.
 function(sigmahat_add_plant name)
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
   file(GLOB equations CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/harness/sigmahat/plants/*.py

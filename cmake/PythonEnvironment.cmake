@@ -1,11 +1,12 @@
-# A Python environment of our own inside the build tree, from the pinned requirements; in a build
-# of the Python package (SKBUILD) that of the build, which has what pyproject.toml requires.
+# Sets up a Python environment in the build tree, with the pinned requirements. A build of the
+# Python package (SKBUILD) uses the environment of that build instead, which has the requirements
+# of pyproject.toml.
 #
-# Sets SIGMAHAT_PYTHON (interpreter), SIGMAHAT_RUN (command that runs one of our modules),
-# SIGMAHAT_FMU_FOLDER (where the FMUs go), and for an environment of our own SIGMAHAT_VENV
-# (folder) and SIGMAHAT_NINJA.
+# Sets SIGMAHAT_PYTHON (interpreter), SIGMAHAT_RUN (command that runs one of our modules) and
+# SIGMAHAT_FMU_FOLDER (folder for the FMUs). For an environment in the build tree it also sets
+# SIGMAHAT_VENV (its folder) and SIGMAHAT_NINJA.
 
-# The modules of this source tree, whether they are installed or not.
+# Uses the modules of this source tree, even if other ones are installed.
 set(SIGMAHAT_RUN ${CMAKE_COMMAND} -E env --modify
     PYTHONPATH=path_list_prepend:${CMAKE_CURRENT_SOURCE_DIR}/harness)
 if(SKBUILD)

@@ -1,6 +1,6 @@
-# Target release: every FMU and the system again in release/, with the binaries of all platforms.
+# Target release: writes every FMU and the system to release/, with the binaries of all platforms.
 #
-# The cross compiler is a large download, so it is installed only here.
+# The cross compiler is a large download, so it is installed only for this target.
 set(requirements ${PROJECT_SOURCE_DIR}/requirements-release.txt)
 set(installed ${SIGMAHAT_VENV}/sigmahat-requirements-release)
 add_custom_command(

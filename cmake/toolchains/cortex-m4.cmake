@@ -1,4 +1,4 @@
-# Cortex-M4F: floating-point unit for float; double is computed by the compiler's library.
+# Cortex-M4F: it has a floating-point unit for float only; double uses functions of the compiler.
 set(cpu cortex-m4)
 set(fpu fpv4-sp-d16)
 set(board mps2-an386)
