@@ -1,4 +1,4 @@
-"""The library on controllers, in double and in single precision, under QEMU."""
+"""The library on controllers in QEMU, in double and in single precision."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ from gate import missing
 from reference_plant import table1_recording
 
 PAPER, MATCHED = "abcdef", "ghi"
-"""Configurations of replay.c by their method."""
+"""Configurations of replay.c, by method."""
 ROUNDING = {"double": 1e-10, "float": 1e-5}
-"""Of the largest value: exp and sin of two C libraries may differ in their last digit."""
-ASKED = {"double": 16 * 1024, "float": 8 * 1024}
-"""Largest memory of an instance [bytes]."""
+"""Tolerance relative to the largest value: exp and sin of two C libraries may differ in their last
+digit."""
+MEMORY = {"double": 16 * 1024, "float": 8 * 1024}
+"""Largest permitted memory of an instance [bytes]."""
 
 each_target = pytest.mark.parametrize("target", TARGETS.values(), ids=TARGETS)
 each_cortex = pytest.mark.parametrize("name", ["Cortex-M4F", "Cortex-M7"])
@@ -30,7 +31,7 @@ each_real = pytest.mark.parametrize("real", ["double", "float"])
 
 @pytest.fixture(scope="session")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where programs are built."""
+    """Folder in which the programs are built."""
     return tmp_path_factory.mktemp("controllers")
 
 
@@ -41,7 +42,7 @@ def ninja(build: Path) -> Path:
 
 
 def measurements(ticks: int, *, damaged: bool = False) -> NDArray[np.float64]:
-    """The first samples of table1; if damaged, some are lost and one is too large."""
+    """The first samples of table1. If damaged, some samples are lost and one is too large."""
     z: NDArray[np.float64] = table1_recording().measurements()[:ticks].copy()
     if damaged:
         z[ticks // 2 : ticks // 2 + 20, 1] = np.nan
@@ -74,7 +75,9 @@ def test_a_processor_computes_what_the_host_computes(
         np.testing.assert_allclose(there[name], expected, rtol=0, atol=ROUNDING[real] * largest)
 
 
-@pytest.mark.parametrize("configuration", "abcdeghi")  # f: noise, also in double
+@pytest.mark.parametrize(
+    "configuration", "abcdeghi"
+)  # not f: noise dominates it, also in double
 def test_single_precision_gives_the_stiffness_of_table1(
     configuration: str, folder: Path, ninja: Path, tmp_path: Path
 ) -> None:
@@ -104,7 +107,7 @@ def test_a_microcontroller_in_single_precision_gives_the_stiffness_of_table1(
 
 @each_cortex
 @each_real
-def test_the_example_finds_its_stiffness_at_1_khz(
+def test_the_example_estimates_its_stiffness_at_1_khz(
     name: str, real: str, folder: Path, ninja: Path
 ) -> None:
     tree = cross_build("examples/controller", TARGETS[name], real, ninja, folder)
@@ -117,19 +120,23 @@ def test_the_example_finds_its_stiffness_at_1_khz(
 
 @each_cortex
 @each_real
-def test_memory_and_stack(name: str, real: str, folder: Path, ninja: Path) -> None:
+def test_memory_and_stack_are_within_their_limits(
+    name: str, real: str, folder: Path, ninja: Path
+) -> None:
     tree = cross_build("examples/controller", TARGETS[name], real, ninja, folder)
     text = run("cmake", "--build", str(tree), "--target", "cost")
     stacks = [int(value) for value in re.findall(r"stack (\d+) bytes", text)]
     (memory,) = re.findall(r"RAM: (\d+) bytes", text)
     assert len(stacks) == 2
     assert max(stacks) <= 1024, text
-    assert int(memory) <= ASKED[real], text
+    assert int(memory) <= MEMORY[real], text
 
 
 @each_real
-def test_it_needs_nothing_but_memory_and_math(real: str, folder: Path, ninja: Path) -> None:
-    """And in single precision nothing of double: no helper of the compiler for it is called."""
+def test_the_library_needs_only_memory_and_math_functions(
+    real: str, folder: Path, ninja: Path
+) -> None:
+    """In single precision it also calls no function of the compiler for double."""
     tree = cross_build("tests/replay", TARGETS["Cortex-M4F"], real, ninja, folder)
     (library,) = tree.rglob("libsigmahat.a")
     needed = set(re.findall(r" U (\w+)", run("arm-none-eabi-nm", str(library))))
@@ -141,14 +148,14 @@ def test_it_needs_nothing_but_memory_and_math(real: str, folder: Path, ninja: Pa
 
 
 @each_real
-def test_it_has_no_globals(real: str, folder: Path, ninja: Path) -> None:
+def test_the_library_has_no_globals(real: str, folder: Path, ninja: Path) -> None:
     tree = cross_build("tests/replay", TARGETS["Cortex-M4F"], real, ninja, folder)
     (library,) = tree.rglob("libsigmahat.a")
     assert not re.findall(r" [DdBbCSs] \w+", run("arm-none-eabi-nm", str(library)))
 
 
-def test_the_commands_of_the_page(build: Path, tmp_path: Path) -> None:
-    """docs/controller.md, in a folder of their own, with the build tool of the environment."""
+def test_the_commands_of_the_page_work(build: Path, tmp_path: Path) -> None:
+    """Runs those of docs/controller.md in a new folder, with the build tool of the environment."""
     for tool in TARGETS["Cortex-M4F"].tools:
         if shutil.which(tool) is None:
             missing(tool, TARGETS["Cortex-M4F"].packages)

@@ -1,4 +1,4 @@
-"""Runs of many ticks beside the same in higher precision; the long ones are in endurance.py."""
+"""Runs of many ticks, compared with the same in higher precision. Longer ones: endurance.py."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from c_programs import compiler_with
 from endurance import BOUND, Case
 from gate import missing
 
-INPUT_CYCLE = 10**5  # ticks; all phases of the input
+INPUT_CYCLE = 10**5  # ticks; they contain all phases of the input
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def extended(folder: Path) -> Path:
 @pytest.mark.parametrize(
     "method,n,m,torque", [(1, 1, 1, 1e6), (1, 6, 3, 1e6), (2, 1, 1, 1e3), (2, 3, 3, 1e3)]
 )
-def test_a_million_ticks_are_those_of_long_double(
+def test_a_million_ticks_agree_with_those_in_long_double(
     folder: Path, program: Path, extended: Path, method: int, n: int, m: int, torque: float
 ) -> None:
     case = Case(method, n, m, torque, 10**6, 10**6)
@@ -47,7 +47,9 @@ def test_a_million_ticks_are_those_of_long_double(
 
 
 @pytest.mark.parametrize("method", endurance.METHODS)
-def test_long_double_has_digits_to_spare(folder: Path, extended: Path, method: int) -> None:
+def test_long_double_is_much_more_precise_than_the_bound(
+    folder: Path, extended: Path, method: int
+) -> None:
     quad = endurance.compile_program(folder, "quad")
     case = Case(method, 2, 1, 1e3, INPUT_CYCLE, INPUT_CYCLE)
     largest, output = endurance.compare(case, extended, quad, folder)
@@ -56,7 +58,7 @@ def test_long_double_has_digits_to_spare(folder: Path, extended: Path, method: i
 
 @pytest.mark.parametrize("n,m", [(1, 1), (8, 5)])
 @pytest.mark.parametrize("method", endurance.METHODS)
-def test_no_undefined_behaviour(folder: Path, method: int, n: int, m: int) -> None:
+def test_sanitizers_find_no_undefined_behaviour(folder: Path, method: int, n: int, m: int) -> None:
     flags = ("-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all")
     compiler = compiler_with(flags, folder)
     program = endurance.compile_program(folder, "double", compiler, flags)
@@ -66,7 +68,7 @@ def test_no_undefined_behaviour(folder: Path, method: int, n: int, m: int) -> No
     assert checkpoints[-1][0] == INPUT_CYCLE
 
 
-def test_a_difference_is_seen() -> None:
+def test_the_comparison_detects_a_difference() -> None:
     first = [np.longdouble(number) for number in (10, 1, 2, 3, 4, 5, 6, 7, 8)]
     second = [np.longdouble(13), *first[1:]]
     other = [*second[:3], second[3] * (1 + 1e-6), *second[4:]]

@@ -73,7 +73,7 @@ def test_a_motor_at_rest_has_no_velocity(c: Library, kind: int) -> None:
     assert np.all(track == [18.0, 0.0])
 
 
-def test_rest_ends_at_zero_and_not_among_denormal_numbers(c: Library) -> None:
+def test_at_rest_the_velocity_becomes_zero_and_never_denormal(c: Library) -> None:
     z = np.concatenate([0.1 * np.arange(100), np.full(5000, 9.9)])
     track = run(c, z)
     assert track[-1].tolist() == [9.9, 0.0]
@@ -84,8 +84,8 @@ def test_rest_ends_at_zero_and_not_among_denormal_numbers(c: Library) -> None:
 @pytest.mark.parametrize("kind", [1, 2, 3])
 @pytest.mark.parametrize("slope", [-4.0, 0.05, 12.0])
 def test_a_ramp_is_followed_without_error(c: Library, kind: int, slope: float) -> None:
-    # GIVEN constant velocity, which (9) models exactly WHEN the filter has settled
-    # THEN position and velocity have no error left
+    # GIVEN a constant velocity, which (9) models exactly WHEN the filter has settled
+    # THEN the errors of position and velocity are zero
     z = 3.0 + slope * T * np.arange(2000, dtype=np.float64)
     track = run(c, z, kind=kind)
     assert track[-1, 0] == pytest.approx(z[-1], rel=1e-12)
@@ -94,8 +94,8 @@ def test_a_ramp_is_followed_without_error(c: Library, kind: int, slope: float) -
 
 @pytest.mark.parametrize("counts_per_sample", [0.3, 1.7])
 def test_quantisation_is_smoothed(c: Library, counts_per_sample: float) -> None:
-    # GIVEN a quantised ramp WHEN it is differenced THEN the velocity jumps by whole counts per
-    # sample; WHEN it is filtered THEN the mean is the same and the jumps are smaller
+    # GIVEN a quantised ramp WHEN the velocity is a difference quotient THEN it is always a whole
+    # number of counts per sample; WHEN it is filtered THEN its mean is the same and it varies less
     slope = counts_per_sample * W_S
     z = round_to_counts(slope * T * np.arange(3000, dtype=np.float64), COUNTS)
     differenced = run(c, z, kind=3)[1000:, 1]
@@ -111,14 +111,14 @@ def test_a_slower_filter_is_smoother(c: Library) -> None:
     assert spread[0] < spread[1] < spread[2]
 
 
-def test_finite_difference(c: Library) -> None:
+def test_finite_differences_give_the_difference_quotient(c: Library) -> None:
     z = np.array([1.0, 1.25, 0.75, 0.75])
     track = run(c, z, kind=3, dt=0.5)
     assert track.tolist() == [[1.0, 0.0], [1.25, 0.5], [0.75, -1.0], [0.75, 0.0]]
 
 
-def test_one_count_per_sample_is_half_way(c: Library) -> None:
-    # (11): the exponent is 0 where the velocity is one count per sample
+def test_the_variance_at_one_count_per_sample_is_the_mean_of_both_limits(c: Library) -> None:
+    # (11): the exponent is 0 if the velocity is one count per sample
     assert variance(c, W_S) == pytest.approx((10.0 + 0.1) / 2, rel=1e-14)
     assert variance(c, -W_S) == variance(c, W_S)
     assert variance(c, 1 / W_S, weighting=2) == pytest.approx((10.0 + 0.1) / 2, rel=1e-14)
@@ -131,11 +131,11 @@ def test_variance_falls_from_rest_to_fast_motion(c: Library) -> None:
     values = [variance(c, speed) for speed in speeds]
     assert np.all(np.diff(values) < 0)
     assert variance(c, 1e6) == 0.1
-    assert variance(c, 1e300) == 0.1  # where the exponential overflows
+    assert variance(c, 1e300) == 0.1  # here the exponential overflows
 
 
 @pytest.mark.parametrize("weighting", [1, 2])
-def test_no_quantisation_means_the_smallest_variance(c: Library, weighting: int) -> None:
+def test_without_quantisation_the_variance_is_the_smallest(c: Library, weighting: int) -> None:
     assert variance(c, 0.0, w_s=0.0, weighting=weighting) == 0.1
 
 
@@ -170,9 +170,9 @@ def test_covariance_stays_positive_definite(c: Library, V_a: float) -> None:
         assert kalman.P12**2 <= kalman.P11 * kalman.P22 * (1 + 1e-12)
 
 
-def test_a_sample_that_comes_late_does_not_disturb(c: Library) -> None:
-    # GIVEN a settled filter on a ramp WHEN ten samples are missing and the time since is told
-    # THEN position and velocity go on undisturbed
+def test_missing_samples_do_not_disturb_the_filter(c: Library) -> None:
+    # GIVEN a settled filter on a ramp WHEN ten samples are missing and the next step gets the time
+    # since the last sample THEN position and velocity have no error
     p = c.new("sh_filter_parameters", **SETTINGS)
     kalman = c.new("sh_kinematic_kalman")
     c.lib.sh_kinematic_kalman_start(kalman, p, 0.0)
@@ -184,7 +184,7 @@ def test_a_sample_that_comes_late_does_not_disturb(c: Library) -> None:
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3])
-def test_changes_of_a_sample(c: Library, kind: int) -> None:
+def test_dx_and_dx_dot_are_the_changes_of_position_and_velocity(c: Library, kind: int) -> None:
     p = c.new("sh_filter_parameters", **{**SETTINGS, "kind": kind})
     kalman = c.new("sh_kinematic_kalman")
     c.lib.sh_kinematic_kalman_start(kalman, p, 1.0)
@@ -196,9 +196,9 @@ def test_changes_of_a_sample(c: Library, kind: int) -> None:
 
 
 @pytest.mark.parametrize("kind", [1, 2])
-def test_a_far_position_costs_no_digits(c: Library, kind: int) -> None:
-    # GIVEN the same motion, a million turns away WHEN both are filtered
-    # THEN the velocity is the same but for what the far measurement itself is rounded
+def test_the_velocity_is_as_precise_at_a_large_position(c: Library, kind: int) -> None:
+    # GIVEN the same motion near zero and 2^22 rad away, both with the rounding of the far one
+    # WHEN both are filtered THEN the velocity is the same
     near = COUNT * np.floor(np.linspace(0, 500, 1500) ** 1.1)
     far = near + 2.0**22
     velocity = [run(c, z, kind=kind)[:, 1] for z in (far - 2.0**22, far)]

@@ -1,4 +1,4 @@
-"""The recursion in UD factors, against the textbook and against what it minimises."""
+"""The recursion in UD factors, against the recursion as printed and the sum that it minimises."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from c_library import Array, Library, load
 from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
 from reference_plant import table1_recording
 
-KINDS = {  # kind: factor and P_0 of the paper, and of the plain and the constant kind
+KINDS = {  # kind: factor and P_0; for ENHANCED those of the paper
     ENHANCED: (1e-20, 1e20),
     STANDARD: (1.0, 1.0),
     CONSTANT_FACTOR: (0.1, 1.0),
@@ -29,7 +29,7 @@ def c(build: Path) -> Library:
 
 
 class Recursion:
-    """The C recursion over numpy arrays."""
+    """The C recursion with numpy arrays."""
 
     def __init__(self, c: Library, kind: int, factor: float, P_0: float, eta_0: Array) -> None:
         self.c, self.kind, self.factor = c, kind, factor
@@ -71,7 +71,7 @@ def error(got: Array, want: oracle.Exact) -> float:
 
 
 def table1_data() -> tuple[Array, Array]:
-    """Regressors and sensed torque of Table I [size: ticks x 18, ticks]."""
+    """Regressors and torque of the sensor in Table I [size: ticks x 18, ticks]."""
     recording = table1_recording()
     set_point = 100.0 + oracle.DEFAULTS["setPoint.scale"] * recording.theta_c
     phi = recording.q - recording.theta
@@ -81,7 +81,7 @@ def table1_data() -> tuple[Array, Array]:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("size", [1, 2, 3, 5, 8, 18, 40])
-def test_every_sample_against_the_textbook(c: Library, kind: int, size: int) -> None:
+def test_every_sample_against_the_recursion_as_printed(c: Library, kind: int, size: int) -> None:
     factor, P_0 = KINDS[kind]
     rng = np.random.default_rng(100 * kind + size)
     F, y, eta_0 = rng.normal(size=(60, size)), rng.normal(size=60), rng.normal(size=size)
@@ -100,7 +100,7 @@ def test_every_sample_against_the_textbook(c: Library, kind: int, size: int) -> 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_many_sizes_against_the_ridge(c: Library, kind: int) -> None:
-    # Fewer and more samples than parameters, columns of unlike scale, any P_0
+    # Fewer and more samples than parameters, columns with different scales, any P_0
     rng = np.random.default_rng(kind)
     for size in range(1, 41):
         factor, _ = KINDS[kind]
@@ -120,7 +120,7 @@ def test_many_sizes_against_the_ridge(c: Library, kind: int) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_table1_against_the_ridge(c: Library, kind: int) -> None:
-    # The recursion over the whole run, and the closed form of what it minimises
+    # The recursion over the whole run, and the closed-form minimum of the same sum
     factor, P_0 = KINDS[kind]
     F, y = table1_data()
     recursion = Recursion(c, kind, factor, P_0, np.zeros(18))
@@ -137,9 +137,9 @@ def test_table1_against_the_ridge(c: Library, kind: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", [STANDARD, CONSTANT_FACTOR])
-def test_a_large_prior_loses_no_definiteness(c: Library, kind: int) -> None:
-    # GIVEN P_0 = 1e20, where the textbook recursion breaks in doubles
-    # WHEN it runs over Table I THEN P is finite and positive definite, and the right one
+def test_P_stays_positive_definite_with_a_large_P_0(c: Library, kind: int) -> None:
+    # GIVEN P_0 = 1e20, with which the recursion as printed fails in doubles WHEN the recursion runs
+    # over Table I THEN P is finite, positive definite, and equal to that of the closed form
     F, y = table1_data()
     recursion = Recursion(c, kind, 0.1, 1e20, np.zeros(18))
     weight = np.empty(len(y))
@@ -158,8 +158,8 @@ def test_a_large_prior_loses_no_definiteness(c: Library, kind: int) -> None:
     assert np.diag(P) == pytest.approx(np.diag(want), rel=1e-6)
 
 
-def test_textbook_breaks_where_the_factors_do_not() -> None:
-    # What the test above guards against: (14) in doubles loses the sign of F' P F on this data
+def test_the_recursion_as_printed_fails_in_doubles() -> None:
+    # Shows that the test above is needed: (14) in doubles gives F' P F < 0 with these data
     F, _ = table1_data()
     P = 1e20 * np.eye(18)
     lowest = math.inf
@@ -172,7 +172,7 @@ def test_textbook_breaks_where_the_factors_do_not() -> None:
 
 
 def test_enhanced_factor_is_the_bound_of_26(c: Library) -> None:
-    # (26) with equality: a / (1 + rho - a rho) = c, here with a c that doubles can resolve
+    # (26) with equality: a / (1 + rho - a rho) = c, with a c that is large enough for doubles
     rng = np.random.default_rng(3)
     recursion = Recursion(c, ENHANCED, 0.25, 10.0, np.zeros(4))
     for F, y in zip(rng.normal(size=(50, 4)), rng.normal(size=50), strict=True):
@@ -182,7 +182,7 @@ def test_enhanced_factor_is_the_bound_of_26(c: Library) -> None:
         assert a / (1 + rho - a * rho) == pytest.approx(0.25, rel=1e-12)
 
 
-def test_start(c: Library) -> None:
+def test_start_sets_the_initial_estimate_and_covariance(c: Library) -> None:
     recursion = Recursion(c, STANDARD, 1.0, 3.0, np.array([1.0, -2.0]))
     assert recursion.eta.tolist() == [1.0, -2.0]
     assert recursion.covariance.tolist() == [[3.0, 0.0], [0.0, 3.0]]
@@ -192,7 +192,7 @@ def test_start(c: Library) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_no_excitation_teaches_nothing(c: Library, kind: int) -> None:
+def test_a_zero_regressor_changes_nothing(c: Library, kind: int) -> None:
     factor, P_0 = KINDS[kind]
     recursion = Recursion(c, kind, factor, P_0, np.array([1.0, 2.0, 3.0]))
     recursion.update(np.array([1.0, 0.5, -1.0]), 4.0)
@@ -204,7 +204,7 @@ def test_no_excitation_teaches_nothing(c: Library, kind: int) -> None:
     assert np.all(recursion.covariance == P)
 
 
-def test_variance_of_a_direction(c: Library) -> None:
+def test_the_variance_along_a_regressor_is_that_of_the_covariance(c: Library) -> None:
     rng = np.random.default_rng(4)
     recursion = Recursion(c, STANDARD, 1.0, 2.0, np.zeros(5))
     for F in rng.normal(size=(20, 5)):
@@ -221,7 +221,7 @@ def test_variance_of_a_direction(c: Library) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("bad", [math.inf, -math.inf, math.nan, 1e300, -1e300])
 @pytest.mark.parametrize("where", [0, 2, "y"])
-def test_a_bad_sample_leaves_no_trace(c: Library, kind: int, bad: float, where: Any) -> None:
+def test_a_bad_sample_changes_nothing(c: Library, kind: int, bad: float, where: Any) -> None:
     factor, P_0 = KINDS[kind]
     recursion = Recursion(c, kind, factor, P_0, np.zeros(3))
     recursion.update(np.array([1.0, 2.0, 3.0]), 4.0)
@@ -244,7 +244,7 @@ ANY = st.floats(allow_nan=True, allow_infinity=True, width=64)
     samples=st.lists(st.tuples(ANY, ANY, ANY, ANY), max_size=30),
 )
 @settings(max_examples=300, deadline=None, derandomize=True)
-def test_whatever_comes_P_stays_positive(
+def test_P_stays_positive_for_any_samples(
     build: Path, kind: int, P_0: float, samples: list[tuple[float, ...]]
 ) -> None:
     recursion = Recursion(load(build), kind, KINDS[kind][0], P_0, np.zeros(3))
@@ -256,7 +256,7 @@ def test_whatever_comes_P_stays_positive(
         assert np.all(np.isfinite(recursion.covariance))
 
 
-def test_a_weight_is_one_over_the_noise_variance(c: Library) -> None:
+def test_a_weight_is_the_inverse_of_the_noise_variance(c: Library) -> None:
     rng = np.random.default_rng(7)
     F, y, w = rng.normal(size=(30, 4)), rng.normal(size=30), rng.uniform(0, 5, 30)
     prior = np.array([1.0, 0.0, 9.0, 0.04])
@@ -280,7 +280,7 @@ def test_a_weight_is_one_over_the_noise_variance(c: Library) -> None:
 
 
 def fitted(c: Library, size: int) -> Recursion:
-    """A recursion with a full covariance."""
+    """A recursion after some samples, so that its covariance has no zero entries."""
     rng = np.random.default_rng(size)
     recursion = Recursion(c, STANDARD, 1.0, 1.0, np.zeros(size))
     for row in rng.normal(size=(2 * size, size)):
@@ -289,7 +289,7 @@ def fitted(c: Library, size: int) -> Recursion:
 
 
 @pytest.mark.parametrize("size", [1, 2, 5, 43])
-def test_widening_adds_a_square(c: Library, size: int) -> None:
+def test_widening_adds_an_outer_product_to_the_covariance(c: Library, size: int) -> None:
     recursion = fitted(c, size)
     v = np.random.default_rng(1).normal(size=size)
     want = recursion.covariance + 0.3 * np.outer(v, v)
@@ -309,7 +309,7 @@ def test_bounding_shrinks_variances_and_keeps_correlations(c: Library) -> None:
 
 
 @pytest.mark.parametrize("size", [1, 5, 43])
-def test_columns_of_the_covariance(c: Library, size: int) -> None:
+def test_a_column_is_that_of_the_covariance(c: Library, size: int) -> None:
     recursion = fitted(c, size)
     for i in {0, size // 2, size - 1}:
         column = c.lib.sh_least_squares_column(recursion.state, i)[0:size]
@@ -317,7 +317,7 @@ def test_columns_of_the_covariance(c: Library, size: int) -> None:
 
 
 @pytest.mark.parametrize("size", [1, 5, 43])
-def test_widening_along_a_column(c: Library, size: int) -> None:
+def test_widening_along_a_column_adds_its_outer_product(c: Library, size: int) -> None:
     for i in {0, size // 2, size - 1}:
         recursion = fitted(c, size)
         before = recursion.covariance
@@ -327,7 +327,7 @@ def test_widening_along_a_column(c: Library, size: int) -> None:
         assert np.all(recursion.diagonal > 0)
 
 
-def test_moving_keeps_what_rounding_leaves_out(c: Library) -> None:
+def test_rounding_errors_of_many_small_moves_do_not_add_up(c: Library) -> None:
     recursion = Recursion(c, STANDARD, 1.0, 1.0, np.array([1e8]))
     v = np.array([1.0])
     for _ in range(100_000):
@@ -337,8 +337,8 @@ def test_moving_keeps_what_rounding_leaves_out(c: Library) -> None:
 
 
 @pytest.mark.parametrize("size", [1, 2, 3, 4, 5, 8])
-def test_nothing_behind_a_regressor_is_read(c: Library, size: int) -> None:
-    """GIVEN regressors with NaN behind them in memory, THEN all is as if there were nothing."""
+def test_nothing_behind_the_end_of_a_regressor_is_used(c: Library, size: int) -> None:
+    """GIVEN regressors with NaN behind their end in memory, THEN results are the same as with 0."""
     rng = np.random.default_rng(size)
     plain, guarded = (Recursion(c, ENHANCED, 0.5, 2.0, np.zeros(size)) for _ in range(2))
     for F, y in zip(rng.normal(size=(5, size)), rng.normal(size=5), strict=True):
@@ -352,7 +352,7 @@ def test_nothing_behind_a_regressor_is_read(c: Library, size: int) -> None:
 
 
 @pytest.mark.parametrize("bad", [math.inf, math.nan, 1e300])
-def test_a_bad_weighted_sample_leaves_no_trace(c: Library, bad: float) -> None:
+def test_a_bad_weighted_sample_changes_nothing(c: Library, bad: float) -> None:
     recursion = fitted(c, 3)
     before = recursion.bytes()
     epsilon, rho = c.ffi.new("double *"), c.ffi.new("double *")
@@ -365,8 +365,8 @@ def test_a_bad_weighted_sample_leaves_no_trace(c: Library, bad: float) -> None:
 
 
 @pytest.mark.parametrize("size", [1, 2, 3])
-def test_a_prediction_has_the_digits_that_rounding_leaves_out(c: Library, size: int) -> None:
-    recursion = Recursion(c, STANDARD, 1.0, 1.0, np.full(size, 1e8))  # last digit 1.5e-8
+def test_the_prediction_uses_the_rounding_error_of_the_estimate(c: Library, size: int) -> None:
+    recursion = Recursion(c, STANDARD, 1.0, 1.0, np.full(size, 1e8))  # the last digit is 1.5e-8
     c.lib.sh_least_squares_move(recursion.state, 5e-9, c.pointer(np.ones(size)))
     for i in range(size):
         assert recursion.eta[i] == 1e8

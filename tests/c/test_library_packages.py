@@ -1,4 +1,4 @@
-"""The C library in a program of somebody else: find_package, pkg-config, a pair of files."""
+"""The C library in a program of a user: find_package, pkg-config, a pair of files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PROGRAM = """
 #include <stdio.h>
 #include "{header}"
 
-/* Size of a number, and the stiffness after the log on standard input, to its last digit. */
+/* Prints the size of a number, and the stiffness after the log on standard input, exactly. */
 int main(void)
 {{
     static sh_parameters parameters;
@@ -53,7 +53,7 @@ target_link_libraries(consumer PRIVATE sigmahat::sigmahat)
 
 
 def run(*command: str | Path, **environment: str) -> str:
-    """Runs a command, which must succeed; what it printed."""
+    """Runs a command, which must succeed, and returns what it printed."""
     done = subprocess.run(
         [str(part) for part in command],
         env={**os.environ, **environment},
@@ -65,14 +65,14 @@ def run(*command: str | Path, **environment: str) -> str:
 
 
 def need(tool: str, package: str) -> str:
-    """The tool itself, if it is installed."""
+    """Returns the tool. Ends the test if it is not installed."""
     if shutil.which(tool) is None:
         missing(tool, f"apt-get install {package}")
     return tool
 
 
 def check(program: Path, build: Path, size: int) -> None:
-    """The program gives what the library gives: in double to the last bit."""
+    """Checks that the program gives the result of the library, in double to the last bit."""
     log = table1_recording().measurements()[:2000].copy()
     done = subprocess.run([program], input=log.tobytes(), capture_output=True, check=True)
     found, sigma = done.stdout.split()
@@ -85,7 +85,7 @@ def check(program: Path, build: Path, size: int) -> None:
 def installed(
     request: pytest.FixtureRequest, build: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, int]:
-    """Where the library was installed and then moved to, and the size of its numbers."""
+    """Folder to which the installed library was moved, and the size of its numbers [bytes]."""
     real, size = request.param
     folder = tmp_path_factory.mktemp(f"installed-{real}")
     run(
@@ -98,7 +98,9 @@ def installed(
     return (folder / "first").rename(folder / "moved"), size
 
 
-def test_find_package(installed: tuple[Path, int], build: Path, tmp_path: Path) -> None:
+def test_find_package_finds_the_installed_library(
+    installed: tuple[Path, int], build: Path, tmp_path: Path
+) -> None:
     prefix, size = installed
     (tmp_path / "main.c").write_text(PROGRAM.format(header="stiffness_estimator.h"))
     (tmp_path / "CMakeLists.txt").write_text(PROJECT)
@@ -111,7 +113,9 @@ def test_find_package(installed: tuple[Path, int], build: Path, tmp_path: Path) 
     check(tmp_path / "build" / "consumer", build, size)
 
 
-def test_pkg_config(installed: tuple[Path, int], build: Path, tmp_path: Path) -> None:
+def test_pkg_config_describes_the_installed_library(
+    installed: tuple[Path, int], build: Path, tmp_path: Path
+) -> None:
     prefix, size = installed
     need("pkg-config", "pkg-config")
     (described,) = prefix.rglob("sigmahat.pc")
@@ -125,10 +129,10 @@ def test_pkg_config(installed: tuple[Path, int], build: Path, tmp_path: Path) ->
 
 @pytest.mark.parametrize("real", [("double", 8), ("float", 4)], ids=["double", "float"])
 @pytest.mark.parametrize("c, cpp", [("gcc", "g++"), ("clang", "clang++")])
-def test_a_pair_of_files(
+def test_the_pair_of_files_works_in_c_and_cpp(
     c: str, cpp: str, real: tuple[str, int], build: Path, tmp_path: Path
 ) -> None:
-    """They compile alone and without a warning; the header serves C and C++."""
+    """The files compile alone and without a warning, and the header can be used in C and C++."""
     name, size = real
     flags = ["-O2", "-ffp-contract=off", *WARNINGS, f"-DSH_REAL={name}"]
     if name == "float":

@@ -1,4 +1,4 @@
-"""The method MatchedFilter: what it is for, what is not known, odd beginnings and gaps."""
+"""The method MatchedFilter: wrong motor data, drift, unknown errors, start and gaps."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def c(build: Path) -> Library:
 
 
 def error(found: np.ndarray[Any, Any], joint: Joint, after: float) -> float:
-    """Root mean square of the relative error from a time [s] on."""
+    """Root mean square of the relative error after a time [s]."""
     k = round(after / T)
     return float(np.sqrt(np.mean((found["sigma"][k:] / joint.sigma[k:] - 1) ** 2)))
 
 
-def test_before_the_first_tick_all_is_prior(c: Library) -> None:
+def test_before_the_first_tick_the_estimate_is_the_prior(c: Library) -> None:
     e = Estimator(c, ALL).estimate
-    # at phi = 0, of the basis only phi r^j, j = 0..2, with r = 100 mm
+    # at phi = 0 only the columns phi r^j have a slope, j = 0..2, with r = 100 mm
     assert (e.sigma, e.tau_e) == (0.0, 0.0)
     assert e.sigma_std == pytest.approx(45.0 / 0.3 * math.sqrt(3.0))
     assert (e.D_theta_hat, e.B_hat, e.tau_coulomb_hat) == (1e-3, 2.3e-5, 0.0)
@@ -40,8 +40,8 @@ def test_before_the_first_tick_all_is_prior(c: Library) -> None:
 
 
 def test_a_nominal_curve_is_the_prior_mean(c: Library) -> None:
-    """GIVEN a nominal curve that is trusted to 30 % as a whole and exactly in its shape, THEN the
-    stiffness before the first tick is its, with a standard deviation of 30 %."""
+    """GIVEN a nominal curve with an uncertainty of 30 % as a whole and an exact shape, THEN the
+    stiffness before the first tick is that of the curve, with a standard deviation of 30 %."""
     estimator = Estimator(c, {**MATCHED, "prior.nominal": 0.3})
     estimator.parameters.rls.eta_0[0][2] = 2 * 14220e-6
     estimator.parameters.prior.tau_e = 0.0
@@ -51,14 +51,14 @@ def test_a_nominal_curve_is_the_prior_mean(c: Library) -> None:
     assert estimator.estimate.sigma_std == pytest.approx(0.3 * sigma)
 
 
-# What it is for
+# Wrong motor data
 
 
 @pytest.mark.parametrize("frequency", [0.3, 1.0, 8.0])
 @pytest.mark.parametrize("wrong", [0.9, 1.1])
-def test_finds_wrong_friction(c: Library, frequency: float, wrong: float) -> None:
-    """GIVEN viscous friction that is 10 % from what the estimator is told, and Coulomb friction
-    that it is not told of, THEN both are found, and the stiffness is right."""
+def test_errors_of_the_friction_are_estimated(c: Library, frequency: float, wrong: float) -> None:
+    """GIVEN a parameter of viscous friction that is wrong by 10 %, and unknown Coulomb friction,
+    THEN both are estimated, and the stiffness is right."""
     joint = Joint(frequency=frequency, amplitude=0.8 / frequency, tau_coulomb=0.015)
     found = Estimator(c, {**MATCHED, "motor.D_theta": wrong * 1e-3}).run(joint.measurements())
     assert found["D_theta_hat"][-1] == pytest.approx(1e-3, abs=0.1 * abs(wrong - 1) * 1e-3)
@@ -67,7 +67,7 @@ def test_finds_wrong_friction(c: Library, frequency: float, wrong: float) -> Non
 
 
 @pytest.mark.parametrize("frequency", [1.0, 8.0])
-def test_finds_a_wrong_inertia(c: Library, frequency: float) -> None:
+def test_an_error_of_the_inertia_is_estimated(c: Library, frequency: float) -> None:
     joint = Joint(frequency=frequency, amplitude=0.8 / frequency, tau_coulomb=0.015)
     wrong = {"motor.D_theta": 1.1e-3, "motor.B": 1.1 * 2.3e-5}
     found = Estimator(c, {**ALL, **wrong}).run(joint.measurements())
@@ -75,9 +75,9 @@ def test_finds_a_wrong_inertia(c: Library, frequency: float) -> None:
     assert error(found, joint, 2.0) < 0.03
 
 
-def test_rounding_alone_says_nothing_about_the_inertia(c: Library) -> None:
-    """GIVEN a motor so slow that its inertia cannot be seen, WHEN it has turned for a long time,
-    THEN B is about what it was before, although theta'' is full of rounding."""
+def test_rounding_alone_does_not_change_the_inertia(c: Library) -> None:
+    """GIVEN a motor that is so slow that its inertia has no effect, WHEN it has turned for a long
+    time, THEN B_hat is about the same as before, although theta'' consists of rounding errors."""
     joint = Joint(duration=40.0, frequency=0.02, amplitude=30.0, B=1.1 * 2.3e-5)
     estimator = Estimator(c, ALL)
     found = estimator.run(joint.measurements())
@@ -85,14 +85,14 @@ def test_rounding_alone_says_nothing_about_the_inertia(c: Library) -> None:
 
 
 @pytest.mark.parametrize("modality", [SENSOR, MODEL])
-def test_other_sources_of_the_torque(c: Library, modality: int) -> None:
+def test_stiffness_is_estimated_from_other_sources_of_the_torque(c: Library, modality: int) -> None:
     joint = Joint(duration=4.0)
     found = Estimator(c, {**MATCHED, "modality": modality}).run(joint.measurements())
     assert error(found, joint, 1.0) < 0.02
 
 
 @pytest.mark.parametrize("m", [1, 3])
-def test_general_basis(c: Library, m: int) -> None:
+def test_stiffness_is_estimated_with_the_general_basis(c: Library, m: int) -> None:
     joint = Joint(duration=6.0)
     z = joint.measurements()
     if m == 1:  # a single transmission
@@ -104,9 +104,9 @@ def test_general_basis(c: Library, m: int) -> None:
     assert np.sqrt(np.mean((found["sigma"][3000:] / sigma[3000:] - 1) ** 2)) < 0.03
 
 
-def test_says_how_sure_it_is(c: Library) -> None:
-    """GIVEN errors of the friction drawn from their priors, WHEN the stiffness is estimated over
-    many runs, THEN it lies within 1.96 standard deviations about as often as it should."""
+def test_the_error_agrees_with_the_standard_deviation(c: Library) -> None:
+    """GIVEN errors of the friction drawn from their priors, WHEN the stiffness is estimated in
+    many runs, THEN the true one is within 1.96 standard deviations about as often as expected."""
     rng = np.random.default_rng(3)
     inside = []
     for seed in range(30):
@@ -122,7 +122,7 @@ def test_says_how_sure_it_is(c: Library) -> None:
     assert 0.85 < np.mean(inside) < 1.0
 
 
-def test_confident_compares_with_the_threshold(c: Library) -> None:
+def test_confident_compares_the_standard_deviation_with_the_threshold(c: Library) -> None:
     found = Estimator(c, {**MATCHED, "confidence": 0.05}).run(Joint(duration=2.0).measurements())
     assert np.array_equal(found["confident"] == 1, found["sigma_std"] < 0.05 * found["sigma"])
     assert not found["confident"][0]
@@ -130,9 +130,9 @@ def test_confident_compares_with_the_threshold(c: Library) -> None:
 
 
 @pytest.mark.parametrize("method", [PAPER2011, MATCHED_FILTER])
-def test_knowing_nothing_is_not_confident(c: Library, method: int) -> None:
-    """GIVEN a basis that says nothing of the stiffness, so that it and its standard deviation are
-    0, THEN the estimate is not confident."""
+def test_a_stiffness_of_zero_is_not_confident(c: Library, method: int) -> None:
+    """GIVEN a basis without slope, so that the stiffness and its standard deviation are 0, THEN
+    the estimate is not confident."""
     values = {"method": method, "rls.n": 1, "rls.symmetric": 0}
     estimator = Estimator(c, values)
     assert (estimator.estimate.sigma, estimator.estimate.sigma_std) == (0.0, 0.0)
@@ -143,7 +143,7 @@ def test_knowing_nothing_is_not_confident(c: Library, method: int) -> None:
 # Drift
 
 
-def test_follows_a_spring_that_ages_and_keeps_what_it_knows_at_rest(c: Library) -> None:
+def test_the_estimate_follows_a_spring_that_ages_and_does_not_change_at_rest(c: Library) -> None:
     joint = Joint(duration=30.0, stiffness=lambda t: 1 - 0.3 * np.clip((t - 10) / 10, 0, 1))
     estimator = Estimator(c, {**MATCHED, "matched.drift": 1e-3})
     z = joint.measurements()
@@ -172,12 +172,12 @@ def test_no_variance_grows_beyond_the_prior(c: Library) -> None:
     assert np.all(np.linalg.eigvalsh(estimator.covariance()) > 0)
 
 
-# What is not known
+# Errors that do not average out
 
 
-def test_rest_of_any_length_tells_no_more_than_its_rounding(c: Library) -> None:
-    """GIVEN a joint held at a deformation of 0.6 counts, which the encoders show as one, WHEN it
-    rests there for long, THEN the standard deviation of the stiffness covers the error."""
+def test_a_long_rest_does_not_make_the_estimate_more_certain_than_its_rounding(c: Library) -> None:
+    """GIVEN a joint that is held at a deformation of 0.6 counts, which the encoders show as one
+    count, WHEN it rests there for a long time, THEN the standard deviation covers the error."""
     count, sigma = 2 * np.pi / 40000, 140.0
     z = np.zeros((1000, 5))
     z[:, 1] = count
@@ -191,8 +191,8 @@ def test_rest_of_any_length_tells_no_more_than_its_rounding(c: Library) -> None:
 
 @pytest.mark.parametrize("modality", [RESIDUAL, SENSOR])
 def test_the_last_digit_of_a_position_does_not_matter(c: Library, modality: int) -> None:
-    """GIVEN both encoders moved on by a count, so that q - theta changed by its rounding alone,
-    THEN the deformation is at rest as if it had not changed at all."""
+    """GIVEN q - theta that changes only by the rounding of floating-point numbers, as if both
+    encoders had moved by the same count, THEN the deformation counts as unchanged."""
     z = table1_recording().measurements()[:2000]
     other = z.copy()
     other[:, 1] += 1e-13 * np.random.default_rng(4).normal(size=len(z))
@@ -201,21 +201,21 @@ def test_the_last_digit_of_a_position_does_not_matter(c: Library, modality: int)
     np.testing.assert_allclose(one, two, rtol=1e-7)
 
 
-def test_friction_of_unknown_sign_is_noise(c: Library) -> None:
-    """GIVEN a motor that creeps, so that friction takes a part of the torque that nobody knows,
-    THEN the stiffness is off, and its standard deviation says so."""
+def test_friction_of_unknown_sign_increases_the_standard_deviation(c: Library) -> None:
+    """GIVEN a motor that creeps, so that the friction has an unknown share of the torque, THEN
+    the stiffness is less exact, and its standard deviation covers the error."""
     joint = Joint(frequency=0.1, amplitude=0.03, tau_coulomb=0.02)
     found = Estimator(c, MATCHED).run(joint.measurements())[2000:]
     error = np.abs(found["sigma"] - joint.sigma[2000:])
     assert np.mean(error < 1.96 * found["sigma_std"]) > 0.9
 
 
-# Odd beginnings and gaps
+# Start and gaps
 
 
-def test_a_joint_that_already_moves_is_not_believed_at_once(c: Library) -> None:
-    """GIVEN a motor that turns when the first sample is taken, THEN nothing is learned until the
-    filters have forgotten that they took it to be at rest."""
+def test_the_estimate_of_a_joint_that_already_moves_is_updated_later(c: Library) -> None:
+    """GIVEN a motor that turns at the first sample, THEN the estimate is not updated until the
+    filters have settled from their wrong initial state."""
     joint = Joint(duration=5.0)
     z = joint.measurements()[100:]
     found = Estimator(c, MATCHED).run(z)
@@ -224,31 +224,31 @@ def test_a_joint_that_already_moves_is_not_believed_at_once(c: Library) -> None:
     assert np.max(np.abs(found["sigma"][1000:] / sigma[1000:] - 1)) < 0.03
 
 
-def test_goes_on_after_lost_samples(c: Library) -> None:
+def test_the_estimate_continues_after_lost_samples(c: Library) -> None:
     joint = Joint(duration=6.0)
     z = joint.measurements()
     z[3000:3050, 0] = math.nan
     found = Estimator(c, MATCHED).run(z)
     assert not np.any(found["valid"][3000:3050])
     assert np.all(found["valid"][3050:])
-    assert np.all(found["a"][3052:3080] == 0)  # nothing is learned while the filters settle
+    assert np.all(found["a"][3052:3080] == 0)  # no update while the filters settle
     assert error(found, joint, 3.05) < 0.02
 
 
-def test_starts_anew_when_the_modality_changes(c: Library) -> None:
+def test_the_filters_start_again_when_the_modality_changes(c: Library) -> None:
     joint = Joint(duration=6.0)
     z = joint.measurements()
     estimator = Estimator(c, MATCHED)
     estimator.run(z[:3000])
     c.set(estimator.parameters, "modality", SENSOR)
     found = estimator.run(z[3000:])
-    assert np.all(found["a"][:30] == 0)  # nothing is learned while the filters settle
+    assert np.all(found["a"][:30] == 0)  # no update while the filters settle
     assert np.all(found["a"][50:] == 1)
     assert np.all(np.abs(found["sigma"] / joint.sigma[3000:] - 1) < 0.05)
 
 
 @pytest.mark.parametrize("huge", [1e11, -1e11])
-def test_huge_measurements_leave_finite_numbers(c: Library, huge: float) -> None:
+def test_outputs_stay_finite_after_huge_measurements(c: Library, huge: float) -> None:
     z = Joint(duration=1.0).measurements()
     z[300] = huge
     estimator = Estimator(c, {**ALL, "matched.drift": 1e-2})
@@ -258,9 +258,9 @@ def test_huge_measurements_leave_finite_numbers(c: Library, huge: float) -> None
 
 
 @pytest.mark.parametrize("where", [3, 40, 1000])
-def test_huge_deformation_while_nothing_is_learned(c: Library, where: int) -> None:
-    """GIVEN a deformation of which the powers overflow, WHEN it comes while the filters settle or
-    later, THEN that tick is skipped, the estimate is kept, and all goes on."""
+def test_a_tick_with_a_huge_deformation_is_skipped(c: Library, where: int) -> None:
+    """GIVEN a deformation whose powers overflow, WHEN it is received while the filters settle or
+    later, THEN that tick is skipped, the estimate does not change, and the next tick is valid."""
     z = Joint(duration=2.0).measurements()
     z[500, 0] = math.nan
     z[500 + where, 1] = 1e11
@@ -276,7 +276,7 @@ def test_huge_deformation_while_nothing_is_learned(c: Library, where: int) -> No
 # The paper's method
 
 
-def test_paper_says_how_sure_it_is_as_white_noise_would_have_it(c: Library) -> None:
+def test_the_standard_deviation_of_the_paper_is_that_of_white_noise(c: Library) -> None:
     estimator = Estimator(c, {"rls.n": 2, "rls.m": 1, "noise.tau": 0.01})
     found = estimator.run(Joint(duration=2.0).measurements())
     phi = found["phi"][-1]

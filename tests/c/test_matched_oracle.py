@@ -1,8 +1,8 @@
 """MatchedFilter, every tick, against a second implementation from docs/matched-filter.md.
 
-Nothing is shared with the C but the direction of motion, which has tests of its own. The filter is
-scipy's, the covariance a plain matrix in extended precision, and each step stands here as the page
-says it.
+It shares nothing with the C code except the direction of motion, which has its own tests. The
+filter is that of scipy, the covariance is a matrix in extended precision, and each step is written
+as the page describes it.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from matched_joint import Joint
 from oracle import RESIDUAL, SENSOR
 from reference_plant import table1_recording
 
-START: Mapping[str, float] = {  # of the page, with its rls.n for the AwAS, and modality
+START: Mapping[str, float] = {  # start values of the page, with its rls.n for the AwAS
     "method": 2,
     "modality": RESIDUAL,
     "samplePeriod": 1e-3,
@@ -55,7 +55,7 @@ def c(build: Path) -> Library:
 
 
 def through(x: Array, order: int, w: float, T: float, held: bool = False) -> Array:
-    """s^order w^3 / (s + w)^3 of x that is 0 before: linear between samples, or held."""
+    """x filtered by s^order w^3 / (s + w)^3, from zero: x linear between samples, or held."""
 
     def response(u: Array, method: str) -> Array:
         system = [w**3] + [0.0] * order, np.poly([-w] * 3)
@@ -68,12 +68,12 @@ def through(x: Array, order: int, w: float, T: float, held: bool = False) -> Arr
 
 
 def resolution(counts: float) -> float:
-    """Of an encoder with so many counts per turn [rad]."""
+    """Resolution of an encoder [rad]; 0 without quantisation."""
     return 2 * math.pi / counts if counts else 0.0
 
 
 def direction(c: Library, theta: Array, count: float, slow: float) -> tuple[Array, Array]:
-    """Mean sign over the sample that ends at each instant, and whether it is unknown."""
+    """Mean sign over the sample that ends at each instant, and 0 if it is known, else 1 or more."""
     motion = c.new("sh_motion_sign")
     c.lib.sh_motion_sign_start(motion, theta[0])
     found = [(0.0, 0.0)]
@@ -87,7 +87,7 @@ def direction(c: Library, theta: Array, count: float, slow: float) -> tuple[Arra
 def matched_filter(
     c: Library, p: Mapping[str, float], z: Array, eta_0: Array | None = None
 ) -> dict[str, Array]:
-    """Estimates of all ticks. eta_0 [size: m n], powers of phi first, in scaled units [N.m]."""
+    """Outputs of all ticks. eta_0 [size: m n], powers of phi first, in scaled units [N.m]."""
     T, w, n, m = p["samplePeriod"], p["matched.bandwidth"], int(p["rls.n"]), int(p["rls.m"])
     theta, q, theta_c, tau, sensor = z.T
     size, measured = n * m, p["modality"] == SENSOR
@@ -107,7 +107,7 @@ def matched_filter(
     velocity, acceleration = through(moved, 1, w, T), through(moved, 2, w, T)
     viscous, inertial = gamma**2 * D * velocity, gamma**2 * B * acceleration
     sign, unknown = direction(c, theta, count, p["matched.slow"] * T)
-    held = [np.append(s[1:], 0.0) for s in (sign, unknown)]  # sample k ends at k
+    held = [np.append(s[1:], 0.0) for s in (sign, unknown)]  # sample k ends at instant k
 
     def beside_smooth(x: Array, held: bool = False) -> Array:
         return through(x, 0, w, T, held) + T**2 / 12 * through(x, 2, w, T, held)
@@ -140,7 +140,7 @@ def matched_filter(
     before = 0.0
     for k in range(len(z)):
         f = columns[k].astype(np.longdouble)
-        # What a sample weighs
+        # Variance of the sample
         rounding = sigma**2 * (count**2 + count_q**2) / 12
         resting = resting + 1 if abs(phi[k] - before) <= min(count, count_q) / 4 else 0.0
         unsure = unsure + 1 if unknown[k] > 0 else 0.0
@@ -152,7 +152,7 @@ def matched_filter(
             stays += creeping * unsure
         R *= (1 + stays / R) ** 2
 
-        # Whether it was at rest when it began
+        # Test whether the motor was at rest at the first sample
         epsilon, PF = y[k] - f @ eta, P @ f
         rho = f @ PF
         if k < starting and settled == 0 and not measured:
@@ -185,7 +185,7 @@ def matched_filter(
                     s = np.sqrt(np.minimum(1, np.diag(P_0) / np.maximum(np.diag(P), 1e-300)))
                     P = P * np.outer(s, s)
 
-        # What is believed of b, and with it of all else
+        # Weight of the data about b after the bias compensation, and its effect on all parameters
         believed, Q = eta, P
         if taken > 0:
             information = max(1 / P[b, b] - 1 / motor[1] ** 2, 0)
@@ -245,10 +245,10 @@ CASES: Mapping[str, tuple[Joint | str, Mapping[str, float]]] = {
 
 
 def compare(found: NDArray[np.void], expected: Mapping[str, Array]) -> None:
-    """Every output at every tick, to 1e-7 of its largest value."""
+    """Checks every output at every tick, to 1e-7 of its largest value."""
     for name, want in expected.items():
         got = found[NAMES[name]]
-        if name == "eta":  # each coefficient by itself
+        if name == "eta":  # each coefficient relative to its own largest value
             n, m = want.shape[1:]
             assert not np.any(got[:, n:]) and not np.any(got[:, :, m:])
             got = got[:, :n, :m]

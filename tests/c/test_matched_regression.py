@@ -1,4 +1,4 @@
-"""The matched regression by itself: what the estimator around it does not show."""
+"""The matched regression: properties that the outputs of the estimator do not show."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def c(build: Path) -> Library:
     return load(build)
 
 
-def test_samples_of_unknown_friction_are_counted_from_the_last_known_one(c: Library) -> None:
-    """GIVEN a motor that turns for a second and stops, WHEN its last count is older than that of
-    the slowest motion with a known sign, THEN samples are counted, and not before."""
+def test_samples_with_unknown_sign_of_friction_are_counted(c: Library) -> None:
+    """GIVEN a motor that turns for one second and stops, THEN samples are counted from the time on
+    at which a motion at the velocity `slow` would have shown another count."""
     z = np.zeros((1200, 5))
-    turning = 0.4 * T * np.arange(1000)  # some counts in every sample
+    turning = 0.4 * T * np.arange(1000)  # a few counts in every sample
     z[:1000, 0] = z[:1000, 1] = np.round(turning / (2 * np.pi) * 40000) / 40000 * 2 * np.pi
     z[1000:, :2] = z[999, :2]
     estimator = Estimator(c, VALUES)
@@ -30,11 +30,11 @@ def test_samples_of_unknown_friction_are_counted_from_the_last_known_one(c: Libr
     assert estimator.state.matched.unsure == 0.0
     estimator.run(z[1000:])
     count, slow = 2 * np.pi / 40000, 0.05 * T
-    known = int(count / slow)  # a count in so many samples is not yet slow
+    known = int(count / slow)  # one count in this number of samples is not slower than `slow`
     assert estimator.state.matched.unsure == pytest.approx(200 - known, abs=1)
 
 
-def test_a_taken_sample_returns_one(c: Library) -> None:
+def test_a_step_with_a_good_sample_returns_one(c: Library) -> None:
     z = Joint(duration=0.1).measurements()
     estimator = Estimator(c, VALUES)
     ffi, lib = c.ffi, c.lib
@@ -52,8 +52,8 @@ def test_a_taken_sample_returns_one(c: Library) -> None:
     assert set(learning) == {0.0, 1.0}  # both while the filters settle and after
 
 
-def test_the_largest_basis_has_a_prior_of_its_own_size(c: Library) -> None:
-    """Coefficients behind the torque are those of the motor: their prior mean is zero."""
+def test_the_prior_of_the_largest_basis_leaves_the_motor_data_at_zero(c: Library) -> None:
+    """The parameters behind the coefficients of the torque are those of the motor."""
     eta_0 = np.arange(1.0, 41.0).reshape(8, 5)
     values = {**VALUES, "rls.n": 8, "rls.m": 5, "rls.eta_0": eta_0.tolist()}
     values["matched.drift"] = 1e-3
@@ -63,7 +63,7 @@ def test_the_largest_basis_has_a_prior_of_its_own_size(c: Library) -> None:
     assert np.all(np.isfinite(estimator.covariance()))
 
 
-def test_a_motor_at_rest_anywhere_teaches_at_once(c: Library) -> None:
+def test_a_motor_at_rest_at_any_position_is_used_from_the_first_sample(c: Library) -> None:
     z = np.zeros((50, 5))
     z[:, 0] = z[:, 1] = 1.0
     found = Estimator(c, VALUES).run(z)
@@ -71,18 +71,18 @@ def test_a_motor_at_rest_anywhere_teaches_at_once(c: Library) -> None:
     assert np.all(found["a"] == 1.0)
 
 
-def test_a_motor_that_moves_at_the_first_step_teaches_later(c: Library) -> None:
+def test_a_motor_that_moves_at_the_first_step_is_used_later(c: Library) -> None:
     z = np.zeros((50, 5))
     z[1:, 0] = z[1:, 1] = 3 * 2 * np.pi / 40000 + 0.05 * T
     found = Estimator(c, VALUES).run(z)
-    settling = 12 / 350.0 / T  # ticks in twelve time constants of the filter
+    settling = 12 / 350.0 / T  # number of ticks in twelve time constants of the filter
     assert np.flatnonzero(found["a"][1:])[0] == pytest.approx(settling, abs=2)
 
 
 @pytest.mark.parametrize("sigma", [0.0, 1e3, -1e5])
-def test_a_sample_counts_as_its_noise_and_rounding_say(c: Library, sigma: float) -> None:
-    """GIVEN a joint that holds still, THEN its k-th sample has the variance R (1 + k c / R)^2,
-    with R of torque and rounding, and c of the rounding, which stays."""
+def test_the_variance_of_a_sample_at_rest(c: Library, sigma: float) -> None:
+    """GIVEN a joint at rest, THEN its k-th sample has the variance R (1 + k c / R)^2, with R of
+    torque noise and rounding, and c of the rounding, whose error is the same in all samples."""
     count, count_q, noise, gamma = 1e-4, 3e-4, 2e-3, 50.0
     settings = c.new(
         "sh_matched_settings",

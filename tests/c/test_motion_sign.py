@@ -20,12 +20,12 @@ def c(build: Path) -> Library:
 
 
 def steps(count: int) -> Array:
-    """0, 1, 2, ..."""
+    """The numbers 0, 1, 2, ... as doubles."""
     return np.arange(count, dtype=np.float64)
 
 
 def run(c: Library, positions: Array, count: float = COUNT) -> tuple[Array, Array]:
-    """Mean sign and share unknown for every sample but the first."""
+    """For every sample but the first: mean sign, and 0 if it is known, else 1 or more."""
     motion = c.new("sh_motion_sign")
     c.lib.sh_motion_sign_start(motion, positions[0])
     found = []
@@ -41,15 +41,15 @@ def rounded(x: Array) -> Array:
 
 
 @pytest.mark.parametrize("velocity", [0.06, 0.3, -2.0, 40.0])
-def test_steady_motion_is_known_between_counts(c: Library, velocity: float) -> None:
+def test_the_sign_of_steady_motion_is_known_between_counts(c: Library, velocity: float) -> None:
     signs, unknown = run(c, rounded(velocity * T * steps(400)))
     assert np.all(signs[20:] == np.sign(velocity))
     assert np.all(unknown[20:] == 0)
 
 
-def test_at_rest_nothing_is_known(c: Library) -> None:
-    """GIVEN a motor that stops, WHEN no count comes for as long as one takes at the slow velocity,
-    THEN the sign is unknown, and 0."""
+def test_the_sign_is_unknown_at_rest(c: Library) -> None:
+    """GIVEN a motor that stops, WHEN there has been no count for as long as one takes at the
+    velocity `slow`, THEN the sign is unknown and 0."""
     x = 0.5 * T * np.minimum(steps(200), 100)
     signs, unknown = run(c, rounded(x))
     waiting = int(np.ceil(COUNT / (SLOW * T))) + 2
@@ -57,16 +57,18 @@ def test_at_rest_nothing_is_known(c: Library) -> None:
     assert np.all(signs[100 + waiting :] == 0)
 
 
-def test_creeping_is_unknown(c: Library) -> None:
+def test_the_sign_is_unknown_while_the_motor_creeps(c: Library) -> None:
     _, unknown = run(c, rounded(0.02 * T * steps(500)))
     assert np.all(unknown == 1)
 
 
 @pytest.mark.parametrize("acceleration", [50.0, 100.0, 400.0, 3000.0])
 @pytest.mark.parametrize("seed", range(5))
-def test_a_reversal_costs_no_impulse(c: Library, acceleration: float, seed: int) -> None:
-    """GIVEN a reversal at any instant, WHEN the signs are summed over it, THEN the sum is that of
-    the true sign to within one sample, as soon as the motor is back at speed."""
+def test_the_sum_of_the_signs_over_a_reversal_is_right(
+    c: Library, acceleration: float, seed: int
+) -> None:
+    """GIVEN a reversal at any instant, WHEN the signs are summed over it until the motor is fast
+    again, THEN the sum differs from that of the true sign by less than one sample."""
     turn = 0.1 + np.random.default_rng(seed).uniform(0, T)
     t = T * steps(201)
     offset = np.random.default_rng(seed + 100).uniform(0, COUNT)
@@ -76,7 +78,7 @@ def test_a_reversal_costs_no_impulse(c: Library, acceleration: float, seed: int)
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
-def test_without_rounding_a_reversal_is_placed_within_the_sample(c: Library, way: float) -> None:
+def test_without_rounding_the_time_of_a_reversal_is_exact(c: Library, way: float) -> None:
     turn = 0.0503
     t = T * steps(101)
     signs, _ = run(c, way * 50.0 * (t - turn) ** 2, count=0.0)
@@ -85,7 +87,7 @@ def test_without_rounding_a_reversal_is_placed_within_the_sample(c: Library, way
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
-def test_a_fast_reversal_is_known_both_ways(c: Library, way: float) -> None:
+def test_the_sign_is_known_after_a_fast_reversal(c: Library, way: float) -> None:
     motion = c.new("sh_motion_sign")
     c.lib.sh_motion_sign_start(motion, 0.0)
     for position in (5.0, 10.0, 15.0, 11.0):
@@ -94,26 +96,27 @@ def test_a_fast_reversal_is_known_both_ways(c: Library, way: float) -> None:
     assert motion.direction == -way
 
 
-def test_the_slowest_velocity_is_still_known(c: Library) -> None:
+def test_the_sign_is_known_at_the_velocity_slow_itself(c: Library) -> None:
     motion = c.new("sh_motion_sign")
     c.lib.sh_motion_sign_start(motion, 0.0)
     unknown = []
-    for _ in range(4):  # the first one moves, by a count; slow is half a count in a sample
+    for _ in range(4):  # only the first one moves, by one count; `slow` is half a count per sample
         c.lib.sh_motion_sign_step(motion, 1.0, 1.0, 0.5)
         unknown.append(motion.unknown)
     assert unknown == [1.0, 0.0, 0.0, 1.0]
 
 
-def test_reversal_is_as_unknown_as_the_signs_it_takes_back(c: Library) -> None:
-    """GIVEN a motor that turns between two edges of the encoder, THEN the count that shows it takes
-    back the signs given since the last one; unknown are that many samples and its own."""
+def test_a_reversal_subtracts_the_wrong_signs_and_counts_them_as_unknown(c: Library) -> None:
+    """GIVEN a motor that reverses between two edges of the encoder, THEN the signs since the last
+    count are subtracted at the count that shows the reversal; those samples and this one count as
+    unknown."""
     signs, unknown = run(c, COUNT * np.array([0, 1, 1, 2, 2, 3, 3, 3, 2, 2.0]))
     assert signs[4:].tolist() == [1, 1, 1, -1 - 2, -1]
     assert unknown[4:].tolist() == [0, 0, 0, 1 + 2, 0]
 
 
-def test_before_the_first_step_nothing_is_known(c: Library) -> None:
-    """And no time has passed, whatever there was before."""
+def test_the_sign_is_unknown_before_the_first_step(c: Library) -> None:
+    """Also after a second start: nothing of the motion before is left."""
     motion = c.new("sh_motion_sign")
     for _ in range(2):
         c.lib.sh_motion_sign_start(motion, 3.0)

@@ -1,4 +1,4 @@
-"""Would the tests of the library notice a wrong token?"""
+"""Mutation testing: the tests of the library notice a wrong token in its code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Defaults against the start values of the FMU, and ranges of parameters that are arrays."""
+"""Defaults against the start values of the FMU, and the ranges of the coefficients eta_0."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A parameter whose regressor is noisy: what is taken back, and what is believed in the end."""
+"""Bias compensation for a parameter whose regressor is noisy, and the variance that results."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def covariance(c: Library, rls: Any) -> Array:
     return np.array([[at(rls, i, j) for j in range(rls.size)] for i in range(rls.size)])
 
 
-def test_taking_back_is_subtracting_from_the_sum_of_squares(c: Library) -> None:
+def test_the_compensation_subtracts_from_the_sum_of_squares(c: Library) -> None:
     rng = np.random.default_rng(1)
     prior = np.array([4.0, 0.01, 2.0])
     F, y = rng.normal(size=(50, 3)), rng.normal(size=50)
@@ -55,7 +55,7 @@ def test_taking_back_is_subtracting_from_the_sum_of_squares(c: Library) -> None:
     assert np.allclose(list(rls.eta)[:3], want, rtol=1e-9)
 
 
-def test_nothing_becomes_less_known_than_before_the_data(c: Library) -> None:
+def test_no_variance_becomes_larger_than_the_prior(c: Library) -> None:
     prior = np.array([4.0, 0.01])
     rls = start(c, prior)
     weigh(c, rls, 1.0, np.array([1.0, 3.0]), 0.5)
@@ -66,7 +66,7 @@ def test_nothing_becomes_less_known_than_before_the_data(c: Library) -> None:
     assert bias.surplus + bias.taken == pytest.approx(1e6)
 
 
-def test_a_parameter_that_is_off_stays_off(c: Library) -> None:
+def test_a_parameter_without_prior_variance_stays_zero(c: Library) -> None:
     rls = start(c, np.array([1.0, 0.0]))
     weigh(c, rls, 1.0, np.array([1.0, 3.0]), 0.5)
     bias = c.new("sh_rounding_bias", surplus=3.0)
@@ -77,10 +77,10 @@ def test_a_parameter_that_is_off_stays_off(c: Library) -> None:
 
 
 @pytest.mark.parametrize("excitation", [0.01, 0.1, 1.0])
-def test_belief_holds_the_truth_as_often_as_it_says(c: Library, excitation: float) -> None:
-    """GIVEN a column x with noise of variance V that is in y as well, and b drawn from its prior,
-    WHEN it is excited strongly, weakly or hardly, THEN b lies within 1.96 standard deviations in
-    95 % of all runs, and its mean error is a small part of them."""
+def test_the_error_agrees_with_the_variance(c: Library, excitation: float) -> None:
+    """GIVEN a column x with noise of variance V that is part of y, too, and b drawn from its prior,
+    WHEN the excitation is strong, weak or very weak, THEN b is within 1.96 standard deviations in
+    about 95 % of all runs, and its mean error is a small part of a standard deviation."""
     rng = np.random.default_rng(int(excitation * 100))
     V, samples, prior = 0.5, 1000, np.array([1.0, 0.01])
     errors = []
@@ -88,7 +88,7 @@ def test_belief_holds_the_truth_as_often_as_it_says(c: Library, excitation: floa
         b = 0.1 * rng.normal()
         x = excitation * np.sin(0.05 * np.arange(samples) + rng.uniform(0, 6))
         noise = np.sqrt(V) * rng.normal(size=samples)
-        # y by the nominal parameter, x + noise, less the true one; see matched_regression.h
+        # y with the nominal parameter (x + noise) minus the true torque; see matched_regression.h
         y = (x + noise) - (1 + b) * x + np.sqrt(1 - V) * rng.normal(size=samples)
         rls = start(c, prior)
         bias = c.new("sh_rounding_bias")

@@ -1,4 +1,4 @@
-"""The basis in units of its ranges, against the basis of the paper."""
+"""The basis that is scaled with its ranges, against the basis of the paper."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ def c(build: Path) -> Library:
 @pytest.mark.parametrize("symmetric", [1, 0])
 @pytest.mark.parametrize("n,m", [(1, 1), (1, 5), (3, 2), (8, 1), (8, 5)])
 @pytest.mark.parametrize("phi", [0.0, 0.13, -0.4])
-def test_with_its_units_it_is_the_basis_of_the_paper(
+def test_the_scaled_basis_times_its_units_is_the_basis_of_the_paper(
     c: Library, symmetric: int, n: int, m: int, phi: float
 ) -> None:
-    """Coefficients times their units, on the scaled basis, give the same torque and stiffness."""
+    """So the same coefficients, converted with these units, give the same torque and stiffness."""
     arrays: list[Array] = [np.full(n * m + 1, GUARD) for _ in range(5)]
     F, dF, units, want_F, want_dF = arrays
     scale = c.new("sh_range_parameters", phi=0.3, setPoint=70.0)

@@ -1,4 +1,4 @@
-"""The state-variable filter against scipy's solution of the same differential equation."""
+"""The state-variable filter, against scipy's solution of the same differential equation."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def random_walk(seed: int) -> Array:
 
 
 @pytest.mark.parametrize("w", [1.0, 200.0, 3000.0])
-def test_filters_signals_that_are_linear_between_samples(c: Library, w: float) -> None:
+def test_signals_that_are_linear_between_samples_are_filtered_exactly(c: Library, w: float) -> None:
     x = random_walk(1)
     t = T * np.arange(len(x))
     lib, d, f = c.lib, design(c, w), c.new("sh_state_variable_filter")
@@ -50,7 +50,7 @@ def test_filters_signals_that_are_linear_between_samples(c: Library, w: float) -
         assert np.max(np.abs(np.array(values) - want)) < 1e-9 * np.max(np.abs(want))
 
 
-def test_filters_means_as_signals_held_over_the_sample(c: Library) -> None:
+def test_means_over_a_sample_are_filtered_as_signals_that_are_held(c: Library) -> None:
     x = random_walk(2)
     lib, d, f = c.lib, design(c, 200.0), c.new("sh_state_variable_filter")
     lib.sh_state_variable_filter_start(f, 0.0)
@@ -62,7 +62,7 @@ def test_filters_means_as_signals_held_over_the_sample(c: Library) -> None:
     assert np.max(np.abs(np.array(got) - want)) < 1e-9 * np.max(np.abs(want))
 
 
-def test_a_signal_that_was_there_for_ever_has_no_transient(c: Library) -> None:
+def test_a_start_at_a_constant_signal_has_no_transient(c: Library) -> None:
     lib, d, f = c.lib, design(c, 200.0), c.new("sh_state_variable_filter")
     lib.sh_state_variable_filter_start(f, 7.0)
     lib.sh_state_variable_filter_step(f, d, 7.0)
@@ -72,8 +72,8 @@ def test_a_signal_that_was_there_for_ever_has_no_transient(c: Library) -> None:
 
 
 def test_derivatives_are_the_same_far_from_zero(c: Library) -> None:
-    """GIVEN a signal of whole numbers, WHEN 2^40 is added, which is exact, THEN every derivative
-    is the same to the last bit."""
+    """GIVEN a signal of integers, WHEN 2^40 is added, which is exact in doubles, THEN every
+    derivative is the same to the last bit."""
     lib, d = c.lib, design(c, 200.0)
     near, far = (c.new("sh_state_variable_filter") for _ in range(2))
     lib.sh_state_variable_filter_start(near, 0.0)
@@ -85,7 +85,7 @@ def test_derivatives_are_the_same_far_from_zero(c: Library) -> None:
             assert derivative(far, d) == derivative(near, d)
 
 
-def test_at_rest_it_ends_at_zero_and_at_no_denormal_number(c: Library) -> None:
+def test_at_rest_the_state_becomes_zero_and_never_denormal(c: Library) -> None:
     lib, d, f = c.lib, design(c, 200.0), c.new("sh_state_variable_filter")
     lib.sh_state_variable_filter_begin(f, 1.0)
     for _ in range(1000):
@@ -97,7 +97,7 @@ def test_at_rest_it_ends_at_zero_and_at_no_denormal_number(c: Library) -> None:
 @pytest.mark.parametrize("w", [50.0, 350.0, 1500.0])
 def test_noise_gain_is_the_integral_over_all_frequencies(c: Library, w: float) -> None:
     second = transfer(w, 2)
-    # scipy's first-order hold is exact for the same class of signals
+    # scipy's first-order hold is exact for the same signals: linear between samples
     numerator, denominator, _ = signal.cont2discrete((second.num, second.den), T, method="foh")
     frequencies = (np.arange(200_000) + 0.5) * np.pi / 200_000
     _, response = signal.freqz(numerator.ravel(), denominator, worN=frequencies)
@@ -105,9 +105,9 @@ def test_noise_gain_is_the_integral_over_all_frequencies(c: Library, w: float) -
     assert c.lib.sh_state_variable_filter_noise(design(c, w)) == pytest.approx(want, rel=1e-6)
 
 
-def test_a_derivative_beside_its_signal_is_exact(c: Library) -> None:
-    """GIVEN sin(Omega t) and its second derivative, both sampled, WHEN both are filtered, THEN
-    s^2 H of the one is H of the other, but for images beyond half the sampling rate."""
+def test_the_second_derivative_is_consistent_with_a_filtered_acceleration(c: Library) -> None:
+    """GIVEN samples of sin(Omega t) and of its second derivative, WHEN both are filtered, THEN
+    s^2 H of the first is H of the second, except for images above half the sampling rate."""
     Omega = 2 * np.pi * 20.0
     t = T * np.arange(1000)
     lib, d = c.lib, design(c, 300.0)
@@ -120,4 +120,4 @@ def test_a_derivative_beside_its_signal_is_exact(c: Library) -> None:
             want = lib.sh_state_variable_filter_output(acceleration)
             largest = max(largest, abs(want))
             error = max(error, abs(lib.sh_state_variable_filter_second(x, d) - want))
-    assert error < 1e-3 * largest  # trapezoids: (Omega T)^2 / 6 = 2.6e-3
+    assert error < 1e-3 * largest  # with the trapezoidal rule: (Omega T)^2 / 6 = 2.6e-3

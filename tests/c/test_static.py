@@ -1,4 +1,4 @@
-"""The C code as static analysers see it."""
+"""Static analysers find no error in the C code."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ SOURCES = [*sorted((REPOSITORY / "c").glob("*.c")), *sorted((REPOSITORY / "fmu_s
 PLANT = Path("fmu") / "AwasPlant"
 every_source = pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.name)
 
-# What clang-tidy says and is wrong about: file, check, the line of code, why it is wrong.
+# False alarms of clang-tidy: file, check, line of code, why the alarm is wrong.
 FALSE_ALARMS = (
     (
         "least_squares.c",
         "core.uninitialized.Assign",
         "rest[i] -= rest[j] * u[i];",
-        "takes rls->size for something that may change between two loops over it",
+        "assumes that rls->size may change between two loops over it",
     ),
     (
         "stiffness_estimator.c",
         "core.UndefinedBinaryOperatorResult",
         "scaled[i] = eta_0[i] * units[i];",
-        "takes loops over m and n, and over n m, for loops of different lengths",
+        "assumes that loops over m and n have another length than one over n m",
     ),
     (
         "radau.c",
         "core.uninitialized.Assign",
         "x[j] = x_new[j];",
-        "does not know that an error of at most 1 means that x_new was set",
+        "does not see that x_new was set if the error is at most 1",
     ),
 )
 
 
 def flags(source: Path, build: Path) -> list[str]:
-    """What a compiler needs to read a source of an FMU or of the library."""
-    own = build / "fmu" / source.stem  # what is generated for this file, or for every plant
+    """Compiler options for a source of an FMU or of the library."""
+    own = build / "fmu" / source.stem  # code that is generated for this file, or for every plant
     folders = [REPOSITORY / "c", REPOSITORY / "fmu_src", own if own.is_dir() else build / PLANT]
     headers = Path(fmpy.__file__).parent / "c-code"
     return ["-std=c99", *(f"-I{folder}" for folder in folders), f"-isystem{headers}"]
@@ -61,7 +61,7 @@ def test_clang_tidy(source: Path, build: Path) -> None:
     found = re.findall(
         r"^\S+?([\w.]+):\d+:\d+: error: (.*) \[([^\n]*)\]\n(.*)$", text, re.MULTILINE
     )
-    assert found or not text, text  # it did not run
+    assert found or not text, text  # else it did not run
     wrong = [
         (file, check, line.strip())
         for file, _, check, line in found
@@ -79,9 +79,9 @@ def test_cppcheck(build: Path) -> None:
     text = run(
         *("cppcheck", "--quiet", "--std=c99", "--enable=warning,style,performance,portability"),
         *("--inconclusive", "--error-exitcode=1"),
-        # A static without a value is zero, which is what these are for.
+        # A static variable without an initial value is zero, as these are meant to be.
         "--suppress=unassignedVariable",
-        # CasADi's functions read the array through the table of their arguments.
+        # CasADi's functions read this array through the table of their arguments.
         f"--suppress=unreadVariable:{REPOSITORY / 'fmu_src' / 'plant.c'}",
         *(f"-I{folder}" for folder in (REPOSITORY / "c", REPOSITORY / "fmu_src", build / PLANT)),
         *SOURCES,

@@ -1,4 +1,4 @@
-"""The whole estimator: parameters, bad samples, long runs, and every tick against the oracle."""
+"""The whole estimator: parameters, bad samples, long runs, every tick against the oracle."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def relative(estimates: np.ndarray[Any, Any], truth: Array) -> Array:
 # Parameters
 
 
-def test_defaults_are_those_of_the_paper_and_pass(c: Library) -> None:
+def test_defaults_are_those_of_the_paper_and_in_their_ranges(c: Library) -> None:
     p = c.parameters({})
     assert c.violation(p) is None
     for name, value in DEFAULTS.items():
@@ -88,7 +88,7 @@ NOT_NEGATIVE = [
     "encoder.theta_c",
     "model.k_s",
 ]
-# What is squared or raised to a power.
+# Limits of parameters that are squared or raised to a power.
 BOUNDED = {
     "noise.tau": (1e-12, 1e12),
     "noise.tau_e": (1e-12, 1e12),
@@ -132,13 +132,13 @@ OUTSIDE: list[tuple[str, float]] = [
 
 
 @pytest.mark.parametrize(("name", "value"), OUTSIDE)
-def test_outside_its_range_a_parameter_is_named(c: Library, name: str, value: float) -> None:
+def test_a_parameter_outside_its_range_is_named(c: Library, name: str, value: float) -> None:
     method = {"method": 2} if name.startswith("matched.") else {}
     problem = c.violation(c.parameters({**method, name: value}))
     assert problem is not None
-    named, came, allowed = problem
+    named, received, allowed = problem
     assert named == name
-    assert came == value or (math.isnan(came) and math.isnan(value))
+    assert received == value or (math.isnan(received) and math.isnan(value))
     assert allowed
 
 
@@ -158,16 +158,16 @@ def test_outside_its_range_a_parameter_is_named(c: Library, name: str, value: fl
         ("rls.symmetric", 1),
     ],
 )
-def test_at_its_limit_a_parameter_passes(c: Library, name: str, value: float) -> None:
+def test_a_parameter_at_its_limit_is_accepted(c: Library, name: str, value: float) -> None:
     assert c.violation(c.parameters({name: value})) is None
 
 
 @pytest.mark.parametrize("value", [0.1, math.nextafter(2000.0, 0.0)])
-def test_at_its_limit_the_bandwidth_passes(c: Library, value: float) -> None:
+def test_the_bandwidth_at_its_limit_is_accepted(c: Library, value: float) -> None:
     assert c.violation(c.parameters({"method": 2, "matched.bandwidth": value})) is None
 
 
-def test_limits_by_the_sample_period_hold_for_the_method_that_has_them(c: Library) -> None:
+def test_limits_by_the_sample_period_apply_to_their_method_only(c: Library) -> None:
     for method, name in ((1, "residual.K_I"), (2, "matched.bandwidth")):
         problem = c.violation(c.parameters({"method": method, "samplePeriod": 0.01}))
         assert problem is not None and problem[0] == name
@@ -175,15 +175,15 @@ def test_limits_by_the_sample_period_hold_for_the_method_that_has_them(c: Librar
         assert c.violation(c.parameters(mended)) is None
 
 
-def test_something_must_be_left_to_be_found(c: Library) -> None:
+def test_a_curve_of_exact_shape_needs_a_nominal_curve_and_its_uncertainty(c: Library) -> None:
     """GIVEN prior.tau_e = 0, so that the shape of the torque curve is exact, THEN MatchedFilter
-    wants a curve, and to be told how far it may be off as a whole."""
+    requires a nominal curve and the uncertainty of the curve as a whole."""
     exact = {"method": 2, "prior.tau_e": 0.0}
     for values in (exact, {**exact, "prior.nominal": 0.3}):
         problem = c.violation(c.parameters(values))
         assert problem is not None
-        name, came, allowed = problem
-        assert (name, came) == ("prior.tau_e", 0.0)
+        name, received, allowed = problem
+        assert (name, received) == ("prior.tau_e", 0.0)
         assert "rls.eta_0" in allowed and "prior.nominal" in allowed
     for nominal, i, fine in ((0.3, 1, True), (0.0, 1, False), (0.3, 2, False)):
         p = c.parameters({**exact, "prior.nominal": nominal, "rls.n": 2})
@@ -193,7 +193,7 @@ def test_something_must_be_left_to_be_found(c: Library) -> None:
 
 
 @pytest.mark.parametrize("low", [True, False])
-def test_extreme_ranges_and_priors_leave_finite_numbers(c: Library, low: bool) -> None:
+def test_extreme_ranges_and_priors_give_finite_outputs(c: Library, low: bool) -> None:
     extreme = {name: limits[0 if low else 1] for name, limits in BOUNDED.items()}
     extreme["prior.tau_e"] = max(extreme["prior.tau_e"], TINY)
     estimator = Estimator(c, {"method": 2, "rls.n": 8, "rls.m": 5, "rls.symmetric": 1, **extreme})
@@ -203,7 +203,7 @@ def test_extreme_ranges_and_priors_leave_finite_numbers(c: Library, low: bool) -
         assert math.isfinite(getattr(estimator.estimate, name)), name
 
 
-def test_parameters_that_contradict_each_other(c: Library) -> None:
+def test_parameters_that_contradict_each_other_are_refused(c: Library) -> None:
     problem = c.violation(c.parameters({"filter.V_min": 10.1}))
     assert problem is not None
     assert problem[0] in ("filter.V_min", "filter.V_max")
@@ -226,9 +226,9 @@ def test_initial_estimate_must_be_finite(c: Library, bad: float) -> None:
 
 
 @pytest.mark.parametrize("symmetric", [1, 0])
-def test_state_before_the_first_tick(c: Library, symmetric: int) -> None:
-    # eta_0 at phi = 0 and theta_c = 0: sigma is the sum over offset^j of the coefficients of phi,
-    # tau_e that of the constants, which only the general basis has
+def test_outputs_before_the_first_tick(c: Library, symmetric: int) -> None:
+    # eta_0 at phi = 0 and theta_c = 0: sigma is the sum over j of offset^j times the coefficients
+    # of phi; tau_e is the same sum with the constants, which only the general basis has
     eta_0 = np.zeros((8, 5))
     eta_0[:3, :3] = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [9.0, 9.0, 9.0]]
     values = {"rls.eta_0": eta_0.tolist(), "setPoint.offset": 10.0, "rls.symmetric": symmetric}
@@ -239,8 +239,8 @@ def test_state_before_the_first_tick(c: Library, symmetric: int) -> None:
 
 
 def test_first_tick_starts_the_filters_and_the_residual(c: Library) -> None:
-    # GIVEN a motor far from zero under torque WHEN the first sample comes
-    # THEN there is no velocity and no residual, and the regression learns from torque zero
+    # GIVEN a motor far from zero, under torque WHEN the first sample is received
+    # THEN velocity and residual are zero, and the regression is updated with torque zero
     estimator = Estimator(c, {})
     assert estimator.tick([18.0, 18.01, 3.0, 0.5, 0.0])
     estimate = estimator.estimate
@@ -261,7 +261,7 @@ def test_unused_coefficients_are_zero(c: Library) -> None:
 
 
 def test_a_mirrored_motion_has_the_same_stiffness(c: Library) -> None:
-    # (16): with theta, q and the torques negated, torques change sign and the stiffness does not
+    # (16): if theta, q and the torques are negated, tau_e changes its sign and sigma does not
     z = table1_recording().measurements()[:2000]
     one = Estimator(c, {}).run(z)
     other = Estimator(c, {}).run(z * [-1, -1, 1, -1, -1])
@@ -269,7 +269,7 @@ def test_a_mirrored_motion_has_the_same_stiffness(c: Library) -> None:
     assert np.all(other["tau_e"] == -one["tau_e"])
 
 
-def test_a_copied_estimator_goes_on_like_the_original(c: Library) -> None:
+def test_a_copied_estimator_continues_like_the_original(c: Library) -> None:
     z = table1_recording().measurements()
     original = Estimator(c, {})
     original.run(z[:1000])
@@ -283,9 +283,9 @@ def test_a_copied_estimator_goes_on_like_the_original(c: Library) -> None:
 
 
 @pytest.mark.parametrize("modality", MODALITIES)
-def test_stiffness_of_the_AwAS_is_found(c: Library, modality: int) -> None:
-    # GIVEN the motion of Table I WHEN a second has passed
-    # THEN the mean square relative error is far below the paper's 0.12 %
+def test_stiffness_of_the_AwAS_is_estimated(c: Library, modality: int) -> None:
+    # GIVEN the motion of Table I WHEN one second has passed
+    # THEN the mean square relative error is far below the 0.12 % of the paper
     recording = table1_recording()
     estimates = Estimator(c, {"modality": modality}).run(recording.measurements())
     after = relative(estimates, recording.true_sigma)[1000:]
@@ -300,7 +300,7 @@ def test_residual_follows_the_flexibility_torque(c: Library) -> None:
     assert abs(np.mean(error)) < 0.01 * np.ptp(recording.true_tau_e)
 
 
-def test_filtered_velocity_is_nearer_than_the_difference(c: Library) -> None:
+def test_filtered_velocity_has_a_smaller_error_than_the_difference_quotient(c: Library) -> None:
     recording = table1_recording()
     rms = {}
     for kind in FILTERS:
@@ -312,13 +312,13 @@ def test_filtered_velocity_is_nearer_than_the_difference(c: Library) -> None:
 
 
 def test_modality_can_change_between_ticks(c: Library) -> None:
-    # The regression goes on, with another torque
+    # The regression continues with another torque
     z = table1_recording().measurements()[:600]
     estimator = Estimator(c, {"modality": MODEL})
     first = estimator.run(z[:300])
     c.set(estimator.parameters, "modality", SENSOR)
     second = estimator.run(z[300:])
-    # By hand: a sensor that shows the model's torque until the change
+    # The same result is obtained from a sensor that shows the model's torque until the change
     mixed = z.copy()
     model = first["epsilon"] + _fitted_before(first)
     mixed[:300, 4] = model
@@ -329,7 +329,7 @@ def test_modality_can_change_between_ticks(c: Library) -> None:
 
 
 def _fitted_before(estimates: np.ndarray[Any, Any]) -> Array:
-    """F(k)' eta(k-1): what epsilon is the difference to."""
+    """F(k)' eta(k-1), the predicted torque."""
     phi, set_point = estimates["phi"], estimates["setPoint"]
     eta = np.concatenate([np.zeros((1, 8, 5)), estimates["eta"][:-1]])
     odd = phi[:, None] ** (2 * np.arange(8) + 1)
@@ -359,7 +359,7 @@ def test_a_bad_sample_is_skipped(c: Library, name: str, bad: float) -> None:
 
 
 @pytest.mark.parametrize("name", ["theta", "q"])
-def test_a_first_sample_that_would_overflow_is_not_the_first(c: Library, name: str) -> None:
+def test_a_sample_that_would_overflow_does_not_start_the_filters(c: Library, name: str) -> None:
     states = []
     for bad in (math.nan, 1e12):
         estimator = Estimator(c, {})
@@ -371,9 +371,9 @@ def test_a_first_sample_that_would_overflow_is_not_the_first(c: Library, name: s
 
 
 @pytest.mark.parametrize("name", ["theta", "q"])
-def test_a_sample_that_would_overflow_leaves_no_trace(c: Library, name: str) -> None:
-    # GIVEN a finite sample whose powers overflow the regression WHEN it is skipped
-    # THEN filters, residual and regression are as if it had not been finite, also behind a gap
+def test_a_sample_that_would_overflow_changes_nothing(c: Library, name: str) -> None:
+    # GIVEN a finite sample whose powers overflow in the regression, after a gap WHEN it is skipped
+    # THEN filters, residual and regression are the same as after a sample that is not finite
     z = table1_recording().measurements()
     states = []
     for bad in (math.nan, 1e12):
@@ -387,8 +387,8 @@ def test_a_sample_that_would_overflow_leaves_no_trace(c: Library, name: str) -> 
     assert states[0] == states[1]
 
 
-def test_start_waits_for_the_first_good_sample(c: Library) -> None:
-    # GIVEN bad samples from the start WHEN a good one comes THEN that one is the first
+def test_the_estimator_starts_with_the_first_good_sample(c: Library) -> None:
+    # GIVEN bad samples at the start WHEN a good one is received THEN it counts as the first
     z = table1_recording().measurements()[:1000]
     late = Estimator(c, {})
     for _ in range(3):
@@ -399,11 +399,10 @@ def test_start_waits_for_the_first_good_sample(c: Library) -> None:
 
 @pytest.mark.parametrize("modality", MODALITIES)
 @pytest.mark.parametrize("gap", [1, 10, 1000])
-def test_recovery_is_clean(c: Library, gap: int, modality: int) -> None:
-    # GIVEN two seconds of Table I WHEN samples are missing
-    # THEN the estimate is kept, and over the ten time constants of the residual after the gap the
-    # stiffness is within 5 % of the truth (within 1.5 % without a gap): what is learned from the
-    # first samples after a gap does not throw away what was learned before
+def test_the_estimate_stays_accurate_after_a_gap(c: Library, gap: int, modality: int) -> None:
+    # GIVEN two seconds of Table I WHEN samples are missing THEN the estimate does not change, and
+    # during ten time constants of the residual after the gap the stiffness is within 5 % of the
+    # true one (within 1.5 % without a gap): the first samples after a gap do not spoil the estimate
     recording = table1_recording()
     z = recording.measurements()
     z[2000 : 2000 + gap, 0] = math.nan
@@ -412,14 +411,14 @@ def test_recovery_is_clean(c: Library, gap: int, modality: int) -> None:
     assert np.all(estimates["valid"] == np.isfinite(z[:, 0]))
     after = slice(2000 + gap, 2000 + gap + 34)
     assert np.max(relative(estimates, recording.true_sigma)[after]) < 0.05
-    if modality != RESIDUAL:  # which alone has a memory that a gap makes wrong
+    if modality != RESIDUAL:  # only the residual has a state that is wrong after a gap
         assert np.all(estimates["a"][after] > 0)
 
 
 @pytest.mark.parametrize("lost", [0, 3])
-def test_learning_goes_on_when_the_residual_has_forgotten(c: Library, lost: int) -> None:
-    # GIVEN a gap of a second, and some samples lost soon after WHEN ten time constants 1 / K_I have
-    # passed since the gap THEN the regression learns again, no sooner and no later
+def test_the_regression_continues_when_the_residual_has_settled(c: Library, lost: int) -> None:
+    # GIVEN a gap of one second, and a few samples that are lost soon after it THEN the regression
+    # is updated again ten time constants 1 / K_I after the gap, not earlier and not later
     z = table1_recording().measurements()
     z[2000:3000, 0] = math.nan
     z[3010 : 3010 + lost, 0] = math.nan
@@ -429,9 +428,9 @@ def test_learning_goes_on_when_the_residual_has_forgotten(c: Library, lost: int)
     assert np.all(a[settled : settled + 100] > 0)
 
 
-def test_a_gap_of_two_time_constants_is_not_bridged(c: Library) -> None:
-    """GIVEN 1 / K_I of two samples, WHEN three are lost, so that the step is 2 / K_I long, THEN
-    the residual stays; WHEN two are lost, it does not."""
+def test_the_residual_does_not_integrate_over_a_gap_of_two_time_constants(c: Library) -> None:
+    """GIVEN 1 / K_I of two sample periods, WHEN three samples are lost, so that the step is 2 / K_I
+    long, THEN the residual does not change; WHEN two are lost, it does."""
     T = 1.0 / 1024.0
     for lost, stays in ((2, False), (3, True)):
         estimator = Estimator(c, {"samplePeriod": T, "residual.K_I": 512.0})
@@ -445,7 +444,7 @@ def test_a_gap_of_two_time_constants_is_not_bridged(c: Library) -> None:
 
 
 @pytest.mark.parametrize("filter_kind", FILTERS)
-def test_a_filtered_deformation_is_between_two_filtered_positions(
+def test_a_filtered_deformation_is_the_difference_of_two_filtered_positions(
     c: Library, filter_kind: int
 ) -> None:
     z = table1_recording().measurements()[:200]
@@ -469,11 +468,11 @@ def test_a_filtered_deformation_is_between_two_filtered_positions(
 
 @pytest.mark.parametrize("filter_kind", FILTERS)
 @pytest.mark.parametrize("every", [2, 10])
-def test_stiffness_is_found_from_every_other_sample(
+def test_stiffness_is_estimated_although_samples_are_lost_regularly(
     c: Library, every: int, filter_kind: int
 ) -> None:
-    # GIVEN a bus that loses samples regularly WHEN a second has passed
-    # THEN the residual still shows the torque, and the stiffness is found from it
+    # GIVEN a bus that loses every second or every tenth sample WHEN one second has passed
+    # THEN the residual still follows the torque, and the stiffness is estimated from it
     recording = table1_recording()
     z = recording.measurements()
     z[::every, 0] = math.nan
@@ -491,11 +490,11 @@ def test_stiffness_is_found_from_every_other_sample(
     [RLS[ENHANCED], {"rls.kind": STANDARD, "rls.P_0": 1e20}, {"rls.kind": CONSTANT_FACTOR}],
     ids=["enhanced", "standard 1e20", "constant 1e20"],
 )
-def test_covariance_survives_ten_million_ticks_without_excitation(
+def test_covariance_stays_positive_for_ten_million_ticks_without_excitation(
     c: Library, values: Mapping[str, float]
 ) -> None:
-    # GIVEN a fitted estimator WHEN the joint rests, deformed, for 1e7 ticks (almost three hours)
-    # THEN P is still positive definite, and the stiffness stays finite
+    # GIVEN an estimator that has converged WHEN the joint rests, deformed, for 1e7 ticks (almost
+    # three hours) THEN P is still positive definite and the coefficients are finite
     z = table1_recording().measurements()
     estimator = Estimator(c, values)
     estimator.run(z)
@@ -511,7 +510,7 @@ def test_covariance_survives_ten_million_ticks_without_excitation(
 
 @cache
 def oracle_of(kind: int) -> dict[tuple[int, int], oracle.Estimate]:
-    """Table I as the paper's formulas have it, by modality and filter."""
+    """Estimates of the oracle for the run of Table I, by modality and filter."""
     combinations = [(modality, kind) for modality in MODALITIES for kind in FILTERS]
     variants = [{"modality": modality, "filter.kind": kind} for modality, kind in combinations]
     z = table1_recording().measurements()
@@ -522,9 +521,10 @@ def oracle_of(kind: int) -> dict[tuple[int, int], oracle.Estimate]:
 def compare(got: np.ndarray[Any, Any], want: oracle.Estimate, torque: Array) -> dict[str, float]:
     """Largest relative error of every output, see `oracle.relative_error`.
 
-    Two signals come from doubles less exactly where they cross zero, and are taken with what they
-    consist of. epsilon is the difference of two torques, each rounded, so the range is that of the
-    torque. eta is compared as the vector that it is, its entries scaled by their largest values.
+    Two signals are less exact where they cross zero, so their errors are relative to something
+    else. epsilon is the difference of two torques, each with a rounding error, so its error is
+    relative to the range of the torque. eta is compared as a vector, its entries scaled by their
+    largest values.
     """
     n, m = want.eta.shape[1:]
     errors = {
@@ -568,7 +568,7 @@ def test_filtered_deformation_against_the_oracle(c: Library, filter_kind: int) -
     z = table1_recording().measurements()[:3000]
     values = {
         **DEFAULTS,
-        "encoder.q": 5000.0,  # not that of theta
+        "encoder.q": 5000.0,  # another one than that of theta
         "filter.kind": filter_kind,
         "deformation": FILTERED,
         "modality": SENSOR,
@@ -614,8 +614,8 @@ def test_initial_estimate_against_the_oracle(c: Library) -> None:
 
 
 @pytest.mark.slow
-def test_the_oracle_has_digits_to_spare() -> None:
-    # The hardest case, P from 1e20 down to below one, gives the same doubles with twice the digits
+def test_the_oracle_gives_the_same_doubles_with_twice_the_digits() -> None:
+    # The most difficult case: P decreases from 1e20 to below one
     z = table1_recording().measurements()[:1500]
     values = {**DEFAULTS, "rls.kind": STANDARD}
     usual = oracle.estimator(values, z, [{}])[0]

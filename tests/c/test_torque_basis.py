@@ -1,4 +1,4 @@
-"""The polynomial basis, (18)-(23), against the oracle and its own structure."""
+"""The polynomial basis, (18)-(23), against the oracle and against its properties."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def c(build: Path) -> Library:
 def basis(
     c: Library, symmetric: int, n: int, m: int, set_point: float, phi: float
 ) -> tuple[Array, Array]:
-    """F and dF; the guard behind each must stay."""
+    """F and dF. Checks that nothing behind their end is written."""
     F, dF = np.full(n * m + 1, 123.0), np.full(n * m + 1, 123.0)
     c.lib.sh_torque_basis(symmetric, n, m, set_point, phi, c.pointer(F), c.pointer(dF))
     assert F[-1] == dF[-1] == 123.0
@@ -60,8 +60,8 @@ def test_order_of_the_coefficients_of_the_general_basis(c: Library) -> None:
 
 @pytest.mark.parametrize("symmetric", [1, 0])
 @pytest.mark.parametrize("phi", [0.02, -0.3, 1.0])
-def test_derivative_against_differences(c: Library, phi: float, symmetric: int) -> None:
-    # Central differences at h and 2 h, extrapolated: wrong by h^4 only
+def test_derivative_against_central_differences(c: Library, phi: float, symmetric: int) -> None:
+    # Central differences at h and 2 h, extrapolated: the error is of order h^4
     def central(h: float) -> Array:
         above, below = (basis(c, symmetric, 6, 3, 1.3, phi + s * h)[0] for s in (1, -1))
         quotient: Array = (above - below) / (2 * h)
@@ -73,7 +73,8 @@ def test_derivative_against_differences(c: Library, phi: float, symmetric: int) 
 
 
 def test_symmetry_of_the_transmission(c: Library) -> None:
-    # (16): no torque undeformed, the torque is odd and the stiffness even in the deformation
+    # (16): without deformation there is no torque; the torque is an odd function of the
+    # deformation, and the stiffness an even one
     F, dF = basis(c, 1, 8, 5, 100.0, 0.0)
     assert np.all(F == 0)
     assert dF.reshape(5, 8)[:, 0].tolist() == [1, 1e2, 1e4, 1e6, 1e8]
@@ -84,8 +85,8 @@ def test_symmetry_of_the_transmission(c: Library) -> None:
     assert np.all(mirrored_dF == dF)
 
 
-def test_constant_of_the_general_basis(c: Library) -> None:
-    # Undeformed, a torque that depends on the set-point is left, and the stiffness is that of phi^1
+def test_the_general_basis_without_deformation(c: Library) -> None:
+    # Only the constants give a torque, which depends on the set-point, and only phi^1 a stiffness
     F, dF = basis(c, 0, 8, 5, 100.0, 0.0)
     powers = [1, 1e2, 1e4, 1e6, 1e8]
     assert F.reshape(5, 8)[:, 0].tolist() == powers

@@ -1,4 +1,4 @@
-"""The residual, (6)-(8), against closed forms and physics."""
+"""The residual, (6)-(8), against closed forms and simple motions."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ def run(
     return np.array(estimate)
 
 
-def test_a_held_motor_shows_its_torque(c: Library) -> None:
-    # GIVEN a motor held still, so that by (3) the transmission carries -gamma tau
-    # WHEN the torque is on for 1 / K_I THEN the residual has reached 63 % of it
+def test_residual_of_a_motor_that_is_held_still(c: Library) -> None:
+    # GIVEN a motor that is held still, so that the flexibility torque is -gamma tau by (3)
+    # WHEN the torque has acted for 1 / K_I THEN the residual has reached 63 % of it
     zero = np.zeros(1000)
     estimate = run(c, zero, zero, np.full(1000, 0.2))
     reached = estimate[round(1 / (K_I * T))] / (-GAMMA * 0.2)
@@ -60,17 +60,17 @@ def test_a_held_motor_shows_its_torque(c: Library) -> None:
 
 
 def test_step_in_closed_form(c: Library) -> None:
-    # The trapezoidal rule answers a step with 1 - pole^k
+    # The step response of the trapezoidal rule is 1 - pole^k
     zero = np.zeros(300)
     pole = (2 - T * K_I) / (2 + T * K_I)
     estimate = run(c, zero, zero, np.full(300, 0.2))
     assert estimate == pytest.approx(-GAMMA * 0.2 * (1 - pole ** np.arange(300)), rel=1e-12)
 
 
-def test_a_pushed_motor_shows_the_push(c: Library) -> None:
+def test_residual_of_a_motor_that_the_flexibility_torque_turns(c: Library) -> None:
     # GIVEN no motor torque and a constant flexibility torque, which by (3) turns the motor with
     # theta_dot = tau_e / (gamma^2 D) (1 - exp(-t D / B))
-    # WHEN the residual has settled THEN it is that torque, with its sign
+    # WHEN the residual has settled THEN it is equal to that torque, with its sign
     tau_e = 1.5
     t = T * np.arange(2000)
     steady, lag = tau_e / (GAMMA**2 * D_THETA), B / D_THETA
@@ -80,9 +80,9 @@ def test_a_pushed_motor_shows_the_push(c: Library) -> None:
     assert estimate[-1] == pytest.approx(tau_e, rel=1e-3)
 
 
-def test_friction_and_inertia_alone_show_nothing(c: Library) -> None:
+def test_residual_is_zero_if_the_torque_is_that_of_friction_and_inertia(c: Library) -> None:
     # GIVEN a motor without transmission, tau = B gamma theta'' + D gamma theta'
-    # WHEN it swings THEN the residual stays near zero, far below the torque it explains
+    # WHEN it oscillates THEN the residual stays near zero, far below the motor torque
     w = 2 * math.pi * 3
     t = T * np.arange(5000)
     tau = -B * GAMMA * w**2 * np.sin(w * t) + D_THETA * GAMMA * w * np.cos(w * t)
@@ -92,7 +92,7 @@ def test_friction_and_inertia_alone_show_nothing(c: Library) -> None:
 
 def test_bandwidth_is_K_I(c: Library) -> None:
     # GIVEN a flexibility torque at the frequency K_I WHEN it has settled THEN the residual has
-    # 1 / sqrt(2) of the amplitude, 45 degrees late
+    # 1 / sqrt(2) of the amplitude and a phase of -45 degrees
     t = T * np.arange(4000)
     zero = np.zeros(len(t))
     estimate = run(c, zero, zero, -np.sin(K_I * t) / GAMMA)[2000:]
@@ -104,9 +104,9 @@ def test_bandwidth_is_K_I(c: Library) -> None:
     assert math.degrees(np.angle(response)) == pytest.approx(-45, abs=1)
 
 
-def test_after_lost_samples_it_goes_on_from_its_last_value(c: Library) -> None:
-    # GIVEN a settled residual WHEN samples were lost and it resumes elsewhere
-    # THEN it holds, and goes on to hold under the same load
+def test_after_lost_samples_the_residual_continues_from_its_last_value(c: Library) -> None:
+    # GIVEN a settled residual WHEN samples were lost and it is resumed
+    # THEN it keeps its value, also in the next step under the same load
     motor = c.new("sh_motor_parameters", B=B, D_theta=D_THETA, gamma=GAMMA)
     residual = c.new("sh_torque_residual")
     step = c.lib.sh_torque_residual_step
@@ -121,7 +121,7 @@ def test_after_lost_samples_it_goes_on_from_its_last_value(c: Library) -> None:
 
 @pytest.mark.parametrize(("T", "K_I"), [(1e-3, 300.0), (1e-4, 10.0), (1e-2, 199.0)])
 def test_against_the_printed_form(c: Library, T: float, K_I: float) -> None:
-    # (8) with I_tau and r(k) against its differences in C
+    # (8) with I_tau and r(k) as printed, against the C code, which computes it in differences
     rng = np.random.default_rng(2)
     theta, theta_dot, tau = rng.normal(size=(3, 1000))
     p = {**oracle.DEFAULTS, "samplePeriod": T, "residual.K_I": K_I}
