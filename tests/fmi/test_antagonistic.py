@@ -1,4 +1,4 @@
-"""The antagonistic estimator is two estimators, and nothing else."""
+"""The antagonistic estimator has the results of two single estimators."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ INPUTS = ["theta", "tau", "tau_e_sensor"]
 
 @contextmanager
 def trio(pair_fmu: Path, fmu: Path, values: dict[str, float]) -> Iterator[list[Instance]]:
-    """The pair and two single estimators, motor 2 with other data, ready for the first step."""
+    """The pair and two single estimators, ready for the first step. Motor 2 has other data."""
     motors = [{"B": 2.3e-5, "D_theta": 1e-3}, {"B": 3e-5, "D_theta": 2e-3}]
     with Instance(pair_fmu) as pair, Instance(fmu) as one, Instance(fmu) as two:
         of_pair = {f"motor_{i + 1}.{k}": v for i, m in enumerate(motors) for k, v in m.items()}
@@ -32,7 +32,7 @@ def trio(pair_fmu: Path, fmu: Path, values: dict[str, float]) -> Iterator[list[I
 
 
 def step(instances: list[Instance], k: int, bad: dict[str, float] | None = None) -> list[int]:
-    """One step of 1 ms at the same signals for all; the statuses."""
+    """Makes one step of 1 ms with the same signals for all instances. Returns their statuses."""
     t = k * 1e-3
     q = 0.3 * math.sin(5 * t)
     sides = [
@@ -108,7 +108,7 @@ def test_variables_are_those_of_the_estimator_for_each_motor(
         assert set(pair.variables) == expected
 
 
-def test_messages_say_which_motor(antagonistic_fmu: Path) -> None:
+def test_messages_name_the_motor(antagonistic_fmu: Path) -> None:
     with Instance(antagonistic_fmu) as pair:
         assert pair.setup() == OK
         pair.set_all({"motor_2.gamma": 0.0})
@@ -122,7 +122,9 @@ def test_messages_say_which_motor(antagonistic_fmu: Path) -> None:
         assert "Motor 1" in pair.messages[-1][2]
 
 
-def test_state_is_restored(antagonistic_fmu: Path, estimator_fmu: Path) -> None:
+def test_a_restored_state_gives_the_same_outputs(
+    antagonistic_fmu: Path, estimator_fmu: Path
+) -> None:
     names = ["sigma", "sigma_1", "rho_2"]
 
     def run(instances: list[Instance]) -> list[list[float]]:

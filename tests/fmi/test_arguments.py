@@ -1,4 +1,4 @@
-"""Pointers that are NULL where the standard wants something, and memory that runs out."""
+"""Pointers that are NULL although the standard requires an argument, and lack of memory."""
 
 from __future__ import annotations
 
@@ -39,18 +39,18 @@ def test_an_argument_that_is_missing_is_named(
 
 
 @pytest.mark.parametrize("function", sorted({function for function, _, _ in MISSING}))
-def test_no_instance_is_an_error(function: str, estimator_fmu: Path) -> None:
+def test_a_call_without_an_instance_is_an_error(function: str, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         arguments = next(a for name, _, a in MISSING if name == function)
         assert getattr(fmu.dll, function)(None, *arguments) == ERROR
 
 
-def test_nothing_to_free_is_fine(estimator_fmu: Path) -> None:
+def test_freeing_a_null_pointer_is_no_error(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         assert fmu.call("fmi2FreeFMUstate", None) == OK
 
 
-def test_no_memory_for_a_state_is_an_error(estimator_fmu: Path) -> None:
+def test_lack_of_memory_for_a_state_is_an_error(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu, memory=True) as fmu:
         fmu.initialise()
         data = fmu.serialise(fmu.save())

@@ -1,4 +1,4 @@
-"""Names, causalities, units and start values that masters rely on, against the contract."""
+"""Names, causalities, units and start values, on which masters rely, against the contract."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ def test_fmpy_finds_no_problem(fmu: str, request: pytest.FixtureRequest) -> None
 
 
 @pytest.mark.parametrize("fmu", FMUS)
-def test_runs_with_start_values_untouched(fmu: str, request: pytest.FixtureRequest) -> None:
+def test_it_runs_with_its_start_values(fmu: str, request: pytest.FixtureRequest) -> None:
     path = request.getfixturevalue(fmu)
     outputs = [
         v.name
@@ -169,7 +169,7 @@ def test_every_real_has_a_unit_and_everything_a_description(
         assert variable.type != "Real" or variable.unit in units
 
 
-def test_inputs_and_outputs(variables: dict[str, Any]) -> None:
+def test_inputs_and_outputs_are_those_of_the_contract(variables: dict[str, Any]) -> None:
     for name, unit in INPUTS.items():
         variable = variables[name]
         assert (variable.causality, variable.unit, float(variable.start)) == ("input", unit, 0.0)
@@ -187,14 +187,16 @@ def test_inputs_and_outputs(variables: dict[str, Any]) -> None:
 
 
 def start_of(variable: Any) -> float:
-    """Start value as a number; FMPy leaves it a text."""
+    """Start value as a number. FMPy gives it as text."""
     if variable.type == "Boolean":
         return {"false": 0.0, "true": 1.0}[variable.start]
     return float(variable.start)
 
 
 @pytest.mark.parametrize("name", PARAMETERS)
-def test_parameter(name: str, variables: dict[str, Any], build: Path) -> None:
+def test_a_parameter_is_that_of_the_contract(
+    name: str, variables: dict[str, Any], build: Path
+) -> None:
     variability, unit, start = PARAMETERS[name]
     variable = variables[name]
     assert (variable.causality, variable.variability) == ("parameter", variability)
@@ -208,7 +210,7 @@ def test_parameter(name: str, variables: dict[str, Any], build: Path) -> None:
 
 
 @pytest.mark.parametrize("name", PLANT)
-def test_variable_of_the_awas_plant(name: str, plant_fmu: Path) -> None:
+def test_a_variable_of_the_awas_plant_is_that_of_the_contract(name: str, plant_fmu: Path) -> None:
     (causality, variability), unit, start = PLANT[name]
     found: Any = fmpy.read_model_description(str(plant_fmu)).modelVariables
     (variable,) = [v for v in found if v.name == name]
@@ -220,7 +222,7 @@ def test_variable_of_the_awas_plant(name: str, plant_fmu: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ITEMS)
-def test_enumeration(name: str, variables: dict[str, Any]) -> None:
+def test_an_enumeration_has_the_items_of_the_contract(name: str, variables: dict[str, Any]) -> None:
     items = variables[name].declaredType.items
     assert [item.name for item in items] == ITEMS[name]
     assert [int(item.value) for item in items] == list(range(1, len(items) + 1))
@@ -230,7 +232,7 @@ def test_enumeration(name: str, variables: dict[str, Any]) -> None:
 def test_limits_in_the_description_are_those_of_the_library(
     variables: dict[str, Any], build: Path
 ) -> None:
-    """A value on a limit passes both, or is refused by both; beyond it neither takes it."""
+    """The library refuses a value beyond a limit of the description."""
     library = Library(build)
     violation = library.ffi.new("sh_violation *")
     checked = 0
@@ -251,7 +253,9 @@ def test_limits_in_the_description_are_those_of_the_library(
     assert checked > 20
 
 
-def test_symmetric_is_a_boolean(estimator_fmu: Path, variables: dict[str, Any]) -> None:
+def test_symmetric_is_a_boolean_that_allows_0_and_1_only(
+    estimator_fmu: Path, variables: dict[str, Any]
+) -> None:
     assert variables["rls.symmetric"].type == "Boolean"
     for value in (0, 1):
         with Instance(estimator_fmu) as fmu:
@@ -277,7 +281,9 @@ def test_initial_outputs_follow_the_initial_estimate(estimator_fmu: Path) -> Non
         assert fmu.get("valid") == 1
 
 
-def test_initial_outputs_in_the_general_basis(estimator_fmu: Path) -> None:
+def test_initial_outputs_follow_the_initial_estimate_in_the_general_basis(
+    estimator_fmu: Path,
+) -> None:
     start = {"rls.symmetric": 0, "rls.eta_0[0,0]": 5.0, "rls.eta_0[0,2]": 0.01, "rls.eta_0[1,1]": 3}
     with Instance(estimator_fmu) as fmu:
         fmu.initialise(start)

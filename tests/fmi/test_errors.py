@@ -1,4 +1,4 @@
-"""Bad parameters, bad measurements, calls out of order: an answer, and nothing lost."""
+"""Bad parameters, bad measurements, calls out of order: each gives an error and changes nothing."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_a_parameter_out_of_range_is_named_with_value_and_range(
         assert (status, category) == (ERROR, "logStatusError")
         assert named in message and allowed in message
         assert fmu.step(0.0, 1e-3) == ERROR  # not initialised
-        fmu.set_all(starts)  # still in initialisation mode: mend it
+        fmu.set_all(starts)  # the instance is still in initialisation mode
         assert fmu.exit() == OK
         assert fmu.step(0.0, 1e-3) == OK
 
@@ -96,7 +96,7 @@ def test_a_bad_measurement_skips_the_tick_and_warns_once(
         fmu.set_all({name: bad})
         step(WARNING)
         warnings = [message for status, _, message in fmu.messages if status == WARNING]
-        assert len(warnings) == 2  # one for each episode
+        assert len(warnings) == 2  # one for each sequence of bad measurements
         assert name in warnings[0] and "skipped" in warnings[0]
 
 
@@ -105,7 +105,7 @@ def test_a_deformation_far_beyond_its_range_is_reported_once(
     method: int, estimator_fmu: Path
 ) -> None:
     with Instance(estimator_fmu) as fmu:
-        for _ in range(2):  # a reset forgets that it was reported
+        for _ in range(2):  # after a reset it is reported again
             fmu.messages.clear()
             fmu.initialise({"method": method, "range.phi": 0.1})
             statuses = []
@@ -120,8 +120,8 @@ def test_a_deformation_far_beyond_its_range_is_reported_once(
             assert fmu.call("fmi2Reset") == OK
 
 
-def test_the_first_tick_waits_for_a_good_measurement(estimator_fmu: Path) -> None:
-    """Starting late at a position away from 0 is starting there, not moving there."""
+def test_the_estimator_starts_with_the_first_good_measurement(estimator_fmu: Path) -> None:
+    """It starts at the position of that measurement and does not take it for a motion from 0."""
     with Instance(estimator_fmu) as late, Instance(estimator_fmu) as prompt:
         for fmu in (late, prompt):
             fmu.initialise()
@@ -145,7 +145,7 @@ ONE, ORDER = ctypes.c_size_t(1), (ctypes.c_int * 1)(1)
 
 
 def variables_call(function: str, name: str, c_type: Any, *between: Any) -> Callable[..., int]:
-    """A call with a value reference, how many, maybe something, and an array of values."""
+    """A call for one variable: value reference, number 1, arguments `between`, array of values."""
     return lambda fmu: fmu.call(function, fmu.references([name]), ONE, *between, (c_type * 1)())
 
 
@@ -154,7 +154,7 @@ def status_call(function: str, kind: int, c_type: Any) -> Callable[[Instance], i
 
 
 def with_state(function: str, *others: Any) -> Callable[[Instance], int]:
-    """A call with a state that is freed afterwards."""
+    """A call with a saved state, which is freed afterwards."""
 
     def call(fmu: Instance) -> int:
         state = fmu.save()
@@ -172,8 +172,8 @@ def save_and_free(fmu: Instance) -> int:
     return status
 
 
-# FMI 2.0, the table of section 4.2.4: where a slave that has no asynchronous step allows each
-# function. A call that is allowed may still be refused, but for another reason.
+# FMI 2.0, table in section 4.2.4: the states in which each function is allowed, for a slave without
+# asynchronous steps. A call that is allowed may still be refused, but for another reason.
 CALLS: dict[str, tuple[set[str], Callable[[Instance], int]]] = {
     "fmi2SetDebugLogging": (EVERYWHERE, lambda fmu: fmu.call("fmi2SetDebugLogging", 1, 0, None)),
     "fmi2SetupExperiment": ({INSTANTIATED}, lambda fmu: fmu.setup()),
@@ -267,7 +267,7 @@ def test_a_call_after_initialisation_is_refused(estimator_fmu: Path) -> None:
         assert fmu.get("sigma") == 0.0
 
 
-def test_unknown_references_and_null_arguments(estimator_fmu: Path) -> None:
+def test_unknown_references_and_null_arguments_are_refused(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise()
         one, value = ctypes.c_size_t(1), (ctypes.c_double * 1)(7.0)
@@ -330,7 +330,7 @@ def test_a_percent_sign_in_a_message_is_escaped(estimator_fmu: Path) -> None:
 )
 @pytest.mark.parametrize("logger", [True, False])
 @pytest.mark.parametrize("memory", [True, False])
-def test_odd_importers(
+def test_importers_with_unusual_arguments_can_run_it(
     resources: str | None, logger: bool, memory: bool, estimator_fmu: Path
 ) -> None:
     with Instance(estimator_fmu, resources=resources, logger=logger, memory=memory) as fmu:
@@ -341,11 +341,11 @@ def test_odd_importers(
         assert fmu.set("rls.m", 2) == OK  # ... and in initialisation mode
         assert fmu.exit() == OK
         assert fmu.step(0.0, 1e-3) == OK
-        assert fmu.step(5.0, 1e-3) == ERROR  # has something to say, maybe to nobody
+        assert fmu.step(5.0, 1e-3) == ERROR  # with a message, even if there is no logger
         assert set(fmu.environments) <= {4711}
 
 
-def test_log_categories_filter(estimator_fmu: Path) -> None:
+def test_only_chosen_log_categories_are_logged(estimator_fmu: Path) -> None:
     def choose(fmu: Instance, on: bool, *names: bytes) -> int:
         return fmu.call(
             "fmi2SetDebugLogging",
@@ -384,22 +384,22 @@ def test_log_categories_filter(estimator_fmu: Path) -> None:
         (True, ["logStatusDiscard", "logStatusWarning"], {"logStatusDiscard", "logStatusWarning"}),
     ],
 )
-def test_each_category_comes_where_it_was_chosen(
+def test_a_message_is_logged_if_its_category_was_chosen(
     on: bool, chosen: list[str], passed: set[str], estimator_fmu: Path
 ) -> None:
     with Instance(estimator_fmu, logging_on=not on) as fmu:
         categories = (ctypes.c_char_p * len(chosen))(*map(str.encode, chosen))
         count = ctypes.c_size_t(len(chosen))
         assert fmu.call("fmi2SetDebugLogging", int(on), count, categories) == OK
-        fmu.initialise()  # an event
+        fmu.initialise()  # logs an event
         fmu.set_all({"theta": math.nan})
         assert fmu.step(0.0, 1e-3) == WARNING
-        fmu.call("fmi2GetStatus", 0, ctypes.byref(ctypes.c_int()))  # to be discarded
+        fmu.call("fmi2GetStatus", 0, ctypes.byref(ctypes.c_int()))  # returns fmi2Discard
         assert fmu.step(5.0, 1e-3) == ERROR
         assert {category for _, category, _ in fmu.messages} == passed
 
 
-def test_a_regression_that_overflows_is_told_from_a_bad_measurement(estimator_fmu: Path) -> None:
+def test_the_warning_says_if_the_regression_overflows(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise()
         fmu.set_all({"q": 1e12, "theta": -1e12})
@@ -407,7 +407,7 @@ def test_a_regression_that_overflows_is_told_from_a_bad_measurement(estimator_fm
         assert "regression overflows at theta = -1e+12" in fmu.messages[-1][2]
 
 
-def test_parameters_that_are_too_large_together_are_refused(estimator_fmu: Path) -> None:
+def test_a_combination_of_parameters_that_overflows_is_refused(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         assert fmu.setup() == OK
         fmu.set_all({"setPoint.offset": 1e308, "rls.eta_0[0,2]": 1.0})
@@ -443,7 +443,7 @@ def test_any_other_instance_name_is_shown_as_it_is(name: str, estimator_fmu: Pat
         assert fmu.names == {name}
 
 
-def test_other_texts_that_are_not_utf8_are_refused_in_messages_that_are(
+def test_messages_about_texts_that_are_not_utf8_are_utf8(
     estimator_fmu: Path,
 ) -> None:
     with Instance(estimator_fmu, guid="{\udcff}") as fmu:
@@ -458,7 +458,7 @@ def test_other_texts_that_are_not_utf8_are_refused_in_messages_that_are(
 
 
 @pytest.mark.parametrize("length", range(300, 304))
-def test_a_message_too_long_is_not_cut_inside_a_character(length: int, estimator_fmu: Path) -> None:
+def test_a_long_message_is_not_cut_inside_a_character(length: int, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu, guid="x" * (length - 300) + "\u20ac" * length) as fmu:
         assert "\u20ac" * 50 in fmu.messages[-1][2]
 
@@ -472,7 +472,7 @@ def test_a_message_too_long_is_not_cut_inside_a_character(length: int, estimator
         (0.0, math.nan, "stopTime"),
     ],
 )
-def test_an_experiment_that_cannot_be_is_refused(
+def test_an_experiment_with_impossible_times_is_refused(
     start: float, stop: float | None, expected: str, estimator_fmu: Path
 ) -> None:
     with Instance(estimator_fmu) as fmu:
@@ -488,7 +488,7 @@ def test_an_experiment_that_cannot_be_is_refused(
 
 
 @every_fmu
-def test_steps_out_of_time_are_refused_and_change_nothing(name: str) -> None:
+def test_steps_at_a_wrong_time_are_refused_and_change_nothing(name: str) -> None:
     with Instance(sigmahat.fmu(name)) as fmu, Instance(sigmahat.fmu(name)) as other:
         driver, expected = Driver(fmu), Driver(other)
         for instance in (fmu, other):
@@ -518,7 +518,7 @@ def test_steps_out_of_time_are_refused_and_change_nothing(name: str) -> None:
 
 
 @every_fmu
-def test_references_and_values_that_cannot_be_are_refused(name: str) -> None:
+def test_invalid_references_and_values_are_refused(name: str) -> None:
     with Instance(sigmahat.fmu(name)) as fmu:
         driver = Driver(fmu)
         fmu.initialise()
@@ -546,7 +546,7 @@ def test_references_and_values_that_cannot_be_are_refused(name: str) -> None:
                 continue
             good = fmu.get(tunable)
             for bad in (math.nan, math.inf):
-                assert fmu.set(tunable, bad) == OK  # refused with the others, by the step
+                assert fmu.set(tunable, bad) == OK  # parameters are checked by the next step
                 assert fmu.step(1e-3, 1e-3) == ERROR
                 assert f"{tunable} = " in fmu.messages[-1][2]
                 assert "range" in fmu.messages[-1][2]
@@ -555,7 +555,7 @@ def test_references_and_values_that_cannot_be_are_refused(name: str) -> None:
         driver.step(1e-3, 1e-3)
 
 
-def test_a_bad_input_derivative_skips_the_ticks_it_reaches(estimator_fmu: Path) -> None:
+def test_a_bad_input_derivative_skips_the_ticks_that_use_it(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise()
         assert fmu.set_derivative("theta", math.nan) == OK
@@ -566,7 +566,7 @@ def test_a_bad_input_derivative_skips_the_ticks_it_reaches(estimator_fmu: Path) 
         assert fmu.get("valid") == 1
 
 
-def test_the_time_reached_can_be_asked_for(estimator_fmu: Path) -> None:
+def test_the_status_gives_the_time_that_was_reached(estimator_fmu: Path) -> None:
     time, number, text = ctypes.c_double(-1.0), ctypes.c_int(7), ctypes.c_char_p(b"unchanged")
 
     def reached(fmu: Instance) -> float:
@@ -587,7 +587,7 @@ def test_the_time_reached_can_be_asked_for(estimator_fmu: Path) -> None:
         assert reached(fmu) == 0.5 + 1e-3
         fmu.free(state)
         assert fmu.call("fmi2GetBooleanStatus", 3, ctypes.byref(number)) == OK
-        assert number.value == 0  # it does not ask to stop
+        assert number.value == 0  # it does not request the end of the simulation
         others: list[tuple[str, int, Any]] = [
             ("fmi2GetStatus", 0, number),
             ("fmi2GetRealStatus", 0, time),
@@ -604,7 +604,7 @@ def test_the_time_reached_can_be_asked_for(estimator_fmu: Path) -> None:
 
 
 @every_fmu
-def test_what_cannot_be_instantiated_is_nothing(name: str) -> None:
+def test_an_instantiation_that_fails_returns_null(name: str) -> None:
     with Instance(sigmahat.fmu(name)) as fmu:
         instantiate, guid = fmu.dll.fmi2Instantiate, fmu.description.guid.encode()
         callbacks = ctypes.byref(fmu.callbacks)
@@ -624,8 +624,8 @@ def test_what_cannot_be_instantiated_is_nothing(name: str) -> None:
 
 
 @pytest.mark.parametrize("after", range(3))
-def test_without_memory_there_is_no_instance_and_no_leak(after: int, estimator_fmu: Path) -> None:
-    """The importer's memory is used up after so many blocks."""
+def test_lack_of_memory_gives_no_instance_and_no_leak(after: int, estimator_fmu: Path) -> None:
+    """The importer has no more memory after `after` blocks."""
     with Instance(estimator_fmu, memory=True) as fmu:
         before = set(fmu.blocks)
         assert len(before) == 3

@@ -1,4 +1,4 @@
-"""The co-simulation master."""
+"""The co-simulation master of the harness."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def changed(start: dict[str, Any]) -> Estimator:
 
 
 @pytest.mark.parametrize("name", ["MODEL", "SENSOR", "RESIDUAL"])
-def test_same_estimate_as_fmpy_gives_from_the_recorded_measurements(name: str) -> None:
+def test_fmpy_gives_the_same_estimate_from_the_recorded_measurements(name: str) -> None:
     recording = one_seed("table1").recording
     estimator = ESTIMATORS[name]
     inputs = np.zeros(
@@ -39,7 +39,7 @@ def test_same_estimate_as_fmpy_gives_from_the_recorded_measurements(name: str) -
     for to, source in estimator.connections.items():
         inputs[to] = recording.plant[source]
     path = sigmahat.fmu("StiffnessEstimator")
-    with Fmu(path) as fmu:  # FMPy wants the numbers of enumerations
+    with Fmu(path) as fmu:  # FMPy requires enumerations as numbers
         start = {name: fmu.number(name, value) for name, value in estimator.start.items()}
     alone = fmpy.simulate_fmu(
         path,
@@ -50,13 +50,13 @@ def test_same_estimate_as_fmpy_gives_from_the_recorded_measurements(name: str) -
         input=inputs,
         output=["sigma", "tau_e", "a"],
     )
-    # FMPy's row k + 1 is what the step from t_k, hence the tick at t_k, has left.
+    # Row k + 1 of FMPy contains the outputs after the step from t_k, hence of the tick at t_k.
     for output in ("sigma", "tau_e", "a"):
         ours = recording.estimators[name][output][: len(alone) - 1]
         np.testing.assert_array_equal(ours, alone[output][1:])
 
 
-def test_every_tick_sees_the_plant_at_its_own_time() -> None:
+def test_every_tick_uses_the_outputs_of_the_plant_at_its_own_time() -> None:
     recording = one_seed("table1").recording
     plant, estimator = recording.plant, recording.estimators["RESIDUAL"]
     assert len(recording.t) == 15001
@@ -71,11 +71,11 @@ def test_inputs_are_linear_between_samples() -> None:
     coarse, fine = (simulate(plant, {}, h, round(0.5 / h)) for h in (1e-2, 1e-4))
     tau = PLANT.inputs["tau"]
     np.testing.assert_allclose(coarse.plant["tau_measured"], tau(coarse.t), rtol=0, atol=1e-15)
-    # Steps that hold the torque would be late by 5 ms: 4 % of the position reached here.
+    # A torque held over the step would be late by 5 ms, which is 4 % of the final position here.
     np.testing.assert_allclose(coarse.plant["theta"], fine.plant["theta"][::100], rtol=0, atol=1e-5)
 
 
-def test_estimators_do_not_disturb_each_other() -> None:
+def test_estimators_do_not_influence_each_other() -> None:
     together = simulate(PLANT, ESTIMATORS, T, 300)
     for name, estimator in ESTIMATORS.items():
         alone = simulate(PLANT, {name: estimator}, T, 300)
@@ -84,7 +84,7 @@ def test_estimators_do_not_disturb_each_other() -> None:
         )
 
 
-def test_recording_holds_units_and_parameters() -> None:
+def test_a_recording_contains_units_and_parameters() -> None:
     recording = simulate(PLANT, {"one": changed({"rls.kind": "Standard"})}, T, 1)
     series = recording.estimators["one"]
     assert series.units["sigma"] == "N.m/rad"
@@ -96,7 +96,7 @@ def test_recording_holds_units_and_parameters() -> None:
 
 
 @pytest.mark.parametrize("steps", [1, 99, 100, 250])
-def test_progress_adds_up_to_the_steps(steps: int) -> None:
+def test_progress_adds_up_to_the_number_of_steps(steps: int) -> None:
     done: list[int] = []
     simulate(PLANT, {}, T, steps, progress=done.append)
     assert sum(done) == steps
@@ -141,7 +141,7 @@ def test_wrong_names_are_refused(plant: Plant, estimator: Estimator, message: st
         simulate(plant, {"one": estimator}, T, 1)
 
 
-def test_an_error_of_an_fmu_comes_with_its_own_message() -> None:
+def test_an_error_of_an_fmu_contains_its_message() -> None:
     with pytest.raises(FmuError, match=r"^one: .*residual\.K_I") as caught:
         simulate(PLANT, {"one": changed({"residual.K_I": -1.0})}, T, 1)
     assert "\n" not in str(caught.value)
@@ -188,7 +188,7 @@ def test_a_warning_of_an_fmu_goes_to_the_log(caplog: pytest.LogCaptureFixture) -
 
 
 @pytest.mark.parametrize("content", [b"", b"not a zip file", b"PK\x05\x06" + bytes(18)])
-def test_a_file_that_is_no_fmu(content: bytes, tmp_path: Path) -> None:
+def test_a_file_that_is_no_fmu_is_refused(content: bytes, tmp_path: Path) -> None:
     file = tmp_path / "broken.fmu"
     file.write_bytes(content)
     with pytest.raises(FmuError, match=r"broken\.fmu: not a readable FMU"):

@@ -1,4 +1,4 @@
-"""What modelDescription.xml says of an FMU beside its names, against what the FMU does."""
+"""Units, ranges and dependencies in modelDescription.xml, against what the FMU does."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ESTIMATORS = ["StiffnessEstimator", "AntagonisticStiffnessEstimator"]
 PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant"]
 FMUS = ESTIMATORS + PLANTS
 
-# SI units of this many base units; what the name of a unit means. Powers follow a symbol.
+# Exponents of the base units in each symbol. A power is written behind a symbol: kg.m2.
 SYMBOLS = {
     "1": {},
     "s": {"s": 1},
@@ -51,7 +51,7 @@ def powers(unit: str) -> dict[str, int]:
     return {base: power for base, power in total.items() if power}
 
 
-def test_base_units_are_what_the_names_of_units_say(fmu: Path) -> None:
+def test_base_units_agree_with_the_names_of_the_units(fmu: Path) -> None:
     for unit in read(fmu).iterfind("UnitDefinitions/Unit"):
         base = {key: int(value) for key, value in unit.find("BaseUnit").attrib.items()}
         assert base == powers(unit.get("name")), unit.get("name")
@@ -69,7 +69,7 @@ def test_base_units_are_what_the_names_of_units_say(fmu: Path) -> None:
         ("m/rad", "mm/rad", 1e3),
     ],
 )
-def test_one_unit_is_so_much_of_its_display_unit(
+def test_factors_of_display_units_are_right(
     fmu: Path, unit: str, display: str, shown: float
 ) -> None:
     root = read(fmu)
@@ -80,7 +80,7 @@ def test_one_unit_is_so_much_of_its_display_unit(
         assert real.get("displayUnit") == display
 
 
-def test_starts_and_nominals_fit_the_ranges(fmu: Path) -> None:
+def test_start_and_nominal_values_are_in_their_ranges(fmu: Path) -> None:
     reals = read(fmu).xpath("ModelVariables/ScalarVariable/Real")
     for real in reals:
         low, high = float(real.get("min", "-inf")), float(real.get("max", "inf"))
@@ -89,7 +89,7 @@ def test_starts_and_nominals_fit_the_ranges(fmu: Path) -> None:
         assert float(real.get("nominal", 1)) > 0
 
 
-def test_everything_is_described(fmu: Path) -> None:
+def test_everything_has_a_description(fmu: Path) -> None:
     root = read(fmu)
     for path in (
         "ModelVariables/ScalarVariable",
@@ -106,15 +106,15 @@ def test_everything_is_described(fmu: Path) -> None:
     assert float(experiment.get("stepSize")) == 1e-3
 
 
-def test_only_attributes_of_the_standard_are_delivered(fmu: Path) -> None:
-    """Those that serve the build alone, `open` and `depends`, are gone."""
+def test_the_description_has_only_attributes_of_the_standard(fmu: Path) -> None:
+    """`open` and `depends`, which only the build uses, are removed."""
     folder = Path(fmpy.__file__).parent / "schema" / "fmi2"
     schema = etree.XMLSchema(file=str(folder / "fmi2ModelDescription.xsd"))
     schema.assertValid(read(fmu))
 
 
 def known_values(fmu: Instance) -> dict[str, list[float]]:
-    """Values to try, besides the present one, for every input and parameter."""
+    """For every input and parameter: values to try besides the present one."""
     values: dict[str, list[float]] = {}
     for name, v in fmu.variables.items():
         if v.causality == "output":
@@ -132,7 +132,7 @@ def known_values(fmu: Instance) -> dict[str, list[float]]:
 
 
 def distinct(fmu: Instance, choices: dict[str, int]) -> dict[str, float]:
-    """Parameters such that none is without effect because another one is zero."""
+    """Start values with which no parameter is without effect because another one is zero."""
     start: dict[str, float] = {}
     for k, (name, v) in enumerate(fmu.variables.items()):
         if name in choices:
@@ -166,9 +166,9 @@ def observed(path: Path, choices: dict[str, int]) -> dict[str, set[str]]:
 
 
 def test_initial_unknowns_depend_on_what_changes_them(fmu: Path) -> None:
-    """Both ways: nothing that acts is left out, nothing is listed that does not act.
+    """Every variable that has an effect is listed, and no other one.
 
-    A Boolean changes only where a threshold is crossed: nothing that acts on it is left out.
+    A Boolean changes only if a threshold is crossed, so for a Boolean only the first is checked.
     """
     root = read(fmu)
     variables = root.findall("ModelVariables/ScalarVariable")
@@ -178,7 +178,7 @@ def test_initial_unknowns_depend_on_what_changes_them(fmu: Path) -> None:
         indices = unknown.get("dependencies").split()
         assert unknown.get("dependenciesKind").split() == ["dependent"] * len(indices)
         declared[names[int(unknown.get("index")) - 1]] = {names[int(i) - 1] for i in indices}
-    # Whether the basis is odd, the method, the modality: all of each act in some run.
+    # Every basis, method and modality is used in one of these runs.
     choices = [(0, 1, 1), (1, 1, 2), (0, 2, 1), (1, 2, 1)]
     if fmu.stem in PLANTS:
         choices = choices[:1]

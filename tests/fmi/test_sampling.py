@@ -1,4 +1,4 @@
-"""When the estimator ticks, and at which inputs."""
+"""When the estimator computes its ticks, and with which inputs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fmi_instance import ERROR, OK, Instance
 from fmi_runs import ESTIMATORS, PLANTS, SIGNALS, names
 
 SENSOR, STANDARD, FINITE_DIFFERENCE = 2, 2, 3
-# One parameter, regressor phi = 1 and P_0 = 1: P(k) = 1 / (1 + k), so rho counts ticks.
+# One parameter, regressor phi = 1 and P_0 = 1: P(k) = 1 / (1 + k), so 1 / rho counts the ticks.
 COUNTING = {
     "modality": SENSOR,
     "rls.kind": STANDARD,
@@ -27,7 +27,7 @@ COUNTING = {
 
 
 def ticks(fmu: Instance) -> int:
-    """Number of ticks so far, at least one, of an instance with COUNTING."""
+    """Number of ticks, at least one, of an instance that was initialised with COUNTING."""
     return round(1.0 / fmu.get("rho"))
 
 
@@ -38,7 +38,7 @@ def test_a_million_steps_of_a_sample_period_are_a_million_ticks(name: str) -> No
         step, component, t = fmu.dll.fmi2DoStep, fmu.component, 0.0
         for _ in range(1_000_000):
             assert step(component, t, 1e-3, 1) == OK
-            t += 1e-3  # with the rounding that importers add up
+            t += 1e-3  # with the same rounding errors as in importers
         for rho in [n for n in fmu.variables if n in ("rho", "rho_1", "rho_2")]:
             assert round(1.0 / fmu.get(rho)) == 1_000_000
 
@@ -46,16 +46,16 @@ def test_a_million_steps_of_a_sample_period_are_a_million_ticks(name: str) -> No
 @pytest.mark.parametrize(
     "h", [1e-4, 5e-4, 1e-3, 2.5e-3, 1e-2, 1 / 60, 1e-3 / 7, 0.016666666666666677]
 )
-def test_number_of_ticks_for_any_step(h: float, estimator_fmu: Path) -> None:
+def test_a_step_of_any_length_computes_the_ticks_within_it(h: float, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise(COUNTING)
         for k in range(300):
             assert fmu.step(k * h, h) == OK
-            # t_k < t + h, where a tick on the end belongs to the next step
+            # those with t_k < t + h: a tick at the end of the step belongs to the next one
             assert ticks(fmu) == math.ceil((k + 1) * h / 1e-3 - 1e-6)
 
 
-def test_a_step_much_shorter_than_the_tolerance_still_counts(estimator_fmu: Path) -> None:
+def test_steps_much_shorter_than_the_tolerance_add_up(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise(COUNTING)
         h = 1e-3 / 3e6
@@ -70,7 +70,7 @@ PIECE = Fraction(1, 20)  # s; a multiple of 10 ms and of 1/60 s
 
 
 def on_a_line(signal: Callable[[float], float], t: Fraction) -> tuple[float, float]:
-    """A signal made of straight pieces, and its slope, each rounded once."""
+    """A piecewise linear signal and its slope, each computed exactly and rounded once."""
     begin = t // PIECE * PIECE
     start, end = (Fraction(signal(float(corner))) for corner in (begin, begin + PIECE))
     slope = (end - start) / PIECE
@@ -78,8 +78,8 @@ def on_a_line(signal: Callable[[float], float], t: Fraction) -> tuple[float, flo
 
 
 def run(name: str, h: Fraction) -> list[list[float]]:
-    """All Real outputs at the ends of the pieces of 0.5 s in steps of h."""
-    # Without a set-point its powers cannot be told from each other.
+    """All Real outputs at the ends of the linear pieces, over 0.5 s in steps of h."""
+    # Without a set-point its powers cannot be distinguished, so rls.m is 1.
     start = {"rls.m": 1} if name == "AntagonisticStiffnessEstimator" else {}
     found = []
     with Instance(sigmahat.fmu(name)) as fmu:
@@ -101,7 +101,7 @@ def test_inputs_with_derivatives_give_the_same_ticks_for_any_step(name: str) -> 
     reference = np.array(run(name, Fraction(1, 1000)))
     assert len(reference) == 10
     scale = np.max(np.abs(reference), axis=0)
-    scale[scale == 0.0] = 1.0  # eta beyond the orders used
+    scale[scale == 0.0] = 1.0  # coefficients eta that are not used
     for h in (Fraction(1, n) for n in (10000, 2000, 400, 100, 60)):
         np.testing.assert_allclose(run(name, h) / scale, reference / scale, rtol=0, atol=1e-12)
 
@@ -113,15 +113,13 @@ def test_inputs_without_derivatives_are_held(estimator_fmu: Path) -> None:
         assert fmu.set_derivative("theta", 2.0) == OK
         assert fmu.step(0.0, 1e-2) == OK
         assert fmu.get("theta_dot") == pytest.approx(2.0, rel=1e-12)
-        assert fmu.set("theta", 0.02) == OK  # no derivative this time
+        assert fmu.set("theta", 0.02) == OK  # without a derivative
         assert fmu.step(1e-2, 1e-2) == OK
         assert fmu.get("theta_dot") == 0.0
 
 
 @pytest.mark.parametrize("h", [1.0009e-3, 0.9991e-3])
-def test_times_have_the_last_word_over_steps_that_do_not_quite_fit(
-    h: float, estimator_fmu: Path
-) -> None:
+def test_ticks_follow_the_times_if_steps_differ_slightly(h: float, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise(COUNTING)
         for k in range(10000):
@@ -131,26 +129,26 @@ def test_times_have_the_last_word_over_steps_that_do_not_quite_fit(
 
 
 @pytest.mark.parametrize("start", [0.0, 1.7e9])
-def test_a_step_left_out_is_a_gap_at_any_time(start: float, estimator_fmu: Path) -> None:
+def test_a_missing_step_is_an_error_at_any_time(start: float, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise(COUNTING, start=start)
-        for k in range(3000):  # 1.7e9 s: times are rounded to 0.2 us, and a period is a period
+        for k in range(3000):  # at 1.7e9 s, where times are rounded to 0.2 us, too
             assert fmu.step(start + k * 1e-3, 1e-3) == OK
             assert ticks(fmu) == k + 1
         assert fmu.step(start + 3.001, 1e-3) == ERROR
-        came, expected = fmu.messages[-1][2].split("; expected ")
-        assert came.split()[-2] != expected.split()[0]
+        received, expected = fmu.messages[-1][2].split("; expected ")
+        assert received.split()[-2] != expected.split()[0]
         assert fmu.step(start + 3.0, 1e-3) == OK
 
 
 @pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
-def test_derivatives_of_every_input_hold_for_one_step(name: str) -> None:
+def test_an_input_derivative_is_used_for_one_step_only(name: str) -> None:
     path = sigmahat.fmu(name)
     with Instance(path) as fmu:
         inputs = names(fmu, "input")
     for kept in inputs:
         results = []
-        for again in (None, 0.0):  # the second step: nothing said, or no slope said
+        for again in (None, 0.0):  # in the second step: no call, or a slope of 0
             with Instance(path) as fmu:
                 fmu.initialise()
                 assert fmu.set_derivative(kept, 3.0) == OK
@@ -183,14 +181,12 @@ def test_ticks_start_at_the_start_time(estimator_fmu: Path) -> None:
         (0.0, 1e9, "communicationStepSize = 1e+09 s is more than 1e+09 times samplePeriod"),
     ],
 )
-def test_a_step_that_cannot_be_is_refused(
-    t: float, h: float, expected: str, estimator_fmu: Path
-) -> None:
+def test_an_invalid_step_is_refused(t: float, h: float, expected: str, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise(COUNTING)
         assert fmu.step(t, h) == ERROR
         assert expected in fmu.messages[-1][2]
-        assert fmu.step(0.0, 1e-3) == OK  # and nothing was lost
+        assert fmu.step(0.0, 1e-3) == OK  # the instance can continue
         assert ticks(fmu) == 1
 
 
@@ -199,14 +195,16 @@ def test_a_tunable_parameter_takes_effect_at_the_next_tick(estimator_fmu: Path) 
         fmu.initialise(COUNTING | {"tau_e_sensor": 4.0})
         for k in range(9):
             assert fmu.step(k * 1e-3, 1e-3) == OK
-        assert fmu.get("sigma") == pytest.approx(4.0 * 9 / 10, rel=1e-12)  # ridge of P_0 = 1
-        assert fmu.set("modality", 1) == OK  # Residual, which is 0 at rest
+        assert fmu.get("sigma") == pytest.approx(
+            4.0 * 9 / 10, rel=1e-12
+        )  # with the ridge of P_0 = 1
+        assert fmu.set("modality", 1) == OK  # Residual, whose torque is 0 at rest
         assert fmu.step(9e-3, 1e-3) == OK
         assert fmu.get("epsilon") == pytest.approx(-3.6, rel=1e-12)
-        assert ticks(fmu) == 10  # the state went on
+        assert ticks(fmu) == 10  # the recursion continued
 
 
-def test_a_tunable_parameter_out_of_range_stops_the_step_until_it_is_mended(
+def test_a_tunable_parameter_out_of_range_stops_the_step_until_it_is_corrected(
     estimator_fmu: Path,
 ) -> None:
     with Instance(estimator_fmu) as fmu:
@@ -215,6 +213,6 @@ def test_a_tunable_parameter_out_of_range_stops_the_step_until_it_is_mended(
         assert fmu.set("filter.V_min", 11.0) == OK
         assert fmu.step(1e-3, 1e-3) == ERROR
         assert "filter.V_min = 11" in fmu.messages[-1][2]
-        assert fmu.set("filter.V_max", 12.0) == OK  # the pair is right again
+        assert fmu.set("filter.V_max", 12.0) == OK  # now V_min < V_max again
         assert fmu.step(1e-3, 1e-3) == OK
         assert ticks(fmu) == 2

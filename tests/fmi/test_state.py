@@ -1,4 +1,4 @@
-"""Reset, copies of the state, and states that are not what they claim to be."""
+"""Reset, copies of the state, and states that are damaged or of another FMU."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ POINTS = random.Random(2).sample(range(len(STEPS)), 50)
 
 
 @every_fmu
-def test_reset_is_a_fresh_instance(name: str) -> None:
+def test_an_instance_after_a_reset_is_like_a_new_one(name: str) -> None:
     path = sigmahat.fmu(name)
     with Instance(path) as fmu:
         driver = Driver(fmu)
@@ -32,7 +32,7 @@ def test_reset_is_a_fresh_instance(name: str) -> None:
         tunable = names(fmu, "parameter", "tunable")[:3]
         other = {n: 1.5 * float(fmu.variables[n].start) for n in tunable}
         for point in POINTS:
-            fmu.initialise(other)  # which is to be forgotten
+            fmu.initialise(other)  # values that the reset has to replace
             driver.run(STEPS[:point])
             assert fmu.call("fmi2Reset") == OK
             fmu.initialise()
@@ -42,7 +42,7 @@ def test_reset_is_a_fresh_instance(name: str) -> None:
 
 
 @every_fmu
-def test_reset_without_setting_up_again_starts_at_0(name: str) -> None:
+def test_after_a_reset_without_setup_the_start_time_is_0(name: str) -> None:
     with Instance(sigmahat.fmu(name)) as fmu:
         driver = Driver(fmu)
         fmu.initialise(start=0.0)
@@ -56,7 +56,7 @@ def test_reset_without_setting_up_again_starts_at_0(name: str) -> None:
 
 
 @every_fmu
-def test_a_restored_state_goes_on_bit_for_bit(name: str) -> None:
+def test_a_restored_state_continues_bit_for_bit(name: str) -> None:
     with Instance(sigmahat.fmu(name)) as fmu:
         driver = Driver(fmu)
         fmu.initialise()
@@ -73,7 +73,7 @@ def test_a_restored_state_goes_on_bit_for_bit(name: str) -> None:
 
 
 @every_fmu
-def test_a_serialised_state_goes_on_in_another_process(name: str) -> None:
+def test_a_serialised_state_continues_in_another_process(name: str) -> None:
     path = sigmahat.fmu(name)
     with Instance(path) as fmu:
         driver = Driver(fmu)
@@ -94,7 +94,7 @@ def test_a_serialised_state_goes_on_in_another_process(name: str) -> None:
 
 
 @pytest.mark.parametrize("at", ["instantiated", "initialisation", "terminated"])
-def test_a_state_holds_where_the_instance_stands(at: str, estimator_fmu: Path) -> None:
+def test_a_state_contains_the_mode_of_the_instance(at: str, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         if at != "instantiated":
             assert fmu.setup() == OK and fmu.enter() == OK
@@ -111,7 +111,7 @@ def test_a_state_holds_where_the_instance_stands(at: str, estimator_fmu: Path) -
         fmu.free(state)
 
 
-def test_a_state_of_initialisation_mode_knows_what_was_not_yet_computed(
+def test_a_state_of_initialisation_mode_gives_initial_outputs(
     estimator_fmu: Path,
 ) -> None:
     with Instance(estimator_fmu) as fmu:
@@ -127,7 +127,7 @@ def test_a_state_of_initialisation_mode_knows_what_was_not_yet_computed(
         fmu.free(state)
 
 
-def test_a_state_with_a_parameter_out_of_range_is_still_refused_a_step(
+def test_a_state_with_a_parameter_out_of_range_refuses_a_step(
     estimator_fmu: Path,
 ) -> None:
     with Instance(estimator_fmu) as fmu:
@@ -174,7 +174,7 @@ def test_a_damaged_or_foreign_state_is_refused(name: str) -> None:
             assert "fmi2DeSerializeFMUstate" in fmu.messages[-1][2]
             assert reason in fmu.messages[-1][2]
             assert driver.result() == reached
-        # One that is damaged only after it was read.
+        # A state that is damaged after it was saved.
         memory = (ctypes.c_ubyte * len(good)).from_address(state.value or 0)
         memory[len(good) // 2] ^= 1
         assert fmu.restore(state) == ERROR
@@ -187,7 +187,7 @@ def test_a_damaged_or_foreign_state_is_refused(name: str) -> None:
         fmu.free(state)
 
 
-def test_too_little_room_for_a_state_is_refused(estimator_fmu: Path) -> None:
+def test_a_buffer_that_is_too_small_for_a_state_is_refused(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise()
         state = fmu.save()
@@ -201,7 +201,7 @@ def test_too_little_room_for_a_state_is_refused(estimator_fmu: Path) -> None:
         fmu.free(state)
 
 
-def test_freeing_a_state_gives_its_memory_back(estimator_fmu: Path) -> None:
+def test_freeing_a_state_releases_its_memory(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu, memory=True) as fmu:
         fmu.initialise()
         without = set(fmu.blocks)
@@ -209,7 +209,7 @@ def test_freeing_a_state_gives_its_memory_back(estimator_fmu: Path) -> None:
         state = fmu.save()
         block = state.value
         assert fmu.blocks == without | {block}
-        assert fmu.call("fmi2GetFMUstate", ctypes.byref(state)) == OK  # into the same memory
+        assert fmu.call("fmi2GetFMUstate", ctypes.byref(state)) == OK  # uses the same memory
         assert state.value == block and fmu.blocks == without | {block}
         status, copy = fmu.deserialise(fmu.serialise(state))
         assert status == OK
@@ -217,7 +217,7 @@ def test_freeing_a_state_gives_its_memory_back(estimator_fmu: Path) -> None:
         fmu.free(state)
         assert state.value is None
         assert fmu.blocks == without | {copy.value}
-        fmu.free(state)  # of nothing
+        fmu.free(state)  # a null pointer
         fmu.free(copy)
         assert fmu.blocks == without
         fmu.dll.fmi2FreeInstance(ctypes.c_void_p(fmu.component))

@@ -1,4 +1,4 @@
-"""What only sanitizers see: races, leaks, undefined behaviour, and sequences nobody thought of."""
+"""Races, leaks and undefined behaviour, found by sanitizers, also in random sequences of calls."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(*command: str | Path) -> str:
-    """Standard output of a program that has to end well and keep its peace."""
+    """Standard output of a program, which must end with status 0 and print no error."""
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
     assert done.returncode == 0 and done.stderr == "", done.stderr[-10000:]
     return done.stdout
 
 
 @every_fmu
-def test_instances_in_turn_and_in_threads_do_not_know_each_other(
+def test_instances_do_not_influence_each_other_in_turn_and_in_threads(
     fmu: str, build: Path, folder: Path
 ) -> None:
     compiler = compiler_with(THREAD, folder)
@@ -47,12 +47,14 @@ def test_instances_in_turn_and_in_threads_do_not_know_each_other(
 @every_fmu
 def test_memory_does_not_grow(fmu: str, build: Path, folder: Path) -> None:
     program = compile_driver("cycles", fmu, build, folder, compiler_with((), folder))
-    # A single byte lost in each cycle would be more.
+    # If only one byte were lost in each cycle, it would be more.
     assert int(run(program, str(CYCLES))) * 1024 < 0.9 * CYCLES
 
 
 @every_fmu
-def test_no_leak_and_nothing_undefined(fmu: str, build: Path, folder: Path) -> None:
+def test_sanitizers_find_no_leak_and_no_undefined_behaviour(
+    fmu: str, build: Path, folder: Path
+) -> None:
     compiler = compiler_with(ADDRESS, folder)
     run(compile_driver("cycles", fmu, build, folder, compiler, ADDRESS), str(CYCLES))
 
@@ -67,7 +69,7 @@ def test_valgrind_finds_nothing(fmu: str, build: Path, folder: Path) -> None:
 
 
 def test_fuzzer_finds_nothing(build: Path, folder: Path) -> None:
-    """An estimator and a plant, half a minute each, side by side."""
+    """An estimator and a plant at the same time, for half a minute."""
     compiler = compiler_with(FUZZER, folder)
     programs = [compile_driver("fuzz", fmu, build, folder, compiler, FUZZER) for fmu in FUZZED]
     options = ["-max_total_time=30", "-max_len=512", "-timeout=20", f"-artifact_prefix={folder}/"]

@@ -1,4 +1,4 @@
-"""Tunable parameters changed in the middle of a run: at once, and nothing else is lost."""
+"""Tunable parameters that are changed during a run: they act at once and change nothing else."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ T = 1e-3  # s
 STEPS = 60
 CHANGE = random.Random(4).randrange(20, 40)  # the parameter is changed before this step
 SIDES = {"StiffnessEstimator": [""], "AntagonisticStiffnessEstimator": ["_1", "_2"]}
-# Where a parameter acts; the others act as the FMU is.
+# Start values with which a parameter has an effect; the others have one with the defaults.
 CONFIGURATION: dict[str, dict[str, float]] = {
     "filter.R": {"filter.kind": 2},
-    "filter.V_max": {"encoder.theta": 2000},  # in slow motion, counted in these
+    "filter.V_max": {"encoder.theta": 2000},  # so the motion is slow in counts
     "filter.alpha": {"encoder.theta": 2000},
     "model.k_s": {"modality": 3},
     "model.r_0": {"modality": 3},
@@ -30,9 +30,9 @@ CONFIGURATION: dict[str, dict[str, float]] = {
     "noise.tau_e": {"modality": 2},
     "confidence": {"confidence": 1e12},
 }
-# What each method needs; SIGNALS begin in motion, which a fast filter soon has forgotten.
+# Start values for each method. SIGNALS start in motion, from which a fast filter soon settles.
 METHODS: dict[int, dict[str, float]] = {1: {}, 2: {"method": 2, "matched.bandwidth": 1900}}
-# The new value where half as much again is the same, or not enough.
+# The new value if 1.5 times the start value is the same, or has too little effect.
 CHANGED = {
     "modality": 2,
     "confidence": 1e-12,
@@ -77,7 +77,7 @@ def tunables(fmus: list[str]) -> list[tuple[str, str]]:
 def run_fmu(
     fmu: str, outputs: list[str], start: Mapping[str, float], change: Mapping[str, float]
 ) -> list[list[float]]:
-    """Outputs after every step, with parameters changed before step number CHANGE."""
+    """Outputs after every step. Parameters are changed before step number CHANGE."""
     results = []
     with Instance(sigmahat.fmu(fmu)) as instance:
         instance.initialise(start)
@@ -94,7 +94,7 @@ def run_fmu(
 def run_library(
     build: Path, side: str, start: Mapping[str, float], change: Mapping[str, float]
 ) -> list[list[float]]:
-    """The same of one estimator, which takes its inputs and its motor from a side of the FMU."""
+    """The same for an estimator of the library, with inputs and motor of one side of the FMU."""
     estimator = Estimator(load(build), start)
     results = []
     for k in range(STEPS):
@@ -118,7 +118,7 @@ def run_library(
 
 
 def methods(name: str) -> list[int]:
-    """The methods in which a parameter acts."""
+    """The methods in which a parameter has an effect."""
     if name.startswith(("residual.", "filter.")):
         return [1]
     return [2] if name.startswith("matched.") else [1, 2]
@@ -128,7 +128,7 @@ def methods(name: str) -> list[int]:
     ("fmu", "name", "method"),
     [(fmu, name, method) for fmu, name in tunables(ESTIMATORS) for method in methods(name)],
 )
-def test_an_estimator_goes_on_as_the_library_with_the_parameter_changed(
+def test_an_estimator_continues_like_the_library_with_the_new_value(
     fmu: str, name: str, method: int, build: Path
 ) -> None:
     sides = SIDES[fmu]
@@ -143,7 +143,7 @@ def test_an_estimator_goes_on_as_the_library_with_the_parameter_changed(
     with_change = run_fmu(fmu, outputs, start, {name: value})
     without = run_fmu(fmu, outputs, start, {})
     assert with_change[:CHANGE] == without[:CHANGE]
-    assert with_change[CHANGE] != without[CHANGE]  # the very next tick
+    assert with_change[CHANGE] != without[CHANGE]  # already at the next tick
 
     runs = [run_library(build, side, start, {name: value}) for side in sides]
     expected = [[value for row in rows for value in row] for rows in zip(*runs, strict=True)]
@@ -151,8 +151,8 @@ def test_an_estimator_goes_on_as_the_library_with_the_parameter_changed(
 
 
 @pytest.mark.parametrize(("fmu", "name"), tunables(PLANTS))
-def test_a_plant_goes_on_from_its_state_with_the_parameter_changed(fmu: str, name: str) -> None:
-    """As another plant does, that has the parameter from the start and starts in that state."""
+def test_a_plant_continues_from_its_state_with_the_new_value(fmu: str, name: str) -> None:
+    """Like another plant that has the new value from the start and starts in that state."""
     with Instance(sigmahat.fmu(fmu)) as instance:
         variables = instance.variables
         outputs = names(instance, "output")
@@ -162,7 +162,7 @@ def test_a_plant_goes_on_from_its_state_with_the_parameter_changed(fmu: str, nam
     with_change = np.array(run_fmu(fmu, outputs, exact, {name: value}))
     without = np.array(run_fmu(fmu, outputs, exact, {}))
     np.testing.assert_array_equal(with_change[:CHANGE], without[:CHANGE])
-    assert (with_change[CHANGE] != without[CHANGE]).any()  # the very next step
+    assert (with_change[CHANGE] != without[CHANGE]).any()  # already in the next step
 
     at_change = dict(zip(outputs, with_change[CHANGE - 1], strict=True))
     with Instance(sigmahat.fmu(fmu)) as other:
@@ -179,6 +179,6 @@ def test_a_plant_goes_on_from_its_state_with_the_parameter_changed(fmu: str, nam
     scale[scale == 0.0] = 1.0
     error = np.abs(with_change[CHANGE:] - expected) / scale
     effect = np.abs(with_change[CHANGE:] - without[CHANGE:]) / scale
-    # Of the integration, which took other internal steps: its tolerance for one of them.
+    # The internal steps differ, so the error is that of the integrator: its tolerance for one step.
     assert error.max() < 1e-8
     assert effect.max() > 1e-7
