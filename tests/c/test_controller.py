@@ -75,9 +75,7 @@ def test_a_processor_computes_what_the_host_computes(
         np.testing.assert_allclose(there[name], expected, rtol=0, atol=ROUNDING[real] * largest)
 
 
-@pytest.mark.parametrize(
-    "configuration", "abcdeghi"
-)  # not f: noise dominates it, also in double
+@pytest.mark.parametrize("configuration", "abcdeghi")  # not f: noise dominates it, also in double
 def test_single_precision_gives_the_stiffness_of_table1(
     configuration: str, folder: Path, ninja: Path, tmp_path: Path
 ) -> None:

@@ -1,4 +1,4 @@
-"""Chromium without a window, to see reports as a reader does."""
+"""Chromium without a window, to test reports in a browser."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ look();
 
 
 class Page:
-    """A file that is open."""
+    """A file that is open in the browser."""
 
     def __init__(self, driver: Chrome) -> None:
         self.driver = driver
 
     def run(self, script: str, *arguments: object) -> Any:
-        """Value of a script that ends with return."""
+        """Runs a script that ends with return. Returns its value."""
         return self.driver.execute_script(script, *arguments)
 
     def complaints(self) -> list[str]:
         """Errors and warnings on the console since the last call."""
         entries = self.driver.get_log("browser")  # type: ignore[no-untyped-call]
         found = [e["message"] for e in entries if e["level"] not in ("INFO", "DEBUG")]
-        # Chromium warns of the tests themselves, which look at the pixels of the plots.
+        # Chromium warns about the tests themselves, which read the pixels of the plots.
         return [message for message in found if "getImageData" not in message]
 
     def requests(self) -> list[str]:
-        """What was asked for since the last call, but for what the file itself holds."""
+        """Addresses requested since the last call, except those inside the file itself."""
         entries = self.driver.get_log("performance")  # type: ignore[no-untyped-call]
         events = [json.loads(entry["message"])["message"] for entry in entries]
         urls = [

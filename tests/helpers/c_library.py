@@ -1,4 +1,4 @@
-"""The C library from Python: declarations come from its headers, arrays are numpy's."""
+"""The C library for Python, with the declarations of its headers and with numpy arrays."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 REPOSITORY = Path(__file__).resolve().parents[2]
-HEADERS = [  # in the order in which they need each other
+HEADERS = [  # each one after those that it includes
     REPOSITORY / "c" / "real.h",
     REPOSITORY / "c" / "kinematic_kalman.h",
     REPOSITORY / "c" / "torque_basis.h",
@@ -33,7 +33,7 @@ MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
 
 def declarations(header: Path) -> str:
-    """The C declarations of a header, without its preprocessor lines, for double."""
+    """The C declarations of a header, for double, without preprocessor lines."""
     text = re.sub(r"#ifdef __cplusplus.*?#endif", "", header.read_text(), flags=re.DOTALL)
     return re.sub(r"^#.*$", "", text, flags=re.MULTILINE).replace("SH_REAL", "double")
 
@@ -45,7 +45,7 @@ def load(build: Path) -> Library:
 
 
 class Library:
-    """The estimator library with the loops of `drivers/` beside it."""
+    """The estimator library, and the loops over ticks in `drivers/run.c`."""
 
     def __init__(self, build: Path) -> None:
         self.ffi = cffi.FFI()
@@ -55,11 +55,11 @@ class Library:
         self.lib: Any = self.ffi.dlopen(str(build / f"libsigmahat_test_driver{suffix}"))
 
     def new(self, struct: str, **values: Any) -> Any:
-        """A struct, zero but for the given fields."""
+        """A new struct with the given fields; all others are zero."""
         return self.ffi.new(f"{struct} *", values)
 
     def pointer(self, array: Array) -> Any:
-        """A `double *` to a contiguous array, which must outlive it."""
+        """A `double *` to a contiguous array. It is valid only as long as the array exists."""
         return self.ffi.cast("double *", self.ffi.from_buffer(array, require_writable=False))
 
     def dtype(self, struct: str) -> np.dtype[Any]:
@@ -78,7 +78,7 @@ class Library:
         return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
 
     def parameters(self, values: Mapping[str, Any]) -> Any:
-        """A `sh_parameters *`: the defaults, then `values` by their dotted names."""
+        """A new `sh_parameters *` with the defaults, except for `values` by dotted name."""
         p = self.ffi.new("sh_parameters *")
         self.lib.sh_parameters_default(p)
         for name, value in values.items():
@@ -117,7 +117,7 @@ class Estimator:
         library.lib.sh_estimator_start(self.state, self.parameters, self.estimate)
 
     def tick(self, measurement: Sequence[float] | Array) -> bool:
-        """Runs one tick on theta, q, theta_c, tau, tau_e_sensor; false if it was skipped."""
+        """Runs a tick with theta, q, theta_c, tau, tau_e_sensor. Returns False if it was skipped."""
         z = self.library.new(
             "sh_measurement", **dict(zip(MEASUREMENTS, map(float, measurement), strict=True))
         )
@@ -125,7 +125,7 @@ class Estimator:
         return bool(lib.sh_estimator_tick(self.state, self.parameters, z, self.estimate))
 
     def lasting(self) -> bytes:
-        """The state without what was at work in the last tick."""
+        """The state as bytes, without the work arrays, which have no meaning between ticks."""
         ffi = self.library.ffi
         state = ffi.new("sh_estimator *", self.state[0])
         for part in (state, state.rls, state.matched):
@@ -134,13 +134,13 @@ class Estimator:
         return bytes(ffi.buffer(state))
 
     def run(self, measurements: Array) -> NDArray[np.void]:
-        """Runs ticks over measurements [size: ticks x 5]; the estimates by field name."""
+        """Runs a tick for each row of measurements [size: ticks x 5]. Returns all estimates."""
         record = np.zeros(len(measurements), self.library.dtype("sh_estimate"))
         self._drive(measurements, len(measurements), record)
         return record
 
     def repeat(self, measurements: Array, ticks: int) -> int:
-        """Runs ticks over measurements again and again; how many were not skipped."""
+        """Runs ticks over measurements, which are repeated. Returns how many were not skipped."""
         return self._drive(measurements, ticks, None)
 
     def _drive(self, measurements: Array, ticks: int, record: NDArray[np.void] | None) -> int:
@@ -162,7 +162,7 @@ class Estimator:
         return good
 
     def covariance(self) -> Array:
-        """P of the regression [size: n m x n m]."""
+        """P of the regression [size: rls.size x rls.size]."""
         rls = self.library.ffi.addressof(self.state, "rls")
         at = self.library.lib.sh_least_squares_covariance
         return np.array([[at(rls, i, j) for j in range(rls.size)] for i in range(rls.size)])

@@ -1,7 +1,7 @@
 """The programs of `drivers/`, each linked with the sources of one FMU.
 
-Where a compiler or a checker is missing the test is skipped, but fails in the gate, which sets
-SIGMAHAT_GATE=1.
+If a compiler or a checker is missing, the test is skipped. In the gate, which sets SIGMAHAT_GATE=1,
+it fails.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ PLANT_SOURCES = ("plant.c", "radau.c", "noise.c")
 
 
 def sources(fmu: str, build: Path) -> list[Path]:
-    """The C files of an FMU."""
+    """The C source files of an FMU."""
     shell = REPOSITORY / "fmu_src"
     files = [*sorted(shell.glob("fmi2_*.c")), shell / "instance.c"]
     if fmu in ESTIMATORS:
@@ -39,7 +39,7 @@ def sources(fmu: str, build: Path) -> list[Path]:
 def compile_driver(
     driver: str, fmu: str, build: Path, folder: Path, compiler: str, flags: tuple[str, ...] = ()
 ) -> Path:
-    """A program made of drivers/DRIVER.c and an FMU, in a new folder inside the one given."""
+    """Compiles a program of drivers/DRIVER.c and an FMU, in a new folder inside `folder`."""
     program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{fmu}"
     here = REPOSITORY / "tests" / "drivers"
     common = (
@@ -47,7 +47,13 @@ def compile_driver(
     )
     folders = [REPOSITORY / "c", REPOSITORY / "fmu_src", build / "fmu" / fmu]
     command = [
-        *(compiler, "-gdwarf-4", "-O1", "-ffp-contract=off", *flags),  # valgrind reads no newer
+        *(
+            compiler,
+            "-gdwarf-4",
+            "-O1",
+            "-ffp-contract=off",
+            *flags,
+        ),  # valgrind cannot read newer debug information
         *(f"-I{path}" for path in folders),
         f"-isystem{Path(fmpy.__file__).parent / 'c-code'}",
         *(str(path) for path in (here / f"{driver}.c", *common, *sources(fmu, build))),
@@ -71,7 +77,7 @@ def _works(compiler: str, flags: tuple[str, ...], folder: Path, text: str) -> bo
 
 
 def compiler_with(flags: tuple[str, ...], folder: Path) -> str:
-    """A compiler whose programs built with these flags run; the runtimes are often missing."""
+    """A compiler that can build programs with these flags that run; a runtime may be missing."""
     text = "int main(void) { return 0; }\n"
     if any("fuzzer" in flag for flag in flags):
         text = "int LLVMFuzzerTestOneInput(void) { return 0; }\n"

@@ -1,4 +1,4 @@
-"""Programs for other processors: built with the toolchains of cmake/, run in QEMU."""
+"""Programs for other processors, built with the toolchains of cmake/ and run in QEMU."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ OUTPUTS = (
     *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),
     *("eta", "sigma_std", "D_theta_hat", "B_hat", "tau_coulomb_hat", "confident", "valid"),
 )
-"""What replay.c writes of each tick, in its order."""
+"""The outputs that replay.c writes for each tick, in this order."""
 
 
 @dataclass(frozen=True)
 class Target:
-    """A processor with its compiler and emulator, which must be installed."""
+    """A processor, and the tools that must be installed to compile for it and to emulate it."""
 
     toolchain: str | None
     """File in cmake/toolchains; None for this machine."""
@@ -50,7 +50,7 @@ TARGETS = {
 
 @cache
 def cross_build(project: str, target: Target, real: str, ninja: Path, folder: Path) -> Path:
-    """The build tree of a project of the repository for a target, with SH_REAL."""
+    """Builds a project of the repository for a target, with SH_REAL = real; the build tree."""
     for tool in target.tools:
         if shutil.which(tool) is None:
             missing(tool, target.packages)
@@ -66,7 +66,7 @@ def cross_build(project: str, target: Target, real: str, ninja: Path, folder: Pa
 
 
 def run(*command: str, cwd: Path | None = None) -> str:
-    """Runs a command, which must succeed within minutes; what it printed."""
+    """Runs a command, which must succeed within 5 minutes. Returns what it printed."""
     done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
@@ -75,11 +75,11 @@ def run(*command: str, cwd: Path | None = None) -> str:
 def replay(
     tree: Path, measurements: NDArray[np.float64], configuration: str, folder: Path
 ) -> dict[str, NDArray[np.float64]]:
-    """What the estimator of a build of tests/replay gives in each tick, by OUTPUTS."""
+    """Runs a build of tests/replay. Returns the outputs of the estimator in each tick, by name."""
     measurements.astype("<f8").tofile(folder / "log")
     program, arguments = str(tree / "replay"), ["log", "out", configuration]
     command = [part for part in (tree / "emulator.txt").read_text().split(";") if part]
-    if command and command[-1] == "-kernel":  # no operating system that has arguments
+    if command and command[-1] == "-kernel":  # there is no operating system that passes arguments
         run(*command, program, "-append", " ".join(arguments), cwd=folder)
     else:
         run(*command, program, *arguments, cwd=folder)

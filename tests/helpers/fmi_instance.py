@@ -1,6 +1,6 @@
-"""An FMU through the bare C interface: statuses come back, messages are kept.
+"""An FMU through its C interface: every call returns its status, and all messages are recorded.
 
-FMPy loads the library; nothing of its error handling is in the way.
+FMPy only loads the library; its error handling is not used.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ OK, WARNING, DISCARD, ERROR = 0, 1, 2, 3
 
 
 class Instance:
-    """An instance of an FMU, in the state fmi2Instantiate leaves it in.
+    """An instance of an FMU, after fmi2Instantiate.
 
-    A lone surrogate in the name or the GUID stands for a byte that is not UTF-8.
+    A lone surrogate in the name or the GUID is passed as a byte that is not UTF-8.
     """
 
     def __init__(
@@ -38,9 +38,9 @@ class Instance:
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.folder = fmpy.extract(str(fmu))
         self.messages: list[tuple[int, str, str]] = []  # status, category, message
-        self.environments: list[int | None] = []  # as handed back to the logger
-        self.names: set[str] = set()  # as given to the logger
-        self.blocks: set[int] = set()  # of memory from this importer, not yet given back
+        self.environments: list[int | None] = []  # that the logger received
+        self.names: set[str] = set()  # of the instance, that the logger received
+        self.blocks: set[int] = set()  # of memory that the instance allocated and has not freed
         slave = fmi2.FMU2Slave(
             guid=self.description.guid,
             unzipDirectory=self.folder,
@@ -99,7 +99,7 @@ class Instance:
         fmpy.free(block)
 
     def call(self, function: str, *arguments: Any) -> int:
-        """Status of a call with this instance as its first argument."""
+        """Calls a function with this instance as its first argument. Returns the status."""
         return int(getattr(self.dll, function)(ctypes.c_void_p(self.component), *arguments))
 
     def reference(self, name: str) -> int:
@@ -165,7 +165,7 @@ class Instance:
         return self.call("fmi2ExitInitializationMode")
 
     def initialise(self, values: Mapping[str, float] | None = None, start: float = 0.0) -> None:
-        """From instantiated to ready for the first step."""
+        """Sets start values and makes the instance ready for the first step."""
         assert self.setup(start) == OK
         self.set_all(values or {})
         assert self.enter() == OK

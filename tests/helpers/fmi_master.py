@@ -1,6 +1,6 @@
-"""AwasPlant and StiffnessEstimator of the scenario table1, stepped by hand through FMI.
+"""A simple master for AwasPlant and StiffnessEstimator of the scenario table1.
 
-In what masters differ are arguments of `run`; the calls are the same.
+The differences between masters are arguments of `run`; the FMI calls are the same.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ _RESIDUAL = _TABLE1.estimators["RESIDUAL"]
 
 
 def torques(t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """tau and tau_c of the scenario at the times [s], shape (len(t), 2) [N.m]."""
+    """tau and tau_c of the scenario at the times t [s], shape (len(t), 2) [N.m]."""
     return np.column_stack([signal(t) for signal in _TABLE1.plant.inputs.values()])
 
 
 def run(
     torques: NDArray[np.float64], *, late: bool, linear: bool, times: Iterable[float]
 ) -> dict[str, NDArray[np.float64]]:
-    """Stiffness of the plant at each time, and of the estimator after its step from there.
+    """Stiffness of the plant at each time, and of the estimator after its step from that time.
 
-    `torques` are those at the times. If `late`, every value crosses a connection at the end of a
-    step, and is 0 before: the plant has torques one step late, and the estimator's first inputs
-    are 0. If `linear`, torques are linear over a step, else held.
+    `torques` are those at the times. If `late`, every value is passed along a connection at the end
+    of a step, and is 0 before the first one: the plant receives its torques one step late, and the
+    first inputs of the estimator are 0. If `linear`, torques are linear over a step, else held.
     """
     times = list(times)
     sigma: dict[str, list[float]] = {"plant.sigma": [], "estimator.sigma": []}

@@ -1,4 +1,4 @@
-"""Runs of any FMU through the bare C interface, to be compared bit for bit."""
+"""Runs of any FMU through its C interface, whose results can be compared bit for bit."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fmi_instance import OK, Instance
 ESTIMATORS = ["StiffnessEstimator", "AntagonisticStiffnessEstimator"]
 PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant"]
 
-# Inputs of the FMUs as functions of time: measurements that excite everything, and torques.
+# Inputs of the FMUs as functions of time: measurements that excite all parameters, and torques.
 SIGNALS: dict[str, Callable[[float], float]] = {
     "theta": lambda t: 0.5 * math.sin(9 * t),
     "theta_1": lambda t: 0.5 * math.sin(9 * t) + 0.02,
@@ -32,7 +32,7 @@ SIGNALS: dict[str, Callable[[float], float]] = {
 
 
 def names(fmu: Instance, causality: str, variability: str | None = None) -> list[str]:
-    """The variables of a causality, and if given of a variability, in the order of the file."""
+    """Names of the variables with a causality and, if given, a variability, in their order."""
     return [
         name
         for name, variable in fmu.variables.items()
@@ -41,7 +41,7 @@ def names(fmu: Instance, causality: str, variability: str | None = None) -> list
 
 
 def random_steps(count: int, seed: int) -> list[tuple[float, float]]:
-    """Communication points and step sizes [s], from 0.1 ms to 4 ms, one after the other."""
+    """Communication points and step sizes [s] of successive steps, from 0.1 ms to 4 ms."""
     source = random.Random(seed)
     t, steps = 0.0, []
     for _ in range(count):
@@ -52,7 +52,7 @@ def random_steps(count: int, seed: int) -> list[tuple[float, float]]:
 
 
 class Driver:
-    """Steps an instance under SIGNALS, linear in every second step and held in the others."""
+    """Steps an instance with the inputs SIGNALS. In some steps they are linear, in others held."""
 
     def __init__(self, fmu: Instance) -> None:
         self.fmu = fmu
@@ -63,7 +63,7 @@ class Driver:
         self._orders = (ctypes.c_int * len(self.inputs))(*[1] * len(self.inputs))
 
     def step(self, t: float, h: float) -> bytes:
-        """One step; all Real outputs after it, bit for bit."""
+        """Makes one step. Returns all Real outputs after it, as bytes."""
         fmu, count = self.fmu, ctypes.c_size_t(len(self.inputs))
         reals = ctypes.c_double * len(self.inputs)
         now = [SIGNALS[name](t) for name in self.inputs]
@@ -78,7 +78,7 @@ class Driver:
         return self.result()
 
     def result(self) -> bytes:
-        """All Real outputs, bit for bit."""
+        """All Real outputs, as bytes."""
         values = (ctypes.c_double * len(self.outputs))()
         count = ctypes.c_size_t(len(self.outputs))
         assert self.fmu.call("fmi2GetReal", self._from, count, values) == OK
@@ -91,7 +91,7 @@ class Driver:
 def continue_from(
     path: Path, states: Sequence[bytes], rests: Sequence[Sequence[tuple[float, float]]]
 ) -> list[list[bytes]]:
-    """Runs from serialised states, in an instance that has seen nothing before."""
+    """Continues from serialised states in a new instance. Returns the outputs of each run."""
     results = []
     with Instance(path) as fmu:
         driver = Driver(fmu)

@@ -1,4 +1,4 @@
-"""A tool that a test needs and this machine does not have."""
+"""Tests that need a tool that is not installed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 
 def missing(what: str, how: str) -> NoReturn:
-    """Ends the test: skips it, but fails it in the gate, which sets SIGMAHAT_GATE.
+    """Ends the test: skips it. In the gate, which sets SIGMAHAT_GATE, the test fails instead.
 
     what  the tool, as in "<what> is not installed"
     how   command that installs it

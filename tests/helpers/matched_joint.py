@@ -1,7 +1,7 @@
-"""Measurements of a motor behind a spring, from given motions: inverse dynamics, nothing to solve.
+"""Measurements of a motor with a spring, by inverse dynamics from given motions.
 
-Motor position and deformation are prescribed, and the torque that makes the motor (3) move so, with
-Coulomb friction, follows from them.
+The positions of the motor and the deformation are prescribed. The motor torque is computed from
+them with (3) and Coulomb friction, so no differential equation has to be solved.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ COULOMB_VELOCITY = 0.02  # [rad/s]
 
 @dataclass(frozen=True)
 class Joint:
-    """Motion and data of a joint with the lever arm of the AwAS. The data are the defaults of the
-    estimator."""
+    """Motion and data of a joint with a lever arm as that of the AwAS. The motor data are the
+    defaults of the estimator."""
 
     duration: float = 10.0
     """[s]"""
     frequency: float = 1.0
-    """Of the motor [Hz]."""
+    """Frequency of the motor [Hz]."""
     amplitude: float = 0.8
-    """Of the motor [rad]."""
+    """Amplitude of the motor [rad]."""
     deformation: float = 0.02
     """Amplitude of phi, at 1.3 times the frequency [rad]."""
     B: float = 2.3e-5
@@ -37,7 +37,7 @@ class Joint:
     stiffness: Callable[[Array], Array] = np.ones_like
     """Stiffness over time [s], relative to the AwAS."""
     counts: float = 40000.0
-    """Of the encoders; 0: no rounding."""
+    """Counts per turn of the encoders; 0: no rounding."""
     noise: float = 10**-2.5
     """Standard deviation of the motor torque [N.m]."""
     seed: int = 1
@@ -49,7 +49,7 @@ class Joint:
 
     @property
     def motion(self) -> tuple[Array, Array, Array, Array, Array]:
-        """theta, its two derivatives, phi [rad], lever arm [m]. All start at rest."""
+        """theta, its two derivatives, phi [rad], lever arm [m]. The motion starts at rest."""
         t, w = self.t, 2 * np.pi * self.frequency
         theta = self.amplitude * (1 - np.cos(w * t))
         theta_dot = self.amplitude * w * np.sin(w * t)

@@ -1,9 +1,9 @@
-"""The estimator in numpy, written from the paper: what the C is compared with.
+"""The estimator in numpy, written from the paper, with which the C code is compared.
 
-The formulas stand here as printed, also where the C computes them otherwise: (8) with its integral
-I_tau and r(k), (14) and (25) with K and P - a K F'P. That form loses P in doubles, so every number
-is a multiple-precision one (an mpfr in arrays of dtype object), with DIGITS far beyond what the
-worst case cancels. Numbers come in as doubles and are taken as exact.
+The formulas are those printed in the paper, also where the C code has another form: (8) with its
+integral I_tau and r(k), (14) and (25) with K and P - a K F'P. In doubles P would lose all its
+digits in that form. So all numbers have multiple precision (mpfr in arrays of dtype object), with
+many more DIGITS than cancel in the worst case. Inputs are doubles, which are taken as exact.
 
 Parameters are a flat mapping from the names of the FMU to values.
 """
@@ -27,7 +27,7 @@ DIGITS = 60
 
 
 def bits(digits: int) -> int:
-    """Precision of a number of so many decimal digits."""
+    """Number of bits for a number of decimal digits."""
     return math.ceil(digits / math.log10(2))
 
 
@@ -39,7 +39,7 @@ RAW, FILTERED = 1, 2
 ENHANCED, STANDARD, CONSTANT_FACTOR = 1, 2, 3
 RESIDUAL, SENSOR, MODEL = 1, 2, 3
 
-# Start values of the FMU: section VI.A and VI.B.
+# Start values of the FMU, from sections VI.A and VI.B.
 DEFAULTS: Parameters = {
     "samplePeriod": 1e-3,
     "modality": RESIDUAL,
@@ -154,17 +154,17 @@ def basis(n: int, m: int, set_point: Exact, phi: Exact, symmetric: int = 1) -> t
 
 @dataclass(frozen=True)
 class Regression:
-    """What the recursion gives at every tick; columns of y side by side, see `least_squares`."""
+    """Results of the recursion at every tick, for each column of y, see `least_squares`."""
 
     eta: Exact  # [size: ticks x parameters x columns] after the update
-    epsilon: Exact  # [size: ticks x columns], this and the next from before the update
+    epsilon: Exact  # [size: ticks x columns] before the update, as rho
     rho: Exact  # [size: ticks]
     a: Exact  # [size: ticks]
     P: Exact  # [size: parameters x parameters] after the last tick
 
     @property
     def weight(self) -> Exact:
-        """a / (1 + rho - a rho): what (26) bounds [size: ticks]."""
+        """a / (1 + rho - a rho), which (26) bounds [size: ticks]."""
         weight: Exact = self.a / (1 + self.rho - self.a * self.rho)
         return weight
 
@@ -177,7 +177,7 @@ def least_squares(
     kind    ENHANCED with factor = c, STANDARD, or CONSTANT_FACTOR with factor = a
     eta_0   [size: parameters]
     F       [size: ticks x parameters]
-    y       [size: ticks x columns], independent right-hand sides under one P
+    y       [size: ticks x columns], independent right-hand sides that share one P
     """
     factor = gmpy2.mpfr(factor)
     P = gmpy2.mpfr(P_0) * np.eye(F.shape[1], dtype=int)
@@ -228,11 +228,11 @@ def solve(matrix: Exact, right: Exact) -> Exact:
 
 
 def relative_error(got: Array, want: Array, scale: float | Array | None = None) -> float:
-    """Largest relative error over the ticks, where values below 1e-6 of the signal's range count
-    as that much.
+    """Largest relative error over the ticks. Where a value is below 1e-6 of the range of its
+    signal, the error is relative to 1e-6 of the range.
 
-    got, want  [size: ticks x ...], each of the trailing entries a signal with a range of its own
-    scale      taken for the range if given
+    got, want  [size: ticks x ...], where each trailing entry is a signal with its own range
+    scale      used instead of the range, if given
     """
     span = np.ptp(want, axis=0) if scale is None else np.asarray(scale)
     floor = np.maximum(np.abs(want), 1e-6 * span)
@@ -242,7 +242,7 @@ def relative_error(got: Array, want: Array, scale: float | Array | None = None) 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Outputs of every tick, [size: ticks]; eta [size: ticks x n x m]."""
+    """Outputs of every tick [size: ticks], and eta [size: ticks x n x m]."""
 
     sigma: Array
     tau_e: Array
@@ -263,12 +263,12 @@ class Estimate:
 def estimator(
     p: Parameters, measurements: Array, variants: Sequence[Parameters], eta_0: Array | None = None
 ) -> list[Estimate]:
-    """The whole estimator, one Estimate for each of `variants`.
+    """The whole estimator. Returns one Estimate for each of `variants`.
 
     p             parameters
     measurements  [size: ticks x 5] theta, q, theta_c, tau, tau_e_sensor
-    variants      changes to p; they may differ in modality and in filter, but must agree in what P
-                  depends on, because they share one recursion of P
+    variants      changes of p. They may differ in modality and in filter, but not in parameters on
+                  which P depends, because they share one recursion of P
     eta_0         [size: n x m], zero if None
     """
     theta, q, theta_c, tau, sensor = measurements.T

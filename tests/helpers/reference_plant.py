@@ -1,7 +1,7 @@
-"""The AwAS, (5) with (28)-(31), solved by scipy: the truth the plant and the estimator are held to.
+"""The AwAS, (5) with (28)-(31), solved by scipy: the reference for the plant and the estimator.
 
-Written from the paper, and sharing nothing with the plant that is generated to C. Names are those
-of the FMU's parameters.
+It is written from the paper and shares nothing with the plant that is generated to C. Names are
+those of the FMU's parameters.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Awas:
     motor_D_theta: float = 1e-3
     motor_gamma: float = 50.0
     motor_tau_coulomb: float = 0.0
-    coulomb_velocity: float = 0.02  # rad/s, where tanh replaces the step of the sign
+    coulomb_velocity: float = 0.02  # rad/s, width of the tanh that replaces the sign
     motor_c_B: float = 1.29e-7
     motor_c_D: float = 0.0141
     motor_c_gamma: float = 23.0
@@ -113,7 +113,7 @@ def solve(
 
 
 def round_to_counts(angle: Array, counts: float) -> Array:
-    """What an encoder of `counts` per turn reads, nearest count [rad]; 0: no quantisation."""
+    """Reading of an encoder with `counts` per turn: the nearest count [rad]. 0: no quantisation."""
     if counts == 0:
         return angle
     count = 2 * math.pi / counts
@@ -123,7 +123,7 @@ def round_to_counts(angle: Array, counts: float) -> Array:
 
 @dataclass(frozen=True)
 class Recording:
-    """Truth and measurements of a run, each [size: p], sampled at k T."""
+    """Measurements and true signals of a run, each [size: p], sampled at k T."""
 
     theta: Array  # measured
     q: Array
@@ -143,7 +143,7 @@ class Recording:
 def record(
     plant: Awas, states: Callable[[Array], Array], tau: Torque, samples: int, T: float, seed: int
 ) -> Recording:
-    """Measures a solution with the paper's encoders and noise, (32), (33)."""
+    """Samples a solution, with the encoders of the paper and the noise (32), (33)."""
     t: Array = T * np.arange(samples, dtype=float)
     q, theta, theta_c, _, theta_dot, _ = states(t)
     noise = np.random.default_rng(seed)
@@ -175,12 +175,12 @@ def paper_tau_c(t: float) -> float:
 
 @cache
 def table1() -> Callable[[Array], Array]:
-    """Solution of the conditions behind Table I: r(0) = 70 mm, at rest, 15 s."""
+    """Solution for the conditions of Table I: r(0) = 70 mm, at rest, 15 s."""
     initial = np.array([0.0, 0.0, 0.030 / SCREW, 0.0, 0.0, 0.0])
     return solve(Awas(), paper_tau, paper_tau_c, initial, 15.0)
 
 
 @cache
 def table1_recording() -> Recording:
-    """The measurements behind Table I, 15001 samples at 1 kHz."""
+    """Measurements of the run of Table I, 15001 samples at 1 kHz."""
     return record(Awas(), table1(), paper_tau, samples=15001, T=1e-3, seed=1)

@@ -1,4 +1,4 @@
-"""The public API is what its page says: named, documented and typed, all of it."""
+"""The whole public API is on its page, documented and typed."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ REPOSITORY = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """What `cmake --build build --target api` makes."""
+    """The page that `cmake --build build --target api` writes."""
     path = tmp_path_factory.mktemp("api") / "api.html"
     subprocess.run([sys.executable, REPOSITORY / "docs" / "api.py", path], check=True)
     return path.read_text(encoding="utf-8")
 
 
-def test_page_opens_without_network(page: str) -> None:
+def test_the_page_loads_nothing_from_the_network(page: str) -> None:
     assert not re.search(r"""(?:src|href)=["']?(?:https?:)?//(?!pdoc\.dev)""", page)
     assert "<title>sigmahat API documentation</title>" in page
 
 
 @pytest.mark.parametrize("name", sorted(sigmahat.__all__))
-def test_page_names_it(name: str, page: str) -> None:
+def test_a_public_name_is_on_the_page(name: str, page: str) -> None:
     assert f'<section id="{name}">' in page
 
 
@@ -46,9 +46,9 @@ def members() -> list[tuple[str, object]]:
 @pytest.mark.parametrize(
     ("name", "member"), [pytest.param(*each, id=each[0]) for each in members()]
 )
-def test_it_is_documented_and_typed(name: str, member: object) -> None:
+def test_a_public_function_is_documented_and_typed(name: str, member: object) -> None:
     text = inspect.getdoc(member) or ""
-    assert text and not text.startswith(f"{name.split('.')[-1]}("), "a docstring of our own"
+    assert text and not text.startswith(f"{name.split('.')[-1]}("), "it has no docstring of its own"
     if inspect.isfunction(member):
         signature = inspect.signature(member)
         assert signature.return_annotation is not inspect.Signature.empty
@@ -57,17 +57,17 @@ def test_it_is_documented_and_typed(name: str, member: object) -> None:
             assert typed or parameter.name == "self", parameter.name
 
 
-def test_names_are_listed_once_for_people_and_once_for_type_checkers() -> None:
+def test_all_public_names_are_imported_lazily_and_listed() -> None:
     lazy = [name for names in sigmahat._HOMES.values() for name in names]
     assert sorted([*lazy, "__version__", "fmu"]) == sorted(sigmahat.__all__)
     assert dir(sigmahat) == sorted(sigmahat.__all__)
 
 
-def test_unknown_name() -> None:
+def test_an_unknown_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="no attribute 'estimator'"):
         sigmahat.estimator  # noqa: B018
 
 
-def test_unknown_fmu_says_which_there_are() -> None:
+def test_an_unknown_fmu_is_an_error_that_lists_the_existing_ones() -> None:
     with pytest.raises(FileNotFoundError, match=r"no Stiffness\.fmu in .*StiffnessEstimator"):
         sigmahat.fmu("Stiffness")

@@ -1,4 +1,4 @@
-"""The bench: everything it compares works and computes the same. Nothing is timed here."""
+"""All programs that the bench compares work and compute the same. No time is measured here."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ BENCH = Path(__file__).parents[2] / "bench"
 SIGMAHAT_FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 
 
-def test_what_is_compared_computes_the_same(build: Path, tmp_path: Path) -> None:
+def test_all_subjects_work_and_compute_the_same(build: Path, tmp_path: Path) -> None:
     for module in ("padasip", "pythonfmu"):
         if find_spec(module) is None:
             missing(module, "cmake --workflow --preset build")

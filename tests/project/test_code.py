@@ -1,4 +1,4 @@
-"""The code as compilers, linter and type checker see it."""
+"""Compilers, linter and type checker find no error in the code."""
 
 from __future__ import annotations
 
@@ -20,16 +20,18 @@ FMU = sorted((REPOSITORY / "fmu_src").glob("*.c"))
 
 @pytest.mark.parametrize("source", ESTIMATOR + FMU, ids=lambda path: path.name)
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_no_warning(compiler: str, source: Path, build: Path, tmp_path: Path) -> None:
+def test_compilers_give_no_warning(
+    compiler: str, source: Path, build: Path, tmp_path: Path
+) -> None:
     if shutil.which(compiler) is None:
         missing(compiler, f"apt-get install {compiler}")
-    own = build / "fmu" / source.stem  # what is generated for this file, or for every plant
+    own = build / "fmu" / source.stem  # code that is generated for this file, or for every plant
     generated = own if own.is_dir() else build / "fmu" / "AwasPlant"
     done = subprocess.run(
         [
             compiler,
             *WARNINGS,
-            "-O2",  # some warnings need the optimiser's analysis
+            "-O2",  # some warnings need the analysis of the optimiser
             "-c",
             str(source),
             "-o",
@@ -53,7 +55,7 @@ def test_the_library_needs_no_heap_and_no_output(source: Path) -> None:
 
 
 @pytest.mark.parametrize("command", [["ruff", "check"], ["ruff", "format", "--check"]])
-def test_ruff(command: list[str]) -> None:
+def test_ruff_finds_no_error(command: list[str]) -> None:
     done = subprocess.run(
         [sys.executable, "-m", *command, "harness", "tests", "examples", "docs/api.py"],
         cwd=REPOSITORY,
@@ -63,7 +65,7 @@ def test_ruff(command: list[str]) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_mypy() -> None:
+def test_mypy_finds_no_error() -> None:
     done = subprocess.run(
         [sys.executable, "-m", "mypy", "harness/sigmahat", "tests", "examples", "docs"],
         cwd=REPOSITORY,

@@ -37,13 +37,13 @@ def files(request: pytest.FixtureRequest) -> dict[str, bytes]:
 
 
 def text(element: Any) -> str:
-    """What a reader sees, without the items of an enumeration."""
+    """The text that a reader sees, without the items of an enumeration."""
     parts = [element.text or ""]
     parts += [text(e) + (e.tail or "") for e in element if e.get("class") != "items"]
     return "".join(parts)
 
 
-def test_the_tables_are_the_variables_of_the_model_description(files: dict[str, bytes]) -> None:
+def test_the_tables_list_the_variables_of_the_model_description(files: dict[str, bytes]) -> None:
     page = etree.fromstring(files[INDEX])
     rows = {}
     for row in page.iterfind(".//tbody/tr"):
@@ -81,7 +81,7 @@ def test_enumerations_are_listed_with_their_items(files: dict[str, bytes]) -> No
 
 
 def test_every_name_in_the_text_is_a_variable(files: dict[str, bytes]) -> None:
-    """Names in `code` outside the tables, which are written by hand."""
+    """Checks names in `code` outside of the tables, because that text is written by hand."""
     page = etree.fromstring(files[INDEX])
     root = etree.fromstring(files["modelDescription.xml"])
     names = {v.get("name") for v in root.iterfind("ModelVariables/*")}
@@ -100,7 +100,7 @@ def test_every_name_in_the_text_is_a_variable(files: dict[str, bytes]) -> None:
 @pytest.mark.parametrize(
     "section", ["what", "diagram", "ports", "timing", "parameters", "limits", "licence"]
 )
-def test_sections(files: dict[str, bytes], section: str) -> None:
+def test_the_page_has_this_section(files: dict[str, bytes], section: str) -> None:
     page = etree.fromstring(files[INDEX])
     (heading,) = page.findall(f".//h2[@id='{section}']")
     assert heading.getnext() is not None
@@ -108,8 +108,8 @@ def test_sections(files: dict[str, bytes], section: str) -> None:
         assert len(page.findall(".//svg//text")) > 5
 
 
-def test_nothing_is_loaded_from_elsewhere(files: dict[str, bytes]) -> None:
-    """A page opened offline: only files of the FMU, and anchors that exist."""
+def test_the_page_loads_nothing_from_outside_of_the_fmu(files: dict[str, bytes]) -> None:
+    """It can be opened offline: it refers only to files of the FMU, and to anchors that exist."""
     for name in (INDEX, ICON):
         content = files[name].decode()
         root = etree.fromstring(files[name])
@@ -126,19 +126,21 @@ def test_nothing_is_loaded_from_elsewhere(files: dict[str, bytes]) -> None:
                     assert f"documentation/{value}" in files, value
 
 
-def test_icon(files: dict[str, bytes]) -> None:
+def test_the_icon_has_its_size_and_is_drawn(files: dict[str, bytes]) -> None:
     pixels = matplotlib.image.imread(io.BytesIO(files["model.png"]), format="png")
     assert pixels.shape == (256, 256, 4)
-    assert pixels[0, 0, 3] == 0  # outside of the frame, so that it looks right on any colour
+    assert (
+        pixels[0, 0, 3] == 0
+    )  # outside of the frame it is transparent, so that it fits every background
     inside = pixels[20:-20, 20:-20]
     assert np.all(inside[..., 3] == 1)
     drawn = np.any(inside[..., :3] < 0.9, axis=-1)
     assert 0.05 < drawn.mean() < 0.5
     svg = etree.fromstring(files[ICON])
-    assert svg.get("viewBox") and not svg.findall(".//{*}text")  # it needs no font
+    assert svg.get("viewBox") and not svg.findall(".//{*}text")  # so it needs no font
 
 
-def test_each_fmu_has_an_icon_of_its_own() -> None:
+def test_each_fmu_has_a_different_icon() -> None:
     icons = set()
     for name in FMUS:
         with zipfile.ZipFile(sigmahat.fmu(name)) as archive:
@@ -147,7 +149,7 @@ def test_each_fmu_has_an_icon_of_its_own() -> None:
 
 
 @pytest.mark.parametrize("name", FMUS)
-def test_same_bytes_again(name: str, tmp_path: Path) -> None:
+def test_a_second_build_gives_identical_bytes(name: str, tmp_path: Path) -> None:
     documentation.write(TEMPLATES / f"{name}.xml", tmp_path, sigmahat.__version__)
     with zipfile.ZipFile(sigmahat.fmu(name)) as archive:
         for file in SHOWN:

@@ -1,4 +1,4 @@
-"""The examples run, and what they show is true."""
+"""The examples run, and their results are right."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def load(name: str) -> ModuleType:
-    """An example as a module."""
+    """Imports an example as a module."""
     spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
@@ -46,14 +46,16 @@ def run(name: str, folder: Path) -> str:
 def test_fmpy_ten_lines(tmp_path: Path) -> None:
     value, unit = run("fmpy_ten_lines", tmp_path).split()
     assert unit == "N.m/rad"
-    assert float(value) == pytest.approx(1000.0, abs=1.0)  # the joint its log is computed from
+    assert float(value) == pytest.approx(
+        1000.0, abs=1.0
+    )  # stiffness of the joint from which its log was computed
     readme = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
     assert f"It prints {float(value):.1f}:" in readme
 
 
 def test_own_log(tmp_path: Path) -> None:
     printed = run("own_log", tmp_path)
-    for name, true in {"B": 2.3e-5, "D_theta": 1e-3}.items():  # of AwasPlant
+    for name, true in {"B": 2.3e-5, "D_theta": 1e-3}.items():  # values of AwasPlant
         found = re.search(rf"^{name}: (\S+) \+- (\S+)$", printed, re.M)
         assert found and abs(float(found[1]) - true) <= float(found[2])
     table = pyarrow.csv.read_csv(tmp_path / "knee" / "estimate.csv")
@@ -68,7 +70,7 @@ def test_own_log(tmp_path: Path) -> None:
 
 
 def pendulum(t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The plant of own_plant.py by another integrator: stiffness at the times t [N.m/rad]."""
+    """Stiffness of the plant of own_plant.py at the times t, with another integrator [N.m/rad]."""
     M, D_q, mgl, B, D_theta, gamma, k_1, phi_0 = 0.1, 0.15, 5.0, 2.3e-5, 1e-3, 50.0, 80.0, 0.08
 
     def f(time: float, x: NDArray[np.float64]) -> list[float]:
@@ -90,7 +92,7 @@ def pendulum(t: NDArray[np.float64]) -> NDArray[np.float64]:
 def test_own_plant(tmp_path: Path) -> None:
     printed = run("own_plant", tmp_path)
     found = re.search(r"after 1 s, MSREP (\S+) %", printed)
-    assert found and float(found[1]) < 0.01  # root mean square below 1 %
+    assert found and float(found[1]) < 0.01  # root mean square error below 1 %
     assert (tmp_path / "own_plant.png").stat().st_size > 0
 
     fmu = tmp_path / "PendulumPlant.fmu"
@@ -106,7 +108,7 @@ def test_own_plant(tmp_path: Path) -> None:
         T=1e-3,
         steps=10_000,
     )
-    # The torque of the run is linear between samples: its error is (omega T)^2 / 8, some 1e-5.
+    # The torque of the run is linear between samples: its error is (omega T)^2 / 8, about 1e-5.
     np.testing.assert_allclose(recording.plant["sigma"], pendulum(recording.t), rtol=1e-5)
 
 
@@ -116,13 +118,13 @@ def test_stiffness_control(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     example.main(tmp_path)
     assert (tmp_path / "stiffness_control.png").stat().st_size > 0
     t, wanted, true, _, _ = example.run(True).T
-    for last, stiffness in ((7, 200.0), (14, 320.0), (20, 150.0)):  # each step in its last second
+    for last, stiffness in ((7, 200.0), (14, 320.0), (20, 150.0)):  # the last second of each step
         settled = (t >= last - 1) & (t < last)
         assert set(wanted[settled]) == {stiffness}
         np.testing.assert_allclose(true[settled], stiffness, rtol=0.01)
     sine = t >= example.DURATION - 20
     assert np.mean(np.abs(true - wanted)[sine] / wanted[sine]) < 0.03
-    # Without the estimate nothing knows that the springs are 15 % softer.
+    # Without the estimate, the controller does not know that the springs are 15 % softer.
     t, wanted, true, _, _ = example.run(False).T
     settled = (t >= 13) & (t < 14)
     np.testing.assert_allclose(true[settled], 0.85 * wanted[settled], rtol=0.01)
@@ -130,7 +132,7 @@ def test_stiffness_control(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_notebook(tmp_path: Path) -> None:
     notebook = nbformat.read(EXAMPLES / "stiffness.ipynb", as_version=4)  # type: ignore[no-untyped-call]
-    for cell in notebook.cells:  # they are kept without what they printed
+    for cell in notebook.cells:  # cells are stored without their outputs
         assert not cell.get("outputs") and cell.get("execution_count") is None
     resources = {"metadata": {"path": str(tmp_path)}}
     nbclient.NotebookClient(notebook, resources=resources).execute()
@@ -143,4 +145,4 @@ def test_notebook(tmp_path: Path) -> None:
     own = once.estimators["RESIDUAL"]["sigma"]
     found = sigmahat.indices(once.t, once.plant["sigma"], own)
     assert exact == float(f"{found.msrep_settled:.3g}")
-    assert wrong > 25  # the root mean square error is above 50 %, as the notebook says: far above 5
+    assert wrong > 25  # root mean square error above 50 %: as the notebook says, far above 5 %

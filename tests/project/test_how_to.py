@@ -1,4 +1,4 @@
-"""The how-to pages: what they show is run, what they link to is there."""
+"""The how-to pages: their code works, and their links lead to existing files."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ PAGES = REPOSITORY / "docs" / "how-to"
 
 
 def blocks(page: str, language: str) -> Iterator[str]:
-    """Code blocks of a page in their order."""
+    """Code blocks of a page, in their order."""
     text = (PAGES / page).read_text(encoding="utf-8")
     return (m[1] for m in re.finditer(rf"^```{language}\n(.*?)^```$", text, re.M | re.S))
 
 
 @pytest.mark.parametrize("page", sorted(PAGES.glob("*.md")), ids=lambda page: page.name)
-def test_links_to_files_and_from_the_readme(page: Path) -> None:
+def test_links_of_a_page_exist_and_the_readme_links_to_it(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
         assert target.startswith("https://") or (page.parent / target).is_file(), target
     assert f"(docs/how-to/{page.name})" in (REPOSITORY / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.skipif(fmpy.platform != "linux64", reason="the page names the Linux binary")
-def test_c_master(tmp_path: Path) -> None:
-    """The commands of the page, in a folder of their own."""
+def test_the_commands_of_the_page_on_c_masters_work(tmp_path: Path) -> None:
+    """Runs the commands in a new folder."""
     (commands,) = blocks("c-master.md", "sh")
     (tmp_path / "examples").symlink_to(REPOSITORY / "examples")
     done = subprocess.run(
@@ -58,35 +58,35 @@ def test_c_master(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def page() -> dict[str, Any]:
-    """Names after the code blocks of the FMPy page, run in their order."""
+    """Variables of the code blocks of the FMPy page, after all of them ran in their order."""
     names: dict[str, Any] = {}
     for code in blocks("fmpy.md", "python"):
         exec(compile(code, "fmpy.md", "exec"), names)
     return names
 
 
-def test_fmpy_page_gives_the_run_of_a_master_by_hand(page: dict[str, Any]) -> None:
+def test_fmpy_page_gives_the_results_of_a_master_written_by_hand(page: dict[str, Any]) -> None:
     times = page["t"]
     own = run(torques(times), late=False, linear=False, times=times)
     np.testing.assert_allclose(page["plant"]["sigma"], own["plant.sigma"], rtol=1e-9)
-    # The outputs of the tick at t_k are there after the step.
+    # The outputs of the tick at t_k are available after the step.
     ticks = own["estimator.sigma"][:-1]
     np.testing.assert_allclose(page["estimate"]["sigma"][1:], ticks, rtol=1e-9)
     assert ticks[-1] > 0
 
 
-def test_fmpy_page_tunable_acts_from_the_next_tick_on(page: dict[str, Any]) -> None:
+def test_fmpy_page_tunable_takes_effect_at_the_next_tick(page: dict[str, Any]) -> None:
     before = page["tuned"]["time"] < 1.5 + T / 2
     same = page["tuned"]["sigma"] == page["estimate"]["sigma"]
     assert same[before].all() and not same[~before].any()
-    # The estimate is kept: one tick does not move it far.
+    # The estimate continues from its value: one tick changes it little.
     first = np.flatnonzero(~before)[0]
     assert page["tuned"]["sigma"][first] == pytest.approx(
         page["tuned"]["sigma"][first - 1], rel=1e-3
     )
 
 
-def test_fmpy_page_system_finds_the_stiffness(page: dict[str, Any]) -> None:
+def test_fmpy_page_system_estimates_the_stiffness(page: dict[str, Any]) -> None:
     settled = page["system"]["time"] > 1.0
     np.testing.assert_allclose(
         page["system"]["sigma_hat"][settled], page["system"]["sigma"][settled], rtol=0.05

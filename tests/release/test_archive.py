@@ -1,4 +1,4 @@
-"""The released FMUs as archives: contents, size, and the same bytes from every build."""
+"""The released FMUs as archives: contents, size, and identical bytes from every build."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def binaries(fmu: Path) -> set[str]:
 
 
 @each_fmu
-def test_binaries_of_all_platforms(name: str, released: Path) -> None:
+def test_a_released_fmu_contains_the_binaries_of_all_platforms(name: str, released: Path) -> None:
     assert binaries(released / f"{name}.fmu") == {
         f"binaries/linux64/{name}.so",
         f"binaries/win64/{name}.dll",
@@ -33,18 +33,18 @@ def test_binaries_of_all_platforms(name: str, released: Path) -> None:
 
 
 @each_fmu
-def test_a_build_for_development_holds_the_hosts_binary(name: str) -> None:
+def test_a_build_for_development_contains_the_binary_of_the_host(name: str) -> None:
     extension = fmpy.sharedLibraryExtension
     assert binaries(sigmahat.fmu(name)) == {f"binaries/{fmpy.platform}/{name}{extension}"}
 
 
 @each_fmu
-def test_at_most_1_mb(name: str, released: Path) -> None:
+def test_a_released_fmu_has_at_most_1_mb(name: str, released: Path) -> None:
     assert (released / f"{name}.fmu").stat().st_size <= 1e6
 
 
 @each_fmu
-def test_nothing_in_it_tells_where_it_was_built(name: str, released: Path) -> None:
+def test_it_contains_no_path_of_the_build_machine(name: str, released: Path) -> None:
     places = [str(path).encode() for path in (Path.home(), released.resolve().parent)]
     with ZipFile(released / f"{name}.fmu") as opened:
         for entry in opened.namelist():
@@ -52,7 +52,7 @@ def test_nothing_in_it_tells_where_it_was_built(name: str, released: Path) -> No
 
 
 @pytest.mark.parametrize("name", ["StiffnessEstimator", "AwasPlant"])
-def test_built_again_it_is_the_same_bytes(
+def test_a_second_build_gives_identical_bytes(
     name: str, released: Path, build: Path, tmp_path: Path
 ) -> None:
     again = tmp_path / "again.fmu"
@@ -61,9 +61,7 @@ def test_built_again_it_is_the_same_bytes(
 
 
 @each_fmu
-def test_the_released_binary_computes_what_the_hosts_compiler_made(
-    name: str, released: Path
-) -> None:
+def test_the_released_binary_gives_the_results_of_the_host_build(name: str, released: Path) -> None:
     run = Run(released / f"{name}.fmu")
     run.assert_same(run.simulate(sigmahat.fmu(name)))
 
@@ -78,7 +76,7 @@ def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: 
     archive.write(rebuilt, {n: f for n, f in contents.items() if not n.startswith("binaries/")})
     done = subprocess.run(
         [sys.executable, "-m", "fmpy", "compile", str(rebuilt)],
-        env={  # with the build tool of the environment: make may not be there
+        env={  # with the build tool of the environment, because make may be missing
             **os.environ,
             "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
             "CMAKE_GENERATOR": "Ninja",
@@ -90,7 +88,7 @@ def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: 
     run.assert_same(run.simulate(rebuilt))
 
 
-def test_the_source_files_are_all_there_and_no_other(released: Path) -> None:
+def test_the_description_lists_exactly_the_source_files(released: Path) -> None:
     for name in FMUS:
         fmu = released / f"{name}.fmu"
         listed = fmpy.read_model_description(str(fmu)).buildConfigurations[0].sourceFileSets[0]

@@ -1,4 +1,4 @@
-"""What the released binaries offer and need, read from the files."""
+"""Exported functions and required libraries of the released binaries, read from the files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from released_fmus import FMUS
 
 each_fmu = pytest.mark.parametrize("name", FMUS)
 
-# In the header, but not for co-simulation.
+# Functions of the header that are not for co-simulation.
 MODEL_EXCHANGE = {
     "fmi2EnterEventMode",
     "fmi2NewDiscreteStates",
@@ -43,7 +43,7 @@ def binary(released: Path, name: str, platform: str, extension: str) -> list[int
         return list(archive.read(f"binaries/{platform}/{name}{extension}"))
 
 
-# The objects below are valid only while the one they come from is: each has a name.
+# An object of lief is valid only as long as its parent exists, so each parent has a variable below.
 
 
 def linux(released: Path, name: str) -> lief.ELF.Binary:
@@ -59,7 +59,7 @@ def windows(released: Path, name: str) -> lief.PE.Binary:
 
 
 @each_fmu
-def test_linux_exports_the_fmi_functions_alone(
+def test_linux_exports_only_the_fmi_functions(
     name: str, released: Path, functions: set[str]
 ) -> None:
     elf = linux(released, name)
@@ -83,7 +83,7 @@ def test_linux_needs_glibc_2_17_at_most(name: str, released: Path) -> None:
 
 
 @each_fmu
-def test_windows_exports_the_fmi_functions_alone(
+def test_windows_exports_only_the_fmi_functions(
     name: str, released: Path, functions: set[str]
 ) -> None:
     dll = windows(released, name)
@@ -93,7 +93,7 @@ def test_windows_exports_the_fmi_functions_alone(
 
 
 @each_fmu
-def test_windows_needs_the_system_alone(name: str, released: Path) -> None:
+def test_windows_needs_only_system_libraries(name: str, released: Path) -> None:
     dll = windows(released, name)
     imported = [str(library.name) for library in dll.imports]
     assert imported
@@ -102,7 +102,7 @@ def test_windows_needs_the_system_alone(name: str, released: Path) -> None:
 
 
 @each_fmu
-def test_macos_exports_the_fmi_functions_and_needs_the_system(
+def test_macos_exports_only_the_fmi_functions_and_needs_only_the_system(
     name: str, released: Path, functions: set[str]
 ) -> None:
     universal = lief.MachO.parse(binary(released, name, "darwin64", ".dylib"))

@@ -1,4 +1,4 @@
-"""The released FMUs under tools that check the archive and its model description."""
+"""Tools that check the archive and its model description find no error in the released FMUs."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ def output_of(command: list[str], cwd: Path | None = None) -> str:
 
 
 @each_fmu
-def test_fmpy(name: str, released: Path) -> None:
+def test_fmpy_finds_no_problem(name: str, released: Path) -> None:
     text = output_of([sys.executable, "-m", "fmpy", "validate", str(released / f"{name}.fmu")])
     assert text.strip() == "No problems found."
 
 
 @each_fmu
-def test_fmu_manipulation_toolbox(name: str, released: Path) -> None:
+def test_fmu_manipulation_toolbox_finds_no_error(name: str, released: Path) -> None:
     text = output_of(
         [
             *(sys.executable, "-m", "fmu_manipulation_toolbox.cli.fmutool"),
@@ -43,7 +43,7 @@ def test_fmu_manipulation_toolbox(name: str, released: Path) -> None:
 
 @pytest.fixture(scope="module")
 def vdmcheck(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with VDMCheck2 as it wants to be run: beside its libraries and its model."""
+    """Folder with VDMCheck2, its libraries and its model, from which it can be run."""
     jars = build / "checkers" / "vdmcheck2"
     if not (jars / "vdmcheck2.jar").exists():
         missing("VDMCheck2", "mvn -f tests/checkers/pom.xml dependency:copy-dependencies")
@@ -59,11 +59,11 @@ def vdmcheck(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @each_fmu
-def test_vdmcheck2(name: str, released: Path, vdmcheck: Path) -> None:
+def test_vdmcheck2_finds_no_error(name: str, released: Path, vdmcheck: Path) -> None:
     text = output_of(
         ["java", "-jar", "vdmcheck2.jar", str(released.resolve() / f"{name}.fmu")], cwd=vdmcheck
     )
-    # FMI 3 files that an FMU of FMI 2.0 may carry are named when they are not there.
+    # VDMCheck2 names files of FMI 3 that are missing; an FMU of FMI 2.0 need not have them.
     lines = [line for line in text.splitlines() if not line.startswith("FMU has no ")]
     assert lines[-1] == "No errors found."
     assert all(line == "Checking modelDescription.xml" for line in lines[:-1]), text

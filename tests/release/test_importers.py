@@ -1,4 +1,4 @@
-"""The released FMUs in other importers, and their Windows binaries: the trajectories of FMPy."""
+"""The released FMUs give the trajectories of FMPy in other importers and on Windows, too."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def runs() -> dict[str, Run]:
 
 @pytest.fixture
 def run(request: pytest.FixtureRequest, released: Path, runs: dict[str, Run]) -> Run:
-    """One run for all tests of an FMU."""
+    """The run of an FMU in FMPy, which all tests of this FMU share."""
     name: str = request.param
     if name not in runs:
         runs[name] = Run(released / f"{name}.fmu")
@@ -34,7 +34,7 @@ def run(request: pytest.FixtureRequest, released: Path, runs: dict[str, Run]) ->
 
 
 @each_fmu
-def test_fmi_sim(run: Run, build: Path, tmp_path: Path) -> None:
+def test_fmi_sim_gives_the_same_trajectories(run: Run, build: Path, tmp_path: Path) -> None:
     program = shutil.which("fmi-sim", path=build / "checkers" / "bin")
     if program is None:
         missing(
@@ -60,7 +60,7 @@ def test_fmi_sim(run: Run, build: Path, tmp_path: Path) -> None:
 
 
 @each_fmu
-def test_libcosim(run: Run, capfd: pytest.CaptureFixture[str]) -> None:
+def test_libcosim_gives_the_same_trajectories(run: Run, capfd: pytest.CaptureFixture[str]) -> None:
     try:
         from libcosimpy.CosimExecution import CosimExecution
         from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
@@ -85,13 +85,13 @@ def test_libcosim(run: Run, capfd: pytest.CaptureFixture[str]) -> None:
     text = capfd.readouterr()
     own_limit = "FMI 2.0 Enumeration variable type not supported"
     assert [line for line in (text.out + text.err).splitlines() if own_limit not in line] == []
-    # Values before the first step are not read from the FMU.
+    # libcosim does not read the values before the first step from the FMU.
     run.assert_same(np.array([run.trajectory[0], *rows[1:]]))
 
 
 @pytest.fixture(scope="module")
 def windows_master(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """``drivers/windows_master.c`` for Windows."""
+    """``drivers/windows_master.c``, compiled for Windows."""
     program = tmp_path_factory.mktemp("windows") / "master.exe"
     cache = str((build / "cross-compiler").resolve())
     subprocess.run(
@@ -107,8 +107,10 @@ def windows_master(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Pat
 
 
 @each_fmu
-def test_windows_binary(run: Run, windows_master: Path, build: Path, tmp_path: Path) -> None:
-    # Debian puts it where no shell looks.
+def test_the_windows_binary_gives_the_same_trajectories(
+    run: Run, windows_master: Path, build: Path, tmp_path: Path
+) -> None:
+    # Debian installs it in a folder that is not on the PATH.
     wine = shutil.which("wine64", path=f"{os.environ['PATH']}{os.pathsep}/usr/lib/wine")
     if wine is None:
         missing("wine64", "apt-get install wine64")
@@ -123,8 +125,8 @@ def test_windows_binary(run: Run, windows_master: Path, build: Path, tmp_path: P
         cwd=tmp_path,
         env={
             **os.environ,
-            "WINEPREFIX": str((build / "wine").resolve()),  # its own, not the user's
-            "WINEDLLOVERRIDES": "mscoree,mshtml=",  # not to offer a download of them
+            "WINEPREFIX": str((build / "wine").resolve()),  # a separate one, not that of the user
+            "WINEDLLOVERRIDES": "mscoree,mshtml=",  # prevents an offer to download them
             "WINEDEBUG": "-all",
         },
         capture_output=True,

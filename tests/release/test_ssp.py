@@ -1,4 +1,4 @@
-"""The system sigmahat-awas.ssp: valid, reproducible, and what FMPy makes of it."""
+"""The system sigmahat-awas.ssp: validity, reproducibility, and its simulation in FMPy."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from sigmahat.paper.scenarios import T, scenario
 
 TABLE1 = scenario("table1")
 RESIDUAL = TABLE1.estimators["RESIDUAL"]
-STEPS = 1500  # the first half of the motion to one side
+STEPS = 1500  # half of the first motion to one side
 TEMPLATES = Path(__file__).parents[2] / "modelDescription" / "system"
 NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
@@ -34,7 +34,7 @@ NAMESPACES = {
 
 @pytest.fixture(scope="module", params=["development", "release"])
 def ssp(request: pytest.FixtureRequest) -> Path:
-    """The system as the build makes it for this machine, and as it is released."""
+    """The system of the build for development, and the released one."""
     if request.param == "release":
         released: Path = request.getfixturevalue("released")
         path = released / "sigmahat-awas.ssp"
@@ -49,13 +49,13 @@ def read(ssp: Path, name: str) -> Any:
         return etree.fromstring(archive.read(name))
 
 
-def test_valid_against_the_schema(ssp: Path) -> None:
+def test_it_is_valid_against_the_schema(ssp: Path) -> None:
     assert read_ssd(str(ssp), validate=True).version == "1.0"
     assert read_ssv(str(ssp), "resources/table1.ssv", validate=True).name == "table1"
 
 
-def test_opens_in_omsimulator_2(ssp: Path) -> None:
-    """Its importer goes by prefixed names, and refuses what it does not know.
+def test_it_has_the_form_that_omsimulator_2_requires(ssp: Path) -> None:
+    """The importer of OMSimulator compares names with their prefixes, and refuses unknown ones.
 
     OMSimulator 2.1.3, src/OMSimulatorLib: Model.cpp and System.cpp (importFromSnapshot), ComRef.cpp
     (isValidIdent), SystemWC.cpp (importFromSSD_SimulationInformation).
@@ -95,21 +95,21 @@ def prefixed(element: Any) -> str:
     return f"{element.prefix}:{etree.QName(element).localname}"
 
 
-def test_holds_the_fmus_beside_it(ssp: Path) -> None:
+def test_it_contains_the_fmus_of_the_same_folder(ssp: Path) -> None:
     with zipfile.ZipFile(ssp) as archive:
         for name in ("AwasPlant", "StiffnessEstimator"):
             fmu = ssp.with_name(f"{name}.fmu")
             assert archive.read(f"resources/{name}.fmu") == fmu.read_bytes()
 
 
-def test_same_bytes_again(ssp: Path, tmp_path: Path) -> None:
+def test_a_second_build_gives_identical_bytes(ssp: Path, tmp_path: Path) -> None:
     again = tmp_path / "again.ssp"
     plant, estimator = ssp.with_name("AwasPlant.fmu"), ssp.with_name("StiffnessEstimator.fmu")
     system.write(again, plant, estimator, TEMPLATES, sigmahat.__version__)
     assert hashlib.sha256(again.read_bytes()).digest() == hashlib.sha256(ssp.read_bytes()).digest()
 
 
-def test_every_connection_has_its_ends_with_one_unit(ssp: Path) -> None:
+def test_both_ends_of_every_connection_have_the_same_unit(ssp: Path) -> None:
     root = read(ssp, "SystemStructure.ssd").find("ssd:System", NAMESPACES)
     owners = [(None, root), *((e.get("name"), e) for e in root.find("ssd:Elements", NAMESPACES))]
     units = {
@@ -125,7 +125,7 @@ def test_every_connection_has_its_ends_with_one_unit(ssp: Path) -> None:
         end = (sink, c.get("endConnector"), "input" if sink else "output")
         assert units[start] == units[end]
         ends |= {start, end}
-    assert ends == set(units)  # no connector is left open
+    assert ends == set(units)  # every connector is connected
     wires = {
         c.get("endConnector"): c.get("startConnector")
         for c in connections
@@ -168,8 +168,8 @@ def test_a_scenario_with_another_enumeration_is_refused(
         )
 
 
-def test_fmpy_gives_what_its_rules_say(ssp: Path) -> None:
-    """FMPy's master, written anew from its three rules (docs/how-to/fmpy.md): bit-identical."""
+def test_fmpy_follows_its_three_rules(ssp: Path) -> None:
+    """A master written from the three rules of docs/how-to/fmpy.md gives identical results."""
     result = simulate_ssp(
         str(ssp),
         stop_time=STEPS * T,
@@ -181,15 +181,15 @@ def test_fmpy_gives_what_its_rules_say(ssp: Path) -> None:
         },
     )
     own = run(torques(result["time"]), late=True, linear=False, times=result["time"])
-    # FMPy notes the plant at the end of the step, under the time of its begin.
+    # FMPy records the outputs of the plant after the step with the time of its begin.
     np.testing.assert_array_equal(result["plant.sigma"][:-1], own["plant.sigma"][1:])
     np.testing.assert_array_equal(result["estimator.sigma"], own["estimator.sigma"])
     np.testing.assert_array_equal(result["sigma_hat"], own["estimator.sigma"])
     assert own["estimator.sigma"].any()
 
 
-def test_without_those_rules_it_is_the_run_of_the_harness() -> None:
-    """The same calls with torques in time and linear, as `sigmahat reproduce` has them."""
+def test_without_those_rules_the_results_are_those_of_the_harness() -> None:
+    """The same master with torques that are not late and are linear over a step."""
     recording = simulate(TABLE1.plant, {"RESIDUAL": RESIDUAL}, T, STEPS)
     own = run(torques(recording.t), late=False, linear=True, times=recording.t)
     np.testing.assert_array_equal(recording.plant["sigma"], own["plant.sigma"])

@@ -1,9 +1,9 @@
-"""Estimators that run for a very long time, beside the same in higher precision.
+"""Estimators that run for a very long time, compared with the same in higher precision.
 
     build/venv/bin/python tests/studies/endurance.py
 
 runs every case of CASES in full, one after the other, and prints the table of docs/endurance.md.
-What the runs print at their checkpoints is in build/endurance/. The C program is in
+The outputs at the checkpoints are written to build/endurance/. The C program is in
 drivers/endurance*.c.
 """
 
@@ -26,7 +26,7 @@ OUTPUTS = (
     "sigma", "tau_e", "sigma_std", "tau_e_residual", "theta_dot", "D_theta", "B", "tau_coulomb",
 )  # fmt: skip
 FLAGS = ("-std=gnu99", "-D_GNU_SOURCE", "-O2", "-ffp-contract=off")
-# The type of the library, and with it the names of functions and constants in c/real_math.h.
+# Definitions for the type of the library and for its functions and constants, see c/real_math.h.
 PRECISIONS = {
     "double": (),
     "long double": ("-DSH_REAL=_Float64x", "-DSH_FOR__Float64x(a,b)=a##f64x"),
@@ -38,8 +38,8 @@ BOUND = 1e-9
 
 @dataclass(frozen=True)
 class Case:
-    """An estimator with n x m coefficients of the torque, how many times the usual torque the
-    huge one is, and how long it and its reference run.
+    """An estimator with n x m coefficients of the torque, the ratio of the huge torque to the usual
+    one, and the numbers of ticks of its run and of the reference.
     """
 
     method: int
@@ -60,7 +60,7 @@ CASES = (
 def compile_program(
     folder: Path, precision: str, compiler: str = "gcc", flags: Sequence[str] = ()
 ) -> Path:
-    """drivers/endurance.c with the estimator in a precision of PRECISIONS, in a new folder."""
+    """Compiles drivers/endurance.c and the estimator, in a precision of PRECISIONS."""
     program = Path(tempfile.mkdtemp(dir=folder)) / precision.replace(" ", "_")
     sources = [*DRIVERS.glob("endurance*.c"), *(REPOSITORY / "c").glob("*.c")]
     command = [
@@ -74,7 +74,7 @@ def compile_program(
 
 
 def scaled(value: NDArray[np.longdouble], reference: NDArray[np.longdouble]) -> float:
-    """Largest difference relative to the reference, or to its median where it is less."""
+    """Largest difference relative to the reference, or to its median if that is larger."""
     size = np.maximum(abs(reference), np.median(abs(reference), axis=0))
     size[size == 0.0] = 1.0
     return float(np.max(abs(value - reference) / size))
@@ -84,9 +84,9 @@ Checkpoints = list[list[np.longdouble]]  # [checkpoint][tick, outputs...]
 
 
 def run(program: Path, case: Case, ticks: int, output: Path) -> Checkpoints:
-    """Runs an estimator, which prints its checkpoints to a file.
+    """Runs an estimator, which writes its checkpoints to a file.
 
-    Raises CalledProcessError if P or an output is no longer what it has to be.
+    Raises CalledProcessError if P is not positive definite or an output is not finite.
     """
     arguments = [str(number) for number in (case.method, case.n, case.m, case.torque, ticks)]
     with output.open("w") as file:
@@ -95,7 +95,7 @@ def run(program: Path, case: Case, ticks: int, output: Path) -> Checkpoints:
 
 
 def difference(run: Checkpoints, reference: Checkpoints) -> tuple[float, str]:
-    """The largest one of all outputs at the checkpoints that both have, and the output."""
+    """Largest difference at the checkpoints that both runs have, and the name of the output."""
     known = {row[0]: row[1:] for row in reference}
     pairs = [(row[1:], known[row[0]]) for row in run if row[0] in known]
     of_run, of_reference = (np.array(rows) for rows in zip(*pairs, strict=True))
@@ -104,7 +104,7 @@ def difference(run: Checkpoints, reference: Checkpoints) -> tuple[float, str]:
 
 
 def compare(case: Case, program: Path, reference: Path, folder: Path) -> tuple[float, str]:
-    """The largest difference between a run and its reference, and the output that has it."""
+    """Largest difference between a run and its reference, and the name of the output."""
     name = f"{METHODS[case.method]}_{case.n}x{case.m}_{case.torque:.0e}"
     return difference(
         run(program, case, case.ticks, folder / f"{name}_{program.name}.txt"),

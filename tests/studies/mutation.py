@@ -1,11 +1,11 @@
-"""Mutation testing of c/: would the tests notice one wrong token?
+"""Mutation testing of c/: do the tests notice one wrong token?
 
     build/venv/bin/python tests/studies/mutation.py [NUMBER [SEED]]
 
-changes one token (operator, comparison, constant, index, function) at NUMBER places, spread over
-all files of c/, one at a time, and runs the tests of the library against each. It prints those
-that no test noticed. Places are chosen by a hash of SEED and their line, so they stay the same
-when the code changes elsewhere.
+changes one token (operator, comparison, constant, index, function) at one of NUMBER places, which
+are spread over all files of c/, and runs the tests of the library with this mutant. It prints the
+mutants that no test noticed. The places are chosen by a hash of SEED and of their line, so they
+stay the same if other lines of the code change.
 """
 
 from __future__ import annotations
@@ -29,10 +29,12 @@ import pytest
 
 TESTS = Path(__file__).resolve().parents[1]
 LIBRARY = TESTS.parent / "c"
-NUMBER, SEED = 66, "fresh-b"  # of the sample in the gate
-CPU_SECONDS = 30  # of the tests of one mutant; one that runs longer hangs
-ASKED = 0.9  # share that tests have to notice
-# Tests of other parts that use a part of the library: those of its own are not all.
+NUMBER, SEED = 66, "fresh-b"  # the sample of the test in the gate
+CPU_SECONDS = (
+    30  # limit for the tests of one mutant; a mutant that takes longer is taken as an endless loop
+)
+REQUIRED = 0.9  # share of the mutants that the tests have to notice
+# For each file, the tests of other files that use it. They are run besides its own tests.
 USERS = {
     "kinematic_kalman": ("stiffness_estimator",),
     "least_squares": ("matched_*", "stiffness_estimator"),
@@ -58,7 +60,7 @@ FLAGS = (
     f"-I{LIBRARY}",
 )
 
-# What is wrong with a token instead: the first that compiles to something else.
+# Replacements of a token. The first one that compiles to a different program is used.
 SWAPS = {
     "<": ("<=", ">"), "<=": ("<", ">="), ">": (">=", "<"), ">=": (">", "<="),
     "==": ("!=",), "!=": ("==",), "&&": ("||",), "||": ("&&",),
@@ -75,57 +77,57 @@ TOKEN = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 
-# Mutants that no test can notice: file, changed code, why it makes no difference.
+# Equivalent mutants: file, changed code, why no test can notice the change.
 EQUIVALENT: tuple[tuple[str, str, str], ...] = (
     (
         "least_squares.c",
         "high[1] += F[j] * rls->eta[j];",
-        "the two sums are added in the end",
+        "the two sums are added at the end",
     ),
     (
         "least_squares.c",
         "for (i = 0; i < j; i += SH_PANEL) { const sh_real v_0",
-        "where i = j, nothing is left of v, and U beyond is zero",
+        "for i = j the rest of v is zero, and so is U beyond",
     ),
     (
         "least_squares.c",
         "if (j <= rls->size) { rho[j] = before;",
-        "D behind the last one is zero",
+        "D behind the last entry is zero",
     ),
     (
         "matched_regression.c",
         "for (i = 0; i <= matched->basis; ++i) F[i] =",
-        "what is written behind the basis is overwritten by the motor's",
+        "the entry behind the basis is overwritten by that of the motor",
     ),
     (
         "matched_regression.c",
         "for (i = 0; i <= matched->basis; ++i) sh_state_variable_filter_",
-        "no filter behind the last column is read",
+        "the output of the filter behind the last column is not used",
     ),
     (
         "matched_regression.c",
         "settings->motor_prior[SH_MOTOR_B] >= 0)",
-        "without a prior there is no variance, and nothing is taken back",
+        "without a prior the variance is zero, and nothing is subtracted",
     ),
     (
         "motion_sign.c",
         "const sh_real way = change >= 0 ? 1 : -1;",
-        "is not used where the change is zero",
+        "it is not used if the change is zero",
     ),
     (
         "state_variable_filter.c",
         "sh_fabs(behind[1]) <= SMALL",
-        "exactly 1e-30 does not come",
+        "the value is never exactly 1e-30",
     ),
     (
         "matched_regression.c",
         "if (settings->drift >= 0)",
-        "without drift the covariance is widened by zero and is not above the prior",
+        "without drift the covariance is increased by zero and is not above the prior",
     ),
     (
         "matched_regression.c",
         "if (matched->samples < 3)",
-        "is compared with 0 and 1 alone",
+        "it is compared only with 0 and 1",
     ),
 )
 
@@ -144,13 +146,13 @@ class Mutant:
         return original[: self.start] + self.new + original[self.start + len(self.old) :]
 
     def line(self) -> str:
-        """The changed line as it now reads."""
+        """The changed line."""
         text = self.text()
         begin = text.rfind("\n", 0, self.start) + 1
         return text[begin : text.find("\n", self.start)].strip()
 
     def makes(self, code: str) -> bool:
-        """Whether this code, of one line or more, is what the change has made."""
+        """Whether the change has produced this code, which may have several lines."""
         before, after = (LIBRARY / self.file).read_text(), self.text()
         return count(after, code) > count(before, code)
 
@@ -159,7 +161,7 @@ class Mutant:
 
 
 def count(text: str, code: str) -> int:
-    """How often it contains this code, however that is indented."""
+    """How often a text contains this code, with any indentation."""
     return " ".join(text.split()).count(" ".join(code.split()))
 
 
@@ -171,7 +173,7 @@ def wrong(kind: str | None, token: str) -> tuple[str, ...]:
 
 
 def candidates(file: Path, seed: str) -> list[tuple[Mutant, ...]]:
-    """The places of a file, in the order in which they are taken: mutants to try at each."""
+    """For each place of a file, in the order of their use: the mutants to try there."""
     places = []
     alike: Counter[str] = Counter()
     for match in TOKEN.finditer(file.read_text()):
@@ -185,7 +187,7 @@ def candidates(file: Path, seed: str) -> list[tuple[Mutant, ...]]:
 
 
 class Bench:
-    """Compiles mutants beside the objects of the other files, and runs tests against them."""
+    """Compiles mutants and links each with the object files of the unchanged sources."""
 
     def __init__(self, folder: Path, compiler: str = "gcc") -> None:
         self.folder, self.compiler = folder, compiler
@@ -207,7 +209,7 @@ class Bench:
         return tree
 
     def build(self, mutant: Mutant) -> Path | None:
-        """A build tree with the mutant's library, None if it is no C or the same program."""
+        """Build tree with the library of a mutant. None if it is not C, or is the same program."""
         tree = Path(tempfile.mkdtemp(dir=self.folder))
         source = tree / mutant.file
         source.write_text(mutant.text())
@@ -220,7 +222,7 @@ class Bench:
 
 
 def files_for(source: str) -> list[str]:
-    """The tests that a mutant of a source has to pass, its own first."""
+    """Test files for the mutants of a source, those of the source itself first."""
     stem = Path(source).stem
     return [
         str(path)
@@ -230,9 +232,9 @@ def files_for(source: str) -> list[str]:
 
 
 def start_tests(tree: Path, files: Sequence[str]) -> int:
-    """Runs the fast tests with the library of a build tree in a process of their own: its number.
+    """Starts the fast tests with the library of a build tree in a new process; returns its id.
 
-    A fork, because to import what the tests use takes longer than most of them.
+    It is forked, because the imports of the tests take longer than most of the tests.
     """
     child = os.fork()
     if child:
@@ -251,9 +253,9 @@ def start_tests(tree: Path, files: Sequence[str]) -> int:
 
 
 def finished(running: dict[int, Path]) -> tuple[int, bool]:
-    """Waits for one of the processes: its number, and whether the tests passed. Removes its tree.
+    """Waits for one of the processes and removes its tree. Returns its id and whether it passed.
 
-    They did not if one failed, or crashed, or did not end.
+    It did not pass if a test failed or crashed or did not end.
     """
     child, status = os.wait()
     tree, code = running.pop(child), os.waitstatus_to_exitcode(status)
@@ -264,14 +266,14 @@ def finished(running: dict[int, Path]) -> tuple[int, bool]:
 
 
 def shares(number: int) -> dict[str, int]:
-    """How many mutants each file gets: at least three, else by its number of places."""
+    """Number of mutants of each file: at least three, else proportional to its number of places."""
     places = {file.name: len(candidates(file, "")) for file in sorted(LIBRARY.glob("*.c"))}
     total = sum(places.values())
     return {file: max(3, round(number * count / total)) for file, count in places.items()}
 
 
 def mutants(bench: Bench, file: str, number: int, seed: str) -> Iterator[tuple[Mutant, Path]]:
-    """The first mutants of a file that are programs of their own, with their build trees."""
+    """The first mutants of a file that compile to a different program, with their build trees."""
     for choices in candidates(LIBRARY / file, seed):
         if number == 0:
             return
@@ -284,7 +286,7 @@ def mutants(bench: Bench, file: str, number: int, seed: str) -> Iterator[tuple[M
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of the mutants."""
+    """The mutants by result of the tests."""
 
     killed: list[Mutant]
     equivalent: list[Mutant]
@@ -300,19 +302,19 @@ class Outcome:
             print(f"survived: {mutant}", flush=True)
 
     def share(self) -> float:
-        """Killed ones among those that a test could notice."""
+        """Share of the killed mutants among those that are not equivalent."""
         return len(self.killed) / (len(self.killed) + len(self.survived))
 
 
 def run(folder: Path, number: int = NUMBER, seed: str = SEED) -> Outcome:
-    """Makes at least `number` mutants in a scratch folder and runs the tests against each.
+    """Makes at least `number` mutants in a temporary folder and runs the tests with each.
 
     Raises RuntimeError if the tests do not pass with the code as it is.
     """
     bench = Bench(folder)
     files = sorted({path for source in shares(number) for path in files_for(source)})
     with redirect_stdout(StringIO()):
-        pytest.main([*PYTEST, "--collect-only", *files])  # imports what they need
+        pytest.main([*PYTEST, "--collect-only", *files])  # imports the modules that they use
     unchanged = Path(tempfile.mkdtemp(dir=folder))
     bench.link(unchanged, bench.objects)
     if not finished({start_tests(unchanged, files): unchanged})[1]:
@@ -346,7 +348,7 @@ def main() -> int:
         f"killed {len(outcome.killed)}, survived {len(outcome.survived)}, "
         f"equivalent {len(outcome.equivalent)}: {100.0 * outcome.share():.1f} % killed"
     )
-    return int(outcome.share() < ASKED)
+    return int(outcome.share() < REQUIRED)
 
 
 if __name__ == "__main__":
