@@ -1,4 +1,4 @@
-"""Table and figure of the measured times."""
+"""Tables and a figure of the measured times."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def difference(times: Times, one: str, other: str) -> float:
 def _requirements(
     times: Times, footprints: Mapping[str, Footprint]
 ) -> list[tuple[str, str, str, bool]]:
-    """Rows of the table: figure, required value, measured value, whether it is met."""
+    """Rows of the table: quantity, required value, measured value, whether it is met."""
     rows: list[tuple[str, str, str, bool]] = []
 
     def at_most(what: str, value: float, limit: float, unit: str) -> None:
@@ -116,7 +116,7 @@ def _duration(ns: float) -> str:
 
 def table(times: Times, footprints: Mapping[str, Footprint]) -> str:
     """All tables as Markdown."""
-    lines = [f"Measured on {_processor()}.", "", "| figure | required | measured | met |"]
+    lines = [f"Measured on {_processor()}.", "", "| quantity | required | measured | met |"]
     lines += ["|---|---|---|---|"]
     for what, required, measured, met in _requirements(times, footprints):
         lines.append(f"| {what} | {required} | {measured} | {'yes' if met else 'no'} |")

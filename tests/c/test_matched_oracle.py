@@ -186,26 +186,26 @@ def matched_filter(
                     P = P * np.outer(s, s)
 
         # Weight of the data about b after the bias compensation, and its effect on all parameters
-        believed, Q = eta, P
+        weighted, Q = eta, P
         if taken > 0:
             information = max(1 / P[b, b] - 1 / motor[1] ** 2, 0)
             weight = information**2 / (information + taken)
             variance = 1 / (1 / motor[1] ** 2 + weight)
             mean = eta[b] / P[b, b] * information / (information + taken) * variance
             along = P[:, b] / P[b, b]
-            believed = eta + along * (mean - eta[b])
+            weighted = eta + along * (mean - eta[b])
             Q = P + np.outer(along, along) * (variance - P[b, b])
         h = np.append(dF[k], [0, 0, 0])
-        sigma = float(h @ believed)
+        sigma = float(h @ weighted)
         out["sigma"].append(sigma)
         out["sigma_std"].append(math.sqrt(h @ Q @ h))
-        out["tau_e"].append(np.append(F[k], [0, 0, 0]) @ believed)
-        out["D"].append(D * (1 + believed[size]))
-        out["B"].append(B * (1 + believed[b]))
-        out["C"].append(believed[C])
+        out["tau_e"].append(np.append(F[k], [0, 0, 0]) @ weighted)
+        out["D"].append(D * (1 + weighted[size]))
+        out["B"].append(B * (1 + weighted[b]))
+        out["C"].append(weighted[C])
         out["y"].append(y[k])
         out["epsilon"].append(epsilon)
-        out["eta"].append(believed[:size].reshape(m, n).T * units)
+        out["eta"].append(weighted[:size].reshape(m, n).T * units)
     return {name: np.array(values, dtype=np.float64) for name, values in out.items()}
 
 

@@ -44,12 +44,12 @@ def test_a_step_with_a_good_sample_returns_one(c: Library) -> None:
     lib.sh_matched_start(matched, rls, settings, 1, ffi.new("double[1]"))
     lib.sh_matched_resume(matched, settings)
     y, innovation, F = ffi.new("double *"), c.new("sh_innovation"), ffi.new("double[1]", [0.1])
-    learning = []
+    updated = []
     for theta, _, _, tau, _ in z:
         arguments = (float(theta), float(tau), 0.02, 100.0, F, y, innovation)
         assert lib.sh_matched_step(matched, rls, settings, *arguments) == 1
-        learning.append(innovation.a)
-    assert set(learning) == {0.0, 1.0}  # both while the filters settle and after
+        updated.append(innovation.a)
+    assert set(updated) == {0.0, 1.0}  # both while the filters settle and after
 
 
 def test_the_prior_of_the_largest_basis_leaves_the_motor_data_at_zero(c: Library) -> None:

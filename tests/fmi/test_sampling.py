@@ -146,18 +146,18 @@ def test_an_input_derivative_is_used_for_one_step_only(name: str) -> None:
     path = sigmahat.fmu(name)
     with Instance(path) as fmu:
         inputs = names(fmu, "input")
-    for kept in inputs:
+    for changed in inputs:
         results = []
         for again in (None, 0.0):  # in the second step: no call, or a slope of 0
             with Instance(path) as fmu:
                 fmu.initialise()
-                assert fmu.set_derivative(kept, 3.0) == OK
+                assert fmu.set_derivative(changed, 3.0) == OK
                 assert fmu.step(0.0, 3e-3) == OK
                 if again is not None:
-                    assert fmu.set_derivative(kept, again) == OK
+                    assert fmu.set_derivative(changed, again) == OK
                 assert fmu.step(3e-3, 3e-3) == OK
                 results.append(fmu.get_all(names(fmu, "output")))
-        assert results[0] == results[1], kept
+        assert results[0] == results[1], changed
 
 
 def test_ticks_start_at_the_start_time(estimator_fmu: Path) -> None:

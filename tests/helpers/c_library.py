@@ -117,7 +117,7 @@ class Estimator:
         library.lib.sh_estimator_start(self.state, self.parameters, self.estimate)
 
     def tick(self, measurement: Sequence[float] | Array) -> bool:
-        """Runs a tick with theta, q, theta_c, tau, tau_e_sensor. Returns False if it was skipped."""
+        """Runs a tick with theta, q, theta_c, tau, tau_e_sensor; False if it was skipped."""
         z = self.library.new(
             "sh_measurement", **dict(zip(MEASUREMENTS, map(float, measurement), strict=True))
         )
