@@ -59,7 +59,7 @@ def test_a_public_function_is_documented_and_typed(name: str, member: object) ->
 
 def test_all_public_names_are_imported_lazily_and_listed() -> None:
     lazy = [name for names in sigmahat._HOMES.values() for name in names]
-    assert sorted([*lazy, "__version__", "fmu"]) == sorted(sigmahat.__all__)
+    assert sorted([*lazy, "__version__"]) == sorted(sigmahat.__all__)
     assert dir(sigmahat) == sorted(sigmahat.__all__)
 
 
