@@ -13,6 +13,6 @@ add_custom_target(
     --filter fmu_src/ --gcov-exclude-directories .*/CompilerIdC --txt - --txt-metric branch
     --print-summary --fail-under-branch 95 --delete ${PROJECT_BINARY_DIR}
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
-  USES_TERMINAL VERBATIM)
+  COMMENT "Tests of the C code, and the branches that they took" USES_TERMINAL VERBATIM)
 add_dependencies(coverage sigmahat_test_driver StiffnessEstimator AntagonisticStiffnessEstimator
-                 AwasPlant FlexibleJointPlant AntagonisticVsaPlant awas_system)
+                 AwasPlant FlexibleJointPlant AntagonisticVsaPlant awas_system packages_test)

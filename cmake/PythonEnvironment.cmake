@@ -1,10 +1,13 @@
-# Sets up a Python environment in the build tree, with the pinned requirements. A build of the
-# Python package (SKBUILD) uses the environment of that build instead, which has the requirements
-# of pyproject.toml.
+# Sets up a Python environment in the build tree, with the versions pinned in requirements/. A build
+# of the Python package (SKBUILD) uses the environment of that build instead, which has the
+# requirements of pyproject.toml.
+#
+# The environment begins with requirements/reproduce.txt, which the FMUs and Table I need. Targets
+# that need more packages install them when they are built: see sigmahat_add_packages.
 #
 # Sets SIGMAHAT_PYTHON (interpreter), SIGMAHAT_RUN (command that runs one of our modules) and
 # SIGMAHAT_FMU_FOLDER (folder for the FMUs). For an environment in the build tree it also sets
-# SIGMAHAT_VENV (its folder) and SIGMAHAT_NINJA.
+# SIGMAHAT_VENV (its folder), SIGMAHAT_PIP (command that installs packages) and SIGMAHAT_NINJA.
 
 # Uses the modules of this source tree, even if other ones are installed.
 set(SIGMAHAT_RUN ${CMAKE_COMMAND} -E env --modify
@@ -39,26 +42,48 @@ endif()
 list(APPEND SIGMAHAT_RUN ${SIGMAHAT_PYTHON} -m)
 set(SIGMAHAT_FMU_FOLDER ${SIGMAHAT_VENV}/share/sigmahat)
 
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
-             ${CMAKE_CURRENT_SOURCE_DIR}/requirements.txt ${CMAKE_CURRENT_SOURCE_DIR}/pyproject.toml)
-file(SHA256 ${CMAKE_CURRENT_SOURCE_DIR}/requirements.txt wanted)
-file(SHA256 ${CMAKE_CURRENT_SOURCE_DIR}/pyproject.toml pyproject_hash)
+# No dependencies: a file of requirements names every package that is needed.
+set(SIGMAHAT_PIP ${SIGMAHAT_PYTHON} -m pip install --disable-pip-version-check --no-deps)
+
+# sigmahat_add_packages(PURPOSE): adds a target packages_PURPOSE that installs
+# requirements/PURPOSE.txt, and sets the variable of this name to the file that it makes.
+function(sigmahat_add_packages purpose)
+  set(requirements ${PROJECT_SOURCE_DIR}/requirements/${purpose}.txt)
+  set(installed ${SIGMAHAT_VENV}/packages-${purpose})
+  add_custom_command(
+    OUTPUT ${installed}
+    COMMAND ${SIGMAHAT_PIP} -r ${requirements}
+    COMMAND ${CMAKE_COMMAND} -E touch ${installed}
+    DEPENDS ${requirements}
+    COMMENT "Installing the packages of requirements/${purpose}.txt"
+    USES_TERMINAL # shows progress, and lets one pip run at a time
+    VERBATIM)
+  add_custom_target(packages_${purpose} DEPENDS ${installed})
+  set(packages_${purpose} ${installed} PARENT_SCOPE)
+endfunction()
+
+set(requirements ${CMAKE_CURRENT_SOURCE_DIR}/requirements/reproduce.txt)
+set(pyproject ${CMAKE_CURRENT_SOURCE_DIR}/pyproject.toml)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${requirements} ${pyproject})
+file(SHA256 ${requirements} wanted)
+file(SHA256 ${pyproject} pyproject_hash)
 string(APPEND wanted ${pyproject_hash})
-set(stamp ${SIGMAHAT_VENV}/sigmahat-requirements)
+set(stamp ${SIGMAHAT_VENV}/packages-reproduce)
 set(installed "")
 if(EXISTS ${stamp})
   file(READ ${stamp} installed)
 endif()
 if(NOT installed STREQUAL wanted)
-  message(STATUS "Setting up Python in ${SIGMAHAT_VENV}")
+  message(STATUS "Setting up Python in ${SIGMAHAT_VENV}, once; then pip installs what the FMUs and "
+                 "Table I need")
   execute_process(COMMAND ${SIGMAHAT_HOST_PYTHON} -m venv ${SIGMAHAT_VENV} RESULT_VARIABLE failed)
   if(failed)
     message(FATAL_ERROR "${SIGMAHAT_HOST_PYTHON} cannot make a virtual environment. "
                         "On Debian and Ubuntu: apt-get install python3-venv.")
   endif()
-  foreach(arguments "-r;requirements.txt" "--no-deps;--no-build-isolation;-e;.")
+  foreach(arguments "-r;requirements/reproduce.txt" "--quiet;--no-build-isolation;-e;.")
     execute_process(
-      COMMAND ${SIGMAHAT_PYTHON} -m pip install --quiet --disable-pip-version-check ${arguments}
+      COMMAND ${SIGMAHAT_PIP} ${arguments}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
       RESULT_VARIABLE failed)
     if(failed)

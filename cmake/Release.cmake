@@ -1,14 +1,7 @@
 # Target release: writes every FMU and the system to release/, with the binaries of all platforms.
 #
 # The cross compiler is a large download, so it is installed only for this target.
-set(requirements ${PROJECT_SOURCE_DIR}/requirements-release.txt)
-set(installed ${SIGMAHAT_VENV}/sigmahat-requirements-release)
-add_custom_command(
-  OUTPUT ${installed}
-  COMMAND ${SIGMAHAT_PYTHON} -m pip install --quiet --disable-pip-version-check -r ${requirements}
-  COMMAND ${CMAKE_COMMAND} -E touch ${installed}
-  DEPENDS ${requirements}
-  COMMENT "Installing the cross compiler" VERBATIM)
+sigmahat_add_packages(release)
 
 get_property(fmus GLOBAL PROPERTY SIGMAHAT_FMUS)
 set(released "")
@@ -19,7 +12,7 @@ foreach(fmu IN LISTS fmus)
     OUTPUT ${release}
     COMMAND ${SIGMAHAT_RUN} sigmahat.export release ${fmu} ${release}
             --cache ${PROJECT_BINARY_DIR}/cross-compiler
-    DEPENDS ${fmu} ${installed}
+    DEPENDS ${fmu} ${packages_release}
     COMMENT "Compiling ${file} for every platform" VERBATIM)
   list(APPEND released ${release})
 endforeach()

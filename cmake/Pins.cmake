@@ -1,0 +1,18 @@
+# Target pins: writes requirements/*.txt, the versions that the build tree installs, with the hashes of
+# their files, from pyproject.toml. Versions stay as they are where pyproject.toml allows it; for
+# newer ones, remove the files first.
+set(compile
+    ${CMAKE_COMMAND} -E env "UV_CUSTOM_COMPILE_COMMAND=cmake --build build --target pins"
+    ${SIGMAHAT_PYTHON} -m uv pip compile --quiet --universal --python-version 3.10
+    --generate-hashes --no-annotate)
+set(consistent ${compile} --constraints requirements/test.txt)
+add_custom_target(
+  pins
+  COMMAND ${SIGMAHAT_PYTHON} -m pip install --quiet --disable-pip-version-check uv
+  COMMAND ${compile} pyproject.toml --all-extras --group test -o requirements/test.txt
+  COMMAND ${consistent} --group reproduce --excludes requirements/not-for-reproduce.txt
+          -o requirements/reproduce.txt
+  COMMAND ${consistent} --group release -o requirements/release.txt
+  COMMAND ${consistent} --group bench -o requirements/bench.txt
+  WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+  COMMENT "Writing requirements/*.txt" VERBATIM)
