@@ -1,19 +1,10 @@
-"""Build steps of the FMUs, called by CMake."""
+"""Build steps of the FMUs, called by CMake: many processes, so each imports only what it needs."""
 
 from pathlib import Path
 
 import click
-import fmpy
 
-from sigmahat.export import (
-    amalgamation,
-    archive,
-    cross_compiler,
-    description,
-    documentation,
-    source_files,
-    system,
-)
+from sigmahat.export import amalgamation, archive, description, source_files
 
 
 @click.group()
@@ -47,6 +38,8 @@ def pack(
     fmu: Path, sources: list[Path], xml: Path, binary: Path, licence: Path, shown: Path
 ) -> None:
     """Write an FMU with the binary of this machine, SOURCES and the headers they include."""
+    import fmpy
+
     archive.write(
         fmu,
         {
@@ -65,6 +58,8 @@ def pack(
 @click.option("--version", required=True, help="Version of the FMU.")
 def document(template: Path, out: Path, version: str) -> None:
     """Write documentation and icons of TEMPLATE into OUT, by their names in the FMU."""
+    from sigmahat.export import documentation
+
     documentation.write(template, out, version)
 
 
@@ -76,6 +71,8 @@ def document(template: Path, out: Path, version: str) -> None:
 @click.option("--version", required=True, help="Version of the system.")
 def write_system(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str) -> None:
     """Write SSP, the system of FMUs PLANT and ESTIMATOR that gives Table I."""
+    from sigmahat.export import system
+
     system.write(ssp, plant, estimator, templates, version)
 
 
@@ -85,6 +82,8 @@ def write_system(ssp: Path, plant: Path, estimator: Path, templates: Path, versi
 @click.option("--cache", required=True, type=click.Path(file_okay=False, path_type=Path))
 def release(fmu: Path, out: Path, cache: Path) -> None:
     """Write OUT: the FMU with the binaries of every platform, compiled from its sources."""
+    from sigmahat.export import cross_compiler
+
     cross_compiler.release(fmu, out, cache)
 
 
