@@ -1,7 +1,7 @@
 """A plant of your own, from equations in CasADi to an FMU, in one file.
 
 A pendulum on a spring that hardens, driven by a motor; with it, the estimator. Needs a C compiler
-and what `pip install '.[plants]'` adds: casadi and jinja2.
+and CasADi, which `pip install '.[plants]'` adds.
 
 Usage: python own_plant.py [FOLDER]     writes PendulumPlant.fmu and own_plant.png there
 """
@@ -9,8 +9,12 @@ Usage: python own_plant.py [FOLDER]     writes PendulumPlant.fmu and own_plant.p
 import sys
 from pathlib import Path
 
-import casadi as ca
 from matplotlib.figure import Figure
+
+try:
+    import casadi as ca
+except ModuleNotFoundError:
+    sys.exit("own_plant.py: CasADi is not installed; to install it: pip install 'sigmahat[plants]'")
 
 import sigmahat
 from sigmahat import PlantEquations, PlantVariable, encoder, write_plant_fmu

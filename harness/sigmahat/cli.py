@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 import sys
 from collections.abc import Sequence
 
@@ -47,6 +49,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except click.ClickException as error:
         click.echo(f"sigmahat: error: {' '.join(error.format_message().split())}", err=True)
         return _ERROR
+    except ModuleNotFoundError as error:
+        command = _how_to_install(error.name)
+        if command is None:
+            raise
+        click.echo(
+            f"sigmahat: error: {error.name} is not installed; to install it: {command}", err=True
+        )
+        return _ERROR
     except OSError as error:  # what a command writes to files it answers for itself
         sys.stdout = None  # or Python would try to write the rest at its end
         click.echo(f"sigmahat: error: cannot write the output: {error.strerror}", err=True)
@@ -54,3 +64,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (click.Abort, KeyboardInterrupt):
         click.echo("sigmahat: interrupted", err=True)
         return _INTERRUPTED
+
+
+def _how_to_install(package: str | None) -> str | None:
+    """The command that adds what sigmahat requires, itself or by an extra; None for anything else.
+
+    pip finds sigmahat itself installed, and adds only what is missing.
+    """
+    from importlib import metadata
+
+    for requirement in metadata.requires("sigmahat") or ():
+        match = re.match(r"""([\w.-]+)[^;]*(?:;\s*extra\s*==\s*["'](.+)["'])?""", requirement)
+        if match and match[1] == package:
+            wanted = f"sigmahat[{match[2]}]" if match[2] else "sigmahat"
+            return shlex.join([sys.executable, "-m", "pip", "install", wanted])
+    return None

@@ -1,4 +1,7 @@
-"""What `pip install .` installs, for somebody who has neither a compiler nor CMake."""
+"""What pip makes of a fresh clone: built and installed as a user does it, used from another folder.
+
+Nothing of this tree is on a path of what runs here, and no environment has anything to begin with.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +10,16 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import tarfile
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import sigmahat
+from gate import missing
+from recorded_logs import CONFIGURATION, awas_log, write_log
 
 REPOSITORY = Path(__file__).parents[2]
 FMUS = {
@@ -23,11 +30,32 @@ FMUS = {
     "AntagonisticVsaPlant.fmu",
 }
 
+pytestmark = pytest.mark.slow(
+    "pip builds the package twice, each time with all that building needs, and installs it twice"
+)
 
-def pip(*arguments: str | Path) -> None:
-    """Without network: what is needed to build is in this environment."""
+
+def outside() -> dict[str, str]:
+    """Variables of a shell that knows nothing of this tree, nor of the environment of the tests."""
+    own = Path(sys.executable).parent
+    path = [p for p in os.environ["PATH"].split(os.pathsep) if Path(p) != own]
+    kept = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "SIGMAHAT"))}
+    return {**kept, "PATH": os.pathsep.join(path)}
+
+
+def new_environment(folder: Path) -> Path:
+    """The folder of the programs of a new environment, with pip and nothing else."""
+    subprocess.run([sys.executable, "-m", "venv", folder], env=outside(), check=True)
+    scheme = {"base": str(folder), "platbase": str(folder)}
+    return Path(sysconfig.get_path("scripts", "venv", scheme))
+
+
+def pip(programs: Path, *arguments: str | Path) -> None:
+    """Runs pip of an environment, in its folder."""
     done = subprocess.run(
-        [sys.executable, "-m", "pip", *arguments, "--no-index", "--no-deps", "-q"],
+        [programs / "python", "-m", "pip", *arguments, "-q"],
+        cwd=programs,
+        env=outside(),
         capture_output=True,
         text=True,
     )
@@ -35,49 +63,76 @@ def pip(*arguments: str | Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def sdist(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Source distribution."""
-    folder = tmp_path_factory.mktemp("sdist")
-    code = "import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])"
-    subprocess.run([sys.executable, "-c", code, folder], cwd=REPOSITORY, check=True)
-    (path,) = folder.iterdir()
-    return path
+def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Fresh clone of what is committed."""
+    if shutil.which("git") is None:
+        missing("git", "apt-get install git")
+    folder = tmp_path_factory.mktemp("clone") / "sigmahat"
+    subprocess.run(["git", "clone", "-q", REPOSITORY, folder], check=True)
+    return folder
 
 
 @pytest.fixture(scope="module")
-def wheel(sdist: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Wheel, built from the source distribution."""
-    folder = tmp_path_factory.mktemp("wheel")
-    pip("wheel", "--no-build-isolation", "-w", folder, sdist)
-    (path,) = folder.iterdir()
-    return path
-
-
-@pytest.fixture(scope="module")
-def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder of the programs of a new environment, with the wheel in it."""
-    environment = tmp_path_factory.mktemp("environment")
-    subprocess.run([sys.executable, "-m", "venv", "--without-pip", environment], check=True)
-    scheme = {"base": str(environment), "platbase": str(environment)}
-    packages = Path(sysconfig.get_path("purelib", "venv", scheme))
-    # Third-party packages are those of this environment; a .pth file there has no effect.
-    (packages / "others.pth").write_text(sysconfig.get_path("purelib"))
-    programs = Path(sysconfig.get_path("scripts", "venv", scheme))
-    pip("--python", programs / "python", "install", wheel)
+def empty(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Programs of an environment with nothing but pip, which finds packages to install."""
+    programs = new_environment(tmp_path_factory.mktemp("empty"))
+    command = [programs / "python", "-m", "pip", "install", "--dry-run", "--ignore-installed"]
+    if subprocess.run([*command, "ninja"], env=outside(), capture_output=True).returncode:
+        missing("a connection to a package index", "connect this machine to one")
     return programs
 
 
-def run(program: Path, *arguments: str, cwd: Path) -> str:
-    """Runs a program with nothing else on the path."""
+@pytest.fixture(scope="module")
+def wheels(clone: Path, empty: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of the wheel built from the clone, and of those that it requires."""
+    folder = tmp_path_factory.mktemp("wheels")
+    pip(empty, "wheel", clone, "-w", folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(wheels: Path) -> Path:
+    """The wheel built from the clone."""
+    (path,) = wheels.glob("sigmahat-*.whl")
+    return path
+
+
+@pytest.fixture(scope="module")
+def installed(wheels: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Programs of an environment with the wheel, and with those that it requires."""
+    programs = new_environment(tmp_path_factory.mktemp("installed"))
+    pip(programs, "install", "--no-index", "--find-links", wheels, "sigmahat")
+    return programs
+
+
+def run(program: Path, *arguments: str, cwd: Path, status: int = 0) -> str:
+    """What a program prints with nothing else on the path: stdout, or stderr if it has to fail."""
     done = subprocess.run(
         [program, *arguments],
         cwd=cwd,
-        env={**os.environ, "PATH": str(program.parent)},
+        env={**outside(), "PATH": str(program.parent)},
         capture_output=True,
         text=True,
     )
-    assert (done.returncode, done.stderr) == (0, "")
-    return done.stdout
+    assert done.returncode == status, done.stdout + done.stderr
+    printed, empty = (done.stderr, done.stdout) if status else (done.stdout, done.stderr)
+    assert empty == ""
+    return printed
+
+
+def test_pip_install_of_a_clone(
+    clone: Path, empty: Path, wheels: Path, tmp_path_factory: pytest.TempPathFactory, tmp_path: Path
+) -> None:
+    # What it requires has been fetched for the wheel; the package itself is built again.
+    wheel_is_no_choice = tmp_path_factory.mktemp("required")
+    for path in wheels.iterdir():
+        if not path.name.startswith("sigmahat-"):
+            (wheel_is_no_choice / path.name).hardlink_to(path)
+    pip(empty, "install", "--find-links", wheel_is_no_choice, clone)
+    assert run(empty / "sigmahat", "--version", cwd=tmp_path).split()[0] == "sigmahat"
+    assert "single-linear" in run(
+        empty / "sigmahat", "reproduce", "--scenario", "single-linear", cwd=tmp_path
+    )
 
 
 def test_wheel_is_for_the_platform_and_any_python(wheel: Path) -> None:
@@ -92,8 +147,21 @@ def test_wheel_is_for_the_platform_and_any_python(wheel: Path) -> None:
     assert {f.split("/")[0] for f in files} == {"sigmahat", f"{name}-{version}.dist-info"}
 
 
+def test_source_distribution_holds_what_git_holds(clone: Path, tmp_path: Path) -> None:
+    """So it builds if the clone does."""
+    code = "import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])"
+    subprocess.run([sys.executable, "-c", code, tmp_path], cwd=clone, check=True)
+    (path,) = tmp_path.iterdir()
+    with tarfile.open(path) as archive:
+        files = {name.split("/", 1)[1] for name in archive.getnames()}
+    tracked = subprocess.run(
+        ["git", "ls-files", "-z"], cwd=clone, capture_output=True, text=True, check=True
+    ).stdout.split("\0")
+    assert files == {*tracked, "PKG-INFO"} - {""}
+
+
 def test_no_compiler_is_reached_in_these_tests(installed: Path) -> None:
-    for tool in ("cc", "gcc", "clang", "cmake", "ninja"):
+    for tool in ("cc", "gcc", "clang"):
         assert shutil.which(tool, path=str(installed)) is None
 
 
@@ -112,6 +180,52 @@ def test_commands_give_what_the_development_tree_gives(installed: Path, tmp_path
     printed = run(installed / "sigmahat", *arguments, cwd=tmp_path)
     assert "RESIDUAL" in printed
     assert printed == run(Path(sys.executable).with_name("sigmahat"), *arguments, cwd=tmp_path)
+
+
+def test_every_command_has_what_it_needs(installed: Path, tmp_path: Path) -> None:
+    log = awas_log(1.0, 0.3, duration=4.0)
+    write_log({name: log[name] for name in ("t", "theta", "q", "theta_c", "tau")}, tmp_path / "a.csv")
+    (tmp_path / "a.toml").write_text(CONFIGURATION, encoding="utf-8")
+    for command in (
+        "init a.csv --config guessed.toml",
+        "identify a.csv",
+        "estimate a.csv",
+        "report sigmahat-results/a",
+        "scenarios",
+        "sweep --scenario single-linear --seeds 2 --out sweep",
+        "report sweep",
+        "reproduce --scenario single-linear --seeds 2",
+    ):
+        assert run(installed / "sigmahat", *command.split(), cwd=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "package", "extra"),
+    [
+        ("sweep --seeds 2 --scheduler tcp://localhost:1", "distributed", "dask"),
+        ("estimate log.h5", "h5py", "hdf5"),
+        ("init log.mcap", "rosbags", "bags"),
+    ],
+)
+def test_commands_name_the_extra_that_they_miss(
+    installed: Path, tmp_path: Path, arguments: str, package: str, extra: str
+) -> None:
+    (tmp_path / "log.h5").write_bytes(b"\x89HDF\r\n\x1a\n")
+    (tmp_path / "log.mcap").write_bytes(b"\x89MCAP0\r\n")
+    printed = run(installed / "sigmahat", *arguments.split(), cwd=tmp_path, status=2)
+    python = installed / Path(sys.executable).name
+    assert printed == (
+        f"sigmahat: error: {package} is not installed; to install it: "
+        f"{python} -m pip install 'sigmahat[{extra}]'\n"
+    )
+
+
+def test_example_names_the_extra_that_it_misses(installed: Path, tmp_path: Path) -> None:
+    example = shutil.copy(REPOSITORY / "examples" / "own_plant.py", tmp_path)
+    printed = run(installed / "python", example, cwd=tmp_path, status=1)
+    assert printed == (
+        "own_plant.py: CasADi is not installed; to install it: pip install 'sigmahat[plants]'\n"
+    )
 
 
 def test_types_are_those_of_the_sources(installed: Path, tmp_path: Path) -> None:
