@@ -6,8 +6,10 @@ StiffnessEstimator.fmu.
 """
 
 import math
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pythonfmu import Fmi2Causality, Fmi2Slave, Real
 
 T, B, D_theta, gamma, K_I = 1e-3, 2.3e-5, 1e-3, 50.0, 300.0
@@ -23,10 +25,10 @@ exponents = np.tile(2 * np.arange(n) + 1, m)
 powers = np.repeat(np.arange(m), n)
 
 
-class Paper2011(Fmi2Slave):
+class Paper2011(Fmi2Slave):  # type: ignore[misc]  # PythonFMU has no types
     """Inputs and outputs have the names of those of StiffnessEstimator.fmu."""
 
-    def __init__(self, **kwargs):
+    def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         for name in ("theta", "q", "theta_c", "tau", "tau_e_sensor"):
             setattr(self, name, 0.0)
@@ -34,41 +36,39 @@ class Paper2011(Fmi2Slave):
         for name in ("sigma", "tau_e", "theta_dot"):
             setattr(self, name, 0.0)
             self.register_variable(Real(name, causality=Fmi2Causality.output))
-        self.xi = None
+        self.xi: NDArray[np.float64] | None = None
         self.P_xi = P_0 * np.eye(2)
         self.r = self.r_e = self.I_tau = self.tau_before = 0.0
         self.eta = np.zeros(n * m)
         self.P = rls_P_0 * np.eye(n * m)
 
-    def do_step(self, current_time, step_size):
+    def do_step(self, current_time: float, step_size: float) -> bool:
         first = self.xi is None
-        if first:
-            self.xi = np.array([self.theta, 0.0])
-        else:
-            self.kalman()
-        self.residual(first)
+        self.xi = np.array([self.theta, 0.0]) if self.xi is None else self.kalman(self.xi)
+        self.residual(first, self.xi)
         self.regression()
         return True
 
-    def kalman(self):
-        xi = A @ self.xi
+    def kalman(self, before: NDArray[np.float64]) -> NDArray[np.float64]:
+        xi = A @ before
         P = A @ self.P_xi @ A.T + Q
         R = (V_max - V_min) / (1 + math.exp((abs(xi[1]) / w_s - 1) * alpha)) + V_min
         K = P[:, 0] / (P[0, 0] + R)
-        self.xi = xi + K * (self.theta - xi[0])
         self.P_xi = P - np.outer(K, P[0])
-        self.theta_dot = float(self.xi[1])
+        after: NDArray[np.float64] = xi + K * (self.theta - xi[0])
+        self.theta_dot = float(after[1])
+        return after
 
-    def residual(self, first):
+    def residual(self, first: bool, xi: NDArray[np.float64]) -> None:
         if not first:
             self.I_tau += (self.tau + self.tau_before) / 2 * T
         self.tau_before = self.tau
-        r = K_I * (B * gamma * self.xi[1] + D_theta * gamma * self.xi[0] - self.I_tau)
+        r = K_I * (B * gamma * xi[1] + D_theta * gamma * xi[0] - self.I_tau)
         if not first:
             self.r_e = ((2 - T * K_I) * self.r_e + 2 * (r - self.r)) / (2 + T * K_I)
         self.r = r
 
-    def regression(self):
+    def regression(self) -> None:
         phi, set_point = self.q - self.theta, offset + scale * self.theta_c
         F = set_point**powers * phi**exponents
         PF = self.P @ F

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+
 import subjects
 from report import Footprint, Times, figure, page, table, update
 from subjects import Array, Fmus, Library, Subject

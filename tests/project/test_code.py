@@ -13,6 +13,7 @@ import pytest
 from gate import missing
 
 REPOSITORY = Path(__file__).parents[2]
+PYTHON = ["harness", "tests", "bench", "docs", "examples"]
 WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
 ESTIMATOR = sorted((REPOSITORY / "c").glob("*.c"))
 FMU = sorted((REPOSITORY / "fmu_src").glob("*.c"))
@@ -57,7 +58,7 @@ def test_the_library_needs_no_heap_and_no_output(source: Path) -> None:
 @pytest.mark.parametrize("command", [["ruff", "check"], ["ruff", "format", "--check"]])
 def test_ruff_finds_no_error(command: list[str]) -> None:
     done = subprocess.run(
-        [sys.executable, "-m", *command, "harness", "tests", "examples", "docs/api.py"],
+        [sys.executable, "-m", *command, *PYTHON],
         cwd=REPOSITORY,
         capture_output=True,
         text=True,
@@ -67,7 +68,7 @@ def test_ruff_finds_no_error(command: list[str]) -> None:
 
 def test_mypy_finds_no_error() -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "mypy", "harness/sigmahat", "tests", "examples", "docs"],
+        [sys.executable, "-m", "mypy", *PYTHON],
         cwd=REPOSITORY,
         capture_output=True,
         text=True,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 
 import click
@@ -49,6 +50,8 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
     from sigmahat.paper.reproduction import reproduce, work
 
     chosen = common.ready_scenario(name)
+    if seeds > 1:
+        import_module("scipy")  # intervals need it; if it is not there, say so before the runs
     out = out or Path("sigmahat-results", name)
     numbers = range(1, seeds + 1)
     with common.work(out), results.folder(out) as folder:

@@ -1,0 +1,59 @@
+"""A package that is not installed: one line names it and the command that installs it."""
+
+from __future__ import annotations
+
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from command_line import one_line
+
+WITHOUT = """
+import sys
+from sigmahat.cli import main
+
+class Without:
+    def find_spec(name, path, target=None):
+        if name == sys.argv[1]:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Without)
+sys.exit(main(sys.argv[2:]))
+"""
+
+
+def run_without(module: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """Runs a command as if a module were not installed."""
+    command = [sys.executable, "-c", WITHOUT, module, *arguments]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(
+    ("package", "arguments", "wanted"),
+    [
+        ("scipy", "reproduce --seeds 2", "sigmahat"),
+        ("pyarrow", "sweep", "sigmahat"),
+        ("tomlkit", "identify log.csv", "sigmahat"),
+        ("bokeh", "report .", "sigmahat"),
+        ("distributed", "sweep --scheduler tcp://localhost:1", "sigmahat[dask]"),
+        ("h5py", "estimate log.h5", "sigmahat[hdf5]"),
+        ("rosbags", "init log.mcap", "sigmahat[bags]"),
+    ],
+)
+def test_one_line_says_what_to_install(
+    package: str, arguments: str, wanted: str, tmp_path: Path
+) -> None:
+    (tmp_path / "log.h5").write_bytes(b"\x89HDF\r\n\x1a\n")
+    (tmp_path / "log.mcap").write_bytes(b"\x89MCAP0\r\n")
+    line = one_line(run_without(package, *arguments.split(), cwd=tmp_path))
+    command = shlex.join([sys.executable, "-m", "pip", "install", wanted])
+    assert line == f"sigmahat: error: {package} is not installed; to install it: {command}"
+
+
+def test_what_sigmahat_does_not_require_is_a_fault_that_shows(tmp_path: Path) -> None:
+    done = run_without("sigmahat.paper.reproduction", "reproduce", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "ModuleNotFoundError" in done.stderr
