@@ -14,5 +14,6 @@ add_custom_target(
           -o requirements/reproduce.txt
   COMMAND ${consistent} --group release -o requirements/release.txt
   COMMAND ${consistent} --group bench -o requirements/bench.txt
+  COMMAND ${consistent} --group coverage -o requirements/coverage.txt
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   COMMENT "Writing requirements/*.txt" VERBATIM)

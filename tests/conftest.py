@@ -1,6 +1,7 @@
-"""Where the tests find what the build made."""
+"""Where the tests find what the build made; which tests take long, and why."""
 
 import os
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
@@ -51,3 +52,29 @@ def released(build: Path) -> Path:
     if not folder.is_dir():
         pytest.fail("there is no release to test; make it: cmake --workflow --preset release")
     return folder
+
+
+_LONG = 10.0  # [s] A test that takes longer says why: @pytest.mark.slow("reason")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Sends the reason of a slow test along with its results, also from another process."""
+    for item in items:
+        for mark in item.iter_markers("slow"):
+            (reason,) = mark.args
+            item.user_properties.append(("slow", reason))
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Lists the tests that took long, each with its reason."""
+    seconds: dict[tuple[str, object], float] = defaultdict(float)
+    for reports in terminalreporter.stats.values():
+        for report in reports:
+            if isinstance(report, pytest.TestReport):
+                reason = dict(report.user_properties).get("slow", "NO REASON GIVEN")
+                seconds[report.nodeid, reason] += report.duration
+    long = sorted((-took, *test) for test, took in seconds.items() if took > _LONG)
+    if long:
+        terminalreporter.section(f"tests that took over {_LONG:g} s, and why")
+    for took, name, reason in long:
+        terminalreporter.line(f"{-took:6.0f} s  {name}: {reason}")

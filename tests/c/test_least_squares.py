@@ -97,7 +97,7 @@ def test_every_sample_against_the_recursion_as_printed(c: Library, kind: int, si
     assert error(recursion.covariance, want.P) < 1e-9
 
 
-@pytest.mark.slow
+@pytest.mark.slow("the oracle computes in many digits")
 @pytest.mark.parametrize("kind", KINDS)
 def test_many_sizes_against_the_ridge(c: Library, kind: int) -> None:
     # Fewer and more samples than parameters, columns with different scales, any P_0
@@ -117,7 +117,7 @@ def test_many_sizes_against_the_ridge(c: Library, kind: int) -> None:
         assert error(recursion.eta, want[:, 0]) < 1e-9
 
 
-@pytest.mark.slow
+@pytest.mark.slow("the oracle computes in many digits")
 @pytest.mark.parametrize("kind", KINDS)
 def test_table1_against_the_ridge(c: Library, kind: int) -> None:
     # The recursion over the whole run, and the closed-form minimum of the same sum
@@ -135,7 +135,7 @@ def test_table1_against_the_ridge(c: Library, kind: int) -> None:
     assert recursion.eta == pytest.approx(oracle.rounded(want[:, 0]), rel=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.slow("the oracle computes in many digits")
 @pytest.mark.parametrize("kind", [STANDARD, CONSTANT_FACTOR])
 def test_P_stays_positive_definite_with_a_large_P_0(c: Library, kind: int) -> None:
     # GIVEN P_0 = 1e20, with which the recursion as printed fails in doubles WHEN the recursion runs

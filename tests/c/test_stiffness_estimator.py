@@ -484,7 +484,7 @@ def test_stiffness_is_estimated_although_samples_are_lost_regularly(
 # Long runs
 
 
-@pytest.mark.slow
+@pytest.mark.slow("ten million ticks")
 @pytest.mark.parametrize(
     "values",
     [RLS[ENHANCED], {"rls.kind": STANDARD, "rls.P_0": 1e20}, {"rls.kind": CONSTANT_FACTOR}],
@@ -542,7 +542,7 @@ def compare(got: np.ndarray[Any, Any], want: oracle.Estimate, torque: Array) -> 
     return errors
 
 
-@pytest.mark.slow
+@pytest.mark.slow("the oracle computes in many digits")
 @pytest.mark.parametrize("filter_kind", FILTERS)
 @pytest.mark.parametrize("modality", MODALITIES)
 @pytest.mark.parametrize("rls_kind", RLS)
@@ -562,7 +562,7 @@ def test_table1_against_the_oracle(
     assert max(errors.values()) < 1e-9, errors
 
 
-@pytest.mark.slow
+@pytest.mark.slow("the oracle computes in many digits")
 @pytest.mark.parametrize("filter_kind", FILTERS)
 def test_filtered_deformation_against_the_oracle(c: Library, filter_kind: int) -> None:
     z = table1_recording().measurements()[:3000]
@@ -578,7 +578,7 @@ def test_filtered_deformation_against_the_oracle(c: Library, filter_kind: int) -
     assert max(errors.values()) < 1e-9, errors
 
 
-@pytest.mark.slow
+@pytest.mark.slow("the oracle computes in many digits")
 @pytest.mark.parametrize(
     "changes",
     [
@@ -602,7 +602,7 @@ def test_other_parameters_against_the_oracle(c: Library, changes: Mapping[str, f
     assert max(errors.values()) < 1e-9, errors
 
 
-@pytest.mark.slow
+@pytest.mark.slow("the oracle computes in many digits")
 def test_initial_estimate_against_the_oracle(c: Library) -> None:
     z = table1_recording().measurements()[:300]
     eta_0 = np.zeros((8, 5))
@@ -613,7 +613,7 @@ def test_initial_estimate_against_the_oracle(c: Library) -> None:
     assert max(errors.values()) < 1e-9, errors
 
 
-@pytest.mark.slow
+@pytest.mark.slow("the oracle computes in many digits")
 def test_the_oracle_gives_the_same_doubles_with_twice_the_digits() -> None:
     # The most difficult case: P decreases from 1e20 to below one
     z = table1_recording().measurements()[:1500]
