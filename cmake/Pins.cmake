@@ -1,6 +1,6 @@
-# Target pins: writes requirements/*.txt, the versions that the build tree installs, with the hashes of
-# their files, from pyproject.toml. Versions stay as they are where pyproject.toml allows it; for
-# newer ones, remove the files first.
+# Target pins: writes requirements/*.txt, the versions that the build tree installs with the hashes of
+# their files, from pyproject.toml. A version stays as it is as long as pyproject.toml allows it; for
+# newer versions, remove requirements/test.txt first.
 set(compile
     ${CMAKE_COMMAND} -E env "UV_CUSTOM_COMPILE_COMMAND=cmake --build build --target pins"
     ${SIGMAHAT_PYTHON} -m uv pip compile --quiet --universal --python-version 3.10
