@@ -35,30 +35,30 @@ void sigmahat_eta(const void *rls, double *eta)
 }
 
 /* K = P F / (1 + F' P F), P -= K F' P, with all entries of P, for a size known beforehand. */
-#define COVARIANCE(n)                                                                           \
-    static void update_##n(double P[n][n], const double *F)                                     \
-    {                                                                                           \
-        double PF[n], K[n], S = 1.0;                                                            \
-        int i, j;                                                                               \
-                                                                                                \
-        for (i = 0; i < n; ++i) {                                                               \
-            PF[i] = 0.0;                                                                        \
-            for (j = 0; j < n; ++j)                                                             \
-                PF[i] += P[i][j] * F[j];                                                        \
-            S += F[i] * PF[i];                                                                  \
-        }                                                                                       \
-        for (i = 0; i < n; ++i)                                                                 \
-            K[i] = PF[i] / S;                                                                   \
-        for (i = 0; i < n; ++i)                                                                 \
-            for (j = 0; j < n; ++j)                                                             \
-                P[i][j] -= K[i] * PF[j];                                                        \
-    }                                                                                           \
-    static void run_##n(double *P, const double *F, int samples)                                \
-    {                                                                                           \
-        int k;                                                                                  \
-                                                                                                \
-        for (k = 0; k < samples; ++k)                                                           \
-            update_##n((double(*)[n])P, F + k * n);                                             \
+#define COVARIANCE(n)                                                                              \
+    static void update_##n(double P[n][n], const double *F)                                        \
+    {                                                                                              \
+        double PF[n], K[n], S = 1.0;                                                               \
+        int i, j;                                                                                  \
+                                                                                                   \
+        for (i = 0; i < n; ++i) {                                                                  \
+            PF[i] = 0.0;                                                                           \
+            for (j = 0; j < n; ++j)                                                                \
+                PF[i] += P[i][j] * F[j];                                                           \
+            S += F[i] * PF[i];                                                                     \
+        }                                                                                          \
+        for (i = 0; i < n; ++i)                                                                    \
+            K[i] = PF[i] / S;                                                                      \
+        for (i = 0; i < n; ++i)                                                                    \
+            for (j = 0; j < n; ++j)                                                                \
+                P[i][j] -= K[i] * PF[j];                                                           \
+    }                                                                                              \
+    static void run_##n(double *P, const double *F, int samples)                                   \
+    {                                                                                              \
+        int k;                                                                                     \
+                                                                                                   \
+        for (k = 0; k < samples; ++k)                                                              \
+            update_##n((double (*)[n])P, F + k * n);                                               \
     }
 
 COVARIANCE(3)

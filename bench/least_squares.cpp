@@ -50,7 +50,9 @@ class Dlibs final : public Recursion {
     dlib::matrix<double, 0, 1> f;
 
 public:
-    explicit Dlibs(int size) : f(size) {}
+    explicit Dlibs(int size) : f(size)
+    {
+    }
 
     void run(const double *F, const double *y, int samples) override
     {

@@ -26,9 +26,9 @@ extern "C" {
  * make_run          takes samples F [size: samples x size], y [size: samples] in order
  * make_eta          its estimate [size: size]
  */
-#define BENCH_LEAST_SQUARES(make)                                                               \
-    BENCH_EXPORT void *make##_start(int size);                                                  \
-    BENCH_EXPORT void make##_run(void *rls, const double *F, const double *y, int samples);     \
+#define BENCH_LEAST_SQUARES(make)                                                                  \
+    BENCH_EXPORT void *make##_start(int size);                                                     \
+    BENCH_EXPORT void make##_run(void *rls, const double *F, const double *y, int samples);        \
     BENCH_EXPORT void make##_eta(const void *rls, double *eta);
 
 BENCH_LEAST_SQUARES(sigmahat)

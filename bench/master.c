@@ -33,12 +33,12 @@ static void say(fmi2ComponentEnvironment environment, fmi2String name, fmi2Statu
 }
 
 /* Function of a library; ISO C has no cast from void * to it. */
-#define FIND(library, function)                                                                 \
-    do {                                                                                        \
-        void *symbol = dlsym(library, #function);                                               \
-        memcpy(&function, &symbol, sizeof symbol);                                              \
-        if (symbol == NULL)                                                                     \
-            return NULL;                                                                        \
+#define FIND(library, function)                                                                    \
+    do {                                                                                           \
+        void *symbol = dlsym(library, #function);                                                  \
+        memcpy(&function, &symbol, sizeof symbol);                                                 \
+        if (symbol == NULL)                                                                        \
+            return NULL;                                                                           \
     } while (0)
 
 void *master_start(const char *binary, const char *guid, const char *resources,
@@ -84,8 +84,8 @@ void *master_start(const char *binary, const char *guid, const char *resources,
     }
     for (i = 0; i < output_count; ++i)
         own->outputs[i] = outputs[i];
-    own->component = fmi2Instantiate("bench", fmi2CoSimulation, guid, resources,
-                                     &own->callbacks, fmi2False, fmi2False);
+    own->component = fmi2Instantiate("bench", fmi2CoSimulation, guid, resources, &own->callbacks,
+                                     fmi2False, fmi2False);
     if (own->component == NULL ||
         fmi2SetupExperiment(own->component, fmi2False, 0.0, 0.0, fmi2False, 0.0) != fmi2OK ||
         fmi2EnterInitializationMode(own->component) != fmi2OK ||

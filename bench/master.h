@@ -11,8 +11,8 @@
  * slopes                   1: inputs are linear over a step, 0: held
  */
 BENCH_EXPORT void *master_start(const char *binary, const char *guid, const char *resources,
-                                const unsigned *inputs, int input_count,
-                                const unsigned *outputs, int output_count, int slopes);
+                                const unsigned *inputs, int input_count, const unsigned *outputs,
+                                int output_count, int slopes);
 
 /* Steps of h [s] with the inputs u [size: samples x inputs] set before each and all outputs
  * read after it into y [size: outputs]. Returns the number of calls that failed.

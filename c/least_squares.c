@@ -58,7 +58,7 @@ static void add(const sh_real *u, const sh_real *F, sh_real *sum)
 static void project(sh_least_squares *rls, const sh_real *F)
 {
     const int size = rls->size;
-    sh_real (*sum)[2] = rls->work.pairs;
+    sh_real(*sum)[2] = rls->work.pairs;
     sh_real last[SH_PANEL] = {0, 0, 0, 0}; /* F in the last panel, if that has fewer rows */
     int i, j;
 

@@ -31,26 +31,26 @@ enum {
     SH_MAX_PARAMETERS = SH_MAX_BASIS + SH_MAX_MOTOR
 };
 enum {
-    SH_PANEL = 4,                                         /* rows of U side by side in memory */
+    SH_PANEL = 4, /* rows of U side by side in memory */
     SH_MAX_ROWS = (SH_MAX_PARAMETERS + SH_PANEL - 1) / SH_PANEL * SH_PANEL,
     SH_MAX_U = SH_MAX_ROWS * SH_MAX_PARAMETERS - SH_MAX_ROWS * (SH_MAX_ROWS - SH_PANEL) / 2 +
-               SH_PANEL /* one more column: it is read with the last ones, and not used */
+        SH_PANEL /* one more column: it is read with the last ones, and not used */
 };
 
 /* State of the recursion. */
 typedef struct {
-    sh_real eta[SH_MAX_ROWS];      /* estimate */
-    sh_real eta_low[SH_MAX_ROWS];  /* what rounding left out of eta: millions of
-                                      small updates must not add up to an error */
-    sh_real D[SH_MAX_ROWS];        /* diagonal factor of P, > 0 */
-    sh_real U[SH_MAX_U];           /* unit upper triangular factor of P, in panels of SH_PANEL
-                                      rows: from the diagonal on, column after column, with
-                                      the ones and zeros of the triangle */
+    sh_real eta[SH_MAX_ROWS];     /* estimate */
+    sh_real eta_low[SH_MAX_ROWS]; /* what rounding left out of eta: millions of
+                                     small updates must not add up to an error */
+    sh_real D[SH_MAX_ROWS];       /* diagonal factor of P, > 0 */
+    sh_real U[SH_MAX_U];          /* unit upper triangular factor of P, in panels of SH_PANEL
+                                     rows: from the diagonal on, column after column, with
+                                     the ones and zeros of the triangle */
     struct {
         sh_real pairs[SH_MAX_ROWS][2];
         sh_real F[SH_MAX_ROWS], f[SH_MAX_ROWS], rho[SH_MAX_ROWS + 1];
-    } work;                        /* means nothing between calls; here to spare the stack */
-    int size;                      /* number of parameters, 1..SH_MAX_PARAMETERS */
+    } work;   /* means nothing between calls; here to spare the stack */
+    int size; /* number of parameters, 1..SH_MAX_PARAMETERS */
 } sh_least_squares;
 
 /* What one sample did, all of it from before the update. */

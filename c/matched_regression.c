@@ -96,7 +96,7 @@ static sh_real regression(const sh_matched_regression *matched, const sh_matched
     const sh_motor_parameters *motor = &settings->motor;
     const sh_filter_design *design = &matched->design;
     const sh_real viscous = square(motor->gamma) * motor->D_theta *
-                           sh_state_variable_filter_first(&matched->theta, design);
+                            sh_state_variable_filter_first(&matched->theta, design);
     const sh_real inertial =
         square(motor->gamma) * motor->B * sh_state_variable_filter_second(&matched->theta, design);
     sh_real *error = F + matched->basis;
@@ -192,8 +192,8 @@ static void drift(sh_matched_regression *matched, sh_least_squares *rls,
     for (i = 0; i < matched->basis; ++i)
         along += matched->eta_0[i] * F[i];
     for (i = 0; i < matched->basis; ++i) {
-        direction[i] = square(settings->torque) * F[i] +
-                       square(settings->nominal) * matched->eta_0[i] * along;
+        direction[i] =
+            square(settings->torque) * F[i] + square(settings->nominal) * matched->eta_0[i] * along;
         power += F[i] * direction[i];
     }
     if (!(power > 0))
@@ -234,9 +234,8 @@ static int was_moving(const sh_matched_regression *matched, sh_least_squares *rl
 }
 
 int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
-                    const sh_matched_settings *settings, sh_real theta, sh_real torque,
-                    sh_real phi, sh_real sigma, const sh_real *F, sh_real *y,
-                    sh_innovation *innovation)
+                    const sh_matched_settings *settings, sh_real theta, sh_real torque, sh_real phi,
+                    sh_real sigma, const sh_real *F, sh_real *y, sh_innovation *innovation)
 {
     sh_real *column = matched->work.F;
     sh_real variance;

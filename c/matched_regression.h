@@ -37,38 +37,38 @@ typedef struct {
     int measured;      /* 1: the torque is measured; 0: it is what moves the motor */
     sh_real noise;     /* std deviation of the noise of that torque [N.m], > 0 */
     sh_motor_parameters motor;
-    sh_real count;     /* resolution of theta [rad], >= 0 */
-    sh_real count_q;   /* resolution of q [rad], >= 0 */
-    sh_real slow;      /* |theta'| below which the sign of friction is not known [rad/s], > 0 */
-    sh_real drift;     /* share of its prior variance by which the torque curve drifts in a second
-                          [1/s], >= 0 */
-    sh_real torque;    /* prior: std deviation of each coefficient of the torque [N.m], >= 0 */
-    sh_real nominal;   /* prior: relative std deviation of the curve eta_0 as a whole, >= 0 */
+    sh_real count;   /* resolution of theta [rad], >= 0 */
+    sh_real count_q; /* resolution of q [rad], >= 0 */
+    sh_real slow;    /* |theta'| below which the sign of friction is not known [rad/s], > 0 */
+    sh_real drift;   /* share of its prior variance by which the torque curve drifts in a second
+                        [1/s], >= 0 */
+    sh_real torque;  /* prior: std deviation of each coefficient of the torque [N.m], >= 0 */
+    sh_real nominal; /* prior: relative std deviation of the curve eta_0 as a whole, >= 0 */
     sh_real motor_prior[SH_MAX_MOTOR]; /* prior: std deviations of d [1], b [1], tau_C [N.m],
                                           >= 0; 0 switches the column off */
 } sh_matched_settings;
 
 /* State between samples. */
 typedef struct {
-    int basis;                                /* number of coefficients of the torque */
-    sh_real eta_0[SH_MAX_BASIS];              /* prior mean */
-    sh_state_variable_filter theta, torque;   /* measured signals */
-    sh_state_variable_filter friction;        /* sign of the velocity */
-    sh_state_variable_filter unknown;         /* share of it that is not known */
+    int basis;                              /* number of coefficients of the torque */
+    sh_real eta_0[SH_MAX_BASIS];            /* prior mean */
+    sh_state_variable_filter theta, torque; /* measured signals */
+    sh_state_variable_filter friction;      /* sign of the velocity */
+    sh_state_variable_filter unknown;       /* share of it that is not known */
     sh_state_variable_filter column[SH_MAX_BASIS];
     sh_motion_sign motion;
-    sh_rounding_bias bias;                    /* of b */
-    sh_real phi;      /* deformation at the last sample [rad] */
-    sh_real resting;  /* samples for which it has been the same */
-    sh_real unsure;   /* samples for which the sign of the velocity has not been known */
-    sh_real settling; /* time until the filters have forgotten what came before [s] */
-    sh_real starting; /* time for which samples may show that the motor was not at rest [s] */
+    sh_rounding_bias bias; /* of b */
+    sh_real phi;           /* deformation at the last sample [rad] */
+    sh_real resting;       /* samples for which it has been the same */
+    sh_real unsure;        /* samples for which the sign of the velocity has not been known */
+    sh_real settling;      /* time until the filters have forgotten what came before [s] */
+    sh_real starting;      /* time for which samples may show that the motor was not at rest [s] */
     sh_filter_design design;
     sh_real rounding; /* variance of theta'' filtered for a rounding of one [1/s4] */
     int begun;        /* 0: the filters begin with the next sample */
     struct {
         sh_real F[SH_MAX_PARAMETERS], direction[SH_MAX_PARAMETERS];
-    } work;          /* means nothing between samples; here to spare the stack */
+    } work; /* means nothing between samples; here to spare the stack */
 } sh_matched_regression;
 
 /* Starts regression and recursion.
@@ -96,9 +96,8 @@ void sh_matched_resume(sh_matched_regression *matched, const sh_matched_settings
  * Returns 1. Returns 0, with the recursion as it was, if the numbers are too large.
  */
 int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls,
-                    const sh_matched_settings *settings, sh_real theta, sh_real torque,
-                    sh_real phi, sh_real sigma, const sh_real *F, sh_real *y,
-                    sh_innovation *innovation);
+                    const sh_matched_settings *settings, sh_real theta, sh_real torque, sh_real phi,
+                    sh_real sigma, const sh_real *F, sh_real *y, sh_innovation *innovation);
 
 /* What is believed of the parameters, see sh_rounding_bias_belief.
  *

@@ -180,8 +180,7 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
     if (p->filter.V_min > p->filter.V_max)
         return violates(violation, "filter.V_min", p->filter.V_min, "> 0 and <= filter.V_max");
     if (p->method == SH_METHOD_PAPER2011 && p->residual.K_I * p->samplePeriod >= 2)
-        return violates(violation, "residual.K_I", p->residual.K_I,
-                        "> 0 and < 2 / samplePeriod");
+        return violates(violation, "residual.K_I", p->residual.K_I, "> 0 and < 2 / samplePeriod");
     if (p->method == SH_METHOD_MATCHED_FILTER &&
         (p->matched.bandwidth * p->samplePeriod < (sh_real)1e-4 ||
          p->matched.bandwidth * p->samplePeriod >= 2))

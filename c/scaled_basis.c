@@ -11,7 +11,7 @@ void sh_scaled_basis(const sh_range_parameters *range, int symmetric, int n, int
 {
     const sh_real x = phi / range->phi, step = symmetric ? x * x : x;
     const sh_real l = set_point / range->setPoint;
-    sh_real upper = symmetric ? x : 1; /* x^e */
+    sh_real upper = symmetric ? x : 1;              /* x^e */
     sh_real slope = symmetric ? 1 / range->phi : 0; /* x^(e - 1) / range, 0 for e = 0 */
     int i, j;
 

@@ -52,8 +52,8 @@ static void advance(sh_state_variable_filter *filter, const sh_filter_design *de
         behind[0] = behind[1] = behind[2] = 0;
 }
 
-void sh_state_variable_filter_step(sh_state_variable_filter *filter,
-                                   const sh_filter_design *design, sh_real x)
+void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_filter_design *design,
+                                   sh_real x)
 {
     advance(filter, design, (x - filter->input) * design->lag);
     filter->input = x;
@@ -85,8 +85,7 @@ sh_real sh_state_variable_filter_first(const sh_state_variable_filter *filter,
 sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
                                         const sh_filter_design *design)
 {
-    return design->w * design->w *
-           (2 * filter->behind[1] - filter->behind[0] - filter->behind[2]);
+    return design->w * design->w * (2 * filter->behind[1] - filter->behind[0] - filter->behind[2]);
 }
 
 sh_real sh_state_variable_filter_noise(const sh_filter_design *design)

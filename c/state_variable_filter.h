@@ -51,8 +51,8 @@ void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x)
 void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x);
 
 /* Advances the filter by T; the signal went linearly to x. */
-void sh_state_variable_filter_step(sh_state_variable_filter *filter,
-                                   const sh_filter_design *design, sh_real x);
+void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_filter_design *design,
+                                   sh_real x);
 
 /* The same for a signal of which only the mean over T is known. Do not mix the two. */
 void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,

@@ -277,8 +277,8 @@ static int tick_matched(sh_estimator *estimator, const sh_parameters *p, const s
     basis(p, phi, set_point, F, dF);
     good = sh_matched_step(&estimator->matched, &estimator->rls, &settings, z->theta, torque, phi,
                            estimate->sigma, F, &y, &innovation);
-    variance = sh_matched_belief(&estimator->matched, &estimator->rls, &settings, dF,
-                                 estimator->work.eta);
+    variance =
+        sh_matched_belief(&estimator->matched, &estimator->rls, &settings, dF, estimator->work.eta);
     if (!good || !isfinite(y) || !isfinite(variance)) { /* y, variance: while nothing is learned */
         estimator->matched.begun = 0;
         return 0;

@@ -73,13 +73,13 @@ typedef struct {
         sh_real offset, scale; /* set-point = offset + scale theta_c [1, 1/rad], fixed */
     } setPoint;
     struct {
-        int kind;                           /* SH_RLS_*, fixed */
-        int symmetric;                      /* 1: torque odd in phi, (16); 0: any; fixed */
-        int n, m;                           /* 1..SH_MAX_N, 1..SH_MAX_M, fixed */
-        sh_real P_0;                        /* initial covariance, > 0, fixed */
-        sh_real c;                          /* (27), > 0, fixed */
-        sh_real a;                          /* constant stability factor, (0, 1], fixed */
-        sh_real eta_0[SH_MAX_N][SH_MAX_M];  /* initial estimate, fixed */
+        int kind;                          /* SH_RLS_*, fixed */
+        int symmetric;                     /* 1: torque odd in phi, (16); 0: any; fixed */
+        int n, m;                          /* 1..SH_MAX_N, 1..SH_MAX_M, fixed */
+        sh_real P_0;                       /* initial covariance, > 0, fixed */
+        sh_real c;                         /* (27), > 0, fixed */
+        sh_real a;                         /* constant stability factor, (0, 1], fixed */
+        sh_real eta_0[SH_MAX_N][SH_MAX_M]; /* initial estimate, fixed */
     } rls;
     struct {
         sh_real k_s; /* stiffness of the springs, (28) [N/m], >= 0 */
@@ -100,14 +100,14 @@ typedef struct {
                               second [1/s], 0..1e12; 0: it does not change */
     } matched;
     sh_range_parameters range; /* fixed */
-    struct { /* 0..1e12, fixed */
-        sh_real tau_e;       /* std deviation of each coefficient of the torque, for phi and
-                                set-point in units of their range [N.m] */
-        sh_real nominal;     /* of the curve rls.eta_0 as a whole, relative [1] */
-        sh_real D_theta;     /* of motor.D_theta, relative [1]; 0: exact */
-        sh_real B;           /* of motor.B, relative [1]; 0: exact */
-        sh_real tau_coulomb; /* of the Coulomb friction of the motor, on its axis [N.m];
-                                0: there is none */
+    struct {                   /* 0..1e12, fixed */
+        sh_real tau_e;         /* std deviation of each coefficient of the torque, for phi and
+                                  set-point in units of their range [N.m] */
+        sh_real nominal;       /* of the curve rls.eta_0 as a whole, relative [1] */
+        sh_real D_theta;       /* of motor.D_theta, relative [1]; 0: exact */
+        sh_real B;             /* of motor.B, relative [1]; 0: exact */
+        sh_real tau_coulomb;   /* of the Coulomb friction of the motor, on its axis [N.m];
+                                  0: there is none */
     } prior;
 } sh_parameters;
 
@@ -124,21 +124,21 @@ typedef struct {
 
 /* What a tick gives. */
 typedef struct {
-    sh_real sigma;                  /* stiffness, (23) [N.m/rad] */
-    sh_real tau_e;                  /* flexibility torque of the fitted model, (21) [N.m] */
-    sh_real tau_e_residual;         /* gamma r_e, (8) [N.m] */
-    sh_real theta_dot;              /* motor velocity used by the residual [rad/s] */
-    sh_real phi;                    /* deformation [rad] */
-    sh_real setPoint;               /* set-point [1] */
-    sh_real a, rho, epsilon;        /* (27) [1], (14) [1], (14) [N.m] */
-    sh_real eta[SH_MAX_N][SH_MAX_M];/* eta[i][j]: coefficient of setPoint^j phi^(2i+1), (21),
-                                       or of setPoint^j phi^i if not symmetric */
-    sh_real sigma_std;              /* std deviation of sigma, as far as the method knows
-                                       [N.m/rad] */
-    sh_real D_theta_hat, B_hat;     /* motor data as corrected [N.m.s/rad, kg.m2] */
-    sh_real tau_coulomb_hat;        /* Coulomb friction found, on the motor axis [N.m] */
-    int confident;                  /* sigma_std is below confidence |sigma| */
-    int valid;                      /* 0 while the last tick was skipped, see sh_estimator_tick */
+    sh_real sigma;                   /* stiffness, (23) [N.m/rad] */
+    sh_real tau_e;                   /* flexibility torque of the fitted model, (21) [N.m] */
+    sh_real tau_e_residual;          /* gamma r_e, (8) [N.m] */
+    sh_real theta_dot;               /* motor velocity used by the residual [rad/s] */
+    sh_real phi;                     /* deformation [rad] */
+    sh_real setPoint;                /* set-point [1] */
+    sh_real a, rho, epsilon;         /* (27) [1], (14) [1], (14) [N.m] */
+    sh_real eta[SH_MAX_N][SH_MAX_M]; /* eta[i][j]: coefficient of setPoint^j phi^(2i+1), (21),
+                                        or of setPoint^j phi^i if not symmetric */
+    sh_real sigma_std;               /* std deviation of sigma, as far as the method knows
+                                        [N.m/rad] */
+    sh_real D_theta_hat, B_hat;      /* motor data as corrected [N.m.s/rad, kg.m2] */
+    sh_real tau_coulomb_hat;         /* Coulomb friction found, on the motor axis [N.m] */
+    int confident;                   /* sigma_std is below confidence |sigma| */
+    int valid;                       /* 0 while the last tick was skipped, see sh_estimator_tick */
 } sh_estimate;
 
 /* State between ticks. Holds no pointer: copy it by assignment. */
@@ -148,23 +148,23 @@ typedef struct {
     sh_torque_residual residual;
     sh_least_squares rls;
     sh_matched_regression matched;
-    int modality;     /* of the last good sample */
-    int started;      /* a good sample has been seen */
-    sh_real skipped;  /* ticks skipped since the last good sample */
-    sh_real settling; /* time until r_e has forgotten what was before a gap [s] */
+    int modality;                /* of the last good sample */
+    int started;                 /* a good sample has been seen */
+    sh_real skipped;             /* ticks skipped since the last good sample */
+    sh_real settling;            /* time until r_e has forgotten what was before a gap [s] */
     sh_real units[SH_MAX_BASIS]; /* factors from the coefficients in the unit of the method to
                                     those of the estimate */
     struct {
         sh_real F[SH_MAX_PARAMETERS], dF[SH_MAX_PARAMETERS]; /* zero beyond the basis */
         sh_real eta[SH_MAX_PARAMETERS];
-    } work;          /* means nothing between ticks; here to spare the stack */
+    } work; /* means nothing between ticks; here to spare the stack */
 } sh_estimator;
 
 /* A parameter outside its range. */
 typedef struct {
     const char *name;  /* as in the FMU, "residual.K_I" */
     sh_real value;     /* what came */
-    const char *range;  /* what is allowed, "K_I samplePeriod < 2" */
+    const char *range; /* what is allowed, "K_I samplePeriod < 2" */
 } sh_violation;
 
 /* Sets the parameters of the AwAS, section VI.A, and of the FMU's start values. */

@@ -14,8 +14,8 @@ extern "C" {
 #endif
 
 enum {
-    SH_MAX_N = 8,                        /* largest order in the deformation */
-    SH_MAX_M = 5,                        /* largest order in the set-point */
+    SH_MAX_N = 8, /* largest order in the deformation */
+    SH_MAX_M = 5, /* largest order in the set-point */
     SH_MAX_BASIS = SH_MAX_N * SH_MAX_M
 };
 

@@ -20,8 +20,7 @@ sh_real sh_torque_residual_step(sh_torque_residual *residual, const sh_motor_par
     const sh_real change =
         K_I * (motor->gamma * (motor->B * dtheta_dot + motor->D_theta * dtheta) - impulse);
 
-    residual->r_e =
-        (2 - T * K_I) / (2 + T * K_I) * residual->r_e + 2 * change / (2 + T * K_I);
+    residual->r_e = (2 - T * K_I) / (2 + T * K_I) * residual->r_e + 2 * change / (2 + T * K_I);
     sh_torque_residual_resume(residual, tau);
     return motor->gamma * residual->r_e;
 }

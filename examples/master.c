@@ -147,8 +147,8 @@ int main(int argc, char **argv)
     V_a = reference("filter.V_a");
 
     /* Parameters before the initialisation ends. */
-    estimator = instantiate("estimator", fmi2CoSimulation, guid, "", &callbacks, fmi2False,
-                            fmi2False);
+    estimator =
+        instantiate("estimator", fmi2CoSimulation, guid, "", &callbacks, fmi2False, fmi2False);
     if (estimator == NULL)
         quit("failed:", "fmi2Instantiate");
     check(setup_experiment(estimator, fmi2False, 0.0, 0.0, fmi2False, 0.0), "fmi2SetupExperiment");
@@ -165,7 +165,7 @@ int main(int argc, char **argv)
         u[0] = 0.5 * sin(two_pi * t); /* theta */
         u[1] = u[0] + phi;            /* q */
         u[2] = k * phi;               /* tau_e_sensor */
-        if (tick == 1000) /* a tunable parameter; it acts from this tick on */
+        if (tick == 1000)             /* a tunable parameter; it acts from this tick on */
             check(set_real(estimator, &V_a, 1, &smoother), "filter.V_a");
         check(set_real(estimator, inputs, 3, u), "fmi2SetReal");
         check(do_step(estimator, t, T, fmi2True), "fmi2DoStep");

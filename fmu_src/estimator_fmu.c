@@ -9,8 +9,8 @@ fmi2Status sh_estimator_fmu_check(const sh_parameters *parameters, const char *w
 
     if (!sh_parameters_check(parameters, &violation))
         return fmi2OK;
-    sh_log(log, fmi2Error, "%sParameter %s = %.9g is out of its range: %s.", who,
-           violation.name, violation.value, violation.range);
+    sh_log(log, fmi2Error, "%sParameter %s = %.9g is out of its range: %s.", who, violation.name,
+           violation.value, violation.range);
     return fmi2Error;
 }
 
@@ -99,9 +99,8 @@ fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, cons
             if (was_valid)
                 say_skipped(&z, t + after, who, log);
         } else if (!was_valid) {
-            sh_log(log, fmi2OK,
-                   "%sMeasurements are good again at t = %.9g s, %g ticks skipped.", who,
-                   t + after, skipped);
+            sh_log(log, fmi2OK, "%sMeasurements are good again at t = %.9g s, %g ticks skipped.",
+                   who, t + after, skipped);
         }
         if (becomes_strained(fmu)) {
             status = fmi2Warning;

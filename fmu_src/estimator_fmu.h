@@ -19,7 +19,7 @@ typedef struct {
 /* From an input to its time derivative. */
 enum {
     SH_ESTIMATOR_DERIVATIVE_OFFSET =
-        offsetof(sh_estimator_fmu, input_derivative) - offsetof(sh_estimator_fmu, input)
+        (offsetof(sh_estimator_fmu, input_derivative) - offsetof(sh_estimator_fmu, input))
 };
 
 /* As in sh_model. `who` begins the messages: "", or which of several estimators. */

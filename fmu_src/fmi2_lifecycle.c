@@ -108,8 +108,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     sh_set_start_values(instance);
     if (sh_make_utf8(instance->name))
         sh_log(instance, fmi2Warning,
-               "fmi2Instantiate: instanceName is not UTF-8; messages name %s.",
-               instance->name);
+               "fmi2Instantiate: instanceName is not UTF-8; messages name %s.", instance->name);
     return instance;
 }
 
@@ -126,9 +125,8 @@ void fmi2FreeInstance(fmi2Component c)
     sh_release(&callbacks, instance);
 }
 
-fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined,
-                               fmi2Real tolerance, fmi2Real startTime,
-                               fmi2Boolean stopTimeDefined, fmi2Real stopTime)
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance,
+                               fmi2Real startTime, fmi2Boolean stopTimeDefined, fmi2Real stopTime)
 {
     sh_instance *instance = sh_enter(c, SH_INSTANTIATED, "fmi2SetupExperiment");
 

@@ -140,16 +140,15 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, si
 {
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2SerializedFMUstateSize");
 
-    if (instance == NULL ||
-        !sh_has(instance, FMUstate, "fmi2SerializedFMUstateSize", "FMUstate") ||
+    if (instance == NULL || !sh_has(instance, FMUstate, "fmi2SerializedFMUstateSize", "FMUstate") ||
         !sh_has(instance, size, "fmi2SerializedFMUstateSize", "size"))
         return fmi2Error;
     *size = block_size();
     return fmi2OK;
 }
 
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate,
-                                 fmi2Byte serializedState[], size_t size)
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[],
+                                 size_t size)
 {
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2SerializeFMUstate");
 
@@ -165,8 +164,8 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate,
     return fmi2OK;
 }
 
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[],
-                                   size_t size, fmi2FMUstate *FMUstate)
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
+                                   fmi2FMUstate *FMUstate)
 {
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2DeSerializeFMUstate");
     const char *what;

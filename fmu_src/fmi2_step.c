@@ -24,8 +24,7 @@ static void clear_input_derivatives(sh_instance *instance)
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
-                      fmi2Real communicationStepSize,
-                      fmi2Boolean noSetFMUStatePriorToCurrentPoint)
+                      fmi2Real communicationStepSize, fmi2Boolean noSetFMUStatePriorToCurrentPoint)
 {
     sh_instance *instance = sh_enter(c, SH_STEP, "fmi2DoStep");
     const double t = currentCommunicationPoint, h = communicationStepSize;
@@ -37,8 +36,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
         return fmi2Error;
     if (!(h > 0.0) || !isfinite(h)) {
         sh_log(instance, fmi2Error,
-               "fmi2DoStep: communicationStepSize = %.9g s; expected a finite number above 0.",
-               h);
+               "fmi2DoStep: communicationStepSize = %.9g s; expected a finite number above 0.", h);
         return fmi2Error;
     }
     /* Importers add up their time with rounding, of which nothing follows: steps are counted by h.
@@ -69,8 +67,8 @@ fmi2Status fmi2CancelStep(fmi2Component c)
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2CancelStep");
 
     if (instance != NULL)
-        sh_log(instance, fmi2Error, "fmi2CancelStep: no step is in progress; steps run "
-                                    "synchronously.");
+        sh_log(instance, fmi2Error,
+               "fmi2CancelStep: no step is in progress; steps run synchronously.");
     return fmi2Error;
 }
 
@@ -83,8 +81,7 @@ static fmi2Status no_status(fmi2Component c, const char *function)
 
     if (instance == NULL)
         return fmi2Error;
-    sh_log(instance, fmi2Discard, "%s: no information of this kind; no step is pending.",
-           function);
+    sh_log(instance, fmi2Discard, "%s: no information of this kind; no step is pending.", function);
     return fmi2Discard;
 }
 

@@ -4,15 +4,15 @@
 #include "instance.h"
 
 /* The variable of a reference, or NULL after a message. */
-static const sh_variable *find(sh_instance *instance, fmi2ValueReference reference,
-                               sh_type type, const char *function)
+static const sh_variable *find(sh_instance *instance, fmi2ValueReference reference, sh_type type,
+                               const char *function)
 {
     static const char *const TYPES[] = {"Real", "Integer or Enumeration", "Boolean"};
     const sh_variable *variable;
 
     if (reference >= sh_fmu_model.count) {
-        sh_log(instance, fmi2Error, "%s: unknown value reference %u; the last one is %u.",
-               function, reference, (unsigned)sh_fmu_model.count - 1);
+        sh_log(instance, fmi2Error, "%s: unknown value reference %u; the last one is %u.", function,
+               reference, (unsigned)sh_fmu_model.count - 1);
         return NULL;
     }
     variable = &sh_fmu_model.variables[reference];
@@ -40,8 +40,8 @@ static int may_be_set(sh_instance *instance, const sh_variable *variable, const 
 
     if ((unsigned)instance->state & RULES[variable->role].states)
         return 1;
-    sh_log(instance, fmi2Error, "%s: %s cannot be set now: it is %s.", function,
-           variable->name, RULES[variable->role].rule);
+    sh_log(instance, fmi2Error, "%s: %s cannot be set now: it is %s.", function, variable->name,
+           RULES[variable->role].rule);
     return 0;
 }
 
@@ -49,8 +49,7 @@ static int may_be_set(sh_instance *instance, const sh_variable *variable, const 
 static sh_instance *enter_get(fmi2Component c, size_t count, const void *references,
                               const void *values, const char *function)
 {
-    sh_instance *instance =
-        sh_enter(c, SH_INITIALIZATION | SH_STEP | SH_TERMINATED, function);
+    sh_instance *instance = sh_enter(c, SH_INITIALIZATION | SH_STEP | SH_TERMINATED, function);
 
     if (instance == NULL || (count > 0 && (!sh_has(instance, references, function, "vr") ||
                                            !sh_has(instance, values, function, "value"))))
@@ -83,8 +82,7 @@ static sh_instance *enter_set(fmi2Component c, size_t count, const void *referen
     return instance;
 }
 
-fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                       fmi2Real value[])
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
 {
     sh_instance *instance = enter_get(c, nvr, vr, value, "fmi2GetReal");
     size_t i;
@@ -100,8 +98,8 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
     return fmi2OK;
 }
 
-static fmi2Status get_int(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                          int value[], sh_type type, const char *function)
+static fmi2Status get_int(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, int value[],
+                          sh_type type, const char *function)
 {
     sh_instance *instance = enter_get(c, nvr, vr, value, function);
     size_t i;
@@ -192,17 +190,16 @@ fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                          const fmi2String value[])
 {
-    sh_instance *instance = sh_enter(c, SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP,
-                                     "fmi2SetString");
+    sh_instance *instance =
+        sh_enter(c, SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, "fmi2SetString");
 
     (void)vr;
     (void)value;
     return no_strings(instance, nvr, "fmi2SetString");
 }
 
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[],
-                                       size_t nvr, const fmi2Integer order[],
-                                       const fmi2Real value[])
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                       const fmi2Integer order[], const fmi2Real value[])
 {
     static const char function[] = "fmi2SetRealInputDerivatives";
     sh_instance *instance = enter_set(c, nvr, vr, value, SH_TYPE_REAL, function);
@@ -224,19 +221,16 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     }
     instance->slopes_set = 1;
     for (i = 0; i < nvr; ++i) {
-        const size_t offset =
-            sh_fmu_model.variables[vr[i]].offset + sh_fmu_model.derivative_offset;
+        const size_t offset = sh_fmu_model.variables[vr[i]].offset + sh_fmu_model.derivative_offset;
         *(double *)(void *)((char *)instance->model + offset) = value[i];
     }
     return fmi2OK;
 }
 
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[],
-                                        size_t nvr, const fmi2Integer order[],
-                                        fmi2Real value[])
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                        const fmi2Integer order[], fmi2Real value[])
 {
-    sh_instance *instance =
-        sh_enter(c, SH_STEP | SH_TERMINATED, "fmi2GetRealOutputDerivatives");
+    sh_instance *instance = sh_enter(c, SH_STEP | SH_TERMINATED, "fmi2GetRealOutputDerivatives");
 
     (void)vr;
     (void)order;
@@ -255,8 +249,8 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
                                         size_t nKnown, const fmi2Real dvKnown[],
                                         fmi2Real dvUnknown[])
 {
-    sh_instance *instance = sh_enter(c, SH_INITIALIZATION | SH_STEP | SH_TERMINATED,
-                                     "fmi2GetDirectionalDerivative");
+    sh_instance *instance =
+        sh_enter(c, SH_INITIALIZATION | SH_STEP | SH_TERMINATED, "fmi2GetDirectionalDerivative");
 
     (void)vUnknown_ref;
     (void)nUnknown;

@@ -122,15 +122,13 @@ sh_instance *sh_enter(fmi2Component c, unsigned allowed_states, const char *func
     if (instance == NULL)
         return NULL; /* nobody to tell */
     if (!((unsigned)instance->state & allowed_states)) {
-        sh_log(instance, fmi2Error, "%s: not allowed %s.", function,
-               state_name(instance->state));
+        sh_log(instance, fmi2Error, "%s: not allowed %s.", function, state_name(instance->state));
         return NULL;
     }
     return instance;
 }
 
-int sh_has(sh_instance *instance, const void *pointer, const char *function,
-           const char *argument)
+int sh_has(sh_instance *instance, const void *pointer, const char *function, const char *argument)
 {
     if (pointer != NULL)
         return 1;
@@ -192,8 +190,8 @@ static void write_range(char *text, size_t size, const sh_variable *variable)
 
 static int in_range(const sh_variable *variable, double value)
 {
-    return isfinite(value) && (variable->min_open ? value > variable->min
-                                                  : value >= variable->min) &&
+    return isfinite(value) &&
+           (variable->min_open ? value > variable->min : value >= variable->min) &&
            (variable->max_open ? value < variable->max : value <= variable->max);
 }
 
@@ -208,8 +206,8 @@ fmi2Status sh_check_parameters(sh_instance *instance)
     for (i = 0; i < sh_fmu_model.count; ++i) {
         const sh_variable *variable = &sh_fmu_model.variables[i];
         const void *place = bytes + variable->offset;
-        const double value = variable->type == SH_TYPE_REAL ? *(const double *)place
-                                                            : (double)*(const int *)place;
+        const double value =
+            variable->type == SH_TYPE_REAL ? *(const double *)place : (double)*(const int *)place;
         if (variable->role != SH_ROLE_FIXED && variable->role != SH_ROLE_TUNABLE)
             continue;
         if (!in_range(variable, value)) {
@@ -219,8 +217,7 @@ fmi2Status sh_check_parameters(sh_instance *instance)
             return fmi2Error;
         }
     }
-    if (sh_fmu_model.check != NULL &&
-        sh_fmu_model.check(instance->model, instance) != fmi2OK)
+    if (sh_fmu_model.check != NULL && sh_fmu_model.check(instance->model, instance) != fmi2OK)
         return fmi2Error;
     instance->parameters_unchecked = 0;
     return fmi2OK;

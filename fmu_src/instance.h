@@ -30,11 +30,11 @@ struct sh_instance {
     char *name;
     unsigned categories; /* SH_LOG_* that are passed on */
     sh_state state;
-    double time;             /* communication point reached */
-    int outputs_stale;       /* initialisation: outputs do not yet follow what was set */
+    double time;              /* communication point reached */
+    int outputs_stale;        /* initialisation: outputs do not yet follow what was set */
     int parameters_unchecked; /* a parameter was set since they were checked */
-    int slopes_set;          /* derivatives of inputs may be other than 0 */
-    void *model;             /* of sh_fmu_model.size bytes */
+    int slopes_set;           /* derivatives of inputs may be other than 0 */
+    void *model;              /* of sh_fmu_model.size bytes */
 };
 
 /* The instance behind c if it is in one of the allowed states; else NULL, after
@@ -43,8 +43,7 @@ struct sh_instance {
 sh_instance *sh_enter(fmi2Component c, unsigned allowed_states, const char *function);
 
 /* 1 if the pointer is there or not needed; else 0, after a message. */
-int sh_has(sh_instance *instance, const void *pointer, const char *function,
-           const char *argument);
+int sh_has(sh_instance *instance, const void *pointer, const char *function, const char *argument);
 
 /* Memory from the importer's functions, or the C library's where it gave none. */
 void *sh_allocate(const fmi2CallbackFunctions *callbacks, size_t size);

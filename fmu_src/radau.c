@@ -48,8 +48,7 @@ static void evaluate(const double *x, const double *u, const double *p, double *
 }
 
 /* Factors of REAL/h - J and of (RE + i IM)/h - J, where J = df/dx. */
-static void factorize(const double *x, const double *u, const double *p, double h,
-                      double *factors)
+static void factorize(const double *x, const double *u, const double *p, double h, double *factors)
 {
     const double shifts[] = {REAL / h, RE / h, IM / h};
     const double *arguments[] = {x, u, p, shifts};
@@ -90,15 +89,14 @@ static double norm(const double *v, const double *x)
 }
 
 /* to = matrix from */
-static void transform(const double (*matrix)[STAGES], double (*from)[STATES],
-                      double (*to)[STATES])
+static void transform(const double (*matrix)[STAGES], double (*from)[STATES], double (*to)[STATES])
 {
     int i, j;
 
     for (i = 0; i < STAGES; ++i)
         for (j = 0; j < STATES; ++j)
-            to[i][j] = matrix[i][0] * from[0][j] + matrix[i][1] * from[1][j] +
-                       matrix[i][2] * from[2][j];
+            to[i][j] =
+                matrix[i][0] * from[0][j] + matrix[i][1] * from[1][j] + matrix[i][2] * from[2][j];
 }
 
 /* Finds Z with Z_i = h sum_k a_ik f(x + Z_k) by Newton's iteration with the one
@@ -199,8 +197,8 @@ static double take(const double *x, const double *u, const double *du, const dou
     return size;
 }
 
-double sh_radau_step(const double *x, const double *u, const double *du, const double *p,
-                     double h, double *x_new)
+double sh_radau_step(const double *x, const double *u, const double *du, const double *p, double h,
+                     double *x_new)
 {
     double factors[SH_PLANT_FACTORS];
 
@@ -213,7 +211,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
 {
     /* Far below any time constant, far above the rounding of the time. */
     const double shortest = 1e-12 * (1.0 + duration);
-    double elapsed = 0.0, begin = INFINITY; /* step that suits the begin */
+    double elapsed = 0.0, begin = INFINITY;             /* step that suits the begin */
     double factors[SH_PLANT_FACTORS], factorized = 0.0; /* for steps of this length */
     int attempt, steps = 0, owed = 0, j;
 

@@ -14,8 +14,8 @@
  * the states; infinite or not a number if there is no solution. Allowed is
  * 1e-8 (scale + |x|), with the scale that the plant gives for each state.
  */
-double sh_radau_step(const double *x, const double *u, const double *du, const double *p,
-                     double h, double *x_new);
+double sh_radau_step(const double *x, const double *u, const double *du, const double *p, double h,
+                     double *x_new);
 
 /* Advances x by duration > 0 in steps that keep to the allowed error at its end: what dies out
  * before is followed only as far as it matters then.

@@ -75,8 +75,8 @@ hardware_sample hardware_read(void)
 
     sample.theta = (int32_t)lroundf(theta * per_rad);
     sample.q = (int32_t)lroundf((theta + phi) * per_rad);
-    sample.tau = gamma * (D_theta * 0.5f * w * cosf(phase) - B * w * w * theta) -
-                 sigma * phi / gamma;
+    sample.tau =
+        gamma * (D_theta * 0.5f * w * cosf(phase) - B * w * w * theta) - sigma * phi / gamma;
     ++samples;
     return sample;
 }

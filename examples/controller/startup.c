@@ -2,7 +2,7 @@
 #include <stdint.h>
 
 void stack_top(void); /* no function: an address, from mps2.ld */
-void _start(void);           /* of the C library: clears .bss, calls main and exit */
+void _start(void);    /* of the C library: clears .bss, calls main and exit */
 void SysTick_Handler(void);
 
 /* For programs without interrupts. */
@@ -34,5 +34,5 @@ __attribute__((section(".vectors"), used)) static void (*const vectors[16])(void
     [4] = fault,
     [5] = fault,
     [6] = fault,
-    [15] = SysTick_Handler,
+    [15] = SysTick_Handler, /* the others are not used */
 };

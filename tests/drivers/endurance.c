@@ -24,9 +24,9 @@ static int positive(const sh_least_squares *rls)
 
 static int finite_outputs(const sh_estimate *e)
 {
-    return isfinite(e->sigma + e->tau_e + e->tau_e_residual + e->theta_dot + e->phi +
-                    e->setPoint + e->a + e->rho + e->epsilon + e->sigma_std + e->D_theta_hat +
-                    e->B_hat + e->tau_coulomb_hat);
+    return isfinite(e->sigma + e->tau_e + e->tau_e_residual + e->theta_dot + e->phi + e->setPoint +
+                    e->a + e->rho + e->epsilon + e->sigma_std + e->D_theta_hat + e->B_hat +
+                    e->tau_coulomb_hat);
 }
 
 static void print(long tick, const sh_estimate *e)

@@ -64,9 +64,9 @@ static uint64_t bits(sequence *s)
 /* A double, mostly of the size given, sometimes anything. */
 static double some_real(sequence *s, double size)
 {
-    static const double ODD[] = {0.0,  -0.0, 1.0,     -1.0,     NAN,     INFINITY,
-                                 1e12, -1e13, DBL_MAX, DBL_MIN, 5e-324, -INFINITY,
-                                 1e-9, -DBL_MAX, 1e300, 1e-300};
+    static const double ODD[] = {0.0,  -0.0,     1.0,     -1.0,    NAN,    INFINITY,
+                                 1e12, -1e13,    DBL_MAX, DBL_MIN, 5e-324, -INFINITY,
+                                 1e-9, -DBL_MAX, 1e300,   1e-300};
     const unsigned choice = byte(s);
     uint64_t pattern;
     double value;
@@ -389,8 +389,8 @@ static void set_up(sequence *s)
     const double start = seldom(s, 4) ? some_real(s, 3.0) : 0.0;
     const int tolerance_defined = (int)below(s, 2), stop_defined = (int)below(s, 2);
 
-    if (fmi2SetupExperiment(s->instance, tolerance_defined, some_real(s, 1e-6), start,
-                            stop_defined, some_real(s, 10.0)) == fmi2OK)
+    if (fmi2SetupExperiment(s->instance, tolerance_defined, some_real(s, 1e-6), start, stop_defined,
+                            some_real(s, 10.0)) == fmi2OK)
         s->time = start;
 }
 

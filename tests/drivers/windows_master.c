@@ -17,10 +17,10 @@
 enum { MAX_VARIABLES = 256 };
 
 #define FUNCTION(name) name##TYPE *name = (name##TYPE *)(void *)GetProcAddress(library, #name)
-#define CHECK(call) \
-    if ((call) != fmi2OK) { \
-        fprintf(stderr, "not fmi2OK: %s\n", #call); \
-        return 1; \
+#define CHECK(call)                                                                                \
+    if ((call) != fmi2OK) {                                                                        \
+        fprintf(stderr, "not fmi2OK: %s\n", #call);                                                \
+        return 1;                                                                                  \
     }
 
 static void log_message(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,

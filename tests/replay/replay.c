@@ -57,6 +57,31 @@ static int configure(sh_parameters *p, char configuration)
     }
 }
 
+/* Returns 0 if it fails. */
+static int write_outputs(const sh_estimate *e, FILE *out)
+{
+    const double given[] = {
+        e->sigma,
+        e->tau_e,
+        e->tau_e_residual,
+        e->theta_dot,
+        e->phi,
+        e->setPoint,
+        e->a,
+        e->rho,
+        e->epsilon,
+        e->eta[0][0],
+        e->sigma_std,
+        e->D_theta_hat,
+        e->B_hat,
+        e->tau_coulomb_hat,
+        e->confident,
+        e->valid,
+    };
+
+    return fwrite(given, sizeof given, 1, out) == 1;
+}
+
 int main(int count, char **arguments)
 {
     static sh_parameters parameters;
@@ -82,15 +107,8 @@ int main(int count, char **arguments)
         z.tau = (sh_real)log[3];
         z.tau_e_sensor = (sh_real)log[4];
         sh_estimator_tick(&estimator, &parameters, &z, &e);
-        {
-            const double given[] = {
-                e.sigma, e.tau_e, e.tau_e_residual, e.theta_dot, e.phi, e.setPoint, e.a,
-                e.rho, e.epsilon, e.eta[0][0], e.sigma_std, e.D_theta_hat, e.B_hat,
-                e.tau_coulomb_hat, e.confident, e.valid,
-            };
-            if (fwrite(given, sizeof given, 1, out) != 1)
-                return 3;
-        }
+        if (!write_outputs(&e, out))
+            return 3;
     }
     return fclose(out) == 0 ? 0 : 3;
 }
