@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../c/stiffness_estimator.h"
+#include "sigmahat.h"
 
 typedef struct {
     sh_parameters parameters;
@@ -13,7 +13,6 @@ typedef struct {
 
 static int choose(sh_parameters *p, const char *method)
 {
-#ifdef BENCH_HAS_METHODS
     p->method = SH_METHOD_PAPER2011;
     if (strcmp(method, "MatchedFilter") == 0) {
         p->method = SH_METHOD_MATCHED_FILTER;
@@ -22,9 +21,6 @@ static int choose(sh_parameters *p, const char *method)
         p->prior.tau_coulomb = 0.02;
         return 1;
     }
-#else
-    (void)p;
-#endif
     return strcmp(method, "Paper2011") == 0;
 }
 

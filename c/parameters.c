@@ -2,8 +2,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "method.h"
 #include "real_math.h"
-#include "stiffness_estimator.h"
 
 void sh_parameters_default(sh_parameters *p)
 {
@@ -112,8 +112,6 @@ static const real_range REALS[] = {
 };
 
 static const integer_range INTEGERS[] = {
-    {AT(method), "1 (Paper2011) or 2 (MatchedFilter)", SH_METHOD_PAPER2011,
-     SH_METHOD_MATCHED_FILTER},
     {AT(modality), "1 (Residual), 2 (Sensor) or 3 (Model)", SH_MODALITY_RESIDUAL,
      SH_MODALITY_MODEL},
     {AT(deformation), "1 (Raw) or 2 (Filtered)", SH_DEFORMATION_RAW, SH_DEFORMATION_FILTERED},
@@ -133,26 +131,6 @@ enum {
     INTEGER_COUNT = sizeof INTEGERS / sizeof INTEGERS[0]
 };
 
-static int violates(sh_violation *violation, const char *name, sh_real value, const char *range)
-{
-    violation->name = name;
-    violation->value = value;
-    violation->range = range;
-    return 1;
-}
-
-/* Whether a nominal curve is given and may be wrong as a whole. */
-static int has_nominal_curve(const sh_parameters *p)
-{
-    int i, j;
-
-    for (i = 0; i < p->rls.n; ++i)
-        for (j = 0; j < p->rls.m; ++j)
-            if (sh_fabs(p->rls.eta_0[i][j]) > 0)
-                return p->prior.nominal > 0;
-    return 0;
-}
-
 int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
 {
     const char *bytes = (const char *)p;
@@ -163,31 +141,28 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
         const sh_real value = *(const sh_real *)(const void *)(bytes + r->offset);
         const int above = r->min_open ? value > r->min : value >= r->min;
         if (!isfinite(value) || !above || value > r->max)
-            return violates(violation, r->name, value, r->range);
+            return sh_violates(violation, r->name, value, r->range);
     }
+    if (sh_method_of(p) == NULL)
+        return sh_violates(violation, "method", (sh_real)p->method, sh_method_names());
     for (i = 0; i < INTEGER_COUNT; ++i) {
         const integer_range *r = &INTEGERS[i];
         const int value = *(const int *)(const void *)(bytes + r->offset);
         if (value < r->min || value > r->max)
-            return violates(violation, r->name, (sh_real)value, r->range);
+            return sh_violates(violation, r->name, (sh_real)value, r->range);
     }
     for (i = 0; i < SH_MAX_N; ++i)
         for (j = 0; j < SH_MAX_M; ++j)
             if (!isfinite(p->rls.eta_0[i][j]))
-                return violates(violation, "rls.eta_0", p->rls.eta_0[i][j], "finite");
+                return sh_violates(violation, "rls.eta_0", p->rls.eta_0[i][j], "finite");
     if (!(p->motor.gamma > 0) && !(p->motor.gamma < 0))
-        return violates(violation, "motor.gamma", p->motor.gamma, "finite and not 0");
+        return sh_violates(violation, "motor.gamma", p->motor.gamma, "finite and not 0");
     if (p->filter.V_min > p->filter.V_max)
-        return violates(violation, "filter.V_min", p->filter.V_min, "> 0 and <= filter.V_max");
-    if (p->method == SH_METHOD_PAPER2011 && p->residual.K_I * p->samplePeriod >= 2)
-        return violates(violation, "residual.K_I", p->residual.K_I, "> 0 and < 2 / samplePeriod");
-    if (p->method == SH_METHOD_MATCHED_FILTER &&
-        (p->matched.bandwidth * p->samplePeriod < (sh_real)1e-4 ||
-         p->matched.bandwidth * p->samplePeriod >= 2))
-        return violates(violation, "matched.bandwidth", p->matched.bandwidth,
-                        ">= 1e-4 / samplePeriod and < 2 / samplePeriod");
-    if (p->method == SH_METHOD_MATCHED_FILTER && !(p->prior.tau_e > 0) && !has_nominal_curve(p))
-        return violates(violation, "prior.tau_e", p->prior.tau_e,
-                        "> 0, or 0 with a curve rls.eta_0 and prior.nominal > 0");
-    return 0;
+        return sh_violates(violation, "filter.V_min", p->filter.V_min, "> 0 and <= filter.V_max");
+    return sh_method_of(p)->check(p, violation);
+}
+
+sh_real sh_parameters_largest_deformation(const sh_parameters *p)
+{
+    return sh_method_of(p)->largest_deformation * p->range.phi;
 }

@@ -1,14 +1,14 @@
-/* Functions of <math.h> for the type of real.h, and what depends on its range.
+/* Functions of <math.h> for the type sh_real, and what depends on its range.
  *
- * <tgmath.h> would do, but the one of newlib, the C library of most controllers, lacks the
- * complex functions that it refers to.
+ * <tgmath.h> cannot be used: the one of newlib, the C library of most controllers, refers to complex
+ * functions that newlib does not have.
  */
 #ifndef SH_REAL_MATH_H
 #define SH_REAL_MATH_H
 
 #include <math.h>
 
-#include "real.h"
+#include "sigmahat.h"
 
 #define SH_FOR_double(of_double, of_float) of_double
 #define SH_FOR_float(of_double, of_float) of_float
@@ -22,7 +22,9 @@
 #define sh_sin SH_FOR(SH_REAL, sin, sinf)
 #define sh_sqrt SH_FOR(SH_REAL, sqrt, sqrtf)
 
-/* A number whose square, or product with any sensible one, is far from overflow. */
+#define SH_PI 3.14159265358979323846
+
+/* A number whose square, and whose product with any number of practical size, is far from overflow. */
 #define SH_LARGE SH_FOR(SH_REAL, 1e150, 1e30f)
 
 #endif

@@ -1,40 +1,26 @@
 /* Separable polynomial basis of the flexibility torque, (18)-(23).
  *
- * The symmetric basis is the paper's: odd powers of the deformation, for a torque
- * that is odd in it, (16). The general one has every power from 0 on, for
- * transmissions that are softer to one side or have an offset.
+ * The symmetric basis is the paper's: odd powers of the deformation, for a torque that is odd in it,
+ * (16). The general basis has every power from 0 on, for transmissions that are softer to one side
+ * or have an offset.
  */
 #ifndef SH_TORQUE_BASIS_H
 #define SH_TORQUE_BASIS_H
 
-#include "real.h"
-
-#ifdef __cplusplus
-extern "C" {
-#endif
-
-enum {
-    SH_MAX_N = 8, /* largest order in the deformation */
-    SH_MAX_M = 5, /* largest order in the set-point */
-    SH_MAX_BASIS = SH_MAX_N * SH_MAX_M
-};
+#include "sigmahat.h"
 
 /* Regressor F of (22) and its derivative by the deformation, (23).
  *
  * symmetric  1: powers e_i = 2i + 1 of phi, as in (18); 0: e_i = i
  * n, m       orders, 1..SH_MAX_N and 1..SH_MAX_M
- * set_point  l: what stands for theta_c in (19), the AwAS lever arm in mm
+ * set_point  l: stands for theta_c in (19); for the AwAS the lever arm in mm
  * phi        deformation [rad]
  * F          [size: n m] F[j n + i] = l^j phi^(e_i)
  * dF         [size: n m] dF[j n + i] = e_i l^j phi^(e_i - 1)
  *
- * The torque (21) is F' eta, the stiffness (23) is dF' eta, with eta in the
- * same order.
+ * The torque (21) is F' eta, the stiffness (23) is dF' eta, with eta in the same order.
  */
 void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi, sh_real *F,
                      sh_real *dF);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

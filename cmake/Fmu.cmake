@@ -14,11 +14,13 @@ function(sigmahat_add_fmu name)
 
   get_target_property(sources sigmahat_shell SOURCES)
   list(APPEND sources ${arg_SOURCES})
+  set(interface "")
   if(arg_LIBRARY)
     get_target_property(library_sources ${arg_LIBRARY} SOURCES)
+    get_target_property(interface ${arg_LIBRARY} HEADER_SET)
     list(APPEND sources ${library_sources})
   endif()
-  file(GLOB headers ${source_dir}/c/*.h ${source_dir}/fmu_src/*.h)
+  file(GLOB headers ${source_dir}/c/*.h ${source_dir}/c/*/*.h ${source_dir}/fmu_src/*.h)
 
   add_custom_command(
     OUTPUT ${dir}/modelDescription.xml ${dir}/variables.h
@@ -42,8 +44,7 @@ function(sigmahat_add_fmu name)
 
   add_library(${name}_binary MODULE $<TARGET_OBJECTS:sigmahat_shell> ${arg_SOURCES}
               ${dir}/variables.h)
-  target_include_directories(${name}_binary PRIVATE ${dir} ${source_dir}/fmu_src
-                                                    ${source_dir}/c)
+  target_include_directories(${name}_binary PRIVATE ${dir} ${source_dir}/fmu_src)
   target_include_directories(${name}_binary SYSTEM PRIVATE ${SIGMAHAT_FMI_HEADERS})
   set_target_properties(
     ${name}_binary PROPERTIES OUTPUT_NAME ${name} PREFIX "" C_VISIBILITY_PRESET hidden
@@ -56,7 +57,7 @@ function(sigmahat_add_fmu name)
   set(fmu ${SIGMAHAT_FMU_FOLDER}/${name}.fmu)
   add_custom_command(
     OUTPUT ${fmu}
-    COMMAND ${SIGMAHAT_RUN} sigmahat.export pack ${fmu} ${sources} ${dir}/variables.h
+    COMMAND ${SIGMAHAT_RUN} sigmahat.export pack ${fmu} ${sources} ${interface} ${dir}/variables.h
             --description ${dir}/modelDescription.xml --binary $<TARGET_FILE:${name}_binary>
             --licence ${source_dir}/LICENSE --shown ${shown}
     DEPENDS ${name}_binary ${dir}/modelDescription.xml ${source_dir}/LICENSE ${shown_files}

@@ -24,16 +24,11 @@ void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu)
 /* Ticks in one step. More would take minutes, and are a mistake in a unit. */
 static const double MAX_TICKS = 1e9;
 
-/* Deformation, in units of range.phi, up to which the prior of MatchedFilter means what it says.
- * Its highest power is 32 times as large as at the range there, with the usual rls.n = 3.
- */
-static const double STRAINED = 2.0;
-
-/* Whether a deformation has become, for the first time, far larger than it was to be expected. */
+/* Whether the deformation is, for the first time, larger than the parameters are made for. */
 static int becomes_strained(sh_estimator_fmu *fmu)
 {
-    if (fmu->strained || fmu->parameters.method != SH_METHOD_MATCHED_FILTER ||
-        fabs(fmu->output.phi) <= STRAINED * fmu->parameters.range.phi)
+    if (fmu->strained ||
+        fabs(fmu->output.phi) <= sh_parameters_largest_deformation(&fmu->parameters))
         return 0;
     fmu->strained = 1;
     return 1;
@@ -107,7 +102,9 @@ fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, cons
             sh_log(log, fmi2Warning,
                    "%sDeformation phi = %g rad at t = %.9g s is more than %g times range.phi = %g "
                    "rad: expected a range.phi that covers it; the stiffness may be far off.",
-                   who, fmu->output.phi, t + after, STRAINED, fmu->parameters.range.phi);
+                   who, fmu->output.phi, t + after,
+                   sh_parameters_largest_deformation(&fmu->parameters) / fmu->parameters.range.phi,
+                   fmu->parameters.range.phi);
         }
     }
     return status;

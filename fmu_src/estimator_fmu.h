@@ -4,7 +4,7 @@
 
 #include "model.h"
 #include "sample_clock.h"
-#include "stiffness_estimator.h"
+#include "sigmahat.h"
 
 typedef struct {
     sh_parameters parameters;

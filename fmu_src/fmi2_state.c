@@ -11,7 +11,7 @@
 
 enum {
     GUID_LENGTH = 64,
-    STATE_VERSION = 1 /* raise it with every change of a model's struct: the GUID tells only
+    STATE_VERSION = 2 /* raise it with every change of a model's struct: the GUID tells only
                          changes of the variables */
 };
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "hardware.h"
-#include "stiffness_estimator.h"
+#include "sigmahat.h"
 
 enum { TICKS = 2000, PAINTED = 4096, PAINT = 0xa5 };
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "hardware.h"
-#include "stiffness_estimator.h"
+#include "sigmahat.h"
 
 enum { RATE = 1000, SECONDS = 3 };
 

@@ -34,6 +34,7 @@ class Recursion:
     def __init__(self, c: Library, kind: int, factor: float, P_0: float, eta_0: Array) -> None:
         self.c, self.kind, self.factor = c, kind, factor
         self.state = c.new("sh_least_squares")
+        self.P = c.ffi.addressof(self.state, "P")
         self.innovation = c.new("sh_innovation")
         c.lib.sh_least_squares_start(self.state, len(eta_0), c.pointer(eta_0), P_0)
 
@@ -46,21 +47,21 @@ class Recursion:
 
     @property
     def eta(self) -> Array:
-        return np.array(list(self.state.eta)[: self.state.size])
+        return np.array(list(self.state.eta)[: self.P.size])
 
     @property
     def diagonal(self) -> Array:
         """Diagonal factor D of P."""
-        return np.array(list(self.state.D)[: self.state.size])
+        return np.array(list(self.P.D)[: self.P.size])
 
     @property
     def covariance(self) -> Array:
-        size = range(self.state.size)
-        at = self.c.lib.sh_least_squares_covariance
-        return np.array([[at(self.state, i, j) for j in size] for i in size])
+        size = range(self.P.size)
+        at = self.c.lib.sh_ud_factor_entry
+        return np.array([[at(self.P, i, j) for j in size] for i in size])
 
     def bytes(self) -> bytes:
-        lasting = [self.state.eta, self.state.eta_low, self.state.D, self.state.U, self.innovation]
+        lasting = [self.state.eta, self.state.eta_low, self.P.D, self.P.U, self.innovation]
         return b"".join(bytes(self.c.ffi.buffer(each)) for each in lasting)
 
 
@@ -213,7 +214,7 @@ def test_the_variance_along_a_regressor_is_that_of_the_covariance(c: Library) ->
     P = recursion.covariance
     assert np.all(P == P.T)
     want = float(F @ P @ F)
-    assert c.lib.sh_least_squares_variance(recursion.state, c.pointer(F)) == pytest.approx(want)
+    assert c.lib.sh_ud_factor_variance(recursion.P, c.pointer(F)) == pytest.approx(want)
     recursion.update(F, 1.0)
     assert recursion.innovation.rho == pytest.approx(want)
 
@@ -262,15 +263,16 @@ def test_a_weight_is_the_inverse_of_the_noise_variance(c: Library) -> None:
     prior = np.array([1.0, 0.0, 9.0, 0.04])
     recursion = Recursion(c, STANDARD, 1.0, 1.0, np.zeros(4))
     for i, variance in enumerate(prior):
-        c.lib.sh_least_squares_prior(recursion.state, i, variance)
-    epsilon, rho = c.ffi.new("double *"), c.ffi.new("double *")
+        c.lib.sh_ud_factor_set_variance(recursion.P, i, variance)
+    innovation = recursion.innovation
     for k in range(30):
         row = F[k].copy()
         want = y[k] - row @ recursion.eta, row @ recursion.covariance @ row
         assert c.lib.sh_least_squares_weigh(
-            recursion.state, w[k], c.pointer(row), y[k], epsilon, rho
+            recursion.state, w[k], c.pointer(row), y[k], innovation
         )
-        assert (epsilon[0], rho[0]) == pytest.approx(want, rel=1e-9)
+        assert (innovation.epsilon, innovation.rho) == pytest.approx(want, rel=1e-9)
+        assert innovation.a == 1.0
     on = prior > 0
     information = np.diag(1 / prior[on]) + (F[:, on].T * w) @ F[:, on]
     assert recursion.eta[on] == pytest.approx(np.linalg.solve(information, F[:, on].T @ (w * y)))
@@ -293,7 +295,7 @@ def test_widening_adds_an_outer_product_to_the_covariance(c: Library, size: int)
     recursion = fitted(c, size)
     v = np.random.default_rng(1).normal(size=size)
     want = recursion.covariance + 0.3 * np.outer(v, v)
-    c.lib.sh_least_squares_widen(recursion.state, 0.3, c.pointer(v))
+    c.lib.sh_ud_factor_widen(recursion.P, 0.3, c.pointer(v))
     assert recursion.covariance == pytest.approx(want, rel=1e-9, abs=1e-12)
     assert np.all(recursion.diagonal > 0)
 
@@ -303,7 +305,7 @@ def test_bounding_shrinks_variances_and_keeps_correlations(c: Library) -> None:
     before = recursion.covariance
     P_max = np.diag(before) * np.array([0.5, 2.0, 1.0, 0.1, 0.9])
     for i, bound in enumerate(P_max):
-        c.lib.sh_least_squares_bound(recursion.state, i, bound)
+        c.lib.sh_ud_factor_bound(recursion.P, i, bound)
     scale = np.sqrt(np.minimum(1.0, P_max / np.diag(before)))
     assert recursion.covariance == pytest.approx(before * np.outer(scale, scale), rel=1e-9)
 
@@ -312,7 +314,7 @@ def test_bounding_shrinks_variances_and_keeps_correlations(c: Library) -> None:
 def test_a_column_is_that_of_the_covariance(c: Library, size: int) -> None:
     recursion = fitted(c, size)
     for i in {0, size // 2, size - 1}:
-        column = c.lib.sh_least_squares_column(recursion.state, i)[0:size]
+        column = c.lib.sh_ud_factor_column(recursion.P, i)[0:size]
         assert recursion.covariance[:, i] == pytest.approx(list(column), rel=1e-9, abs=1e-12)
 
 
@@ -321,7 +323,7 @@ def test_widening_along_a_column_adds_its_outer_product(c: Library, size: int) -
     for i in {0, size // 2, size - 1}:
         recursion = fitted(c, size)
         before = recursion.covariance
-        c.lib.sh_least_squares_widen_column(recursion.state, 0.3, i)
+        c.lib.sh_ud_factor_widen_column(recursion.P, 0.3, i)
         want = before + 0.3 * np.outer(before[i], before[i])
         assert recursion.covariance == pytest.approx(want, rel=1e-9, abs=1e-12)
         assert np.all(recursion.diagonal > 0)
@@ -345,9 +347,9 @@ def test_nothing_behind_the_end_of_a_regressor_is_used(c: Library, size: int) ->
         for recursion, behind in ((plain, 0.0), (guarded, math.nan)):
             v = np.append(F, np.full(4, behind))
             assert recursion.update(v, y)
-            c.lib.sh_least_squares_widen(recursion.state, 0.1, c.pointer(v))
+            c.lib.sh_ud_factor_widen(recursion.P, 0.1, c.pointer(v))
             c.lib.sh_least_squares_move(recursion.state, 0.1, c.pointer(v))
-            assert c.lib.sh_least_squares_variance(recursion.state, c.pointer(v)) > 0.0
+            assert c.lib.sh_ud_factor_variance(recursion.P, c.pointer(v)) > 0.0
     assert guarded.bytes() == plain.bytes()
 
 
@@ -355,11 +357,10 @@ def test_nothing_behind_the_end_of_a_regressor_is_used(c: Library, size: int) ->
 def test_a_bad_weighted_sample_changes_nothing(c: Library, bad: float) -> None:
     recursion = fitted(c, 3)
     before = recursion.bytes()
-    epsilon, rho = c.ffi.new("double *"), c.ffi.new("double *")
     for F, y in (([bad, 1.0, 2.0], 1.0), ([1.0, 1.0, 2.0], bad)):
         row = np.array(F)
         assert not c.lib.sh_least_squares_weigh(
-            recursion.state, 2.0, c.pointer(row), y, epsilon, rho
+            recursion.state, 2.0, c.pointer(row), y, recursion.innovation
         )
         assert recursion.bytes() == before
 

@@ -102,7 +102,7 @@ def test_find_package_finds_the_installed_library(
     installed: tuple[Path, int], build: Path, tmp_path: Path
 ) -> None:
     prefix, size = installed
-    (tmp_path / "main.c").write_text(PROGRAM.format(header="stiffness_estimator.h"))
+    (tmp_path / "main.c").write_text(PROGRAM.format(header="sigmahat.h"))
     (tmp_path / "CMakeLists.txt").write_text(PROJECT)
     run(
         *("cmake", "-S", tmp_path, "-B", tmp_path / "build", "-G", "Ninja"),
@@ -122,7 +122,7 @@ def test_pkg_config_describes_the_installed_library(
     flags = run(
         *("pkg-config", "--cflags", "--libs", "sigmahat"), PKG_CONFIG_PATH=str(described.parent)
     )
-    (tmp_path / "main.c").write_text(PROGRAM.format(header="stiffness_estimator.h"))
+    (tmp_path / "main.c").write_text(PROGRAM.format(header="sigmahat.h"))
     run("cc", tmp_path / "main.c", "-o", tmp_path / "consumer", *shlex.split(flags))
     check(tmp_path / "consumer", build, size)
 

@@ -27,27 +27,26 @@ def test_samples_with_unknown_sign_of_friction_are_counted(c: Library) -> None:
     z[1000:, :2] = z[999, :2]
     estimator = Estimator(c, VALUES)
     estimator.run(z[:1000])
-    assert estimator.state.matched.unsure == 0.0
+    assert estimator.state.method.matched.unsure == 0.0
     estimator.run(z[1000:])
     count, slow = 2 * np.pi / 40000, 0.05 * T
     known = int(count / slow)  # one count in this number of samples is not slower than `slow`
-    assert estimator.state.matched.unsure == pytest.approx(200 - known, abs=1)
+    assert estimator.state.method.matched.unsure == pytest.approx(200 - known, abs=1)
 
 
 def test_a_step_with_a_good_sample_returns_one(c: Library) -> None:
     z = Joint(duration=0.1).measurements()
-    estimator = Estimator(c, VALUES)
     ffi, lib = c.ffi, c.lib
-    settings = c.new("sh_matched_settings", T=T, bandwidth=350.0, noise=0.1, slow=0.05, torque=1.0)
-    settings.motor = estimator.parameters.motor
+    p = c.parameters({"rls.n": 1, "rls.m": 1, "noise.tau": 0.1, "prior.tau_e": 1.0})
+    p.prior.D_theta = p.prior.tau_coulomb = 0.0
     matched, rls = c.new("sh_matched_regression"), c.new("sh_least_squares")
-    lib.sh_matched_start(matched, rls, settings, 1, ffi.new("double[1]"))
-    lib.sh_matched_resume(matched, settings)
+    lib.sh_matched_start(matched, rls, p, ffi.new("double[1]"))
+    lib.sh_matched_resume(matched, p)
     y, innovation, F = ffi.new("double *"), c.new("sh_innovation"), ffi.new("double[1]", [0.1])
     updated = []
     for theta, _, _, tau, _ in z:
         arguments = (float(theta), float(tau), 0.02, 100.0, F, y, innovation)
-        assert lib.sh_matched_step(matched, rls, settings, *arguments) == 1
+        assert lib.sh_matched_step(matched, rls, p, *arguments) == 1
         updated.append(innovation.a)
     assert set(updated) == {0.0, 1.0}  # both while the filters settle and after
 
@@ -59,7 +58,7 @@ def test_the_prior_of_the_largest_basis_leaves_the_motor_data_at_zero(c: Library
     values["matched.drift"] = 1e-3
     estimator = Estimator(c, values)
     estimator.run(Joint(duration=0.05).measurements())
-    assert estimator.state.rls.size == 43
+    assert estimator.state.rls.P.size == 43
     assert np.all(np.isfinite(estimator.covariance()))
 
 
@@ -84,21 +83,18 @@ def test_the_variance_of_a_sample_at_rest(c: Library, sigma: float) -> None:
     """GIVEN a joint at rest, THEN its k-th sample has the variance R (1 + k c / R)^2, with R of
     torque noise and rounding, and c of the rounding, whose error is the same in all samples."""
     count, count_q, noise, gamma = 1e-4, 3e-4, 2e-3, 50.0
-    settings = c.new(
-        "sh_matched_settings",
-        **{"T": T, "bandwidth": 350.0, "slow": 0.05, "torque": 3.0},
-        **{"noise": noise, "count": count, "count_q": count_q},
-    )
-    settings.motor.gamma = gamma
+    values = {"rls.n": 1, "rls.m": 1, "noise.tau": noise, "motor.gamma": gamma, "prior.tau_e": 3.0}
+    counts = {"encoder.theta": 2 * np.pi / count, "encoder.q": 2 * np.pi / count_q}
+    p = c.parameters({**values, **counts, "prior.D_theta": 0.0, "prior.tau_coulomb": 0.0})
     matched, rls = c.new("sh_matched_regression"), c.new("sh_least_squares")
     F, y, innovation = c.ffi.new("double[1]", [0.7]), c.ffi.new("double *"), c.new("sh_innovation")
-    c.lib.sh_matched_start(matched, rls, settings, 1, c.ffi.new("double[1]"))
+    c.lib.sh_matched_start(matched, rls, p, c.ffi.new("double[1]"))
     rounding = sigma**2 * (count**2 + count_q**2) / 12
     R = rounding + (gamma * noise) ** 2
     for k in range(5):
-        P = c.lib.sh_least_squares_covariance(rls, 0, 0)
+        P = c.lib.sh_ud_factor_entry(c.ffi.addressof(rls, "P"), 0, 0)
         arguments = (0.0, 0.0, 0.2, sigma, F, y, innovation)
-        assert c.lib.sh_matched_step(matched, rls, settings, *arguments) == 1
+        assert c.lib.sh_matched_step(matched, rls, p, *arguments) == 1
         filtered = 0.7 - matched.column[0].behind[2]
         want = R * (1 + k * rounding / R) ** 2
         assert innovation.rho == pytest.approx(filtered**2 * P / want, rel=1e-9)

@@ -22,19 +22,17 @@ def start(c: Library, prior: Array) -> Any:
     rls = c.new("sh_least_squares")
     c.lib.sh_least_squares_start(rls, len(prior), c.ffi.NULL, 1.0)
     for i, variance in enumerate(prior):
-        c.lib.sh_least_squares_prior(rls, i, variance)
+        c.lib.sh_ud_factor_set_variance(c.ffi.addressof(rls, "P"), i, variance)
     return rls
 
 
 def weigh(c: Library, rls: Any, w: float, F: Array, y: float) -> None:
-    assert c.lib.sh_least_squares_weigh(
-        rls, w, c.pointer(F), y, c.ffi.new("double *"), c.ffi.new("double *")
-    )
+    assert c.lib.sh_least_squares_weigh(rls, w, c.pointer(F), y, c.new("sh_innovation"))
 
 
 def covariance(c: Library, rls: Any) -> Array:
-    at = c.lib.sh_least_squares_covariance
-    return np.array([[at(rls, i, j) for j in range(rls.size)] for i in range(rls.size)])
+    P, at = c.ffi.addressof(rls, "P"), c.lib.sh_ud_factor_entry
+    return np.array([[at(P, i, j) for j in range(P.size)] for i in range(P.size)])
 
 
 def test_the_compensation_subtracts_from_the_sum_of_squares(c: Library) -> None:
@@ -45,12 +43,12 @@ def test_the_compensation_subtracts_from_the_sum_of_squares(c: Library) -> None:
     for k in range(50):
         weigh(c, rls, 1.0, F[k].copy(), y[k])
     bias = c.new("sh_rounding_bias", surplus=20.0)
-    c.lib.sh_rounding_bias_take_back(bias, rls, AT, prior[AT])
+    c.lib.sh_rounding_bias_remove(bias, rls, AT, prior[AT])
     # minimum of |eta|^2 / prior + sum (y - F' eta)^2 - 20 (1 + b)^2
     unit = np.eye(3)[AT]
     information = np.diag(1 / prior) + F.T @ F - 20 * np.outer(unit, unit)
     want = np.linalg.solve(information, F.T @ y + 20 * unit)
-    assert (bias.surplus, bias.taken) == (0.0, 20.0)
+    assert (bias.surplus, bias.removed) == (0.0, 20.0)
     assert np.allclose(covariance(c, rls), np.linalg.inv(information), rtol=1e-9)
     assert np.allclose(list(rls.eta)[:3], want, rtol=1e-9)
 
@@ -60,20 +58,20 @@ def test_no_variance_becomes_larger_than_the_prior(c: Library) -> None:
     rls = start(c, prior)
     weigh(c, rls, 1.0, np.array([1.0, 3.0]), 0.5)
     bias = c.new("sh_rounding_bias", surplus=1e6)
-    c.lib.sh_rounding_bias_take_back(bias, rls, AT, prior[AT])
+    c.lib.sh_rounding_bias_remove(bias, rls, AT, prior[AT])
     assert covariance(c, rls)[AT, AT] == pytest.approx(prior[AT], rel=1e-9)
     assert np.all(np.linalg.eigvalsh(covariance(c, rls)) > 0)
-    assert bias.surplus + bias.taken == pytest.approx(1e6)
+    assert bias.surplus + bias.removed == pytest.approx(1e6)
 
 
 def test_a_parameter_without_prior_variance_stays_zero(c: Library) -> None:
     rls = start(c, np.array([1.0, 0.0]))
     weigh(c, rls, 1.0, np.array([1.0, 3.0]), 0.5)
     bias = c.new("sh_rounding_bias", surplus=3.0)
-    c.lib.sh_rounding_bias_take_back(bias, rls, AT, 1e-300)
+    c.lib.sh_rounding_bias_remove(bias, rls, AT, 1e-300)
     eta, dF = np.zeros(2), np.array([0.0, 1.0])
-    got = c.lib.sh_rounding_bias_belief(bias, rls, AT, 1e-300, c.pointer(dF), c.pointer(eta))
-    assert (got, eta[AT], bias.taken) == (0.0, 0.0, 0.0)
+    got = c.lib.sh_rounding_bias_estimate(bias, rls, AT, 1e-300, c.pointer(dF), c.pointer(eta))
+    assert (got, eta[AT], bias.removed) == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("excitation", [0.01, 0.1, 1.0])
@@ -95,9 +93,9 @@ def test_the_error_agrees_with_the_variance(c: Library, excitation: float) -> No
         for k in range(samples):
             weigh(c, rls, 1.0, np.array([1.0, -(x[k] + noise[k])]), y[k])
             bias.surplus += V
-            c.lib.sh_rounding_bias_take_back(bias, rls, AT, prior[AT])
+            c.lib.sh_rounding_bias_remove(bias, rls, AT, prior[AT])
         eta, dF = np.zeros(2), np.array([0.0, 1.0])
-        variance = c.lib.sh_rounding_bias_belief(
+        variance = c.lib.sh_rounding_bias_estimate(
             bias, rls, AT, prior[AT], c.pointer(dF), c.pointer(eta)
         )
         errors.append((eta[AT] - b) / np.sqrt(variance))

@@ -10,10 +10,11 @@ from pathlib import Path
 import fmpy
 import pytest
 
+import c_sources
 from gate import missing
 
 REPOSITORY = Path(__file__).parents[2]
-SOURCES = [*sorted((REPOSITORY / "c").glob("*.c")), *sorted((REPOSITORY / "fmu_src").glob("*.c"))]
+SOURCES = [*c_sources.SOURCES, *sorted((REPOSITORY / "fmu_src").glob("*.c"))]
 PLANT = Path("fmu") / "AwasPlant"
 every_source = pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.name)
 
@@ -43,7 +44,7 @@ FALSE_ALARMS = (
 def flags(source: Path, build: Path) -> list[str]:
     """Compiler options for a source of an FMU or of the library."""
     own = build / "fmu" / source.stem  # code that is generated for this file, or for every plant
-    folders = [REPOSITORY / "c", REPOSITORY / "fmu_src", own if own.is_dir() else build / PLANT]
+    folders = [*c_sources.FOLDERS, REPOSITORY / "fmu_src", own if own.is_dir() else build / PLANT]
     headers = Path(fmpy.__file__).parent / "c-code"
     return ["-std=c99", *(f"-I{folder}" for folder in folders), f"-isystem{headers}"]
 
@@ -83,7 +84,7 @@ def test_cppcheck(build: Path) -> None:
         "--suppress=unassignedVariable",
         # CasADi's functions read this array through the table of their arguments.
         f"--suppress=unreadVariable:{REPOSITORY / 'fmu_src' / 'plant.c'}",
-        *(f"-I{folder}" for folder in (REPOSITORY / "c", REPOSITORY / "fmu_src", build / PLANT)),
+        *(f"-I{folder}" for folder in [*c_sources.FOLDERS, REPOSITORY / "fmu_src", build / PLANT]),
         *SOURCES,
     )
     assert text == "", text

@@ -499,7 +499,7 @@ def test_covariance_stays_positive_for_ten_million_ticks_without_excitation(
     estimator = Estimator(c, values)
     estimator.run(z)
     assert estimator.repeat(z[-1:], 10_000_000) == 10_000_000
-    D = np.array(list(estimator.state.rls.D)[:18])
+    D = np.array(list(estimator.state.rls.P.D)[:18])
     assert np.all(D > 0)
     assert np.all(np.isfinite(estimator.covariance()))
     assert np.all(np.isfinite(np.array([list(row) for row in estimator.estimate.eta])))

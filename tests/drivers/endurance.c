@@ -1,7 +1,8 @@
 /* Runs one estimator for any number of ticks: METHOD N M TORQUE TICKS.
  *
- * TORQUE is how many times the usual torque the huge one is. After every tick, P has to be positive definite and every output finite; if not, it says at
- * which tick and ends with 1. It prints the outputs at checkpoints, a line each: every time the
+ * TORQUE is the size of a huge torque in the input, in multiples of the usual torque. After every
+ * tick, P has to be positive definite and every output finite; if not, the program prints the number
+ * of the tick and ends with 1. It prints the outputs at checkpoints, one line each: every time the
  * number of ticks has grown by a third.
  */
 #include <math.h>
@@ -9,15 +10,15 @@
 #include <stdlib.h>
 
 #include "endurance_input.h"
-#include "stiffness_estimator.h"
+#include "sigmahat.h"
 
-static int positive(const sh_least_squares *rls)
+static int positive(const sh_ud_factor *P)
 {
     int j;
 
     /* P = U D U' with a unit triangular U */
-    for (j = 0; j < rls->size; ++j)
-        if (!(rls->D[j] > 0.0))
+    for (j = 0; j < P->size; ++j)
+        if (!(P->D[j] > 0.0))
             return 0;
     return 1;
 }
@@ -74,7 +75,7 @@ int main(int argc, char **argv)
 
         p.modality = s.modality;
         sh_estimator_tick(&estimator, &p, &z, &estimate);
-        if (!positive(&estimator.rls) || !finite_outputs(&estimate)) {
+        if (!positive(&estimator.rls.P) || !finite_outputs(&estimate)) {
             print(tick, &estimate);
             fprintf(stderr, "failed at tick %ld\n", tick);
             return 1;

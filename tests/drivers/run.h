@@ -2,7 +2,7 @@
 #ifndef SH_TEST_RUN_H
 #define SH_TEST_RUN_H
 
-#include "stiffness_estimator.h"
+#include "sigmahat.h"
 
 /* Runs ticks over the samples z [size: samples], again from the first when they end.
  *

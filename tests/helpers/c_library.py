@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -13,29 +15,30 @@ import cffi
 import numpy as np
 from numpy.typing import NDArray
 
+from c_sources import FOLDERS, HEADERS
+from gate import missing
+
 Array = NDArray[np.float64]
-REPOSITORY = Path(__file__).resolve().parents[2]
-HEADERS = [  # each one after those that it includes
-    REPOSITORY / "c" / "real.h",
-    REPOSITORY / "c" / "kinematic_kalman.h",
-    REPOSITORY / "c" / "torque_basis.h",
-    REPOSITORY / "c" / "torque_residual.h",
-    REPOSITORY / "c" / "least_squares.h",
-    REPOSITORY / "c" / "scaled_basis.h",
-    REPOSITORY / "c" / "motion_sign.h",
-    REPOSITORY / "c" / "state_variable_filter.h",
-    REPOSITORY / "c" / "rounding_bias.h",
-    REPOSITORY / "c" / "matched_regression.h",
-    REPOSITORY / "c" / "stiffness_estimator.h",
-    REPOSITORY / "tests" / "drivers" / "run.h",
-]
+DRIVERS = Path(__file__).resolve().parents[1] / "drivers"
 MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
 
-def declarations(header: Path) -> str:
-    """The C declarations of a header, for double, without preprocessor lines."""
-    text = re.sub(r"#ifdef __cplusplus.*?#endif", "", header.read_text(), flags=re.DOTALL)
-    return re.sub(r"^#.*$", "", text, flags=re.MULTILINE).replace("SH_REAL", "double")
+@cache
+def declarations() -> str:
+    """All declarations of the library and of `drivers/run.h`, as the C preprocessor gives them."""
+    own = [header for header in HEADERS if header.name != "real_math.h"]  # that one has none
+    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    if compiler is None:
+        missing("a C compiler", "apt-get install gcc")
+    done = subprocess.run(
+        [compiler, "-E", "-P", "-x", "c", *(f"-I{folder}" for folder in [*FOLDERS, DRIVERS]), "-"],
+        input="".join(f'#include "{header.name}"\n' for header in [*own, DRIVERS / "run.h"]),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    # cffi reads no function bodies.
+    return re.sub(r"^static inline .*?^}", "", done.stdout, flags=re.DOTALL | re.MULTILINE)
 
 
 @cache
@@ -49,8 +52,7 @@ class Library:
 
     def __init__(self, build: Path) -> None:
         self.ffi = cffi.FFI()
-        for header in HEADERS:
-            self.ffi.cdef(declarations(header))
+        self.ffi.cdef(declarations())
         suffix = ".dylib" if sys.platform == "darwin" else ".so"
         self.lib: Any = self.ffi.dlopen(str(build / f"libsigmahat_test_driver{suffix}"))
 
@@ -128,7 +130,7 @@ class Estimator:
         """The state as bytes, without the work arrays, which have no meaning between ticks."""
         ffi = self.library.ffi
         state = ffi.new("sh_estimator *", self.state[0])
-        for part in (state, state.rls, state.matched):
+        for part in (state, state.rls.P, state.method.matched):
             size = ffi.sizeof(part.work)
             ffi.memmove(ffi.addressof(part, "work"), bytes(size), size)
         return bytes(ffi.buffer(state))
@@ -162,7 +164,7 @@ class Estimator:
         return good
 
     def covariance(self) -> Array:
-        """P of the regression [size: rls.size x rls.size]."""
-        rls = self.library.ffi.addressof(self.state, "rls")
-        at = self.library.lib.sh_least_squares_covariance
-        return np.array([[at(rls, i, j) for j in range(rls.size)] for i in range(rls.size)])
+        """P of the regression [size: rls.P.size x rls.P.size]."""
+        P = self.library.ffi.addressof(self.state.rls, "P")
+        at = self.library.lib.sh_ud_factor_entry
+        return np.array([[at(P, i, j) for j in range(P.size)] for i in range(P.size)])

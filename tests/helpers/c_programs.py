@@ -14,6 +14,7 @@ from pathlib import Path
 
 import fmpy
 
+from c_sources import FOLDERS, SOURCES
 from fmi_runs import ESTIMATORS
 from gate import missing
 
@@ -27,7 +28,7 @@ def sources(fmu: str, build: Path) -> list[Path]:
     files = [*sorted(shell.glob("fmi2_*.c")), shell / "instance.c"]
     if fmu in ESTIMATORS:
         own = [shell / name for name in (f"{fmu}.c", "estimator_fmu.c", "sample_clock.c")]
-        return files + own + sorted((REPOSITORY / "c").glob("*.c"))
+        return files + own + SOURCES
     return [
         *files,
         *(shell / name for name in PLANT_SOURCES),
@@ -45,7 +46,7 @@ def compile_driver(
     common = (
         [here / "drive.c"] if '#include "drive.h"' in (here / f"{driver}.c").read_text() else []
     )
-    folders = [REPOSITORY / "c", REPOSITORY / "fmu_src", build / "fmu" / fmu]
+    folders = [*FOLDERS, REPOSITORY / "fmu_src", build / "fmu" / fmu]
     command = [
         *(
             compiler,

@@ -10,16 +10,16 @@ from pathlib import Path
 import fmpy
 import pytest
 
+from c_sources import FOLDERS, SOURCES
 from gate import missing
 
 REPOSITORY = Path(__file__).parents[2]
 PYTHON = ["harness", "tests", "bench", "docs", "examples"]
 WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
-ESTIMATOR = sorted((REPOSITORY / "c").glob("*.c"))
 FMU = sorted((REPOSITORY / "fmu_src").glob("*.c"))
 
 
-@pytest.mark.parametrize("source", ESTIMATOR + FMU, ids=lambda path: path.name)
+@pytest.mark.parametrize("source", SOURCES + FMU, ids=lambda path: path.name)
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_compilers_give_no_warning(
     compiler: str, source: Path, build: Path, tmp_path: Path
@@ -37,9 +37,7 @@ def test_compilers_give_no_warning(
             str(source),
             "-o",
             str(tmp_path / "object.o"),
-            f"-I{REPOSITORY / 'c'}",
-            f"-I{REPOSITORY / 'fmu_src'}",
-            f"-I{generated}",
+            *(f"-I{folder}" for folder in [*FOLDERS, REPOSITORY / "fmu_src", generated]),
             f"-isystem{Path(fmpy.__file__).parent / 'c-code'}",
         ],
         capture_output=True,
@@ -48,7 +46,7 @@ def test_compilers_give_no_warning(
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("source", ESTIMATOR, ids=lambda path: path.name)
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.name)
 def test_the_library_needs_no_heap_and_no_output(source: Path) -> None:
     text = source.read_text()
     included = {line.split()[1] for line in text.splitlines() if line.startswith("#include <")}

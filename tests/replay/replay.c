@@ -7,7 +7,7 @@
  */
 #include <stdio.h>
 
-#include "stiffness_estimator.h"
+#include "sigmahat.h"
 
 /* Between them they use every block and every kind of it. Returns 0 for an unknown one. */
 static int configure(sh_parameters *p, char configuration)

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 REPOSITORY = Path(__file__).resolve().parents[2]
+LIBRARY = REPOSITORY / "c"
 DRIVERS = REPOSITORY / "tests" / "drivers"
 METHODS = {1: "Paper2011", 2: "MatchedFilter"}
 OUTPUTS = (
@@ -62,10 +63,11 @@ def compile_program(
 ) -> Path:
     """Compiles drivers/endurance.c and the estimator, in a precision of PRECISIONS."""
     program = Path(tempfile.mkdtemp(dir=folder)) / precision.replace(" ", "_")
-    sources = [*DRIVERS.glob("endurance*.c"), *(REPOSITORY / "c").glob("*.c")]
+    sources = [*DRIVERS.glob("endurance*.c"), *LIBRARY.rglob("*.c")]
+    folders = sorted({header.parent for header in LIBRARY.rglob("*.h")})
     command = [
         *(compiler, *FLAGS, *PRECISIONS[precision], *flags),
-        *(f"-I{REPOSITORY / 'c'}", f"-I{DRIVERS}"),
+        *(f"-I{folder}" for folder in [*folders, DRIVERS]),
         *map(str, sources),
         *("-lm", "-o", str(program)),
     ]

@@ -10,29 +10,42 @@ _OWN_INCLUDE = re.compile(r'^#include "(.+)"\n', re.MULTILINE)
 def write(out: Path, sources: Iterable[Path], interface: Path, licence: Path, version: str) -> None:
     """Write ``sigmahat.h`` and ``sigmahat.c`` into the folder ``out``.
 
-    sources    C files of the library
+    sources    C files of the library. As they become one file, they share one namespace: two of
+               them must not use the same name for something ``static``, or the compiler refuses it
     interface  header whose contents, with all that it includes, make ``sigmahat.h``
     licence    text that has to go with the code
 
-    Raises ``FileNotFoundError`` for a file, or a header included by one, that is missing.
+    Headers are looked for in the folders of these files. Raises ``FileNotFoundError`` for a file,
+    or a header included by one, that is missing.
     """
+    files = list(sources)
+    folders = sorted({file.parent for file in [*files, interface]})
     lines = [f"sigmahat {version}: all of the library in one file.", ""]
     lines += licence.read_text(encoding="utf-8").splitlines()
     head = "/* " + "\n".join(f" * {line}".rstrip() for line in lines)[3:] + "\n */\n"
     done: set[Path] = set()
-    header = _inlined(interface, done)
-    body = "".join(_inlined(source, done) for source in sources)
+    header = _inlined(interface, folders, done)
+    body = "".join(_inlined(source, folders, done) for source in files)
     out.mkdir(parents=True, exist_ok=True)
     (out / "sigmahat.h").write_text(head + header, encoding="utf-8")
     (out / "sigmahat.c").write_text(head + '#include "sigmahat.h"\n' + body, encoding="utf-8")
 
 
-def _inlined(file: Path, done: set[Path]) -> str:
+def _inlined(file: Path, folders: list[Path], done: set[Path]) -> str:
     """A file with the headers of the library that it includes, each where it is needed first."""
     if file in done:
         return ""
     done.add(file)
     text = _OWN_INCLUDE.sub(
-        lambda match: _inlined(file.parent / match[1], done), file.read_text(encoding="utf-8")
+        lambda match: _inlined(_found(match[1], folders), folders, done),
+        file.read_text(encoding="utf-8"),
     )
     return f"\n/* ---- {file.name} ---- */\n\n{text}"
+
+
+def _found(name: str, folders: list[Path]) -> Path:
+    """The header of this name. Raises ``FileNotFoundError`` if there is none."""
+    for folder in folders:
+        if (folder / name).is_file():
+            return folder / name
+    raise FileNotFoundError(f"header {name}: expected in one of {', '.join(map(str, folders))}")

@@ -2,7 +2,9 @@
 
 #include "real_math.h"
 
-/* Far below the resolution of any signal, far above the smallest number. */
+/* Far below the resolution of any signal, and far above the numbers that processors compute slowly
+ * with, to which a filter at rest would decay.
+ */
 static const sh_real SMALL = (sh_real)1e-30;
 
 sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T)
@@ -35,8 +37,8 @@ void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x)
     filter->behind[2] = x;
 }
 
-/* Advances by T. In the steady state of a ramp, stage i runs behind it by i + 1 times lag;
- * deviations from that die out as in the unforced filter.
+/* Advances by T. In the steady state of a ramp, the output of stage i is i + 1 times lag behind the
+ * input. Deviations from that decay as in the filter without input.
  */
 static void advance(sh_state_variable_filter *filter, const sh_filter_design *design, sh_real lag)
 {
@@ -47,7 +49,6 @@ static void advance(sh_state_variable_filter *filter, const sh_filter_design *de
     behind[0] = lag + keep[0] * d0;
     behind[1] = 2 * lag + keep[0] * d1 + keep[1] * d0;
     behind[2] = 3 * lag + keep[0] * d2 + keep[1] * d1 + keep[2] * d0;
-    /* What has died out ends here, and not among numbers too small for processors to be fast. */
     if (sh_fabs(behind[2]) < SMALL && sh_fabs(behind[1]) < SMALL && sh_fabs(behind[0]) < SMALL)
         behind[0] = behind[1] = behind[2] = 0;
 }
@@ -90,7 +91,7 @@ sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
 
 sh_real sh_state_variable_filter_noise(const sh_filter_design *design)
 {
-    /* Sum of squares of the response to one sample; it has died out after 60 time constants. */
+    /* Sum of squares of the response to one sample, which has decayed after 60 time constants. */
     const int samples = 3 + (int)(60 / (design->w * design->T));
     sh_state_variable_filter filter;
     sh_real sum = 0;

@@ -1,0 +1,269 @@
+/* sigmahat: the stiffness of a flexible robot joint, estimated on line from positions and torque.
+ *
+ * Equation numbers, here and in all of c/, are those of Flacco, De Luca, Sardellitti and
+ * Tsagarakis, "Robust Estimation of Variable Stiffness in Flexible Joints", IROS 2011. One tick of
+ * the estimator is its Fig. 1.
+ *
+ *     sh_parameters p;
+ *     sh_violation violation;
+ *     sh_estimator estimator;
+ *     sh_estimate estimate;
+ *     sh_parameters_default(&p);
+ *     if (sh_parameters_check(&p, &violation)) ...
+ *     sh_estimator_start(&estimator, &p, &estimate);
+ *     every p.samplePeriod seconds:
+ *         sh_estimator_tick(&estimator, &p, &measurement, &estimate);
+ *
+ * The caller owns every struct. The library allocates no memory, has no global variables, and does
+ * no input or output. Any number of estimators can run in any number of threads.
+ *
+ * Names of parameters and signals are those of the variables of the FMU (modelDescription/).
+ */
+#ifndef SIGMAHAT_H
+#define SIGMAHAT_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The floating-point type of the whole library: double, or float if every file that includes this
+ * header, and every file of the library, is compiled with -DSH_REAL=float.
+ */
+#ifndef SH_REAL
+#define SH_REAL double
+#endif
+typedef SH_REAL sh_real;
+
+/* The methods of estimation, one line each: constant, number and name in the FMU, block of c/.
+ * This is the only list of them: method.h says how one is added.
+ *
+ * Paper2011      the paper: Kalman filter (9)-(11), residual (6)-(8), least squares (25)-(27)
+ * MatchedFilter  one regression for the torque and the errors of the motor data, from signals
+ *                that all passed the same filter: matched_regression.h
+ */
+#define SH_METHODS(METHOD)                                                                         \
+    METHOD(SH_METHOD_PAPER2011, 1, "Paper2011", sh_paper2011)                                      \
+    METHOD(SH_METHOD_MATCHED_FILTER, 2, "MatchedFilter", sh_matched_filter)
+#define SH_METHOD_CONSTANT(constant, number, name, block) constant = number,
+enum { SH_METHODS(SH_METHOD_CONSTANT) };
+
+/* What feeds the regression, section VI.B. */
+enum {
+    SH_MODALITY_RESIDUAL = 1, /* gamma r_e of (8) */
+    SH_MODALITY_SENSOR = 2,   /* a torque sensor */
+    SH_MODALITY_MODEL = 3     /* the nominal torque (28) at the measured positions */
+};
+
+/* Which deformation enters the regression. */
+enum {
+    SH_DEFORMATION_RAW = 1,     /* q - theta as measured */
+    SH_DEFORMATION_FILTERED = 2 /* both positions through the Kalman filter */
+};
+
+/* How the velocity is obtained. */
+enum {
+    SH_FILTER_MODIFIED_KALMAN = 1,  /* R depends on the velocity, (11) */
+    SH_FILTER_KALMAN = 2,           /* R constant */
+    SH_FILTER_FINITE_DIFFERENCE = 3 /* no filter: (x(k) - x(k-1)) / T */
+};
+
+/* How (11) compares the velocity with the encoder resolution w_s. */
+enum {
+    SH_WEIGHTING_NORMALIZED = 1, /* |x'| / w_s - 1: crosses 0 at one count per sample */
+    SH_WEIGHTING_AS_PRINTED = 2  /* |x'| w_s - 1: the formula as printed */
+};
+
+/* Kinds of recursive least squares. */
+enum {
+    SH_RLS_ENHANCED = 1,       /* a(k) of (27) */
+    SH_RLS_STANDARD = 2,       /* a = 1, (14) */
+    SH_RLS_CONSTANT_FACTOR = 3 /* constant a in (25) */
+};
+
+/* Orders of the polynomials (18) and (19). */
+enum {
+    SH_MAX_N = 8, /* largest order in the deformation */
+    SH_MAX_M = 5, /* largest order in the set-point */
+    SH_MAX_BASIS = SH_MAX_N * SH_MAX_M
+};
+
+/* Data of the motor, (3). */
+typedef struct {
+    sh_real B;       /* rotor inertia [kg.m2], > 0 */
+    sh_real D_theta; /* viscous friction [N.m.s/rad], >= 0 */
+    sh_real gamma;   /* gear ratio [1], not 0 */
+} sh_motor_parameters;
+
+/* Settings of the Kalman filter, (9)-(11). */
+typedef struct {
+    int kind;      /* SH_FILTER_*, fixed */
+    int weighting; /* SH_WEIGHTING_*, fixed */
+    sh_real V_a;   /* (9) variance of the acceleration [rad2/s4], >= 0 */
+    sh_real V_max; /* (11) measurement variance at rest [rad2], > 0, >= V_min */
+    sh_real V_min; /* (11) measurement variance in fast motion [rad2], > 0 */
+    sh_real alpha; /* (11) steepness between the two [1], >= 0 */
+    sh_real R;     /* (10) constant measurement variance, SH_FILTER_KALMAN [rad2], > 0 */
+    sh_real P_0;   /* initial covariance, both diagonal entries [rad2, rad2/s2], > 0, fixed */
+} sh_filter_parameters;
+
+/* Ranges of the operating point. */
+typedef struct {
+    sh_real phi;      /* largest deformation to be expected [rad], 1e-6..1e6 */
+    sh_real setPoint; /* largest set-point to be expected [1], 1e-12..1e12 */
+} sh_range_parameters;
+
+/* Parameters. Those marked "fixed" must not change after sh_estimator_start. Every other one may
+ * change between ticks, and has its effect from the next tick on.
+ */
+typedef struct {
+    sh_real samplePeriod; /* T [s], > 0, fixed */
+    int method;           /* SH_METHOD_*, fixed */
+    int modality;         /* SH_MODALITY_* */
+    int deformation;      /* SH_DEFORMATION_*, fixed; for SH_METHOD_PAPER2011 */
+    sh_motor_parameters motor;
+    struct {
+        sh_real K_I; /* bandwidth of the residual [1/s], > 0; K_I T < 2 with
+                        SH_METHOD_PAPER2011 */
+    } residual;
+    sh_filter_parameters filter;
+    struct {
+        sh_real theta, q; /* resolution [counts/turn], >= 0, fixed; 0: no quantisation.
+                             SH_METHOD_PAPER2011 uses q with SH_DEFORMATION_FILTERED only */
+        sh_real theta_c;  /* has no effect, as no method filters theta_c; it is here because
+                             the FMUs have it [counts/turn], >= 0 */
+    } encoder;
+    struct {
+        sh_real offset, scale; /* set-point = offset + scale theta_c [1, 1/rad], fixed */
+    } setPoint;
+    struct {
+        int kind;                          /* SH_RLS_*, fixed */
+        int symmetric;                     /* 1: torque odd in phi, (16); 0: any; fixed */
+        int n, m;                          /* orders, 1..SH_MAX_N, 1..SH_MAX_M, fixed */
+        sh_real P_0;                       /* initial covariance, > 0, fixed */
+        sh_real c;                         /* (27), > 0, fixed */
+        sh_real a;                         /* constant stability factor, (0, 1], fixed */
+        sh_real eta_0[SH_MAX_N][SH_MAX_M]; /* initial estimate, fixed */
+    } rls;
+    struct {
+        sh_real k_s; /* stiffness of the springs, (28) [N/m], >= 0 */
+        sh_real r_0; /* lever arm at theta_c = 0, (30) [m] */
+        sh_real b;   /* lead of the ball screw, (30) [m/rad] */
+    } model;         /* for SH_MODALITY_MODEL */
+    struct {
+        sh_real tau;   /* std deviation of the noise of tau [N.m], 1e-12..1e12 */
+        sh_real tau_e; /* std deviation of the noise of tau_e_sensor, and of the error of the
+                          model of SH_MODALITY_MODEL [N.m], 1e-12..1e12 */
+    } noise;
+    sh_real confidence; /* sigma_std / |sigma| below which the estimate is confident [1], > 0 */
+    /* All below for SH_METHOD_MATCHED_FILTER. */
+    struct {
+        sh_real bandwidth; /* w of the filter [rad/s], > 0, fixed; 1e-4 <= w T < 2 with this
+                              method */
+        sh_real slow;      /* |theta'| below which the sign of friction is unknown [rad/s], > 0 */
+        sh_real drift;     /* share of its prior variance by which the torque curve drifts in a
+                              second [1/s], 0..1e12; 0: it does not change */
+    } matched;
+    sh_range_parameters range; /* fixed */
+    struct {                   /* 0..1e12, fixed */
+        sh_real tau_e;         /* std deviation of each coefficient of the torque, for phi and
+                                  set-point in units of their range [N.m] */
+        sh_real nominal;       /* of the curve rls.eta_0 as a whole, relative [1] */
+        sh_real D_theta;       /* of motor.D_theta, relative [1]; 0: exact */
+        sh_real B;             /* of motor.B, relative [1]; 0: exact */
+        sh_real tau_coulomb;   /* of the Coulomb friction of the motor, on its axis [N.m];
+                                  0: there is none */
+    } prior;
+} sh_parameters;
+
+/* Largest magnitude of a measurement [rad, N.m]. */
+#define SH_LARGEST_MEASUREMENT ((sh_real)1e12)
+
+/* One sample of the measurements. */
+typedef struct {
+    sh_real theta, q, theta_c; /* positions: principal motor after its gear, link,
+                                  secondary motor [rad] */
+    sh_real tau;               /* torque of the principal motor, on its axis [N.m] */
+    sh_real tau_e_sensor;      /* flexibility torque from a sensor, SH_MODALITY_SENSOR [N.m] */
+} sh_measurement;
+
+/* The outputs of a tick. */
+typedef struct {
+    sh_real sigma;                   /* stiffness, (23) [N.m/rad] */
+    sh_real tau_e;                   /* flexibility torque of the fitted model, (21) [N.m] */
+    sh_real tau_e_residual;          /* flexibility torque from the motor data: gamma r_e, (8), or
+                                        y of matched_regression.h [N.m] */
+    sh_real theta_dot;               /* motor velocity used by the residual [rad/s] */
+    sh_real phi;                     /* deformation used by the regression [rad] */
+    sh_real setPoint;                /* set-point [1] */
+    sh_real a, rho, epsilon;         /* (27) [1], (14) [1], (14) [N.m] */
+    sh_real eta[SH_MAX_N][SH_MAX_M]; /* eta[i][j]: coefficient of setPoint^j phi^(2i+1), (21),
+                                        or of setPoint^j phi^i if not symmetric */
+    sh_real sigma_std;               /* std deviation of sigma by the model of the method
+                                        [N.m/rad] */
+    sh_real D_theta_hat, B_hat;      /* corrected motor data [N.m.s/rad, kg.m2] */
+    sh_real tau_coulomb_hat;         /* Coulomb friction obtained, on the motor axis [N.m] */
+    int confident;                   /* 1: sigma_std is below confidence |sigma| */
+    int valid;                       /* 0: the last tick was skipped, see sh_estimator_tick */
+} sh_estimate;
+
+/* A parameter outside its range. */
+typedef struct {
+    const char *name;  /* as in the FMU: "residual.K_I" */
+    sh_real value;     /* its value */
+    const char *range; /* the allowed values: "> 0 and < 2 / samplePeriod" */
+} sh_violation;
+
+/* State between ticks. It contains no pointer: copy it by assignment. */
+typedef struct sh_estimator sh_estimator;
+
+/* Sets the parameters of the AwAS, section VI.A, which are the start values of the FMU. */
+void sh_parameters_default(sh_parameters *p);
+
+/* Returns 0 if every parameter is in its range. Else returns 1 and describes in violation the first
+ * one that is not; the strings in it are constants of the library.
+ */
+int sh_parameters_check(const sh_parameters *p, sh_violation *violation);
+
+/* Largest |phi| [rad] for which the parameters are made. The stiffness at a larger deformation may
+ * be far off. Infinite for a method that has no such limit.
+ *
+ * p  parameters that pass sh_parameters_check
+ */
+sh_real sh_parameters_largest_deformation(const sh_parameters *p);
+
+/* Starts the estimator, and sets the estimate of the initial state: eta_0 at phi = 0 and
+ * theta_c = 0.
+ *
+ * p  parameters that pass sh_parameters_check
+ */
+void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate);
+
+/* Runs one tick.
+ *
+ * p         parameters that pass sh_parameters_check
+ * z         the measurements of this tick
+ * estimate  in: as the last tick, or sh_estimator_start, left it; out: the new estimate
+ *
+ * Returns 1, or 0 if the tick is skipped: a measurement is not finite or beyond
+ * SH_LARGEST_MEASUREMENT, or the regressor overflows. A skipped tick sets estimate->valid to 0, is
+ * counted, and changes nothing else. What happens at the first good sample after such a gap
+ * depends on the method:
+ *
+ * SH_METHOD_PAPER2011 filters over the time that has passed. If the gap is shorter than 2 / K_I,
+ * the residual integrates over it as over one long sample. After a longer gap it starts from its
+ * last value, and with SH_MODALITY_RESIDUAL the regression learns nothing, a = 0, until that value
+ * is forgotten, ten time constants 1 / K_I later.
+ *
+ * SH_METHOD_MATCHED_FILTER starts its filters again and learns nothing for 12 / matched.bandwidth.
+ * It does the same after a change of the modality.
+ */
+int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
+                      sh_estimate *estimate);
+
+/* What sh_estimator contains, so that it can be a variable of yours. */
+#include "sigmahat_state.h"
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,27 @@
+/* The basis of torque_basis.h in units that suit a prior.
+ *
+ * Deformation and set-point are divided by their ranges, and a power e of the deformation is divided
+ * by e:
+ *
+ *     (l / l_range)^j (phi / phi_range)^e / e .
+ *
+ * The coefficients are then torques [N.m]. At the ends of the ranges, coefficients of equal size
+ * contribute equally to the stiffness.
+ */
+#ifndef SH_SCALED_BASIS_H
+#define SH_SCALED_BASIS_H
+
+#include "sigmahat.h"
+
+/* Regressor F and its derivative dF by phi [1/rad]; arguments as for sh_torque_basis. */
+void sh_scaled_basis(const sh_range_parameters *range, int symmetric, int n, int m,
+                     sh_real set_point, sh_real phi, sh_real *F, sh_real *dF);
+
+/* What the coefficients of setPoint^j phi^e are multiplied by to get those of the scaled basis.
+ *
+ * units  [size: n m] out: in the order of F
+ */
+void sh_scaled_basis_units(const sh_range_parameters *range, int symmetric, int n, int m,
+                           sh_real *units);
+
+#endif

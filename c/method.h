@@ -1,0 +1,74 @@
+/* The shape of a method of estimation, and what all methods share.
+ *
+ * A method has a folder of its own and defines one constant of type sh_method. To add one, write
+ * its folder and add its line to SH_METHODS in sigmahat.h: nothing else in c/ and in fmu_src/ asks
+ * which methods there are. If it has a state of its own, add a struct to sigmahat_state.h.
+ *
+ * All of c/ can be compiled as one file (the amalgamation). So all its files share one namespace for
+ * the names that are `static`: two files must not use the same one.
+ */
+#ifndef SH_METHOD_H
+#define SH_METHOD_H
+
+#include "sigmahat.h"
+
+/* The fit of a method: coefficients of the torque, and how certain the stiffness is. */
+typedef struct {
+    const sh_real *eta; /* [size: n m] in the order of F, in the units of the method */
+    sh_real variance;   /* of the stiffness dF' eta [(N.m/rad)2] */
+} sh_fit;
+
+typedef struct {
+    /* Largest deformation for which the method is made, in units of range.phi; may be infinite. */
+    sh_real largest_deformation;
+
+    /* Checks what this method alone requires of the parameters; all are in their ranges. Returns 0,
+     * or 1 after sh_violates.
+     */
+    int (*check)(const sh_parameters *p, sh_violation *violation);
+
+    /* Starts the state of the method and the regression, in an estimator and an estimate that are
+     * zero.
+     *
+     * eta_0  [size: n m] initial coefficients, in the order and units of sh_torque_basis
+     *
+     * Sets estimator->units, and work.F and work.dF for phi = 0 and the set-point at theta_c = 0;
+     * the motor data of estimate; and fit.
+     */
+    void (*start)(sh_estimator *estimator, const sh_parameters *p, const sh_real *eta_0,
+                  sh_estimate *estimate, sh_fit *fit);
+
+    /* Takes one sample, which is finite.
+     *
+     * estimate  in: that of the last tick; out: everything that does not follow from the fit:
+     *           phi, tau_e_residual, theta_dot, a, rho, epsilon, and the motor data
+     *
+     * Returns 1, and sets work.F, work.dF, estimate and fit. Returns 0 if the numbers are too large:
+     * then estimate is unchanged, and the next good sample finds the state as if this sample had not
+     * been finite.
+     */
+    int (*tick)(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
+                sh_real set_point, sh_estimate *estimate, sh_fit *fit);
+} sh_method;
+
+#define SH_METHOD_DECLARATION(constant, number, name, block) extern const sh_method block;
+SH_METHODS(SH_METHOD_DECLARATION)
+
+/* The method that the parameters choose, NULL if there is none of this number. */
+const sh_method *sh_method_of(const sh_parameters *p);
+
+/* Numbers and names of all methods: "1 (Paper2011) or 2 (MatchedFilter)". */
+const char *sh_method_names(void);
+
+/* Describes a violation. Returns 1. */
+int sh_violates(sh_violation *violation, const char *name, sh_real value, const char *range);
+
+/* Resolution of an encoder [rad], 0 without quantisation. */
+sh_real sh_encoder_count(sh_real counts_per_turn);
+
+/* The flexibility torque that feeds the regression by the modality: of the sensor, of the model at
+ * the measured positions, or from_motor [N.m].
+ */
+sh_real sh_regression_torque(const sh_parameters *p, const sh_measurement *z, sh_real from_motor);
+
+#endif

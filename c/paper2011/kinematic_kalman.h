@@ -1,0 +1,32 @@
+/* Kinematic Kalman filter for quantised positions, (9)-(11).
+ *
+ * It estimates position and velocity of one axis from its encoder alone.
+ */
+#ifndef SH_KINEMATIC_KALMAN_H
+#define SH_KINEMATIC_KALMAN_H
+
+#include "sigmahat.h"
+
+/* Measurement variance R at a velocity, (11) [rad2].
+ *
+ * filter  settings, with the weighting
+ * x_dot   velocity [rad/s]
+ * w_s     velocity of one count per sample, (2 pi / counts) / T [rad/s]; 0 for
+ *         an encoder without quantisation, whose R is V_min with either weighting
+ */
+sh_real sh_measurement_variance(const sh_filter_parameters *filter, sh_real x_dot, sh_real w_s);
+
+/* Starts the filter at a measured position z [rad]: zero velocity, covariance P_0 I. */
+void sh_kinematic_kalman_start(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
+                               sh_real z);
+
+/* Advances the filter by one sample: (9), then R from the predicted velocity, then (10).
+ *
+ * z    measured position [rad], finite
+ * dt   time since the last sample [s], > 0
+ * w_s  velocity of one count per sample period [rad/s], >= 0
+ */
+void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
+                              sh_real z, sh_real dt, sh_real w_s);
+
+#endif

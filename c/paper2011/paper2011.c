@@ -1,0 +1,130 @@
+/* Method Paper2011: filters and residual, then least squares of the torque; the paper's Fig. 1. */
+#include "kinematic_kalman.h"
+#include "least_squares.h"
+#include "method.h"
+#include "real_math.h"
+#include "torque_basis.h"
+#include "torque_residual.h"
+#include "ud_factor.h"
+
+static int check_paper2011(const sh_parameters *p, sh_violation *violation)
+{
+    if (p->residual.K_I * p->samplePeriod >= 2)
+        return sh_violates(violation, "residual.K_I", p->residual.K_I,
+                           "> 0 and < 2 / samplePeriod");
+    return 0;
+}
+
+/* P of the recursion times this is a covariance [(N.m)2]: the variance of the torque's noise, as if
+ * it were white, times the weight that (27) gives to every sample.
+ */
+static sh_real unit_of_covariance(const sh_parameters *p)
+{
+    const sh_real noise =
+        p->modality == SH_MODALITY_RESIDUAL ? p->motor.gamma * p->noise.tau : p->noise.tau_e;
+
+    return noise * noise * (p->rls.kind == SH_RLS_ENHANCED ? p->rls.c : 1);
+}
+
+static void report_paper2011(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate,
+                             sh_fit *fit)
+{
+    fit->eta = estimator->rls.eta;
+    fit->variance =
+        unit_of_covariance(p) * sh_ud_factor_variance(&estimator->rls.P, estimator->work.dF);
+    estimate->D_theta_hat = p->motor.D_theta;
+    estimate->B_hat = p->motor.B;
+    estimate->tau_coulomb_hat = 0;
+}
+
+static void start_paper2011(sh_estimator *estimator, const sh_parameters *p, const sh_real *eta_0,
+                            sh_estimate *estimate, sh_fit *fit)
+{
+    const int n = p->rls.n, m = p->rls.m, size = n * m;
+    int i;
+
+    for (i = 0; i < size; ++i)
+        estimator->units[i] = 1;
+    sh_torque_basis(p->rls.symmetric, n, m, p->setPoint.offset, 0, estimator->work.F,
+                    estimator->work.dF);
+    sh_least_squares_start(&estimator->rls, size, eta_0, p->rls.P_0);
+    report_paper2011(estimator, p, estimate, fit);
+}
+
+/* First stage: filters and residual. Returns gamma r_e [N.m].
+ *
+ * dt  time since the last good sample [s], 0 for the first one
+ */
+static sh_real track(sh_paper2011_state *state, const sh_parameters *p, const sh_measurement *z,
+                     sh_real dt)
+{
+    const sh_real T = p->samplePeriod;
+    sh_kinematic_kalman *theta = &state->theta, *q = &state->q;
+
+    if (!(dt > 0)) {
+        sh_kinematic_kalman_start(theta, &p->filter, z->theta);
+        sh_kinematic_kalman_start(q, &p->filter, z->q);
+        sh_torque_residual_start(&state->residual, z->tau);
+        return p->motor.gamma * state->residual.r_e;
+    }
+    sh_kinematic_kalman_step(theta, &p->filter, z->theta, dt,
+                             sh_encoder_count(p->encoder.theta) / T);
+    if (p->deformation == SH_DEFORMATION_FILTERED)
+        sh_kinematic_kalman_step(q, &p->filter, z->q, dt, sh_encoder_count(p->encoder.q) / T);
+    /* (8) integrates over a gap as over one long sample while that is short compared with 1 / K_I.
+     * After a longer gap the torque in between is unknown: r_e starts from its last value, which is
+     * wrong, and the regression waits until it is forgotten.
+     */
+    state->settling -= dt;
+    if (dt * p->residual.K_I < 2) {
+        sh_torque_residual_step(&state->residual, &p->motor, theta->dx, theta->dx_dot, z->tau,
+                                p->residual.K_I, dt);
+    } else {
+        sh_torque_residual_resume(&state->residual, z->tau);
+        state->settling = 10 / p->residual.K_I;
+    }
+    return p->motor.gamma * state->residual.r_e;
+}
+
+static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
+                          sh_real set_point, sh_estimate *estimate, sh_fit *fit)
+{
+    const sh_real dt = estimator->started ? p->samplePeriod * (1 + estimator->skipped) : 0;
+    sh_paper2011_state *const state = &estimator->method.paper2011;
+    const sh_paper2011_state before = *state;
+    const sh_real tau_e_residual = track(state, p, z, dt);
+    sh_real phi = z->q - z->theta, factor;
+    int kind = p->rls.kind;
+    sh_innovation innovation;
+
+    if (p->deformation == SH_DEFORMATION_FILTERED)
+        phi += state->q.lag - state->theta.lag;
+    sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, estimator->work.F,
+                    estimator->work.dF);
+    factor = kind == SH_RLS_ENHANCED ? p->rls.c : p->rls.a;
+    if (p->modality == SH_MODALITY_RESIDUAL && state->settling > 0) {
+        kind = SH_RLS_CONSTANT_FACTOR; /* a = 0 learns nothing, (25) */
+        factor = 0;
+    }
+    if (!isfinite(tau_e_residual) ||
+        !sh_least_squares_update(&estimator->rls, kind, factor, estimator->work.F,
+                                 sh_regression_torque(p, z, tau_e_residual), &innovation)) {
+        *state = before;
+        return 0;
+    }
+    estimate->phi = phi;
+    estimate->tau_e_residual = tau_e_residual;
+    estimate->theta_dot = state->theta.x_dot;
+    estimate->a = innovation.a;
+    estimate->rho = innovation.rho;
+    estimate->epsilon = innovation.epsilon;
+    report_paper2011(estimator, p, estimate, fit);
+    return 1;
+}
+
+const sh_method sh_paper2011 = {
+    .largest_deformation = INFINITY,
+    .check = check_paper2011,
+    .start = start_paper2011,
+    .tick = tick_paper2011,
+};

@@ -1,0 +1,324 @@
+/* The arithmetic of P = U D U', and how U lies in memory so that it is fast.
+ *
+ * U is stored in panels of SH_PANEL = 4 rows. A panel begins at the diagonal and goes on column after
+ * column; the four entries of a column are neighbours. The zeros and ones of the triangle are stored
+ * too. For six parameters:
+ *
+ *     column   0 1 2 3 4 5
+ *     row 0    1 a b d g k   panel 0
+ *     row 1    0 1 c e h l
+ *     row 2    0 0 1 f i m
+ *     row 3    0 0 0 1 j n
+ *     row 4            1 o   panel 1
+ *     row 5            0 1
+ *     -                0 0
+ *     -                0 0
+ *
+ *     memory   1000 a100 bc10 def1 ghij klmn  1000 o100
+ *
+ * What it gains: every inner loop computes four neighbours in the same way, without asking for the
+ * diagonal, so that compilers use vector instructions. What it costs: memory and operations for the
+ * zeros and ones (200 entries in place of 153 for 18 parameters), and the loops over panels below.
+ * docs/performance.md has the figures.
+ */
+#include "ud_factor.h"
+
+#include <string.h>
+
+#include "real_math.h"
+
+/* Place of entry (i, j) of U, i <= j, in memory. The panel of row i begins at row and column
+ * i - i % SH_PANEL.
+ */
+static int place(int size, int i, int j)
+{
+    const int row = i % SH_PANEL, first = i - row;
+
+    return first * size - first * (first - SH_PANEL) / 2 + (j - first) * SH_PANEL + row;
+}
+
+/* A column of U is met panel by panel: distance from its entries in panel 0 to those in panel 1.
+ * From each panel to the next it is SH_PANEL * SH_PANEL less.
+ */
+static int first_stride(int size)
+{
+    return (size - SH_PANEL) * SH_PANEL;
+}
+
+void sh_ud_factor_start(sh_ud_factor *P, int size, sh_real P_0)
+{
+    int j;
+
+    memset(P, 0, sizeof *P);
+    P->size = size;
+    for (j = 0; j < size; ++j) {
+        P->D[j] = P_0;
+        P->U[place(size, j, j)] = 1;
+    }
+}
+
+void sh_ud_factor_set_variance(sh_ud_factor *P, int i, sh_real variance)
+{
+    P->D[i] = variance;
+}
+
+/* Adds one panel's part of a column u of U to its sum in U' F. Even and odd rows have a sum each,
+ * as they are neighbours in memory.
+ */
+static void add_products(const sh_real *u, const sh_real *F, sh_real *sum)
+{
+    sum[0] += u[0] * F[0] + u[2] * F[2];
+    sum[1] += u[1] * F[1] + u[3] * F[3];
+}
+
+/* work.f = U' F, SH_PANEL columns at a time. The last group may have fewer columns; what is computed
+ * for the others is not used, as the next panel is in memory there.
+ */
+static void multiply(sh_ud_factor *P, const sh_real *F)
+{
+    const int size = P->size;
+    sh_real last[SH_PANEL] = {0, 0, 0, 0}; /* F in the last panel, if that has fewer rows */
+    int i, j;
+
+    for (i = size - size % SH_PANEL; i < size; ++i)
+        last[i % SH_PANEL] = F[i];
+    for (j = 0; j < size; j += SH_PANEL) {
+        const sh_real *u = P->U + place(size, 0, j);
+        sh_real sum_0[2] = {0, 0}, sum_1[2] = {0, 0}, sum_2[2] = {0, 0}, sum_3[2] = {0, 0};
+        int stride = first_stride(size);
+
+        for (i = 0; i <= j; i += SH_PANEL) {
+            const sh_real *rows = i + SH_PANEL <= size ? F + i : last;
+            const sh_real F_i[SH_PANEL] = {rows[0], rows[1], rows[2], rows[3]};
+            const sh_real *u_1 = u + SH_PANEL, *u_2 = u_1 + SH_PANEL, *u_3 = u_2 + SH_PANEL;
+
+            add_products(u, F_i, sum_0);
+            add_products(u_1, F_i, sum_1);
+            add_products(u_2, F_i, sum_2);
+            add_products(u_3, F_i, sum_3);
+            u += stride;
+            stride -= SH_PANEL * SH_PANEL;
+        }
+        /* Through memory: gcc 12 would transpose vectors to sum them up here. */
+        memcpy(P->work.pairs[j], sum_0, sizeof sum_0);
+        memcpy(P->work.pairs[j + 1], sum_1, sizeof sum_1);
+        memcpy(P->work.pairs[j + 2], sum_2, sizeof sum_2);
+        memcpy(P->work.pairs[j + 3], sum_3, sizeof sum_3);
+    }
+    for (j = 0; j < size; ++j)
+        P->work.f[j] = P->work.pairs[j][0] + P->work.pairs[j][1];
+}
+
+sh_real sh_ud_factor_variance(sh_ud_factor *P, const sh_real *F)
+{
+    const sh_real *f = P->work.f, *D = P->D;
+    sh_real even = 0, odd = 0; /* two sums, so that one does not wait for the other */
+    int j;
+
+    multiply(P, F);
+    for (j = 0; j + 1 < P->size; j += 2) {
+        even += f[j] * (D[j] * f[j]);
+        odd += f[j + 1] * (D[j + 1] * f[j + 1]);
+    }
+    if (j < P->size)
+        even += f[j] * (D[j] * f[j]);
+    return even + odd;
+}
+
+sh_real sh_ud_factor_entry(const sh_ud_factor *P, int i, int j)
+{
+    const int last = i > j ? i : j;
+    sh_real sum = 0;
+    int k;
+
+    for (k = last; k < P->size; ++k)
+        sum += P->U[place(P->size, i, k)] * P->D[k] * P->U[place(P->size, j, k)];
+    return sum;
+}
+
+/* f = U' F, g = D f, and rho_j = f_0 g_0 + ... + f_{j-1} g_{j-1}, the part of rho = F' P F that
+ * belongs to the columns before j.
+ */
+sh_real sh_ud_factor_project(sh_ud_factor *P, const sh_real *F)
+{
+    const sh_real *f = P->work.f, *D = P->D;
+    sh_real *g = P->work.g, *rho = P->work.rho, before = 0;
+    int j;
+
+    multiply(P, F);
+    for (j = 0; j + 1 < P->size; j += 2) { /* in pairs: the sum is waited for half as often */
+        const sh_real g_0 = D[j] * f[j], g_1 = D[j + 1] * f[j + 1];
+        const sh_real one = f[j] * g_0, both = one + f[j + 1] * g_1;
+
+        g[j] = g_0;
+        g[j + 1] = g_1;
+        rho[j] = before;
+        rho[j + 1] = before + one;
+        before += both;
+    }
+    if (j < P->size) {
+        g[j] = D[j] * f[j];
+        rho[j] = before;
+        before += f[j] * g[j];
+    }
+    rho[P->size] = before;
+    return before;
+}
+
+/* One panel's part of column j of U in the update: u -= s_j p and p += g_j u. */
+static void rotate(sh_real *u, sh_real s, sh_real g, sh_real *p)
+{
+    const sh_real u_0 = u[0], u_1 = u[1], u_2 = u[2], u_3 = u[3];
+
+    u[0] = u_0 - s * p[0];
+    u[1] = u_1 - s * p[1];
+    u[2] = u_2 - s * p[2];
+    u[3] = u_3 - s * p[3];
+    p[0] += g * u_0;
+    p[1] += g * u_1;
+    p[2] += g * u_2;
+    p[3] += g * u_3;
+}
+
+/* Bierman's update, chapter V, for a sample of weight w. With f, g and rho_j of the projection, and
+ * beta_j = 1 + w rho_j, for j = 0, 1, ...
+ *
+ *     D_j *= beta_j / beta_{j+1} ,
+ *     s_j  = w f_j / beta_j ,
+ *     U_j -= s_j p_j ,   p_{j+1} = p_j + g_j U_j  (U_j before the change),   p_0 = 0 .
+ *
+ * At the end p is P F.
+ */
+const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
+{
+    const int size = P->size;
+    sh_real *u = P->U, *g = P->work.g, *s = P->work.f;
+    int i, j;
+
+    for (j = 0; j < size; ++j) {
+        const sh_real beta = 1 + w * P->work.rho[j];
+
+        P->D[j] *= beta / (1 + w * P->work.rho[j + 1]);
+        s[j] = w * s[j] / beta;
+    }
+    /* Panel after panel, as an entry of p depends on its own row of U alone. In the first column of
+     * a panel only the one on the diagonal is not zero: there p becomes g_i, and u does not change.
+     */
+    for (i = 0; i < size; i += SH_PANEL) {
+        sh_real p[SH_PANEL] = {g[i], 0, 0, 0};
+
+        u += SH_PANEL;
+        for (j = i + 1; j < size; ++j) {
+            rotate(u, s[j], g[j], p);
+            u += SH_PANEL;
+        }
+        g[i] = p[0]; /* the columns of the next panels do not need g_i any more */
+        g[i + 1] = p[1];
+        g[i + 2] = p[2];
+        g[i + 3] = p[3];
+    }
+    return g;
+}
+
+/* sum = column i of P, [size: SH_MAX_ROWS]. */
+static void add_up_column(const sh_ud_factor *P, int i, sh_real *sum)
+{
+    int j, k;
+
+    for (j = 0; j < P->size; j += SH_PANEL)
+        sum[j] = sum[j + 1] = sum[j + 2] = sum[j + 3] = 0;
+    /* Columns of U before the i-th have a zero in row i. */
+    for (k = i; k < P->size; ++k) {
+        const sh_real g = P->D[k] * P->U[place(P->size, i, k)];
+        const sh_real *u = P->U + place(P->size, 0, k);
+        int stride = first_stride(P->size);
+
+        for (j = 0; j <= k; j += SH_PANEL) {
+            sum[j] += u[0] * g;
+            sum[j + 1] += u[1] * g;
+            sum[j + 2] += u[2] * g;
+            sum[j + 3] += u[3] * g;
+            u += stride;
+            stride -= SH_PANEL * SH_PANEL;
+        }
+    }
+}
+
+const sh_real *sh_ud_factor_column(sh_ud_factor *P, int i)
+{
+    add_up_column(P, i, P->work.g);
+    return P->work.g;
+}
+
+/* P += c v v' for v in work.f, which is a combination of the columns of U from `first` on. Backwards
+ * from the last column:
+ *
+ *     D_j' = D_j + c v_j^2 ,   v -= v_j U_j ,   U_j += c v_j / D_j' v ,   c *= D_j / D_j' .
+ */
+static void widen(sh_ud_factor *P, sh_real c, int first)
+{
+    sh_real *v = P->work.f; /* zero behind its last entry */
+    int i, j;
+
+    for (j = P->size - 1; j >= first; --j) {
+        const sh_real before = P->D[j], v_j = v[j];
+        const sh_real after = before + c * v_j * v_j;
+        const sh_real gain = after > 0 ? c * v_j / after : 0;
+        sh_real *u = P->U + place(P->size, 0, j);
+        int stride = first_stride(P->size);
+
+        for (i = 0; i <= j; i += SH_PANEL) {
+            const sh_real v_0 = v[i] - v_j * u[0], v_1 = v[i + 1] - v_j * u[1];
+            const sh_real v_2 = v[i + 2] - v_j * u[2], v_3 = v[i + 3] - v_j * u[3];
+
+            v[i] = v_0;
+            v[i + 1] = v_1;
+            v[i + 2] = v_2;
+            v[i + 3] = v_3;
+            u[0] += gain * v_0;
+            u[1] += gain * v_1;
+            u[2] += gain * v_2;
+            u[3] += gain * v_3;
+            u += stride;
+            stride -= SH_PANEL * SH_PANEL;
+        }
+        P->D[j] = after;
+        if (after > 0)
+            c *= before / after;
+    }
+}
+
+void sh_ud_factor_widen(sh_ud_factor *P, sh_real c, const sh_real *v)
+{
+    int i;
+
+    for (i = 0; i < P->size; ++i)
+        P->work.f[i] = v[i];
+    for (; i % SH_PANEL != 0; ++i)
+        P->work.f[i] = 0;
+    widen(P, c, 0);
+}
+
+void sh_ud_factor_widen_column(sh_ud_factor *P, sh_real c, int i)
+{
+    add_up_column(P, i, P->work.f);
+    widen(P, c, i);
+}
+
+/* S P S with S = 1 but for its entry i: row i of U grows by that entry, its column shrinks by it. */
+void sh_ud_factor_bound(sh_ud_factor *P, int i, sh_real P_max)
+{
+    const int size = P->size;
+    const sh_real variance = sh_ud_factor_entry(P, i, i);
+    sh_real scale;
+    int j;
+
+    if (variance <= P_max)
+        return;
+    scale = sh_sqrt(P_max / variance);
+    P->D[i] *= scale * scale;
+    for (j = i + 1; j < size; ++j)
+        P->U[place(size, i, j)] *= scale;
+    for (j = 0; j < i; ++j)
+        P->U[place(size, j, i)] /= scale;
+}
