@@ -1,7 +1,7 @@
-/* What a tick needs besides time.
+/* Instructions and stack of a tick.
  *
- * footprint METHOD TICKS   runs ticks, to be counted by callgrind
- * footprint METHOD         prints the stack that a tick uses [bytes], measured by painting it
+ * footprint METHOD TICKS   runs ticks; callgrind counts their instructions
+ * footprint METHOD         prints the stack of a tick [bytes]: how much of a painted stack it changes
  */
 #include <math.h>
 #include <pthread.h>
@@ -81,7 +81,7 @@ int main(int count, char **arguments)
     }
     make_measurements();
     if (count == 2) {
-        run(ticks); /* what the first call alone needs, to find functions of libraries */
+        run(ticks); /* the first call alone needs more, to find functions of libraries */
         printf("%ld\n", used(run, ticks) - used(nothing, ticks));
         return 0;
     }

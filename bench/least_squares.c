@@ -1,4 +1,4 @@
-/* The recursion of this project, the yardstick, and liquid-dsp. */
+/* The recursion of this project, the update of the covariance alone, and liquid-dsp. */
 #include <stdlib.h>
 
 #include "../c/least_squares.h"
@@ -34,7 +34,7 @@ void sigmahat_eta(const void *rls, double *eta)
         eta[i] = own->eta[i];
 }
 
-/* K = P F / (1 + F' P F), P -= K F' P, with all entries of P, for a size known beforehand. */
+/* K = P F / (1 + F' P F), P -= K F' P, with all entries of P, for a size known to the compiler. */
 #define COVARIANCE(n)                                                                              \
     static void update_##n(double P[n][n], const double *F)                                        \
     {                                                                                              \
@@ -94,7 +94,7 @@ void covariance_run(void *rls, const double *F, const double *y, int samples)
     c->run(c->P, F, samples);
 }
 
-/* liquid-dsp keeps the delay line itself, in single precision. */
+/* liquid-dsp has its own delay line, in single precision. */
 typedef struct {
     eqrls_rrrf equaliser;
     int size;
@@ -136,7 +136,7 @@ void liquid_eta(const void *rls, double *eta)
         eta[i] = (double)weights[i];
 }
 
-/* Independent chains x = a x + b, enough of them to keep every unit of the processor busy. */
+/* Independent chains x = a x + b, so many that every unit of the processor always has work. */
 double peak_run(int times)
 {
     double x[BENCH_PEAK], sum = 0.0;

@@ -1,8 +1,8 @@
-/* Recursive least squares of several makes behind the same three functions.
+/* Recursive least squares of several libraries behind the same three functions.
  *
- * All minimise |eta|^2 / BENCH_P_0 + sum (y(k) - F(k)' eta)^2, as far as they can be told to.
- * The samples are those of a delay line, F(k) = (x(k), x(k-1), ...): the only kind that the
- * adaptive filters among them take.
+ * All minimise |eta|^2 / BENCH_P_0 + sum (y(k) - F(k)' eta)^2, as far as their parameters allow it.
+ * The samples are those of a delay line, F(k) = (x(k), x(k-1), ...), because the adaptive filters
+ * among them accept no others.
  */
 #ifndef BENCH_LEAST_SQUARES_H
 #define BENCH_LEAST_SQUARES_H
@@ -19,10 +19,10 @@ extern "C" {
 
 #define BENCH_P_0 1e3
 
-/* Declares for a make:
+/* Declares for a library:
  *
- * make_start(size)  a new recursion, NULL if it cannot be of this size; it stays until the end
- *                   of the process
+ * make_start(size)  a new recursion, NULL if this size is not possible; it exists until the end of
+ *                   the process
  * make_run          takes samples F [size: samples x size], y [size: samples] in order
  * make_eta          its estimate [size: size]
  */
@@ -36,13 +36,13 @@ BENCH_LEAST_SQUARES(dlib)
 BENCH_LEAST_SQUARES(eigen)
 BENCH_LEAST_SQUARES(liquid)
 
-/* Not a recursion but a yardstick: the covariance of one as a textbook has it, in plain loops. It
- * has no estimate.
+/* For comparison, not a complete recursion: the update of the covariance alone as in textbooks, in
+ * plain loops.
  */
 BENCH_EXPORT void *covariance_start(int size);
 BENCH_EXPORT void covariance_run(void *rls, const double *F, const double *y, int samples);
 
-/* Multiplications and additions, as many as the machine can do: 2 `times` of BENCH_PEAK numbers. */
+/* 2 `times` BENCH_PEAK multiplications and additions, as fast as the machine can do them. */
 enum { BENCH_PEAK = 24 };
 BENCH_EXPORT double peak_run(int times);
 

@@ -1,10 +1,10 @@
-/* A master in C for one FMU 2.0: loads its binary and steps it. */
+/* A master in C for one FMU of FMI 2.0: it loads the binary and makes steps. */
 #ifndef BENCH_MASTER_H
 #define BENCH_MASTER_H
 
 #include "least_squares.h"
 
-/* An FMU initialised at time 0, NULL if that fails; it stays until the end of the process.
+/* An FMU initialised at time 0, NULL if that fails; it exists until the end of the process.
  *
  * binary, guid, resources  path of the shared library, its GUID, URI of its resources
  * inputs, outputs          value references [size: their counts], of Real variables
@@ -14,8 +14,8 @@ BENCH_EXPORT void *master_start(const char *binary, const char *guid, const char
                                 const unsigned *inputs, int input_count, const unsigned *outputs,
                                 int output_count, int slopes);
 
-/* Steps of h [s] with the inputs u [size: samples x inputs] set before each and all outputs
- * read after it into y [size: outputs]. Returns the number of calls that failed.
+/* Makes steps of h [s]. Before each it sets the inputs, one row of u [size: samples x inputs], and
+ * after each it reads all outputs into y [size: outputs]. Returns the number of calls that failed.
  */
 BENCH_EXPORT int master_run(void *master, const double *u, int samples, double h, double *y);
 

@@ -11,13 +11,13 @@ extern "C" {
 enum { BENCH_MEASUREMENTS = 5 }; /* theta, q, theta_c, tau, tau_e_sensor */
 
 /* A new estimator of the AwAS with n = 6, m = 3, in the modality Residual: "Paper2011", or
- * "MatchedFilter" with all three motor data estimated. NULL if there is no such method. It stays
+ * "MatchedFilter" with all three motor data estimated. NULL if there is no such method. It exists
  * until the end of the process.
  */
 BENCH_EXPORT void *tick_start(const char *method);
 
-/* Takes measurements z [size: samples x BENCH_MEASUREMENTS] and keeps the outputs sigma, tau_e
- * and theta_dot of the last tick in outputs [size: 3].
+/* Runs ticks on measurements z [size: samples x BENCH_MEASUREMENTS], and writes sigma, tau_e and
+ * theta_dot of the last tick to outputs [size: 3].
  */
 BENCH_EXPORT void tick_run(void *ticks, const double *z, int samples, double *outputs);
 

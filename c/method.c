@@ -4,7 +4,7 @@
 
 #include "real_math.h"
 
-#define SH_METHOD_ENTRY(constant, number, name, block) [constant] = &block,
+#define SH_METHOD_ENTRY(constant, number, name, block) [constant] = &(block),
 static const sh_method *const METHODS[] = {SH_METHODS(SH_METHOD_ENTRY)};
 
 #define SH_METHOD_NAME(constant, number, name, block) " or " #number " (" name ")"

@@ -4,8 +4,8 @@
  * its folder and add its line to SH_METHODS in sigmahat.h: nothing else in c/ and in fmu_src/ asks
  * which methods there are. If it has a state of its own, add a struct to sigmahat_state.h.
  *
- * All of c/ can be compiled as one file (the amalgamation). So all its files share one namespace for
- * the names that are `static`: two files must not use the same one.
+ * All of c/ can be compiled as one file (the amalgamation). So all its files share one namespace
+ * for the names that are `static`: two files must not use the same one.
  */
 #ifndef SH_METHOD_H
 #define SH_METHOD_H
@@ -43,9 +43,9 @@ typedef struct {
      * estimate  in: that of the last tick; out: everything that does not follow from the fit:
      *           phi, tau_e_residual, theta_dot, a, rho, epsilon, and the motor data
      *
-     * Returns 1, and sets work.F, work.dF, estimate and fit. Returns 0 if the numbers are too large:
-     * then estimate is unchanged, and the next good sample finds the state as if this sample had not
-     * been finite.
+     * Returns 1, and sets work.F, work.dF, estimate and fit. Returns 0 if the numbers are too
+     * large: then estimate is unchanged, and the next good sample finds the state as if this sample
+     * had not been finite.
      */
     int (*tick)(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                 sh_real set_point, sh_estimate *estimate, sh_fit *fit);

@@ -54,7 +54,7 @@ void sh_parameters_default(sh_parameters *p)
     p->prior.tau_coulomb = (sh_real)0.02;
 }
 
-/* Range of one parameter. */
+/* Allowed range of one parameter. */
 typedef struct {
     const char *name;
     size_t offset; /* in sh_parameters */
@@ -72,7 +72,9 @@ typedef struct {
 
 #define AT(designator) #designator, offsetof(sh_parameters, designator)
 
-/* Finite limits other than 0 and 1 are far beyond use: what squares and powers can hold. */
+/* Limits other than 0, 1 and infinity are wide ones of what is squared or raised to a power: within
+ * them the numbers stay finite.
+ */
 static const real_range REALS[] = {
     {AT(samplePeriod), "> 0", 0, INFINITY, 1},
     {AT(motor.B), "> 0", 0, INFINITY, 1},

@@ -1,7 +1,7 @@
 /* Functions of <math.h> for the type sh_real, and what depends on its range.
  *
- * <tgmath.h> cannot be used: the one of newlib, the C library of most controllers, refers to complex
- * functions that newlib does not have.
+ * <tgmath.h> cannot be used: the one of newlib, the C library of most controllers, refers to
+ * complex functions that newlib does not have.
  */
 #ifndef SH_REAL_MATH_H
 #define SH_REAL_MATH_H
@@ -24,7 +24,8 @@
 
 #define SH_PI 3.14159265358979323846
 
-/* A number whose square, and whose product with any number of practical size, is far from overflow. */
+/* A number whose square, and whose product with any number of practical size, is far from overflow.
+ */
 #define SH_LARGE SH_FOR(SH_REAL, 1e150, 1e30f)
 
 #endif

@@ -6,7 +6,8 @@
 #include "scalar_product.h"
 #include "torque_basis.h"
 
-/* Torque (21) and stiffness (23) of coefficients eta for the regressor and its derivative at work. */
+/* Torque (21) and stiffness (23) of coefficients eta for the regressor and its derivative at work.
+ */
 static void evaluate_curve(const sh_estimator *estimator, const sh_real *eta, int size,
                            sh_estimate *estimate)
 {

@@ -1,8 +1,8 @@
 /* Separable polynomial basis of the flexibility torque, (18)-(23).
  *
- * The symmetric basis is the paper's: odd powers of the deformation, for a torque that is odd in it,
- * (16). The general basis has every power from 0 on, for transmissions that are softer to one side
- * or have an offset.
+ * The symmetric basis is the paper's: odd powers of the deformation, for a torque that is odd in
+ * it, (16). The general basis has every power from 0 on, for transmissions that are softer to one
+ * side or have an offset.
  */
 #ifndef SH_TORQUE_BASIS_H
 #define SH_TORQUE_BASIS_H

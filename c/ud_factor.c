@@ -1,8 +1,8 @@
 /* The arithmetic of P = U D U', and how U lies in memory so that it is fast.
  *
- * U is stored in panels of SH_PANEL = 4 rows. A panel begins at the diagonal and goes on column after
- * column; the four entries of a column are neighbours. The zeros and ones of the triangle are stored
- * too. For six parameters:
+ * U is stored in panels of SH_PANEL = 4 rows. A panel begins at the diagonal and goes on column
+ * after column; the four entries of a column are neighbours. The zeros and ones of the triangle are
+ * stored too. For six parameters:
  *
  *     column   0 1 2 3 4 5
  *     row 0    1 a b d g k   panel 0
@@ -71,8 +71,8 @@ static void add_products(const sh_real *u, const sh_real *F, sh_real *sum)
     sum[1] += u[1] * F[1] + u[3] * F[3];
 }
 
-/* work.f = U' F, SH_PANEL columns at a time. The last group may have fewer columns; what is computed
- * for the others is not used, as the next panel is in memory there.
+/* work.f = U' F, SH_PANEL columns at a time. The last group may have fewer columns; what is
+ * computed for the others is not used, as the next panel is in memory there.
  */
 static void multiply(sh_ud_factor *P, const sh_real *F)
 {
@@ -250,8 +250,8 @@ const sh_real *sh_ud_factor_column(sh_ud_factor *P, int i)
     return P->work.g;
 }
 
-/* P += c v v' for v in work.f, which is a combination of the columns of U from `first` on. Backwards
- * from the last column:
+/* P += c v v' for v in work.f, which is a combination of the columns of U from `first` on.
+ * Backwards from the last column:
  *
  *     D_j' = D_j + c v_j^2 ,   v -= v_j U_j ,   U_j += c v_j / D_j' v ,   c *= D_j / D_j' .
  */
@@ -305,7 +305,8 @@ void sh_ud_factor_widen_column(sh_ud_factor *P, sh_real c, int i)
     widen(P, c, i);
 }
 
-/* S P S with S = 1 but for its entry i: row i of U grows by that entry, its column shrinks by it. */
+/* S P S with S = 1 but for its entry i: row i of U grows by that entry, its column shrinks by it.
+ */
 void sh_ud_factor_bound(sh_ud_factor *P, int i, sh_real P_max)
 {
     const int size = P->size;

@@ -16,6 +16,20 @@
 static char *description; /* text of modelDescription.xml */
 static void *library;
 
+/* The functions of the FMU that are used here. */
+static struct {
+    fmi2InstantiateTYPE *instantiate;
+    fmi2SetupExperimentTYPE *setup_experiment;
+    fmi2EnterInitializationModeTYPE *enter_initialization;
+    fmi2ExitInitializationModeTYPE *exit_initialization;
+    fmi2SetRealTYPE *set_real;
+    fmi2SetIntegerTYPE *set_integer;
+    fmi2GetRealTYPE *get_real;
+    fmi2DoStepTYPE *do_step;
+    fmi2TerminateTYPE *terminate;
+    fmi2FreeInstanceTYPE *free_instance;
+} fmu;
+
 static void quit(const char *what, const char *which)
 {
     fprintf(stderr, "master: %s %s\n", what, which);
@@ -65,7 +79,7 @@ static void load(const char *name, void *function)
 static void check(fmi2Status status, const char *call)
 {
     if (status > fmi2Warning)
-        quit("failed:", call); /* the FMU has said why through the logger */
+        quit("failed:", call); /* the message of the FMU went through the logger */
 }
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String instance, fmi2Status status,
@@ -98,25 +112,53 @@ static void read_description(const char *folder)
     fclose(file);
 }
 
+static void load_functions(void)
+{
+    load("fmi2Instantiate", &fmu.instantiate);
+    load("fmi2SetupExperiment", &fmu.setup_experiment);
+    load("fmi2EnterInitializationMode", &fmu.enter_initialization);
+    load("fmi2ExitInitializationMode", &fmu.exit_initialization);
+    load("fmi2SetReal", &fmu.set_real);
+    load("fmi2SetInteger", &fmu.set_integer);
+    load("fmi2GetReal", &fmu.get_real);
+    load("fmi2DoStep", &fmu.do_step);
+    load("fmi2Terminate", &fmu.terminate);
+    load("fmi2FreeInstance", &fmu.free_instance);
+}
+
+/* A new instance, initialised at t = 0. Parameters are set before the initialisation ends. */
+static fmi2Component start(void)
+{
+    static const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
+    const fmi2ValueReference modality = reference("modality"), m = reference("rls.m");
+    const fmi2ValueReference P_0 = reference("rls.P_0");
+    const fmi2Real P_0_start = 1e28;
+    const fmi2Integer sensor = 2, one = 1;
+    fmi2Component estimator;
+    char guid[64];
+
+    attribute(strstr(description, "<fmiModelDescription"), "guid=\"", guid, sizeof guid);
+    estimator =
+        fmu.instantiate("estimator", fmi2CoSimulation, guid, "", &callbacks, fmi2False, fmi2False);
+    if (estimator == NULL)
+        quit("failed:", "fmi2Instantiate");
+    check(fmu.setup_experiment(estimator, fmi2False, 0.0, 0.0, fmi2False, 0.0),
+          "fmi2SetupExperiment");
+    check(fmu.set_integer(estimator, &modality, 1, &sensor), "modality");
+    check(fmu.set_integer(estimator, &m, 1, &one), "rls.m");
+    check(fmu.set_real(estimator, &P_0, 1, &P_0_start), "rls.P_0");
+    check(fmu.enter_initialization(estimator), "fmi2EnterInitializationMode");
+    check(fmu.exit_initialization(estimator), "fmi2ExitInitializationMode");
+    return estimator;
+}
+
 int main(int argc, char **argv)
 {
-    const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
     const double T = 1e-3, k = 150.0, two_pi = 6.283185307179586;
-    fmi2InstantiateTYPE *instantiate;
-    fmi2SetupExperimentTYPE *setup_experiment;
-    fmi2EnterInitializationModeTYPE *enter_initialization;
-    fmi2ExitInitializationModeTYPE *exit_initialization;
-    fmi2SetRealTYPE *set_real;
-    fmi2SetIntegerTYPE *set_integer;
-    fmi2GetRealTYPE *get_real;
-    fmi2DoStepTYPE *do_step;
-    fmi2TerminateTYPE *terminate;
-    fmi2FreeInstanceTYPE *free_instance;
+    const fmi2Real smoother = 1e8;
     fmi2Component estimator;
-    fmi2ValueReference inputs[3], sigma, modality, m, P_0, V_a;
-    fmi2Real u[3], P_0_start = 1e28, estimate = 0.0, smoother = 1e8;
-    fmi2Integer sensor = 2, one = 1;
-    char guid[64];
+    fmi2ValueReference inputs[3], sigma, V_a;
+    fmi2Real u[3], estimate = 0.0;
     int tick;
 
     if (argc != 3)
@@ -125,39 +167,14 @@ int main(int argc, char **argv)
     library = dlopen(argv[2], RTLD_NOW | RTLD_LOCAL);
     if (library == NULL)
         quit("cannot load", dlerror());
-    load("fmi2Instantiate", &instantiate);
-    load("fmi2SetupExperiment", &setup_experiment);
-    load("fmi2EnterInitializationMode", &enter_initialization);
-    load("fmi2ExitInitializationMode", &exit_initialization);
-    load("fmi2SetReal", &set_real);
-    load("fmi2SetInteger", &set_integer);
-    load("fmi2GetReal", &get_real);
-    load("fmi2DoStep", &do_step);
-    load("fmi2Terminate", &terminate);
-    load("fmi2FreeInstance", &free_instance);
-
-    attribute(strstr(description, "<fmiModelDescription"), "guid=\"", guid, sizeof guid);
+    load_functions();
     inputs[0] = reference("theta");
     inputs[1] = reference("q");
     inputs[2] = reference("tau_e_sensor");
     sigma = reference("sigma");
-    modality = reference("modality");
-    m = reference("rls.m");
-    P_0 = reference("rls.P_0");
     V_a = reference("filter.V_a");
 
-    /* Parameters before the initialisation ends. */
-    estimator =
-        instantiate("estimator", fmi2CoSimulation, guid, "", &callbacks, fmi2False, fmi2False);
-    if (estimator == NULL)
-        quit("failed:", "fmi2Instantiate");
-    check(setup_experiment(estimator, fmi2False, 0.0, 0.0, fmi2False, 0.0), "fmi2SetupExperiment");
-    check(set_integer(estimator, &modality, 1, &sensor), "modality");
-    check(set_integer(estimator, &m, 1, &one), "rls.m");
-    check(set_real(estimator, &P_0, 1, &P_0_start), "rls.P_0");
-    check(enter_initialization(estimator), "fmi2EnterInitializationMode");
-    check(exit_initialization(estimator), "fmi2ExitInitializationMode");
-
+    estimator = start();
     /* At t_k set what is measured at t_k, then step from t_k to t_k + T: one tick, at t_k. */
     for (tick = 0; tick < 2000; ++tick) {
         const double t = tick * T, phi = 0.01 * sin(two_pi * t);
@@ -166,15 +183,15 @@ int main(int argc, char **argv)
         u[1] = u[0] + phi;            /* q */
         u[2] = k * phi;               /* tau_e_sensor */
         if (tick == 1000)             /* a tunable parameter; it acts from this tick on */
-            check(set_real(estimator, &V_a, 1, &smoother), "filter.V_a");
-        check(set_real(estimator, inputs, 3, u), "fmi2SetReal");
-        check(do_step(estimator, t, T, fmi2True), "fmi2DoStep");
-        check(get_real(estimator, &sigma, 1, &estimate), "fmi2GetReal");
+            check(fmu.set_real(estimator, &V_a, 1, &smoother), "filter.V_a");
+        check(fmu.set_real(estimator, inputs, 3, u), "fmi2SetReal");
+        check(fmu.do_step(estimator, t, T, fmi2True), "fmi2DoStep");
+        check(fmu.get_real(estimator, &sigma, 1, &estimate), "fmi2GetReal");
     }
     printf("sigma = %.6f N.m/rad\n", estimate);
 
-    check(terminate(estimator), "fmi2Terminate");
-    free_instance(estimator);
+    check(fmu.terminate(estimator), "fmi2Terminate");
+    fmu.free_instance(estimator);
     free(description);
     dlclose(library);
     return 0;

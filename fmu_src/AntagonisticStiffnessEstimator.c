@@ -1,14 +1,14 @@
-/* Binding of two estimators, one for each motor of an antagonistic pair, that share
- * the encoder of the link; section II: the device stiffness is the sum of the two.
+/* Binding of two estimators, one for each motor of an antagonistic pair. They share the encoder of
+ * the link. The stiffness of the device is the sum of the two, section II.
  */
 #include <math.h>
 
 #include "estimator_fmu.h"
 
 typedef struct {
-    sh_estimator_fmu side[2]; /* what is common to both stands in side[0] */
+    sh_estimator_fmu side[2]; /* side[0] holds what both have in common */
     double sigma;             /* stiffness of the device [N.m/rad] */
-    double sigma_std;         /* its standard deviation, if the errors of the sides are
+    double sigma_std;         /* its standard deviation, as if the errors of the sides were
                                  independent [N.m/rad] */
     int confident;            /* sigma_std is below confidence |sigma| */
     int valid;

@@ -21,7 +21,7 @@ void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu)
     fmu->strained = 0;
 }
 
-/* Ticks in one step. More would take minutes, and are a mistake in a unit. */
+/* Most ticks in one step. More would take minutes, and are the mistake of a wrong unit. */
 static const double MAX_TICKS = 1e9;
 
 /* Whether the deformation is, for the first time, larger than the parameters are made for. */
@@ -48,8 +48,8 @@ static sh_measurement extrapolate(const sh_estimator_fmu *fmu, double after)
     return z;
 }
 
-/* Says why a tick was skipped: the first input that is no measurement, or too much together. */
-static void say_skipped(const sh_measurement *z, double t, const char *who, sh_instance *log)
+/* Logs why a tick was skipped: the first input that is out of range, or all together too large. */
+static void log_skipped(const sh_measurement *z, double t, const char *who, sh_instance *log)
 {
     static const char *const NAMES[] = {"theta", "q", "theta_c", "tau", "tau_e_sensor"};
     const double values[] = {z->theta, z->q, z->theta_c, z->tau, z->tau_e_sensor};
@@ -59,7 +59,7 @@ static void say_skipped(const sh_measurement *z, double t, const char *who, sh_i
         if (!(fabs(values[i]) <= SH_LARGEST_MEASUREMENT)) {
             sh_log(log, fmi2Warning,
                    "%sTick at t = %.9g s skipped, the estimate is kept: expected %s finite and at "
-                   "most %g in magnitude, came %g.",
+                   "most %g in magnitude, received %g.",
                    who, t, NAMES[i], SH_LARGEST_MEASUREMENT, values[i]);
             return;
         }
@@ -92,7 +92,7 @@ fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, cons
         if (!sh_estimator_tick(&fmu->estimator, &fmu->parameters, &z, &fmu->output)) {
             status = fmi2Warning;
             if (was_valid)
-                say_skipped(&z, t + after, who, log);
+                log_skipped(&z, t + after, who, log);
         } else if (!was_valid) {
             sh_log(log, fmi2OK, "%sMeasurements are good again at t = %.9g s, %g ticks skipped.",
                    who, t + after, skipped);

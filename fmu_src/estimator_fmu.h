@@ -13,7 +13,7 @@ typedef struct {
     sh_estimate output;
     sh_estimator estimator;
     sh_sample_clock clock;
-    int strained; /* a deformation far beyond range.phi was reported */
+    int strained; /* 1: the warning of a too large deformation was logged */
 } sh_estimator_fmu;
 
 /* From an input to its time derivative. */
@@ -22,7 +22,7 @@ enum {
         (offsetof(sh_estimator_fmu, input_derivative) - offsetof(sh_estimator_fmu, input))
 };
 
-/* As in sh_model. `who` begins the messages: "", or which of several estimators. */
+/* As in sh_model. Messages begin with `who`: "", or which of several estimators it is. */
 fmi2Status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
                                   sh_instance *log);
 void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu);

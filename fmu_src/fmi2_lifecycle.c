@@ -47,7 +47,7 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
         chosen |= category;
     }
     if (!loggingOn)
-        instance->categories = SH_LOG_STATUS; /* debug messages alone go */
+        instance->categories = SH_LOG_STATUS; /* all but debug messages */
     else
         instance->categories = nCategories > 0 ? chosen : SH_LOG_ALL;
     return fmi2OK;
@@ -59,7 +59,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
                               fmi2Boolean loggingOn)
 {
     static char nameless[] = "(no name)";
-    sh_instance before = {0}; /* to log through while there is no instance */
+    sh_instance before = {0}; /* for messages while there is no instance */
     sh_instance *instance;
 
     (void)fmuResourceLocation; /* the FMU has no resources */
@@ -139,7 +139,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
                startTime);
         return fmi2Error;
     }
-    /* Steps beyond stopTime are run: importers round their last step, and nothing here ends. */
+    /* Steps beyond stopTime are allowed: importers round the length of their last step. */
     if (stopTimeDefined && !(stopTime >= startTime)) {
         sh_log(instance, fmi2Error,
                "fmi2SetupExperiment: stopTime = %.9g is before startTime = %.9g.", stopTime,
@@ -161,8 +161,8 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c)
     return fmi2OK;
 }
 
-/* A parameter out of range leaves the instance in initialisation mode, where it
- * can be set right.
+/* After an error of a parameter the instance stays in initialisation mode, where it can be
+ * corrected.
  */
 fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {

@@ -2,7 +2,7 @@
  *
  * A saved state is one block without pointers: this header, then the model's
  * struct. Serialised, it is the same bytes; version, GUID, length and checksum
- * tell a damaged or foreign block.
+ * show whether a block is damaged or of another FMU.
  */
 #include <stdint.h>
 #include <string.h>
@@ -11,8 +11,8 @@
 
 enum {
     GUID_LENGTH = 64,
-    STATE_VERSION = 2 /* raise it with every change of a model's struct: the GUID tells only
-                         changes of the variables */
+    STATE_VERSION = 2 /* to be raised with every change of a model's struct: the GUID changes
+                         with the variables only */
 };
 
 typedef struct {

@@ -5,8 +5,8 @@
 
 #include "instance.h"
 
-/* Derivatives hold for the step they were set for; the next one holds its inputs
- * unless the importer sets them again.
+/* Derivatives of inputs are valid for one step. In the next step inputs are constant, unless the
+ * importer sets derivatives again.
  */
 static void clear_input_derivatives(sh_instance *instance)
 {
@@ -39,9 +39,9 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
                "fmi2DoStep: communicationStepSize = %.9g s; expected a finite number above 0.", h);
         return fmi2Error;
     }
-    /* Importers add up their time with rounding, of which nothing follows: steps are counted by h.
-     * What is more than that, but small, is no gap, and the step then makes up for it: an importer
-     * whose h does not quite fit its times has the last word with the times.
+    /* An importer that adds up its time makes rounding errors. They have no effect, as ticks are
+     * counted by h. A larger difference that is still small comes from an importer whose h does not
+     * quite fit its times: then this step also covers the difference, so that it ends at t + h.
      */
     late = t - instance->time;
     rounding = 8.0 * DBL_EPSILON * fabs(t);
@@ -72,8 +72,8 @@ fmi2Status fmi2CancelStep(fmi2Component c)
     return fmi2Error;
 }
 
-/* Status information exists for asynchronous and for discarded steps; ours are
- * neither, and only the time reached can be told.
+/* Status information exists for asynchronous and for discarded steps. Here there are none, and only
+ * the time reached is known.
  */
 static fmi2Status no_status(fmi2Component c, const char *function)
 {

@@ -89,8 +89,8 @@ void sh_log(sh_instance *instance, fmi2Status status, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    sh_make_utf8(text); /* it may quote the importer, or be cut inside a character */
-    /* The logger takes the message for a format: a % must not start a conversion. */
+    sh_make_utf8(text); /* it may contain text of the importer, or be cut inside a character */
+    /* The logger uses the message as a format: a % must not start a conversion. */
     for (i = 0; text[i] != '\0'; ++i) {
         if (text[i] == '%')
             escaped[length++] = '%';
@@ -120,7 +120,7 @@ sh_instance *sh_enter(fmi2Component c, unsigned allowed_states, const char *func
     sh_instance *instance = c;
 
     if (instance == NULL)
-        return NULL; /* nobody to tell */
+        return NULL; /* no logger to report it to */
     if (!((unsigned)instance->state & allowed_states)) {
         sh_log(instance, fmi2Error, "%s: not allowed %s.", function, state_name(instance->state));
         return NULL;
@@ -136,7 +136,7 @@ int sh_has(sh_instance *instance, const void *pointer, const char *function, con
     return 0;
 }
 
-/* Both or none: memory must go back where it came from. */
+/* Both or none: memory must be freed by the same library that allocated it. */
 static int importer_allocates(const fmi2CallbackFunctions *callbacks)
 {
     return callbacks->allocateMemory != NULL && callbacks->freeMemory != NULL;
@@ -223,7 +223,7 @@ fmi2Status sh_check_parameters(sh_instance *instance)
     return fmi2OK;
 }
 
-/* Parameters that are each in their range may still give numbers too large together. */
+/* Parameters that are each in their range may together still give numbers that are too large. */
 static int outputs_are_finite(sh_instance *instance)
 {
     const char *bytes = instance->model;

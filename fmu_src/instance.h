@@ -1,4 +1,4 @@
-/* One instance of the FMU, as the files of the FMI shell share it. */
+/* One instance of the FMU: shared by the files of the FMI shell. */
 #ifndef SH_INSTANCE_H
 #define SH_INSTANCE_H
 
@@ -26,14 +26,14 @@ enum {
 };
 
 struct sh_instance {
-    fmi2CallbackFunctions callbacks; /* as handed over; any of them may be NULL */
+    fmi2CallbackFunctions callbacks; /* of the importer; any of them may be NULL */
     char *name;
     unsigned categories; /* SH_LOG_* that are passed on */
     sh_state state;
     double time;              /* communication point reached */
-    int outputs_stale;        /* initialisation: outputs do not yet follow what was set */
+    int outputs_stale;        /* in initialisation: outputs are older than what was set */
     int parameters_unchecked; /* a parameter was set since they were checked */
-    int slopes_set;           /* derivatives of inputs may be other than 0 */
+    int slopes_set;           /* derivatives of inputs may differ from 0 */
     void *model;              /* of sh_fmu_model.size bytes */
 };
 
@@ -42,10 +42,10 @@ struct sh_instance {
  */
 sh_instance *sh_enter(fmi2Component c, unsigned allowed_states, const char *function);
 
-/* 1 if the pointer is there or not needed; else 0, after a message. */
+/* 1 if the pointer is not NULL; else 0, after a message. */
 int sh_has(sh_instance *instance, const void *pointer, const char *function, const char *argument);
 
-/* Memory from the importer's functions, or the C library's where it gave none. */
+/* Memory from the functions of the importer, or from the C library if it has none. Zero. */
 void *sh_allocate(const fmi2CallbackFunctions *callbacks, size_t size);
 void sh_release(const fmi2CallbackFunctions *callbacks, void *memory);
 
@@ -55,10 +55,11 @@ int sh_make_utf8(char *text);
 /* Sets every variable to its start value. */
 void sh_set_start_values(sh_instance *instance);
 
-/* Checks the parameters, unless nothing changed since the last check. */
+/* Checks the parameters, if one was set since the last check. */
 fmi2Status sh_check_parameters(sh_instance *instance);
 
-/* Checks the parameters and computes the initial outputs, if anything changed. */
+/* Checks the parameters and computes the initial outputs, if anything was set since the last time.
+ */
 fmi2Status sh_initialize(sh_instance *instance);
 
 #endif

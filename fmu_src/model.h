@@ -1,4 +1,4 @@
-/* What a model gives to the FMI shell (fmi2_*.c): one constant of type sh_model.
+/* What a model provides for the FMI shell (fmi2_*.c): one constant of type sh_model.
  *
  * A model is one plain struct without pointers that holds parameters, inputs,
  * outputs and state. The shell allocates it, reaches its variables through the
@@ -17,9 +17,9 @@ typedef enum { SH_TYPE_REAL, SH_TYPE_INTEGER, SH_TYPE_BOOLEAN } sh_type;
 typedef enum {
     SH_ROLE_INPUT,
     SH_ROLE_OUTPUT,
-    SH_ROLE_GUESS,  /* output with a start value, which the model overwrites */
+    SH_ROLE_GUESS,  /* output with a start value; the model overwrites it */
     SH_ROLE_FIXED,  /* parameter, settable until the end of initialisation */
-    SH_ROLE_TUNABLE /* parameter, settable between steps too */
+    SH_ROLE_TUNABLE /* parameter, also settable between steps */
 } sh_role;
 
 /* One variable. Its value reference is its place in the table. */
@@ -33,7 +33,7 @@ typedef struct {
     int min_open, max_open; /* 1: the limit itself is not allowed */
 } sh_variable;
 
-/* Says something to the user through the importer's logger; format as printf. */
+/* Sends a message to the user through the logger of the importer; format as in printf. */
 typedef struct sh_instance sh_instance;
 void sh_log(sh_instance *instance, fmi2Status status, const char *format, ...);
 
@@ -45,8 +45,8 @@ typedef struct {
     size_t count;
     /* The time derivative of the input at offset o is at o + derivative_offset. */
     size_t derivative_offset;
-    /* Constraints between parameters; ranges of single ones were checked before.
-     * Logs what is wrong and returns fmi2Error, or returns fmi2OK.
+    /* Checks constraints between parameters, after the range of each one. Returns fmi2OK, or
+     * fmi2Error after a message. May be NULL.
      */
     fmi2Status (*check)(const void *model, sh_instance *log);
     /* Sets state and outputs from parameters and inputs. May be called again. */

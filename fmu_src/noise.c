@@ -25,14 +25,14 @@ double sh_noise_normal(int seed, uint64_t k, unsigned channel)
     uint64_t state = (uint64_t)seed;
     double u, x;
 
-    /* A start of its own for every seed, channel and sample. */
+    /* Every seed, channel and sample has its own initial state. */
     state = next_bits(&state) + channel;
     state = next_bits(&state) + k;
     state = next_bits(&state);
 
-    /* Ratio of uniforms: Kinderman, Monahan, ACM Trans. Math. Softw. 3 (1977). The
-     * logarithm, whose last bit depends on the platform, decides whether a pair is
-     * taken but does not enter the value.
+    /* Ratio of uniforms: Kinderman, Monahan, ACM Trans. Math. Softw. 3 (1977). The last bit of the
+     * logarithm depends on the platform, but the logarithm only decides whether a pair is accepted;
+     * the value does not depend on it.
      */
     do {
         const double v = 1.7155277699214135 * (uniform(&state) - 0.5); /* sqrt(8/e) */

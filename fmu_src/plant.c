@@ -1,4 +1,4 @@
-/* Binding of a plant to the FMI shell. Nothing here depends on which plant it is. */
+/* Binding of a plant to the FMI shell, the same for every plant. */
 #include "plant.h"
 
 #include <math.h>
@@ -54,7 +54,7 @@ static fmi2Status step(void *model, double t, double h, sh_instance *log)
         if (!isfinite(plant->u[i]) || !isfinite(u_end[i])) {
             sh_log(log, fmi2Error,
                    "Step from t = %.9g s refused, the state is kept: expected a finite input "
-                   "%s, came %g at its begin and %g at its end.",
+                   "%s, received %g at its begin and %g at its end.",
                    t, input_name(i), plant->u[i], u_end[i]);
             return fmi2Error;
         }

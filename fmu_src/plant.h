@@ -1,6 +1,4 @@
-/* A plant FMU: the struct of the FMI shell's model for any plant whose equations
- * were generated to C.
- */
+/* The model of a plant FMU, for any plant whose equations were generated to C. */
 #ifndef SH_PLANT_H
 #define SH_PLANT_H
 
@@ -15,7 +13,7 @@ typedef struct {
     double du[SH_PLANT_INPUTS]; /* time derivatives of u */
     double y[SH_PLANT_OUTPUTS];
     double x[SH_PLANT_STATES];
-    double h;        /* internal step that suits the motion [s] */
+    double h;        /* internal step that is short enough for the motion [s] */
     uint64_t sample; /* number of the noise sample in y */
     int seed;        /* of the noise */
 } sh_plant;

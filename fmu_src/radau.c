@@ -9,15 +9,15 @@ enum { STATES = SH_PLANT_STATES, INPUTS = SH_PLANT_INPUTS, STAGES = 3 };
 enum { MAX_NEWTON_ITERATIONS = 10, MAX_FOLLOWERS = 8 };
 
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
-enum { MAX_ATTEMPTS = 1000 }; /* a fuzzer finds steps that take all of them */
+enum { MAX_ATTEMPTS = 1000 }; /* a fuzzer finds steps that need all of them */
 #else
 enum { MAX_ATTEMPTS = 1000000 };
 #endif
 
 static const double SCALE[STATES] = SH_PLANT_SCALES;
 static const double ERROR_TOLERANCE = 1e-8;
-/* What is left of the error of Newton's iteration adds up over steps, and the
- * last iteration usually undercuts this by orders of magnitude.
+/* Errors that Newton's iteration leaves add up over the steps. The last iteration is usually
+ * smaller than this by orders of magnitude.
  */
 static const double NEWTON_TOLERANCE = 1e-12;
 
@@ -99,9 +99,9 @@ static void transform(const double (*matrix)[STAGES], double (*from)[STATES], do
                 matrix[i][0] * from[0][j] + matrix[i][1] * from[1][j] + matrix[i][2] * from[2][j];
 }
 
-/* Finds Z with Z_i = h sum_k a_ik f(x + Z_k) by Newton's iteration with the one
- * Jacobian at x, in the variables W = T^-1 Z, in which it falls apart into a real
- * and a complex system. Returns 0 if it does not converge.
+/* Finds Z with Z_i = h sum_k a_ik f(x + Z_k) by Newton's iteration, with the Jacobian at x for all
+ * stages. In the variables W = T^-1 Z it separates into a real and a complex system. Returns 0 if
+ * it does not converge.
  */
 static int solve_stages(const double *x, const double *u, const double *du, const double *p,
                         double h, const double *factors, double (*Z)[STATES])
@@ -138,7 +138,7 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
         change = norm(dW[0], x) + norm(dW[1], x) + norm(dW[2], x);
         if (change <= NEWTON_TOLERANCE)
             return 1;
-        /* Changes shrink by a constant factor; their sum is what is left. */
+        /* The changes shrink by a constant factor; the error is the sum of those to come. */
         if (iteration > 0) {
             const double rate = change / previous;
             if (!(rate < 1.0))
@@ -150,11 +150,12 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     return 0;
 }
 
-/* One step as sh_radau_step, with factors for its length; the error is what as many more steps as
- * `followers` leave of it.
+/* One step as sh_radau_step, with factors for its length. The error is the part of it that is left
+ * after `followers` more steps of this length.
  *
- * A motion that has died out by then need not be resolved. A step takes exp(z) to R(z), and R to
- * less than 1 / (1 - z / REAL) on the whole negative axis, which the factors give for all modes.
+ * A motion that has decayed by then need not be resolved. A step multiplies a mode by R(z), where
+ * the exact solution has exp(z). On the whole negative axis R(z) is below 1 / (1 - z / REAL), and
+ * the factors give this bound for all modes at once.
  */
 static double take(const double *x, const double *u, const double *du, const double *p, double h,
                    int followers, const double *factors, double *x_new)
@@ -176,8 +177,8 @@ static double take(const double *x, const double *u, const double *du, const dou
     solve_real(factors, error);
     size = norm(error, x) / ERROR_TOLERANCE;
     if (size > 1.0) {
-        /* Fast modes, which the step damps, count in it as if they stayed. Taken
-         * again at x + error, they count as what is left of them.
+        /* This estimate counts fast modes fully, although the step damps them. Computed again at
+         * x + error, it counts the part of them that is left.
          */
         double x_error[STATES];
         for (j = 0; j < STATES; ++j)
@@ -211,7 +212,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
 {
     /* Far below any time constant, far above the rounding of the time. */
     const double shortest = 1e-12 * (1.0 + duration);
-    double elapsed = 0.0, begin = INFINITY;             /* step that suits the begin */
+    double elapsed = 0.0, begin = INFINITY;             /* suggested after the first step */
     double factors[SH_PLANT_FACTORS], factorized = 0.0; /* for steps of this length */
     int attempt, steps = 0, owed = 0, j;
 
@@ -224,7 +225,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
 
         for (j = 0; j < INPUTS; ++j)
             u_now[j] = u[j] + du[j] * elapsed;
-        /* Steps that were planned together share their factors. */
+        /* Steps that were planned together have the same length and use the same factors. */
         if (owed == 0 || fabs(step - factorized) > 1e-9 * step) {
             factorize(x, u_now, p, step, factors);
             factorized = step;
@@ -239,7 +240,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
             ++steps;
             owed = followers;
             if (pieces <= 1.0) {
-                *h = fmin(*h, begin); /* what follows may begin as this did */
+                *h = fmin(*h, begin); /* the next call may begin with the same transient */
                 return steps;
             }
             if (steps == 1)

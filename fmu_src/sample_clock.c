@@ -10,10 +10,10 @@ void sh_sample_clock_start(sh_sample_clock *clock)
 int sh_sample_clock_tick(sh_sample_clock *clock, double h, double T, double *after)
 {
     const double step = h / T;
-    const double tolerance = fmin(1e-6, step / 2.0); /* a tiny step is not nothing */
+    const double tolerance = fmin(1e-6, step / 2.0); /* a step of any length counts */
 
     if (clock->ahead < step - tolerance) {
-        *after = fmax(clock->ahead, 0.0) * T; /* may be late by the tolerance */
+        *after = fmax(clock->ahead, 0.0) * T; /* it may be negative by the tolerance */
         clock->ahead += 1.0;
         return 1;
     }

@@ -9,16 +9,16 @@ typedef struct {
     double ahead; /* next tick, in periods after the communication point */
 } sh_sample_clock;
 
-/* Starts the clock: the first tick is at the communication point. */
+/* Starts the clock: the first tick is at the current communication point. */
 void sh_sample_clock_start(sh_sample_clock *clock);
 
-/* Whether a tick is due before the end of a step of h seconds. If so, *after is
- * its time after the begin of the step [s], and the clock goes on to the next.
- * If not, the clock has moved to the end of the step.
+/* Returns 1 if a tick is due before the end of a step of h seconds; then *after is its time after
+ * the begin of the step [s], and the next call asks for the next tick. Returns 0 if not; then the
+ * clock has moved to the end of the step.
  *
- * Steps are counted in periods T and not in the importer's time, whose rounding
- * adds up: a step of T is one tick, however many of them. A tick within 1e-6 of
- * a period of the end of the step is the next step's.
+ * The clock counts in periods T and not in the importer's time, whose rounding errors add up: a
+ * step of length T is one tick, for any number of steps. A tick within 1e-6 of a period of the end
+ * of the step belongs to the next step.
  */
 int sh_sample_clock_tick(sh_sample_clock *clock, double h, double T, double *after);
 

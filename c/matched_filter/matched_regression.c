@@ -167,8 +167,8 @@ static sh_real friction_variance(const sh_matched_regression *matched, const sh_
  * Two errors stay the same from sample to sample: rounding, while the joint is at rest, and the
  * wrong sign of friction, while the motor creeps. If R is the variance of one sample and c the
  * variance of its part that stays, the information of n samples is 1 / (R / n + c). The n-th sample
- * adds as much to it as one of variance R (1 + c n / R)^2, and all samples together add no more than
- * 1 / c.
+ * adds as much to it as one of variance R (1 + c n / R)^2, and all samples together add no more
+ * than 1 / c.
  */
 static sh_real noise_variance(const sh_matched_regression *matched, const sh_least_squares *rls,
                               const sh_parameters *p, sh_real sigma)
@@ -201,11 +201,11 @@ static void compensate(sh_matched_regression *matched, sh_least_squares *rls,
 
 /* Lets the torque curve drift in the direction that this sample measures, and in no other.
  *
- * As a random walk, the curve would gain the share drift T of its prior variance P_0 in each sample.
- * Here it gains it along P_0 F only, the change of the curve that has the largest effect on this
- * sample, and no more than the sample can measure with its noise. So what is not measured is not
- * forgotten. This follows the directional forgetting of Kulhavy 1987, Automatica 23:589-600, and
- * Cao and Schwartz 2000, Automatica 36:1725-1731, who reduce the information; here no variance
+ * As a random walk, the curve would gain the share drift T of its prior variance P_0 in each
+ * sample. Here it gains it along P_0 F only, the change of the curve that has the largest effect on
+ * this sample, and no more than the sample can measure with its noise. So what is not measured is
+ * not forgotten. This follows the directional forgetting of Kulhavy 1987, Automatica 23:589-600,
+ * and Cao and Schwartz 2000, Automatica 36:1725-1731, who reduce the information; here no variance
  * grows beyond its prior. The motor data are constant.
  */
 static void drift(sh_matched_regression *matched, sh_least_squares *rls, const sh_parameters *p,

@@ -1,5 +1,5 @@
-/* Regression of the method MatchedFilter: the flexibility torque and the errors of the motor data in
- * one regression, from signals that all passed the same filter.
+/* Regression of the method MatchedFilter: the flexibility torque and the errors of the motor data
+ * in one regression, from signals that all passed the same filter.
  *
  * Take the motor (3) with Coulomb friction, and let its data B and D_theta have the relative errors
  * b and d:
@@ -34,8 +34,8 @@ enum { SH_MOTOR_D_THETA = 0, SH_MOTOR_B = 1, SH_MOTOR_COULOMB = 2 };
 void sh_matched_start(sh_matched_regression *matched, sh_least_squares *rls, const sh_parameters *p,
                       const sh_real *eta_0);
 
-/* Lets the filters start again with the next sample, and the recursion wait until they have settled.
- * For use after samples were lost; the estimate does not change.
+/* Lets the filters start again with the next sample, and the recursion wait until they have
+ * settled. For use after samples were lost; the estimate does not change.
  */
 void sh_matched_resume(sh_matched_regression *matched, const sh_parameters *p);
 
@@ -56,8 +56,8 @@ int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls, const
                     sh_real theta, sh_real torque, sh_real phi, sh_real sigma, const sh_real *F,
                     sh_real *y, sh_innovation *innovation);
 
-/* The estimate of all parameters: that of the recursion, with the correct weight of what is known of
- * b, see sh_rounding_bias_estimate.
+/* The estimate of all parameters: that of the recursion, with the correct weight of what is known
+ * of b, see sh_rounding_bias_estimate.
  *
  * dF   [size: rls->P.size] a combination of parameters
  * eta  [size: rls->P.size] out: the estimate

@@ -1,7 +1,7 @@
 /* The basis of torque_basis.h in units that suit a prior.
  *
- * Deformation and set-point are divided by their ranges, and a power e of the deformation is divided
- * by e:
+ * Deformation and set-point are divided by their ranges, and a power e of the deformation is
+ * divided by e:
  *
  *     (l / l_range)^j (phi / phi_range)^e / e .
  *

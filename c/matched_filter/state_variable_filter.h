@@ -17,8 +17,8 @@
 
 #include "sigmahat.h"
 
-/* Filter with the corner frequency w [rad/s] and the sample period T [s]. w T >= 1e-4: below, digits
- * are lost.
+/* Filter with the corner frequency w [rad/s] and the sample period T [s]. w T >= 1e-4: below,
+ * digits are lost.
  */
 sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T);
 
@@ -32,8 +32,8 @@ void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x)
 void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_filter_design *design,
                                    sh_real x);
 
-/* Advances the filter by T, in which the signal had the given mean. One filter takes only one of the
- * two kinds of steps.
+/* Advances the filter by T, in which the signal had the given mean. One filter takes only one of
+ * the two kinds of steps.
  */
 void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
                                         const sh_filter_design *design, sh_real mean);

@@ -2,8 +2,8 @@
 
 #include "real_math.h"
 
-/* Far below any velocity [rad/s] and lag [rad], and far above the numbers that processors are slow
- * with, to which both would decay at rest.
+/* Far below any velocity [rad/s] and lag [rad], and far above the numbers that processors compute
+ * slowly with, to which both would decay at rest.
  */
 static const sh_real AT_REST = (sh_real)1e-30;
 
@@ -15,7 +15,7 @@ sh_real sh_measurement_variance(const sh_filter_parameters *filter, sh_real x_do
     if (!(w_s > 0))
         return filter->V_min;
     relative = filter->weighting == SH_WEIGHTING_NORMALIZED ? speed / w_s : speed * w_s;
-    /* (11); exp may overflow to infinity, which makes R the minimum as it should. */
+    /* (11). If exp overflows to infinity, R is V_min, which is right. */
     return (filter->V_max - filter->V_min) / (1 + sh_exp((relative - 1) * filter->alpha)) +
            filter->V_min;
 }
@@ -69,7 +69,7 @@ void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_param
         kalman->lag = 0;
         kalman->x_dot = 0;
     }
-    /* P11 - P11^2/S without the subtraction, which would lose digits where P11 >> R */
+    /* This is P11 - P11^2/S. The subtraction would lose digits if P11 >> R. */
     kalman->P11 = P11 * (R / S);
     kalman->P12 = P12 * (R / S);
     kalman->P22 = P22 - P12 * (P12 / S);

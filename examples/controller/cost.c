@@ -32,7 +32,7 @@ static void tick(void)
     sh_estimator_tick(&estimator, &parameters, &z, &estimate);
 }
 
-/* A loop of 2 instructions per turn, to learn what an instruction is on the clock. */
+/* A loop of 2 instructions per turn, to measure the counts of the clock per instruction. */
 static void loop(void)
 {
     uint32_t turns = 100000;

@@ -1,4 +1,4 @@
-/* What main.c needs of the machine. Write these for yours. */
+/* What main.c needs from the hardware. Write these functions for yours. */
 #ifndef HARDWARE_H
 #define HARDWARE_H
 
@@ -16,7 +16,7 @@ void hardware_start_ticks(uint32_t rate);
 /* Reads encoders and current. */
 hardware_sample hardware_read(void);
 
-/* Counts of the clock since this interrupt was due, and in a period. */
+/* Counts of the clock since this interrupt was due, and counts in one period. */
 uint32_t hardware_elapsed(void);
 uint32_t hardware_period(void);
 
@@ -27,7 +27,7 @@ uint32_t hardware_clock(void);
 /* Sleeps until an interrupt. */
 void hardware_sleep(void);
 
-/* Keeps interrupts out from one to the other. */
+/* Between these two calls there are no interrupts. */
 void hardware_disable_interrupts(void);
 void hardware_enable_interrupts(void);
 

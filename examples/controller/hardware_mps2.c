@@ -1,4 +1,4 @@
-/* Arm's board MPS2 (in QEMU: mps2-an386, mps2-an500), with a joint that is computed. */
+/* Arm's board MPS2 (in QEMU: mps2-an386, mps2-an500), with a simulated joint. */
 #include "hardware.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* The estimator in the interrupt of a control loop at 1 kHz: docs/controller.md.
  *
- * Runs for three seconds, changes a parameter after two, and prints what it found.
+ * It runs for three seconds, changes a parameter after two, and prints the stiffness.
  */
 #include <stdio.h>
 
@@ -14,7 +14,7 @@ static sh_parameters parameters;
 static sh_estimator estimator;
 static sh_estimate estimate;
 
-/* From the interrupt to the main loop. Numbers of one word are read whole. */
+/* From the interrupt to the main loop. The processor reads a number of one word as a whole. */
 static volatile sh_real sigma, sigma_std;
 static volatile uint32_t ticks, longest, missed;
 
@@ -31,7 +31,7 @@ void SysTick_Handler(void)
     z.q = count * (sh_real)sample.q;
     z.tau = (sh_real)sample.tau;
     if (!sh_estimator_tick(&estimator, &parameters, &z, &estimate))
-        ++missed; /* a measurement was not finite: the estimate is the one before */
+        ++missed; /* a measurement was not finite: the estimate did not change */
     sigma = estimate.sigma;
     sigma_std = estimate.sigma_std;
     /* Here a controller would use estimate.sigma and set its torque. */
@@ -41,7 +41,9 @@ void SysTick_Handler(void)
         longest = elapsed;
 }
 
-/* A joint with one transmission, nothing sets its stiffness: order 1 in the set-point. */
+/* A joint with one transmission and no second motor that sets its stiffness: order 1 in the
+ * set-point.
+ */
 static void configure(sh_parameters *p)
 {
     sh_parameters_default(p);

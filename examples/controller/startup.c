@@ -1,7 +1,7 @@
-/* What happens on a Cortex-M with a floating-point unit before main, and its interrupt table. */
+/* The start of a Cortex-M with a floating-point unit, before main, and its interrupt table. */
 #include <stdint.h>
 
-void stack_top(void); /* no function: an address, from mps2.ld */
+void stack_top(void); /* not a function but an address, from mps2.ld */
 void _start(void);    /* of the C library: clears .bss, calls main and exit */
 void SysTick_Handler(void);
 
@@ -16,11 +16,11 @@ static void reset(void)
 
     *CPACR = *CPACR | 0xfu << 20; /* the floating-point unit is off after a reset */
     __asm volatile("dsb\n\tisb");
-    /* Code in flash would copy .data to RAM here; the emulator loads it there. */
+    /* A program in flash would copy .data to RAM here. The emulator has already loaded it there. */
     _start();
 }
 
-/* A second fault inside a fault stops the processor, and the emulator with a message. */
+/* A second fault inside a fault stops the processor, and then the emulator prints a message. */
 static void fault(void)
 {
     __asm volatile("udf #0");

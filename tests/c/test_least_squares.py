@@ -268,9 +268,7 @@ def test_a_weight_is_the_inverse_of_the_noise_variance(c: Library) -> None:
     for k in range(30):
         row = F[k].copy()
         want = y[k] - row @ recursion.eta, row @ recursion.covariance @ row
-        assert c.lib.sh_least_squares_weigh(
-            recursion.state, w[k], c.pointer(row), y[k], innovation
-        )
+        assert c.lib.sh_least_squares_weigh(recursion.state, w[k], c.pointer(row), y[k], innovation)
         assert (innovation.epsilon, innovation.rho) == pytest.approx(want, rel=1e-9)
         assert innovation.a == 1.0
     on = prior > 0

@@ -273,6 +273,18 @@ def test_a_tick_with_a_huge_deformation_is_skipped(c: Library, where: int) -> No
     assert np.all(np.isfinite(estimator.covariance()))
 
 
+def test_the_first_sample_is_the_first_good_one(c: Library) -> None:
+    """GIVEN a first sample whose powers overflow, THEN the next one starts the filters."""
+    z = Joint(duration=1.0).measurements()
+    found = []
+    for bad in (math.nan, 1e11):
+        z[0, 1] = bad
+        run = Estimator(c, {**ALL, "rls.n": 8, "rls.m": 5, "range.phi": 1e-3}).run(z)
+        assert run["valid"][:2].tolist() == [0, 1]
+        found.append(run.tobytes())
+    assert found[0] == found[1]
+
+
 # The paper's method
 
 

@@ -11,8 +11,15 @@ from pathlib import Path
 import pytest
 
 from gate import missing
+from mutation import EQUIVALENT, SOURCES, candidates
 
 REPOSITORY = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize(("file", "code"), [(file, code) for file, code, _ in EQUIVALENT])
+def test_every_exemption_is_of_code_that_exists(file: str, code: str) -> None:
+    mutants = (mutant for choices in candidates(SOURCES[file], "") for mutant in choices)
+    assert any(mutant.makes(code) for mutant in mutants)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="the mutants are tested in forks")

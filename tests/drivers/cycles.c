@@ -1,7 +1,7 @@
-/* cycles N: instances created, initialised, stepped and freed N times.
+/* cycles N: creates, initialises, steps and frees an instance, N times.
  *
- * Each also saves, serialises and restores its state, is refused something and reset. Prints
- * by how much the resident memory has grown since the first tenth of the cycles.
+ * Each instance also saves, serialises and restores its state, makes a call that is refused, and is
+ * reset. Prints by how much the resident memory grew after the first tenth of the cycles.
  */
 #include <stdio.h>
 #include <stdlib.h>

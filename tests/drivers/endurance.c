@@ -1,9 +1,9 @@
 /* Runs one estimator for any number of ticks: METHOD N M TORQUE TICKS.
  *
  * TORQUE is the size of a huge torque in the input, in multiples of the usual torque. After every
- * tick, P has to be positive definite and every output finite; if not, the program prints the number
- * of the tick and ends with 1. It prints the outputs at checkpoints, one line each: every time the
- * number of ticks has grown by a third.
+ * tick, P has to be positive definite and every output finite; if not, the program prints the
+ * number of the tick and ends with 1. It prints the outputs at checkpoints, one line each: every
+ * time the number of ticks has grown by a third.
  */
 #include <math.h>
 #include <stdio.h>

@@ -19,7 +19,7 @@ static void turn(input_pointer *p)
 {
     const double c = p->c * p->step_c - p->s * p->step_s;
     const double s = p->s * p->step_c + p->c * p->step_s;
-    const double shrink = 1.5 - 0.5 * (c * c + s * s); /* keeps it on the circle */
+    const double shrink = 1.5 - 0.5 * (c * c + s * s); /* its length stays 1 */
 
     p->c = c * shrink;
     p->s = s * shrink;
@@ -92,22 +92,22 @@ input_sample input_next(input_stream *input)
         input->held = z;
         return z;
     }
-    if (phase < 50000) /* nothing moves */
+    if (phase < 50000) /* the joint is at rest */
         return input->held;
-    if (phase < 60000) { /* the encoder of the motor has a stop */
+    if (phase < 60000) { /* the encoder of the motor saturates */
         z.theta = fmin(fmax(z.theta, -0.25), 0.25);
         return z;
     }
-    if (phase < 61000) { /* a torque that no joint has */
+    if (phase < 61000) { /* a torque larger than that of any joint */
         z.tau *= input->torque;
         z.tau_e_sensor *= input->torque;
         return z;
     }
-    if (phase >= 70000 && phase < 80000) /* what feeds the regression changes */
+    if (phase >= 70000 && phase < 80000) /* the modality changes */
         z.modality = 1 + (int)(phase / 500 % 3);
-    if (phase >= 80000 && phase < 82000 && phase % 100 == 0) /* samples are lost, one by one */
+    if (phase >= 80000 && phase < 82000 && phase % 100 == 0) /* single samples are lost */
         z.q = NAN;
-    if (phase >= 82000 && phase < 83000) /* and for a second */
+    if (phase >= 82000 && phase < 83000) /* all samples of a second are lost */
         z.tau = INFINITY;
     return z;
 }

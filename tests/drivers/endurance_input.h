@@ -1,19 +1,19 @@
-/* Measurements for a run without end, in double whatever SH_REAL is. */
+/* Measurements for a run of any length, in double for any SH_REAL. */
 #ifndef ENDURANCE_INPUT_H
 #define ENDURANCE_INPUT_H
 
 #include <stdint.h>
 
-enum { INPUT_CYCLE = 100000 }; /* ticks after which the phases come again */
+enum { INPUT_CYCLE = 100000 }; /* ticks after which the phases repeat */
 
-enum { INPUT_COUNTS = 40000 }; /* of every encoder, in a turn */
+enum { INPUT_COUNTS = 40000 }; /* of every encoder, per turn */
 
 /* Rotating pointer: cos and sin of an angle that grows by the same amount every tick. */
 typedef struct {
     double c, s, step_c, step_s;
 } input_pointer;
 
-/* What the joint does in a tick. */
+/* The sample of one tick. */
 typedef struct {
     double theta, q, theta_c, tau, tau_e_sensor;
     int modality; /* as sh_parameters.modality */
@@ -21,16 +21,16 @@ typedef struct {
 
 typedef struct {
     input_pointer fast, slow, bend, twist, secondary;
-    double torque; /* huge, times the usual */
+    double torque; /* the huge one, in multiples of the usual one */
     uint64_t random;
     long tick;
-    input_sample held; /* what the encoders show while nothing moves */
+    input_sample held; /* what the encoders show at rest */
 } input_stream;
 
 void input_start(input_stream *input, double torque);
 
-/* The next sample: excitation, rest, an encoder at its stop, a huge torque, changing
- * modality, lost samples, and from the start again.
+/* The next sample: excitation, rest, a saturated encoder, a huge torque, changes of the modality, lost
+ * samples, and then all of it again.
  */
 input_sample input_next(input_stream *input);
 

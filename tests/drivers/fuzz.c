@@ -1,10 +1,10 @@
 /* Sequences of FMI calls with arguments of any kind, for libFuzzer, linked with one FMU.
  *
- * The fuzzer's bytes are the choices, one call after the other until they end. Most
- * arguments are sensible, or no sequence would get anywhere. The sanitizers look for what is
- * undefined or leaks; here it is checked that a refused step leaves the time, that a state
- * restored gives the same step bit for bit, that spoilt states and wrong GUIDs are refused,
- * and that the logger gets what it was promised.
+ * The bytes of the fuzzer choose the calls, one after the other, until there are no more bytes.
+ * Most arguments are valid, because else no sequence would get past its first calls. The sanitizers
+ * look for undefined behaviour and leaks. This program checks that a refused step does not change
+ * the time, that a restored state gives the same step bit for bit, that damaged states and wrong
+ * GUIDs are refused, and that the logger receives valid arguments.
  */
 #include <float.h>
 #include <math.h>
@@ -19,13 +19,13 @@
 enum { SLOTS = 3, MAX_VALUES = 6, MAX_TICKS = 50, TEXT = 16 };
 
 typedef struct {
-    const uint8_t *next, *end; /* what is left of the fuzzer's bytes */
+    const uint8_t *next, *end; /* the remaining bytes of the fuzzer */
     fmi2Component instance;
     fmi2FMUstate states[SLOTS];
-    double time; /* communication point that comes next */
+    double time; /* next communication point */
 } sequence;
 
-static int allocations_left; /* before the importer's memory is used up */
+static int allocations_left; /* until the allocator of the importer fails */
 
 static void check(int condition, const char *what)
 {
@@ -45,7 +45,7 @@ static unsigned below(sequence *s, unsigned n)
     return byte(s) % n;
 }
 
-/* 1 once in n times, 0 when the bytes end. */
+/* 1 in one of n cases; 0 when there are no more bytes. */
 static int seldom(sequence *s, unsigned n)
 {
     return byte(s) % n == n - 1;
@@ -61,7 +61,7 @@ static uint64_t bits(sequence *s)
     return all;
 }
 
-/* A double, mostly of the size given, sometimes anything. */
+/* A double: mostly about as large as `size`, sometimes any number. */
 static double some_real(sequence *s, double size)
 {
     static const double ODD[] = {0.0,  -0.0,     1.0,     -1.0,    NAN,    INFINITY,
@@ -228,7 +228,7 @@ static double time_reached(const sequence *s, double otherwise)
     return otherwise;
 }
 
-/* A step size that does not take more than MAX_TICKS: long ones are right, but slow. */
+/* A step of at most MAX_TICKS ticks: longer ones are valid, but slow. */
 static double short_enough(const sequence *s, double h)
 {
     fmi2ValueReference i;
@@ -315,7 +315,7 @@ static void serialise(sequence *s, fmi2FMUstate *state)
         bytes[bits(s) % size] ^= (fmi2Byte)flip;
         damaged = flip != 0;
     }
-    if (seldom(s, 4)) { /* truncated, and no byte more to read */
+    if (seldom(s, 4)) { /* truncated, in a block of exactly this size */
         length = (below(s, 2) ? bits(s) : byte(s)) % size;
         bytes = realloc(bytes, length > 0 ? length : 1);
         check(bytes != NULL, "out of memory");
@@ -394,7 +394,7 @@ static void set_up(sequence *s)
         s->time = start;
 }
 
-/* What is not provided. */
+/* Functions that are not provided. */
 static void ask_for_derivatives(sequence *s)
 {
     const fmi2ValueReference reference = byte(s);
@@ -434,7 +434,7 @@ static void call(sequence *s)
     case 7:
         fmi2ExitInitializationMode(s->instance);
         break;
-    case 8: /* all the way to the first step */
+    case 8: /* all calls up to the first step */
         fmi2Reset(s->instance);
         set_up(s);
         set_real(s, SH_ROLE_GUESS, SH_ROLE_TUNABLE);
@@ -506,7 +506,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                                  seldom(&s, 64) ? fmi2ModelExchange : fmi2CoSimulation,
                                  sh_fmu_model.guid, how & 4 ? "file:///%s" : NULL, &callbacks,
                                  fmi2False, how & 8 ? fmi2True : fmi2False);
-    if (!(how & 16)) { /* most sequences get beyond the beginning */
+    if (!(how & 16)) { /* most sequences begin with an initialised instance */
         fmi2EnterInitializationMode(s.instance);
         fmi2ExitInitializationMode(s.instance);
     }

@@ -4,7 +4,8 @@
 
 #include "sigmahat.h"
 
-/* Runs ticks over the samples z [size: samples], again from the first when they end.
+/* Runs ticks over the samples z [size: samples]; after the last sample it begins again with the
+ * first.
  *
  * estimate  in and out, as for sh_estimator_tick
  * record    [size: ticks] the estimate of every tick, or NULL

@@ -1,5 +1,5 @@
-/* Eight instances one after the other, then in turn, then each in a thread of its own: the
- * same outputs, bit for bit.
+/* Runs eight instances one after the other, then with alternating steps, then each in its own
+ * thread. The outputs must be the same, bit for bit.
  */
 #include <pthread.h>
 #include <stdlib.h>

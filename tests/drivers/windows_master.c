@@ -1,4 +1,4 @@
-/* The smallest master for Windows: steps one FMU on inputs read from stdin.
+/* A small master for Windows: it steps one FMU with inputs that it reads from stdin.
  *
  * windows_master LIBRARY GUID H INPUTS REFERENCE...
  *

@@ -561,7 +561,7 @@ def test_a_bad_input_derivative_skips_the_ticks_that_use_it(estimator_fmu: Path)
         assert fmu.set_derivative("theta", math.nan) == OK
         assert fmu.step(0.0, 2e-3) == WARNING
         message = fmu.messages[-1][2].replace("-nan", "nan")
-        assert "expected theta finite" in message and "came nan" in message
+        assert "expected theta finite" in message and "received nan" in message
         assert fmu.step(2e-3, 1e-3) == OK
         assert fmu.get("valid") == 1
 

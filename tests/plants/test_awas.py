@@ -204,10 +204,10 @@ OUTPUTS = [*STATES, "tau_e", "theta_measured", "tau_measured", "tau_e_measured"]
 @pytest.mark.parametrize(
     ("name", "value", "slope", "message"),
     [
-        ("tau", math.nan, 0.0, "finite input tau, came nan"),
-        ("tau_c", math.inf, 0.0, "finite input tau_c, came inf"),
-        ("tau_ext", -math.inf, 0.0, "finite input tau_ext, came -inf"),
-        ("tau", 1.7e308, 1.7e308, "finite input tau, came 1.7e+308 at its begin and inf"),
+        ("tau", math.nan, 0.0, "finite input tau, received nan"),
+        ("tau_c", math.inf, 0.0, "finite input tau_c, received inf"),
+        ("tau_ext", -math.inf, 0.0, "finite input tau_ext, received -inf"),
+        ("tau", 1.7e308, 1.7e308, "finite input tau, received 1.7e+308 at its begin and inf"),
         ("tau_ext", 1e300, 0.0, "no solution"),
         ("tau_ext", 0.0, 1e26, "no solution"),  # has one at first
     ],

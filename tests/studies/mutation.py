@@ -29,6 +29,7 @@ import pytest
 
 TESTS = Path(__file__).resolve().parents[1]
 LIBRARY = TESTS.parent / "c"
+SOURCES = {file.name: file for file in sorted(LIBRARY.rglob("*.c"))}
 NUMBER, SEED = 66, "fresh-b"  # the sample of the test in the gate
 CPU_SECONDS = (
     30  # limit for the tests of one mutant; a mutant that takes longer is taken as an endless loop
@@ -38,8 +39,11 @@ REQUIRED = 0.9  # share of the mutants that the tests have to notice
 USERS = {
     "kinematic_kalman": ("stiffness_estimator",),
     "least_squares": ("matched_*", "stiffness_estimator"),
+    "matched_filter": ("prior", "stiffness_estimator", "matched_*"),
     "matched_regression": ("matched_*",),
+    "method": ("stiffness_estimator", "matched_*"),
     "motion_sign": ("matched_*",),
+    "paper2011": ("prior", "stiffness_estimator"),
     "parameters": ("stiffness_estimator",),
     "rounding_bias": ("matched_*",),
     "scaled_basis": ("prior", "matched_*"),
@@ -47,6 +51,7 @@ USERS = {
     "stiffness_estimator": ("prior", "matched_*"),
     "torque_basis": ("stiffness_estimator",),
     "torque_residual": ("stiffness_estimator",),
+    "ud_factor": ("least_squares", "matched_*", "stiffness_estimator"),
 }
 PYTEST = ("-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", "-m", "not slow")
 FLAGS = (
@@ -57,7 +62,7 @@ FLAGS = (
     "-w",
     "-fsanitize=bounds",
     "-fsanitize-undefined-trap-on-error",
-    f"-I{LIBRARY}",
+    *sorted({f"-I{header.parent}" for header in LIBRARY.rglob("*.h")}),
 )
 
 # Replacements of a token. The first one that compiles to a different program is used.
@@ -80,21 +85,6 @@ TOKEN = re.compile(
 # Equivalent mutants: file, changed code, why no test can notice the change.
 EQUIVALENT: tuple[tuple[str, str, str], ...] = (
     (
-        "least_squares.c",
-        "high[1] += F[j] * rls->eta[j];",
-        "the two sums are added at the end",
-    ),
-    (
-        "least_squares.c",
-        "for (i = 0; i < j; i += SH_PANEL) { const sh_real v_0",
-        "for i = j the rest of v is zero, and so is U beyond",
-    ),
-    (
-        "least_squares.c",
-        "if (j <= rls->size) { rho[j] = before;",
-        "D behind the last entry is zero",
-    ),
-    (
         "matched_regression.c",
         "for (i = 0; i <= matched->basis; ++i) F[i] =",
         "the entry behind the basis is overwritten by that of the motor",
@@ -106,8 +96,18 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
     ),
     (
         "matched_regression.c",
-        "settings->motor_prior[SH_MOTOR_B] >= 0)",
-        "without a prior the variance is zero, and nothing is subtracted",
+        "p->prior.B >= 0)",
+        "without a prior the variance is zero, and nothing is removed",
+    ),
+    (
+        "matched_regression.c",
+        "if (p->matched.drift >= 0)",
+        "without drift the covariance is increased by zero and is not above the prior",
+    ),
+    (
+        "method.c",
+        "return p->method >= 1 &&",
+        "there is no method 0, and its place in the table is NULL",
     ),
     (
         "motion_sign.c",
@@ -120,14 +120,23 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
         "the value is never exactly 1e-30",
     ),
     (
-        "matched_regression.c",
-        "if (settings->drift >= 0)",
-        "without drift the covariance is increased by zero and is not above the prior",
+        "ud_factor.c",
+        "for (i = 0; i < j; i += SH_PANEL) { const sh_real v_0",
+        "for i = j the rest of v is zero, and so is U beyond",
+    ),
+    *(
+        ("ud_factor.c", code, "what it sets behind the last one is not used")
+        for code in (
+            "for (j = 0; j <= size; ++j) { P->D[j] = P_0;",
+            "for (j = 0; j <= size; j += SH_PANEL) { const sh_real *u = P->U + place(size, 0, j);",
+            "for (j = 0; j <= size; ++j) P->work.f[j] =",
+            "for (j = 0; j <= size; ++j) { const sh_real beta",
+        )
     ),
     (
-        "matched_regression.c",
-        "if (matched->samples < 3)",
-        "it is compared only with 0 and 1",
+        "ud_factor.c",
+        "if (j <= P->size) { g[j] = D[j] * f[j];",
+        "D behind the last entry is zero",
     ),
 )
 
@@ -142,7 +151,7 @@ class Mutant:
     new: str
 
     def text(self) -> str:
-        original = (LIBRARY / self.file).read_text()
+        original = SOURCES[self.file].read_text()
         return original[: self.start] + self.new + original[self.start + len(self.old) :]
 
     def line(self) -> str:
@@ -153,7 +162,7 @@ class Mutant:
 
     def makes(self, code: str) -> bool:
         """Whether the change has produced this code, which may have several lines."""
-        before, after = (LIBRARY / self.file).read_text(), self.text()
+        before, after = SOURCES[self.file].read_text(), self.text()
         return count(after, code) > count(before, code)
 
     def __str__(self) -> str:
@@ -193,7 +202,7 @@ class Bench:
         self.folder, self.compiler = folder, compiler
         run = TESTS / "drivers" / "run.c"
         self.objects: dict[str, Path] = {}
-        for file in (*sorted(LIBRARY.glob("*.c")), run):
+        for file in (*SOURCES.values(), run):
             self.objects[file.name] = folder / f"{file.stem}.o"
             if not self.compile(file, self.objects[file.name]):
                 raise RuntimeError(f"{file} does not compile")
@@ -267,14 +276,14 @@ def finished(running: dict[int, Path]) -> tuple[int, bool]:
 
 def shares(number: int) -> dict[str, int]:
     """Number of mutants of each file: at least three, else proportional to its number of places."""
-    places = {file.name: len(candidates(file, "")) for file in sorted(LIBRARY.glob("*.c"))}
+    places = {name: len(candidates(file, "")) for name, file in SOURCES.items()}
     total = sum(places.values())
     return {file: max(3, round(number * count / total)) for file, count in places.items()}
 
 
 def mutants(bench: Bench, file: str, number: int, seed: str) -> Iterator[tuple[Mutant, Path]]:
     """The first mutants of a file that compile to a different program, with their build trees."""
-    for choices in candidates(LIBRARY / file, seed):
+    for choices in candidates(SOURCES[file], seed):
         if number == 0:
             return
         for mutant in choices:
