@@ -19,20 +19,19 @@ from c_sources import FOLDERS, HEADERS
 from gate import missing
 
 Array = NDArray[np.float64]
-DRIVERS = Path(__file__).resolve().parents[1] / "drivers"
+REPOSITORY = Path(__file__).resolve().parents[2]
 MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
 
-@cache
-def declarations() -> str:
-    """All declarations of the library and of `drivers/run.h`, as the C preprocessor gives them."""
-    own = [header for header in HEADERS if header.name != "real_math.h"]  # that one has none
+def declarations(*headers: Path) -> str:
+    """The declarations of headers and of all that they include, from the C preprocessor."""
+    folders = {*FOLDERS, *(header.parent for header in headers)}
     compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     if compiler is None:
         missing("a C compiler", "apt-get install gcc")
     done = subprocess.run(
-        [compiler, "-E", "-P", "-x", "c", *(f"-I{folder}" for folder in [*FOLDERS, DRIVERS]), "-"],
-        input="".join(f'#include "{header.name}"\n' for header in [*own, DRIVERS / "run.h"]),
+        [compiler, "-E", "-P", "-x", "c", *(f"-I{folder}" for folder in folders), "-"],
+        input="".join(f'#include "{header.name}"\n' for header in headers),
         capture_output=True,
         text=True,
         check=True,
@@ -52,7 +51,8 @@ class Library:
 
     def __init__(self, build: Path) -> None:
         self.ffi = cffi.FFI()
-        self.ffi.cdef(declarations())
+        own = (header for header in HEADERS if header.name != "real_math.h")  # it has only macros
+        self.ffi.cdef(declarations(*own, REPOSITORY / "tests" / "drivers" / "run.h"))
         suffix = ".dylib" if sys.platform == "darwin" else ".so"
         self.lib: Any = self.ffi.dlopen(str(build / f"libsigmahat_test_driver{suffix}"))
 
