@@ -43,7 +43,8 @@ typedef SH_REAL sh_real;
  */
 #define SH_METHODS(METHOD)                                                                         \
     METHOD(SH_METHOD_PAPER2011, 1, "Paper2011", sh_paper2011)                                      \
-    METHOD(SH_METHOD_MATCHED_FILTER, 2, "MatchedFilter", sh_matched_filter)
+    METHOD(SH_METHOD_MATCHED_FILTER, 2, "MatchedFilter", sh_matched_filter)                        \
+    /* the next method here */
 #define SH_METHOD_CONSTANT(constant, number, name, block) constant = number,
 enum { SH_METHODS(SH_METHOD_CONSTANT) };
 
