@@ -17,7 +17,7 @@ void *sigmahat_start(int size)
 
 void sigmahat_run(void *rls, const double *F, const double *y, int samples)
 {
-    const int size = ((const sh_least_squares *)rls)->size;
+    const int size = ((const sh_least_squares *)rls)->P.size;
     sh_innovation innovation;
     int k;
 
@@ -30,7 +30,7 @@ void sigmahat_eta(const void *rls, double *eta)
     const sh_least_squares *own = rls;
     int i;
 
-    for (i = 0; i < own->size; ++i)
+    for (i = 0; i < own->P.size; ++i)
         eta[i] = own->eta[i];
 }
 

@@ -103,7 +103,7 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
                     estimator->work.dF);
     factor = kind == SH_RLS_ENHANCED ? p->rls.c : p->rls.a;
     if (p->modality == SH_MODALITY_RESIDUAL && state->settling > 0) {
-        kind = SH_RLS_CONSTANT_FACTOR; /* a = 0 learns nothing, (25) */
+        kind = SH_RLS_CONSTANT_FACTOR; /* with a = 0 nothing changes, (25) */
         factor = 0;
     }
     if (!isfinite(tau_e_residual) ||
