@@ -15,7 +15,7 @@ import sigmahat
 from c_library import Array, Estimator, Library, load
 from plant_runs import run_awas, times
 from sigmahat.fmi.instance import Fmu, Recorder, Slave
-from sigmahat.paper.metrics import msrep
+from sigmahat.runs.metrics import msrep
 
 T = 1e-3  # [s]
 SHORTENED = {"initial.theta_c": 0.030 / (0.0025 / (2 * np.pi))}  # lever arm of 70 mm

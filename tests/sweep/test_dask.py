@@ -13,8 +13,10 @@ from pathlib import Path
 import distributed
 import pytest
 
-from sigmahat.sweep.plan import fmu_digest, read_plan
-from sigmahat.sweep.workers import WorkerError, execute
+from sigmahat.runs.pool import WorkerError
+from sigmahat.sweep.execution import execute
+from sigmahat.sweep.fmus import fmu_digest
+from sigmahat.sweep.plan_file import read_plan
 from sweeps import QUICK, records, refused, run, start, wait_for_records
 
 DASK = [sys.executable, "-m", "dask"]
@@ -116,7 +118,7 @@ def test_the_scheduler_is_lost(
 
 
 def test_a_worker_with_other_fmus() -> None:
-    (first,) = read_plan(None, ("table1",), 1, ("RESIDUAL",)).runs()
+    (first,) = read_plan(None, ("table1",), 1, ("RESIDUAL",)).runs
     with pytest.raises(WorkerError, match="install the same sigmahat on both"):
         execute(first, "of other FMUs")
     assert execute(first, fmu_digest(["table1"])).failure is None

@@ -14,8 +14,8 @@ import scipy.stats
 
 from sigmahat.paper.reproduction import reproduce
 from sigmahat.paper.scenarios import SCENARIOS
-from sigmahat.sweep.job import run as sweep
-from sigmahat.sweep.plan import read_plan
+from sigmahat.sweep.job import sweep
+from sigmahat.sweep.plan_file import read_plan
 from sigmahat.sweep.table import read
 from sweeps import QUICK, records, refused, run, start, wait_for_records
 
