@@ -74,11 +74,11 @@ def test_start_up_with_exact_motor_data() -> None:
 
 
 @pytest.mark.parametrize("with_inertia", [False, True])
-def test_says_how_sure_it_is(with_inertia: bool) -> None:
-    """The truth lies within 1.96 sigma_std for 90 to 99 % of the time, as far as 20 runs can tell.
+def test_claims_the_right_uncertainty(with_inertia: bool) -> None:
+    """The truth lies within 1.96 sigma_std for 90 to 99 % of the time, as far as 20 runs show.
 
-    The share differs from run to run, and instants of one run are not independent: what can be told
-    is the interval of the mean over runs.
+    The share differs from run to run, and instants of one run are not independent. So the test is
+    of the interval of the mean over runs.
     """
     share, half_width = calibration.share(range(20), with_inertia)
     assert half_width < 8.0

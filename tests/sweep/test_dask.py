@@ -51,8 +51,8 @@ def address(scheduler: subprocess.Popen[bytes], tmp_path: Path) -> str:
         assert scheduler.poll() is None
         assert time.monotonic() < deadline
         time.sleep(0.1)
-    found: str = json.loads(file.read_text())["address"]
-    return found
+    address: str = json.loads(file.read_text())["address"]
+    return address
 
 
 @contextmanager
@@ -64,7 +64,7 @@ def worker(folder: Path, name: str, runs: int = 1) -> Iterator[subprocess.Popen[
 
 
 def wait_for_workers(address: str, count: int) -> None:
-    """Waits until so many processes have come to the scheduler."""
+    """Waits until so many processes are connected to the scheduler."""
     with distributed.Client(address, timeout=300, set_as_default=False) as client:
         client.wait_for_workers(count, timeout=300)
 

@@ -120,7 +120,7 @@ def test_what_is_drawn_is_distributed_as_said(drawn: Drawn, mean: float, deviati
         assert 1.0 <= x.min() < 1.01 < 2.99 < x.max() <= 3.0
 
 
-def test_a_sweep_is_told_from_another() -> None:
+def test_different_sweeps_have_different_digests() -> None:
     plans = [
         Plan(("table1",), seeds, modalities, parameters)
         for seeds in (1, 2)

@@ -54,7 +54,7 @@ def made_up() -> SweepTable:
 
 
 def other_words(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every label, title and name in words, in a language that nobody knows."""
+    """Replaces the words of every label, title and name."""
     monkeypatch.setattr(columns, "title", lambda name, unit: f"({unit}) {name[::-1]}")
     monkeypatch.setattr(Index, "name", lambda index, when="": f"{when}{index.field}!")
     monkeypatch.setattr(

@@ -50,7 +50,7 @@ def sweep(
     """Run scenarios over seeds and parameters, in parallel; Monte Carlo.
 
     PLAN is a TOML file with the keys scenario, seeds, modality and a table [parameters]; options
-    replace what it says. After an interruption the same command goes on where it was.
+    replace them. After an interruption the same command does the runs that are missing.
 
     \b
     Example: sigmahat sweep --seeds 100 --modality RESIDUAL \\

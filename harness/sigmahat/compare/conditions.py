@@ -1,7 +1,7 @@
 """The conditions of `sigmahat compare`: joints in motion, and motor data that are wrong.
 
-A joint is one co-simulation. In it both methods estimate the stiffness once for each case, which
-says how the data that they are given differ from those of the joint.
+A joint is one co-simulation. In it both methods estimate the stiffness once for each case. A case
+is how the motor data that the estimators are given differ from those of the joint.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from sigmahat.files.text_table import aligned
 
 
 def table(rows: Sequence[Row]) -> str:
-    """Both methods beside each other, as text, a part for each group of joints; "-": not defined.
+    """Both methods side by side, as text, a part for each group of joints; "-": not defined.
 
     Of MatchedFilter alone: the standard deviation that it claims, how often the error stays within
     that, and its motor data at the end.

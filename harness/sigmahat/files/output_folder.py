@@ -36,7 +36,7 @@ def output_folder(path: Path) -> Iterator[Path]:
     Creates path, and leaves nothing behind after an exception. Raises OSError if path cannot be
     written to.
     """
-    # A name known beforehand, so that an interrupt at any moment leaves nothing behind.
+    # The name is fixed before the folder is made: an interrupt at any moment leaves nothing.
     unfinished = path / f".unfinished-{os.getpid()}"
     with created_folder(path):
         try:

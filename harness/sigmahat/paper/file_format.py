@@ -1,7 +1,7 @@
 """Names in the CSV files of `sigmahat reproduce`, for what writes them and what reads them."""
 
 TABLE = "table.csv"
-"""File with the indices of each comparison; each estimator has a file over time beside it."""
+"""File with the indices of each comparison; each estimator has a file over time, too."""
 ESTIMATION, SEEDS = "estimation", "seeds"
 """The first columns of that file."""
 TIME = "t"

@@ -1,4 +1,4 @@
-"""The table that `sigmahat reproduce` prints: performance indices beside those of the paper."""
+"""The table that `sigmahat reproduce` prints: performance indices, and those of the paper."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def conditions(result: Result) -> str:
 
 
 def table(result: Result) -> str:
-    """The indices of each comparison beside the paper's, as text; "-": not defined."""
+    """The indices of each comparison and those of the paper, as text; "-": not defined."""
     tables = [
         _table(result, [INDICES[field] for field in fields], with_paper=i == 0)
         for i, fields in enumerate(result.scenario.tables)

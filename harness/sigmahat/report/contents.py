@@ -81,7 +81,7 @@ class Panel:
     linked: bool = True
     """Its x axis moves with those of the other panels that are linked."""
     y_range: tuple[float, float] | None = None
-    """What is seen at first, where an estimate jumps while it learns."""
+    """What is shown at first, where an estimate jumps before it converges."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from sigmahat.report.time_panels import Estimate, quantity_panels, sampling, sti
 _PREFIX = "estimate."
 """Of the columns that `sigmahat estimate` adds to a log."""
 _OF_THE_METHOD = ("a", "rho")
-"""Not in the table: they say how the method works."""
+"""Outputs about the inner working of the method; they are not in the table."""
 
 
 def from_log(folder: Path) -> Contents:

@@ -1,4 +1,4 @@
-"""The job of `sigmahat report`: finds out what a folder holds, and makes one HTML file of it."""
+"""The job of `sigmahat report`: one HTML file of the results in a folder, whatever they are of."""
 
 from __future__ import annotations
 

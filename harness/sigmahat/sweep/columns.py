@@ -1,6 +1,6 @@
 """The columns of a sweep's table: each has a title for people, and its meaning as data.
 
-Parquet files keep the meaning of a column beside its title, so that nobody reads titles.
+Parquet files store the meaning of a column with it, so that no title has to be taken apart.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def title(column: Column) -> str:
 
 
 def half_width_title(index: Index) -> str:
-    """Of the column with half the width of the 95 % interval, beside a mean."""
+    """Of the column with half the width of the 95 % interval of a mean."""
     return columns.title(f"{index.field} 95 % half width", index.unit)
 
 

@@ -1,6 +1,6 @@
-"""The plan of a sweep: which runs it has, and in which order; and what became of them.
+"""The plan of a sweep: which runs it has, and in which order. And the outcome of a run.
 
-Data alone: nothing here knows a scenario, an FMU or a file.
+Data alone: nothing here needs a scenario, an FMU or a file.
 """
 
 from __future__ import annotations

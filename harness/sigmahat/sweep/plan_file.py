@@ -36,10 +36,14 @@ def read_plan(
     modalities: Sequence[str] = (),
     settings: Sequence[str] = (),
 ) -> Plan:
-    """Reads a plan; what else is given replaces what it says, or adds a parameter NAME=VALUES.
+    """Reads a plan from a file, from the command line, or from both.
 
-    Raises ValueError, which says where, for text that does not fit. Whether the names and values
-    fit the scenarios is checked by sigmahat.sweep.check.
+    path        TOML file; None: there is none
+    scenarios, seeds, modalities   replace those of the file
+    settings    parameters, each "NAME=VALUES"; they replace those of the file, or are added
+
+    Raises ValueError, which names the place, for text that does not fit. Whether the names and
+    values fit the scenarios is checked by sigmahat.sweep.check.
     """
     content = {} if path is None else _content(path)
     try:

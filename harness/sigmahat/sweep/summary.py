@@ -53,10 +53,10 @@ def means(sweep: SweepTable) -> list[Mean]:
         groups.setdefault(key, []).append(row)
     failures = sweep.values(FAILURE)
     indices = {index: sweep.values(index) for index in INDICES.values()}
-    found = []
+    result = []
     for (scenario, *values, estimation), rows in groups.items():
         good = [row for row in rows if failures[row] is None]
-        found.append(
+        result.append(
             Mean(
                 scenario,
                 dict(zip(listed, values, strict=True)),
@@ -66,7 +66,7 @@ def means(sweep: SweepTable) -> list[Mean]:
                 {index: _mean([x[row] for row in good]) for index, x in indices.items()},
             )
         )
-    return found
+    return result
 
 
 def _mean(values: list[float]) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sigmahat.sweep.columns import Column, ParameterColumn, Role, decoded, encoded, title
 
 RUN, SCENARIO, SEED, ESTIMATION, FAILURE = "run", "scenario", "seed", "estimation", "failure"
-"""Columns that every sweep has, beside those of parameters and indices."""
+"""Columns that every sweep has, together with those of parameters and indices."""
 _MEANING = b"sigmahat.column"
 
 
