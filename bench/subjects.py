@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 import sigmahat
 from sigmahat.fmi.master import simulate
-from sigmahat.paper.scenarios import SCENARIOS, Sine, T
+from sigmahat.paper.scenarios import SCENARIOS
+from sigmahat.runs.scenario import Sine, T
 
 Array = NDArray[np.float64]
 

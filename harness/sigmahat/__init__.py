@@ -37,10 +37,11 @@ if TYPE_CHECKING:
     from sigmahat.logs.estimate import Estimate, estimate
     from sigmahat.logs.log import Log
     from sigmahat.logs.readers.formats import open_log
-    from sigmahat.paper.metrics import Indices, indices, mean_error, mse, msrep
-    from sigmahat.paper.reproduction import run
-    from sigmahat.paper.scenarios import Comparison, Scenario, Sine, Sines, scenario
+    from sigmahat.paper.scenarios import scenario
     from sigmahat.plants.equations import PlantEquations, encoder
+    from sigmahat.runs.engine import run
+    from sigmahat.runs.metrics import Indices, indices, mean_error, mse, msrep
+    from sigmahat.runs.scenario import Comparison, Scenario, Sine, Sines
 
     __version__: str
 
@@ -91,11 +92,12 @@ _HOMES = {
     "logs.estimate": ("Estimate", "estimate"),
     "logs.readers.formats": ("open_log",),
     "logs.log": ("Log",),
-    "paper.metrics": ("Indices", "indices", "mean_error", "mse", "msrep"),
     "export.plant_fmu": ("PlantVariable", "write_plant_fmu"),
     "plants.equations": ("PlantEquations", "encoder"),
-    "paper.reproduction": ("run",),
-    "paper.scenarios": ("Comparison", "Scenario", "Sine", "Sines", "scenario"),
+    "paper.scenarios": ("scenario",),
+    "runs.engine": ("run",),
+    "runs.metrics": ("Indices", "indices", "mean_error", "mse", "msrep"),
+    "runs.scenario": ("Comparison", "Scenario", "Sine", "Sines"),
     "fmi.instance": ("FmuError",),
 }
 

@@ -17,7 +17,8 @@ import sigmahat
 from recordings import one_seed
 from sigmahat.fmi.instance import Fmu, FmuError, Slave
 from sigmahat.fmi.master import Estimator, Plant, simulate
-from sigmahat.paper.scenarios import T, scenario
+from sigmahat.paper.scenarios import scenario
+from sigmahat.runs.scenario import T
 
 PLANT = scenario("table1").plant
 ESTIMATORS = scenario("table1").estimators

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 import sigmahat
 from sigmahat.fmi.instance import Fmu, Slave
-from sigmahat.paper.scenarios import T, scenario
+from sigmahat.paper.scenarios import scenario
+from sigmahat.runs.scenario import T
 
 _TABLE1 = scenario("table1")
 _RESIDUAL = _TABLE1.estimators["RESIDUAL"]

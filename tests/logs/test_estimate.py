@@ -17,8 +17,8 @@ from recorded_logs import CONFIGURATION, Array, awas_log, read_estimate, write_l
 from sigmahat.cli import main
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import Recording
-from sigmahat.paper.reproduction import run
 from sigmahat.paper.scenarios import SCENARIOS
+from sigmahat.runs.engine import run
 
 SENSORS = {
     "theta": "theta_measured",

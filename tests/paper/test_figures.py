@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from recordings import one_seed
-from sigmahat.paper.figures import FIGURES, save
-from sigmahat.paper.nominal_awas import nominal
+from sigmahat.paper.figures.catalogue import FIGURES
 from sigmahat.paper.scenarios import SCENARIOS
+from sigmahat.plotting.save import save
+from sigmahat.runs.nominal_awas import nominal_awas
 
 # One scenario of each kind, and its figures.
 DRAWN = [
@@ -117,9 +118,9 @@ def test_drawn_values_of_the_experiment() -> None:
         ("fig10-lever-arm", "true", plant["r"]),
         ("fig10-lever-arm", "nominal", plant["r"] - 0.002),  # the real one is 2 mm longer
         ("fig11-flexibility-torque", "sensor", plant["tau_e_measured"]),
-        ("fig11-flexibility-torque", "nominal", nominal(recording)["tau_e"]),
+        ("fig11-flexibility-torque", "nominal", nominal_awas(recording)["tau_e"]),
         ("fig12-stiffness", "true", plant["sigma"]),
-        ("fig12-stiffness", "nominal", nominal(recording)["sigma"]),
+        ("fig12-stiffness", "nominal", nominal_awas(recording)["sigma"]),
         ("fig12-stiffness", "MODEL", estimators["MODEL"]["sigma"]),
         ("fig12-stiffness", "SENSOR", estimators["SENSOR"]["sigma"]),
         ("fig12-stiffness", "RESIDUAL", estimators["RESIDUAL"]["sigma"]),

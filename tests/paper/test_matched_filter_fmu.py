@@ -15,12 +15,12 @@ import sigmahat
 from c_library import Array, Estimator, Library, load
 from plant_runs import run_awas, times
 from sigmahat.fmi.instance import Fmu, Recorder, Slave
-from sigmahat.paper.metrics import msrep
+from sigmahat.runs.metrics import msrep
 
 T = 1e-3  # [s]
 SHORTENED = {"initial.theta_c": 0.030 / (0.0025 / (2 * np.pi))}  # lever arm of 70 mm
 MEASURED = ("theta_measured", "q_measured", "theta_c_measured", "tau_measured", "tau_e_measured")
-TOLD = {"method": 2, "rls.n": 3, "motor.D_theta": 1.1e-3}  # 10 % too high
+SETTINGS = {"method": 2, "rls.n": 3, "motor.D_theta": 1.1e-3}  # 10 % too high
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +69,7 @@ def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
         tau, tau_c = multisine(rng, t) if seed % 2 == 0 else random_walk(rng, t)
         torques = np.column_stack([tau, tau_c, 0 * t])
         run = run_awas(T, torques, {**SHORTENED, "noise.seed": seed}, (*MEASURED, "sigma"))
-        estimates = Estimator(c, TOLD).run(np.column_stack([run[name] for name in MEASURED]))
+        estimates = Estimator(c, SETTINGS).run(np.column_stack([run[name] for name in MEASURED]))
         found.append(msrep(run["sigma"][2000:], estimates["sigma"][2000:]))
     assert np.median(found) <= 0.5
     assert max(found) <= 5.0
@@ -89,7 +89,7 @@ def test_motor_that_turns_at_the_start(
     start["motor.tau_coulomb"] = friction
     run = run_awas(period, torques, {**SHORTENED, **start}, (*MEASURED, "sigma"))
     z = np.column_stack([run[name] for name in MEASURED])
-    found = Estimator(c, {**TOLD, "samplePeriod": period}).run(z)
+    found = Estimator(c, {**SETTINGS, "samplePeriod": period}).run(z)
     learned = np.flatnonzero(found["a"] == 0)[-1] * period
     assert learned == pytest.approx(12 / 350, abs=5e-3)
     assert msrep(run["sigma"], found["sigma"]) <= 2 * 100 * (12 / 350)
@@ -107,7 +107,7 @@ def test_torque_that_is_held_between_samples(c: Library, frequency: float, bound
     middle = z.copy()
     middle[:-1, 3] = (z[:-1, 3] + z[1:, 3]) / 2
     as_held, in_the_middle = (
-        msrep(run["sigma"][1000:], Estimator(c, TOLD).run(samples)["sigma"][1000:])
+        msrep(run["sigma"][1000:], Estimator(c, SETTINGS).run(samples)["sigma"][1000:])
         for samples in (z, middle)
     )
     assert in_the_middle <= bound
@@ -151,7 +151,7 @@ def test_follows_a_spring_that_ages_and_keeps_what_it_knows_at_rest(
     c: Library, ageing: tuple[Array, Array]
 ) -> None:
     z, sigma = ageing
-    values = {**TOLD, "prior.B": 0.1, "prior.tau_coulomb": 0.02, "matched.drift": 1e-3}
+    values = {**SETTINGS, "prior.B": 0.1, "prior.tau_coulomb": 0.02, "matched.drift": 1e-3}
     estimator = Estimator(c, values)
     prior = np.diag(estimator.covariance())
     estimates = estimator.run(z)

@@ -11,22 +11,23 @@ import numpy as np
 import pytest
 
 from recordings import one_seed
-from sigmahat.paper import results
-from sigmahat.paper.metrics import Indices
+from sigmahat.paper.result_files import write_series, write_table
+from sigmahat.paper.table import conditions, table
+from sigmahat.runs.metrics import Indices
 
 ROWS = ["MODEL", "SENSOR", "RESIDUAL", "MODEL-measured"]
 
 
 def test_series_file_has_units_and_the_exact_values(tmp_path: Path) -> None:
     recording = one_seed("table1").recording
-    results.write_series(recording, "RESIDUAL", tmp_path / "series.csv")
+    write_series(recording, "RESIDUAL", tmp_path / "series.csv")
     with (tmp_path / "series.csv").open(newline="") as file:
         head, *rows = csv.reader(file)
     assert head[0] == "t [s]"
     assert {"plant.sigma [N.m/rad]", "sigma [N.m/rad]", "a [1]", "valid"} < set(head)
     assert len(head) == len(set(head))
     assert len(rows) == 15001
-    table = np.array(rows, dtype=float)
+    numbers = np.array(rows, dtype=float)
     for title, values in (
         ("t [s]", recording.t),
         ("plant.theta_measured [rad]", recording.plant["theta_measured"]),
@@ -35,12 +36,12 @@ def test_series_file_has_units_and_the_exact_values(tmp_path: Path) -> None:
         ("epsilon [N.m]", recording.estimators["RESIDUAL"]["epsilon"]),
         ("valid", recording.estimators["RESIDUAL"]["valid"]),
     ):
-        np.testing.assert_array_equal(table[:, head.index(title)], values)
+        np.testing.assert_array_equal(numbers[:, head.index(title)], values)
 
 
 def test_table_file_of_one_seed(tmp_path: Path) -> None:
     result = one_seed("table1")
-    results.write_table(result, tmp_path / "table.csv")
+    write_table(result, tmp_path / "table.csv")
     with (tmp_path / "table.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["estimation"] for row in rows] == ROWS
@@ -59,19 +60,19 @@ def test_table_file_of_one_seed(tmp_path: Path) -> None:
 def test_mean_and_interval_over_seeds(tmp_path: Path) -> None:
     each = [{name: Indices(*[x] * 6) for name in ROWS} for x in (1.0, 2.0, 3.0)]
     result = replace(one_seed("table1"), seeds=[1, 2, 3], indices=each)
-    results.write_table(result, tmp_path / "table.csv")
+    write_table(result, tmp_path / "table.csv")
     with (tmp_path / "table.csv").open(newline="") as file:
         row = next(csv.DictReader(file))
     assert float(row["MSE [(N.m/rad)2]"]) == 2.0
     assert float(row["MSE 95 % half width [(N.m/rad)2]"]) == pytest.approx(2.48414, rel=1e-5)
     assert row["seeds"] == "3"
-    assert "2.00 +- 2.48" in results.table(result)
-    assert "3 seeds" in results.conditions(result)
+    assert "2.00 +- 2.48" in table(result)
+    assert "3 seeds" in conditions(result)
 
 
 def test_printed_table_stands_beside_the_papers() -> None:
     result = one_seed("table1")
-    head, *rows = (line.split() for line in results.table(result).splitlines())
+    head, *rows = (line.split() for line in table(result).splitlines())
     assert head.count("paper") == 2
     assert [row[0] for row in rows] == ROWS
     assert len(rows.pop()) == 4  # without the paper's figures
@@ -86,7 +87,7 @@ def test_printed_table_stands_beside_the_papers() -> None:
 
 def test_table_of_the_experiment_has_two_parts() -> None:
     result = one_seed("experiment")
-    settled, whole = results.table(result).split("\n\n")
+    settled, whole = table(result).split("\n\n")
     names = [each.name for each in result.scenario.comparisons]
     for part, time in ((settled, "after 1 s"), (whole, "all 60 s")):
         assert [re.split("  +", line)[0] for line in part.splitlines()] == [time, *names]
@@ -110,11 +111,11 @@ def test_table_of_the_experiment_has_two_parts() -> None:
 def test_index_that_is_not_defined_is_a_dash_and_an_empty_field(tmp_path: Path) -> None:
     """SENSOR is 0 until the joint deforms."""
     result = one_seed("experiment")
-    whole = results.table(result).split("\n\n")[1]
+    whole = table(result).split("\n\n")[1]
     cells = {row[0]: row[1:] for row in (re.split("  +", x) for x in whole.splitlines())}
     assert cells["RESIDUAL against SENSOR"][1:] == ["-", "-"]
     assert "-" not in cells["RESIDUAL against SENSOR, relative to true"]
-    results.write_table(result, tmp_path / "table.csv")
+    write_table(result, tmp_path / "table.csv")
     with (tmp_path / "table.csv").open(newline="") as file:
         rows = {row["estimation"]: row for row in csv.DictReader(file)}
     row = rows["RESIDUAL against SENSOR"]
@@ -126,31 +127,10 @@ def test_index_that_is_not_defined_is_a_dash_and_an_empty_field(tmp_path: Path) 
 
 
 def test_conditions_name_what_the_run_depends_on() -> None:
-    line = results.conditions(one_seed("table1"))
+    line = conditions(one_seed("table1"))
     assert "15 s" in line
     assert "T = 1 ms" in line
     assert "V_a = " in line
     assert "c P(0) = 1," in line
     assert "seed 1" in line
-    assert "c P(0) = 10000," in results.conditions(one_seed("single-hardening"))
-
-
-def test_folder_appears_filled_or_not_at_all(tmp_path: Path) -> None:
-    out = tmp_path / "a" / "b"
-    with pytest.raises(RuntimeError), results.folder(out) as unfinished:
-        (unfinished / "half.csv").write_text("")
-        raise RuntimeError
-    assert list(tmp_path.iterdir()) == []
-    with results.folder(out) as unfinished:
-        (unfinished / "whole.csv").write_text("1")
-        assert not (out / "whole.csv").exists()
-    assert [path.name for path in out.iterdir()] == ["whole.csv"]
-
-
-def test_failure_keeps_earlier_results(tmp_path: Path) -> None:
-    (tmp_path / "table.csv").write_text("earlier")
-    with pytest.raises(RuntimeError), results.folder(tmp_path) as unfinished:
-        (unfinished / "table.csv").write_text("half")
-        raise RuntimeError
-    assert [path.name for path in tmp_path.iterdir()] == ["table.csv"]
-    assert (tmp_path / "table.csv").read_text() == "earlier"
+    assert "c P(0) = 10000," in conditions(one_seed("single-hardening"))

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from recordings import one_seed, twenty_seeds
-from sigmahat.paper.metrics import mean_interval
-from sigmahat.paper.nominal_awas import nominal
-from sigmahat.paper.reproduction import Result, reproduce, signal_of
-from sigmahat.paper.scenarios import SCENARIOS, Sine, Sines, scenario
+from sigmahat.paper.reproduction import Result, reproduce
+from sigmahat.paper.scenarios import SCENARIOS, scenario
+from sigmahat.runs.metrics import mean_interval
+from sigmahat.runs.nominal_awas import nominal_awas
+from sigmahat.runs.scenario import Sine, Sines
+from sigmahat.runs.signals import signal_of
 
 
 def worst(result: Result, name: str, index: str) -> float:
@@ -220,7 +222,7 @@ def test_experiment_sensor_has_no_stiffness_at_first() -> None:
 
 def test_device_of_the_experiment_differs_from_its_data_as_asked() -> None:
     recording = one_seed("experiment").recording
-    plant, data = recording.plant, nominal(recording)
+    plant, data = recording.plant, nominal_awas(recording)
     np.testing.assert_allclose(plant["r"] - data["r"], 0.002, rtol=1e-9)
     spring = plant["sigma"] / plant["r"] ** 2 / (data["sigma"] / data["r"] ** 2)
     np.testing.assert_allclose(spring, 0.85, rtol=1e-9)
@@ -238,7 +240,7 @@ def test_nominal_data_by_hand() -> None:
     for k in (0, 9250, 33333):
         phi = float(recording.plant["phi"][k])
         r = 0.1 - 0.0025 / (2 * math.pi) * float(recording.plant["theta_c"][k])
-        found = {name: float(values[k]) for name, values in nominal(recording).items()}
+        found = {name: float(values[k]) for name, values in nominal_awas(recording).items()}
         assert found["r"] == pytest.approx(r, rel=1e-12)
         assert found["tau_e"] == pytest.approx(14220 * r * r * math.sin(2 * phi), rel=1e-12)
         assert found["sigma"] == pytest.approx(2 * 14220 * r * r * math.cos(2 * phi), rel=1e-12)
@@ -249,7 +251,7 @@ def test_signals_of_a_comparison() -> None:
     assert signal_of(recording, "plant.sigma") is recording.plant["sigma"]
     assert signal_of(recording, "MODEL.sigma") is recording.estimators["MODEL"]["sigma"]
     np.testing.assert_array_equal(
-        signal_of(recording, "nominal.sigma"), nominal(recording)["sigma"]
+        signal_of(recording, "nominal.sigma"), nominal_awas(recording)["sigma"]
     )
     for name in ("MODEL.sgima", "sensor.sigma", "nominal.phi"):
         with pytest.raises(KeyError):

@@ -16,7 +16,7 @@ import pytest
 
 import sigmahat
 from fmi_master import run, torques
-from sigmahat.paper.scenarios import T
+from sigmahat.runs.scenario import T
 
 REPOSITORY = Path(__file__).parents[2]
 PAGES = REPOSITORY / "docs" / "how-to"

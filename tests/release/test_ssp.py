@@ -19,7 +19,8 @@ from fmi_master import run, torques
 from sigmahat.export import system
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import simulate
-from sigmahat.paper.scenarios import T, scenario
+from sigmahat.paper.scenarios import scenario
+from sigmahat.runs.scenario import T
 
 TABLE1 = scenario("table1")
 RESIDUAL = TABLE1.estimators["RESIDUAL"]

@@ -1,10 +1,9 @@
-"""How often the true stiffness is within 1.96 sigma_std of the estimate of MatchedFilter.
+"""How often the truth lies within 1.96 sigma_std of the estimate of MatchedFilter.
 
     python tests/studies/calibration.py RUNS
 
-prints the share of instants after 2 s, as the mean over runs with its 95 % interval: once with
-errors of D_theta and Coulomb friction that are drawn from their priors, and once with an error of
-B, too.
+prints the share of instants after 2 s, and the 95 % interval of its mean over runs: with errors of
+D_theta and Coulomb friction drawn from their priors, and with an error of B, too.
 """
 
 from __future__ import annotations
@@ -17,24 +16,24 @@ from functools import partial
 
 import numpy as np
 
+from sigmahat.compare.performance import performances
 from sigmahat.fmi.instance import Value
-from sigmahat.paper import comparisons
-from sigmahat.paper.comparisons import Case, Joint
-from sigmahat.paper.metrics import mean_interval
-from sigmahat.paper.processes import spread
-from sigmahat.paper.scenarios import Sine, awas, estimator
+from sigmahat.paper.awas import awas, estimator
+from sigmahat.paper.estimators import against_the_plant
+from sigmahat.runs.engine import measured, run_all
+from sigmahat.runs.metrics import mean_interval
+from sigmahat.runs.scenario import Scenario, Sine
 
 METHOD = "MatchedFilter"
-OUTPUTS = ("sigma", "sigma_std", "D_theta_hat", "B_hat", "tau_coulomb_hat")
 
 
-def drawn(run: int, with_inertia: bool) -> Joint:
-    """The AwAS at 0.3 to 8 Hz, and an estimator whose motor data have errors."""
+def drawn(run: int, with_inertia: bool) -> Scenario:
+    """The AwAS at 0.3 to 8 Hz, and an estimator that is given motor data with errors."""
     rng = np.random.default_rng([4, run])
     frequency = math.exp(rng.uniform(math.log(0.3), math.log(8.0)))
     d, friction, b = rng.standard_normal(3) * (0.2, 0.02, 0.1)
     plant = awas(0.030, Sine(0.3 if frequency < 5 else 0.5, frequency))
-    values: dict[str, Value] = {
+    given: dict[str, Value] = {
         "method": METHOD,
         "rls.n": 3,
         "motor.D_theta": 1e-3 / (1 + d),
@@ -42,17 +41,23 @@ def drawn(run: int, with_inertia: bool) -> Joint:
         "prior.tau_coulomb": 0.02,
     }
     if with_inertia:
-        values |= {"motor.B": 2.3e-5 / (1 + b), "prior.B": 0.1}
+        given |= {"motor.B": 2.3e-5 / (1 + b), "prior.B": 0.1}
     start = {**plant.start, "motor.tau_coulomb": abs(friction)}
-    case = Case("drawn", {METHOD: replace(estimator(values), record=OUTPUTS)}, (0.0,), {"": ""})
-    return Joint("drawn", str(run), replace(plant, start=start), 15.0, [case])
+    return Scenario(
+        name=f"drawn-{run}",
+        description="AwAS with friction and motor data drawn at random",
+        duration=15.0,
+        plant=replace(plant, start=start),
+        estimators={METHOD: replace(estimator(given), record=("sigma", "sigma_std"))},
+        comparisons=against_the_plant([METHOD]),
+        figures=(),
+    )
 
 
 def share(runs: Sequence[int], with_inertia: bool) -> tuple[float, float]:
-    """Mean of the share over runs, and half the width of its 95 % interval [%]."""
-    jobs = [partial(comparisons.run, drawn(k, with_inertia), k + 1) for k in runs]
-    found = [lines[0].found[METHOD].inside for lines in spread(jobs, processes=2)]
-    return mean_interval(found)
+    """Mean share over runs, and half the width of its 95 % interval [%]."""
+    jobs = [partial(measured, drawn(k, with_inertia), k + 1, performances) for k in runs]
+    return mean_interval([each[METHOD].inside for each in run_all(jobs, processes=2)])
 
 
 if __name__ == "__main__":

@@ -13,8 +13,10 @@ from pathlib import Path
 import distributed
 import pytest
 
-from sigmahat.sweep.plan import fmu_digest, read_plan
-from sigmahat.sweep.workers import WorkerError, execute
+from sigmahat.runs.pool import WorkerError
+from sigmahat.sweep.execution import execute
+from sigmahat.sweep.fmus import fmu_digest
+from sigmahat.sweep.plan_file import read_plan
 from sweeps import QUICK, records, refused, run, start, wait_for_records
 
 DASK = [sys.executable, "-m", "dask"]
@@ -49,8 +51,8 @@ def address(scheduler: subprocess.Popen[bytes], tmp_path: Path) -> str:
         assert scheduler.poll() is None
         assert time.monotonic() < deadline
         time.sleep(0.1)
-    found: str = json.loads(file.read_text())["address"]
-    return found
+    address: str = json.loads(file.read_text())["address"]
+    return address
 
 
 @contextmanager
@@ -62,7 +64,7 @@ def worker(folder: Path, name: str, runs: int = 1) -> Iterator[subprocess.Popen[
 
 
 def wait_for_workers(address: str, count: int) -> None:
-    """Waits until so many processes have come to the scheduler."""
+    """Waits until so many processes are connected to the scheduler."""
     with distributed.Client(address, timeout=300, set_as_default=False) as client:
         client.wait_for_workers(count, timeout=300)
 
@@ -116,7 +118,7 @@ def test_the_scheduler_is_lost(
 
 
 def test_a_worker_with_other_fmus() -> None:
-    (first,) = read_plan(None, ("table1",), 1, ("RESIDUAL",)).runs()
+    (first,) = read_plan(None, ("table1",), 1, ("RESIDUAL",)).runs
     with pytest.raises(WorkerError, match="install the same sigmahat on both"):
         execute(first, "of other FMUs")
     assert execute(first, fmu_digest(["table1"])).failure is None

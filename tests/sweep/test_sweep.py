@@ -14,8 +14,9 @@ import scipy.stats
 
 from sigmahat.paper.reproduction import reproduce
 from sigmahat.paper.scenarios import SCENARIOS
-from sigmahat.sweep.job import run as sweep
-from sigmahat.sweep.plan import read_plan
+from sigmahat.sweep.columns import ParameterColumn, Role
+from sigmahat.sweep.job import sweep
+from sigmahat.sweep.plan_file import read_plan
 from sigmahat.sweep.table import read
 from sweeps import QUICK, records, refused, run, start, wait_for_records
 
@@ -63,6 +64,13 @@ def test_summary_and_errors_of_parameters(tmp_path: Path) -> None:
         assert float(row["msrep 95 % half width [%]"]) == pytest.approx(half)
         assert printed["msrep [%]"]["mean"] == pytest.approx(np.mean(x))
         assert (row["runs"], row["failed"]) == ("3", "0")
+
+
+def test_an_error_relative_to_zero_is_not_defined(tmp_path: Path) -> None:
+    settings = ["plant.motor.D_theta=0,1e-3", "RESIDUAL.motor.D_theta=0.9e-3"]
+    plan = read_plan(None, ("table1",), 1, ("RESIDUAL",), settings)
+    error = ParameterColumn(Role.ERROR, "estimator", "motor.D_theta", "%")
+    np.testing.assert_allclose(sweep(plan, tmp_path).numbers(error), [np.nan, -10.0])
 
 
 def test_killed_and_resumed_is_the_same_file(tmp_path: Path) -> None:
@@ -149,7 +157,7 @@ def test_records_that_do_not_fit(tmp_path: Path) -> None:
         assert path.read_bytes() == damaged
 
 
-def test_runs_that_fail_are_told(tmp_path: Path) -> None:
+def test_runs_that_fail_are_reported(tmp_path: Path) -> None:
     # GIVEN an inertia that is negative, which the FMU refuses, for some seeds
     done = run(
         *QUICK, "--seeds", "6", "--set", "estimator.motor.B=normal(2.3e-5,5e-5)", "--out", "out",

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 if TYPE_CHECKING:
-    from sigmahat.paper.scenarios import Scenario
+    from sigmahat.runs.scenario import Scenario
 
 _Command = TypeVar("_Command", bound=Callable[..., object])
 _JSON, _QUIET = "sigmahat.json", "sigmahat.quiet"
@@ -104,23 +104,29 @@ def ready_scenario(name: str) -> Scenario:
         found = scenario(name)
     except ValueError as error:
         raise click.UsageError(str(error)) from error
-    for fmu in {found.plant.fmu, *(each.fmu for each in found.estimators.values())}:
-        need_fmu(fmu)
+    need_fmus(found)
     return found
+
+
+def need_fmus(scenario: Scenario) -> None:
+    """Raises ClickException, which says what to do, if an FMU of a scenario is not built."""
+    for fmu in {scenario.plant.fmu, *(each.fmu for each in scenario.estimators.values())}:
+        need_fmu(fmu)
 
 
 @contextmanager
 def work(out: Path, option: str = "--out") -> Iterator[None]:
     """Around the work of a command that writes to out, named by an option: errors become one line.
 
-    Raises ClickException for an FMU's refusal, a value that does not fit, and a file or folder
-    that cannot be written.
+    Raises ClickException for an FMU's refusal, a value that does not fit, workers that are lost,
+    and a file or folder that cannot be written.
     """
     from sigmahat.fmi.instance import FmuError
+    from sigmahat.runs.pool import WorkerError
 
     try:
         yield
-    except (FmuError, ValueError) as error:
+    except (FmuError, ValueError, WorkerError) as error:
         raise click.ClickException(str(error)) from error
     except OSError as error:
         kind = "folder" if option == "--out" else "file"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 
 import click
@@ -33,27 +32,31 @@ def compare(seeds: int, out: Path) -> None:
     \b
     Example: sigmahat compare --seeds 20 --out compare
     """
-    from sigmahat.paper import results
-    from sigmahat.paper.comparisons import CALIBRATED, JOINTS, compare
+    from sigmahat.compare.conditions import JOINTS, TRUE
+    from sigmahat.compare.job import compare
+    from sigmahat.compare.performance import CALIBRATED
+    from sigmahat.compare.table import as_dicts, table, write
+    from sigmahat.files.output_folder import output_folder
+    from sigmahat.runs.metrics import MSREP_IN_WORDS
 
-    estimators = (e.fmu for j in JOINTS for case in j.cases for e in case.estimators.values())
-    for fmu in {*(joint.plant.fmu for joint in JOINTS), *estimators}:
-        common.need_fmu(fmu)
+    for joint in JOINTS:
+        common.need_fmus(joint.scenario)
 
-    with common.work(out), results.folder(out) as folder:
+    with common.work(out), output_folder(out) as folder:
         with common.progress("Running", len(JOINTS) * seeds) as bar:
-            lines = compare(JOINTS, range(1, seeds + 1), progress=bar.update)
-        from sigmahat.paper.figures import comparison, save
+            rows = compare(JOINTS, range(1, seeds + 1), progress=bar.update)
+        from sigmahat.compare.figure import draw
+        from sigmahat.plotting.save import save
 
-        save(comparison, lines, folder / "compare")
-        results.write_comparison(lines, seeds, folder / "compare.csv")
+        save(draw, rows, folder / "compare")
+        write(rows, seeds, folder / "compare.csv")
 
     common.answer(
         f"MSREP [%] of both methods, and of MatchedFilter: sigma_std relative to the true "
         f"stiffness and share of instants\nwithin 1.96 sigma_std, from {CALIBRATED:g} s on; motor "
-        f"data found at the end, true 0.001 N.m.s/rad, 2.3e-05 kg.m2.\n"
-        f"Mean over {seeds} seed{'s' if seeds > 1 else ''}.\n\n"
-        f"{results.comparison_table(lines)}\n\n"
+        f"data found at the end, true {TRUE['D_theta']:g} N.m.s/rad, {TRUE['B']:g} kg.m2.\n"
+        f"Mean over {seeds} seed{'s' if seeds > 1 else ''}. {MSREP_IN_WORDS}.\n\n"
+        f"{table(rows)}\n\n"
         f"Figure (PNG, SVG) and CSV file are in {out.resolve()}",
-        [asdict(line) for line in lines],
+        as_dicts(rows),
     )

@@ -32,18 +32,18 @@ def estimate(log: Path, config: Path | None, out: Path | None) -> None:
     \b
     Example: sigmahat estimate knee.parquet --config knee.toml --out knee
     """
+    from sigmahat.files.output_folder import output_folder
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.estimate import estimate as run
     from sigmahat.logs.estimate import summary
     from sigmahat.logs.readers.formats import open_log
-    from sigmahat.paper import results
 
     common.need_fmu("StiffnessEstimator")
     out = out or Path("sigmahat-results", log.stem)
     with common.work(out):
         opened = open_log(log)
         configuration = read_configuration(config or common.configuration_of(log))
-        with results.folder(out) as folder, common.progress("Replaying", 1000) as bar:
+        with output_folder(out) as folder, common.progress("Replaying", 1000) as bar:
             result = run(opened, configuration, folder, progress=bar.update)
     where = f"Table and figure (PNG, SVG) are in {out.resolve()}"
     common.answer(f"{summary(result)}\n\n{where}", result.as_dict())

@@ -46,29 +46,31 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
     \b
     Example: sigmahat reproduce --scenario as-printed --seeds 20 --out as-printed
     """
-    from sigmahat.paper import results
-    from sigmahat.paper.reproduction import reproduce, work
+    from sigmahat.files.output_folder import output_folder
+    from sigmahat.paper.reproduction import progress_length, reproduce
+    from sigmahat.paper.result_files import as_dict, write_results
+    from sigmahat.paper.table import conditions, table
+    from sigmahat.runs.metrics import MSREP_IN_WORDS
 
     chosen = common.ready_scenario(name)
     if seeds > 1:
         import_module("scipy")  # intervals need it; if it is not there, say so before the runs
     out = out or Path("sigmahat-results", name)
     numbers = range(1, seeds + 1)
-    with common.work(out), results.folder(out) as folder:
-        with common.progress("Running", work(chosen, numbers)) as bar:
+    with common.work(out), output_folder(out) as folder:
+        with common.progress("Running", progress_length(chosen, numbers)) as bar:
             result = reproduce(chosen, numbers, progress=bar.update)
-        from sigmahat.paper.figures import FIGURES, save
+        from sigmahat.paper.figures.catalogue import FIGURES
+        from sigmahat.plotting.save import save
 
         with common.progress("Drawing", len(chosen.figures)) as bar:
             for title in chosen.figures:
                 save(FIGURES[title], result.recording, folder / title)
                 bar.update(1)
-        results.write_table(result, folder / "table.csv")
-        for modality in chosen.estimators:
-            results.write_series(result.recording, modality, folder / f"{modality}.csv")
+        write_results(result, folder)
 
     common.answer(
-        f"{chosen.name}: {chosen.description}\n{results.conditions(result)}\n\n"
-        f"{results.table(result)}\n\nFigures (PNG, SVG) and CSV files are in {out.resolve()}",
-        results.as_dict(result),
+        f"{chosen.name}: {chosen.description}\n{conditions(result)}\n{MSREP_IN_WORDS}\n\n"
+        f"{table(result)}\n\nFigures (PNG, SVG) and CSV files are in {out.resolve()}",
+        as_dict(result),
     )

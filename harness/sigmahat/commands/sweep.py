@@ -50,28 +50,25 @@ def sweep(
     """Run scenarios over seeds and parameters, in parallel; Monte Carlo.
 
     PLAN is a TOML file with the keys scenario, seeds, modality and a table [parameters]; options
-    replace what it says. After an interruption the same command goes on where it was.
+    replace them. After an interruption the same command does the runs that are missing.
 
     \b
     Example: sigmahat sweep --seeds 100 --modality RESIDUAL \\
         --set estimator.motor.D_theta=0.9e-3:1.1e-3:5 --out friction
     """
-    from sigmahat.sweep import job
-    from sigmahat.sweep.plan import read_plan
-    from sigmahat.sweep.workers import WorkerError
+    from sigmahat.sweep.job import sweep as run
+    from sigmahat.sweep.plan_file import read_plan
+    from sigmahat.sweep.summary import as_dicts, conditions, summary
 
-    for name in scenario or ("table1",):
-        common.ready_scenario(name)
     out = out or Path("sigmahat-results", "sweep")
     with common.work(out):
         read = read_plan(plan, scenario, seeds, modality, settings)
-        try:
-            with common.progress("Running", len(read)) as bar:
-                result = job.run(read, out, scheduler, progress=bar.update)
-        except WorkerError as error:
-            raise click.ClickException(str(error)) from error
+        for name in read.scenarios:
+            common.ready_scenario(name)
+        with common.progress("Running", len(read)) as bar:
+            result = run(read, out, scheduler, progress=bar.update)
     common.answer(
-        f"{job.conditions(read, list(read.parameters))}\n\n{job.summary(result)}\n\n"
+        f"{conditions(read)}\n\n{summary(result)}\n\n"
         f"Table (Parquet), summary (CSV) and figures (PNG, SVG) are in {out.resolve()}",
-        job.as_dict(result),
+        as_dicts(result),
     )

@@ -14,7 +14,7 @@ import jinja2
 
 from sigmahat.export import archive
 from sigmahat.fmi.instance import Fmu, Value
-from sigmahat.paper.scenarios import T, scenario
+from sigmahat.paper.scenarios import scenario
 
 
 def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str) -> None:
@@ -37,7 +37,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
             "torques": table1.plant.inputs,
             "connections": connections,
             "duration": table1.duration,
-            "step": T,
+            "step": table1.T,
             "units": units.values(),
             "plant": _element("plant", of_plant, plant, table1.plant.inputs, sent),
             "estimator": _element("estimator", of_estimator, estimator, connections, ["sigma"]),

@@ -93,8 +93,8 @@ def simulate(
     progress is called with the number of steps made since the last call.
 
     Raises FileNotFoundError for a missing FMU, ValueError for a name that an FMU does not have or
-    a value that does not fit, FmuError with the FMU's own message if an FMU refuses. What an FMU
-    warns about goes to the logger "sigmahat".
+    a value that does not fit, FmuError with the FMU's own message if an FMU refuses. Warnings of
+    FMUs go to the logger "sigmahat".
     """
     t = T * np.arange(steps + 1, dtype=np.float64)
     with ExitStack() as stack:

@@ -109,7 +109,7 @@ def estimate(
             eta = coefficients(slave, int(every["rls.n"]), int(every["rls.m"]))
 
     from sigmahat.logs.figure import Replay, draw
-    from sigmahat.paper.figures import save
+    from sigmahat.plotting.save import save
 
     save(
         draw,

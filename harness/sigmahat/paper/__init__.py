@@ -1,1 +1,1 @@
-"""The scenarios of the paper, run by co-simulation; comparison of methods, tables, figures."""
+"""The scenarios of the paper, and what `sigmahat reproduce` makes of them."""

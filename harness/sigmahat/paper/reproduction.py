@@ -1,21 +1,16 @@
-"""The main job: runs of a scenario over seeds, and the mean of their performance indices."""
+"""The job of `sigmahat reproduce`: runs of a scenario over seeds, and their performance indices."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from numpy.typing import NDArray
-
-from sigmahat.fmi.master import Recording, simulate
-from sigmahat.paper.metrics import Indices, indices
-from sigmahat.paper.nominal_awas import nominal
-from sigmahat.paper.processes import spread
-from sigmahat.paper.scenarios import Scenario, T
-
-Progress = Callable[[int], object]
+from sigmahat.fmi.master import Recording
+from sigmahat.runs.engine import Progress, indices_by_comparison, measured, run, run_all
+from sigmahat.runs.metrics import Indices, mean_interval
+from sigmahat.runs.scenario import Scenario
 
 
 @dataclass(frozen=True)
@@ -29,9 +24,13 @@ class Result:
     indices: Sequence[dict[str, Indices]]
     """For each seed, by comparison."""
 
+    def mean(self, comparison: str, field: str) -> tuple[float, float]:
+        """An index over the seeds: its mean, and half the width of the 95 % interval."""
+        return mean_interval([getattr(each[comparison], field) for each in self.indices])
 
-def work(scenario: Scenario, seeds: Sequence[int]) -> int:
-    """Length of the job in the units that reproduce() reports: runs, or the steps of a single run.
+
+def progress_length(scenario: Scenario, seeds: Sequence[int]) -> int:
+    """What the progress of reproduce() adds up to: runs, or the steps of a single run.
 
     seeds must not be empty.
     """
@@ -47,62 +46,16 @@ def reproduce(
     """Runs the scenario once for each seed of the plant's noise.
 
     seeds      one or more; several are spread over processes, by default one per processor.
-               The result does not depend on their number
-    progress   called now and then with the amount of work done since the last call, see work()
+               The result does not depend on the number of processes
+    progress   called now and then with what was done since the last call, see progress_length()
 
-    Raises what simulate() raises.
+    Raises what simulate() raises, and WorkerError if a process was ended from outside.
     """
     if len(seeds) == 1:
         recording = run(scenario, seeds[0], variants=True, progress=progress)
-        return Result(scenario, seeds, recording, [all_indices(scenario, recording)])
+        return Result(scenario, seeds, recording, [indices_by_comparison(scenario, recording)])
 
-    jobs: list[partial[Any]] = [partial(run, scenario, seeds[0], variants=True)]
-    jobs += [partial(_run_indices, scenario, seed) for seed in seeds[1:]]
-    first, *others = spread(jobs, processes, progress)
-    return Result(scenario, seeds, first, [all_indices(scenario, first), *others])
-
-
-def run(
-    scenario: Scenario,
-    seed: int,
-    variants: bool = False,
-    progress: Progress = lambda steps: None,
-) -> Recording:
-    """Runs the scenario once, with this seed of the plant's noise.
-
-    With variants the estimators that only figures need run too. From time to time progress is
-    called with the number of steps made since the last call. Raises what simulate() raises.
-    """
-    plant = replace(scenario.plant, start={**scenario.plant.start, "noise.seed": seed})
-    estimators = {**scenario.estimators, **(scenario.variants if variants else {})}
-    return simulate(plant, estimators, T, scenario.steps, progress)
-
-
-def _run_indices(scenario: Scenario, seed: int) -> dict[str, Indices]:
-    return all_indices(scenario, run(scenario, seed))
-
-
-def all_indices(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
-    """The indices of each comparison of the scenario, by its name."""
-    return {
-        each.name: indices(
-            recording.t,
-            signal_of(recording, each.reference),
-            signal_of(recording, each.estimate),
-            signal_of(recording, each.relative_to or each.reference),
-            scenario.settled,
-        )
-        for each in scenario.comparisons
-    }
-
-
-def signal_of(recording: Recording, name: str) -> NDArray[Any]:
-    """Returns a signal, shape (N + 1,), by its name as in scenarios.Comparison.
-
-    Raises KeyError if it was not recorded.
-    """
-    source, _, variable = name.rpartition(".")
-    if source == "nominal":
-        return nominal(recording)[variable]
-    series = recording.plant if source == "plant" else recording.estimators[source]
-    return series[variable]
+    jobs: list[Callable[[], Any]] = [partial(run, scenario, seeds[0], variants=True)]
+    jobs += [partial(measured, scenario, seed, indices_by_comparison) for seed in seeds[1:]]
+    first, *others = run_all(jobs, processes, progress)
+    return Result(scenario, seeds, first, [indices_by_comparison(scenario, first), *others])

@@ -1,4 +1,4 @@
-"""What a report shows, and its panels as Bokeh draws them.
+"""The panels of a report as Bokeh draws them.
 
 The page gives the plots their switches and, through CSS, their colours.
 """
@@ -14,7 +14,6 @@ from bokeh.models import (
     BoxAnnotation,
     BoxZoomTool,
     ColumnDataSource,
-    GlyphRenderer,
     PanTool,
     Range1d,
     ResetTool,
@@ -26,69 +25,9 @@ from bokeh.models import (
 from bokeh.plotting import figure
 from numpy.typing import NDArray
 
+from sigmahat.report.contents import Curve, Kind, Panel
+
 _HEIGHT = 300
-TRUE = "#8f8f8f"
-COLORS = ("#1f83c4", "#12a37c", "#e06a1a", "#c9589b", "#b58900", "#56b4e9")
-"""Okabe and Ito, shifted to be read on white and on black."""
-
-
-@dataclass(frozen=True)
-class Table:
-    """Cells as text."""
-
-    title: str
-    head: Sequence[str]
-    rows: Sequence[Sequence[str]]
-
-    @property
-    def words(self) -> list[bool]:
-        """Of each column, whether it has words, which stand at the left."""
-        columns = zip(*self.rows, strict=True)
-        return [any(cell[:1].isalpha() and cell != "nan" for cell in column) for column in columns]
-
-
-@dataclass(frozen=True)
-class Trace:
-    """A line, or points, in one colour and with one switch."""
-
-    label: str
-    color: str
-    x: NDArray[Any]
-    y: NDArray[Any]
-    kind: str = "line"
-    """line; points; means, points with intervals; steps, y between edges x (one x more)."""
-    half: NDArray[Any] | None = None
-    """Half widths of the intervals of means."""
-    width: float = 1.4
-
-
-@dataclass(frozen=True)
-class Panel:
-    """A plot."""
-
-    title: str
-    x_label: str
-    y_label: str
-    traces: Sequence[Trace]
-    x_log: bool = False
-    y_log: bool = False
-    linked: bool = True
-    """Its x axis moves with those of the other panels that are linked."""
-    y_range: tuple[float, float] | None = None
-    """What is seen at first, where an estimate jumps while it learns."""
-
-
-@dataclass(frozen=True)
-class Contents:
-    """All of a report."""
-
-    title: str
-    lines: Sequence[str]
-    """Below the title."""
-    tables: Sequence[Table]
-    panels: Sequence[Panel]
-    every: tuple[float, float] | None = None
-    """Where every sample is drawn, if not everywhere."""
 
 
 @dataclass(frozen=True)
@@ -97,8 +36,8 @@ class Plot:
 
     panel: Panel
     figure: figure
-    switches: Sequence[tuple[Trace, str]]
-    """Each trace and the name that all its models have."""
+    switches: Sequence[tuple[Curve, str]]
+    """Each curve and the name that all its models have."""
 
 
 def plots(panels: Sequence[Panel], every: tuple[float, float] | None) -> list[Plot]:
@@ -113,33 +52,33 @@ def plots(panels: Sequence[Panel], every: tuple[float, float] | None) -> list[Pl
                 BoxAnnotation(left=every[0], right=every[1], fill_color="#888888", fill_alpha=0.12)
             )
         switches = []
-        for j, trace in enumerate(panel.traces):
+        for j, curve in enumerate(panel.curves):
             name = f"trace-{i}-{j}"
-            _draw(plot, trace, name, sources)
-            switches.append((trace, name))
+            _draw(plot, curve, name, sources)
+            switches.append((curve, name))
         made.append(Plot(panel, plot, switches))
     return made
 
 
 def _time_range(panels: Sequence[Panel]) -> Range1d:
     """One object for all linked panels: they zoom together."""
-    times = [trace.x for panel in panels if panel.linked for trace in panel.traces]
+    times = [curve.x for panel in panels if panel.linked for curve in panel.curves]
     if not times:
         return Range1d()
     return Range1d(float(times[0][0]), float(times[0][-1]))
 
 
 def _x_range(panel: Panel) -> Range1d:
-    return Range1d(*_limits([trace.x for trace in panel.traces], panel.x_log))
+    return Range1d(*_limits([curve.x for curve in panel.curves], panel.x_log))
 
 
 def _y_limits(panel: Panel) -> tuple[float, float]:
-    # Found here, because Bokeh would build a search tree of every trace for it.
-    values = [trace.y for trace in panel.traces]
-    for trace in panel.traces:
-        if trace.half is not None:
-            values += [_low(trace), trace.y + trace.half]
-    if any(trace.kind == "steps" for trace in panel.traces):
+    # Computed here, because Bokeh would build a search tree of every curve.
+    values = [curve.y for curve in panel.curves]
+    for curve in panel.curves:
+        if curve.half is not None:
+            values += [curve.low, curve.high]
+    if any(curve.kind is Kind.STEPS for curve in panel.curves):
         values.append(np.zeros(1))
     return _limits(values, panel.y_log)
 
@@ -156,13 +95,6 @@ def _limits(values: Sequence[NDArray[Any]], log: bool) -> tuple[float, float]:
         return low / ratio, high * ratio
     margin = 0.06 * ((high - low) or abs(high) or 1.0)
     return low - margin, high + margin
-
-
-def _low(trace: Trace) -> NDArray[Any]:
-    """Lower ends of intervals; the scale has no place for 0."""
-    assert trace.half is not None
-    low: NDArray[Any] = np.maximum(trace.y - trace.half, 0.1 * trace.y)
-    return low
 
 
 def _figure(panel: Panel, linked: Range1d) -> figure:
@@ -187,33 +119,35 @@ def _figure(panel: Panel, linked: Range1d) -> figure:
     return plot
 
 
-def _draw(
-    plot: figure, trace: Trace, name: str, sources: dict[int, ColumnDataSource]
-) -> GlyphRenderer[object]:
-    if trace.kind == "steps":
-        some = trace.y > 0
-        return plot.quad(
-            left=trace.x[:-1][some], right=trace.x[1:][some], top=trace.y[some], bottom=0,
-            fill_color=trace.color, fill_alpha=0.3, line_color=trace.color, name=name,
+def _draw(plot: figure, curve: Curve, name: str, sources: dict[int, ColumnDataSource]) -> None:
+    if curve.kind is Kind.STEPS:
+        some = curve.y > 0
+        plot.quad(
+            left=curve.x[:-1][some], right=curve.x[1:][some], top=curve.y[some], bottom=0,
+            fill_color=curve.color, fill_alpha=0.3, line_color=curve.color, name=name,
         )  # fmt: skip
+        return
     # Signals over the same times are in one source, which holds the times once.
-    source = sources.setdefault(id(trace.x), ColumnDataSource({"x": trace.x}))
-    source.data[name] = trace.y
-    if trace.kind == "line":
-        return plot.line(
-            "x", name, source=source, color=trace.color, line_width=trace.width, name=name
-        )
-    if trace.kind == "points":
-        return plot.scatter("x", name, source=source, color=trace.color, alpha=0.6, name=name)
-    assert trace.half is not None
-    source.data[f"{name}-low"] = _low(trace)
-    source.data[f"{name}-high"] = trace.y + trace.half
+    source = sources.setdefault(id(curve.x), ColumnDataSource({"x": curve.x}))
+    source.data[name] = curve.y
+    if curve.kind is Kind.LINE:
+        plot.line("x", name, source=source, color=curve.color, line_width=curve.width, name=name)
+    elif curve.kind is Kind.POINTS:
+        plot.scatter("x", name, source=source, color=curve.color, alpha=0.6, name=name)
+    else:
+        _draw_means(plot, curve, name, source)
+
+
+def _draw_means(plot: figure, curve: Curve, name: str, source: ColumnDataSource) -> None:
+    """Whiskers, a line and points; all of one name, so that one switch is for all."""
+    source.data[f"{name}-low"] = curve.low
+    source.data[f"{name}-high"] = curve.high
     plot.add_layout(
         Whisker(
             base="x", lower=f"{name}-low", upper=f"{name}-high", source=source, name=name,
-            line_color=trace.color, upper_head=TeeHead(size=8, line_color=trace.color),
-            lower_head=TeeHead(size=8, line_color=trace.color),
+            line_color=curve.color, upper_head=TeeHead(size=8, line_color=curve.color),
+            lower_head=TeeHead(size=8, line_color=curve.color),
         )
     )  # fmt: skip
-    plot.line("x", name, source=source, color=trace.color, name=name)
-    return plot.scatter("x", name, source=source, color=trace.color, size=7, name=name)
+    plot.line("x", name, source=source, color=curve.color, name=name)
+    plot.scatter("x", name, source=source, color=curve.color, size=7, name=name)

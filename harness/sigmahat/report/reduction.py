@@ -32,7 +32,7 @@ def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = B
     """Keeps at most about budget values of all signals, and 20000 of each.
 
     Half of them are every sample around the middle, where single counts of an encoder show. The
-    others are the least and the greatest value of each bucket, in the order in which they come.
+    others are the least and the greatest value of each bucket, in the order of their times.
     t and the signals have the same shape (N,), N >= 1.
     """
     rows = min(max(budget // max(len(signals), 1), 8), _MOST)
@@ -76,7 +76,7 @@ def _extremes(x: NDArray[np.float32], starts: NDArray[np.intp], end: int) -> NDA
     low = np.where(np.isnan(table), np.inf, table).argmin(axis=1)
     high = np.where(np.isnan(table), -np.inf, table).argmax(axis=1)
     order = np.column_stack([np.minimum(low, high), np.maximum(low, high)])
-    found = np.take_along_axis(table, order, axis=1)
-    found[empty] = np.nan
-    flat: NDArray[np.float32] = found.ravel()
+    values = np.take_along_axis(table, order, axis=1)
+    values[empty] = np.nan
+    flat: NDArray[np.float32] = values.ravel()
     return flat

@@ -1,4 +1,4 @@
-"""What is known of a sweep that is not complete: one line on disk for each run that is done.
+"""The runs of a sweep that are done, on disk: one line for each, so that a sweep can go on later.
 
 A line is the CRC-32 of a JSON text, a space and the text. The first says which sweep it is.
 """
@@ -8,17 +8,18 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from dataclasses import asdict
+from contextlib import contextmanager
+from dataclasses import astuple
 from pathlib import Path
-from shutil import rmtree
 from typing import Any
 from zlib import crc32
 
 from filelock import FileLock, Timeout
 
-from sigmahat.sweep.plan import Plan
-from sigmahat.sweep.workers import Outcome
+from sigmahat.files.output_folder import created_folder
+from sigmahat.runs.metrics import Indices
+from sigmahat.sweep.fmus import sweep_digest
+from sigmahat.sweep.plan import Outcome, Plan
 
 NAME = "runs.jsonl"
 
@@ -33,7 +34,7 @@ class Records:
         """
         self.path = path
         self.outcomes: dict[int, Outcome] = {}
-        head = {"sweep": plan.digest, "runs": len(plan)}
+        head = {"sweep": sweep_digest(plan), "runs": len(plan)}
         lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
         if lines and not lines[-1].endswith(b"\n"):
             lines.pop()  # what a kill cut off; that run is done again
@@ -55,7 +56,8 @@ class Records:
     def add(self, outcome: Outcome) -> None:
         """Writes an outcome; it is on the disk before this returns."""
         self.outcomes[outcome.number] = outcome
-        self._write(asdict(outcome))
+        indices = {name: astuple(each) for name, each in outcome.indices.items()}
+        self._write({"number": outcome.number, "indices": indices, "failure": outcome.failure})
 
     def close(self) -> None:
         """Closes the file."""
@@ -75,36 +77,29 @@ class Records:
         return json.loads(text)
 
     def _take(self, content: Any, line: int, runs: int) -> None:
-        outcome = Outcome(**content)
-        if outcome.number in self.outcomes or not 0 <= outcome.number < runs:
+        number = content["number"]
+        if number in self.outcomes or not 0 <= number < runs:
             raise ValueError(
-                f"{self.path}, line {line}: run {outcome.number} is there twice; "
+                f"{self.path}, line {line}: run {number} is there twice; "
                 "delete this line and start again"
             )
-        indices = {name: tuple(values) for name, values in outcome.indices.items()}
-        self.outcomes[outcome.number] = Outcome(outcome.number, indices, outcome.failure)
+        indices = {name: Indices(*values) for name, values in content["indices"].items()}
+        self.outcomes[number] = Outcome(number, indices, content["failure"])
 
 
 @contextmanager
 def records(folder: Path, plan: Plan) -> Iterator[Records]:
     """The records of a sweep in a folder, for one process at a time. Raises as Records does."""
-    missing = [p for p in (folder, *folder.parents) if not p.exists()]
-    folder.mkdir(parents=True, exist_ok=True)
     lock = folder / f".{NAME}.lock"
-    try:
-        with FileLock(lock, timeout=0):
-            opened = Records(folder / NAME, plan)
-            try:
-                yield opened
-            finally:
-                opened.close()
-                if not opened.outcomes:
-                    opened.path.unlink()
-    except Timeout as error:
-        raise ValueError(f"another sweep is writing to {folder}; wait for it") from error
-    finally:
-        if missing and not any(p.name != lock.name for p in folder.iterdir()):
-            rmtree(folder)
-            for p in missing:
-                with suppress(OSError):
-                    p.rmdir()
+    with created_folder(folder, ignored=lock.name):
+        try:
+            with FileLock(lock, timeout=0):
+                opened = Records(folder / NAME, plan)
+                try:
+                    yield opened
+                finally:
+                    opened.close()
+                    if not opened.outcomes:
+                        opened.path.unlink()
+        except Timeout as error:
+            raise ValueError(f"another sweep is writing to {folder}; wait for it") from error

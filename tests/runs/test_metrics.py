@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from sigmahat.paper.metrics import indices, mean_error, mean_interval, mse, msrep
+from sigmahat.runs.metrics import indices, mean_error, mean_interval, mse, msrep
 
 
 def test_indices_by_hand() -> None:

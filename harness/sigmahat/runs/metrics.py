@@ -1,4 +1,4 @@
-"""Performance indices of a stiffness estimate, and their mean over seeds."""
+"""Performance indices of a stiffness estimate, what each of them is, and their mean over seeds."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from sigmahat.files import columns
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,45 @@ class Indices:
     """(36) without the start-up [%]"""
     error_settled: float
     """Mean relative error without the start-up [%]"""
+
+
+@dataclass(frozen=True)
+class Index:
+    """What one of the performance indices is."""
+
+    field: str
+    """Of Indices."""
+    symbol: str
+    """As the paper calls it."""
+    unit: str
+    settled: bool
+    """Whether it leaves the start-up out."""
+
+    def when(self, settled: float) -> str:
+        """The part of a run that it is of, for people; settled: where the start-up ends [s]."""
+        return f"after {settled:g} s" if self.settled else ""
+
+    def name(self, when: str = "") -> str:
+        """For people, with the part of the run that it is of."""
+        return f"{self.symbol} {when}" if when else self.symbol
+
+    def title(self, when: str = "") -> str:
+        """name() with the unit."""
+        return columns.title(self.name(when), self.unit)
+
+
+INDICES = {
+    index.field: index
+    for settled, end in ((False, ""), (True, "_settled"))
+    for index in (
+        Index(f"mse{end}", "MSE", "(N.m/rad)2", settled),
+        Index(f"msrep{end}", "MSREP", "%", settled),
+        Index(f"error{end}", "mean error", "%", settled),
+    )
+}
+"""Every performance index by its field of Indices, in their order."""
+
+MSREP_IN_WORDS = "MSREP: mean square of the relative error; 1 % is an RMS error of 10 %"
 
 
 def mse(sigma: ArrayLike, estimate: ArrayLike) -> float:
@@ -75,22 +116,22 @@ def indices(
     true, estimated, scale = _equal_shapes(
         sigma, estimate, sigma if relative_to is None else relative_to
     )
-    found = []
+    values = []
     for part in (slice(None), t >= settled):
         arguments = true[part], estimated[part], scale[part]
-        known = bool(np.all(scale[part]))
-        found += [
+        defined = bool(np.all(scale[part]))
+        values += [
             mse(*arguments[:2]),
-            msrep(*arguments) if known else math.nan,
-            mean_error(*arguments) if known else math.nan,
+            msrep(*arguments) if defined else math.nan,
+            mean_error(*arguments) if defined else math.nan,
         ]
-    return Indices(*found)
+    return Indices(*values)
 
 
 def mean_interval(values: Sequence[float]) -> tuple[float, float]:
     """Mean over independent runs and half the width of its 95 % interval (Student t).
 
-    The half width of a single value is not known: nan. That of equal values is 0, not rounding.
+    The half width of a single value is not defined: nan. That of equal values is exactly 0.
     """
     mean = float(np.mean(values))
     if len(values) < 2:

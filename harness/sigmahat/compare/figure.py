@@ -1,0 +1,73 @@
+"""The figure of `sigmahat compare`: error over the frequency of the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from sigmahat.compare import labels
+from sigmahat.compare.conditions import MATCHED, METHODS, PAPER2011, Device
+from sigmahat.compare.job import Row
+from sigmahat.plotting.colors import BLUE, VERMILION
+
+_COLORS = {PAPER2011: VERMILION, MATCHED: BLUE}
+_MARKERS = "ovsD^"
+
+
+def draw(rows: Sequence[Row]) -> Figure:
+    """MSREP of both methods over the frequency of the motion, for the AwAS with wrong motor data.
+
+    Right: with Coulomb friction, too.
+    """
+    figure = Figure(figsize=(9.0, 5.0), layout="constrained")
+    panels = figure.subplots(1, 2, sharey=True).tolist()
+    curves = curves_over_frequency(rows)
+    handles: list[Line2D] = []
+    for method in METHODS:
+        for curve, marker in zip(curves, _MARKERS, strict=False):
+            handles += _plot(panels[curve[0].joint.coulomb > 0], curve, method, marker)
+    for axes, with_friction in zip(panels, (False, True), strict=True):
+        shown = [curve[0] for curve in curves if (curve[0].joint.coulomb > 0) is with_friction]
+        if shown:
+            axes.set_title(_title(shown[0]), fontsize=9)
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlabel("frequency of the motor torque [Hz]")
+    panels[0].set_ylabel("MSREP [%]")
+    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8)
+    return figure
+
+
+def curves_over_frequency(rows: Sequence[Row]) -> list[list[Row]]:
+    """Rows of the AwAS with wrong motor data that differ in nothing but the frequency."""
+    curves: dict[tuple[object, ...], list[Row]] = {}
+    for row in rows:
+        if row.joint.device is Device.AWAS and row.case.motor_errors:
+            errors = tuple(row.case.motor_errors.items())
+            curves.setdefault((row.joint.lever_arm, row.joint.coulomb, errors), []).append(row)
+    return list(curves.values())
+
+
+def _plot(axes: Axes, curve: Sequence[Row], method: str, marker: str) -> list[Line2D]:
+    first = curve[0]
+    condition = "Coulomb friction" if first.joint.coulomb else labels.lever_arm(first.joint)
+    return axes.plot(
+        [row.joint.frequency for row in curve],
+        [row.error(method) for row in curve],
+        color=_COLORS[method],
+        marker=marker,
+        markersize=4,
+        linestyle="-" if first.case.motor_errors == {"D_theta": 0.1} else "--",
+        label=f"{method}: {condition}, {labels.case(first.case)}",
+    )
+
+
+def _title(row: Row) -> str:
+    """What the rows of a panel have in common."""
+    if not row.joint.coulomb:
+        return f"all {row.joint.scenario.duration:g} s"
+    friction = rf"Coulomb friction {row.joint.coulomb:g} N$\cdot$m"
+    return f"{friction}, {labels.lever_arm(row.joint)}, after {row.judged_from:g} s"

@@ -1,0 +1,1 @@
+"""How results are written: the folder that they appear in, tables, and titles of columns."""

@@ -1,0 +1,27 @@
+"""Every figure of a scenario, by the name of its files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from matplotlib.figure import Figure
+
+from sigmahat.fmi.master import Recording
+from sigmahat.paper.figures import experiment, overview, simulation
+
+FIGURES: dict[str, Callable[[Recording], Figure]] = {
+    "fig3-deformation": simulation.deformation,
+    "fig4-velocity": simulation.velocity,
+    "fig5-flexibility-torque": simulation.flexibility_torque,
+    "fig6-stiffness": simulation.stiffness,
+    "fig7-stability-factor": simulation.stability_factor,
+    "fig8-constant-factors": simulation.constant_factors,
+    "fig9-deformation": simulation.deformation,
+    "fig10-lever-arm": experiment.lever_arm,
+    "fig11-flexibility-torque": experiment.nominal_torque,
+    "fig12-stiffness": experiment.stiffness,
+    "summary": overview.summary,
+    "experiment": experiment.experiment,
+    "antagonistic": overview.antagonistic,
+}
+"""Each takes the recording of a scenario, and returns a figure that no window manager holds."""

@@ -1,0 +1,129 @@
+"""Panels over time, and what is drawn in several of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from sigmahat.fmi.master import Recording
+from sigmahat.plotting.colors import BLUE, GREEN, VERMILION
+
+Array = NDArray[np.float64]
+
+# Wide and light, so that an estimate on top of the truth still shows it.
+TRUE: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 3.0, "label": "true"}
+STIFFNESS = r"stiffness $\sigma$ [N$\cdot$m/rad]"
+TORQUE = r"flexibility torque $\tau_e$ [N$\cdot$m]"
+
+_ESTIMATORS: dict[str, dict[str, Any]] = {
+    "RESIDUAL": {"color": BLUE},
+    "SENSOR": {"color": GREEN, "linestyle": (0, (5, 2))},
+    "MODEL": {"color": VERMILION, "linestyle": (0, (1, 1.5))},
+    "RESIDUAL-paper-prior": {"color": VERMILION, "linestyle": (0, (5, 2))},
+}
+_ERROR_WINDOW = 0.1
+"""[s]"""
+
+
+def time_panels(count: int) -> tuple[Figure, list[Axes]]:
+    """Panels one below the other, time on the horizontal axis."""
+    figure = Figure(figsize=(7.2, 1.2 + 2.5 * count), layout="constrained")
+    panels = figure.subplots(count, squeeze=False)[:, 0].tolist()
+    for axes in panels:
+        axes.set_xlabel("time $t$ [s]")
+    return figure, panels
+
+
+def line(axes: Axes, t: Array, values: Array, **style: Any) -> None:
+    """A signal over time."""
+    kept = _envelope(values)
+    axes.plot(t[kept], values[kept], **style)
+    axes.margins(x=0.01)
+
+
+def stiffness_lines(axes: Axes, recording: Recording, window: slice) -> None:
+    """True stiffness, and the estimate of each modality."""
+    t, true = recording.t[window], recording.plant["sigma"][window]
+    line(axes, t, true, **TRUE)
+    for name, style in _estimators(recording):
+        line(axes, t, recording.estimators[name]["sigma"][window], **style)
+    limit(axes, true)
+    axes.set_ylabel(STIFFNESS)
+
+
+def error_lines(axes: Axes, recording: Recording) -> None:
+    """Relative error of the stiffness of each modality."""
+    for name, style in _estimators(recording):
+        estimate = recording.estimators[name]["sigma"]
+        error_line(axes, recording.t, recording.plant["sigma"], estimate, **style)
+    error_axes(axes)
+
+
+def _estimators(recording: Recording) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Estimators of the recording that have a style, and their style with a label."""
+    for name, style in _ESTIMATORS.items():
+        if name in recording.estimators:
+            yield name, {**style, "label": name}
+
+
+def error_line(axes: Axes, t: Array, true: Array, estimate: Array, **style: Any) -> None:
+    """Relative error of a stiffness, the largest of each window."""
+    window = int(np.searchsorted(t, _ERROR_WINDOW))
+    windows = len(t) // window
+    error = np.abs(estimate / true - 1)[: windows * window] * 100
+    worst = error.reshape(windows, window).max(axis=1)
+    line(axes, t[: windows * window : window], worst, **style)
+
+
+def error_axes(axes: Axes) -> None:
+    """Scale, label and legend of a panel with error lines."""
+    axes.set_yscale("log")
+    axes.set_ylabel(f"relative error [%],\nlargest within {_ERROR_WINDOW:g} s")
+    axes.legend(ncols=3)
+
+
+def limit(axes: Axes, true: Array) -> None:
+    """Keeps the scale where the true values are, however far an estimate goes."""
+    top = float(np.max(true))
+    axes.set_ylim(min(0.0, float(np.min(true))) - 0.1 * top, 1.4 * top)
+
+
+def legend_above(axes: Axes) -> None:
+    """Legend above the lines, where they reach all over the panel."""
+    bottom, top = axes.get_ylim()
+    axes.set_ylim(bottom, top + 0.2 * (top - bottom))
+    axes.legend(loc="upper right", ncols=len(axes.get_lines()))
+
+
+def everything(t: Array) -> slice:
+    """All samples."""
+    return slice(0, len(t))
+
+
+def window(t: Array, centre: float, half_width: float) -> slice:
+    """Samples within half_width [s] of centre [s]."""
+    first, last = np.searchsorted(t, (centre - half_width, centre + half_width))
+    return slice(int(first), int(last) + 1)
+
+
+def first_reversal(t: Array, values: Array) -> float:
+    """Time at which values first change sign after 1 s [s]; the middle if they do not."""
+    later = t > 1.0
+    changes = np.flatnonzero(np.diff(np.sign(values[later])))
+    return float(t[later][changes[0]] if len(changes) else t[len(t) // 2])
+
+
+def _envelope(values: Array, buckets: int = 1000) -> NDArray[np.intp]:
+    """Samples that make the same picture: the least and the greatest of each bucket."""
+    count = len(values) // buckets
+    if count < 4:
+        return np.arange(len(values))
+    whole = values[: buckets * count].reshape(buckets, count)
+    first = np.arange(buckets) * count
+    ends = (0, len(values) - 1)
+    return np.unique(np.r_[first + whole.argmin(axis=1), first + whole.argmax(axis=1), ends])

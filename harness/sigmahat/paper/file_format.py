@@ -1,0 +1,10 @@
+"""Names in the CSV files of `sigmahat reproduce`, for what writes them and what reads them."""
+
+TABLE = "table.csv"
+"""File with the indices of each comparison; each estimator has a file over time, too."""
+ESTIMATION, SEEDS = "estimation", "seeds"
+"""The first columns of that file."""
+TIME = "t"
+"""The first column of a file over time."""
+PLANT = "plant."
+"""What the names of signals of the plant begin with, there."""

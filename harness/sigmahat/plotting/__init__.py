@@ -1,0 +1,1 @@
+"""What the figures of all commands share: colours, style, and the files that are written."""

@@ -1,0 +1,200 @@
+"""Panels over time: stiffness with its error, and the quantities that it is computed from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sigmahat.report.contents import COLORS, TRUE, Curve, Panel
+from sigmahat.report.reduction import Reduced
+
+_TIME = "time t [s]"
+_WIDE = 3.5  # of the truth, so that an estimate on top of it still shows it
+_SIDES = ("", "_1", "_2")
+"""What variables end with: of the joint, or of the sides of an antagonistic pair."""
+_OUTER = 1.0  # percent of a stiffness at either end that do not set the scale
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The stiffness of one estimator."""
+
+    label: str
+    signals: Mapping[str, str]
+    """Names of its signals by variable, sigma, sigma_1, sigma_2."""
+
+
+@dataclass(frozen=True)
+class _Signal:
+    """A curve of a panel, if it was recorded."""
+
+    variable: str
+    """{} stands for the side of an antagonistic pair."""
+    label: str
+    true: bool = False
+
+
+@dataclass(frozen=True)
+class _Quantity:
+    """A panel with signals, the noisy first, which would hide the others."""
+
+    title: str
+    axis: str
+    signals: Sequence[_Signal]
+    of_an_estimator: bool = True
+    """Whether an estimator computes it; else it is measured, and the same for all of them."""
+
+
+_QUANTITIES = (
+    _Quantity(
+        "Flexibility torque",
+        "tau_e [N.m]",
+        [
+            _Signal("tau_e_residual{}", "by the motor data"),
+            _Signal("plant.tau_e_measured{}", "sensor"),
+            _Signal("plant.tau_e{}", "true", true=True),
+            _Signal("tau_e{}", "fitted, f(theta_c, phi)"),
+        ],
+    ),
+    _Quantity(
+        "Deformation",
+        "phi [rad]",
+        [
+            _Signal("plant.phi{}", "true", true=True),
+            _Signal("phi{}", "as the estimator sees it"),
+        ],
+    ),
+    _Quantity(
+        "Motor velocity",
+        "theta_dot [rad/s]",
+        [
+            _Signal("plant.theta_dot{}", "true", true=True),
+            _Signal("theta_dot{}", "filtered"),
+        ],
+    ),
+    _Quantity(
+        "Positions as measured",
+        "position [rad]",
+        [
+            _Signal("plant.theta_measured{}", "motor, theta"),
+            _Signal("plant.q_measured", "link, q"),
+        ],
+        of_an_estimator=False,
+    ),
+    _Quantity("Set-point", "set-point [1]", [_Signal("setPoint{}", "set-point of the regression")]),
+)
+
+
+def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterator[Panel]:
+    """Stiffness, and its relative error where the truth was recorded; for each side of a pair."""
+    for side in _SIDES:
+        signals = {
+            each.label: reduced.signals[each.signals[f"sigma{side}"]]
+            for each in estimates
+            if f"sigma{side}" in each.signals
+        }
+        if not signals:
+            continue
+        lines = [
+            Curve(label, color, reduced.t, values)
+            for (label, values), color in zip(signals.items(), COLORS, strict=False)
+        ]
+        true = reduced.signals.get(f"plant.sigma{side}")
+        truth = [] if true is None else [Curve("true", TRUE, reduced.t, true, width=_WIDE)]
+        scale = lines[0].y[len(lines[0].y) // 20 :] if true is None else true
+        yield Panel(
+            f"Stiffness{_of(side)}",
+            _TIME,
+            "sigma [N.m/rad]",
+            [*truth, *lines],
+            y_range=_range(scale),
+        )
+        if true is not None:
+            yield Panel(
+                f"Relative error of the stiffness{_of(side)}",
+                _TIME,
+                "|error| [%]",
+                [
+                    Curve(line.label, line.color, reduced.t, _error(line.y, true), width=1.1)
+                    for line in lines
+                ],
+                y_log=True,
+                y_range=(1e-5, 2e2),
+            )
+
+
+def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
+    """All other quantities; estimator: whose they are, "" if that is clear."""
+    for quantity in _QUANTITIES:
+        whose = f", {estimator}" if estimator and quantity.of_an_estimator else ""
+        for side in _sides(quantity, reduced):
+            curves = _curves(quantity, side, reduced)
+            if curves:
+                title = f"{quantity.title}{_of(side)}{whose}"
+                yield Panel(title, _TIME, quantity.axis, curves)
+
+
+def sampling(reduced: Reduced) -> list[str]:
+    """What the plots show of the samples, in words."""
+    if reduced.bucket == 1:
+        return ["Every sample is in the plots: zoom in until single counts of the encoders show."]
+    first, last = reduced.every
+    return [
+        f"Every sample is in the plots from {first:.6g} s to {last:.6g} s, the shaded part: zoom in"
+        f" there until single counts of the encoders show. Elsewhere they keep the least and the "
+        f"greatest of every {reduced.bucket} samples."
+    ]
+
+
+def _of(side: str) -> str:
+    return f" of side {side[1:]}" if side else ""
+
+
+def _sides(quantity: _Quantity, reduced: Reduced) -> list[str]:
+    """The sides of which something was recorded, in the order of the signals."""
+    return list(
+        dict.fromkeys(
+            side
+            for signal in quantity.signals
+            if "{}" in signal.variable
+            for side in _SIDES
+            if signal.variable.format(side) in reduced.signals
+        )
+    )
+
+
+def _curves(quantity: _Quantity, side: str, reduced: Reduced) -> list[Curve]:
+    curves = []
+    colors = iter(COLORS)
+    for signal in quantity.signals:
+        values = reduced.signals.get(signal.variable.format(side))
+        if values is None:
+            continue
+        if signal.true:
+            curves.append(Curve(signal.label, TRUE, reduced.t, values, width=_WIDE))
+        # What is constant was not connected: no sensor, no set-point.
+        elif np.nanmin(values) != np.nanmax(values):
+            curves.append(Curve(signal.label, next(colors), reduced.t, values, width=1.1))
+    return curves
+
+
+def _error(estimate: NDArray[Any], true: NDArray[Any]) -> NDArray[np.float32]:
+    """Relative error [%]; nan for 0, which a logarithmic scale does not have."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        error: NDArray[np.float32] = (100 * np.abs(estimate / true - 1)).astype(np.float32)
+    error[~(error > 0) | ~np.isfinite(error)] = np.nan
+    return error
+
+
+def _range(values: NDArray[Any]) -> tuple[float, float]:
+    """Limits of an axis that leave the outermost values out."""
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return 0.0, 1.0
+    low, high = np.percentile(finite, [_OUTER, 100 - _OUTER]).tolist()
+    margin = 0.2 * ((high - low) or abs(high) or 1.0)
+    return low - margin, high + margin

@@ -1,0 +1,1 @@
+"""The engine: runs of scenarios over seeds, in parallel, and what is computed of each."""

@@ -1,0 +1,81 @@
+"""Runs of scenarios over seeds: one here, or many in parallel, and what is computed of each.
+
+A command makes its jobs from `run` and `measured`, and gives them to `run_all`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import replace
+from typing import TypeVar
+
+from sigmahat.fmi.master import Recording, simulate
+from sigmahat.runs.metrics import Indices, indices
+from sigmahat.runs.pool import spread
+from sigmahat.runs.scenario import Scenario
+from sigmahat.runs.signals import signal_of
+
+Progress = Callable[[int], object]
+Result = TypeVar("Result")
+SEED = "noise.seed"
+"""Parameter of every plant."""
+
+
+def run(
+    scenario: Scenario,
+    seed: int,
+    variants: bool = False,
+    progress: Progress = lambda steps: None,
+) -> Recording:
+    """Runs the scenario once, with this seed of the plant's noise.
+
+    With variants the estimators that only figures need run too. From time to time progress is
+    called with the number of steps made since the last call. Raises what simulate() raises.
+    """
+    plant = replace(scenario.plant, start={**scenario.plant.start, SEED: seed})
+    estimators = {**scenario.estimators, **(scenario.variants if variants else {})}
+    return simulate(plant, estimators, scenario.T, scenario.steps, progress)
+
+
+def measured(
+    scenario: Scenario, seed: int, measure: Callable[[Scenario, Recording], Result]
+) -> Result:
+    """Runs the scenario once and returns what `measure` computes of it, not the recording.
+
+    Raises what simulate() and measure raise.
+    """
+    return measure(scenario, run(scenario, seed))
+
+
+def run_all(
+    jobs: Sequence[Callable[[], Result]],
+    processes: int | None = None,
+    progress: Progress = lambda done: None,
+) -> list[Result]:
+    """Results of the jobs, in their order; the first exception of one ends them all.
+
+    jobs       partial objects of run or measured: other processes receive them
+    processes  at most so many, by default one per processor; the results do not depend on it
+    progress   called with 1 for every job that is done
+    """
+    results: dict[int, Result] = {}
+    with closing(spread(jobs, processes)) as done:
+        for place, result in done:
+            results[place] = result
+            progress(1)
+    return [results[place] for place in range(len(jobs))]
+
+
+def indices_by_comparison(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
+    """The performance indices of each comparison of the scenario, by its name."""
+    return {
+        each.name: indices(
+            recording.t,
+            signal_of(recording, each.reference),
+            signal_of(recording, each.estimate),
+            signal_of(recording, each.relative_to or each.reference),
+            scenario.settled,
+        )
+        for each in scenario.comparisons
+    }

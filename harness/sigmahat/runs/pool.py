@@ -1,0 +1,89 @@
+"""Independent jobs, spread over processes of this machine."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing.connection import wait
+from multiprocessing.resource_tracker import ensure_running
+from typing import TypeVar
+
+Result = TypeVar("Result")
+
+
+class WorkerError(RuntimeError):
+    """A process, or a machine of a cluster, cannot do its jobs."""
+
+
+class WorkersLostError(WorkerError):
+    """Processes or machines were lost while they did their jobs; others may do them."""
+
+
+def spread(
+    jobs: Sequence[Callable[[], Result]], processes: int | None = None
+) -> Generator[tuple[int, Result], None, None]:
+    """Yields the place of a job and its result, in the order in which the jobs are done.
+
+    jobs       partial objects or functions that other processes can import
+    processes  at most so many, by default one per processor
+
+    Raises what a job raises, and WorkersLostError if a process was ended from outside. Closing
+    the generator cancels the jobs that have not begun.
+    """
+    workers = min(len(jobs), processes or os.cpu_count() or 1)
+    context = multiprocessing.get_context("spawn")
+    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_the_parent)
+    try:
+        with _interrupts_for_the_parent_alone():
+            places = {executor.submit(job): place for place, job in enumerate(jobs)}
+        for future in as_completed(places):
+            yield places[future], future.result()
+    except BrokenProcessPool as error:
+        raise WorkersLostError("a process was ended from outside") from error
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _interrupts_for_the_parent_alone() -> Iterator[None]:
+    """Processes started inside ignore Ctrl-C, which a terminal sends to them too.
+
+    They inherit the blocked signal. In this process the signal waits until the end of the block,
+    also if another thread receives it, so that no process is left half started.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    waiting: list[int] = []
+    main = threading.current_thread() is threading.main_thread()
+    if main:
+        handler = signal.signal(signal.SIGINT, lambda number, frame: waiting.append(number))
+    ensure_running()  # the resource tracker would lift the block when it starts
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        if main:
+            signal.signal(signal.SIGINT, handler)
+    if waiting:
+        raise KeyboardInterrupt
+
+
+def _end_with_the_parent() -> None:
+    """Ends this process when its parent is gone; it would wait for work for ever."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    sentinel = parent.sentinel
+
+    def watch() -> None:
+        wait([sentinel])
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()

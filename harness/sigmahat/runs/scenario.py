@@ -1,0 +1,94 @@
+"""What a scenario is, as plain data: a plant, its inputs, estimators, and what is compared."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sigmahat.fmi.master import Estimator, Plant
+
+T = 1e-3
+"""Sampling time of the paper [s], section VI.B."""
+
+
+@dataclass(frozen=True)
+class Sine:
+    """amplitude sin(2 pi frequency t)."""
+
+    amplitude: float
+    """In the unit of the input."""
+    frequency: float
+    """[Hz]"""
+
+    def __call__(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.amplitude * np.sin(2 * math.pi * self.frequency * t)
+
+
+@dataclass(frozen=True)
+class Sines:
+    """Constant plus sines."""
+
+    offset: float
+    """In the unit of the input."""
+    terms: Sequence[Sine]
+    """Of any number."""
+
+    def __call__(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.offset + sum((term(t) for term in self.terms), np.zeros_like(t))
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One stiffness against another.
+
+    A signal is `"SOURCE.VARIABLE"`: the source is "plant", an estimator, or "nominal", the AwAS
+    as its nominal data describe it.
+    """
+
+    name: str
+    """Row of the table."""
+    estimate: str
+    """Signal that is judged."""
+    reference: str
+    """Signal that it is compared with."""
+    relative_to: str | None = None
+    """Signal that errors are relative to; the reference if not given."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One run of a plant and its estimators."""
+
+    name: str
+    """For `sigmahat reproduce --scenario`, and for folders."""
+    description: str
+    """One line."""
+    duration: float
+    """Simulated time [s], a multiple of T."""
+    plant: Plant
+    """The joint whose stiffness is estimated."""
+    estimators: Mapping[str, Estimator]
+    """By modality."""
+    comparisons: Sequence[Comparison]
+    """Rows of the table. The estimators in them are not variants."""
+    figures: Sequence[str]
+    """Names in sigmahat.paper.figures.catalogue.FIGURES."""
+    variants: Mapping[str, Estimator] = field(default_factory=dict)
+    """Further estimators, for the figures only."""
+    paper: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Indices that the paper gives for a comparison: MSE [(N.m/rad)2], MSREP [%]."""
+    settled: float = 1.0
+    """Time after which an estimate is judged without its start-up [s]."""
+    tables: Sequence[Sequence[str]] = (("mse", "msrep", "msrep_settled"),)
+    """Columns of each printed table, fields of sigmahat.Indices."""
+    T: float = T
+    """Time between samples [s]."""
+
+    @property
+    def steps(self) -> int:
+        """Number of sampling times T from the start to the end."""
+        return round(self.duration / self.T)

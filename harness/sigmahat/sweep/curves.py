@@ -1,0 +1,87 @@
+"""What is drawn of a sweep, as data, for its figures and its report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sigmahat.runs.metrics import INDICES, Index, mean_interval
+from sigmahat.sweep.columns import ParameterColumn, Role
+from sigmahat.sweep.table import ESTIMATION, FAILURE, SCENARIO, SweepTable
+
+Column = NDArray[np.float64]
+_BINS = 40
+
+
+@dataclass(frozen=True)
+class Part:
+    """The rows of one comparison of one scenario that did not fail."""
+
+    label: str
+    rows: SweepTable
+
+
+def parts(sweep: SweepTable) -> list[Part]:
+    """One for each comparison of each scenario, in the order of the table."""
+    good = sweep.where([failure is None for failure in sweep.values(FAILURE)])
+    keys = list(zip(good.values(ESTIMATION), good.values(SCENARIO), strict=True))
+    several = len({scenario for _, scenario in keys}) > 1
+    return [
+        Part(", ".join(key) if several else key[0], good.where([each == key for each in keys]))
+        for key in dict.fromkeys(keys)
+    ]
+
+
+def drawn_indices(sweep: SweepTable) -> list[Index]:
+    """MSREP over all and after start-up, or MSE where relative errors are not defined."""
+    for fields in (("msrep", "msrep_settled"), ("mse", "mse_settled")):
+        indices = [INDICES[field] for field in fields]
+        if all(np.isfinite(sweep.numbers(index)).any() for index in indices):
+            return indices
+    return []
+
+
+def time_of(index: Index) -> str:
+    """The part of the run that a drawn index is of, in words."""
+    return "after start-up" if index.settled else "of the whole run"
+
+
+def abscissas(sweep: SweepTable) -> list[ParameterColumn]:
+    """What the error is drawn against: errors of parameters, and other parameters with numbers."""
+    errors = [column for column in sweep.parameters(Role.ERROR) if _varies(sweep, column)]
+    others = [
+        column
+        for column in (*sweep.parameters(Role.LISTED), *sweep.parameters(Role.DRAWN))
+        if not any(map(column.same_quantity, errors)) and _varies(sweep, column)
+    ]
+    return [*errors, *others]
+
+
+def _varies(sweep: SweepTable, column: ParameterColumn) -> bool:
+    values = sweep.values(column)
+    numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in values)
+    return numbers and len(set(values)) > 1
+
+
+def has_a_value_for_each_run(sweep: SweepTable, column: ParameterColumn) -> bool:
+    """Whether the parameter is drawn: runs are shown as points, those of others as means."""
+    return any(map(column.same_quantity, sweep.parameters(Role.DRAWN)))
+
+
+def interval_at(x: Column, y: Column) -> tuple[list[float], list[float], list[float]]:
+    """Different x, and for each the mean of y and half the width of its 95 % interval, 0 of one."""
+    at = np.unique(x).tolist()
+    pairs = [mean_interval(y[x == value].tolist()) for value in at]
+    return at, [mean for mean, _ in pairs], [0.0 if np.isnan(half) else half for _, half in pairs]
+
+
+def log_bins(values: Column) -> list[float]:
+    """Edges of bins of equal ratio around positive values."""
+    if not len(values):
+        return [0.1, 1.0]
+    low, high = np.log10(values.min()), np.log10(values.max())
+    margin = 0.02 * max(high - low, 0.1)
+    edges: list[float] = np.logspace(low - margin, high + margin, _BINS + 1).tolist()
+    return edges

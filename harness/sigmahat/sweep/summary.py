@@ -1,0 +1,168 @@
+"""The summary of a sweep: means over the seeds, printed, as a CSV file, and for JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sigmahat.files.csv_table import write_csv
+from sigmahat.files.text_table import aligned
+from sigmahat.fmi.instance import Value
+from sigmahat.paper.scenarios import SCENARIOS
+from sigmahat.runs.metrics import INDICES, Index, mean_interval
+from sigmahat.sweep.columns import Column, ParameterColumn, Role, half_width_title, title
+from sigmahat.sweep.plan import Plan
+from sigmahat.sweep.table import ESTIMATION, FAILURE, SCENARIO, SweepTable
+
+_ROWS = 30
+"""Rows of a printed summary; summary.csv has all of them."""
+
+
+@dataclass(frozen=True)
+class Mean:
+    """Indices over the seeds of one scenario, one combination of listed values, one comparison."""
+
+    scenario: str
+    listed: Mapping[ParameterColumn, Value]
+    estimation: str
+    runs: int
+    failed: int
+    indices: Mapping[Index, tuple[float, float]]
+    """Mean and half width of its 95 % interval; over what did not fail."""
+
+
+@dataclass(frozen=True)
+class SummaryColumn:
+    """A column of the summary as text."""
+
+    title: str
+    words: bool
+    """Whether its cells are words and not numbers."""
+    cells: list[str]
+
+
+def means(sweep: SweepTable) -> list[Mean]:
+    """The mean of each group, in the order of the table."""
+    listed = sweep.parameters(Role.LISTED)
+    keys: list[Column] = [SCENARIO, *listed, ESTIMATION]
+    groups: dict[tuple[Any, ...], list[int]] = {}
+    for row, key in enumerate(zip(*(sweep.values(column) for column in keys), strict=True)):
+        groups.setdefault(key, []).append(row)
+    failures = sweep.values(FAILURE)
+    indices = {index: sweep.values(index) for index in INDICES.values()}
+    result = []
+    for (scenario, *values, estimation), rows in groups.items():
+        good = [row for row in rows if failures[row] is None]
+        result.append(
+            Mean(
+                scenario,
+                dict(zip(listed, values, strict=True)),
+                estimation,
+                len(rows),
+                len(rows) - len(good),
+                {index: _mean([x[row] for row in good]) for index, x in indices.items()},
+            )
+        )
+    return result
+
+
+def _mean(values: list[float]) -> tuple[float, float]:
+    return mean_interval(values) if values else (math.nan, math.nan)
+
+
+def summary_columns(sweep: SweepTable) -> list[SummaryColumn]:
+    """The summary as text: mean +- half width of the 95 % interval.
+
+    It has the indices that the scenarios show in their own tables.
+    """
+    every = means(sweep)
+    names = {each.scenario for each in every}
+    fields = {f for name in names for table in SCENARIOS[name].tables for f in table}
+    columns = []
+    if len(names) > 1:
+        columns.append(SummaryColumn(SCENARIO, True, [each.scenario for each in every]))
+    for parameter in sweep.parameters(Role.LISTED):
+        values = [each.listed[parameter] for each in every]
+        words = any(isinstance(value, (str, bool)) for value in values)
+        columns.append(SummaryColumn(title(parameter), words, [_value(v) for v in values]))
+    columns.append(SummaryColumn(ESTIMATION, True, [each.estimation for each in every]))
+    columns.append(SummaryColumn("runs", False, [str(each.runs) for each in every]))
+    if any(each.failed for each in every):
+        columns.append(SummaryColumn("failed", False, [str(each.failed) for each in every]))
+    columns += [
+        SummaryColumn(
+            index.title("after start-up" if index.settled else ""),
+            False,
+            [_cell(*each.indices[index]) for each in every],
+        )
+        for field, index in INDICES.items()
+        if field in fields
+    ]
+    return columns
+
+
+def summary(sweep: SweepTable) -> str:
+    """One screen."""
+    columns = summary_columns(sweep)
+    rows = list(zip(*(column.cells for column in columns), strict=True))
+    left = [i for i, column in enumerate(columns) if column.title == ESTIMATION]
+    table = aligned([[column.title for column in columns], *rows[:_ROWS]], left)
+    lines = [line.rstrip() for line in table]
+    if len(rows) > _ROWS:
+        lines.append(f"... {len(rows) - _ROWS} more rows in summary.csv")
+    failures = [each for each in sweep.values(FAILURE) if each]
+    if failures:
+        lines.append(f"\nfailed, the first with: {failures[0]}")
+    return "\n".join(lines)
+
+
+def write_summary(sweep: SweepTable, path: Path) -> None:
+    """Writes every mean and half width with all digits."""
+    parameters = [title(column) for column in sweep.parameters(Role.LISTED)]
+    head = ["scenario", *parameters, "estimation", "runs", "failed"]
+    for index in INDICES.values():
+        head += [title(index), half_width_title(index)]
+    rows = []
+    for mean in means(sweep):
+        cells = [x for pair in mean.indices.values() for x in pair]
+        row = (mean.scenario, *mean.listed.values(), mean.estimation, mean.runs, mean.failed)
+        rows.append((*row, *(None if math.isnan(x) else x for x in cells)))
+    write_csv(path, head, rows)
+
+
+def as_dicts(sweep: SweepTable) -> list[dict[str, object]]:
+    """The means for JSON; units are in the names."""
+    return [
+        {
+            "scenario": mean.scenario,
+            **{title(column): value for column, value in mean.listed.items()},
+            "estimation": mean.estimation,
+            "runs": mean.runs,
+            "failed": mean.failed,
+            **{
+                title(index): {"mean": value, "95 % half width": half}
+                for index, (value, half) in mean.indices.items()
+            },
+        }
+        for mean in means(sweep)
+    ]
+
+
+def conditions(plan: Plan) -> str:
+    """What was run, in one line."""
+    seeds = f"{plan.seeds} seed{'s' if plan.seeds > 1 else ''}"
+    names = f"; {', '.join(plan.parameters)}" if plan.parameters else ""
+    return f"{', '.join(plan.scenarios)}: {len(plan)} runs, {seeds}{names}"
+
+
+def _value(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _cell(mean: float, half: float) -> str:
+    if math.isnan(mean):
+        return "-"
+    return f"{mean:.4g}" if math.isnan(half) else f"{mean:.4g} +- {half:.2g}"

@@ -1,0 +1,160 @@
+"""The results of `sigmahat compare` and their text. Bounds are those asked of MatchedFilter."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import calibration
+from sigmahat.cli import main
+from sigmahat.compare import conditions, labels
+from sigmahat.compare.conditions import JOINTS, MATCHED, METHODS
+from sigmahat.compare.figure import draw
+from sigmahat.compare.job import Row, compare
+from sigmahat.compare.table import table
+from sigmahat.plotting.save import save
+
+FRICTION = "r(0) = 70 mm, Coulomb friction 0.02 N.m"
+BOUNDS = {  # MSREP [%] by group and case, for 0.1, 0.3, 1, 3, 8 and 20 Hz
+    ("r(0) = 70 mm", "D_theta +10 %"): (5.0, 2.0, 0.5, 0.4, 0.3, 0.4),
+    ("r(0) = 70 mm", "D_theta -10 %"): (5.0, 2.0, 0.5, 0.4, 0.3, 0.4),
+    (FRICTION, "D_theta +10 %"): (3.0, 1.0, 1.0, 1.0, 1.0, 3.0),
+    (FRICTION, "D_theta +10 %, B +10 %"): (math.inf, math.inf, 3.0, 1.0, 1.0, 3.0),
+    ("r(0) = 130 mm", "D_theta +10 %"): (4.0, 0.7, 0.25, 0.2, 0.2, 0.2),
+}
+FREQUENCIES = ("0.1 Hz", "0.3 Hz", "1 Hz", "3 Hz", "8 Hz", "20 Hz")
+
+
+@pytest.fixture(scope="module")
+def runs() -> list[list[Row]]:
+    """The table of seed 1, and that of seed 2."""
+    return [compare(JOINTS, [seed], processes=2) for seed in (1, 2)]
+
+
+def mean(runs: list[list[Row]], k: int, method: str) -> float:
+    """MSREP of a row over the runs [%]."""
+    return float(np.mean([run[k].error(method) for run in runs]))
+
+
+def test_asked_rows_and_columns_are_met(runs: list[list[Row]]) -> None:
+    met = set()
+    for k, row in enumerate(runs[0]):
+        group, motion, case = labels.group(row), labels.motion(row.joint), labels.case(row.case)
+        if (group, case) in BOUNDS:
+            bound = BOUNDS[group, case][FREQUENCIES.index(motion)]
+            assert mean(runs, k, MATCHED) <= bound, row
+            assert row.judged_from == (1.0 if group == FRICTION else 0.0)
+            met.add((group, case, motion))
+    assert len(met) == len(BOUNDS) * len(FREQUENCIES)
+
+
+def test_better_than_the_paper_in_every_row_with_wrong_motor_data(runs: list[list[Row]]) -> None:
+    for k, row in enumerate(runs[0]):
+        if labels.motion(row.joint) != "table1":
+            assert mean(runs, k, MATCHED) < mean(runs, k, "Paper2011"), row
+
+
+def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
+    """From 0.3 Hz on within 10 % of the error, on the AwAS."""
+    for row in (row for run in runs for row in run):
+        if labels.motion(row.joint) in FREQUENCIES[1:]:
+            D_theta = row.performance[MATCHED].D_theta
+            assert D_theta == pytest.approx(1e-3, abs=0.1 * 1e-4), row
+
+
+def test_start_up_with_exact_motor_data() -> None:
+    table1 = [joint for joint in JOINTS if joint.scenario.name == "table1"]
+    unknown, nominal = compare(table1, range(1, 21), processes=2)
+    assert unknown.error(MATCHED) <= 0.30
+    assert nominal.error(MATCHED) <= 0.06
+
+
+@pytest.mark.parametrize("with_inertia", [False, True])
+def test_claims_the_right_uncertainty(with_inertia: bool) -> None:
+    """The truth lies within 1.96 sigma_std for 90 to 99 % of the time, as far as 20 runs show.
+
+    The share differs from run to run, and instants of one run are not independent. So the test is
+    of the interval of the mean over runs.
+    """
+    share, half_width = calibration.share(range(20), with_inertia)
+    assert half_width < 8.0
+    assert share + half_width >= 90.0
+    assert share - half_width <= 99.0
+
+
+def test_printed_table(runs: list[list[Row]]) -> None:
+    rows = runs[0]
+    head, *lines = table(rows).splitlines()
+    assert head.split()[:4] == ["Paper2011", "[%]", "MatchedFilter", "[%]"]
+    assert [line for line in lines if line and not line.startswith(" ")] == list(
+        dict.fromkeys(map(labels.group, rows))
+    )
+    of_joints = [line for line in lines if line.startswith(" ")]
+    for row, line in zip(rows, of_joints, strict=True):
+        name, *cells = [cell for cell in line.split("  ") if cell]
+        matched = row.performance[MATCHED]
+        assert name.startswith(f"{labels.motion(row.joint)}, {labels.case_and_part(row)}")
+        assert ("after" in name) == (row.judged_from > 0)
+        assert [float(cell) for cell in cells[:2]] == pytest.approx(
+            [row.error(method) for method in METHODS], rel=0.005
+        )
+        assert float(cells[2]) == pytest.approx(matched.sigma_std, abs=0.005)
+        assert float(cells[3]) == pytest.approx(matched.inside, abs=0.5)
+        motors = [matched.D_theta, matched.B, matched.tau_coulomb]
+        for cell, value in zip(cells[4:], motors, strict=True):
+            assert (
+                cell.strip() == "-"
+                if math.isnan(value)
+                else float(cell) == pytest.approx(value, rel=1e-3)
+            )
+
+
+def test_figure(runs: list[list[Row]], tmp_path: Path) -> None:
+    rows = runs[0]
+    figure = draw(rows)
+    shown = [each for axes in figure.axes for each in axes.get_lines()]
+    assert len(shown) == len(METHODS) * len(BOUNDS)
+    for axes in figure.axes:
+        assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+        assert "[Hz]" in axes.get_xlabel()
+    assert "[%]" in figure.axes[0].get_ylabel()
+    (legend,) = figure.legends
+    texts = [text.get_text() for text in legend.get_texts()]
+    assert sorted(texts) == sorted(str(each.get_label()) for each in shown)
+    assert len(set(texts)) == len(texts)
+    (curve,) = [s for s in shown if s.get_label() == "MatchedFilter: r(0) = 130 mm, D_theta +10 %"]
+    np.testing.assert_array_equal(np.asarray(curve.get_xdata()), [0.1, 0.3, 1, 3, 8, 20])
+    expected = [row.error(MATCHED) for row in rows if labels.group(row) == "r(0) = 130 mm"]
+    np.testing.assert_array_equal(np.asarray(curve.get_ydata()), expected)
+    save(draw, rows, tmp_path / "compare")
+    assert {path.name for path in tmp_path.iterdir()} == {"compare.png", "compare.svg"}
+
+
+def test_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Means over seeds do not depend on the number of processes, and the file has all digits."""
+    joints = [JOINTS[2], JOINTS[-1]]
+    monkeypatch.setattr(conditions, "JOINTS", joints)
+    out = tmp_path / "out"
+    assert main(["compare", "--seeds", "2", "--out", str(out)]) == 0
+    printed = capsys.readouterr().out
+    rows = compare(joints, [1, 2], processes=1)
+    assert table(rows) in printed
+    assert "2 seeds" in printed and str(out) in printed
+    assert {path.name for path in out.iterdir()} == {"compare.png", "compare.svg", "compare.csv"}
+    with (out / "compare.csv").open(newline="") as file:
+        lines = list(csv.DictReader(file))
+    assert len(lines) == len(METHODS) * len(rows)
+    for line, (row, method) in zip(
+        lines, ((row, method) for row in rows for method in METHODS), strict=True
+    ):
+        words = (labels.motion(row.joint), labels.case_and_part(row), method)
+        assert (line["joint"], line["case"], line["method"]) == words
+        assert float(line["MSREP [%]"]) == row.error(method)
+        D_theta = row.performance[method].D_theta
+        assert line["D_theta_hat [N.m.s/rad]"] == ("" if math.isnan(D_theta) else str(D_theta))
