@@ -39,7 +39,10 @@ void sh_least_squares_move(sh_least_squares *rls, sh_real c, const sh_real *v)
 /* epsilon = y - F' eta, (14) */
 static sh_real prediction_error(const sh_least_squares *rls, const sh_real *F, sh_real y)
 {
-    return y - sh_dot(F, rls->eta, rls->P.size) - sh_dot(F, rls->eta_low, rls->P.size);
+    sh_real high, low;
+
+    sh_scalar_products(F, rls->eta, rls->eta_low, rls->P.size, &high, &low);
+    return y - high - low;
 }
 
 /* Stability factor a(k): (27), 1, or constant. */
@@ -75,8 +78,8 @@ static int take(sh_least_squares *rls, sh_real w, sh_real rho, sh_real epsilon)
 int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
                             sh_real y, sh_innovation *innovation)
 {
-    const sh_real rho = sh_ud_factor_project(&rls->P, F); /* rho = F' P F, (14) */
     const sh_real epsilon = prediction_error(rls, F, y);
+    const sh_real rho = sh_ud_factor_project(&rls->P, F); /* rho = F' P F, (14) */
 
     if (!take(rls, sample_weight(kind, factor, rho), rho, epsilon))
         return 0;
@@ -89,8 +92,8 @@ int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, con
 int sh_least_squares_weigh(sh_least_squares *rls, sh_real w, const sh_real *F, sh_real y,
                            sh_innovation *innovation)
 {
-    const sh_real rho = sh_ud_factor_project(&rls->P, F);
     const sh_real epsilon = prediction_error(rls, F, y);
+    const sh_real rho = sh_ud_factor_project(&rls->P, F);
 
     if (!take(rls, w, rho, epsilon))
         return 0;

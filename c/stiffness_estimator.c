@@ -11,8 +11,8 @@
 static void evaluate_curve(const sh_estimator *estimator, const sh_real *eta, int size,
                            sh_estimate *estimate)
 {
-    estimate->tau_e = sh_dot(estimator->work.F, eta, size);
-    estimate->sigma = sh_dot(estimator->work.dF, eta, size);
+    sh_scalar_products(eta, estimator->work.F, estimator->work.dF, size, &estimate->tau_e,
+                       &estimate->sigma);
 }
 
 /* Sets all that follows from a fit. */

@@ -101,10 +101,14 @@ static void multiply(sh_ud_factor *P, const sh_real *F)
             stride -= SH_PANEL * SH_PANEL;
         }
         /* Through memory: gcc 12 would transpose vectors to sum them up here. */
-        memcpy(P->work.pairs[j], sum_0, sizeof sum_0);
-        memcpy(P->work.pairs[j + 1], sum_1, sizeof sum_1);
-        memcpy(P->work.pairs[j + 2], sum_2, sizeof sum_2);
-        memcpy(P->work.pairs[j + 3], sum_3, sizeof sum_3);
+        P->work.pairs[j][0] = sum_0[0];
+        P->work.pairs[j][1] = sum_0[1];
+        P->work.pairs[j + 1][0] = sum_1[0];
+        P->work.pairs[j + 1][1] = sum_1[1];
+        P->work.pairs[j + 2][0] = sum_2[0];
+        P->work.pairs[j + 2][1] = sum_2[1];
+        P->work.pairs[j + 3][0] = sum_3[0];
+        P->work.pairs[j + 3][1] = sum_3[1];
     }
     for (j = 0; j < size; ++j)
         P->work.f[j] = P->work.pairs[j][0] + P->work.pairs[j][1];
@@ -200,7 +204,7 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
         const sh_real beta = 1 + w * P->work.rho[j];
 
         P->D[j] *= beta / (1 + w * P->work.rho[j + 1]);
-        s[j] = w * s[j] / beta;
+        P->work.f[j] = w * P->work.f[j] / beta; /* s_j */
     }
     /* Panel after panel, as an entry of p depends on its own row of U alone. In the first column of
      * a panel only the one on the diagonal is not zero: there p becomes g_i, and u does not change.
