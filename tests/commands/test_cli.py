@@ -16,10 +16,10 @@ from pathlib import Path
 
 import pytest
 
-import sigmahat
 from command_line import one_line
 from gate import missing
 from sigmahat.cli import cli, main
+from sigmahat.fmi import installed
 from sigmahat.paper.scenarios import SCENARIOS
 
 COMMAND = [sys.executable, "-m", "sigmahat"]
@@ -261,7 +261,7 @@ def test_fmus_not_built(
     def missing(name: str) -> Path:
         raise FileNotFoundError(name)
 
-    monkeypatch.setattr(sigmahat, "fmu", missing)
+    monkeypatch.setattr(installed, "fmu", missing)
     monkeypatch.setattr(shutil, "which", lambda name: compiler)
     assert main([command, "--out", str(tmp_path / "out")]) == 2
     (line,) = capsys.readouterr().err.splitlines()

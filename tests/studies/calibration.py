@@ -1,9 +1,10 @@
-"""How often the truth lies within 1.96 sigma_std of the estimate of MatchedFilter.
+"""How often the true stiffness is within 1.96 sigma_std of the estimate of MatchedFilter.
 
     python tests/studies/calibration.py RUNS
 
-prints the share of instants after 2 s, and the 95 % interval of its mean over runs: with errors of
-D_theta and Coulomb friction drawn from their priors, and with an error of B, too.
+prints the share of instants after 2 s, as the mean over runs with its 95 % interval: once with
+errors of D_theta and Coulomb friction that are drawn from their priors, and once with an error of
+B, too.
 """
 
 from __future__ import annotations
@@ -28,12 +29,12 @@ METHOD = "MatchedFilter"
 
 
 def drawn(run: int, with_inertia: bool) -> Scenario:
-    """The AwAS at 0.3 to 8 Hz, and an estimator that is given motor data with errors."""
+    """The AwAS at 0.3 to 8 Hz, and an estimator whose motor data have errors."""
     rng = np.random.default_rng([4, run])
     frequency = math.exp(rng.uniform(math.log(0.3), math.log(8.0)))
     d, friction, b = rng.standard_normal(3) * (0.2, 0.02, 0.1)
     plant = awas(0.030, Sine(0.3 if frequency < 5 else 0.5, frequency))
-    given: dict[str, Value] = {
+    values: dict[str, Value] = {
         "method": METHOD,
         "rls.n": 3,
         "motor.D_theta": 1e-3 / (1 + d),
@@ -41,21 +42,21 @@ def drawn(run: int, with_inertia: bool) -> Scenario:
         "prior.tau_coulomb": 0.02,
     }
     if with_inertia:
-        given |= {"motor.B": 2.3e-5 / (1 + b), "prior.B": 0.1}
+        values |= {"motor.B": 2.3e-5 / (1 + b), "prior.B": 0.1}
     start = {**plant.start, "motor.tau_coulomb": abs(friction)}
     return Scenario(
         name=f"drawn-{run}",
         description="AwAS with friction and motor data drawn at random",
         duration=15.0,
         plant=replace(plant, start=start),
-        estimators={METHOD: replace(estimator(given), record=("sigma", "sigma_std"))},
+        estimators={METHOD: replace(estimator(values), record=("sigma", "sigma_std"))},
         comparisons=against_the_plant([METHOD]),
         figures=(),
     )
 
 
 def share(runs: Sequence[int], with_inertia: bool) -> tuple[float, float]:
-    """Mean share over runs, and half the width of its 95 % interval [%]."""
+    """Mean of the share over runs, and half the width of its 95 % interval [%]."""
     jobs = [partial(measured, drawn(k, with_inertia), k + 1, performances) for k in runs]
     return mean_interval([each[METHOD].inside for each in run_all(jobs, processes=2)])
 

@@ -67,7 +67,10 @@ class Joint:
 
 
 def comparison_name(case: int, method: str, part: str) -> str:
-    """Name of a comparison in the scenario of a joint; case is the place in Joint.cases."""
+    """Name of a comparison in the scenario of a joint: the signal of its estimate.
+
+    case  place in Joint.cases
+    """
     return f"{_estimator_name(case, method)}.sigma{part}"
 
 
@@ -123,11 +126,7 @@ def _compared(
             for method, each in _methods(base, case, parts, motors).items()
         },
         comparisons=[
-            Comparison(
-                comparison_name(i, method, part),
-                f"{_estimator_name(i, method)}.sigma{part}",
-                f"plant.sigma{part}",
-            )
+            Comparison(name := comparison_name(i, method, part), name, f"plant.sigma{part}")
             for i in range(len(cases))
             for method in METHODS
             for part in parts
