@@ -12,6 +12,8 @@ import pytest
 PACKAGE = Path(__file__).parents[2] / "harness" / "sigmahat"
 LONGEST = 10
 """Rooms from the command line to the last one."""
+MOST_LINES = 60
+"""Of a function."""
 
 Graph = Mapping[str, set[str]]
 
@@ -77,3 +79,13 @@ def test_imports_run_one_way_through_few_rooms(graph: Graph) -> None:
 
 def test_few_files_stand_outside_of_the_rooms() -> None:
     assert len(list(PACKAGE.glob("*.py"))) <= 6
+
+
+def test_no_function_is_long() -> None:
+    lengths = {
+        f"{name}.{node.name}": (node.end_lineno or node.lineno) - node.lineno + 1
+        for name, path in modules().items()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
+    }
+    assert {name: lines for name, lines in lengths.items() if lines > MOST_LINES} == {}
