@@ -11,7 +11,7 @@ from typing import Any
 import tomlkit
 
 from sigmahat.identification.identify import UNITS, Identified
-from sigmahat.logs.configuration import parse
+from sigmahat.logs.configuration import read_document
 
 _ABOVE = 1.4
 """A filter somewhat above the balance of the noises costs nothing and follows faster."""
@@ -24,7 +24,7 @@ def write(found: Identified, path: Path) -> list[str]:
 
     Returns the keys that were written. The file is replaced at once, or left as it was.
     """
-    document = parse(path)
+    document = read_document(path)
     values: dict[str, Any] = {
         "filter.V_a": found.V_a,
         "rls.n": found.n,

@@ -11,7 +11,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from sigmahat.logs.errors import LogError
-from sigmahat.unknown_name import unknown
+from sigmahat.user_input.unknown_name import unknown
 
 Array = NDArray[np.float64]
 
