@@ -35,8 +35,9 @@ def estimate(log: Path, config: Path | None, out: Path | None) -> None:
     from sigmahat.files.output_folder import output_folder
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.estimate import estimate as run
-    from sigmahat.logs.estimate import summary
     from sigmahat.logs.readers.formats import open_log
+    from sigmahat.logs.readers.formats import open_log
+    from sigmahat.logs.summary import summary
 
     common.need_fmu("StiffnessEstimator")
     out = out or Path("sigmahat-results", log.stem)
