@@ -29,6 +29,7 @@ def init(log: Path, config: Path | None, force: bool) -> None:
     from sigmahat.fmi.installed import fmu as installed_fmu
     from sigmahat.fmi.instance import Fmu
     from sigmahat.logs import template
+    from sigmahat.logs.guess import guess
     from sigmahat.logs.readers.formats import open_log
 
     common.need_fmu("StiffnessEstimator")
@@ -42,8 +43,8 @@ def init(log: Path, config: Path | None, force: bool) -> None:
             names = ("motor.B", "motor.D_theta", "motor.gamma")
             motor = {name: float(fmu.variable(name).start) for name in names}
         opened = open_log(log)
-        config.write_text(template.write(opened, motor), encoding="utf-8")
-        _, found = template.guess(opened)
-    guesses = "\n".join(f"{port:13} {each.column} [{each.unit}]" for port, each in found.items())
+        guessed = guess(opened)
+        config.write_text(template.write(opened, guessed, motor), encoding="utf-8")
+    ports = (f"{port:13} {each.column} [{each.unit}]" for port, each in guessed.ports.items())
     then = f"Check {config}, fill in what it asks for, then: sigmahat estimate {log}"
-    common.answer(f"{guesses}\n\n{then}")
+    common.answer("\n".join([*ports, "", then]))
