@@ -9,9 +9,9 @@ from .fmi.master import Plant as Plant
 from .fmi.master import Recording as Recording
 from .fmi.master import Series as Series
 from .fmi.master import simulate as simulate
-from .identification.identify import Identified as Identified
-from .identification.identify import Quantity as Quantity
 from .identification.identify import identify as identify
+from .identification.quantities import Identified as Identified
+from .identification.quantities import Quantity as Quantity
 from .logs.configuration import Configuration as Configuration
 from .logs.configuration import Port as Port
 from .logs.configuration import Time as Time
