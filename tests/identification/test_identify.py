@@ -82,7 +82,7 @@ def test_fast_motion_needs_a_faster_filter(found: dict[float, Identified]) -> No
 
 
 def test_the_old_name_of_determined(found: dict[float, Identified]) -> None:
-    quantity: Quantity = found[0.1].quantities["B"]
+    quantity = found[0.1].quantities["B"]
     with pytest.warns(DeprecationWarning, match="determined"):
         assert quantity.told == quantity.determined
 
