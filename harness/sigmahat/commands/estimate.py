@@ -36,7 +36,6 @@ def estimate(log: Path, config: Path | None, out: Path | None) -> None:
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.estimate import estimate as run
     from sigmahat.logs.readers.formats import open_log
-    from sigmahat.logs.readers.formats import open_log
     from sigmahat.logs.summary import summary
 
     common.need_fmu("StiffnessEstimator")
