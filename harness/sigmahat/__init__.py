@@ -33,14 +33,20 @@ __all__ = sorted([*_names, "__version__"])
 
 
 def __getattr__(name: str) -> object:
-    """A public name, or AttributeError as of any other module."""
-    if name == "__version__":
-        from sigmahat.fmi.installed import version
-
-        return version()
-    if name not in _names:
+    """A public name. A package that it needs and that is missing is named with its extra."""
+    if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name)
-    return _imported(name)
+    from sigmahat.fmi import installed
+
+    if name == "__version__":
+        return installed.version()
+    try:
+        return _imported(name)
+    except ModuleNotFoundError as error:
+        text = installed.how_to_install(error.name)
+        if text is None:
+            raise
+        raise ModuleNotFoundError(text, name=error.name) from error
 
 
 def __dir__() -> list[str]:

@@ -40,7 +40,7 @@ def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: boo
 
     common.need_fmu("StiffnessEstimator")
     config = config or common.configuration_of(log)
-    with common.work(config, "--config"):
+    with common.errors_in_one_line(config, "--config"):
         opened = open_log(log)
         found = run(opened, read_configuration(config), torque_constant)
         written: list[str] = []

@@ -19,9 +19,9 @@ from sigmahat.commands import common
 @click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
 @common.quiet_option
 def init(log: Path, config: Path | None, force: bool) -> None:
-    """Write a configuration for LOG to start from.
+    """Write a configuration for LOG, to be checked and completed.
 
-    LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. Its columns are guessed by name.
+    LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. The port of a column is guessed by name.
 
     \b
     Example: sigmahat init knee.csv
@@ -38,7 +38,7 @@ def init(log: Path, config: Path | None, force: bool) -> None:
         raise click.ClickException(
             f"{config} exists; --force overwrites it, --config names another file"
         )
-    with common.work(config, "--config"):
+    with common.errors_in_one_line(config, "--config"):
         with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
             names = ("motor.B", "motor.D_theta", "motor.gamma")
             motor = {name: float(fmu.variable(name).start) for name in names}
