@@ -82,10 +82,11 @@ def main(folder: Path) -> None:
     parameters = dict(configuration.parameters)
     for name in ("B", "D_theta"):
         found = motor.quantities[name]
-        told = f"{found.value:.4g} +- {found.half_width:.1g}" if found.told else "cannot tell"
-        print(f"{name}: {told}")
-        if found.told:
+        if found.determined:
+            print(f"{name}: {found.value:.4g} +- {found.half_width:.1g}")
             parameters[f"motor.{name}"] = found.value
+        else:
+            print(f"{name}: cannot tell")
     configuration = replace(configuration, parameters=parameters)
     (folder / "knee").mkdir(exist_ok=True)
     result = sigmahat.estimate(log, configuration, folder / "knee")

@@ -23,95 +23,30 @@ What is on this page is public, and nothing else: other modules may change with 
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+import lazy_loader
 
-if TYPE_CHECKING:
-    from sigmahat.export.plant_fmu import PlantVariable, write_plant_fmu
-    from sigmahat.fmi.installed import fmu
-    from sigmahat.fmi.instance import FmuError
-    from sigmahat.fmi.master import Estimator, Plant, Recording, Series, simulate
-    from sigmahat.identification.identify import Identified, Quantity, identify
-    from sigmahat.logs.configuration import Configuration, Port, Time, read_configuration
-    from sigmahat.logs.errors import LogError
-    from sigmahat.logs.estimate import Estimate, estimate
-    from sigmahat.logs.log import Log
-    from sigmahat.logs.readers.formats import open_log
-    from sigmahat.paper.scenarios import scenario
-    from sigmahat.plants.equations import PlantEquations, encoder
-    from sigmahat.runs.engine import run
-    from sigmahat.runs.metrics import Indices, indices, mean_error, mse, msrep
-    from sigmahat.runs.scenario import Comparison, Scenario, Sine, Sines
+# The list of public names is the stub beside this file. They are imported when they are used,
+# because the command line has to start at once.
+_imported, _, _names = lazy_loader.attach_stub(__name__, __file__)
 
-    __version__: str
-
-__all__ = [
-    "Comparison",
-    "Configuration",
-    "Estimate",
-    "Estimator",
-    "FmuError",
-    "Identified",
-    "Indices",
-    "Log",
-    "LogError",
-    "Plant",
-    "PlantEquations",
-    "PlantVariable",
-    "Port",
-    "Quantity",
-    "Recording",
-    "Scenario",
-    "Series",
-    "Sine",
-    "Sines",
-    "Time",
-    "__version__",
-    "encoder",
-    "estimate",
-    "fmu",
-    "identify",
-    "indices",
-    "mean_error",
-    "mse",
-    "msrep",
-    "open_log",
-    "read_configuration",
-    "run",
-    "scenario",
-    "simulate",
-    "write_plant_fmu",
-]
-
-_HOMES = {
-    "fmi.installed": ("fmu",),
-    "fmi.master": ("Estimator", "Plant", "Recording", "Series", "simulate"),
-    "identification.identify": ("Identified", "Quantity", "identify"),
-    "logs.configuration": ("Configuration", "Port", "Time", "read_configuration"),
-    "logs.errors": ("LogError",),
-    "logs.estimate": ("Estimate", "estimate"),
-    "logs.readers.formats": ("open_log",),
-    "logs.log": ("Log",),
-    "export.plant_fmu": ("PlantVariable", "write_plant_fmu"),
-    "plants.equations": ("PlantEquations", "encoder"),
-    "paper.scenarios": ("scenario",),
-    "runs.engine": ("run",),
-    "runs.metrics": ("Indices", "indices", "mean_error", "mse", "msrep"),
-    "runs.scenario": ("Comparison", "Scenario", "Sine", "Sines"),
-    "fmi.instance": ("FmuError",),
-}
+__all__ = sorted([*_names, "__version__"])
 
 
-def __getattr__(name: str) -> Any:
-    """Public names are imported when they are used: the command line has to start at once."""
+def __getattr__(name: str) -> object:
+    """A public name. A package that it needs and that is missing is named with its extra."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name)
+    from sigmahat.fmi import installed
+
     if name == "__version__":
-        from sigmahat.fmi.installed import version
-
-        return version()
-    for home, names in _HOMES.items():
-        if name in names:
-            return getattr(import_module(f"sigmahat.{home}"), name)
-    raise AttributeError(f"module 'sigmahat' has no attribute {name!r}")
+        return installed.version()
+    try:
+        return _imported(name)
+    except ModuleNotFoundError as error:
+        text = installed.how_to_install(error.name)
+        if text is None:
+            raise
+        raise ModuleNotFoundError(text, name=error.name) from error
 
 
 def __dir__() -> list[str]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import shlex
 import sys
 from collections.abc import Sequence
 
@@ -50,32 +48,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         click.echo(f"sigmahat: error: {' '.join(error.format_message().split())}", err=True)
         return _ERROR
     except ModuleNotFoundError as error:
-        command = _how_to_install(error.name)
-        if command is None:
+        from sigmahat.fmi.installed import how_to_install
+
+        text = how_to_install(error.name)
+        if text is None:
             raise
-        click.echo(
-            f"sigmahat: error: {error.name} is not installed; to install it: {command}", err=True
-        )
+        click.echo(f"sigmahat: error: {text}", err=True)
         return _ERROR
-    except OSError as error:  # what a command writes to files it answers for itself
-        sys.stdout = None  # or Python would try to write the rest at its end
+    except OSError as error:  # from stdout: a command reports errors of its files itself
+        sys.stdout = None  # or Python would try to write the rest when it ends
         click.echo(f"sigmahat: error: cannot write the output: {error.strerror}", err=True)
         return _ERROR
     except (click.Abort, KeyboardInterrupt):
         click.echo("sigmahat: interrupted", err=True)
         return _INTERRUPTED
-
-
-def _how_to_install(package: str | None) -> str | None:
-    """The command that adds what sigmahat requires, itself or by an extra; None for anything else.
-
-    pip finds sigmahat itself installed, and adds only what is missing.
-    """
-    from importlib import metadata
-
-    for requirement in metadata.requires("sigmahat") or ():
-        match = re.match(r"""([\w.-]+)[^;]*(?:;\s*extra\s*==\s*["'](.+)["'])?""", requirement)
-        if match and match[1] == package:
-            wanted = f"sigmahat[{match[2]}]" if match[2] else "sigmahat"
-            return shlex.join([sys.executable, "-m", "pip", "install", wanted])
-    return None

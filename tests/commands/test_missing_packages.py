@@ -57,3 +57,13 @@ def test_what_sigmahat_does_not_require_is_a_fault_that_shows(tmp_path: Path) ->
     done = run_without("sigmahat.paper.reproduction", "reproduce", cwd=tmp_path)
     assert done.returncode == 1
     assert "ModuleNotFoundError" in done.stderr
+
+
+@pytest.mark.parametrize("name", ["encoder", "PlantEquations", "write_plant_fmu"])
+def test_a_public_name_says_what_to_install(name: str, tmp_path: Path) -> None:
+    without = WITHOUT.replace("sys.exit(main(sys.argv[2:]))", f"from sigmahat import {name}")
+    command = [sys.executable, "-c", without, "casadi"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    install = shlex.join([sys.executable, "-m", "pip", "install", "sigmahat[plants]"])
+    *_, line = done.stderr.splitlines()
+    assert line == f"ModuleNotFoundError: casadi is not installed; to install it: {install}"

@@ -14,8 +14,9 @@ import sigmahat
 from recorded_logs import CONFIGURATION, LEAD, TRUE, Array, awas_log, read_estimate, write_log
 from sigmahat.cli import main
 from sigmahat.fmi.instance import Fmu
-from sigmahat.identification.identify import Identified, identify
+from sigmahat.identification.identify import identify
 from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
+from sigmahat.identification.quantities import Identified
 from sigmahat.identification.regression import Signals, equations, fit
 from sigmahat.identification.write import write
 from sigmahat.logs.configuration import read_configuration
@@ -40,16 +41,16 @@ def identified(log: dict[str, Array], configuration: Path) -> Identified:
 def test_the_motor_is_found_within_5_percent(f: float, found: dict[float, Identified]) -> None:
     for name, true in TRUE.items():
         quantity = found[f].quantities[name]
-        assert quantity.told
+        assert quantity.determined
         assert quantity.value == pytest.approx(true, rel=0.05)
 
 
-def test_slow_motion_does_not_tell_the_inertia(found: dict[float, Identified]) -> None:
+def test_slow_motion_does_not_determine_the_inertia(found: dict[float, Identified]) -> None:
     # GIVEN 0.1 Hz, where B moves 1 % of the torque, THEN no number rather than a wrong one
     quantities = found[0.1].quantities
-    assert not quantities["B"].told
+    assert not quantities["B"].determined
     for name, quantity in quantities.items():
-        assert not quantity.told or quantity.value == pytest.approx(TRUE[name], rel=0.05)
+        assert not quantity.determined or quantity.value == pytest.approx(TRUE[name], rel=0.05)
 
 
 def test_intervals_cover_the_truth(tmp_path: Path) -> None:
@@ -80,17 +81,23 @@ def test_fast_motion_needs_a_faster_filter(found: dict[float, Identified]) -> No
     assert by_frequency[-1] > by_frequency[0]
 
 
-def test_a_joint_at_rest_tells_nothing(tmp_path: Path) -> None:
+def test_the_old_name_of_determined(found: dict[float, Identified]) -> None:
+    quantity = found[0.1].quantities["B"]
+    with pytest.warns(DeprecationWarning, match="determined"):
+        assert quantity.told == quantity.determined
+
+
+def test_a_joint_at_rest_determines_nothing(tmp_path: Path) -> None:
     rng = np.random.default_rng(1)
     t = 1e-3 * np.arange(5000)
     rest = {"t": t, **{name: np.full(5000, 0.5) for name in ("theta", "q", "theta_c")}}
     path = tmp_path / "log.toml"
     path.write_text(CONFIGURATION)
     quantities = identified({**rest, "tau": rng.normal(0, 3e-3, 5000)}, path).quantities
-    assert not any(quantity.told for quantity in quantities.values())
+    assert not any(quantity.determined for quantity in quantities.values())
 
 
-def test_command_writes_what_is_told_and_keeps_the_comments(
+def test_command_writes_what_is_determined_and_keeps_the_comments(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -108,7 +115,7 @@ def test_command_writes_what_is_told_and_keeps_the_comments(
     text = Path("log.toml").read_text()
     document = tomlkit.parse(text).unwrap()
     motor = document["parameters"]["motor"]
-    assert motor["B"] == 1.84e-5  # not told, not written
+    assert motor["B"] == 1.84e-5  # not determined, not written
     assert motor["D_theta"] == pytest.approx(1e-3, rel=0.05)
     assert document["identified"]["B"]["value"] == "cannot tell"
     for comment in ("# a comment of mine", "# on the axis of the motor", "# 20 % less than it is"):
@@ -165,7 +172,7 @@ def test_ranges_hold_what_the_log_shows(found: dict[float, Identified], tmp_path
 def test_matched_filter_with_what_was_identified(
     f: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    # GIVEN motor data wrong by 20 %, and friction that nobody told of
+    # GIVEN motor data wrong by 20 %, and friction that is in no configuration
     monkeypatch.chdir(tmp_path)
     log = awas_log(f, AMPLITUDES[f])
     write_log(log, Path("log.parquet"))

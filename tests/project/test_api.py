@@ -58,14 +58,16 @@ def test_a_public_function_is_documented_and_typed(name: str, member: object) ->
 
 
 def test_all_public_names_are_imported_lazily_and_listed() -> None:
-    lazy = [name for names in sigmahat._HOMES.values() for name in names]
+    """They are listed in the stub alone, which lazy_loader and type checkers read."""
+    stub = (REPOSITORY / "harness" / "sigmahat" / "__init__.pyi").read_text(encoding="utf-8")
+    lazy = re.findall(r"^from \..* import (\w+) as \1$", stub, re.MULTILINE)
     assert sorted([*lazy, "__version__"]) == sorted(sigmahat.__all__)
     assert dir(sigmahat) == sorted(sigmahat.__all__)
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="no attribute 'estimator'"):
-        sigmahat.estimator  # noqa: B018
+        sigmahat.estimator  # type: ignore[attr-defined]  # noqa: B018
 
 
 def test_an_unknown_fmu_is_an_error_that_lists_the_existing_ones() -> None:

@@ -26,7 +26,7 @@ _JSON, _QUIET = "sigmahat.json", "sigmahat.quiet"
 
 
 def _for_scripts(context: click.Context, parameter: click.Parameter, given: bool) -> None:
-    """Callback of --json and --quiet: keeps them for `answer`, and leaves warnings out."""
+    """Callback of --json and --quiet: keeps them for `answer`, and switches warnings off."""
     context.meta[f"sigmahat.{parameter.name}"] = given
     if given:
         logger = logging.getLogger("sigmahat")
@@ -54,7 +54,7 @@ def quiet_option(command: _Command) -> _Command:
 
 
 def answer(text: str, values: object = None) -> None:
-    """Prints what came out: values after --json, nothing after --quiet, else the text."""
+    """Prints the result: values after --json, nothing after --quiet, else the text."""
     options = click.get_current_context().meta
     if options.get(_JSON):
         print_json(values)
@@ -65,7 +65,7 @@ def answer(text: str, values: object = None) -> None:
 def folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | None:
     """Callback of an option: a folder to write into.
 
-    An empty name, which is what a shell makes of a variable not set, is refused.
+    An empty name is refused: a shell makes it of a variable that is not set.
     """
     if name == "":
         raise click.BadParameter("expected a folder, got an empty name.")
@@ -115,8 +115,8 @@ def need_fmus(scenario: Scenario) -> None:
 
 
 @contextmanager
-def work(out: Path, option: str = "--out") -> Iterator[None]:
-    """Around the work of a command that writes to out, named by an option: errors become one line.
+def errors_in_one_line(out: Path, option: str = "--out") -> Iterator[None]:
+    """Context of a command that writes to out, which an option names: its errors become one line.
 
     Raises ClickException for an FMU's refusal, a value that does not fit, workers that are lost,
     and a file or folder that cannot be written.
@@ -135,12 +135,12 @@ def work(out: Path, option: str = "--out") -> Iterator[None]:
 
 
 def configuration_of(log: Path) -> Path:
-    """Where the configuration of a log is looked for: in this folder, with the suffix .toml."""
+    """Default path of the configuration of a log: in this folder, with the suffix .toml."""
     return Path(f"{log.stem}.toml")
 
 
 def print_json(values: object) -> None:
-    """Prints values for a script; what is not a number is null."""
+    """Prints values for a script; nan and infinity become null."""
     click.echo(json.dumps(_finite(values), indent=2))
 
 

@@ -42,7 +42,7 @@ def compare(seeds: int, out: Path) -> None:
     for joint in JOINTS:
         common.need_fmus(joint.scenario)
 
-    with common.work(out), output_folder(out) as folder:
+    with common.errors_in_one_line(out), output_folder(out) as folder:
         with common.progress("Running", len(JOINTS) * seeds) as bar:
             rows = compare(JOINTS, range(1, seeds + 1), progress=bar.update)
         from sigmahat.compare.figure import draw

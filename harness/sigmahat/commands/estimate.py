@@ -14,7 +14,7 @@ from sigmahat.commands import common
 @click.option(
     "--config",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="What `sigmahat init` wrote.  [default: LOG with the suffix .toml, in this folder]",
+    help="File from `sigmahat init`.  [default: LOG with the suffix .toml, in this folder]",
 )
 @click.option(
     "--out",
@@ -24,7 +24,7 @@ from sigmahat.commands import common
 @common.json_option
 @common.quiet_option
 def estimate(log: Path, config: Path | None, out: Path | None) -> None:
-    """Replay LOG through the estimator; add the stiffness to its table.
+    """Replay LOG through the estimator, and add the stiffness to its table.
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag; `sigmahat init LOG` writes the
     configuration. Writes a table (CSV for CSV, else Parquet) and a figure.
@@ -35,12 +35,12 @@ def estimate(log: Path, config: Path | None, out: Path | None) -> None:
     from sigmahat.files.output_folder import output_folder
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.estimate import estimate as run
-    from sigmahat.logs.estimate import summary
     from sigmahat.logs.readers.formats import open_log
+    from sigmahat.logs.summary import summary
 
     common.need_fmu("StiffnessEstimator")
     out = out or Path("sigmahat-results", log.stem)
-    with common.work(out):
+    with common.errors_in_one_line(out):
         opened = open_log(log)
         configuration = read_configuration(config or common.configuration_of(log))
         with output_folder(out) as folder, common.progress("Replaying", 1000) as bar:

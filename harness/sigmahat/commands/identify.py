@@ -14,33 +14,33 @@ from sigmahat.commands import common
 @click.option(
     "--config",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="Read and then updated.  [default: LOG with the suffix .toml, in this folder]",
+    help="It is read, then updated.  [default: LOG with the suffix .toml, in this folder]",
 )
 @click.option(
     "--torque-constant",
     is_flag=True,
-    help="Also find K_t; needs tau in A and a torque sensor, which is believed.",
+    help="Also identify K_t; needs tau in A, and a torque sensor, which is taken as exact.",
 )
-@click.option("--dry-run", is_flag=True, help="Leave the configuration as it is.")
+@click.option("--dry-run", is_flag=True, help="Do not change the configuration.")
 @common.json_option
 @common.quiet_option
 def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: bool) -> None:
-    """Find B, D_theta and Coulomb friction from LOG; write them into the configuration.
+    """Identify B, D_theta and Coulomb friction from LOG; write them into the configuration.
 
-    What the motion does not show is not told ("cannot tell") and not written. Comments stay.
+    A value that the motion does not determine is not written: "cannot tell". Comments are kept.
 
     \b
     Example: sigmahat identify knee.csv --config knee.toml
     """
-    from sigmahat.identification.identify import as_dict, summary
     from sigmahat.identification.identify import identify as run
+    from sigmahat.identification.summary import as_dict, summary
     from sigmahat.identification.write import write
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.readers.formats import open_log
 
     common.need_fmu("StiffnessEstimator")
     config = config or common.configuration_of(log)
-    with common.work(config, "--config"):
+    with common.errors_in_one_line(config, "--config"):
         opened = open_log(log)
         found = run(opened, read_configuration(config), torque_constant)
         written: list[str] = []

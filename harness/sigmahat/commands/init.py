@@ -19,9 +19,9 @@ from sigmahat.commands import common
 @click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
 @common.quiet_option
 def init(log: Path, config: Path | None, force: bool) -> None:
-    """Write a configuration for LOG to start from.
+    """Write a configuration for LOG, to be checked and completed.
 
-    LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. Its columns are guessed by name.
+    LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. The port of a column is guessed by name.
 
     \b
     Example: sigmahat init knee.csv
@@ -29,6 +29,7 @@ def init(log: Path, config: Path | None, force: bool) -> None:
     from sigmahat.fmi.installed import fmu as installed_fmu
     from sigmahat.fmi.instance import Fmu
     from sigmahat.logs import template
+    from sigmahat.logs.guess import guess
     from sigmahat.logs.readers.formats import open_log
 
     common.need_fmu("StiffnessEstimator")
@@ -37,13 +38,13 @@ def init(log: Path, config: Path | None, force: bool) -> None:
         raise click.ClickException(
             f"{config} exists; --force overwrites it, --config names another file"
         )
-    with common.work(config, "--config"):
+    with common.errors_in_one_line(config, "--config"):
         with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
             names = ("motor.B", "motor.D_theta", "motor.gamma")
             motor = {name: float(fmu.variable(name).start) for name in names}
         opened = open_log(log)
-        config.write_text(template.write(opened, motor), encoding="utf-8")
-        _, found = template.guess(opened)
-    guesses = "\n".join(f"{port:13} {each.column} [{each.unit}]" for port, each in found.items())
+        guessed = guess(opened)
+        config.write_text(template.write(opened, guessed, motor), encoding="utf-8")
+    ports = (f"{port:13} {each.column} [{each.unit}]" for port, each in guessed.ports.items())
     then = f"Check {config}, fill in what it asks for, then: sigmahat estimate {log}"
-    common.answer(f"{guesses}\n\n{then}")
+    common.answer("\n".join([*ports, "", then]))

@@ -28,7 +28,7 @@ def report(folder: Path, out: Path | None) -> None:
     from sigmahat.report.page import report as make
 
     out = out or folder / "report.html"
-    with common.work(out, "--out FILE"):
+    with common.errors_in_one_line(out, "--out FILE"):
         text = make(folder)
         out.write_text(text, encoding="utf-8")
     common.answer(f"{out.resolve()} ({len(text.encode()) / 1e6:.1f} MB)")

@@ -57,7 +57,7 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
         import_module("scipy")  # intervals need it; if it is not there, say so before the runs
     out = out or Path("sigmahat-results", name)
     numbers = range(1, seeds + 1)
-    with common.work(out), output_folder(out) as folder:
+    with common.errors_in_one_line(out), output_folder(out) as folder:
         with common.progress("Running", progress_length(chosen, numbers)) as bar:
             result = reproduce(chosen, numbers, progress=bar.update)
         from sigmahat.paper.figures.catalogue import FIGURES

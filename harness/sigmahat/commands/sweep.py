@@ -61,7 +61,7 @@ def sweep(
     from sigmahat.sweep.summary import as_dicts, conditions, summary
 
     out = out or Path("sigmahat-results", "sweep")
-    with common.work(out):
+    with common.errors_in_one_line(out):
         read = read_plan(plan, scenario, seeds, modality, settings)
         for name in read.scenarios:
             common.ready_scenario(name)

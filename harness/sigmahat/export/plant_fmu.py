@@ -24,7 +24,7 @@ from sigmahat.export import archive, cross_compiler, description, plant_codegen
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.installed import version
 from sigmahat.plants.equations import PlantEquations
-from sigmahat.unknown_name import unknown
+from sigmahat.user_input.unknown_name import unknown
 
 _SEED = "noise.seed"
 

@@ -1,7 +1,10 @@
-"""What is installed of this package: its FMUs and its version."""
+"""What is installed of this package: its FMUs, its version, and packages that it may lack."""
 
 from __future__ import annotations
 
+import re
+import shlex
+import sys
 import sysconfig
 from importlib import metadata
 from pathlib import Path
@@ -25,3 +28,17 @@ def fmu(name: str) -> Path:
 def version() -> str:
     """Version of the package, for example "0.1.0"."""
     return metadata.version("sigmahat")
+
+
+def how_to_install(package: str | None) -> str | None:
+    """One line for a package that sigmahat requires, itself or with an extra, and that is missing.
+
+    None for any other package. pip finds sigmahat itself installed, and adds only what is missing.
+    """
+    for requirement in metadata.requires("sigmahat") or ():
+        match = re.match(r"""([\w.-]+)[^;]*(?:;\s*extra\s*==\s*["'](.+)["'])?""", requirement)
+        if match and match[1] == package:
+            wanted = f"sigmahat[{match[2]}]" if match[2] else "sigmahat"
+            command = shlex.join([sys.executable, "-m", "pip", "install", wanted])
+            return f"{package} is not installed; to install it: {command}"
+    return None

@@ -14,7 +14,7 @@ import numpy as np
 from fmpy import fmi2
 from numpy.typing import NDArray
 
-from sigmahat.unknown_name import unknown
+from sigmahat.user_input.unknown_name import unknown
 
 try:  # FMPy ships it for some platforms only; without it messages arrive unformatted
     from fmpy.logging import addLoggerProxy

@@ -1,1 +1,1 @@
-"""Motor data, orders and noise from a log."""
+"""Motor data, polynomial orders and noise, identified off line from a log."""

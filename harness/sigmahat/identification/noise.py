@@ -21,8 +21,8 @@ def variance(values: Array, resolution: float = 0.0) -> float:
     values      samples at even times, finite
     resolution  step of the encoder, 0 if none: its rounding is noise of at least step^2/12
 
-    Fourth differences hold next to nothing of a motion that is slow beside the samples. Their
-    variance is 70 times that of white noise; the median over windows leaves jumps out.
+    Fourth differences remove a motion that is slow compared with the sampling. For white noise
+    their variance is 70 times that of the signal. The median over windows ignores jumps.
     """
     windows = np.array_split(np.diff(values, 4), min(_WINDOWS, max(1, len(values) // 50)))
     found = float(np.median([np.mean(each**2) for each in windows])) / 70
@@ -36,8 +36,8 @@ def bandwidth(torque: float, theta: float, inertia: float, T: float) -> float:
     theta    variance of the noise of the position [rad2]
     inertia  torque per acceleration: B gamma on the motor's axis [kg.m2]
 
-    Weighting by 1/(1 + (f/f_0)^4), the square of a Butterworth filter of second order, makes the
-    sum of both noises about white below f_0, and takes away what is above it.
+    The sum of both noises is about white below this frequency, and is attenuated above it, if it
+    is weighted by 1/(1 + (f/f_0)^4), the squared gain of a Butterworth filter of second order.
     """
     highest = _HIGHEST / T
     if theta <= 0.0:
@@ -47,9 +47,10 @@ def bandwidth(torque: float, theta: float, inertia: float, T: float) -> float:
 
 
 def low_pass(values: Array, frequency: float, h: float) -> Array:
-    """Butterworth of second order there and back, so without phase, along the first axis.
+    """Butterworth filter of second order, forward and backward, so without phase.
 
-    frequency [Hz], samples h [s] apart.
+    values     samples along the first axis, h [s] apart
+    frequency  at which the gain of one pass is 1/sqrt(2) [Hz]
     """
     filtered: Array = sosfiltfilt(butter(2, frequency * 2 * h, output="sos"), values, axis=0)
     return filtered
@@ -58,6 +59,7 @@ def low_pass(values: Array, frequency: float, h: float) -> Array:
 def best_V_a(velocity: Mapping[float, Array], reference: Array) -> float:
     """The V_a whose velocity is nearest to a reference in the mean square [rad2/s4].
 
-    velocity  of the filter [rad/s] for each V_a; reference of the same shape
+    velocity   of the filter for each V_a [rad/s]
+    reference  of the same shape
     """
     return min(velocity, key=lambda V_a: float(np.mean((velocity[V_a] - reference) ** 2)))

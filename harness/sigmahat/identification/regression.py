@@ -1,14 +1,15 @@
-"""Instrumental variables against the noise of encoders: the two halves of a log fit each other.
+"""Regression of the motor equation with instrumental variables against the noise of encoders.
 
 The motor (3) with Coulomb friction, on its axis, with the flexibility torque as a polynomial (16)
-that is not known either:
+whose coefficients are unknown as well:
 
     tau = B gamma theta'' + D_theta gamma theta' + tau_coulomb tanh(theta'/v_s) - tau_e/gamma
 
-is linear in everything unknown. Least squares would be biased: theta'' of a rounded position is
-noise to a good part, and noise in a regressor makes its coefficient small. So even and odd samples
-are filtered and differentiated apart. Their rounding is independent while the joint moves, and the
-regressors of one half are the instruments of the other: sums Z'X have no noise squared in them.
+is linear in all unknowns. Least squares would be biased: theta'' of a rounded position is mostly
+noise, and noise in a regressor makes its coefficient too small. Therefore even and odd samples are
+filtered and differentiated separately. Their rounding errors are independent while the joint moves,
+and the regressors of each half are the instruments of the other half: the sums Z'X contain no
+squared noise.
 """
 
 from __future__ import annotations
@@ -22,10 +23,12 @@ from numpy.typing import NDArray
 from sigmahat.identification.noise import low_pass
 from sigmahat.logs.log import Array
 
+MOTOR = ("B", "D_theta", "tau_coulomb")
+"""Names of the first columns, which describe the motor."""
 COULOMB_VELOCITY = 0.02
-"""v_s: where friction has turned its sign [rad/s]."""
+"""v_s, the velocity over which the friction changes its sign [rad/s]."""
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
-_EDGE = 0.1  # [s] at both ends of a piece, where the filter has seen half of what it needs
+_EDGE = 0.1  # [s] left out at both ends of a piece, where the filter has not settled
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,7 @@ class Signals:
     set_point: Array
     tau: Array
     tau_e: Array | None
-    """Of the sensor, if the torque constant is asked for."""
+    """Torque of the sensor, if the torque constant is to be identified."""
 
 
 @dataclass(frozen=True)
@@ -50,10 +53,10 @@ class Equations:
     block: NDArray[np.int64]
     """Stretch of time of each row, [size: rows]."""
     names: Sequence[str]
-    """What each column stands for; "eta[i,j]" for the polynomial."""
+    """Names of the columns: MOTOR, then "eta[i,j]" of the polynomial, or "gain" of the torque."""
 
     def only(self, names: Sequence[str]) -> Equations:
-        """The equations with some of the columns."""
+        """The same equations with some of the columns."""
         kept = [self.names.index(name) for name in names]
         return Equations(self.y, self.X[:, kept], self.Z[:, kept], self.block, list(names))
 
@@ -70,9 +73,13 @@ def equations(
 ) -> Equations:
     """The equations of all pieces, weighted by the low pass at f_0 [Hz].
 
-    T [s] between samples; polynomial orders n, m as rls.n, rls.m; wide [Hz] is the low pass of
-    the velocity whose sign is that of the Coulomb friction, which turns fast.
-    With a sensor the polynomial is not needed, and the torque gets a gain: column "gain".
+    T          time between samples [s]
+    gamma      gear ratio
+    n, m       polynomial orders, as rls.n and rls.m
+    symmetric  only odd powers of the deformation, as rls.symmetric
+    wide       low pass of the velocity in the Coulomb friction, which changes fast [Hz]
+
+    With the torque of a sensor there is no polynomial, but a gain of the motor torque.
     """
     units = _unit([p.phi for p in pieces]), _unit([p.set_point for p in pieces])
     parts = []
@@ -94,13 +101,16 @@ def equations(
         ]
     y, X, Z, block = (np.concatenate(each) for each in zip(*parts, strict=True))
     sensor = pieces[0].tau_e is not None
-    polynomial = [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
-    names = ["B", "D_theta", "tau_coulomb", *(["gain"] if sensor else polynomial)]
-    return Equations(y, X, Z, block, names)
+    return Equations(y, X, Z, block, [*MOTOR, *(["gain"] if sensor else eta(n, m))])
+
+
+def eta(n: int, m: int) -> list[str]:
+    """Names of the columns of a polynomial of orders n and m."""
+    return [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
 
 
 def shortest(T: float) -> int:
-    """Samples that a piece must have at least."""
+    """Least number of samples of a piece."""
     return round((2 * _EDGE + 2 * _BLOCK) / T)
 
 
@@ -114,7 +124,7 @@ def _half(
     f_0: float,
     wide: float,
 ) -> tuple[Array, Array]:
-    """Response and regressors of every second sample from the first on, h [s] apart."""
+    """Response and regressors of every second sample, h [s] apart, from a first one on."""
     n, m, symmetric = orders
     kept = slice(first, None, 2)
     theta = s.theta[kept]
@@ -135,10 +145,10 @@ def _half(
 
 
 def _direction(theta: Array, T: float, wide: float) -> Array:
-    """Mean of tanh(theta'/v_s) around each sample, the velocity being linear in between.
+    """Mean of tanh(theta'/v_s) around each sample, for a velocity that is linear in between.
 
-    A fast reversal is over between two samples; the value at one of them would be off by up to
-    half a sample in time. For the same reason theta is not halved here, T [s] apart.
+    A fast reversal happens between two samples: with the value at one of them its time would be
+    wrong by up to half a period. For the same reason theta has all samples here, T [s] apart.
     """
     x = _first(low_pass(theta, wide, T), T) / COULOMB_VELOCITY
     middle = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
@@ -147,17 +157,17 @@ def _direction(theta: Array, T: float, wide: float) -> Array:
     flat = np.abs(step) < 1e-3
     mean: Array = np.where(flat, np.tanh(x), np.diff(integral) / np.where(flat, 1.0, step))
     near = np.concatenate([mean[:1], mean, mean[-1:]])
-    half: Array = (near[:-2] + 2 * mean + near[2:]) / 4  # around a sample of the half
-    return half
+    wider: Array = (near[:-2] + 2 * mean + near[2:]) / 4  # around a sample, 2 T apart
+    return wider
 
 
 def _unit(pieces: Sequence[Array]) -> float:
-    """Largest magnitude, so that powers of all pieces are of order 1."""
+    """Largest magnitude in all pieces: divided by it, values have powers of order 1."""
     return max(float(np.max(np.abs(values))) for values in pieces) or 1.0
 
 
 def _first(x: Array, h: float) -> Array:
-    """First derivative, of fourth order in h; the two values at each end are of no use."""
+    """First derivative, of fourth order in h; the two values at each end are not valid."""
     r = np.roll
     d: Array = (r(x, 2) - 8 * r(x, 1) + 8 * r(x, -1) - r(x, -2)) / (12 * h)
     return d
@@ -177,14 +187,14 @@ class Fit:
     value: dict[str, float]
     half_width: dict[str, float]
     rms: float
-    """Of what is left of the response."""
+    """RMS of the residuals."""
 
 
 def fit(e: Equations) -> Fit:
-    """Solves Z'X p = Z'y, symmetrised over the halves.
+    """Solves Z'X p = Z'y for both halves together.
 
-    Intervals come from the sums of z times error over blocks of time, so they hold for errors
-    of any colour and also where the polynomial does not quite fit.
+    The covariance is that of the sums of Z times error over blocks of time. So the intervals also
+    hold for coloured errors, and where the polynomial does not fit exactly.
     """
     scale = np.sqrt(np.mean(e.X**2, axis=0))
     if not np.all(scale > 0):
@@ -218,7 +228,7 @@ def _nothing(e: Equations) -> Fit:
 
 
 def left_out(e: Equations, parts: int = 8) -> Array:
-    """Mean square error on each of some parts of the log, fitted to the others; [size: parts]."""
+    """Mean square error on each part of the log after a fit to all others, [size: parts]."""
     scale = np.sqrt(np.mean(e.X**2, axis=0))
     scale[scale == 0] = 1.0
     X, Z = e.X / scale, e.Z / scale

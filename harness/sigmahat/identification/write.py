@@ -1,4 +1,4 @@
-"""Writes what was identified into a configuration and keeps its comments."""
+"""Writes the result of an identification into a configuration, whose comments are kept."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from typing import Any
 
 import tomlkit
 
-from sigmahat.identification.identify import UNITS, Identified
-from sigmahat.logs.configuration import parse
+from sigmahat.identification.quantities import Identified
+from sigmahat.logs.configuration import read_document
 
 _ABOVE = 1.4
-"""A filter somewhat above the balance of the noises costs nothing and follows faster."""
+"""matched.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
 _ROOM = 1.2
-"""Ranges above what the log shows: another motion may go further."""
+"""Ranges over the largest values of the log: another motion may go further."""
 
 
 def write(found: Identified, path: Path) -> list[str]:
-    """Puts what the log tells into [parameters] and [ports.tau], all of it into [identified].
+    """Writes what is determined into [parameters] and [ports.tau], everything into [identified].
 
-    Returns the keys that were written. The file is replaced at once, or left as it was.
+    Returns the keys that were written. The file is replaced at once, or not changed.
     """
-    document = parse(path)
+    document = read_document(path)
     values: dict[str, Any] = {
         "filter.V_a": found.V_a,
         "rls.n": found.n,
@@ -36,12 +36,12 @@ def write(found: Identified, path: Path) -> list[str]:
         "prior.tau_e": _ROOM * found.torque,
     }
     for name, q in found.quantities.items():
-        if q.told:
+        if q.determined:
             if name == "tau_coulomb":
                 values["prior.tau_coulomb"] = max(abs(q.value), q.half_width)
             else:
                 values[f"motor.{name}"] = q.value
-            if name == "B":  # D_theta changes with the temperature, whatever this log says
+            if name == "B":  # but not for D_theta, which changes with the temperature
                 values["prior.B"] = q.half_width / q.value
     values = {name: _short(value) for name, value in values.items() if value != 0}
     parameters = document.setdefault("parameters", tomlkit.table())
@@ -49,7 +49,7 @@ def write(found: Identified, path: Path) -> list[str]:
         _set(parameters, name, value)
     written = [f"parameters.{name}" for name in values]
     constant = found.quantities.get("torque_constant")
-    if constant is not None and constant.told:
+    if constant is not None and constant.determined:
         document["ports"]["tau"]["torque_constant"] = _short(constant.value)
         written.append("ports.tau.torque_constant")
     document["identified"] = _record(found)
@@ -64,7 +64,7 @@ def _short(value: float) -> float:
 
 
 def _set(table: MutableMapping[str, Any], name: str, value: Any) -> None:
-    """Sets motor.B where it stands, as motor.B, "motor.B" or B in [parameters.motor]."""
+    """Sets motor.B in the form of the file: motor.B, "motor.B", or B in [parameters.motor]."""
     group, _, last = name.partition(".")
     if name in table:
         table[name] = value
@@ -79,12 +79,12 @@ def _record(found: Identified) -> tomlkit.items.Table:
     table.comment("by sigmahat identify: values with 95 % intervals, for you to read")
     for name, q in found.quantities.items():
         row = tomlkit.inline_table()
-        if q.told:
+        if q.determined:
             row["value"] = _short(q.value)
         else:
             row["value"] = "cannot tell"
         row["half_width"] = float(f"{q.half_width:.3g}")
-        row["unit"] = UNITS[name]
+        row["unit"] = q.unit
         table[name] = row
     table["tau_noise"] = float(f"{found.tau_variance**0.5:.3g}")
     table["tau_noise"].comment("standard deviation [N.m]")

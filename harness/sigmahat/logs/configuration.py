@@ -14,24 +14,24 @@
     [parameters]            # of the FMU, by their names there
     motor.B = 2.3e-5
 
-TOML, because Python reads it, a person too, and tomlkit keeps the comments when identify writes.
+The file is TOML, because people can read it and tomlkit keeps its comments when identify writes.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import tomlkit
-from tomlkit.exceptions import ParseError
+from pydantic import AfterValidator, AllowInfNan, ConfigDict, Strict, TypeAdapter, ValidationError
+from pydantic_core import ErrorDetails, PydanticCustomError
 
 from sigmahat.fmi.instance import Value
 from sigmahat.logs.errors import LogError
-from sigmahat.toml_names import flat
-from sigmahat.unknown_name import unknown
+from sigmahat.user_input import toml_file
+from sigmahat.user_input.unknown_name import unknown
 
 PORTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sensor": "N.m"}
 """Inputs of StiffnessEstimator and their units."""
@@ -40,9 +40,30 @@ _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("q", "tau_e_sensor"), "
 """Ports that a modality cannot do without."""
 
 
+def _not_zero(value: float) -> float:
+    if value == 0:
+        raise PydanticCustomError("zero", "fill in the value of your device (data sheet)")
+    return value
+
+
+def _one(value: float) -> float:
+    if abs(value) != 1:
+        raise PydanticCustomError("expected", "1 or -1")
+    return value
+
+
+# What a file may say; pydantic checks it, and leaves what Python code constructs alone.
+Number = Annotated[float, Strict(), AllowInfNan(False)]
+NotZero = Annotated[Number, AfterValidator(_not_zero)]
+Sign = Annotated[Number, AfterValidator(_one)]
+_NO_OTHER_KEYS = ConfigDict(extra="forbid")
+
+
 @dataclass(frozen=True)
 class Port:
-    """Where the values of a port come from: sign (x - zero) times its unit, over gear_ratio."""
+    """A column of a log as an input of the estimator: sign (x - zero) / gear_ratio, in its unit."""
+
+    __pydantic_config__ = _NO_OTHER_KEYS
 
     column: str
     """Its name in the log."""
@@ -50,21 +71,21 @@ class Port:
     """Column with the times of this one, where it has its own; in the unit of [time]."""
     unit: str | None = None
     """Unit of the column; that of the port if not given."""
-    sign: float = 1.0
+    sign: Sign = 1.0
     """1 or -1."""
-    zero: float = 0.0
+    zero: Number = 0.0
     """What the column shows at the zero of the port, in the unit of the column."""
-    gear_ratio: float = 1.0
+    gear_ratio: NotZero = 1.0
     """For an encoder on the motor's shaft, or a torque measured behind the gear."""
-    counts_per_turn: float | None = None
+    counts_per_turn: NotZero | None = None
     """For the unit counts."""
-    torque_constant: float | None = None
+    torque_constant: NotZero | None = None
     """For a current [N.m/A]."""
-    mm_per_turn: float | None = None
+    mm_per_turn: NotZero | None = None
     """For a length: travel per turn of the motor. If not given, the port takes the number of mm."""
-    scale: float | None = None
+    scale: NotZero | None = None
     """Instead of a unit: what 1 in the column is at the port, in its unit."""
-    wrap: float | None = None
+    wrap: NotZero | None = None
     """Period after which the column starts again, in its unit."""
 
 
@@ -72,17 +93,19 @@ class Port:
 class Time:
     """When the samples were taken."""
 
+    __pydantic_config__ = _NO_OTHER_KEYS
+
     column: str | None = None
     """Its name in the log; if not given, rows are samplePeriod apart."""
     unit: str = "s"
     """Unit of the column."""
-    longest_gap: float | None = None
-    """Time over which is interpolated at most [s]."""
+    longest_gap: NotZero | None = None
+    """Longest time between two samples over which values are interpolated [s]."""
 
 
 @dataclass(frozen=True)
 class Configuration:
-    """What a configuration file says."""
+    """The contents of a configuration file."""
 
     path: Path
     """The file."""
@@ -103,68 +126,69 @@ class Configuration:
                 )
 
 
+def _port_name(name: str) -> str:
+    if name not in PORTS:
+        raise PydanticCustomError("unknown", "{text}", {"text": unknown("port", name, PORTS)})
+    return name
+
+
+@dataclass(frozen=True)
+class _File:
+    """The sections of a file."""
+
+    __pydantic_config__ = _NO_OTHER_KEYS
+
+    ports: dict[Annotated[str, AfterValidator(_port_name)], Port]
+    time: Time = field(default_factory=Time)
+    parameters: dict[str, Any] = field(default_factory=dict)
+    identified: Any = None
+    """What identify writes for people to read."""
+
+
 def read_configuration(path: Path) -> Configuration:
     """Reads and checks a file. Raises LogError, which says where it is wrong."""
-    data = parse(path).unwrap()
-    _known(path, "section", data, ("time", "ports", "parameters", "identified"))
-    ports = _table(path, "ports", data.get("ports", {}))
-    _known(path, "port", ports, PORTS)
-    if not ports:
-        raise LogError(f"{path}: no [ports.*]; `sigmahat init LOG` writes a file to start from")
-    return Configuration(
-        path,
-        Time(**_options(path, "time", _table(path, "time", data.get("time", {})), Time)),
-        {
-            name: Port(**_options(path, f"ports.{name}", _table(path, name, port), Port))
-            for name, port in ports.items()
-        },
-        dict(flat(_table(path, "parameters", data.get("parameters", {})))),
-    )
-
-
-def parse(path: Path) -> tomlkit.TOMLDocument:
-    """The file with its comments. Raises LogError if it is missing or no TOML."""
+    document = read_document(path).unwrap()
     try:
-        return tomlkit.parse(path.read_text(encoding="utf-8"))
+        file = TypeAdapter(_File).validate_python(document)
+    except ValidationError as error:
+        # A misspelt key is the reason why another one is missing.
+        errors = sorted(error.errors(), key=lambda each: each["type"] != _MISSPELT)
+        raise LogError(f"{path}: {_explain(errors[0])}") from error
+    if not file.ports:
+        raise LogError(f"{path}: {_NO_PORTS}")
+    return Configuration(path, file.time, file.ports, dict(toml_file.dotted(file.parameters)))
+
+
+def read_document(path: Path) -> tomlkit.TOMLDocument:
+    """The file with its comments. Raises LogError if it is missing or not TOML."""
+    try:
+        return toml_file.read(path)
     except OSError as error:
         hint = "write one with `sigmahat init LOG`, or name it with --config"
         raise LogError(f"{path}: {error.strerror}; {hint}") from error
-    except (ParseError, UnicodeDecodeError) as error:
+    except ValueError as error:
         raise LogError(f"{path}: not TOML ({error})") from error
 
 
-def _table(path: Path, name: str, value: Any) -> Mapping[str, Any]:
-    if not isinstance(value, Mapping):
-        raise LogError(f"{path}: {name}: expected a table [{name}], got {value!r}")
-    return value
+_NO_PORTS = "no [ports.*]; `sigmahat init LOG` writes a file to start from"
+_MISSPELT = "unexpected_keyword_argument"
+_KINDS = {"string_type": "text", "float_type": "a number", "finite_number": "a finite number"}
 
 
-def _known(path: Path, kind: str, given: Mapping[str, Any], known: Any) -> None:
-    for name in given:
-        if name not in known:
-            raise LogError(f"{path}: {unknown(kind, name, known)}")
-
-
-def _options(path: Path, section: str, table: Mapping[str, Any], into: type) -> dict[str, Any]:
-    """Checks keys and values of a table against the fields of its class."""
-    known = {field.name: str(field.type) for field in fields(into)}
-    _known(path, f"key in [{section}]", table, known)
-    if into is Port and "column" not in table:
-        raise LogError(f"{path}: [{section}] has no column; name one of the log")
-    options: dict[str, Any] = {}
-    for name, value in table.items():
-        text = "str" in known[name]
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if isinstance(value, str) is not text or number is text:
-            kind = "text" if text else "number"
-            raise LogError(f"{path}: {section}.{name}: expected a {kind}, got {value!r}")
-        if not text and not math.isfinite(value):
-            raise LogError(f"{path}: {section}.{name}: expected a finite number, got {value!r}")
-        if not text and name != "zero" and value == 0:
-            raise LogError(
-                f"{path}: {section}.{name} is 0; fill in the value of your device (data sheet)"
-            )
-        if name == "sign" and abs(value) != 1:
-            raise LogError(f"{path}: {section}.sign: expected 1 or -1, got {value!r}")
-        options[name] = value if text else float(value)
-    return options
+def _explain(error: ErrorDetails) -> str:
+    """Where a file is wrong, and what was expected there; in words of TOML."""
+    what, where = error["type"], ".".join(map(str, error["loc"]))
+    section, _, key = where.rpartition(".")
+    if what == _MISSPELT:
+        kind = Port if "." in section else Time if section else _File
+        place = f"key in [{section}]" if section else "section"
+        return unknown(place, key, [each.name for each in fields(kind)])
+    if what == "missing":
+        return f"[{section}] has no {key}; name one of the log" if section else _NO_PORTS
+    if what == "unknown":
+        return error["msg"]
+    if what == "zero":
+        return f"{where} is 0; {error['msg']}"
+    table = f"a table [{where}]"
+    expected = _KINDS.get(what, table if what in ("dict_type", "dataclass_type") else error["msg"])
+    return f"{where}: expected {expected}, got {error['input']!r}"

@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 
 from sigmahat.logs.log import Array
 from sigmahat.logs.sampling import Samples, stretches
-from sigmahat.logs.trace import Trace
+from sigmahat.logs.statistics import ReplayStatistics
 
 _BLUE, _SKY, _VERMILION = "#0072B2", "#56B4E9", "#D55E00"
-_SETTLED = 0.05  # of the log; what the estimate does before does not set the scale
-_OUTER = 1.0  # percent of a stiffness at either end that do not either: it jumps while it learns
+_SETTLED = 0.05  # part of the log that is left out when the scale is chosen: the estimate learns
+_OUTER = 1.0  # percent of the stiffness left out at either end of its range, for the same reason
 _MARGIN = 0.3
 
 
@@ -23,7 +23,7 @@ class Replay:
     """What is drawn."""
 
     samples: Samples
-    trace: Trace
+    statistics: ReplayStatistics
     modality: str
     """What fed the regression."""
     method: str
@@ -50,18 +50,18 @@ def draw(replay: Replay) -> Figure:
     for axes, (label, lines) in zip(every, panels, strict=True):
         limits = []
         for name, title, color in lines:
-            ends = replay.trace.ends(name)
+            ends = replay.statistics.ends(name)
             if name == "tau_e_residual" and replay.modality == "Sensor":
                 ends, title = _sensor(replay), "sensor"
             elif name == "tau_e_residual" and replay.method == "MatchedFilter":
                 title = "by the motor data, with friction"
-            t = replay.samples.T * replay.trace.bucket * np.arange(len(ends))
+            t = replay.samples.T * replay.statistics.bucket * np.arange(len(ends))
             axes.plot(np.repeat(t, 2), ends.ravel(), color=color, label=title)
             settled = ends[int(_SETTLED * len(ends)) :]
             outer = _OUTER if name == "sigma" else 0.0
             limits += np.nanpercentile(settled, [outer, 100 - outer]).tolist()
         if lines[0][0] == "sigma" and replay.method == "MatchedFilter":
-            _how_sure(axes, replay)
+            _interval(axes, replay)
         _scale(axes, min(limits), max(limits))
         _skipped(axes, replay.samples)
         axes.set_ylabel(label)
@@ -72,21 +72,21 @@ def draw(replay: Replay) -> Figure:
 
 
 def _sensor(replay: Replay) -> Array:
-    """Torque of the sensor as Trace.ends gives it."""
+    """Torque of the sensor in the form of ReplayStatistics.ends."""
     samples = replay.samples
     values = samples.values[:, list(samples.names).index("tau_e_sensor")]
-    starts = np.arange(0, len(values), replay.trace.bucket)
+    starts = np.arange(0, len(values), replay.statistics.bucket)
     ends: Array = np.column_stack(
         [np.fmin.reduceat(values, starts), np.fmax.reduceat(values, starts)]
     )
     return ends
 
 
-def _how_sure(axes: Axes, replay: Replay) -> None:
-    """What lies within 1.96 standard deviations of the estimate."""
-    sigma, std = replay.trace.ends("sigma"), replay.trace.ends("sigma_std")[:, 1]
+def _interval(axes: Axes, replay: Replay) -> None:
+    """A band of 1.96 standard deviations on both sides of the estimate."""
+    sigma, std = replay.statistics.ends("sigma"), replay.statistics.ends("sigma_std")[:, 1]
     axes.fill_between(
-        replay.samples.T * replay.trace.bucket * np.arange(len(sigma)),
+        replay.samples.T * replay.statistics.bucket * np.arange(len(sigma)),
         sigma[:, 0] - 1.96 * std,
         sigma[:, 1] + 1.96 * std,
         color=_SKY,

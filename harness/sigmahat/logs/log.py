@@ -11,7 +11,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from sigmahat.logs.errors import LogError
-from sigmahat.unknown_name import unknown
+from sigmahat.user_input.unknown_name import unknown
 
 Array = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
         shifted = pa.compute.subtract(nanoseconds, first)
         return numbers(path, name, shifted) / 1e9
     if pa.types.is_string(kind) or pa.types.is_large_string(kind):
-        text = next((x.as_py() for x in column if x.is_valid and not _is_number(x.as_py())), "")
+        text = next((x.as_py() for x in column if x.is_valid and not is_number(x.as_py())), "")
         raise LogError(f"{path}: column {name!r} holds text ({text!r}), expected numbers")
     if pa.types.is_null(kind):
         return np.full(len(column), np.nan)
@@ -80,7 +80,7 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
     return values
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
     try:
         float(text)
     except ValueError:

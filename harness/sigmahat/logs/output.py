@@ -1,9 +1,16 @@
-"""The table of a log with the estimates added, written while the replay goes on."""
+"""The table of `sigmahat estimate`: the log with the estimates added. It is written and read here.
+
+A CSV log gives `estimate.csv`, every other log `estimate.parquet`. The titles of the estimates are
+"estimate.sigma [N.m/rad]" and so on; "estimate.t [s]" is the time of the tick since the start of
+the log.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -12,26 +19,37 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
+from numpy.typing import NDArray
 
+from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Log
 from sigmahat.logs.readers.tables import CsvLog
 from sigmahat.logs.sampling import Samples
 
 _ROWS = 1 << 16
+_STEM = "estimate"
+_TIME, _SECOND = "t", "s"
 
 
-class Table(AbstractContextManager["Table"]):
-    """Every row of the log, with the outputs of the last tick at or before it.
+@dataclass(frozen=True)
+class Signal:
+    """One estimate at every row of the log."""
 
-    A CSV log gives a CSV file, every other log a Parquet file. Estimates are the columns
-    "estimate.sigma [N.m/rad]" and so on, and "estimate.t [s]", the time of the
-    tick since the start of the log.
-    """
+    name: str
+    """Output of the estimator FMU, or "t"."""
+    unit: str | None
+    """Of the output; a Boolean has none."""
+    values: NDArray[Any]
+    """float64 or bool, [size: rows]."""
 
-    def __init__(self, log: Log, samples: Samples, units: Mapping[str, str], stem: Path) -> None:
-        """Units of the outputs by name; the file is stem with the suffix of its format."""
+
+class EstimateWriter(AbstractContextManager["EstimateWriter"]):
+    """Writes every row of the log with the outputs of the last tick at or before it."""
+
+    def __init__(self, log: Log, samples: Samples, units: Mapping[str, str], folder: Path) -> None:
+        """units  of the outputs that have one, by name"""
         self._text = isinstance(log, CsvLog)
-        self.path = stem.with_suffix(".csv" if self._text else ".parquet")
+        self._path = folder / f"{_STEM}.{'csv' if self._text else 'parquet'}"
         self._units = units
         self._tick_of_row = samples.tick_of_row
         self._T = samples.T
@@ -40,22 +58,20 @@ class Table(AbstractContextManager["Table"]):
         self._row = self._tick = 0
         self._writer: Any = None
 
-    def add(self, outputs: Mapping[str, np.ndarray[Any, Any]]) -> None:
+    def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
         """Writes the rows of the next ticks, whose outputs these are."""
         ticks = len(next(iter(outputs.values())))
         end = int(np.searchsorted(self._tick_of_row, self._tick + ticks))
         take = self._tick_of_row[self._row : end] - self._tick
         table = self._rows.take(end - self._row)
         times = self._T * (self._tick + take)
-        table = table.append_column("estimate.t [s]", pa.array(times))
+        table = table.append_column(_title(_TIME, _SECOND), pa.array(times))
         for name, values in outputs.items():
-            unit = self._units.get(name)
-            title = f"estimate.{name} [{unit}]" if unit else f"estimate.{name}"
-            table = table.append_column(title, pa.array(values[take]))
+            table = table.append_column(_title(name, self._units.get(name)), pa.array(values[take]))
         self._row, self._tick = end, self._tick + ticks
         if self._writer is None:
             writer = pa.csv.CSVWriter if self._text else pa.parquet.ParquetWriter
-            self._writer = writer(self.path, table.schema, **self._options())
+            self._writer = writer(self._path, table.schema, **self._options())
         self._writer.write_table(table)
 
     def _options(self) -> dict[str, Any]:
@@ -89,3 +105,49 @@ class _Rows:
         table = pa.Table.from_batches(self._left)
         self._left = table.slice(rows).to_batches() or [self._left[-1].slice(0, 0)]
         return table.slice(0, rows)
+
+
+def read_estimate(folder: Path) -> dict[str, Signal]:
+    """The estimates that `sigmahat estimate` wrote into a folder, by name, "t" first.
+
+    The columns of the log itself are not read. Raises LogError if there is no such table, or it is
+    damaged.
+    """
+    path = next(folder.glob(f"{_STEM}.parquet"), folder / f"{_STEM}.csv")
+    signals = {}
+    try:
+        matches = {title: _TITLE.fullmatch(title) for title in _titles(path)}
+        names = {title: (match[1], match[2]) for title, match in matches.items() if match}
+        if not {name for name, _ in names.values()} >= {_TIME, "sigma", "valid"}:
+            raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
+        table = _table(path, list(names))
+    except (pa.ArrowException, OSError) as error:
+        raise LogError(f"{path}: damaged ({error}); run `sigmahat estimate` again") from error
+    for title, (name, unit) in names.items():
+        column = table[title]
+        if column.type != pa.bool_():
+            column = column.cast(pa.float64())
+        signals[name] = Signal(name, unit, column.to_numpy())
+    return signals
+
+
+def _titles(path: Path) -> list[str]:
+    if path.suffix == ".parquet":
+        return list(pa.parquet.read_schema(path).names)
+    with pa.csv.open_csv(path) as first:
+        return list(first.schema.names)
+
+
+def _table(path: Path, titles: list[str]) -> pa.Table:
+    if path.suffix == ".parquet":
+        return pa.parquet.read_table(path, columns=titles)
+    options = pa.csv.ConvertOptions(include_columns=titles)
+    return pa.csv.read_csv(path, convert_options=options)
+
+
+def _title(name: str, unit: str | None) -> str:
+    return f"estimate.{name} [{unit}]" if unit else f"estimate.{name}"
+
+
+_TITLE = re.compile(r"estimate\.([^ ]+)(?: \[(.+)\])?")
+"""What _title makes: the name and the unit."""

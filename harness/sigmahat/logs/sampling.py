@@ -59,8 +59,7 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
         raise LogError(f"{configuration.path}: samplePeriod: expected more than 0 s, got {T:g}")
     notes: list[str] = []
     rows = _times(log, configuration, configuration.time.column, T, notes)
-    known = np.isfinite(rows)
-    start, end = rows[known][0], rows[known][-1]
+    start, end = float(np.nanmin(rows)), float(np.nanmax(rows))
     ticks = int(np.floor((end - start) / T + _AT_TICK)) + 1
     if ticks > _MOST_TICKS:
         raise LogError(
@@ -68,20 +67,34 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
             "check time.unit and samplePeriod"
         )
     notes.insert(0, f"{len(rows)} rows over {end - start:.6g} s; {ticks} ticks of {T:g} s")
+    rows -= start
     values = np.empty((ticks, len(configuration.ports)))
     for i, (name, port) in enumerate(configuration.ports.items()):
-        times = rows
+        t = rows
         if port.time is not None:
-            times = _times(log, configuration, port.time, T, notes)
-        column = _column(log, name, port, len(times), notes)
+            t = _times(log, configuration, port.time, T, notes)
+            t -= start
         values[:, i] = _at_ticks(
-            name, times - start, column, T, ticks, configuration.time.longest_gap, notes
+            name,
+            t,
+            _column(log, name, port, len(t), notes),
+            T,
+            ticks,
+            configuration.time.longest_gap,
+            notes,
         )
     _note_skipped(values, T, notes)
-    tick = np.floor((rows - start) / T + _AT_TICK)
-    tick[~known] = -1
-    of_row = np.clip(np.maximum.accumulate(tick), 0, ticks - 1).astype(np.int64)
-    return Samples(start, T, tuple(configuration.ports), values, of_row, notes)
+    return Samples(start, T, tuple(configuration.ports), values, _tick_of(rows, T, ticks), notes)
+
+
+def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int64]:
+    """Last tick at or before each row, whose times since the first tick are given [s]."""
+    tick = rows / T
+    tick += _AT_TICK
+    np.floor(tick, out=tick)
+    tick[np.isnan(tick)] = -1
+    np.maximum.accumulate(tick, out=tick)
+    return np.clip(tick, 0, ticks - 1, out=tick).astype(np.int64)
 
 
 def _times(
@@ -93,17 +106,20 @@ def _times(
         first = next(iter(configuration.ports.values())).column
         return T * np.arange(log.columns[first], dtype=np.float64)
     times = log.read(name) * seconds(configuration.time.unit)
-    known = np.flatnonzero(np.isfinite(times))
+    finite = np.isfinite(times)
+    known = times if finite.all() else times[finite]
     if len(known) < 2:
         raise LogError(f"{log.path}: time column {name!r} holds fewer than two numbers")
-    steps = np.diff(times[known])
+    steps = np.diff(known)
     if not np.all(steps > 0):
         i = int(np.argmax(steps <= 0))
+        row = np.flatnonzero(finite)[i + 1] + 1
         raise LogError(
-            f"{log.path}: time column {name!r} does not increase: {times[known[i + 1]]:.9g} s in "
-            f"row {known[i + 1] + 1} after {times[known[i]]:.9g} s; sort or split the log"
+            f"{log.path}: time column {name!r} does not increase: {known[i + 1]:.9g} s in "
+            f"row {row} after {known[i]:.9g} s; sort or split the log"
         )
     if len(known) < len(times):
+        times[~finite] = np.nan
         notes.append(f"{name}: {len(times) - len(known)} rows without a time left out")
     return times
 
@@ -121,7 +137,8 @@ def _column(log: Log, name: str, port: Port, rows: int, notes: list[str]) -> Arr
         notes.append(f"{name}: unwrapped {jumps} times at {port.wrap:g} {port.unit or ''}".rstrip())
     values = convert(name, port, values)
     if port.wrap is None and PORTS[name] == "rad":
-        jump = float(np.nanmax(np.abs(np.diff(values)), initial=0.0))
+        steps = np.diff(values)
+        jump = float(np.nanmax(np.abs(steps, out=steps), initial=0.0))
         if jump > np.pi and port.unit is not None and name != "theta_c":
             notes.append(f"{name}: jumps by {jump:.3g} rad; if the encoder wraps, set wrap")
     return values
@@ -165,7 +182,9 @@ def _at_ticks(
 
 
 def _off_ticks(t: Array, T: float) -> NDArray[np.bool_]:
-    return np.abs(t / T - np.arange(len(t))) > _AT_TICK
+    off = t / T
+    off -= np.arange(len(t))
+    return np.abs(off, out=off) > _AT_TICK
 
 
 def _note(

@@ -1,152 +1,16 @@
-"""A configuration to start from, guessed from the names and values of a log's columns."""
+"""The configuration that `sigmahat init` writes: the guess, and comments on what to check."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping
 
-import numpy as np
+import tomlkit
+from tomlkit.items import Item, Table
 
 from sigmahat.logs.configuration import PORTS
-from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Array, Log
-
-_NAMES = {
-    "theta_c": (r"theta_?c(?![a-z])", r"lever", r"set_?point", r"stiff\w*motor", r"(^|\W)r_mm"),
-    "tau_e_sensor": (r"tau_e", r"sensor", r"load_?cell", r"(link|joint)_?(torque|tau)"),
-    "theta": (r"^theta", r"\btheta", r"motor_?(pos|angle|enc|theta)", r"motor(?!.*(torque|cur))"),
-    "q": (r"^q(?![a-z])", r"\bq(_|\b)", r"link", r"joint", r"output", r"angle"),
-    "tau": (
-        r"^tau",
-        r"\btau",
-        r"(motor|cmd)\w*(torque|current)",
-        r"current",
-        r"^i(_|\b)",
-        r"torque",
-    ),
-}
-"""Patterns of the names for each port, the surest first; ports in the order of their claims."""
-
-_TIME = r"(^|[./])(t|time|stamp|timestamp|sec|seconds)(?![a-z])"
-_DERIVED = r"dot|vel|speed|acc|true|temp"
-_UNITS = {
-    r"deg(rees?)?": "deg",
-    r"m?rad": None,
-    r"counts?|ticks?|enc|cnt": "counts",
-    r"turns?|revs?": "turn",
-    r"m?n\.?m": None,
-    r"amps?|a|ampere": "A",
-    r"ma": "mA",
-    r"mm": "mm",
-    r"ms|us|ns|s": None,
-}
-_ENCODED = ("theta", "q", "theta_c")
-_DISTINCT = 20000  # values in which the step of an encoder is looked for
-
-
-@dataclass(frozen=True)
-class Guess:
-    """What a column is taken for."""
-
-    column: str
-    unit: str
-    time: str | None
-
-
-def guess(log: Log) -> tuple[str | None, dict[str, Guess]]:
-    """The time column, and a guess for each port that has one."""
-    times = [name for name in log.columns if re.search(_TIME, name, re.IGNORECASE)]
-    free = [n for n in log.columns if n not in times and not re.search(_DERIVED, n, re.IGNORECASE)]
-    columns: dict[str, str] = {}
-    for port, patterns in _NAMES.items():
-        column = next(
-            (n for p in patterns for n in free if re.search(p, n.split("/")[-1], re.IGNORECASE)),
-            None,
-        )
-        if column is not None:
-            free.remove(column)
-            columns[port] = column
-    clocks = {port: _clock(log, column, times) for port, column in columns.items()}
-    main = next((clocks[port] for port in PORTS if port in clocks), None)
-    return main, {
-        port: Guess(
-            columns[port],
-            _unit(columns[port], PORTS[port]),
-            clocks[port] if clocks[port] != main else None,
-        )
-        for port in PORTS
-        if port in columns
-    }
-
-
-def _clock(log: Log, column: str, times: Sequence[str]) -> str | None:
-    """The times of a column: those of its group or topic, else any of the same length."""
-    same = [time for time in times if log.columns[time] == log.columns[column]]
-    group = column.rpartition(".")[0]
-    return next((time for time in same if time.rpartition(".")[0] == group), next(iter(same), None))
-
-
-def _unit(column: str, target: str) -> str:
-    """Unit at the end of a name, as in theta_deg, "q [deg]" or i(A)."""
-    match = re.search(r"[\s_\[(.]+([a-zA-Z.]+?)[\])]?$", column)
-    text = match.group(1) if match else ""
-    for pattern, unit in _UNITS.items():
-        if re.fullmatch(pattern, text, re.IGNORECASE):
-            if unit is not None:
-                return unit
-            return {"nm": "N.m", "n.m": "N.m", "mnm": "mN.m", "mn.m": "mN.m"}.get(
-                text.lower(), text.lower()
-            )
-    return target
-
-
-def write(log: Log, fmu_defaults: Mapping[str, float]) -> str:
-    """The text of a configuration with comments.
-
-    fmu_defaults  start values of the estimator's motor parameters, by name
-
-    Raises LogError if no column looks like a link or motor position.
-    """
-    time, found = guess(log)
-    if not found:
-        raise LogError(
-            f"{log.path}: no column looks like a port (theta, q, theta_c, tau, tau_e_sensor) "
-            f"by its name; there are: {', '.join(log.columns)}"
-        )
-    lines = list(_head(log))
-    lines += ["", "[time]"]
-    T = 1e-3
-    if time is not None:
-        unit = _unit(time, "s")
-        T = _interval(log.read(time), unit)
-        lines += [f"column = {_text(time)}", f"unit = {_text(unit)}"]
-    else:
-        lines += ["# no column looks like a time: rows are taken as samplePeriod apart"]
-    lines += ["# longest_gap = 0.01   # [s] interpolate over shorter gaps; else ticks are skipped"]
-    for name, each in found.items():
-        lines += ["", *_port(log, name, each)]
-    for name in PORTS:
-        if name not in found:
-            lines += ["", f"# [ports.{name}]   # {PORTS[name]}; no column looks like it"]
-    lines += ["", *_parameters(log, found, T, fmu_defaults), ""]
-    return "\n".join(lines)
-
-
-def _head(log: Log) -> Iterator[str]:
-    yield f"# Configuration for {log.path.name}, guessed from the names of its columns: check all."
-    yield "# Then: sigmahat identify (B, D_theta, friction), sigmahat estimate (stiffness)."
-    yield "#"
-    yield "# Columns found:"
-    for name, samples in log.columns.items():
-        yield f"#   {name}: {samples} samples"
-    yield "#"
-    yield "# A port is sign (x - zero) in its unit, over gear_ratio. Keys of a port, all but column"
-    yield "# optional: unit (rad, deg, turn, counts; N.m, mN.m, A; mm for theta_c), sign, zero,"
-    yield "# gear_ratio (encoder or torque on the other side of the gear), counts_per_turn,"
-    yield "# torque_constant [N.m/A], mm_per_turn (of the motor, for theta_c in mm), scale (instead"
-    yield "# of a unit), wrap (period of a counter that starts again), time (a column of its own)."
-
+from sigmahat.logs.guess import Guess, PortGuess
+from sigmahat.logs.log import Log
 
 _MEANING = {
     "theta": "principal motor, after its gear",
@@ -155,99 +19,128 @@ _MEANING = {
     "tau": "torque of the principal motor, on its axis before the gear",
     "tau_e_sensor": "measured flexibility torque, for modality Sensor",
 }
+_MOTOR_UNITS = {"motor.B": "kg.m2", "motor.D_theta": "N.m.s/rad", "motor.gamma": "gear ratio"}
+_HEAD = """\
+Configuration for {log}, guessed from the names of its columns: check all.
+Then: sigmahat identify (B, D_theta, friction), sigmahat estimate (stiffness).
+
+Columns found:
+{columns}
+
+A port is sign (x - zero) in its unit, over gear_ratio. Keys of a port, all but column
+optional: unit (rad, deg, turn, counts; N.m, mN.m, A; mm for theta_c), sign, zero,
+gear_ratio (encoder or torque on the other side of the gear), counts_per_turn,
+torque_constant [N.m/A], mm_per_turn (of the motor, for theta_c in mm), scale (instead
+of a unit), wrap (period of a counter that starts again), time (a column of its own)."""
 
 
-def _port(log: Log, name: str, each: Guess) -> Iterator[str]:
-    values = log.read(each.column)
-    finite = values[np.isfinite(values)]
-    yield f"[ports.{name}]   # {_MEANING[name]}, {PORTS[name]}"
-    span = f"{finite.min():.6g} to {finite.max():.6g}" if len(finite) else "no number"
-    yield f"column = {_text(each.column)}   # {span}"
-    yield f"unit = {_text(each.unit)}"
-    if each.time is not None:
-        yield f"time = {_text(each.time)}"
-    if each.unit == "counts":
-        yield "counts_per_turn = 0   # FILL IN: of the encoder, after its four-fold evaluation"
+def write(log: Log, guess: Guess, fmu_defaults: Mapping[str, float]) -> str:
+    """The text of a configuration.
+
+    fmu_defaults  start values of the estimator's motor parameters, by name
+    """
+    columns = "\n".join(f"  {name}: {samples} samples" for name, samples in log.columns.items())
+    document = tomlkit.document()
+    for line in _HEAD.format(log=log.path.name, columns=columns).splitlines():
+        document.add(tomlkit.comment(line))
+    document.add(tomlkit.nl())
+    document.add("time", _time(guess))
+    ports = tomlkit.table(is_super_table=True)
+    for name, port in guess.ports.items():
+        ports.add(name, table := _port(name, port))
+    for name, unit in PORTS.items():
+        if name not in guess.ports:
+            table.add(tomlkit.comment(f"[ports.{name}]   # {unit}; no column looks like it"))
+            table.add(tomlkit.nl())
+    document.add("ports", ports)
+    document.add("parameters", _parameters(guess, fmu_defaults))
+    return tomlkit.dumps(document)
+
+
+def _time(guess: Guess) -> Table:
+    table = tomlkit.table()
+    if guess.time is None:
+        table.add(
+            tomlkit.comment("no column looks like a time: rows are taken as samplePeriod apart")
+        )
+    else:
+        table.add("column", guess.time)
+        table.add("unit", guess.time_unit)
+    gap = "longest_gap = 0.01   # [s] interpolate over shorter gaps; else ticks are skipped"
+    table.add(tomlkit.comment(gap))
+    table.add(tomlkit.nl())
+    return table
+
+
+def _port(name: str, port: PortGuess) -> Table:
+    table = tomlkit.table()
+    _comment(table, f"{_MEANING[name]}, {PORTS[name]}")
+    span = "no number" if math.isnan(port.low) else f"{port.low:.6g} to {port.high:.6g}"
+    _add(table, "column", port.column, span)
+    _add(table, "unit", port.unit)
+    if port.time is not None:
+        _add(table, "time", port.time)
+    if port.unit == "counts":
+        fill_in = "FILL IN: of the encoder, after its four-fold evaluation"
+        _add(table, "counts_per_turn", 0, fill_in)
     if name == "theta":
-        yield "gear_ratio = 1   # CHECK: that of the gear if the encoder sits on the motor's shaft"
-    if each.unit in ("A", "mA"):
-        yield "torque_constant = 0   # FILL IN: N.m/A, from the data sheet of the motor"
-    if each.unit == "mm":
-        yield "# mm_per_turn = 2.5   # not given: the set-point is the number of mm"
-    if each.unit not in ("A", "mA", "N.m", "mN.m"):
-        wrap = _wrap(finite)
-        if wrap is not None:
-            yield f"wrap = {wrap:g}   # it jumps by this: check"
-    yield "sign = 1"
-    yield "zero = 0   # what the column shows at the zero of the port"
+        check = "CHECK: that of the gear if the encoder sits on the motor's shaft"
+        _add(table, "gear_ratio", 1, check)
+    if port.unit in ("A", "mA"):
+        _add(table, "torque_constant", 0, "FILL IN: N.m/A, from the data sheet of the motor")
+    if port.unit == "mm":
+        without = "mm_per_turn = 2.5   # not given: the set-point is the number of mm"
+        table.add(tomlkit.comment(without))
+    if port.wrap is not None:
+        _add(table, "wrap", port.wrap, "it jumps by this: check")
+    _add(table, "sign", 1)
+    _add(table, "zero", 0, "what the column shows at the zero of the port")
+    table.add(tomlkit.nl())
+    return table
 
 
-def _parameters(
-    log: Log, found: Mapping[str, Guess], T: float, defaults: Mapping[str, float]
-) -> Iterator[str]:
-    yield "[parameters]   # of StiffnessEstimator.fmu, by their names; others keep their start"
-    yield f"samplePeriod = {T:.12g}   # [s]"
-    sensor = "tau" not in found and "tau_e_sensor" in found
-    yield 'method = "MatchedFilter"   # or Paper2011, which needs exact motor data'
-    yield f"modality = {_text('Sensor' if sensor else 'Residual')}   # Residual, Sensor or Model"
-    units = {"motor.B": "kg.m2", "motor.D_theta": "N.m.s/rad", "motor.gamma": "gear ratio"}
+def _parameters(guess: Guess, defaults: Mapping[str, float]) -> Table:
+    table, ports = tomlkit.table(), guess.ports
+    _comment(table, "of StiffnessEstimator.fmu, by their names; others keep their start values")
+    _add(table, "samplePeriod", guess.T, "[s]")
+    _add(table, "method", "MatchedFilter", "or Paper2011, which needs exact motor data")
+    sensor = "tau" not in ports and "tau_e_sensor" in ports
+    _add(table, "modality", "Sensor" if sensor else "Residual", "Residual, Sensor or Model")
     if not sensor:
         for name, value in defaults.items():
-            yield f"{name} = {value:.12g}   # [{units[name]}] of the AwAS: put yours"
+            _add(table, name, value, f"[{_MOTOR_UNITS[name]}] of the AwAS: replace it with yours")
     for name in ("theta", "q"):
-        if name in found and found[name].unit != "counts":
-            turn = {"rad": 2 * np.pi, "deg": 360.0, "turn": 1.0}.get(found[name].unit, 0.0)
-            counts = turn / _step(log.read(found[name].column))
-            comment = f"its step is 1/{counts:.0f} turn" if counts else "not quantised"
-            yield f"encoder.{name} = {counts:.0f}   # counts per turn; {comment}"
-    if "theta_c" not in found:
-        yield "rls.m = 1   # no set-point"
-    elif found["theta_c"].unit == "mm":
-        yield "setPoint.offset = 0   # set-point = offset + scale theta_c: here the mm"
-        yield "setPoint.scale = 1"
+        if name in ports and ports[name].unit != "counts":
+            counts = ports[name].counts_per_turn
+            comment = f"its step is 1/{counts} turn" if counts else "not quantised"
+            _add(table, f"encoder.{name}", counts, f"counts per turn; {comment}")
+    if "theta_c" not in ports:
+        _add(table, "rls.m", 1, "no set-point")
+    elif ports["theta_c"].unit == "mm":
+        offset = "set-point = offset + scale theta_c: here the number of mm"
+        _add(table, "setPoint.offset", 0, offset)
+        _add(table, "setPoint.scale", 1)
     else:
-        yield "# set-point = offset + scale theta_c, of order 1 to 100; for the AwAS the lever arm"
-        yield "# in mm, which is what is taken if these lines stay comments:"
-        yield "# setPoint.offset = 100"
-        yield "# setPoint.scale = -0.39789   # per rad"
+        for line in (
+            "set-point = offset + scale theta_c, of order 1 to 100; for the AwAS the lever arm",
+            "in mm. These are the start values, which hold while the lines are comments:",
+            "setPoint.offset = 100",
+            "setPoint.scale = -0.39789   # per rad",
+        ):
+            table.add(tomlkit.comment(line))
+    return table
 
 
-def _interval(times: Array, unit: str) -> float:
-    """Usual time between rows [s], free of the rounding of the times."""
-    from sigmahat.logs.units import seconds
-
-    steps = np.diff(times[np.isfinite(times)]) * seconds(unit)
-    if not len(steps):
-        return 1e-3
-    usual = float(np.median(steps))
-    even = steps[np.abs(steps / usual - 1) < 0.01]
-    return float(f"{even.mean() if len(even) > 0.9 * len(steps) else usual:.6g}")
+def _add(table: Table, name: str, value: str | float, comment: str = "") -> None:
+    """Adds a key, motor.B with its dot; a whole number is written as one."""
+    whole = isinstance(value, float) and value.is_integer()
+    item = tomlkit.item(int(value) if whole else value)
+    if comment:
+        _comment(item, comment)
+    table.append(tomlkit.key(name.split(".")), item)
 
 
-def _step(values: Array) -> float:
-    """Step of a quantised column; inf if it has none."""
-    distinct = np.unique(values[np.isfinite(values)][:_DISTINCT])
-    steps = np.diff(distinct)
-    steps = steps[steps > 1e-9 * max(np.ptp(distinct), 1e-300)] if len(steps) else steps
-    if len(steps) < 5:
-        return np.inf
-    step = float(np.median(steps[steps < 1.5 * steps.min()]))
-    ratio = steps / step
-    return step if np.mean(np.abs(ratio - np.round(ratio)) < 0.05) > 0.95 else np.inf
-
-
-def _wrap(finite: Array) -> float | None:
-    """Period of a counter that starts again: a power of two, or a full turn in degrees."""
-    if len(finite) < 2:
-        return None
-    jump = float(np.abs(np.diff(finite)).max())
-    span = float(np.ptp(finite))
-    if span == 0 or jump < 0.9 * span:
-        return None
-    candidates = [360.0, 2 * np.pi, *(2.0**k for k in range(8, 33))]
-    period = min(candidates, key=lambda each: abs(each - span))
-    return period if abs(period / span - 1) < 0.02 else None
-
-
-def _text(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+def _comment(item: Item, text: str) -> None:
+    """Adds a comment to the line of an item, at some distance."""
+    item.comment(text)
+    item.trivia.comment_ws = "   "

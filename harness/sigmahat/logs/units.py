@@ -58,7 +58,10 @@ def factor(name: str, port: Port) -> float:
 def convert(name: str, port: Port, values: Array) -> Array:
     """Values of a column, already unwrapped, at the port."""
     times = port.sign * factor(name, port) / port.gear_ratio
-    converted: Array = values if (times, port.zero) == (1.0, 0.0) else (values - port.zero) * times
+    if (times, port.zero) == (1.0, 0.0):
+        return values
+    converted: Array = values - port.zero
+    converted *= times
     return converted
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from sigmahat.paper.awas import experiment, simulation
 from sigmahat.paper.transmissions import antagonistic, single
 from sigmahat.runs.scenario import Scenario
-from sigmahat.unknown_name import unknown
+from sigmahat.user_input.unknown_name import unknown
 
 SCENARIOS = {
     s.name: s

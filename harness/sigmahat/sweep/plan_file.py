@@ -17,13 +17,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import tomlkit
-from tomlkit.exceptions import ParseError
-
 from sigmahat.sweep.plan import Plan
 from sigmahat.sweep.values import Values, values
-from sigmahat.toml_names import flat
-from sigmahat.unknown_name import unknown
+from sigmahat.user_input import toml_file
+from sigmahat.user_input.unknown_name import unknown
 
 _KEYS = ("scenario", "seeds", "modality", "parameters")
 _MOST = 1_000_000
@@ -48,7 +45,8 @@ def read_plan(
     content = {} if path is None else _content(path)
     try:
         parameters = {
-            name: _values(name, given) for name, given in flat(content.get("parameters", {}))
+            name: _values(name, given)
+            for name, given in toml_file.dotted(content.get("parameters", {}))
         }
         plan = Plan(
             tuple(scenarios) or _names(content, "scenario") or ("table1",),
@@ -73,8 +71,8 @@ def read_plan(
 
 def _content(path: Path) -> dict[str, Any]:
     try:
-        content: dict[str, Any] = tomlkit.parse(path.read_text(encoding="utf-8")).unwrap()
-    except (ParseError, UnicodeDecodeError) as error:
+        content: dict[str, Any] = toml_file.read(path).unwrap()
+    except ValueError as error:
         raise ValueError(f"{path}: not readable as TOML: {error}") from error
     except OSError as error:
         raise ValueError(f"cannot read {path}: {error.strerror}") from error

@@ -11,7 +11,7 @@ from sigmahat.runs.engine import SEED
 from sigmahat.runs.scenario import Scenario
 from sigmahat.runs.signals import PLANT, to_record
 from sigmahat.sweep.plan import Run
-from sigmahat.unknown_name import unknown
+from sigmahat.user_input.unknown_name import unknown
 
 ALL = "estimator"
 """Owner of a parameter of all estimators."""

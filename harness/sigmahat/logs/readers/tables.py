@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from tempfile import TemporaryFile
+from typing import IO
 
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
 from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Array, Log, numbers
+from sigmahat.logs.log import Array, Log, is_number, numbers
 
-_BLOCK = 1 << 22  # bytes of a CSV file that are parsed at a time
+_BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 
 
 class ParquetLog(Log):
@@ -21,7 +24,7 @@ class ParquetLog(Log):
     def __init__(self, path: Path) -> None:
         """Raises LogError for a file that is damaged."""
         try:
-            self._file = pa.parquet.ParquetFile(path, memory_map=True)
+            self._file = pa.parquet.ParquetFile(path, pre_buffer=False)
         except (pa.ArrowException, OSError) as error:
             raise LogError(f"{path}: not a whole Parquet file ({error}); copy it again") from error
         flat = [field.name for field in self._file.schema_arrow if not field.type.num_fields]
@@ -45,83 +48,107 @@ class CsvLog(Log):
     """A text file: one line that names the columns, then numbers between , or ; or tabs.
 
     With ; between them the numbers may have decimal commas.
+
+    The text is parsed once, into a temporary Parquet file, so that a long log needs little memory.
+    Only a column that does not start with numbers is parsed again when its values are asked for,
+    as dates and times are.
     """
 
     def __init__(self, path: Path) -> None:
         """Raises LogError for a file that is no such table."""
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            try:
-                head, first = file.readline().strip("\r\n"), file.readline().strip("\r\n")
-            except UnicodeDecodeError as error:
-                raise LogError(
-                    f"{path}: neither text nor a known binary format; expected CSV, Parquet, MAT, "
-                    "HDF5, MCAP or a ROS 2 bag"
-                ) from error
-        delimiter = max(",;\t", key=head.count)
-        names = [cell.strip().strip('"') for cell in head.split(delimiter)]
-        if delimiter not in head:
-            raise LogError(
-                f"{path}: line 1 is {head[:40]!r}, expected the names of several columns "
-                "between commas, semicolons or tabs"
-            )
-        if all(_is_figure(name) for name in names):
-            raise LogError(f"{path}: line 1 holds numbers, expected the names of the columns")
-        repeated = {name for name in names if names.count(name) > 1}
-        if repeated:
-            raise LogError(f"{path}: line 1 names column {repeated.pop()!r} twice")
-        self._parse = pa.csv.ParseOptions(delimiter=delimiter)
-        comma = delimiter == ";" and "," in first and "." not in first
-        self._decimal = "," if comma else "."
-        if not first:
-            raise LogError(f"{path}: no rows below the names of the columns; record it again")
+        names, delimiter, decimal = _header(path)
         self._names = names
+        self._parse = pa.csv.ParseOptions(delimiter=delimiter)
+        self._decimal = decimal
         super().__init__(path, dict.fromkeys(names, 0))
-        rows = self._table(names[:1]).num_rows
-        self.columns = dict.fromkeys(names, rows)
+        file = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
+        weakref.finalize(self, file.close)
+        self._copy = self._copied(file)
+        self.columns = dict.fromkeys(names, self._copy.metadata.num_rows)
 
     def _read(self, name: str) -> Array:
-        return numbers(self.path, name, self._table([name]).column(0))
+        if self._copy.schema_arrow.field(name).type == pa.float64():
+            column = self._copy.read([name], use_threads=False).column(0)
+        else:
+            column = self._parsed(name)
+        return numbers(self.path, name, column)
 
     def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
-        try:
-            with self._stream(dict.fromkeys(self._names, None)) as first:
-                types = {
-                    f.name: pa.float64() if _numeric(f.type) else pa.string() for f in first.schema
-                }
-            yield from self._stream({name: types[name] for name in names})
-        except pa.ArrowInvalid as error:
-            raise self._damaged(error) from error
+        yield from self._copy.iter_batches(rows, columns=list(names), use_threads=False)
 
-    def _stream(self, types: Mapping[str, pa.DataType | None]) -> pa.csv.CSVStreamingReader:
-        """A reader of some columns; where the type is None the first block decides."""
-        options = pa.csv.ConvertOptions(
-            include_columns=list(types),
-            column_types={name: kind for name, kind in types.items() if kind is not None},
-            decimal_point=self._decimal,
-        )
+    def _copied(self, file: IO[bytes]) -> pa.parquet.ParquetFile:
+        """All columns in Parquet, numbers as float64, everything else as its text."""
+        try:
+            with self._stream({}) as first:
+                kinds = {field.name: field.type for field in first.schema}
+            self._write(file, kinds)
+        except pa.ArrowInvalid:
+            # A column that has text behind its first numbers, or damage, which appears again here.
+            self._write(file, {name: self._parsed(name).type for name in self._names})
+        pa.default_memory_pool().release_unused()
+        return pa.parquet.ParquetFile(file, pre_buffer=False)
+
+    def _write(self, file: IO[bytes], kinds: Mapping[str, pa.DataType]) -> None:
+        types = {
+            name: pa.float64() if _numeric(kind) else pa.string() for name, kind in kinds.items()
+        }
+        file.seek(0)
+        file.truncate()
+        with (
+            self._stream(types) as blocks,
+            pa.parquet.ParquetWriter(
+                file, blocks.schema, use_dictionary=False, compression="none"
+            ) as writer,
+        ):
+            for block in blocks:
+                writer.write_batch(block)
+
+    def _stream(self, types: Mapping[str, pa.DataType]) -> pa.csv.CSVStreamingReader:
+        """A reader of all columns; without types the first block decides."""
+        options = pa.csv.ConvertOptions(column_types=types, decimal_point=self._decimal)
         return pa.csv.open_csv(self.path, self._options(), self._parse, options)
 
-    def _table(self, names: list[str]) -> pa.Table:
-        options = pa.csv.ConvertOptions(include_columns=names, decimal_point=self._decimal)
+    def _parsed(self, name: str) -> pa.ChunkedArray:
+        """A column in the type that fits all of its values."""
+        options = pa.csv.ConvertOptions(include_columns=[name], decimal_point=self._decimal)
         try:
-            return pa.csv.read_csv(self.path, self._options(), self._parse, options)
+            return pa.csv.read_csv(self.path, self._options(), self._parse, options).column(0)
         except pa.ArrowInvalid as error:
-            raise self._damaged(error) from error
+            raise LogError(
+                f"{self.path}: {error}; a file cut in the middle ends like this"
+            ) from error
 
     def _options(self) -> pa.csv.ReadOptions:
         return pa.csv.ReadOptions(block_size=_BLOCK, column_names=self._names, skip_rows=1)
 
-    def _damaged(self, error: pa.ArrowInvalid) -> LogError:
-        return LogError(f"{self.path}: {error}; a file cut in the middle ends like this")
+
+def _header(path: Path) -> tuple[list[str], str, str]:
+    """Names of the columns, the delimiter between them, and the decimal point."""
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        try:
+            head, first = file.readline().strip("\r\n"), file.readline().strip("\r\n")
+        except UnicodeDecodeError as error:
+            raise LogError(
+                f"{path}: neither text nor a known binary format; expected CSV, Parquet, MAT, "
+                "HDF5, MCAP or a ROS 2 bag"
+            ) from error
+    delimiter = max(",;\t", key=head.count)
+    names = [cell.strip().strip('"') for cell in head.split(delimiter)]
+    if delimiter not in head:
+        raise LogError(
+            f"{path}: line 1 is {head[:40]!r}, expected the names of several columns "
+            "between commas, semicolons or tabs"
+        )
+    if all(is_number(name) for name in names):
+        raise LogError(f"{path}: line 1 holds numbers, expected the names of the columns")
+    repeated = {name for name in names if names.count(name) > 1}
+    if repeated:
+        raise LogError(f"{path}: line 1 names column {repeated.pop()!r} twice")
+    if not first:
+        raise LogError(f"{path}: no rows below the names of the columns; record it again")
+    comma = delimiter == ";" and "," in first and "." not in first
+    return names, delimiter, "," if comma else "."
 
 
 def _numeric(kind: pa.DataType) -> bool:
     return bool(pa.types.is_floating(kind) or pa.types.is_integer(kind))
-
-
-def _is_figure(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

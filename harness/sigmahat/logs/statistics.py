@@ -1,4 +1,4 @@
-"""What the figure and the summary of a replay need, kept while it goes on."""
+"""What the figure and the summary of a replay need, collected while it runs."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ DRAWN = ("sigma", "sigma_std", "tau_e", "tau_e_residual", "phi", "setPoint")
 _LAST = (*DRAWN, "D_theta_hat", "B_hat", "tau_coulomb_hat")
 
 
-class Trace:
-    """Least and greatest value of each output in some thousand intervals of equal length.
+class ReplayStatistics:
+    """Minimum and maximum of each output in up to 4000 intervals, and figures of the second half.
 
-    They make the same picture as all values, in memory that does not grow with the log.
+    The minima and maxima give the same picture as all values, and their number does not grow with
+    the log.
     """
 
     def __init__(self, ticks: int) -> None:
         self.bucket = -(-ticks // _BUCKETS)
-        """Ticks in an interval; chunks must be whole numbers of them."""
+        """Ticks in an interval; each chunk but the last must be a multiple of it."""
         self._parts: dict[str, list[Array]] = {name: [] for name in DRAWN}
         self._half = ticks // 2
         self._ticks = self._later = self._confident = self.skipped = 0
@@ -30,9 +31,10 @@ class Trace:
         self._low = {name: np.inf for name in DRAWN}
         self._high = {name: -np.inf for name in DRAWN}
         self.last: dict[str, float] = {}
+        """Outputs of the last tick."""
 
     def add(self, outputs: Mapping[str, np.ndarray[Any, Any]]) -> None:
-        """Takes the outputs of the next ticks."""
+        """Adds the outputs of the next ticks."""
         count = len(outputs["valid"])
         for name in DRAWN:
             values = outputs[name]
@@ -54,11 +56,11 @@ class Trace:
         self.last = {name: float(outputs[name][-1]) for name in _LAST}
 
     def ends(self, name: str) -> Array:
-        """Least and greatest value of each interval, [size: intervals x 2]."""
+        """Minimum and maximum in each interval, [size: intervals x 2]."""
         return np.concatenate(self._parts[name])
 
     def later(self, name: str) -> tuple[float, float]:
-        """Least and greatest value in the second half of the log."""
+        """Minimum and maximum in the second half of the log."""
         return self._low[name], self._high[name]
 
     @property

@@ -1,4 +1,4 @@
-"""What to say about a name that does not exist."""
+"""The error message for a name that does not exist."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 
-def unknown(kind: str, name: str, known: Iterable[str]) -> str:
-    """Returns one line that names what came, what was probably meant, and what there is.
+def unknown(kind: str, name: str, existing: Iterable[str]) -> str:
+    """One line with the unknown name, similar names, and the existing ones.
 
-    A long list is left out where a similar name was found.
+    A list of more than 20 existing names is left out if a similar one was found.
+
+    kind  what the name stands for, as in "unknown scenario 'tabel1'"
     """
-    names = sorted(known)
+    names = sorted(existing)
     similar = get_close_matches(name, names, n=3, cutoff=0.6)
     message = f"unknown {kind} {name!r}"
     if similar:

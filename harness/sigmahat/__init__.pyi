@@ -1,0 +1,39 @@
+"""The public names, for lazy_loader and type checkers; see __init__.py."""
+
+from .export.plant_fmu import PlantVariable as PlantVariable
+from .export.plant_fmu import write_plant_fmu as write_plant_fmu
+from .fmi.installed import fmu as fmu
+from .fmi.instance import FmuError as FmuError
+from .fmi.master import Estimator as Estimator
+from .fmi.master import Plant as Plant
+from .fmi.master import Recording as Recording
+from .fmi.master import Series as Series
+from .fmi.master import simulate as simulate
+from .identification.identify import identify as identify
+from .identification.quantities import Identified as Identified
+from .identification.quantities import Quantity as Quantity
+from .logs.configuration import Configuration as Configuration
+from .logs.configuration import Port as Port
+from .logs.configuration import Time as Time
+from .logs.configuration import read_configuration as read_configuration
+from .logs.errors import LogError as LogError
+from .logs.estimate import Estimate as Estimate
+from .logs.estimate import estimate as estimate
+from .logs.log import Log as Log
+from .logs.readers.formats import open_log as open_log
+from .paper.scenarios import scenario as scenario
+from .plants.equations import PlantEquations as PlantEquations
+from .plants.equations import encoder as encoder
+from .runs.engine import run as run
+from .runs.metrics import Indices as Indices
+from .runs.metrics import indices as indices
+from .runs.metrics import mean_error as mean_error
+from .runs.metrics import mse as mse
+from .runs.metrics import msrep as msrep
+from .runs.scenario import Comparison as Comparison
+from .runs.scenario import Scenario as Scenario
+from .runs.scenario import Sine as Sine
+from .runs.scenario import Sines as Sines
+
+__all__: list[str]
+__version__: str

@@ -1,0 +1,62 @@
+"""The result of an identification."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One identified parameter with its 95 % interval, value +- half_width."""
+
+    value: float
+    """In its unit."""
+    half_width: float
+    """Half the width of the interval, in the same unit; inf if the motion does not show it."""
+    unit: str
+    """kg.m2 for B, N.m.s/rad for D_theta, N.m for tau_coulomb, N.m/A for torque_constant."""
+    determined: bool
+    """Whether the interval is narrow enough to use the value: within 10 % of it on either side, or
+    for tau_coulomb within 0.5 % of the torque."""
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Both ends of the interval, in the same unit."""
+        return self.value - self.half_width, self.value + self.half_width
+
+    @property
+    def told(self) -> bool:
+        """The name of `determined` up to version 0.1."""
+        warnings.warn("Quantity.told is now .determined", DeprecationWarning, stacklevel=2)
+        return self.determined
+
+
+@dataclass(frozen=True)
+class Identified:
+    """Motor data, polynomial orders and noise, identified from a log."""
+
+    quantities: Mapping[str, Quantity]
+    """B, D_theta, tau_coulomb, and torque_constant if it was asked for."""
+    n: int
+    """For rls.n, see m."""
+    m: int
+    """For rls.m. The orders are the smallest whose error, in a cross-validation, is not
+    significantly above that of the best ones."""
+    tau_variance: float
+    """Variance of the noise of the torque [(N.m)2]."""
+    theta_variance: float
+    """Variance of the noise of the motor position, rounding included [rad2]."""
+    bandwidth: float
+    """Bandwidth of a filter that balances both noises [rad/s]."""
+    V_a: float
+    """For filter.V_a [rad2/s4]."""
+    phi: float
+    """Largest magnitude of the deformation [rad]."""
+    set_point: float
+    """Largest magnitude of the set-point [1]."""
+    torque: float
+    """Largest magnitude of the torque of the motor after its gear [N.m]."""
+    notes: Sequence[str]
+    """What had to be done to the samples of the log, in sentences."""

@@ -1,0 +1,1 @@
+"""What users write: TOML files, and names that may not exist."""

@@ -1,0 +1,99 @@
+"""CSV logs, which are parsed once, and the table with the estimates, written and read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow.csv
+import pytest
+
+from recorded_logs import CONFIGURATION, Array, write_log
+from sigmahat.cli import main
+from sigmahat.logs.errors import LogError
+from sigmahat.logs.output import read_estimate
+from sigmahat.logs.readers.formats import open_log
+
+ROWS = 2000
+
+
+def columns(rows: int = ROWS) -> dict[str, Array]:
+    t = 1e-3 * np.arange(rows, dtype=np.float64)
+    motion = np.sin(5 * t)
+    return {"t": t, "theta": motion, "q": 1.01 * motion, "theta_c": 75 + t, "tau": 0.1 * motion}
+
+
+def test_a_csv_log_is_parsed_once(tmp_path: Path) -> None:
+    # GIVEN a file that is gone once it has been opened THEN all of its numbers are there
+    path = write_log(columns(), tmp_path / "log.csv")
+    log = open_log(path)
+    path.unlink()
+    assert log.columns == dict.fromkeys(columns(), ROWS)
+    for name, values in columns().items():
+        assert np.array_equal(log.read(name), values)
+    rows = [batch.num_rows for batch in log.batches(["t", "q"], 300)]
+    assert sum(rows) == ROWS and max(rows) <= 300
+
+
+def test_a_column_that_begins_with_numbers_may_go_on_with_text(tmp_path: Path) -> None:
+    # GIVEN text behind the part of the file that decides on the types
+    rows = 40_000
+    note = np.arange(rows).astype(str)
+    note[-1] = "end"
+    path = write_log({**columns(rows), "note": note}, tmp_path / "log.csv")
+    assert path.stat().st_size > 2 << 20
+    log = open_log(path)
+    assert np.array_equal(log.read("q"), columns(rows)["q"])
+    with pytest.raises(LogError, match=r"'note' holds text \('end'\)"):
+        log.read("note")
+    assert [each for batch in log.batches(["note"], rows) for each in batch["note"].to_pylist()][
+        -2:
+    ] == ["39998", "end"]
+
+
+def test_dates_are_times_and_stay_as_they_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    stamps = np.datetime64("2024-05-01T12:00:00.250") + np.arange(ROWS).astype("timedelta64[ms]")
+    text = np.datetime_as_string(stamps, "ms")
+    write_log({**columns(), "t": text}, Path("log.csv"))
+    Path("log.toml").write_text(CONFIGURATION)
+    assert main(["estimate", "log.csv", "--out", ".", "--quiet"]) == 0
+    written = pyarrow.csv.read_csv(
+        "estimate.csv",
+        convert_options=pyarrow.csv.ConvertOptions(column_types={"t": pyarrow.string()}),
+    )
+    assert written["t"].to_pylist() == text.tolist()
+    assert np.allclose(read_estimate(Path())["t"].values, columns()["t"], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_estimates_are_read_as_they_were_written(
+    suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_log({**columns(), "note [V]": np.full(ROWS, 3.0)}, Path(f"log{suffix}"))
+    Path("log.toml").write_text(CONFIGURATION)
+    assert main(["estimate", f"log{suffix}", "--out", "out", "--quiet"]) == 0
+    signals = read_estimate(Path("out"))
+    assert next(iter(signals)) == "t"
+    units = {name: signal.unit for name, signal in signals.items()}
+    assert units.items() >= {"t": "s", "sigma": "N.m/rad", "a": "1", "valid": None}.items()
+    assert not units.keys() & {"note", "q", "theta"}  # these are in the log
+    for name, signal in signals.items():
+        assert signal.name == name
+        assert signal.values.dtype == (bool if name in ("valid", "confident") else np.float64)
+        assert signal.values.shape == (ROWS,)
+    phi = columns()["q"] - columns()["theta"]
+    assert np.allclose(signals["phi"].values, phi, rtol=1e-12, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [("estimate.csv", b"a,b\n1,2\n"), ("estimate.csv", b""), ("estimate.parquet", b"PAR1")],
+)
+def test_a_table_that_cannot_be_read(name: str, content: bytes, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(LogError, match=rf"{name}: .*sigmahat estimate"):
+        read_estimate(tmp_path)
