@@ -56,8 +56,8 @@ int sh_matched_step(sh_matched_regression *matched, sh_least_squares *rls, const
                     sh_real theta, sh_real torque, sh_real phi, sh_real sigma, const sh_real *F,
                     sh_real *y, sh_innovation *innovation);
 
-/* The estimate of all parameters: that of the recursion, with the correct weight of what is known
- * of b, see sh_rounding_bias_estimate.
+/* The estimate of all parameters: that of the recursion, with the correct weight of the information
+ * about b, see sh_rounding_bias_estimate.
  *
  * dF   [size: rls->P.size] a combination of parameters
  * eta  [size: rls->P.size] out: the estimate
