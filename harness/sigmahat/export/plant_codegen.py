@@ -14,7 +14,7 @@ from pkgutil import iter_modules
 import casadi as ca
 
 from sigmahat import plants
-from sigmahat.export import description
+from sigmahat.export import c_variables, templates
 from sigmahat.export.elimination import Elimination
 from sigmahat.plants.equations import PlantEquations
 
@@ -149,8 +149,8 @@ def _compare(plant: PlantEquations, kind: str, own: Iterable[str], wanted: Itera
 def main(name: str, folder: str) -> None:
     """Write the code of a plant of this package, variables in the order of its template."""
     plant = find(name)
-    root = description.render(_TEMPLATES / f"{name}.xml", version="")
-    places = description.storage_in_arrays(root)
+    root = templates.render(_TEMPLATES / f"{name}.xml", version="")
+    places = c_variables.storage_in_arrays(root)
     p, u, y = ([name for name, place in places.items() if place[0] == array] for array in "puy")
     write(plant, p, u, y, Path(folder))
 

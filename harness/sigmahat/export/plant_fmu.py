@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 import fmpy
 
-from sigmahat.export import archive, description, plant_codegen
+from sigmahat.export import archive, c_variables, description, plant_codegen
 from sigmahat.export.native_compiler import compile_folder
 from sigmahat.export.plant_description import PlantVariable, describe
 from sigmahat.fmi.installed import fmu as installed_fmu
@@ -64,6 +64,6 @@ def _write_description(
     delivered = ElementTree.fromstring(ElementTree.tostring(root))
     guid = description.complete(delivered)
     ElementTree.ElementTree(delivered).write(xml, encoding="UTF-8", xml_declaration=True)
-    places = description.storage_in_arrays(root)
-    table = description.c_table(root, "sh_plant", places, guid)
+    places = c_variables.storage_in_arrays(root)
+    table = c_variables.c_table(root, "sh_plant", places, guid)
     (sources / "variables.h").write_text(table, encoding="utf-8")
