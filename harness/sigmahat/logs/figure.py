@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sigmahat.logs.log import Array
-from sigmahat.logs.sampling import Samples, stretches
+from sigmahat.logs.resampling import stretches
+from sigmahat.logs.sampling import Samples
 from sigmahat.logs.statistics import ReplayStatistics
 
 _BLUE, _SKY, _VERMILION = "#0072B2", "#56B4E9", "#D55E00"
