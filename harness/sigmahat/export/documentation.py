@@ -1,4 +1,4 @@
-"""What people see of an FMU: ``documentation/index.html``, its icon, and ``model.png``.
+"""Documentation and icon of an FMU: ``documentation/index.html``, ``icon.svg``, ``model.png``.
 
 The page is one Jinja2 template for all FMUs, in ``modelDescription/documentation``; its
 variables are those of the template of the model description.

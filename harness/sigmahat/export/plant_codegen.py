@@ -136,10 +136,10 @@ def write(
 
 
 def _compare(plant: PlantEquations, kind: str, own: Iterable[str], wanted: Iterable[str]) -> None:
-    """Raises ValueError unless the equations of the plant have exactly the names wanted."""
+    """Raises ValueError unless the names in the equations are exactly those wanted."""
     own, wanted = set(own), set(wanted)
     if not own:
-        raise ValueError(f"{plant.name}: expected at least one {kind}, came none")
+        raise ValueError(f"{plant.name}: expected at least one {kind}, got none")
     for name in sorted(wanted - own):
         raise ValueError(f"{plant.name}: the equations have no {kind} {name}")
     for name in sorted(own - wanted):

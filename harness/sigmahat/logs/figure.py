@@ -21,18 +21,18 @@ _MARGIN = 0.3
 
 @dataclass(frozen=True)
 class Replay:
-    """What is drawn."""
+    """The data of the figure."""
 
     samples: Samples
     statistics: ReplayStatistics
     modality: str
-    """What fed the regression."""
+    """Modality of the estimator: the source of its torque."""
     method: str
-    """How the stiffness was estimated."""
+    """Method of the estimator."""
 
 
 def draw(replay: Replay) -> Figure:
-    """Panels one below the other, time since the start of the log on the horizontal axis."""
+    """Panels above each other, over the time since the start of the log."""
     panels = [
         (r"stiffness $\sigma$ [N$\cdot$m/rad]", [("sigma", r"estimate $\hat\sigma$", _BLUE)]),
         (
@@ -103,7 +103,7 @@ def _scale(axes: Axes, low: float, high: float) -> None:
 
 
 def _skipped(axes: Axes, samples: Samples) -> None:
-    """Grey where the estimator skipped ticks."""
+    """Grey areas where the estimator skipped ticks."""
     first, last = stretches(np.isnan(samples.values).any(axis=1))
     longest = np.argsort(last - first)[::-1][:200]
     for i, (a, b) in enumerate(zip(first[longest], last[longest], strict=True)):
