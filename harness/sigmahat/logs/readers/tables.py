@@ -61,7 +61,7 @@ class CsvLog(Log):
         self._decimal = decimal
         super().__init__(path, dict.fromkeys(names, 0))
         file = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
-        weakref.finalize(self, file.close)
+        weakref.finalize(self, file.close)  # which removes it
         self._copy = self._copied(file)
         self.columns = dict.fromkeys(names, self._copy.metadata.num_rows)
 
