@@ -4,7 +4,7 @@
 # Adds a target NAME that builds NAME.fmu from modelDescription/NAME.xml, the FMI shell, the
 # given sources and those of the library. The FMU contains the binary of the host and the sources.
 # STRUCT is the C type that contains the variables, STORAGE how they are stored in it: see
-# harness/sigmahat/export/description.py.
+# harness/sigmahat/export/c_variables.py.
 function(sigmahat_add_fmu name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "STRUCT;STORAGE;LIBRARY" "SOURCES")
   set(source_dir ${PROJECT_SOURCE_DIR})

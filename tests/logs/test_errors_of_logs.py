@@ -119,6 +119,11 @@ def test_values_that_do_not_fit(
     ("old", "new", "words"),
     [
         ('column = "q"', 'column = "qq"', "unknown column 'qq'; did you mean 'q'"),
+        (
+            'column = "t"\n[ports.theta]\ncolumn = "theta"',
+            '[ports.theta]\ncolumn = "thet"',
+            "'thet'",
+        ),
         ("[ports.theta_c]", "[ports.thetac]", "did you mean 'theta_c'"),
         ("[parameters]", "[parameter]", "did you mean 'parameters'"),
         ("motor.B", "motor.b", "did you mean 'motor.B'"),

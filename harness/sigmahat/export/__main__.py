@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from sigmahat.export import amalgamation, archive, description, source_files
+from sigmahat.export import amalgamation, archive, c_variables, description, source_files
 
 
 @click.group()
@@ -18,13 +18,13 @@ def main() -> None:
 @click.argument("sources", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option("--version", required=True, help="Version of the FMU.")
 @click.option("--struct", required=True, help="C type that holds the variables.")
-@click.option("--storage", required=True, type=click.Choice(list(description.STORAGE)))
+@click.option("--storage", required=True, type=click.Choice(list(c_variables.STORAGE)))
 def describe(
     template: Path, out: Path, sources: list[Path], version: str, struct: str, storage: str
 ) -> None:
     """Write modelDescription.xml and variables.h of TEMPLATE, with C files SOURCES, into OUT."""
     names = [source.name for source in sources]
-    description.write(template, out, version, struct, description.STORAGE[storage], names)
+    description.write(template, out, version, struct, c_variables.STORAGE[storage], names)
 
 
 @main.command()

@@ -27,7 +27,7 @@ FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC",
 def compile_binary(folder: Path, platform: str, cache: Path) -> None:
     """Compile the sources of an unpacked FMU, and put the binary in its place in the folder.
 
-    ``cache`` is where the compiler keeps what it can use again. Raises
+    ``cache`` is a folder for compiled parts that can be used again. Raises
     ``subprocess.CalledProcessError`` where the compiler refuses; it says why on stderr.
     """
     # FMPy reads the SourceFiles of FMI 2.0 as a build configuration of FMI 3.0.

@@ -1,4 +1,4 @@
-"""What people see of an FMU: ``documentation/index.html``, its icon, and ``model.png``.
+"""Documentation and icon of an FMU: ``documentation/index.html``, ``icon.svg``, ``model.png``.
 
 The page is one Jinja2 template for all FMUs, in ``modelDescription/documentation``; its
 variables are those of the template of the model description.
@@ -13,13 +13,13 @@ from xml.etree.ElementTree import Element
 
 import jinja2
 
-from sigmahat.export import description, icon
+from sigmahat.export import icon, templates
 
 
 def write(template: Path, out: Path, version: str) -> None:
     """Write the files into a folder, by their names in the FMU.
 
-    Raises as `description.render` does, and ``KeyError`` for an FMU without an icon.
+    Raises as `templates.render` does, and ``KeyError`` for an FMU without an icon.
     """
     folder = out / "documentation"
     folder.mkdir(parents=True, exist_ok=True)
@@ -29,7 +29,7 @@ def write(template: Path, out: Path, version: str) -> None:
         undefined=jinja2.StrictUndefined,
         autoescape=True,
     )
-    root = description.render(template, version)
+    root = templates.render(template, version)
     (experiment,) = root.findall("DefaultExperiment")
     page = environment.get_template("page.html").render(
         identifier=template.stem,
@@ -45,7 +45,7 @@ def _table(root: Element, causality: str) -> dict[str, Any]:
     """Rows of the variables of one causality; those of an array by the array's name."""
     single: list[dict[str, Any]] = []
     arrays: dict[str, list[dict[str, Any]]] = {}
-    for variable in description.variables(root):
+    for variable in templates.variables(root):
         if variable.attrib["causality"] == causality:
             array = re.fullmatch(r"(.+)\[.+\]", variable.attrib["name"])
             rows = arrays.setdefault(array[1], []) if array else single

@@ -8,8 +8,8 @@ import casadi as ca
 class Elimination:
     """Factors of a square sparse matrix, and the solution of systems with it.
 
-    Pivots are taken on the diagonal, the one that can fill in least first (Markowitz), without a
-    look at their values: this suits s I - J with s large, as implicit integration has it.
+    Pivots are diagonal entries, in the order of the least possible fill-in (Markowitz), whatever
+    their values: this suits the matrices s I - J of an implicit integration, where s is large.
     """
 
     def __init__(self, matrix: ca.SX) -> None:

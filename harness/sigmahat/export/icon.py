@@ -1,7 +1,6 @@
 """Icons of the FMUs: ``model.png``, which importers show, and the same as SVG.
 
-A motor is a disk, the link a bar, a transmission a spring between them; what an estimator finds
-is written with a hat.
+A motor is a disk, the link a bar, a transmission a spring between them; an estimate has a hat.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from pkgutil import iter_modules
 import casadi as ca
 
 from sigmahat import plants
-from sigmahat.export import description
+from sigmahat.export import c_variables, templates
 from sigmahat.export.elimination import Elimination
 from sigmahat.plants.equations import PlantEquations
 
@@ -136,10 +136,10 @@ def write(
 
 
 def _compare(plant: PlantEquations, kind: str, own: Iterable[str], wanted: Iterable[str]) -> None:
-    """Raises ValueError unless the equations of the plant have exactly the names wanted."""
+    """Raises ValueError unless the names in the equations are exactly those wanted."""
     own, wanted = set(own), set(wanted)
     if not own:
-        raise ValueError(f"{plant.name}: expected at least one {kind}, came none")
+        raise ValueError(f"{plant.name}: expected at least one {kind}, got none")
     for name in sorted(wanted - own):
         raise ValueError(f"{plant.name}: the equations have no {kind} {name}")
     for name in sorted(own - wanted):
@@ -149,8 +149,8 @@ def _compare(plant: PlantEquations, kind: str, own: Iterable[str], wanted: Itera
 def main(name: str, folder: str) -> None:
     """Write the code of a plant of this package, variables in the order of its template."""
     plant = find(name)
-    root = description.render(_TEMPLATES / f"{name}.xml", version="")
-    places = description.storage_in_arrays(root)
+    root = templates.render(_TEMPLATES / f"{name}.xml", version="")
+    places = c_variables.storage_in_arrays(root)
     p, u, y = ([name for name, place in places.items() if place[0] == array] for array in "puy")
     write(plant, p, u, y, Path(folder))
 

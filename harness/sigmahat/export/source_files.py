@@ -21,5 +21,5 @@ def with_headers(files: Iterable[Path]) -> list[Path]:
             for name in re.findall(r'^#include "(.+)"', file.read_text("utf-8"), re.MULTILINE):
                 waiting += [folder / name for folder in folders if (folder / name).is_file()]
         elif found[file.name] != file:
-            raise ValueError(f"expected one file {file.name}, came {found[file.name]} and {file}")
+            raise ValueError(f"expected one file {file.name}, got {found[file.name]} and {file}")
     return list(found.values())

@@ -70,10 +70,10 @@ def _element(
 
 
 def _parameters(element: str, fmu: Fmu, start: Mapping[str, Value]) -> list[dict[str, Any]]:
-    """All parameters but initial estimates, which are zero, and enumerations.
+    """All parameters except enumerations, and initial estimates, which are zero.
 
-    Importers disagree on how to write an enumeration: the standard wants the name of its item,
-    FMPy the number. So they stay as the FMU has them.
+    Importers disagree on the form of an enumeration: the standard asks for the name of the item,
+    FMPy for its number. So enumerations keep the start values of the FMU.
     """
     own, listed = fmu.parameters({}), []
     for name, value in fmu.parameters(start).items():
@@ -81,8 +81,7 @@ def _parameters(element: str, fmu: Fmu, start: Mapping[str, Value]) -> list[dict
         if variable.type == "Enumeration":
             if value != own[name]:
                 raise ValueError(
-                    f"{fmu.name}.{name}: the SSP leaves it at {own[name]}, "
-                    f"the scenario wants {value}"
+                    f"{fmu.name}.{name}: the SSP leaves it at {own[name]}, the scenario has {value}"
                 )
         elif not name.startswith("rls.eta_0"):
             boolean = variable.type == "Boolean"

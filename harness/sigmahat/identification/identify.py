@@ -22,7 +22,8 @@ from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Array, Log
 from sigmahat.logs.replay import parameters, replay
-from sigmahat.logs.sampling import Samples, sample, stretches
+from sigmahat.logs.resampling import stretches
+from sigmahat.logs.sampling import Samples, sample
 
 _LONGEST = 600.0  # [s] of a log that are used
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
@@ -129,7 +130,7 @@ def _best_V_a(
     wide = min(2.5 * f_0, _V_A_HIGHEST / samples.T)
     reference = np.gradient(low_pass(theta, wide, samples.T), samples.T)
     settled = slice(len(theta) // 10, -len(theta) // 10)
-    only = Samples(0.0, samples.T, ["theta"], theta[:, None], samples.tick_of_row, ())
+    only = Samples(samples.T, ["theta"], theta[:, None], samples.tick_of_row, ())
     velocity = {}
     for V_a in _V_A:
         with Slave(fmu, "filter") as slave:

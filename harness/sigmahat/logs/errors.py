@@ -1,5 +1,5 @@
-"""What is wrong with a log or its configuration."""
+"""The error for a log or a configuration that cannot be used."""
 
 
 class LogError(ValueError):
-    """Says in one line where the trouble is, what was expected, and what to do."""
+    """The message says in one line where the error is, what was expected, and what to do."""

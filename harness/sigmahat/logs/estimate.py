@@ -16,7 +16,7 @@ from sigmahat.logs.replay import OUTPUTS, coefficients, parameters, replay
 from sigmahat.logs.sampling import sample
 from sigmahat.logs.statistics import ReplayStatistics
 
-_CHUNK = 1 << 16  # ticks, about
+_CHUNK = 1 << 16  # ticks that are replayed at a time, about
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def estimate(
 ) -> Estimate:
     """Replays the log and writes estimate.csv or .parquet, estimate.png and .svg into folder.
 
-    From time to time progress is called with the thousandths done since the last call.
+    Now and then progress is called with the thousandths of the log done since the last call.
 
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
     """

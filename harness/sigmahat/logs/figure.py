@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sigmahat.logs.log import Array
-from sigmahat.logs.sampling import Samples, stretches
+from sigmahat.logs.resampling import stretches
+from sigmahat.logs.sampling import Samples
 from sigmahat.logs.statistics import ReplayStatistics
+from sigmahat.plotting.colors import BLUE, SKY, VERMILION
 
-_BLUE, _SKY, _VERMILION = "#0072B2", "#56B4E9", "#D55E00"
 _SETTLED = 0.05  # part of the log that is left out when the scale is chosen: the estimate learns
 _OUTER = 1.0  # percent of the stiffness left out at either end of its range, for the same reason
 _MARGIN = 0.3
@@ -20,47 +22,44 @@ _MARGIN = 0.3
 
 @dataclass(frozen=True)
 class Replay:
-    """What is drawn."""
+    """The data of the figure."""
 
     samples: Samples
     statistics: ReplayStatistics
     modality: str
-    """What fed the regression."""
+    """Modality of the estimator: the source of its torque."""
     method: str
-    """How the stiffness was estimated."""
+    """Method of the estimator."""
+
+
+class _Line(NamedTuple):
+    """An output over time."""
+
+    label: str
+    color: str
+    ends: Array
+    """Minimum and maximum in each interval, [size: intervals x 2]."""
+    outer: float = 0.0
+    """Percent at either end of its range that the scale does not show."""
 
 
 def draw(replay: Replay) -> Figure:
-    """Panels one below the other, time since the start of the log on the horizontal axis."""
-    panels = [
-        (r"stiffness $\sigma$ [N$\cdot$m/rad]", [("sigma", r"estimate $\hat\sigma$", _BLUE)]),
-        (
-            r"flexibility torque $\tau_e$ [N$\cdot$m]",
-            [
-                ("tau_e_residual", r"residual $\gamma r_e$", _SKY),
-                ("tau_e", r"fitted, $f(\theta_c, \phi)$", _VERMILION),
-            ],
-        ),
-        (r"deformation $\phi$ [rad]", [("phi", r"deformation $\phi = q - \theta$", _BLUE)]),
-    ]
-    if "theta_c" in replay.samples.names:
-        panels.append(("set-point [1]", [("setPoint", "set-point", _BLUE)]))
+    """Panels above each other, over the time since the start of the log."""
+    panels = _panels(replay)
     figure = Figure(figsize=(7.2, 1.2 + 2.1 * len(panels)), layout="constrained")
     every = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
-    for axes, (label, lines) in zip(every, panels, strict=True):
+    for axes, (label, lines) in zip(every, panels.items(), strict=True):
         limits = []
-        for name, title, color in lines:
-            ends = replay.statistics.ends(name)
-            if name == "tau_e_residual" and replay.modality == "Sensor":
-                ends, title = _sensor(replay), "sensor"
-            elif name == "tau_e_residual" and replay.method == "MatchedFilter":
-                title = "by the motor data, with friction"
-            t = replay.samples.T * replay.statistics.bucket * np.arange(len(ends))
-            axes.plot(np.repeat(t, 2), ends.ravel(), color=color, label=title)
-            settled = ends[int(_SETTLED * len(ends)) :]
-            outer = _OUTER if name == "sigma" else 0.0
-            limits += np.nanpercentile(settled, [outer, 100 - outer]).tolist()
-        if lines[0][0] == "sigma" and replay.method == "MatchedFilter":
+        for line in lines:
+            axes.plot(
+                np.repeat(_times(replay, line.ends), 2),
+                line.ends.ravel(),
+                color=line.color,
+                label=line.label,
+            )
+            settled = line.ends[int(_SETTLED * len(line.ends)) :]
+            limits += np.nanpercentile(settled, [line.outer, 100 - line.outer]).tolist()
+        if axes is every[0] and replay.method == "MatchedFilter":
             _interval(axes, replay)
         _scale(axes, min(limits), max(limits))
         _skipped(axes, replay.samples)
@@ -69,6 +68,34 @@ def draw(replay: Replay) -> Figure:
         axes.legend(loc="upper right", ncols=3)
     every[-1].set_xlabel("time since the start of the log $t$ [s]")
     return figure
+
+
+def _panels(replay: Replay) -> dict[str, list[_Line]]:
+    """Lines by the label of their axis; the stiffness is first."""
+    ends = replay.statistics.ends
+    torque = _Line(r"residual $\gamma r_e$", SKY, ends("tau_e_residual"))
+    if replay.modality == "Sensor":
+        torque = _Line("sensor", SKY, _sensor(replay))
+    elif replay.method == "MatchedFilter":
+        torque = torque._replace(label="by the motor data, with friction")
+    panels = {
+        r"stiffness $\sigma$ [N$\cdot$m/rad]": [
+            _Line(r"estimate $\hat\sigma$", BLUE, ends("sigma"), _OUTER)
+        ],
+        r"flexibility torque $\tau_e$ [N$\cdot$m]": [
+            torque,
+            _Line(r"fitted, $f(\theta_c, \phi)$", VERMILION, ends("tau_e")),
+        ],
+        r"deformation $\phi$ [rad]": [_Line(r"deformation $\phi = q - \theta$", BLUE, ends("phi"))],
+    }
+    if "theta_c" in replay.samples.names:
+        panels["set-point [1]"] = [_Line("set-point", BLUE, ends("setPoint"))]
+    return panels
+
+
+def _times(replay: Replay, ends: Array) -> Array:
+    """Start of each interval [s]."""
+    return replay.samples.T * replay.statistics.bucket * np.arange(len(ends), dtype=np.float64)
 
 
 def _sensor(replay: Replay) -> Array:
@@ -86,10 +113,10 @@ def _interval(axes: Axes, replay: Replay) -> None:
     """A band of 1.96 standard deviations on both sides of the estimate."""
     sigma, std = replay.statistics.ends("sigma"), replay.statistics.ends("sigma_std")[:, 1]
     axes.fill_between(
-        replay.samples.T * replay.statistics.bucket * np.arange(len(sigma)),
+        _times(replay, sigma),
         sigma[:, 0] - 1.96 * std,
         sigma[:, 1] + 1.96 * std,
-        color=_SKY,
+        color=SKY,
         alpha=0.4,
         linewidth=0,
         label=r"$\pm$ 1.96 standard deviations",
@@ -102,7 +129,7 @@ def _scale(axes: Axes, low: float, high: float) -> None:
 
 
 def _skipped(axes: Axes, samples: Samples) -> None:
-    """Grey where the estimator skipped ticks."""
+    """Grey areas where the estimator skipped ticks."""
     first, last = stretches(np.isnan(samples.values).any(axis=1))
     longest = np.argsort(last - first)[::-1][:200]
     for i, (a, b) in enumerate(zip(first[longest], last[longest], strict=True)):

@@ -1,4 +1,4 @@
-"""What every recorded log offers, whatever its file format."""
+"""A recorded log, whatever its file format: columns of numbers by name."""
 
 from __future__ import annotations
 
@@ -26,26 +26,31 @@ class Log(ABC):
         """Number of samples of each column."""
 
     def read(self, name: str) -> Array:
-        """One column, shape (samples,); nan where a sample is missing.
+        """One column, [size: samples]; nan where a sample is missing.
 
-        Date and time become seconds since the first row. Raises LogError if there is no such
+        Dates and times become seconds since the first row. Raises LogError if there is no such
         column, or if it holds something other than numbers.
         """
+        self.samples(name)
+        return self._read(name)
+
+    def samples(self, name: str) -> int:
+        """Number of samples of a column. Raises LogError if there is no such column."""
         if name not in self.columns:
             raise LogError(f"{self.path}: {unknown('column', name, self.columns)}")
-        return self._read(name)
+        return self.columns[name]
 
     @abstractmethod
     def _read(self, name: str) -> Array:
-        """One column that exists."""
+        """As read, for a column that exists."""
 
     @abstractmethod
     def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
-        """The columns of these names, of one length, as they are, a number of rows at a time."""
+        """Columns of one length as they are in the file, at most a number of rows at a time."""
 
 
 class LogInMemory(Log):
-    """A log of a format that is read at once."""
+    """A log that is read as a whole when it is opened."""
 
     def __init__(self, path: Path, arrays: Mapping[str, NDArray[np.generic]]) -> None:
         super().__init__(path, {name: len(array) for name, array in arrays.items()})
@@ -62,7 +67,7 @@ class LogInMemory(Log):
 
 
 def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
-    """An Arrow column as Log.read gives it. Raises LogError if it does not hold numbers."""
+    """An Arrow column as Log.read returns it. Raises LogError if it does not hold numbers."""
     kind = column.type
     if pa.types.is_timestamp(kind):
         nanoseconds = column.cast(pa.timestamp("ns")).cast(pa.int64())
@@ -81,6 +86,7 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
 
 
 def is_number(text: str) -> bool:
+    """Whether a text is a number in the notation of Python."""
     try:
         float(text)
     except ValueError:

@@ -7,7 +7,6 @@ the log.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ import pyarrow.csv
 import pyarrow.parquet
 from numpy.typing import NDArray
 
+from sigmahat.files import columns
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Log
 from sigmahat.logs.readers.tables import CsvLog
@@ -28,11 +28,12 @@ from sigmahat.logs.sampling import Samples
 
 _ROWS = 1 << 16
 _STEM = "estimate"
-_TIME, _SECOND = "t", "s"
+_PREFIX = "estimate."
+_TIME = "t"
 
 
 @dataclass(frozen=True)
-class Signal:
+class EstimatedSignal:
     """One estimate at every row of the log."""
 
     name: str
@@ -65,9 +66,11 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         take = self._tick_of_row[self._row : end] - self._tick
         table = self._rows.take(end - self._row)
         times = self._T * (self._tick + take)
-        table = table.append_column(_title(_TIME, _SECOND), pa.array(times))
-        for name, values in outputs.items():
-            table = table.append_column(_title(name, self._units.get(name)), pa.array(values[take]))
+        estimates = [EstimatedSignal(_TIME, "s", times)]
+        estimates += [EstimatedSignal(n, self._units.get(n), v[take]) for n, v in outputs.items()]
+        for each in estimates:
+            title = columns.title(_PREFIX + each.name, each.unit)
+            table = table.append_column(title, pa.array(each.values))
         self._row, self._tick = end, self._tick + ticks
         if self._writer is None:
             writer = pa.csv.CSVWriter if self._text else pa.parquet.ParquetWriter
@@ -107,7 +110,7 @@ class _Rows:
         return table.slice(0, rows)
 
 
-def read_estimate(folder: Path) -> dict[str, Signal]:
+def read_estimate(folder: Path) -> dict[str, EstimatedSignal]:
     """The estimates that `sigmahat estimate` wrote into a folder, by name, "t" first.
 
     The columns of the log itself are not read. Raises LogError if there is no such table, or it is
@@ -116,18 +119,17 @@ def read_estimate(folder: Path) -> dict[str, Signal]:
     path = next(folder.glob(f"{_STEM}.parquet"), folder / f"{_STEM}.csv")
     signals = {}
     try:
-        matches = {title: _TITLE.fullmatch(title) for title in _titles(path)}
-        names = {title: (match[1], match[2]) for title, match in matches.items() if match}
-        if not {name for name, _ in names.values()} >= {_TIME, "sigma", "valid"}:
+        titles = [title for title in _titles(path) if title.startswith(_PREFIX)]
+        names = [columns.name_and_unit(title.removeprefix(_PREFIX)) for title in titles]
+        if not {name for name, _ in names} >= {_TIME, "sigma", "valid"}:
             raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
-        table = _table(path, list(names))
+        table = _table(path, titles)
     except (pa.ArrowException, OSError) as error:
         raise LogError(f"{path}: damaged ({error}); run `sigmahat estimate` again") from error
-    for title, (name, unit) in names.items():
-        column = table[title]
+    for (name, unit), column in zip(names, table.columns, strict=True):
         if column.type != pa.bool_():
             column = column.cast(pa.float64())
-        signals[name] = Signal(name, unit, column.to_numpy())
+        signals[name] = EstimatedSignal(name, unit, column.to_numpy())
     return signals
 
 
@@ -143,11 +145,3 @@ def _table(path: Path, titles: list[str]) -> pa.Table:
         return pa.parquet.read_table(path, columns=titles)
     options = pa.csv.ConvertOptions(include_columns=titles)
     return pa.csv.read_csv(path, convert_options=options)
-
-
-def _title(name: str, unit: str | None) -> str:
-    return f"estimate.{name} [{unit}]" if unit else f"estimate.{name}"
-
-
-_TITLE = re.compile(r"estimate\.([^ ]+)(?: \[(.+)\])?")
-"""What _title makes: the name and the unit."""

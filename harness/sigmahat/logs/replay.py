@@ -1,4 +1,4 @@
-"""Plays the samples of a log through the estimator FMU, tick by tick."""
+"""Replays the samples of a log through the estimator FMU, tick by tick."""
 
 from __future__ import annotations
 
@@ -29,15 +29,17 @@ OUTPUTS = (
     "B_hat",
     "tau_coulomb_hat",
 )
-"""Numbers that are recorded."""
+"""Real outputs that are recorded."""
 FLAGS = ("confident", "valid")
-"""What is recorded besides."""
+"""Boolean outputs that are recorded."""
 
 
 def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
-    """Start values of the FMU as configured; encoders as those of columns in counts.
+    """Start values of the FMU: those of the configuration, and encoders of columns in counts.
 
-    Raises LogError for a name or value that the FMU does not have.
+    encoder.theta_c is set as well, though it has no effect: the contract of the FMU names it.
+
+    Raises LogError for a name that the FMU does not have, or a value that does not fit.
     """
     start = dict(configuration.parameters)
     for name, port in configuration.ports.items():
@@ -56,14 +58,14 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
 def replay(
     slave: Slave, samples: Samples, start: Mapping[str, Value], chunk: int
 ) -> Iterator[dict[str, Array]]:
-    """Initialises the estimator and yields its outputs for a chunk of ticks at a time.
+    """Initialises the estimator, and yields its outputs by name, a chunk of ticks at a time.
 
     The sample at t_k is the input of the tick at t_k; ports that are not configured stay 0.
     Raises FmuError if the FMU refuses a value.
     """
     slave.initialize(start)
     fmu, T, component = slave.fmu, samples.T, slave.component
-    # Past slave.call: its checks would take twice the time of a tick.
+    # Not by slave.call, whose checks would take twice the time of a tick.
     functions = (slave.functions, "fmi2SetReal", "fmi2DoStep", "fmi2GetReal", "fmi2GetBoolean")
     set_real, do_step, get_real, get_boolean = (getattr(functions[0], f) for f in functions[1:])
     inputs = fmu.references(samples.names, "input")
@@ -85,7 +87,7 @@ def replay(
 
 
 def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
-    """eta of (21) as it is now, [size: n x m]."""
+    """Current coefficients eta of (21), [size: n x m]."""
     names = [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
     values = (fmi2.fmi2Real * len(names))()
     references = slave.fmu.references(names, "output")

@@ -1,4 +1,4 @@
-"""From the unit of a column to that of a port."""
+"""Conversion of a column to the unit of its port."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ def counts_per_turn(port: Port) -> float | None:
 
 
 def factor(name: str, port: Port) -> float:
-    """What 1 in the column is at the port of this name, without sign, zero and gear.
+    """Value at the port, in its unit, of 1 in the column; without sign, zero and gear.
 
-    Raises LogError for a unit that is unknown or does not fit, and where a key is missing that
-    the unit needs.
+    Raises LogError for a unit that is unknown or does not fit, and for a missing key that the unit
+    needs.
     """
     where = f"ports.{name}"
     target = PORTS[name]
     if port.scale is not None:
         if port.unit is not None:
-            raise LogError(f"{where}: scale stands instead of a unit; remove one of them")
+            raise LogError(f"{where}: scale and unit exclude each other; remove one of them")
         return port.scale
     if port.unit is None or port.unit == target:
         return 1.0
@@ -56,7 +56,7 @@ def factor(name: str, port: Port) -> float:
 
 
 def convert(name: str, port: Port, values: Array) -> Array:
-    """Values of a column, already unwrapped, at the port."""
+    """Values of an unwrapped column in the unit of the port."""
     times = port.sign * factor(name, port) / port.gear_ratio
     if (times, port.zero) == (1.0, 0.0):
         return values
@@ -66,9 +66,9 @@ def convert(name: str, port: Port, values: Array) -> Array:
 
 
 def unwrap(values: Array, period: float) -> tuple[Array, int]:
-    """A column that starts again after a period, without its jumps, and how many there were.
+    """A column of a counter that starts again after a period, unwrapped, and the number of jumps.
 
-    Between finite values a jump is more than half a period.
+    A step of more than half a period between finite values is a jump.
     """
     finite = np.isfinite(values)
     jumps = -np.round(np.diff(values[finite]) / period)
@@ -104,7 +104,7 @@ def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> 
             f"{where}: unit {unit!r} is no unit of what is expected in {target}"
             f"{_meant(unit, usual)}"
         ) from error
-    except Exception as error:  # pint raises what its parser happens to meet
+    except Exception as error:  # any: the parser of pint raises many kinds
         raise LogError(f"{where}: unknown unit {unit!r}{_meant(unit, usual)}") from error
 
 
@@ -116,6 +116,7 @@ def _meant(unit: str, usual: tuple[str, ...]) -> str:
 
 
 def _spelled(unit: str) -> str:
+    """N.m as pint writes it."""
     return unit.replace(".", "*")
 
 

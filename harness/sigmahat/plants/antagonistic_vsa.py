@@ -1,13 +1,13 @@
 """A link between two motors with nonlinear transmissions, agonist and antagonist (section II).
 
-Motors of the form (3), and (2) with the sum of both flexibility torques. The transmission is that
-of the qbmove Advanced: its manual ("qbmove Advanced Kit", qbrobotics, 28 April 2021, section 3.2.2,
-"Mathematical model") gives the torque of each side, k sinh(a phi), and k and a of both. It does not
-give inertias, gears and friction: those of the motors are the AwAS's, those of the link are our
-choice. Of the VSA-II, which the paper names, we found no source with the parameters.
+The motors are of the form (3); the link is (2) with the sum of both flexibility torques. The
+transmission is that of the qbmove Advanced. Its manual ("qbmove Advanced Kit", qbrobotics,
+28 April 2021, section 3.2.2, "Mathematical model") gives the torque of each side, k sinh(a phi), k
+and a. It gives no inertias, gears and friction: the motors have those of the AwAS, the values of
+the link are chosen. We found no parameters of the VSA-II, which the paper names.
 
-Springs are free of load at the start. A pair under torques tau_1 = -tau_2 and at q = 0 is at rest
-with initial.theta_i = asinh(gamma tau_i / k_i) / a_i.
+At the start the springs are not deformed. With torques tau_1 = -tau_2 a pair is at rest at q = 0
+for initial.theta_i = asinh(gamma tau_i / k_i) / a_i.
 """
 
 import casadi as ca

@@ -17,8 +17,8 @@ k_s = plant.parameter("spring.k_s")
 r_0 = plant.parameter("spring.r_0")
 b = plant.parameter("spring.b")
 
-# The secondary motor jumps to its velocity within 10 us of a change of its torque; how exactly
-# matters less.
+# The secondary motor reaches its velocity within 10 us of a change of its torque. This transient is
+# not of interest, so the scales of its states are large.
 q = position(plant, "q")
 theta = position(plant, "theta")
 theta_c = plant.state("theta_c", plant.parameter("initial.theta_c"), scale=1.0)

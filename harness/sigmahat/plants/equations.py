@@ -20,7 +20,7 @@ class State:
 class PlantEquations:
     """Ordinary differential equations with inputs, parameters, noise and outputs.
 
-    A plant file makes one of these, asks it for symbols and hands it equations:
+    A plant file creates one of these, declares its symbols, and adds equations:
 
         plant = PlantEquations("MassPlant")
         force = plant.input("force")
@@ -31,9 +31,9 @@ class PlantEquations:
         plant.derivative(v, force / mass)
         plant.output("x", x)
 
-    Names of inputs, parameters and outputs are those of the FMU's variables, whose units, start
-    values and ranges stand in ``modelDescription/NAME.xml``, or in the `PlantVariable` of each in
-    `write_plant_fmu`. Expressions are CasADi ``SX``.
+    Names of inputs, parameters and outputs are those of the FMU's variables. Their units, start
+    values and ranges are in ``modelDescription/NAME.xml``, or for `write_plant_fmu` in the
+    `PlantVariable` of each. Expressions are CasADi ``SX``.
     """
 
     def __init__(self, name: str) -> None:
@@ -61,10 +61,10 @@ class PlantEquations:
         return self._declare(self.parameters, name)
 
     def state(self, name: str, start: ca.SX | float, scale: float) -> ca.SX:
-        """State `name`, which starts at an expression of the parameters alone.
+        """State `name`. Its start value is an expression of the parameters alone.
 
-        `scale` [unit of the state] says how large a change of it matters: the integrator keeps
-        the error of each of its steps far below scale + |state| (``fmu_src/radau.h``).
+        `scale` is a change of the state that matters, in its unit: the integrator keeps the error
+        of each of its steps far below scale + |state| (``fmu_src/radau.h``).
         """
         if not 0 < scale < math.inf:
             raise ValueError(f"state {name}: scale = {scale}; expected a finite number above 0")
@@ -92,7 +92,7 @@ class PlantEquations:
     def noise(self, variance: ca.SX) -> ca.SX:
         """White Gaussian noise for outputs, drawn once per communication step.
 
-        Every call makes a noise that is independent of the others.
+        The noises of two calls are independent.
         """
         normal = ca.SX.sym(f"normal_{len(self.normals)}")
         self.normals.append(normal)

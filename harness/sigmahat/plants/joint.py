@@ -1,8 +1,8 @@
-"""What joints have in common: the link (2), motors (3), friction, encoders, torque sensors.
+"""Parts that joints have in common: the link (2), motors (3), friction, encoders, torque sensors.
 
-A plant makes its states and the torque of its transmission, and has the rest added here, with the
-names that all plants use. Where a joint has several motors, `side` ends the names that belong to
-one of them: "_1" makes `theta_1`, `motor_1.B` and `tau_measured_1`.
+A plant declares its states and the torque of its transmission; the functions here add the rest,
+with the names that all plants use. In a joint with several motors, `side` is the end of the names
+of one of them: "_1" gives `theta_1`, `motor_1.B` and `tau_measured_1`.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ import casadi as ca
 
 from sigmahat.plants.equations import PlantEquations, encoder
 
-# Coulomb friction is smooth, tau_coulomb tanh(velocity / COULOMB_VELOCITY). What is stuck thus
-# creeps, at this speed [rad/s] under 76 % of the friction torque.
 COULOMB_VELOCITY = 0.02
+"""Coulomb friction is smooth: tau_coulomb tanh(velocity / COULOMB_VELOCITY) [rad/s]. So a joint
+that would stick creeps instead, at this velocity under 76 % of the friction torque."""
 
 
 def position(plant: PlantEquations, name: str) -> ca.SX:
     """State `name` [rad] of a link or motor, which starts at the parameter `initial.<name>`.
 
-    A deformation of some 0.01 rad may carry the whole torque: so much of a position matters.
+    Its scale is 0.01 rad, because so small a deformation may carry the whole torque.
     """
     return plant.state(name, plant.parameter(f"initial.{name}"), scale=0.01)
 
@@ -32,9 +32,9 @@ def velocity(plant: PlantEquations, name: str) -> ca.SX:
 
 
 def add_link(plant: PlantEquations, q: ca.SX, q_dot: ca.SX, tau_e: ca.SX) -> None:
-    """The link (2) with g(q) = mgl sin q and Coulomb friction, and its encoder.
+    """Adds the link (2) with g(q) = mgl sin q and Coulomb friction, and its encoder.
 
-    It is moved by the input `tau_ext` and against `tau_e`, the sum of the flexibility torques.
+    The input `tau_ext` acts on it, and `tau_e`, the sum of the flexibility torques, against it.
     """
     tau_ext = plant.input("tau_ext")
     friction = plant.parameter("link.D_q") * q_dot
@@ -50,7 +50,7 @@ def add_link(plant: PlantEquations, q: ca.SX, q_dot: ca.SX, tau_e: ca.SX) -> Non
 def add_motor(
     plant: PlantEquations, theta: ca.SX, theta_dot: ca.SX, tau: ca.SX, tau_e: ca.SX, side: str = ""
 ) -> None:
-    """A motor (3) with Coulomb friction, and its encoder; `tau` is on the motor axis."""
+    """Adds a motor (3) with Coulomb friction, and its encoder; `tau` is on the motor axis."""
     gamma = plant.parameter(f"motor{side}.gamma")
     friction = plant.parameter(f"motor{side}.D_theta") * gamma * theta_dot
     friction += _coulomb(plant.parameter(f"motor{side}.tau_coulomb"), theta_dot)
@@ -63,7 +63,7 @@ def add_motor(
 
 
 def add_torque_sensors(plant: PlantEquations, torques: Mapping[str, tuple[ca.SX, ca.SX]]) -> None:
-    """Measured motor torque (32) and flexibility torque (33) of every side, each with its noise.
+    """Adds the measured motor torque (32) and flexibility torque (33) of each side, with noise.
 
     `torques` holds tau and tau_e by side. Variances and the gain of the sensor of tau_e are
     common to all sides.

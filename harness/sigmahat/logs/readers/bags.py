@@ -1,9 +1,9 @@
 """ROS 2 bags: a folder with SQLite or MCAP files, or one MCAP file.
 
-Every number of a message is a column: "/knee/angle.data". Those of arrays have an index, or in a
-sensor_msgs/JointState the name of the joint: "/joint_states.position[knee]". A topic's times are
-the column "/joint_states.time", in seconds since the beginning of the bag: those of the headers if
-its messages have one, else those of recording.
+Every number of a message is a column, such as "/knee/angle.data". Elements of arrays have an index,
+or in a sensor_msgs/JointState the name of the joint: "/joint_states.position[knee]". The times of a
+topic are a column too, "/joint_states.time", in seconds since the beginning of the bag. They are
+those in the headers of the messages, or without headers those of the recording.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def read_bag(path: Path) -> LogInMemory:
                 stamps[topic].append(recorded if stamp is None else stamp)
                 for name, number in _numbers(message):
                     column = values[f"{topic}.{name}"]
-                    column.extend([np.nan] * (row - len(column)))  # not in every message
+                    column.extend([np.nan] * (row - len(column)))  # where a message lacks it
                     column.append(number)
     except (AnyReaderError, OSError, ValueError, KeyError, AssertionError) as error:
         raise LogError(f"{path}: not a whole ROS 2 bag ({error}); copy it again") from error
@@ -55,7 +55,7 @@ def read_bag(path: Path) -> LogInMemory:
 
 
 def _stamp(message: Any) -> int | None:
-    """Time in the header [ns]; None if there is none, or nobody set it."""
+    """Time in the header [ns]; None if there is no header, or its time was not set."""
     stamp = getattr(getattr(message, "header", None), "stamp", None)
     if stamp is None:
         return None
@@ -63,7 +63,7 @@ def _stamp(message: Any) -> int | None:
 
 
 def _numbers(message: Any, above: str = "") -> Iterator[tuple[str, float]]:
-    """The numbers of a message by path, without its header."""
+    """Paths and values of the numbers in a message, without its header."""
     names = getattr(message, "name", None)
     for field, value in vars(message).items():
         if field in ("header", "layout") or field.startswith("__"):

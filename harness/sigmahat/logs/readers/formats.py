@@ -1,4 +1,4 @@
-"""Opens a log by what is in the file, whatever its name."""
+"""Opens a log. Its format is found from the contents of the file, not from its name."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Log
 
-_HEAD = 520  # bytes; the mark of HDF5 is behind the 512 bytes that MATLAB puts before it
+_HEAD = 520  # bytes; in files of MATLAB the signature of HDF5 is at byte 512
 
 
 def open_log(path: Path) -> Log:
@@ -53,8 +53,7 @@ def _reader(path: Path, head: bytes) -> Log:
         return read_bag(path)
     if b"\0" in head:
         raise LogError(
-            f"{path}: not a format that is known; expected CSV, Parquet, MAT, HDF5, MCAP "
-            "or a ROS 2 bag"
+            f"{path}: unknown format; expected CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag"
         )
     from sigmahat.logs.readers.tables import CsvLog
 

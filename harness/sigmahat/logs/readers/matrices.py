@@ -1,7 +1,7 @@
 """MAT files of MATLAB (v5 to v7.3) and HDF5 files.
 
-A vector is a column, a matrix one column for each of its shorter side: "x[0]", "x[1]". What lies
-in a structure or group has its path before its name, with dots: "joint.theta".
+A vector is a column. A matrix is as many columns as its shorter side is long: "x[0]", "x[1]". In a
+structure or group, the path is part of the name: "joint.theta".
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def read_mat(path: Path) -> LogInMemory:
 
     try:
         variables = scipy.io.loadmat(path, struct_as_record=False)
-    except Exception as error:  # scipy raises what it happens to meet in a damaged file
+    except Exception as error:  # any: for a damaged file scipy raises many kinds
         raise LogError(f"{path}: damaged MAT file ({error}); save it again") from error
     own = {name: value for name, value in variables.items() if not name.startswith("__")}
     return _log(path, (each for name, value in own.items() for each in _fields(name, value)))
@@ -50,7 +50,7 @@ def read_hdf5(path: Path) -> LogInMemory:
 
     def walk(group: h5py.Group, above: str) -> Named:
         for name, item in group.items():
-            if name.startswith("#"):  # where MATLAB keeps what cells refer to
+            if name.startswith("#"):  # the contents of cells, in files of MATLAB
                 continue
             if isinstance(item, h5py.Group):
                 yield from walk(item, f"{above}{name}.")
@@ -76,7 +76,7 @@ def _columns(name: str, array: Any) -> Named:
     if min(array.shape) > _MOST_COLUMNS and array.ndim == 2:
         return
     values = np.asarray(array[...])
-    if values.ndim == 2 and values.shape[0] < values.shape[1]:  # as v7.3 has them
+    if values.ndim == 2 and values.shape[0] < values.shape[1]:  # as in version 7.3
         values = values.T
     if values.ndim == 1 or values.shape[1] == 1:
         yield name, values.reshape(-1)

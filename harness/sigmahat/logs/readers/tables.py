@@ -49,9 +49,8 @@ class CsvLog(Log):
 
     With ; between them the numbers may have decimal commas.
 
-    The text is parsed once, into a temporary Parquet file, so that a long log needs little memory.
-    Only a column that does not start with numbers is parsed again when its values are asked for,
-    as dates and times are.
+    The text is parsed once, into a temporary Parquet file: so a long log needs little memory. Only
+    a column that does not begin with numbers, such as dates, is parsed again when it is read.
     """
 
     def __init__(self, path: Path) -> None:
@@ -62,7 +61,7 @@ class CsvLog(Log):
         self._decimal = decimal
         super().__init__(path, dict.fromkeys(names, 0))
         file = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
-        weakref.finalize(self, file.close)
+        weakref.finalize(self, file.close)  # which removes it
         self._copy = self._copied(file)
         self.columns = dict.fromkeys(names, self._copy.metadata.num_rows)
 

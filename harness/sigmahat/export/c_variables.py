@@ -1,0 +1,135 @@
+"""The table of the variables of an FMU in C (``fmu_src/model.h``), from its model description."""
+
+import re
+from collections.abc import Callable
+from xml.etree.ElementTree import Element
+
+from sigmahat.export.templates import variables
+
+_TYPES = {
+    "Real": "SH_TYPE_REAL",
+    "Integer": "SH_TYPE_INTEGER",
+    "Enumeration": "SH_TYPE_INTEGER",
+    "Boolean": "SH_TYPE_BOOLEAN",
+}
+
+
+def _field(variable: Element, name: str) -> str:
+    part = {"input": "input", "output": "output", "parameter": "parameters"}
+    return f"{part[variable.attrib['causality']]}.{name.replace(',', '][')}"
+
+
+def storage_in_struct(root: Element) -> dict[str, str]:
+    """Place of every variable in a struct whose fields carry the variables' names.
+
+    ``motor.B`` is ``parameters.motor.B``, ``eta[1,2]`` is ``output.eta[1][2]``.
+    """
+    return {v.attrib["name"]: _field(v, v.attrib["name"]) for v in variables(root)}
+
+
+def storage_in_sides(root: Element) -> dict[str, str]:
+    """Place of every variable in a struct with two such structs, ``side[0]`` and ``side[1]``.
+
+    ``motor_2.B`` is ``side[1].parameters.motor.B``. Inputs and parameters common to both are
+    in ``side[0]``, outputs common to both are fields of their own.
+    """
+    places = {}
+    for variable in variables(root):
+        name = variable.attrib["name"]
+        of_side = re.fullmatch(r"(\w+)_([12])((?:[.\[].*)?)", name)
+        if of_side:
+            base, number, rest = of_side.groups()
+            places[name] = f"side[{int(number) - 1}].{_field(variable, base + rest)}"
+        elif variable.attrib["causality"] == "output":
+            places[name] = name
+        else:
+            places[name] = f"side[0].{_field(variable, name)}"
+    return places
+
+
+def storage_in_arrays(root: Element) -> dict[str, str]:
+    """Place of every variable of a plant: arrays p, u and y in the order of the template.
+
+    The one Integer, ``noise.seed``, is the field ``seed``.
+    """
+    array = {"input": "u", "output": "y", "parameter": "p"}
+    count = dict.fromkeys(array.values(), 0)
+    places = {}
+    for variable in variables(root):
+        if variable.find("Real") is None:
+            places[variable.attrib["name"]] = "seed"
+            continue
+        name = array[variable.attrib["causality"]]
+        places[variable.attrib["name"]] = f"{name}[{count[name]}]"
+        count[name] += 1
+    return places
+
+
+STORAGE: dict[str, Callable[[Element], dict[str, str]]] = {
+    "struct": storage_in_struct,
+    "sides": storage_in_sides,
+    "arrays": storage_in_arrays,
+}
+"""How the C struct of an FMU holds its variables."""
+
+
+def _role(variable: Element) -> str:
+    causality = variable.attrib["causality"]
+    if causality == "input":
+        return "SH_ROLE_INPUT"
+    if causality == "output":
+        return "SH_ROLE_GUESS" if variable[0].get("start") is not None else "SH_ROLE_OUTPUT"
+    fixed = variable.attrib["variability"] == "fixed"
+    return "SH_ROLE_FIXED" if fixed else "SH_ROLE_TUNABLE"
+
+
+def _start(kind: Element) -> str:
+    start = kind.get("start", "0")
+    return {"true": "1", "false": "0"}.get(start, start)
+
+
+def _limits(root: Element, kind: Element) -> tuple[str, str, int, int]:
+    if kind.tag == "Enumeration":
+        name = kind.attrib["declaredType"]
+        items = root.findall(f"TypeDefinitions/SimpleType[@name='{name}']/Enumeration/Item")
+        values = [int(item.attrib["value"]) for item in items]
+        return str(min(values)), str(max(values)), 0, 0
+    if kind.tag == "Boolean":
+        return "0", "1", 0, 0
+    opened = kind.get("open", "").split()
+    return (
+        kind.get("min", "-HUGE_VAL"),
+        kind.get("max", "HUGE_VAL"),
+        int("min" in opened),
+        int("max" in opened),
+    )
+
+
+def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> str:
+    """C header with identifier, GUID and the table of variables (``fmu_src/model.h``).
+
+    ``struct`` is the type that holds the variables at ``places``, which the including file
+    must have defined.
+    """
+    identifier = root.findall("CoSimulation")[0].attrib["modelIdentifier"]
+    rows = []
+    for variable in variables(root):
+        kind, name = variable[0], variable.attrib["name"]
+        low, high, low_open, high_open = _limits(root, kind)
+        rows.append(
+            f'    {{"{name}", offsetof({struct}, {places[name]}), {_TYPES[kind.tag]}, '
+            f"{_role(variable)}, {_start(kind)}, "
+            f"{low}, {high}, {low_open}, {high_open}}},"
+        )
+    return "\n".join(
+        [
+            "/* Generated from the model description; do not edit. */",
+            f'#define SH_IDENTIFIER "{identifier}"',
+            f'#define SH_GUID "{guid}"',
+            "",
+            "static const sh_variable VARIABLES[] = {",
+            *rows,
+            "};",
+            "",
+        ]
+    )
