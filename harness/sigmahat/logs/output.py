@@ -125,7 +125,8 @@ def read_estimate(folder: Path) -> dict[str, EstimatedSignal]:
             raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
         table = _table(path, titles)
     except (pa.ArrowException, OSError) as error:
-        raise LogError(f"{path}: damaged ({error}); run `sigmahat estimate` again") from error
+        what = "not readable as CSV" if path.suffix == ".csv" else "damaged"
+        raise LogError(f"{path}: {what}; run `sigmahat estimate` again") from error
     for (name, unit), column in zip(names, table.columns, strict=True):
         if column.type != pa.bool_():
             column = column.cast(pa.float64())
