@@ -1,7 +1,7 @@
 """A log of your own joint: the motor identified, the stiffness estimated, from Python.
 
-The same as `sigmahat identify` and `sigmahat estimate`. The log is made here by the AwAS, in what a
-robot records: motor encoder in counts, link in degrees, current in amperes.
+It does the same as `sigmahat identify` and `sigmahat estimate`. The log comes from a simulation of
+the AwAS, in units of a robot: motor encoder in counts, link in degrees, current in amperes.
 
 Usage: python own_log.py [FOLDER]     writes knee.csv, knee.toml and the folder knee there
 """
@@ -46,12 +46,12 @@ motor.gamma = 50
 
 
 def record(path: Path) -> sigmahat.Recording:
-    """Write a log of the AwAS: 15 s at 1 kHz. Returns the same with the true stiffness."""
+    """Writes a log of the AwAS: 15 s at 1 kHz. Returns it with the true stiffness."""
     lead = 0.0025 / (2 * math.pi)  # of the ball screw [m/rad]
     plant = sigmahat.Plant(
         fmu="AwasPlant",
         start={"initial.theta_c": 0.030 / lead},
-        # The slow sine shows D_theta and the springs, the fast one B.
+        # The slow sine determines D_theta and the springs, the fast one B.
         inputs={
             "tau": sigmahat.Sines(0.0, [sigmahat.Sine(0.3, 0.5), sigmahat.Sine(0.2, 3.0)]),
             "tau_c": sigmahat.Sine(8.0, 0.1),
@@ -72,7 +72,7 @@ def record(path: Path) -> sigmahat.Recording:
 
 
 def main(folder: Path) -> None:
-    """Log and configuration, then what you would do with yours."""
+    """Writes log and configuration, then does what you would do with yours."""
     joint = record(folder / "knee.csv")
     (folder / "knee.toml").write_text(CONFIGURATION, encoding="utf-8")
 

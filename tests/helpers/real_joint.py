@@ -3,7 +3,8 @@
     python tests/helpers/real_joint.py FIGURE.png
 
 prints the tables of docs/real-joint.md and draws its figure. The data are looked for in
-../shared/data/desr beside the checkout, or where the environment variable SIGMAHAT_DESR says.
+../shared/data/desr next to the checkout, or in the folder that the environment variable
+SIGMAHAT_DESR names.
 """
 
 from __future__ import annotations
@@ -67,7 +68,7 @@ class Log:
 
     @property
     def theta(self) -> Array:
-        """What the dynamometer itself yields [rad]."""
+        """Deformation of the dynamometer itself [rad]."""
         return self.torque / DYNAMOMETER
 
     @property
@@ -83,7 +84,7 @@ class Log:
     def hysteresis(self) -> float:
         """RMS of the torque around its mean at each deformation, in percent of its range.
 
-        No function of the deformation, whatever its form, comes nearer to the torque.
+        No function of the deformation, whatever its form, has a smaller error.
         """
         _, number = np.unique(np.floor(self.phi / BIN), return_inverse=True)
         mean = np.bincount(number, self.torque) / np.bincount(number)
@@ -109,7 +110,7 @@ class Log:
 
 @dataclass(frozen=True)
 class Fit:
-    """What the estimator has learned at the end of a replay."""
+    """What the estimator has estimated at the end of a replay."""
 
     symmetric: bool
     eta: Array
@@ -145,10 +146,10 @@ def slope(x: Array, y: Array, at: float, half_width: float) -> float:
 
 def folder() -> Path:
     """Where the data are. Raises FileNotFoundError if they are not there."""
-    beside = Path(__file__).resolve().parents[3] / "shared" / "data" / "desr"
-    path = Path(os.environ.get("SIGMAHAT_DESR", beside))
+    default = Path(__file__).resolve().parents[3] / "shared" / "data" / "desr"
+    path = Path(os.environ.get("SIGMAHAT_DESR", default))
     if not (path / "desr_x00.csv").is_file():
-        raise FileNotFoundError(f"no DESR data in {path}; SIGMAHAT_DESR can say where they are")
+        raise FileNotFoundError(f"no DESR data in {path}; SIGMAHAT_DESR can name another folder")
     return path
 
 
@@ -164,7 +165,7 @@ def logs(path: Path) -> list[Log]:
 def replay(
     fmu: Fmu, played: Sequence[Log], symmetric: bool, method: Mapping[str, Value] = PAPER2011
 ) -> Fit:
-    """Plays logs through a new instance of the estimator, one after another."""
+    """Replays logs, one after another, through a new instance of the estimator."""
     names = ["theta", "q", "theta_c", "tau_e_sensor"]
     columns = [
         np.concatenate([log.theta for log in played]),
@@ -189,7 +190,7 @@ def replay(
 
 
 def leave_one_out(fmu: Fmu, measured: Sequence[Log]) -> dict[int, float]:
-    """RMS [%] of the torque at each setting but the outer two, learned from the other five."""
+    """RMS [%] of the torque at each setting but the outer two, with a fit to the other five."""
     return {
         log.setting: log.rms(replay(fmu, [each for each in measured if each is not log], False))
         for log in measured[1:-1]
@@ -226,7 +227,7 @@ def torque_table(
 
 
 def stiffness_table(measured: Sequence[Log], general: Fit, odd: Fit) -> str:
-    """Stiffness at +-0.1 rad and what depends on the window, as tables in Markdown."""
+    """Stiffness at +-0.1 rad, and its error for several windows, as tables in Markdown."""
     rows = ["| setting [mm] | phi [rad] | measured | general basis | odd basis |"]
     rows.append("|---|---|---|---|---|")
     for log in measured:

@@ -53,6 +53,7 @@ def test_slow_motion_does_not_determine_the_inertia(found: dict[float, Identifie
         assert not quantity.determined or quantity.value == pytest.approx(TRUE[name], rel=0.05)
 
 
+@pytest.mark.slow("eight logs of 15 s, each simulated and identified")
 def test_intervals_cover_the_truth(tmp_path: Path) -> None:
     # GIVEN other noise THEN 95 % hold the true value: of 24, more than 3 miss it once in 30 times
     path = tmp_path / "log.toml"
@@ -185,7 +186,7 @@ def test_matched_filter_with_what_was_identified(
     true = log["true"][later]
     error = np.abs(table["estimate.sigma [N.m/rad]"].to_numpy()[later] - true)
     std = table["estimate.sigma_std [N.m/rad]"].to_numpy()[later]
-    # THEN the stiffness is found, it knows how well, and so are the motor data
+    # THEN the stiffness, its standard deviation and the motor data are right
     assert np.max(error / true) <= 0.05
     assert np.mean(error <= 1.96 * std) >= 0.8
     assert summary["confident"] == np.mean(table["estimate.confident"].to_numpy()[later])

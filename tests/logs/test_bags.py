@@ -25,7 +25,7 @@ def signals() -> dict[str, np.ndarray]:
 
 
 def write_bag(path: Path, storage: StoragePlugin) -> None:
-    """A sensor_msgs/JointState every ms, the torque as std_msgs/Float64 beside it."""
+    """A sensor_msgs/JointState every ms, and the torque as std_msgs/Float64."""
     store = get_typestore(Stores.ROS2_HUMBLE)
     kinds = store.types
     joint, number = "sensor_msgs/msg/JointState", "std_msgs/msg/Float64"

@@ -1,6 +1,6 @@
-"""The torque and the stiffness of a real joint, learned from its log by the estimator FMU.
+"""The torque and the stiffness of a real joint, estimated from its log by the FMU.
 
-What is asked comes from the first look at the data: see docs/real-joint.md.
+The requirements were chosen after a first look at the data: see docs/real-joint.md.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A plant of somebody's own as an FMU."""
+"""The FMU of a plant that a user writes."""
 
 from __future__ import annotations
 
