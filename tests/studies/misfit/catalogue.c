@@ -290,7 +290,8 @@ static int make_spring(int joint, const cat_condition *c, double duration, sim_p
     return 1;
 }
 
-/* Conditions of the motor and of the measured torque. Returns 0 if the joint has no such condition. */
+/* Conditions of the motor and of the measured torque. Returns 0 if the joint has no such condition.
+ */
 static int make_motor(int joint, const cat_condition *c, double peak, sim_parameters *p,
                       cat_given *given)
 {

@@ -45,8 +45,8 @@ static const sh_real KNOWN = (sh_real)0.2; /* relative uncertainty below which t
  * columns make up a column exactly, its pivot would consist of rounding errors only.
  */
 #define TINY SH_FOR(SH_REAL, 1e-9, 1e-5f)
-/* Variance by which friction may drift in a second, in units of the prior's. Friction may drift only if
- * the data then contradict the model less.
+/* Variance by which friction may drift in a second, in units of the prior's. Friction may drift
+ * only if the data then contradict the model less.
  */
 static const sh_real WALK = (sh_real)1e-3;
 enum { FIRST_BLOCKS = 20 };
@@ -246,8 +246,8 @@ static void make_inputs(est *e, sh_real theta, sh_real q, sh_real phi, sh_real s
     }
 }
 
-/* Half of the range that the deformation has covered. Dead zones and plays wider than half of it look
- * like the spring, and are left out.
+/* Half of the range that the deformation has covered. Dead zones and plays wider than half of it
+ * look like the spring, and are left out.
  */
 static void watch_span(est *e, sh_real phi)
 {
@@ -337,8 +337,8 @@ static sh_real beside_smooth(const sh_state_variable_filter *f, const sh_filter_
            sq(design->T) / 12 * sh_state_variable_filter_second(f, design);
 }
 
-/* The regression of this sample: columns, then the right-hand sides u (the change of y with the gain of
- * the torque) and y.
+/* The regression of this sample: columns, then the right-hand sides u (the change of y with the
+ * gain of the torque) and y.
  */
 static void regression(est *e, sh_real *x)
 {
@@ -569,8 +569,8 @@ static sh_real window(sh_real k, sh_real length)
     return 16 * sq(x * (1 - x));
 }
 
-/* The shares of white noise that pass H and s^2 H and remain in a block: the energies of the filtered
- * window.
+/* The shares of white noise that pass H and s^2 H and remain in a block: the energies of the
+ * filtered window.
  */
 static void design_block(est *e)
 {
@@ -651,8 +651,8 @@ static void fade(tri *t, sh_real keep, sh_real least)
     t->rest *= keep;
 }
 
-/* Forgets all data, whether they contradict the model or not. If the recent data alone agree with the
- * model, then the older data contradict it, and they are forgotten faster.
+/* Forgets all data, whether they contradict the model or not. If the recent data alone agree with
+ * the model, then the older data contradict it, and they are forgotten faster.
  */
 static void forget(est *e, sh_real time)
 {
@@ -697,8 +697,8 @@ static void walk(est *e, tri *t, const sh_real *v, sh_real c)
     tri_take(t, x, -c / (1 + c * vAv));
 }
 
-/* The curve drifts along the columns of the last sample (units of the prior: P_0 = 1), in proportion to
- * the time, and less if the sample is noisy.
+/* The curve drifts along the columns of the last sample (units of the prior: P_0 = 1), in
+ * proportion to the time, and less if the sample is noisy.
  */
 static void drift(est *e, sh_real time)
 {
@@ -900,7 +900,9 @@ static sh_real noise_variance(est *e)
     return R * sq(1 + stays / R);
 }
 
-/* Computes how much larger the filtered noise is than if theta were only rounded. Jitter makes it so. */
+/* Computes how much larger the filtered noise is than if theta were only rounded. Jitter makes it
+ * so.
+ */
 static void watch_noise(est *e)
 {
     const est_settings *s = &e->s;

@@ -1,5 +1,6 @@
-/* Stiffness from a regression that has columns for the misfits of real joints, and whose uncertainty
- * includes the remaining misfit. A prototype of a next version of c/matched_filter; see README.md.
+/* Stiffness from a regression that has columns for the misfits of real joints, and whose
+ * uncertainty includes the remaining misfit. A prototype of a next version of c/matched_filter; see
+ * README.md.
  */
 #ifndef EST_H
 #define EST_H
@@ -39,8 +40,8 @@ typedef struct {
 /* Why the estimate is not confident. */
 enum {
     EST_NONE = 0,
-    EST_MISFIT = 2,
-    EST_NOT_EXCITED,      /* ... because the motion was too small */
+    EST_MISFIT = 2,       /* uncertain because the model does not hold */
+    EST_NOT_EXCITED,      /* uncertain because the motion was too small */
     EST_INERTIA_OUTSIDE,  /* b beyond 3 priors */
     EST_FRICTION_OUTSIDE, /* d or tau_C beyond 3 priors */
     EST_NEGATIVE,         /* stiffness not positive */

@@ -32,7 +32,8 @@ void setup_parameters(const sim_parameters *p, const cat_given *given, sh_parame
 void setup_tick(sh_estimator *estimator, const sh_parameters *q, const sim_sample *z,
                 double theta_c, sh_estimate *estimate);
 
-/* An AwAS whose motor torque is one sine of f [Hz] and A [N.m], and whose lever arm moves slowly. */
+/* An AwAS whose motor torque is one sine of f [Hz] and A [N.m], and whose lever arm moves slowly.
+ */
 void setup_sine(sim_parameters *p, double f, double A, double coulomb, uint64_t seed);
 
 #endif

@@ -25,8 +25,8 @@ void tri_start(tri *t, int n, sh_real precision)
         t->D[i] = precision;
 }
 
-/* Combines one row of U with a sample. The rest of the sample stays in x, for the next row. Four columns
- * at a time, so that compilers can vectorize the loop.
+/* Combines one row of U with a sample. The rest of the sample stays in x, for the next row. Four
+ * columns at a time, so that compilers can vectorize the loop.
  */
 static void rotate(sh_real *restrict row, sh_real *restrict x, int count, sh_real xi, sh_real s)
 {

@@ -24,7 +24,8 @@ typedef struct {
 
 /* Starts with n parameters of the given precision, and the estimate 0. */
 void tri_start(tri *t, int n, sh_real precision);
-/* Takes a row x [size: n + TRI_SIDES], which is used up; w may be negative if U'DU stays definite. */
+/* Takes a row x [size: n + TRI_SIDES], which is used up; w may be negative if U'DU stays definite.
+ */
 void tri_take(tri *t, sh_real *x, sh_real w);
 /* First entry of row i of U: that of column i + 1. */
 sh_real *tri_row(tri *t, int i);
