@@ -34,6 +34,7 @@ def refused(*arguments: str, cwd: Path) -> str:
     return one_line(run(*arguments, cwd=cwd))
 
 
+@pytest.mark.slow("a whole reproduction with its figures")
 def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> None:
     done = run("reproduce", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
@@ -58,6 +59,7 @@ def test_another_scenario_has_its_own_files(tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.slow("several reproductions, each in a process of its own")
 def test_scenario_seeds_and_folder_are_taken(tmp_path: Path) -> None:
     done = run(
         "reproduce", "--scenario", "as-printed", "--seeds", "2", "--out", "here", cwd=tmp_path

@@ -40,6 +40,7 @@ def mean(runs: list[list[Row]], k: int, method: str) -> float:
     return float(np.mean([run[k].error(method) for run in runs]))
 
 
+@pytest.mark.slow("all joints of the comparison")
 def test_asked_rows_and_columns_are_met(runs: list[list[Row]]) -> None:
     met = set()
     for k, row in enumerate(runs[0]):
@@ -66,6 +67,7 @@ def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
             assert D_theta == pytest.approx(1e-3, abs=0.1 * 1e-4), row
 
 
+@pytest.mark.slow("many seeds")
 def test_start_up_with_exact_motor_data() -> None:
     table1 = [joint for joint in JOINTS if joint.scenario.name == "table1"]
     unknown, nominal = compare(table1, range(1, 21), processes=2)
@@ -74,6 +76,7 @@ def test_start_up_with_exact_motor_data() -> None:
 
 
 @pytest.mark.parametrize("with_inertia", [False, True])
+@pytest.mark.slow("many runs, to see how often the truth is inside")
 def test_claims_the_right_uncertainty(with_inertia: bool) -> None:
     """The truth lies within 1.96 sigma_std for 90 to 99 % of the time, as far as 20 runs show.
 

@@ -37,6 +37,7 @@ def run(*command: str | Path) -> str:
 
 
 @every_fmu
+@pytest.mark.slow("many instances run side by side")
 def test_instances_do_not_influence_each_other_in_turn_and_in_threads(
     fmu: str, build: Path, folder: Path
 ) -> None:
@@ -45,6 +46,7 @@ def test_instances_do_not_influence_each_other_in_turn_and_in_threads(
 
 
 @every_fmu
+@pytest.mark.slow("a hundred thousand life cycles of an instance")
 def test_memory_does_not_grow(fmu: str, build: Path, folder: Path) -> None:
     program = compile_driver("cycles", fmu, build, folder, compiler_with((), folder))
     # If only one byte were lost in each cycle, it would be more.
@@ -52,6 +54,7 @@ def test_memory_does_not_grow(fmu: str, build: Path, folder: Path) -> None:
 
 
 @every_fmu
+@pytest.mark.slow("all sources are compiled with sanitizers, and run slower with them")
 def test_sanitizers_find_no_leak_and_no_undefined_behaviour(
     fmu: str, build: Path, folder: Path
 ) -> None:
@@ -68,6 +71,7 @@ def test_valgrind_finds_nothing(fmu: str, build: Path, folder: Path) -> None:
     run("valgrind", "-q", "--error-exitcode=1", *leaks, program, "1000")
 
 
+@pytest.mark.slow("the fuzzer has a fixed number of inputs to try")
 def test_fuzzer_finds_nothing(build: Path, folder: Path) -> None:
     """An estimator and a plant at the same time, for half a minute."""
     compiler = compiler_with(FUZZER, folder)

@@ -38,6 +38,7 @@ def identified(log: dict[str, Array], configuration: Path) -> Identified:
 
 
 @pytest.mark.parametrize("f", [0.3, 1.0, 3.0, 8.0])
+@pytest.mark.slow("logs are simulated and identified")
 def test_the_motor_is_found_within_5_percent(f: float, found: dict[float, Identified]) -> None:
     for name, true in TRUE.items():
         quantity = found[f].quantities[name]

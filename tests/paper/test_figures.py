@@ -165,6 +165,7 @@ def test_stability_factor_is_on_a_log_axis() -> None:
 
 
 @pytest.mark.parametrize(("scenario", "name"), DRAWN)
+@pytest.mark.slow("a scenario is simulated, and each figure drawn twice")
 def test_files_open_are_small_and_reproducible(scenario: str, name: str, tmp_path: Path) -> None:
     for folder in ("one", "two"):
         (tmp_path / folder).mkdir()

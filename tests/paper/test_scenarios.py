@@ -70,6 +70,7 @@ def test_table_1_modality_model_of_the_fmu() -> None:
     assert measured.msrep_settled < 0.01
 
 
+@pytest.mark.slow("20 seeds")
 def test_table_1_residual_over_20_seeds() -> None:
     assert mean(twenty_seeds("table1"), "RESIDUAL", "mse") <= 128.16
     assert mean(twenty_seeds("table1"), "RESIDUAL", "msrep") <= 0.58
@@ -108,6 +109,7 @@ def test_result_does_not_depend_on_the_number_of_processes() -> None:
             np.testing.assert_array_equal(series[output], other[output])
 
 
+@pytest.mark.slow("runs in processes of their own")
 def test_progress_counts_runs() -> None:
     done: list[int] = []
     reproduce(scenario("table1"), [1, 2, 3], progress=done.append)
@@ -131,6 +133,7 @@ def test_constant_factors_show_what_the_enhanced_one_is_for() -> None:
 
 
 @pytest.mark.parametrize("spring", ["linear", "hardening"])
+@pytest.mark.slow("20 seeds")
 def test_single_transmission_over_20_seeds(spring: str) -> None:
     result = twenty_seeds(f"single-{spring}")
     assert worst(result, "RESIDUAL", "msrep_settled") < 0.1
@@ -158,6 +161,7 @@ def test_torque_of_the_single_transmission(spring: str, frequency: float) -> Non
     np.testing.assert_allclose(scenario(name).plant.inputs["tau"](t), expected, atol=1e-14)
 
 
+@pytest.mark.slow("20 seeds of 30 s")
 def test_antagonistic_device_after_the_first_co_contraction() -> None:
     assert scenario("antagonistic").settled == 10.0
     assert worst(twenty_seeds("antagonistic"), "device", "msrep_settled") < 1.0
@@ -193,6 +197,7 @@ def test_antagonistic_pair_starts_at_rest_in_equilibrium() -> None:
     assert plant["q"][0] == 0.0
 
 
+@pytest.mark.slow("20 seeds of an experiment of 60 s")
 def test_experiment_paper_figures() -> None:
     result = twenty_seeds("experiment")
     assert worst(result, "RESIDUAL against SENSOR", "msrep_settled") <= 1.55

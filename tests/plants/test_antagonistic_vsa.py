@@ -61,6 +61,7 @@ def scenario() -> tuple[Array, Array]:
 
 
 @pytest.mark.parametrize("steps", [1, 10, 100])
+@pytest.mark.slow("a Radau solution with tight tolerances")
 def test_scenario_is_the_solution_of_the_equations(steps: int) -> None:
     torques, reference = scenario()
     states = run(1e-2 / steps, between(torques, steps), preload(0.04))

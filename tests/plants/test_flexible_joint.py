@@ -33,6 +33,7 @@ def scenario(k_3: float) -> tuple[Array, Array]:
 
 @pytest.mark.parametrize("steps", [1, 10, 100])
 @pytest.mark.parametrize("k_3", [0.0, 3000.0])
+@pytest.mark.slow("a Radau solution with tight tolerances")
 def test_scenario_is_the_solution_of_the_equations(k_3: float, steps: int) -> None:
     torques, reference = scenario(k_3)
     states = run(1e-2 / steps, between(torques, steps), {"spring.k_3": k_3})

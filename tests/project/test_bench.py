@@ -17,6 +17,7 @@ BENCH = Path(__file__).parents[2] / "bench"
 SIGMAHAT_FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 
 
+@pytest.mark.slow("the programs of the bench are compiled")
 def test_all_subjects_work_and_compute_the_same(build: Path, tmp_path: Path) -> None:
     for module in ("padasip", "pythonfmu"):
         if find_spec(module) is None:

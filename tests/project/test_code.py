@@ -64,6 +64,7 @@ def test_ruff_finds_no_error(command: list[str]) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.slow("mypy reads the packages that are imported, too")
 def test_mypy_finds_no_error() -> None:
     done = subprocess.run(
         [sys.executable, "-m", "mypy", *PYTHON],

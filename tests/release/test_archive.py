@@ -52,6 +52,7 @@ def test_it_contains_no_path_of_the_build_machine(name: str, released: Path) -> 
 
 
 @pytest.mark.parametrize("name", ["StiffnessEstimator", "AwasPlant"])
+@pytest.mark.slow("an FMU is compiled again for every platform")
 def test_a_second_build_gives_identical_bytes(
     name: str, released: Path, build: Path, tmp_path: Path
 ) -> None:

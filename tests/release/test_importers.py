@@ -107,6 +107,7 @@ def windows_master(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Pat
 
 
 @each_fmu
+@pytest.mark.slow("Wine starts for each FMU and steps it through a whole run")
 def test_the_windows_binary_gives_the_same_trajectories(
     run: Run, windows_master: Path, build: Path, tmp_path: Path
 ) -> None:

@@ -96,6 +96,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 @pytest.mark.parametrize(
     ("kind", "plots"), [("reproduction", 7), ("pair", 14), ("log", 5), ("sweep", 4)]
 )
+@pytest.mark.slow("a browser draws the report")
 def test_the_file_alone_shows_every_plot(
     kind: str, plots: int, results: Callable[[str], Path], tmp_path: Path
 ) -> None:

@@ -69,6 +69,7 @@ def wait_for_workers(address: str, count: int) -> None:
         client.wait_for_workers(count, timeout=300)
 
 
+@pytest.mark.slow("a cluster of processes is started")
 def test_one_of_two_workers_killed(address: str, tmp_path: Path) -> None:
     arguments = [*QUICK, "--seeds", "24"]
     with worker(tmp_path, "one") as one, worker(tmp_path, "two", runs=2):
@@ -91,6 +92,7 @@ def test_one_of_two_workers_killed(address: str, tmp_path: Path) -> None:
         assert (tmp_path / "cluster" / name).read_bytes() == (tmp_path / "here" / name).read_bytes()
 
 
+@pytest.mark.slow("the sweep waits for workers before it gives up")
 def test_a_scheduler_without_workers(address: str, tmp_path: Path) -> None:
     line = refused(*QUICK, "--scheduler", address, "--out", "out", cwd=tmp_path)
     assert f"start one with `dask worker {address}`" in line

@@ -26,6 +26,7 @@ FILES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow("a sweep and a reproduction over the same seeds")
 def test_the_numbers_are_those_of_reproduce(tmp_path: Path) -> None:
     table = sweep(read_plan(None, ("table1",), 2), tmp_path).table.to_pylist()
     expected = reproduce(SCENARIOS["table1"], [1, 2]).indices
@@ -38,6 +39,7 @@ def test_the_numbers_are_those_of_reproduce(tmp_path: Path) -> None:
         assert row["failure"] is None
 
 
+@pytest.mark.slow("sweeps in processes of their own")
 def test_summary_and_errors_of_parameters(tmp_path: Path) -> None:
     done = run(
         *QUICK, "--seeds", "3", "--set", "plant.motor.D_theta=0.8e-3,1e-3",
@@ -73,6 +75,7 @@ def test_an_error_relative_to_zero_is_not_defined(tmp_path: Path) -> None:
     np.testing.assert_allclose(sweep(plan, tmp_path).numbers(error), [np.nan, -10.0])
 
 
+@pytest.mark.slow("several sweeps, each in processes of its own")
 def test_killed_and_resumed_is_the_same_file(tmp_path: Path) -> None:
     arguments = [*QUICK, "--seeds", "12", "--set", "estimator.residual.K_I=200,300"]
     # GIVEN a sweep in one go
