@@ -1,7 +1,7 @@
 /* score FIRST LAST [-t] [-c CLASS] [-r ROW] [-j JOINT] [-o key=value] [-v N]
  *
- * The table of misfits, over the seeds FIRST to LAST. For each joint, in per cent: RMS error, RMS of
- * sigma_std, share of instants within 1.96 sigma_std, share that is dangerous (error above 10 %,
+ * The table of misfits, over the seeds FIRST to LAST. For each joint, in per cent: RMS error, RMS
+ * of sigma_std, share of instants within 1.96 sigma_std, share that is dangerous (error above 10 %,
  * sigma_std below 2 %), share that is confident, share that is confident and over 20 % wrong; then
  * the mean of q and the number of columns that are on.
  *

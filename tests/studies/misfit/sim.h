@@ -59,9 +59,8 @@ typedef struct {
     /* command */
     sim_multisine torque; /* open loop, or feed-forward [N.m] */
     double rest;          /* no torque before [s] */
-    double on,
-        off; /* misfits (ripple, dahl, late, load friction, uneven) act between [s]; off = 0: always */
-    sim_multisine arm; /* lever arm less r_0 [m], AwAS */
+    double on, off;       /* misfits act between [s], see acts() in sim.c; off = 0: always */
+    sim_multisine arm;    /* lever arm less r_0 [m], AwAS */
     double r_0;
     double kp, kd, kq; /* control of the measured motor position by torque [N.m/rad, N.m.s/rad];
                             kq: damping by the link velocity */

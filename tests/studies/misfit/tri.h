@@ -1,9 +1,9 @@
 /* Least squares in the information form, without square roots (Gentleman 1974, AS 75; Miller 1992,
  * AS 274): sum w x x' = U' D U with U unit upper triangular, and the right-hand sides U z.
  *
- * A row is taken in O(n^2). Weights scale with D alone. D[i] is the information about
- * parameter i if the parameters before it are estimated too and those after it are exact. To leave out
- * the last columns is to truncate.
+ * A row is taken in O(n^2). Weights scale D alone. D[i] is the information about parameter i if the
+ * parameters before it are estimated too and those after it are exact. To leave out the last
+ * columns is to truncate.
  */
 #ifndef TRI_H
 #define TRI_H
