@@ -3,7 +3,7 @@ sigmahat_add_packages(coverage)
 file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py)
 # These compile programs of their own, without coverage, or run no C code.
 list(FILTER tests EXCLUDE REGEX
-     "controller|endurance|library_packages|model_description|mutation|static|stress")
+     "controller|endurance|library_packages|misfit_study|model_description|mutation|static|stress")
 list(APPEND tests tests/plants/test_awas.py tests/plants/test_noise.py tests/plants/test_radau.py)
 add_custom_target(
   coverage
