@@ -192,6 +192,7 @@ def test_runs_that_fail_are_reported(tmp_path: Path) -> None:
         (["--scheduler", "nonsense"], "start one with `dask scheduler`"),
     ],
 )
+@pytest.mark.slow("one case waits for a scheduler that is not there")
 def test_bad_input(arguments: list[str], words: str, tmp_path: Path) -> None:
     assert words in refused(
         *QUICK[: 0 if "--modality" in arguments else 2], *arguments, cwd=tmp_path
