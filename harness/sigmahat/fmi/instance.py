@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable, Mapping
 from ctypes import byref
+from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -14,12 +15,16 @@ import numpy as np
 from fmpy import fmi2
 from numpy.typing import NDArray
 
+from sigmahat.fmi.interrupts import interrupts_wait
 from sigmahat.user_input.unknown_name import unknown
 
 try:  # FMPy ships it for some platforms only; without it messages arrive unformatted
     from fmpy.logging import addLoggerProxy
 except (ImportError, OSError):
     addLoggerProxy = None
+
+with interrupts_wait():  # FMPy imports it later; while it starts, in C, a Ctrl-C would be lost
+    import_module("lxml.etree")
 
 Value = float | int | bool | str
 """Value of a variable. An enumeration takes the name of its item."""

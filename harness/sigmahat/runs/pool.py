@@ -14,6 +14,8 @@ from multiprocessing.connection import wait
 from multiprocessing.resource_tracker import ensure_running
 from typing import TypeVar
 
+from sigmahat.fmi.interrupts import interrupts_wait
+
 Result = TypeVar("Result")
 
 
@@ -60,20 +62,13 @@ def _interrupts_for_the_parent_alone() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    waiting: list[int] = []
-    main = threading.current_thread() is threading.main_thread()
-    if main:
-        handler = signal.signal(signal.SIGINT, lambda number, frame: waiting.append(number))
-    ensure_running()  # the resource tracker would lift the block when it starts
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        if main:
-            signal.signal(signal.SIGINT, handler)
-    if waiting:
-        raise KeyboardInterrupt
+    with interrupts_wait():
+        ensure_running()  # the resource tracker would lift the block when it starts
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 def _end_with_the_parent() -> None:
