@@ -12,12 +12,6 @@
 
 #include "sigmahat.h"
 
-/* The fit of a method: coefficients of the torque, and how certain the stiffness is. */
-typedef struct {
-    const sh_real *eta; /* [size: n m] in the order of F, in the units of the method */
-    sh_real variance;   /* of the stiffness dF' eta [(N.m/rad)2] */
-} sh_fit;
-
 typedef struct {
     /* Largest deformation for which the method is made, in units of range.phi; may be infinite. */
     sh_real largest_deformation;
@@ -27,28 +21,21 @@ typedef struct {
      */
     int (*check)(const sh_parameters *p, sh_violation *violation);
 
-    /* Starts the state of the method and the regression, in an estimator and an estimate that are
-     * zero.
-     *
-     * eta_0  [size: n m] initial coefficients, in the order and units of sh_torque_basis
-     *
-     * Sets estimator->units, and work.F and work.dF for phi = 0 and the set-point at theta_c = 0;
-     * the motor data of estimate; and fit.
+    /* Starts the state of the method in an estimator that is zero. Sets in estimate, which is zero
+     * but for the curve: the uncertainty of the curve rls.eta_0 at phi = 0 and the set-point at
+     * theta_c = 0, the motor data, misfit and doubt.
      */
-    void (*start)(sh_estimator *estimator, const sh_parameters *p, const sh_real *eta_0,
-                  sh_estimate *estimate, sh_fit *fit);
+    void (*start)(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate);
 
     /* Takes one sample, which is finite.
      *
-     * estimate  in: that of the last tick; out: everything that does not follow from the fit:
-     *           phi, tau_e_residual, theta_dot, a, rho, epsilon, and the motor data
+     * estimate  in: that of the last tick; out: everything but setPoint, confident and valid
      *
-     * Returns 1, and sets work.F, work.dF, estimate and fit. Returns 0 if the numbers are too
-     * large: then estimate is unchanged, and the next good sample finds the state as if this sample
-     * had not been finite.
+     * Returns 1. Returns 0 if the numbers are too large: then estimate is unchanged, and the next
+     * good sample finds the state as if this sample had not been finite.
      */
     int (*tick)(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
-                sh_real set_point, sh_estimate *estimate, sh_fit *fit);
+                sh_real set_point, sh_estimate *estimate);
 } sh_method;
 
 #define SH_METHOD_DECLARATION(constant, number, name, block) extern const sh_method block;

@@ -45,6 +45,7 @@ void sh_parameters_default(sh_parameters *p)
     p->matched.bandwidth = 350;
     p->matched.slow = (sh_real)0.05;
     p->matched.drift = 0;
+    p->matched.memory = 20;
     p->range.phi = (sh_real)0.3;
     p->range.setPoint = 100;
     p->prior.tau_e = 45;
@@ -52,6 +53,17 @@ void sh_parameters_default(sh_parameters *p)
     p->prior.D_theta = (sh_real)0.2;
     p->prior.B = 0;
     p->prior.tau_coulomb = (sh_real)0.02;
+    p->prior.torque_gain = (sh_real)0.02;
+    p->prior.bias = (sh_real)0.05;
+    p->prior.damping = (sh_real)7.5e-3;
+    p->prior.load_friction = (sh_real)0.1;
+    p->prior.eccentric = (sh_real)5e-4;
+    p->prior.delay = (sh_real)2e-3;
+    p->prior.reversal = (sh_real)2e-3;
+    p->prior.power = 1;
+    p->prior.gap = (sh_real)0.02;
+    p->prior.hysteresis = (sh_real)0.01;
+    p->prior.eccentric_motor = (sh_real)1e-4;
 }
 
 /* Allowed range of one parameter. */
@@ -70,6 +82,8 @@ typedef struct {
     int min, max;
 } integer_range;
 
+#define TEXT(token) #token
+#define TEXT_OF(macro) TEXT(macro)
 #define AT(designator) #designator, offsetof(sh_parameters, designator)
 
 /* Limits other than 0, 1 and infinity are wide ones of what is squared or raised to a power: within
@@ -104,6 +118,7 @@ static const real_range REALS[] = {
     {AT(matched.bandwidth), "> 0", 0, INFINITY, 1},
     {AT(matched.slow), "> 0", 0, INFINITY, 1},
     {AT(matched.drift), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(matched.memory), "0 to 1e12", 0, (sh_real)1e12, 0},
     {AT(range.phi), "1e-6 to 1e6", (sh_real)1e-6, (sh_real)1e6, 0},
     {AT(range.setPoint), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12, 0},
     {AT(prior.tau_e), "0 to 1e12", 0, (sh_real)1e12, 0},
@@ -111,6 +126,17 @@ static const real_range REALS[] = {
     {AT(prior.D_theta), "0 to 1e12", 0, (sh_real)1e12, 0},
     {AT(prior.B), "0 to 1e12", 0, (sh_real)1e12, 0},
     {AT(prior.tau_coulomb), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.torque_gain), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.bias), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.damping), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.load_friction), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.eccentric), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.delay), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.reversal), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.power), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.gap), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.hysteresis), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(prior.eccentric_motor), "0 to 1e12", 0, (sh_real)1e12, 0},
 };
 
 static const integer_range INTEGERS[] = {
@@ -124,8 +150,9 @@ static const integer_range INTEGERS[] = {
     {AT(rls.kind), "1 (Enhanced), 2 (Standard) or 3 (ConstantFactor)", SH_RLS_ENHANCED,
      SH_RLS_CONSTANT_FACTOR},
     {AT(rls.symmetric), "0 or 1", 0, 1},
-    {AT(rls.n), "1 to 8", 1, SH_MAX_N},
-    {AT(rls.m), "1 to 5", 1, SH_MAX_M},
+    {AT(rls.n), "1 to " TEXT_OF(SH_MAX_N), 1, SH_MAX_N},
+    {AT(rls.m), "1 to " TEXT_OF(SH_MAX_M), 1, SH_MAX_M},
+    {AT(torque.held), "0 or 1", 0, 1},
 };
 
 enum {

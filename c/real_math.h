@@ -15,10 +15,13 @@
 #define SH_FOR_TYPE(type, of_double, of_float) SH_FOR_##type(of_double, of_float)
 #define SH_FOR(type, of_double, of_float) SH_FOR_TYPE(type, of_double, of_float)
 
+#define sh_cos SH_FOR(SH_REAL, cos, cosf)
 #define sh_exp SH_FOR(SH_REAL, exp, expf)
 #define sh_fabs SH_FOR(SH_REAL, fabs, fabsf)
+#define sh_floor SH_FOR(SH_REAL, floor, floorf)
 #define sh_fmax SH_FOR(SH_REAL, fmax, fmaxf)
 #define sh_fmin SH_FOR(SH_REAL, fmin, fminf)
+#define sh_log SH_FOR(SH_REAL, log, logf)
 #define sh_sin SH_FOR(SH_REAL, sin, sinf)
 #define sh_sqrt SH_FOR(SH_REAL, sqrt, sqrtf)
 

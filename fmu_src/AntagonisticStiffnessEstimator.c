@@ -10,7 +10,8 @@ typedef struct {
     double sigma;             /* stiffness of the device [N.m/rad] */
     double sigma_std;         /* its standard deviation, as if the errors of the sides were
                                  independent [N.m/rad] */
-    int confident;            /* sigma_std is below confidence |sigma| */
+    int doubt;                /* SH_DOUBT_* of the device */
+    int confident;            /* doubt is SH_DOUBT_NONE */
     int valid;
 } AntagonisticStiffnessEstimator;
 
@@ -27,11 +28,27 @@ static sh_parameters parameters_of(const AntagonisticStiffnessEstimator *fmu, in
     return p;
 }
 
+/* Why the sum is not confident. That one side alone is not certain enough is no reason. */
+static int doubt_of_sum(const AntagonisticStiffnessEstimator *fmu)
+{
+    int worst = SH_DOUBT_NONE, i;
+
+    for (i = 0; i < 2; ++i)
+        if (fmu->side[i].output.doubt > worst)
+            worst = fmu->side[i].output.doubt;
+    if (worst != SH_DOUBT_NOT_EXCITED && worst != SH_DOUBT_MISFIT && worst != SH_DOUBT_NONE)
+        return worst;
+    if (fmu->sigma_std < fmu->side[0].parameters.confidence * fabs(fmu->sigma))
+        return SH_DOUBT_NONE;
+    return worst != SH_DOUBT_NONE ? worst : SH_DOUBT_NOT_EXCITED;
+}
+
 static void sum(AntagonisticStiffnessEstimator *fmu)
 {
     fmu->sigma = fmu->side[0].output.sigma + fmu->side[1].output.sigma;
     fmu->sigma_std = hypot(fmu->side[0].output.sigma_std, fmu->side[1].output.sigma_std);
-    fmu->confident = fmu->sigma_std < fmu->side[0].parameters.confidence * fabs(fmu->sigma);
+    fmu->doubt = doubt_of_sum(fmu);
+    fmu->confident = fmu->doubt == SH_DOUBT_NONE;
     fmu->valid = fmu->side[0].output.valid && fmu->side[1].output.valid;
 }
 

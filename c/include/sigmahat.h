@@ -81,12 +81,29 @@ enum {
     SH_RLS_CONSTANT_FACTOR = 3 /* constant a in (25) */
 };
 
-/* Orders of the polynomials (18) and (19). */
+/* Why the estimate is not confident. If several reasons hold, it is the one that stands last. */
 enum {
-    SH_MAX_N = 8, /* largest order in the deformation */
-    SH_MAX_M = 5, /* largest order in the set-point */
-    SH_MAX_BASIS = SH_MAX_N * SH_MAX_M
+    SH_DOUBT_NONE = 1,          /* it is confident */
+    SH_DOUBT_NO_CLAIM,          /* the method computes no uncertainty that contains all errors */
+    SH_DOUBT_NOT_EXCITED,       /* sigma_std is too large, as the motion was too small or short */
+    SH_DOUBT_MISFIT,            /* sigma_std is too large, as the data contradict the model */
+    SH_DOUBT_OUT_OF_RANGE,      /* the deformation is beyond what the parameters are made for */
+    SH_DOUBT_FRICTION,          /* D_theta_hat is beyond three std deviations of its prior */
+    SH_DOUBT_INERTIA,           /* B_hat is beyond three std deviations of its prior */
+    SH_DOUBT_NEGATIVE_STIFFNESS /* sigma is not above 0 */
 };
+
+/* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. They
+ * determine the size of sh_estimator. Smaller ones can be given to the compiler, with the same
+ * values for every file that includes this header, and every file of the library.
+ */
+#ifndef SH_MAX_N
+#define SH_MAX_N 8
+#endif
+#ifndef SH_MAX_M
+#define SH_MAX_M 5
+#endif
+enum { SH_MAX_BASIS = SH_MAX_N * SH_MAX_M };
 
 /* Data of the motor, (3). */
 typedef struct {
@@ -112,6 +129,34 @@ typedef struct {
     sh_real phi;      /* largest deformation to be expected [rad], 1e-6..1e6 */
     sh_real setPoint; /* largest set-point to be expected [1], 1e-12..1e12 */
 } sh_range_parameters;
+
+/* Std deviations of what is not known exactly, each 0..1e12. With 0, the quantity is exact, or there
+ * is none of it. The scale K_0 of the stiffness is prior.tau_e / range.phi.
+ */
+typedef struct {
+    sh_real tau_e;         /* of each coefficient of the torque, for phi and set-point in units of
+                              their range [N.m] */
+    sh_real nominal;       /* of the curve rls.eta_0 as a whole, relative [1] */
+    sh_real D_theta;       /* of motor.D_theta, relative [1] */
+    sh_real B;             /* of motor.B, relative [1] */
+    sh_real tau_coulomb;   /* of the Coulomb friction of the motor, on its axis [N.m] */
+    sh_real torque_gain;   /* of the gain of the torque, relative [1]: torque constant, current
+                              sensor, efficiency of the gear. No data show it */
+    sh_real bias;          /* of a constant torque: bias of the torque, zero of the deformation,
+                              uneven friction; share of prior.tau_e [1] */
+    sh_real damping;       /* of the damping of the spring over K_0; also of encoders that are read
+                              at different times [s] */
+    sh_real load_friction; /* of the friction per flexibility torque [1] */
+    sh_real eccentric;     /* of the once-per-turn error of the link encoder [rad] */
+    sh_real delay;         /* of the delay of the torque against the positions [s] */
+    sh_real reversal;      /* of a delay of the reversals of friction [s] */
+    /* Columns that are used if the data ask for them: */
+    sh_real power;           /* of more powers of phi and set-point; share of prior.tau_e [1] */
+    sh_real gap;             /* of torques lost in a dead zone; share of prior.tau_e [1] */
+    sh_real hysteresis;      /* of torques of hysteresis; share of prior.tau_e [1] */
+    sh_real eccentric_motor; /* of the once-per-turn error of the motor encoder, behind the gear
+                                [rad] */
+} sh_prior_parameters;
 
 /* Parameters. Those marked "fixed" must not change after sh_estimator_start. Every other one may
  * change between ticks, and has its effect from the next tick on.
@@ -155,25 +200,24 @@ typedef struct {
         sh_real tau_e; /* std deviation of the noise of tau_e_sensor, and of the error of the
                           model of SH_MODALITY_MODEL [N.m], 1e-12..1e12 */
     } noise;
-    sh_real confidence; /* sigma_std / |sigma| below which the estimate is confident [1], > 0 */
+    sh_real confidence; /* sigma_std / |sigma| below which the estimate can be confident [1], > 0 */
     /* All below for SH_METHOD_MATCHED_FILTER. */
     struct {
+        int held; /* 1: a drive holds each tau until the next sample; 0: tau is linear between
+                     samples */
+    } torque;
+    struct {
         sh_real bandwidth; /* w of the filter [rad/s], > 0, fixed; 1e-4 <= w T < 2 with this
-                              method */
+                              method. A smaller one is used if the rounding of theta needs it:
+                              sh_matched_bandwidth in signals.h */
         sh_real slow;      /* |theta'| below which the sign of friction is unknown [rad/s], > 0 */
         sh_real drift;     /* share of its prior variance by which the torque curve drifts in a
                               second [1/s], 0..1e12; 0: it does not change */
+        sh_real memory;    /* time constant with which data are forgotten while they contradict
+                              the model [s], 0..1e12; 0: the misfit has no effect */
     } matched;
     sh_range_parameters range; /* fixed */
-    struct {                   /* 0..1e12, fixed */
-        sh_real tau_e;         /* std deviation of each coefficient of the torque, for phi and
-                                  set-point in units of their range [N.m] */
-        sh_real nominal;       /* of the curve rls.eta_0 as a whole, relative [1] */
-        sh_real D_theta;       /* of motor.D_theta, relative [1]; 0: exact */
-        sh_real B;             /* of motor.B, relative [1]; 0: exact */
-        sh_real tau_coulomb;   /* of the Coulomb friction of the motor, on its axis [N.m];
-                                  0: there is none */
-    } prior;
+    sh_prior_parameters prior; /* fixed */
 } sh_parameters;
 
 /* Largest magnitude of a measurement [rad, N.m]. */
@@ -189,7 +233,8 @@ typedef struct {
 
 /* The outputs of a tick. */
 typedef struct {
-    sh_real sigma;                   /* stiffness, (23) [N.m/rad] */
+    sh_real sigma;                   /* stiffness, (23): slope of the torque where the spring is
+                                        engaged, without hysteresis [N.m/rad] */
     sh_real tau_e;                   /* flexibility torque of the fitted model, (21) [N.m] */
     sh_real tau_e_residual;          /* flexibility torque from the motor data: gamma r_e, (8), or
                                         y of matched_regression.h [N.m] */
@@ -203,7 +248,20 @@ typedef struct {
                                         [N.m/rad] */
     sh_real D_theta_hat, B_hat;      /* corrected motor data [N.m.s/rad, kg.m2] */
     sh_real tau_coulomb_hat;         /* Coulomb friction obtained, on the motor axis [N.m] */
-    int confident;                   /* 1: sigma_std is below confidence |sigma| */
+    sh_real misfit;                  /* square root of how much larger the slow part of the
+                                        prediction error is than its noise; 1 where the model
+                                        holds [1] */
+    sh_real bias_hat;                /* constant torque, see prior.bias [N.m] */
+    sh_real damping_hat;             /* damping of the spring [N.m.s/rad] */
+    sh_real load_friction_hat;       /* friction per flexibility torque [1] */
+    sh_real eccentric_hat;           /* amplitude of the once-per-turn error of the link encoder
+                                        [rad] */
+    sh_real delay_hat;               /* delay of the torque [s] */
+    sh_real hysteresis_hat;          /* half the height of the hysteresis loop [N.m] */
+    sh_real sigma_per_gain;          /* relative change of sigma with a relative change of the
+                                        gain of the torque [1] */
+    int doubt;                       /* SH_DOUBT_*: why the estimate is not confident */
+    int confident;                   /* 1: doubt is SH_DOUBT_NONE */
     int valid;                       /* 0: the last tick was skipped, see sh_estimator_tick */
 } sh_estimate;
 
@@ -226,7 +284,7 @@ void sh_parameters_default(sh_parameters *p);
 int sh_parameters_check(const sh_parameters *p, sh_violation *violation);
 
 /* Largest |phi| [rad] for which the parameters are made. The stiffness at a larger deformation may
- * be far off. Infinite for a method that has no such limit.
+ * be wrong by much. Infinite for a method that has no such limit.
  *
  * p  parameters that pass sh_parameters_check
  */

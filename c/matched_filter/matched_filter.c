@@ -1,22 +1,32 @@
-/* Method MatchedFilter: the regression of matched_regression.h in units that suit its priors. */
-#include "least_squares.h"
-#include "matched_regression.h"
+/* Method MatchedFilter: one tick, and what its estimate means. The regression is that of columns.h.
+ */
+#include <stddef.h>
+
+#include "blocks.h"
+#include "columns.h"
+#include "information.h"
 #include "method.h"
+#include "passes.h"
+#include "posterior.h"
 #include "real_math.h"
+#include "sample_variance.h"
 #include "scaled_basis.h"
+#include "signals.h"
 #include "state_variable_filter.h"
 
-/* Whether a nominal curve is given and may be wrong as a whole. */
-static int has_nominal_curve(const sh_parameters *p)
-{
-    int i, j;
+#define TEXT(token) #token
+#define TEXT_OF(macro) TEXT(macro)
 
-    for (i = 0; i < p->rls.n; ++i)
-        for (j = 0; j < p->rls.m; ++j)
-            if (sh_fabs(p->rls.eta_0[i][j]) > 0)
-                return p->prior.nominal > 0;
-    return 0;
-}
+/* Relative uncertainty of the stiffness below which columns that need it have an effect. */
+static const sh_real KNOWN = (sh_real)0.2;
+
+/* Factor of the variances above which a large uncertainty is a matter of the misfit. */
+static const sh_real CONTRADICTION = (sh_real)1.5;
+
+/* Deformation in units of range.phi above which nothing is claimed. With rls.n = 3, the highest power
+ * is there 32 times as large as at range.phi.
+ */
+#define LARGEST_DEFORMATION 2
 
 static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
 {
@@ -25,86 +35,280 @@ static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
     if (wT < (sh_real)1e-4 || wT >= 2)
         return sh_violates(violation, "matched.bandwidth", p->matched.bandwidth,
                            ">= 1e-4 / samplePeriod and < 2 / samplePeriod");
-    if (!(p->prior.tau_e > 0) && !has_nominal_curve(p))
+    if (sh_matched_bandwidth(p) * p->samplePeriod < (sh_real)1e-4)
+        return sh_violates(
+            violation, "encoder.theta", p->encoder.theta,
+            "finer: with this one, noise.tau and motor.B, the filter would be slower "
+            "than 1e-4 / samplePeriod");
+    if (!(p->prior.tau_e > 0) && !(sh_has_nominal_curve(p) && p->prior.nominal > 0))
         return sh_violates(violation, "prior.tau_e", p->prior.tau_e,
                            "> 0, or 0 with a curve rls.eta_0 and prior.nominal > 0");
+    if (sh_columns_count(p) > SH_MAX_COLUMNS)
+        return sh_violates(violation, "rls.n", (sh_real)p->rls.n,
+                           "smaller, or more priors 0: this library was compiled for at "
+                           "most " TEXT_OF(SH_MAX_COLUMNS) " columns");
     return 0;
 }
 
-/* Motor data with the relative errors d and b of the regression, and its Coulomb friction. */
-static void report_motor(const sh_parameters *p, const sh_real *motor, sh_estimate *estimate)
+/* ---- what the estimate means ------------------------------------------------------------- */
+
+/* Coefficients of setPoint^j phi^e of the columns that are products of powers. */
+static void report_curve(const sh_matched_state *state, const sh_parameters *p,
+                         sh_estimate *estimate)
 {
-    estimate->D_theta_hat = p->motor.D_theta * (1 + motor[SH_MOTOR_D_THETA]);
-    estimate->B_hat = p->motor.B * (1 + motor[SH_MOTOR_B]);
-    estimate->tau_coulomb_hat = motor[SH_MOTOR_COULOMB];
+    const int n = p->rls.n, m = p->rls.m;
+    const sh_real curve = 1 + sh_columns_coefficient(state, SH_COLUMN_NOMINAL, 0);
+    int i, j;
+
+    for (j = 0; j < m; ++j)
+        for (i = 0; i < n; ++i)
+            estimate->eta[i][j] = curve * p->rls.eta_0[i][j];
+    for (i = 0; i < state->size; ++i) {
+        const sh_column *column = &state->column[i];
+        const sh_real eta = column->prior * state->beta[i] * column->unit;
+
+        if (column->kind == SH_COLUMN_BASIS)
+            estimate->eta[column->index % n][column->index / n] += eta;
+        if (column->kind == SH_COLUMN_POWER)
+            estimate->eta[n + column->index][0] = eta;
+        if (column->kind == SH_COLUMN_SET_POWER)
+            estimate->eta[p->rls.symmetric ? 0 : 1][m] = eta;
+    }
 }
 
-static void start_matched_filter(sh_estimator *estimator, const sh_parameters *p,
-                                 const sh_real *eta_0, sh_estimate *estimate, sh_fit *fit)
+static sh_real sum_of_plays(const sh_matched_state *state)
 {
-    static const sh_real no_error[SH_MAX_MOTOR] = {0};
-    const int n = p->rls.n, m = p->rls.m, size = n * m;
-    sh_real *const units = estimator->units, *const scaled = estimator->work.eta;
-    sh_real each = 0, curve = 0; /* std deviations of sigma by the two priors of the torque */
+    sh_real sum = 0;
     int i;
 
-    sh_scaled_basis(&p->range, p->rls.symmetric, n, m, p->setPoint.offset, 0, estimator->work.F,
-                    estimator->work.dF);
-    sh_scaled_basis_units(&p->range, p->rls.symmetric, n, m, units);
-    for (i = 0; i < size; ++i) {
-        scaled[i] = eta_0[i] * units[i];
-        units[i] = 1 / units[i];
-        each += estimator->work.dF[i] * estimator->work.dF[i];
-        curve += estimator->work.dF[i] * scaled[i];
+    for (i = 0; i < SH_PLAYS; ++i)
+        sum += sh_columns_coefficient(state, SH_COLUMN_PLAY, i);
+    return sum;
+}
+
+/* Damping of the spring at a set-point. */
+static sh_real damping_at(const sh_matched_state *state, const sh_parameters *p, sh_real set_point)
+{
+    const int m = p->rls.m;
+    sh_real damping = sh_columns_coefficient(state, SH_COLUMN_DAMPING, 0), l = 1;
+    int i;
+
+    for (i = 1; i < m; ++i)
+        l *= set_point / p->range.setPoint;
+    if (m > 1)
+        damping += l * sh_columns_coefficient(state, SH_COLUMN_DAMPING, m - 1);
+    return damping;
+}
+
+/* Coefficients of all columns but those of the torque. */
+static void report_joint(const sh_matched_state *state, const sh_parameters *p, sh_real set_point,
+                         sh_estimate *estimate)
+{
+    const sh_real d = sh_columns_coefficient(state, SH_COLUMN_VISCOUS, 0);
+    const sh_real b = sh_columns_coefficient(state, SH_COLUMN_INERTIA, 0);
+    const sh_real sin_q = sh_columns_coefficient(state, SH_COLUMN_SIN_Q, 0);
+    const sh_real cos_q = sh_columns_coefficient(state, SH_COLUMN_COS_Q, 0);
+    const sh_real stiffness = p->prior.tau_e / p->range.phi;
+
+    estimate->D_theta_hat = p->motor.D_theta * (1 + d);
+    estimate->B_hat = p->motor.B * (1 + b);
+    estimate->tau_coulomb_hat = sh_columns_coefficient(state, SH_COLUMN_COULOMB, 0);
+    estimate->bias_hat = sh_columns_coefficient(state, SH_COLUMN_BIAS, 0);
+    estimate->damping_hat = damping_at(state, p, set_point);
+    estimate->load_friction_hat = sh_columns_coefficient(state, SH_COLUMN_LOAD, 0);
+    estimate->eccentric_hat =
+        stiffness > 0 ? sh_sqrt(sin_q * sin_q + cos_q * cos_q) / stiffness : 0;
+    estimate->delay_hat = sh_columns_coefficient(state, SH_COLUMN_DELAY, 0);
+    estimate->hysteresis_hat = sum_of_plays(state);
+    estimate->misfit = sh_sqrt(sh_fmax(1, state->q));
+}
+
+/* Why the estimate is not confident. Misfit and priors make sigma_std right; so there is no limit of
+ * the misfit itself.
+ */
+static int doubt_of(const sh_matched_state *state, const sh_parameters *p,
+                    const sh_estimate *estimate)
+{
+    const sh_real d = sh_columns_coefficient(state, SH_COLUMN_VISCOUS, 0);
+    const sh_real b = sh_columns_coefficient(state, SH_COLUMN_INERTIA, 0);
+    int doubt = SH_DOUBT_NONE;
+
+    if (!(estimate->sigma_std < p->confidence * sh_fabs(estimate->sigma)))
+        doubt = state->variance_factor > CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
+    if (sh_fabs(estimate->phi) > LARGEST_DEFORMATION * p->range.phi)
+        doubt = SH_DOUBT_OUT_OF_RANGE;
+    if (sh_fabs(d) > 3 * p->prior.D_theta)
+        doubt = SH_DOUBT_FRICTION;
+    if (sh_fabs(b) > 3 * p->prior.B)
+        doubt = SH_DOUBT_INERTIA;
+    if (!(estimate->sigma > 0))
+        doubt = SH_DOUBT_NEGATIVE_STIFFNESS;
+    return doubt;
+}
+
+/* Sets all that follows from the fit. */
+static void report(const sh_matched_state *state, const sh_parameters *p, sh_real set_point,
+                   const sh_stiffness_fit *fit, sh_estimate *estimate)
+{
+    const sh_real by_gain = p->prior.torque_gain * fit->by_gain;
+
+    estimate->sigma_std = sh_sqrt(fit->variance + by_gain * by_gain);
+    estimate->sigma_per_gain =
+        sh_fabs(estimate->sigma) > 0 ? fit->by_gain / sh_fabs(estimate->sigma) : 0;
+    report_joint(state, p, set_point, estimate);
+    estimate->doubt = doubt_of(state, p, estimate);
+}
+
+/* ---- start and tick ---------------------------------------------------------------------- */
+
+static void start_matched_filter(sh_estimator *estimator, const sh_parameters *p,
+                                 sh_estimate *estimate)
+{
+    sh_matched_state *state = &estimator->method.matched;
+    sh_stiffness_fit fit;
+
+    sh_signals_start(state, p);
+    sh_columns_start(state, p);
+    sh_information_start(&state->data, state->size, SH_INFORMATION_LEAST);
+    sh_blocks_start(state);
+    sh_posterior_start(state, p, &state->live, 0, 1);
+    state->excess = state->excess_mean = 1;
+    sh_passes_start(state, p);
+    sh_columns_input(state, p, 0, 0, 0, p->setPoint.offset);
+    fit = sh_posterior_evaluate(state, &state->live);
+    report(state, p, p->setPoint.offset, &fit, estimate);
+}
+
+/* Whether a row can be taken: nothing overflows. */
+static int is_acceptable(const sh_matched_state *state, const sh_real *x, sh_real w)
+{
+    sh_real sum = 0;
+    int i;
+
+    for (i = 0; i < state->size + SH_SIDES; ++i)
+        sum += x[i] * x[i];
+    return sum <= SH_LARGE && w * sum <= SH_LARGE; /* false if not a number */
+}
+
+/* As the outputs of the same names. */
+typedef struct {
+    sh_real a, rho, epsilon;
+} innovation_of_sample;
+
+/* Learns from the row x in work. Sets what follows from the prediction. Returns 0 if the numbers are
+ * too large.
+ */
+static int learn(sh_matched_state *state, const sh_parameters *p, innovation_of_sample *innovation)
+{
+    sh_real *const x = state->work.x, *const row = state->work.row;
+    sh_sample_variance variance;
+    sh_real w, rounding, share;
+    int i;
+
+    sh_sample_variance_watch(state, p);
+    variance = sh_sample_variance_of(state, p);
+    w = 1 / variance.R;
+    if (!(w > 0) || !is_acceptable(state, x, w))
+        return 0;
+    state->R = variance.R;
+    for (i = 0; i < state->size; ++i)
+        state->row_before[i] = x[i];
+
+    share = sh_posterior_take(state, &state->live, x, w, row);
+    innovation->a = 1;
+    innovation->rho = (1 - share) / share;
+    innovation->epsilon = row[state->live.information.size + SH_SIDE_Y];
+
+    rounding = sh_sample_variance_of_inertia(state, p) * w;
+    if (rounding > 0) {
+        /* 6: variance of the square of a noise that is correlated from sample to sample. */
+        const sh_real spread = 6 * rounding * rounding;
+        sh_posterior *const both[] = {&state->live, &state->build};
+
+        state->surplus += rounding;
+        state->spread += spread;
+        for (i = 0; i < 2; ++i)
+            both[i]->spread += spread * both[i]->weight * both[i]->weight;
+        state->build.surplus += rounding * state->build.weight;
+        sh_posterior_remove(&state->live, rounding * state->live.weight, p->prior.B);
     }
-    sh_matched_start(&estimator->method.matched, &estimator->rls, p, scaled);
-    fit->eta = scaled;
-    /* The same would follow from P, but with the rounding of coefficients that do not act here. */
-    each *= p->prior.tau_e * p->prior.tau_e;
-    curve *= p->prior.nominal;
-    fit->variance = each + curve * curve;
-    report_motor(p, no_error, estimate);
+    for (i = 0; i < state->size + SH_SIDES; ++i)
+        row[i] = x[i];
+    sh_information_take(&state->data, row, w);
+    sh_blocks_take(state, p, x, w, variance.last);
+    sh_passes_step(state, p, x, w);
+    return 1;
+}
+
+/* Whether the estimate may learn from this sample: the filters have settled, and at the start the
+ * motor was at rest.
+ */
+static int is_settled(sh_matched_state *state, const sh_parameters *p)
+{
+    state->settling = sh_fmax(state->settling - p->samplePeriod, 0);
+    if (state->settling > 0)
+        return 0;
+    if (sh_is_measured(p) || !(state->starting > 0))
+        return 1;
+    state->starting -= p->samplePeriod;
+    if (!sh_sample_variance_contradicts_rest(state, p, state->work.x))
+        return 1;
+    sh_signals_unsettle(state);
+    return 0;
 }
 
 static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
-                               const sh_measurement *z, sh_real set_point, sh_estimate *estimate,
-                               sh_fit *fit)
+                               const sh_measurement *z, sh_real set_point, sh_estimate *estimate)
 {
-    sh_matched_regression *matched = &estimator->method.matched;
-    sh_real *const F = estimator->work.F, *const dF = estimator->work.dF;
-    sh_real *const eta = estimator->work.eta;
-    const sh_real phi = z->q - z->theta;
-    sh_real y, variance;
-    sh_innovation innovation;
-    int good;
+    sh_matched_state *state = &estimator->method.matched;
+    const sh_real phi = z->q - z->theta, phi_min = state->phi_min, phi_max = state->phi_max;
+    innovation_of_sample innovation = {0, 0, 0};
+    sh_stiffness_fit fit = {0, 0};
+    sh_real y, sigma;
+    int good, i;
 
-    if (estimator->started && (estimator->skipped > 0 || matched->modality != p->modality))
-        sh_matched_resume(matched, p);
-    sh_scaled_basis(&p->range, p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, F, dF);
-    good =
-        sh_matched_step(matched, &estimator->rls, p, z->theta, sh_regression_torque(p, z, z->tau),
-                        phi, estimate->sigma, F, &y, &innovation);
-    variance = sh_matched_estimate(matched, &estimator->rls, p, dF, eta);
-    if (!good || !isfinite(y) || !isfinite(variance)) { /* the latter while nothing is learned */
-        matched->begun = 0; /* the filters start again, so their old state does not matter */
+    if (estimator->started && (estimator->skipped > 0 || state->modality != p->modality)) {
+        sh_signals_resume(state);
+        sh_blocks_interrupt(&state->blocks, state->size);
+    }
+    sh_signals_deform(state, p, phi);
+    sh_columns_input(state, p, z->theta, z->q, phi, set_point);
+    sh_signals_step(state, p, z->theta, sh_regression_torque(p, z, z->tau));
+    y = sh_columns_row(state, p, state->work.x);
+    good = is_acceptable(state, state->work.x, 0);
+    if (good && is_settled(state, p))
+        good = learn(state, p, &innovation);
+    if (good)
+        fit = sh_posterior_evaluate(state, &state->live);
+    sigma = state->sigma_nominal;
+    for (i = 0; i < state->size; ++i)
+        sigma += state->work.dF[i] * state->beta[i];
+    if (!good || !isfinite(sigma) || !isfinite(fit.variance)) {
+        state->begun = 0; /* the filters start again, so their old state does not matter */
+        state->phi_min = phi_min;
+        state->phi_max = phi_max;
         return 0;
     }
-    matched->modality = p->modality;
-    estimate->phi = phi;
+    state->modality = p->modality;
+    state->y = y;
+    state->sigma = sigma;
+    state->stiffness_known = sh_sqrt(fit.variance) < KNOWN * sigma;
+    estimate->sigma = sigma;
+    estimate->tau_e = sh_columns_torque(state);
     estimate->tau_e_residual = y;
-    estimate->theta_dot = sh_state_variable_filter_first(&matched->theta, &matched->design);
+    estimate->phi = phi;
+    estimate->theta_dot = sh_state_variable_filter_first(&state->theta, &state->design);
     estimate->a = innovation.a;
     estimate->rho = innovation.rho;
     estimate->epsilon = innovation.epsilon;
-    fit->eta = eta;
-    fit->variance = variance;
-    report_motor(p, eta + matched->basis, estimate);
+    report_curve(state, p, estimate);
+    report(state, p, set_point, &fit, estimate);
+    state->delay = sh_fmin(sh_fmax(estimate->delay_hat, -3 * p->prior.delay), 3 * p->prior.delay);
     return 1;
 }
 
 const sh_method sh_matched_filter = {
-    /* With the usual rls.n = 3, the highest power is there 32 times as large as at range.phi. */
-    .largest_deformation = 2,
+    .largest_deformation = LARGEST_DEFORMATION,
     .check = check_matched_filter,
     .start = start_matched_filter,
     .tick = tick_matched_filter,

@@ -1,7 +1,6 @@
 #include "scaled_basis.h"
 
-/* Power of phi that belongs to coefficient i. */
-static int power(int symmetric, int i)
+int sh_scaled_basis_power(int symmetric, int i)
 {
     return symmetric ? 2 * i + 1 : i;
 }
@@ -16,7 +15,7 @@ void sh_scaled_basis(const sh_range_parameters *range, int symmetric, int n, int
     int i, j;
 
     for (i = 0; i < n; ++i) {
-        const int e = power(symmetric, i);
+        const int e = sh_scaled_basis_power(symmetric, i);
         sh_real of_F = e > 0 ? upper / (sh_real)e : upper, of_dF = slope;
 
         for (j = 0; j < m; ++j) {
@@ -30,20 +29,15 @@ void sh_scaled_basis(const sh_range_parameters *range, int symmetric, int n, int
     }
 }
 
-void sh_scaled_basis_units(const sh_range_parameters *range, int symmetric, int n, int m,
-                           sh_real *units)
+sh_real sh_scaled_basis_unit(const sh_range_parameters *range, int symmetric, int i, int j)
 {
-    sh_real of_l = 1;
-    int i, j, k;
+    const int e = sh_scaled_basis_power(symmetric, i);
+    sh_real unit = e > 0 ? 1 / (sh_real)e : 1;
+    int k;
 
-    for (j = 0; j < m; ++j) {
-        for (i = 0; i < n; ++i) {
-            const int e = power(symmetric, i);
-            sh_real unit = e > 0 ? of_l * (sh_real)e : of_l;
-            for (k = 0; k < e; ++k)
-                unit *= range->phi;
-            units[j * n + i] = unit;
-        }
-        of_l *= range->setPoint;
-    }
+    for (k = 0; k < e; ++k)
+        unit /= range->phi;
+    for (k = 0; k < j; ++k)
+        unit /= range->setPoint;
+    return unit;
 }

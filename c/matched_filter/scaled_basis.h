@@ -17,11 +17,12 @@
 void sh_scaled_basis(const sh_range_parameters *range, int symmetric, int n, int m,
                      sh_real set_point, sh_real phi, sh_real *F, sh_real *dF);
 
-/* What the coefficients of setPoint^j phi^e are multiplied by to get those of the scaled basis.
- *
- * units  [size: n m] out: in the order of F
+/* Power of phi that belongs to number i. */
+int sh_scaled_basis_power(int symmetric, int i);
+
+/* What a coefficient of the scaled basis is multiplied by to get that of setPoint^j phi^e, where e
+ * is the power that belongs to number i.
  */
-void sh_scaled_basis_units(const sh_range_parameters *range, int symmetric, int n, int m,
-                           sh_real *units);
+sh_real sh_scaled_basis_unit(const sh_range_parameters *range, int symmetric, int i, int j);
 
 #endif

@@ -3,6 +3,7 @@
 #include "least_squares.h"
 #include "method.h"
 #include "real_math.h"
+#include "scalar_product.h"
 #include "torque_basis.h"
 #include "torque_residual.h"
 #include "ud_factor.h"
@@ -26,36 +27,51 @@ static sh_real unit_of_covariance(const sh_parameters *p)
     return noise * noise * (p->rls.kind == SH_RLS_ENHANCED ? p->rls.c : 1);
 }
 
-static void report_paper2011(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate,
-                             sh_fit *fit)
+/* Sets what follows from the recursion, at the regressor in `work`. The variance contains the white
+ * noise of the torque only: neither the errors of the motor data nor the lag of the residual. So the
+ * method makes no claim.
+ */
+static void report_paper2011(sh_paper2011_state *state, const sh_parameters *p,
+                             sh_estimate *estimate)
 {
-    fit->eta = estimator->rls.eta;
-    fit->variance =
-        unit_of_covariance(p) * sh_ud_factor_variance(&estimator->rls.P, estimator->work.dF);
+    const int n = p->rls.n, m = p->rls.m;
+    const sh_real *eta = state->rls.eta;
+    int i, j;
+
+    sh_scalar_products(eta, state->work.F, state->work.dF, n * m, &estimate->tau_e,
+                       &estimate->sigma);
+    for (j = 0; j < m; ++j)
+        for (i = 0; i < n; ++i)
+            estimate->eta[i][j] = eta[j * n + i];
+    estimate->sigma_std =
+        sh_sqrt(unit_of_covariance(p) * sh_ud_factor_variance(&state->rls.P, state->work.dF));
     estimate->D_theta_hat = p->motor.D_theta;
     estimate->B_hat = p->motor.B;
-    estimate->tau_coulomb_hat = 0;
+    estimate->misfit = 1;
+    estimate->sigma_per_gain = 1;
+    estimate->doubt = SH_DOUBT_NO_CLAIM;
 }
 
-static void start_paper2011(sh_estimator *estimator, const sh_parameters *p, const sh_real *eta_0,
-                            sh_estimate *estimate, sh_fit *fit)
+static void start_paper2011(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate)
 {
-    const int n = p->rls.n, m = p->rls.m, size = n * m;
-    int i;
+    sh_paper2011_state *const state = &estimator->method.paper2011;
+    const int n = p->rls.n, m = p->rls.m;
+    sh_real eta_0[SH_MAX_BASIS];
+    int i, j;
 
-    for (i = 0; i < size; ++i)
-        estimator->units[i] = 1;
-    sh_torque_basis(p->rls.symmetric, n, m, p->setPoint.offset, 0, estimator->work.F,
-                    estimator->work.dF);
-    sh_least_squares_start(&estimator->rls, size, eta_0, p->rls.P_0);
-    report_paper2011(estimator, p, estimate, fit);
+    for (j = 0; j < m; ++j)
+        for (i = 0; i < n; ++i)
+            eta_0[j * n + i] = p->rls.eta_0[i][j];
+    sh_torque_basis(p->rls.symmetric, n, m, p->setPoint.offset, 0, state->work.F, state->work.dF);
+    sh_least_squares_start(&state->rls, n * m, eta_0, p->rls.P_0);
+    report_paper2011(state, p, estimate);
 }
 
 /* First stage: filters and residual. Returns gamma r_e [N.m].
  *
  * dt  time since the last good sample [s], 0 for the first one
  */
-static sh_real track(sh_paper2011_state *state, const sh_parameters *p, const sh_measurement *z,
+static sh_real track(sh_paper2011_filters *state, const sh_parameters *p, const sh_measurement *z,
                      sh_real dt)
 {
     const sh_real T = p->samplePeriod;
@@ -87,38 +103,38 @@ static sh_real track(sh_paper2011_state *state, const sh_parameters *p, const sh
 }
 
 static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
-                          sh_real set_point, sh_estimate *estimate, sh_fit *fit)
+                          sh_real set_point, sh_estimate *estimate)
 {
     const sh_real dt = estimator->started ? p->samplePeriod * (1 + estimator->skipped) : 0;
     sh_paper2011_state *const state = &estimator->method.paper2011;
-    const sh_paper2011_state before = *state;
-    const sh_real tau_e_residual = track(state, p, z, dt);
+    const sh_paper2011_filters before = state->filters;
+    const sh_real tau_e_residual = track(&state->filters, p, z, dt);
     sh_real phi = z->q - z->theta, factor;
     int kind = p->rls.kind;
     sh_innovation innovation;
 
     if (p->deformation == SH_DEFORMATION_FILTERED)
-        phi += state->q.lag - state->theta.lag;
-    sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, estimator->work.F,
-                    estimator->work.dF);
+        phi += state->filters.q.lag - state->filters.theta.lag;
+    sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, state->work.F,
+                    state->work.dF);
     factor = kind == SH_RLS_ENHANCED ? p->rls.c : p->rls.a;
-    if (p->modality == SH_MODALITY_RESIDUAL && state->settling > 0) {
+    if (p->modality == SH_MODALITY_RESIDUAL && state->filters.settling > 0) {
         kind = SH_RLS_CONSTANT_FACTOR; /* with a = 0 nothing changes, (25) */
         factor = 0;
     }
     if (!isfinite(tau_e_residual) ||
-        !sh_least_squares_update(&estimator->rls, kind, factor, estimator->work.F,
+        !sh_least_squares_update(&state->rls, kind, factor, state->work.F,
                                  sh_regression_torque(p, z, tau_e_residual), &innovation)) {
-        *state = before;
+        state->filters = before;
         return 0;
     }
     estimate->phi = phi;
     estimate->tau_e_residual = tau_e_residual;
-    estimate->theta_dot = state->theta.x_dot;
+    estimate->theta_dot = state->filters.theta.x_dot;
     estimate->a = innovation.a;
     estimate->rho = innovation.rho;
     estimate->epsilon = innovation.epsilon;
-    report_paper2011(estimator, p, estimate, fit);
+    report_paper2011(state, p, estimate);
     return 1;
 }
 

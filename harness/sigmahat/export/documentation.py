@@ -66,7 +66,8 @@ def _row(root: Element, variable: Element) -> dict[str, Any]:
     elif kind.tag == "Enumeration":
         path = f"TypeDefinitions/SimpleType[@name='{kind.attrib['declaredType']}']/Enumeration/Item"
         choices = [item.attrib for item in root.findall(path)]
-        start = next(item["name"] for item in choices if item["value"] == start)
+        names = {item["value"]: item["name"] for item in choices}
+        start = names[start] if start else ""  # an output has none
         limits = "see items"
     elif kind.tag == "Boolean":
         limits = "false, true"

@@ -77,6 +77,7 @@ void setup_parameters(const sim_parameters *p, const cat_given *given, sh_parame
     q->prior.D_theta = (sh_real)given->prior_D;
     q->prior.B = (sh_real)given->prior_B;
     q->prior.tau_coulomb = (sh_real)given->prior_coulomb;
+    q->prior.torque_gain = (sh_real)given->torque_gain;
     q->matched.bandwidth = (sh_real)bandwidth_of(p, given);
 }
 

@@ -1,0 +1,150 @@
+#include "blocks.h"
+
+#include "columns.h"
+#include "information.h"
+#include "real_math.h"
+#include "signals.h"
+#include "state_variable_filter.h"
+
+static const sh_real DURATION = (sh_real)0.05; /* of a block [s] */
+
+/* Blocks that are remembered: the misfit is that of the last minutes, so that one that begins after
+ * hours is noticed as soon as one that begins after a minute.
+ */
+static const sh_real LARGEST_COUNT = 2000;
+
+static sh_real square(sh_real x)
+{
+    return x * x;
+}
+
+/* Window of a block of `length` samples at sample k. */
+static sh_real window(sh_real k, sh_real length)
+{
+    const sh_real x = (k + (sh_real)0.5) / length;
+
+    return 16 * square(x * (1 - x));
+}
+
+void sh_blocks_start(sh_matched_state *state)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_filter_design *design = &state->design;
+    sh_state_variable_filter filter;
+    sh_real k, of_window = 0, output = 0, second = 0;
+
+    sh_information_start(&blocks->all, state->size, SH_INFORMATION_LEAST);
+    sh_information_start(&blocks->walking, state->size, SH_INFORMATION_LEAST);
+    sh_information_start(&blocks->recent, state->size, 1);
+    blocks->length = sh_fmax(sh_floor(DURATION / design->T + (sh_real)0.5), 4);
+    /* What is left of white noise: the energy of the filtered window. */
+    sh_state_variable_filter_start(&filter, 0);
+    for (k = 0; k < blocks->length + 30 / (design->w * design->T); ++k) {
+        const sh_real h = k < blocks->length ? window(k, blocks->length) : 0;
+
+        sh_state_variable_filter_step(&filter, design, h);
+        of_window += square(h);
+        output += square(sh_state_variable_filter_output(&filter));
+        second += square(sh_state_variable_filter_second(&filter, design));
+    }
+    blocks->energy = output / of_window;
+    blocks->energy_second = second / of_window;
+}
+
+void sh_blocks_interrupt(sh_blocks *blocks, int size)
+{
+    int i;
+
+    for (i = 0; i < size + SH_SIDES; ++i)
+        blocks->sum[i] = 0;
+    blocks->samples = blocks->weight = blocks->weight_window = 0;
+    blocks->window = blocks->window_square = blocks->independent = blocks->rounding = 0;
+}
+
+/* Takes the mean row of the block. */
+static void take(sh_matched_state *state, sh_information *a, sh_real w)
+{
+    sh_real *const row = state->work.row;
+    int i;
+
+    for (i = 0; i < state->size + SH_SIDES; ++i)
+        row[i] = state->blocks.sum[i] / state->blocks.weight;
+    sh_information_take(a, row, w);
+}
+
+static void fade(sh_blocks *blocks, sh_real keep)
+{
+    sh_information_fade(&blocks->all, keep, SH_INFORMATION_LEAST);
+    sh_information_fade(&blocks->walking, keep, SH_INFORMATION_LEAST);
+    blocks->count *= keep;
+}
+
+/* A block is full. Rounding of theta enters as if all samples had the same weight. */
+static void end(sh_matched_state *state, const sh_parameters *p)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_motor_parameters *motor = &p->motor;
+    const sh_real rounding = sh_is_measured(p) ? 0
+                                               : square(square(motor->gamma) * motor->B) *
+                                                     blocks->rounding / blocks->samples;
+    const sh_real variance =
+        blocks->weight_window / square(blocks->weight) * blocks->energy +
+        rounding * blocks->energy_second * blocks->window_square / square(blocks->window);
+    const sh_real count = blocks->independent / blocks->window_square;
+
+    take(state, &blocks->walking, 1 / variance);
+    take(state, &blocks->recent, 1 / variance);
+    take(state, &blocks->all, 1 / variance);
+    blocks->count += count;
+    blocks->recent_count += count;
+    if (blocks->count > LARGEST_COUNT)
+        fade(blocks, LARGEST_COUNT / blocks->count);
+    sh_blocks_interrupt(blocks, state->size);
+}
+
+void sh_blocks_take(sh_matched_state *state, const sh_parameters *p, const sh_real *x, sh_real w,
+                    sh_real last)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_real h = window(blocks->samples, blocks->length), wh = w * h;
+    int i;
+
+    for (i = 0; i < state->size + SH_SIDES; ++i)
+        blocks->sum[i] += wh * x[i];
+    blocks->weight += wh;
+    blocks->weight_window += wh * h;
+    blocks->window += h;
+    blocks->window_square += square(h);
+    blocks->independent += square(h) / last;
+    blocks->rounding += sh_signals_roughness(state);
+    blocks->samples += 1;
+    if (blocks->samples >= blocks->length)
+        end(state, p);
+}
+
+sh_real sh_blocks_threshold(sh_real N)
+{
+    return N + 3 * sh_sqrt(2 * N);
+}
+
+void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_real N = blocks->count;
+    const sh_real free = N - (sh_real)state->live.information.size / 2;
+    sh_real q, t;
+
+    state->q = state->variance_factor = 1;
+    if (N < SH_BLOCKS_FIRST || !(free > 0))
+        return;
+    q = sh_information_squares(state->friction_drifts ? &blocks->walking : &blocks->all,
+                               state->beta) /
+        free;
+    t = sh_blocks_threshold(N) / N;
+    state->q = q;
+    if (!(p->matched.memory > 0)) /* switched off */
+        return;
+    state->variance_factor = sh_fmax(1, q);
+    if (q > t)
+        state->variance_factor = sh_fmax(q, 1 + (q - t) * sh_fmax(1, N / 5));
+}

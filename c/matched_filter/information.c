@@ -1,0 +1,196 @@
+#include "information.h"
+
+#include <string.h>
+
+#include "real_math.h"
+
+/* Where row i begins in U. */
+static int row_offset(int size, int i)
+{
+    return i * (size - 1 + SH_SIDES) - i * (i - 1) / 2;
+}
+
+sh_real *sh_information_row(sh_information *a, int i)
+{
+    return a->U + row_offset(a->size, i);
+}
+
+void sh_information_start(sh_information *a, int size, sh_real precision)
+{
+    int i;
+
+    a->size = size;
+    a->rest = 0;
+    memset(a->U, 0, sizeof(sh_real) * (size_t)row_offset(size, size));
+    for (i = 0; i < size; ++i)
+        a->D[i] = precision;
+}
+
+/* Combines a row of U with a sample. What is left of the sample stays in x, for the next row. Four
+ * columns at a time, so that compilers can vectorise the loop.
+ */
+static void combine(sh_real *restrict row, sh_real *restrict x, int count, sh_real xi, sh_real gain)
+{
+    int k;
+
+    for (k = 0; k + 4 <= count; k += 4) {
+        const sh_real u_0 = row[k], u_1 = row[k + 1], u_2 = row[k + 2], u_3 = row[k + 3];
+        const sh_real x_0 = x[k] - xi * u_0, x_1 = x[k + 1] - xi * u_1;
+        const sh_real x_2 = x[k + 2] - xi * u_2, x_3 = x[k + 3] - xi * u_3;
+
+        x[k] = x_0;
+        x[k + 1] = x_1;
+        x[k + 2] = x_2;
+        x[k + 3] = x_3;
+        row[k] = u_0 + gain * x_0;
+        row[k + 1] = u_1 + gain * x_1;
+        row[k + 2] = u_2 + gain * x_2;
+        row[k + 3] = u_3 + gain * x_3;
+    }
+    for (; k < count; ++k) {
+        x[k] -= xi * row[k];
+        row[k] += gain * x[k];
+    }
+}
+
+sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
+{
+    const int size = a->size;
+    sh_real *row = a->U;
+    int i;
+
+    for (i = 0; i < size; ++i) {
+        const sh_real xi = x[i], before = a->D[i], after = before + w * xi * xi;
+        const int count = size - 1 - i + SH_SIDES;
+
+        if (sh_fabs(xi) > 0 && after > 0) {
+            const sh_real share = 1 / after;
+
+            combine(row, x + i + 1, count, xi, w * xi * share);
+            a->D[i] = after;
+            w *= before * share;
+        }
+        row += count;
+    }
+    a->rest += w * x[size + SH_SIDE_Y] * x[size + SH_SIDE_Y];
+    return w;
+}
+
+/* Sum of products, in four parts that do not wait for each other. */
+static sh_real sum_of_products(const sh_real *a, const sh_real *b, int count)
+{
+    sh_real sum[4] = {0, 0, 0, 0};
+    int k;
+
+    for (k = 0; k + 4 <= count; k += 4) {
+        sum[0] += a[k] * b[k];
+        sum[1] += a[k + 1] * b[k + 1];
+        sum[2] += a[k + 2] * b[k + 2];
+        sum[3] += a[k + 3] * b[k + 3];
+    }
+    for (; k < count; ++k)
+        sum[0] += a[k] * b[k];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+void sh_information_solve(sh_information *a, int side, sh_real *beta)
+{
+    const int size = a->size;
+    const sh_real *row = sh_information_row(a, size - 1);
+    int i;
+
+    for (i = size - 1; i >= 0; --i) {
+        const int count = size - 1 - i;
+
+        beta[i] = row[count + side] - sum_of_products(row, beta + i + 1, count);
+        row -= count + 1 + SH_SIDES; /* the row before is longer by one */
+    }
+}
+
+/* x -= factor row. */
+static void subtract(sh_real *restrict x, const sh_real *restrict row, int count, sh_real factor)
+{
+    int k;
+
+    for (k = 0; k + 4 <= count; k += 4) {
+        const sh_real x_0 = x[k] - factor * row[k], x_1 = x[k + 1] - factor * row[k + 1];
+        const sh_real x_2 = x[k + 2] - factor * row[k + 2];
+        const sh_real x_3 = x[k + 3] - factor * row[k + 3];
+
+        x[k] = x_0;
+        x[k + 1] = x_1;
+        x[k + 2] = x_2;
+        x[k + 3] = x_3;
+    }
+    for (; k < count; ++k)
+        x[k] -= factor * row[k];
+}
+
+void sh_information_project(sh_information *a, const sh_real *c, sh_real *v)
+{
+    const int size = a->size;
+    const sh_real *row = a->U;
+    int i;
+
+    for (i = 0; i < size; ++i)
+        v[i] = c[i];
+    for (i = 0; i < size; ++i) {
+        const int count = size - 1 - i;
+
+        if (sh_fabs(v[i]) > 0)
+            subtract(v + i + 1, row, count, v[i]);
+        row += count + SH_SIDES;
+    }
+}
+
+sh_real sh_information_squares(sh_information *a, const sh_real *beta)
+{
+    const int size = a->size;
+    const sh_real *row = a->U;
+    sh_real sum = a->rest;
+    int i;
+
+    for (i = 0; i < size; ++i) {
+        const int count = size - 1 - i;
+        const sh_real error =
+            row[count + SH_SIDE_Y] - beta[i] - sum_of_products(row, beta + i + 1, count);
+
+        sum += a->D[i] * error * error;
+        row += count + SH_SIDES;
+    }
+    return sum;
+}
+
+void sh_information_fade(sh_information *a, sh_real keep, sh_real least)
+{
+    int i;
+
+    for (i = 0; i < a->size; ++i)
+        a->D[i] = sh_fmax(a->D[i] * keep, least);
+    a->rest *= keep;
+}
+
+/* In terms of the information A = U' D U, the step is A -= A v v' A c / (1 + c v' A v): a sample of
+ * negative weight with the regressor v' A.
+ */
+void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real *row)
+{
+    const int size = a->size;
+    const sh_real *of_U = a->U;
+    sh_real vAv = 0;
+    int i, j;
+
+    memset(row, 0, sizeof(sh_real) * (size_t)(size + SH_SIDES));
+    for (i = 0; i < size; ++i) { /* row = v' U' D [U, U z] */
+        const int count = size - 1 - i;
+        const sh_real along = v[i] + sum_of_products(of_U, v + i + 1, count);
+        const sh_real scaled = a->D[i] * along;
+
+        row[i] += scaled;
+        for (j = 0; j < count + SH_SIDES; ++j)
+            row[i + 1 + j] += scaled * of_U[j];
+        vAv += scaled * along;
+        of_U += count + SH_SIDES;
+    }
+    sh_information_take(a, row, -c / (1 + c * vAv));
+}

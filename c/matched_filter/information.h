@@ -1,0 +1,67 @@
+/* Least squares in the information form, without square roots.
+ *
+ * The samples of a regression y = x' beta, each of weight w, are kept as
+ *
+ *     sum of w x x' = U' D U ,  U unit upper triangular,
+ *
+ * and the right-hand sides as U z. A sample is taken in O(size^2), and no parameter needs a prior
+ * (Gentleman 1974, Algorithm AS 75, Applied Statistics 23:448-454; Miller 1992, AS 274).
+ *
+ * D[i] is the information about parameter i if those before it are estimated too and those after it
+ * are exact. So to leave out the last parameters is to leave out the last columns. To scale the
+ * weights of all samples is to scale D.
+ *
+ * No entry of D must begin with 0. If other columns make up a column exactly, its entry of D would
+ * consist of rounding errors only, and the division by it would destroy U.
+ */
+#ifndef SH_INFORMATION_H
+#define SH_INFORMATION_H
+
+#include "real_math.h"
+#include "sigmahat.h"
+
+/* Precision with which data begin, where a prior has 1. */
+#define SH_INFORMATION_LEAST SH_FOR(SH_REAL, 1e-9, 1e-5f)
+
+/* Starts with the estimate 0 of the given precision for each parameter.
+ *
+ * size       number of parameters, 1..SH_MAX_COLUMNS
+ * precision  one over the variance of each parameter, > 0
+ */
+void sh_information_start(sh_information *a, int size, sh_real precision);
+
+/* Takes a sample.
+ *
+ * x  [size: size + SH_SIDES] regressor, then the right-hand sides; used as memory. Afterwards the
+ *    last entry is the prediction error of y before the sample
+ * w  weight. If it is negative, a sample of this weight is removed; U' D U must stay positive
+ *    definite
+ *
+ * Returns w / (1 + w rho), where rho = x' (U' D U)^-1 x is from before the sample.
+ */
+sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
+
+/* Row i of U: entries i + 1 to size - 1, then the right-hand sides. */
+sh_real *sh_information_row(sh_information *a, int i);
+
+/* The estimate of all parameters [size: size] for a right-hand side, SH_SIDE_*. */
+void sh_information_solve(sh_information *a, int side, sh_real *beta);
+
+/* v = U'^-1 c [size: size]. Then c' beta = v' z, and its variance is the sum of v_i^2 / D_i. */
+void sh_information_project(sh_information *a, const sh_real *c, sh_real *v);
+
+/* Weighted sum of squares of y - x' beta over all samples, and of the first precision. */
+sh_real sh_information_squares(sh_information *a, const sh_real *beta);
+
+/* Multiplies the weights of all samples by keep, 0..1. No entry of D falls below least. */
+void sh_information_fade(sh_information *a, sh_real keep, sh_real least);
+
+/* Lets the parameters change by a random step along v of variance c: (U' D U)^-1 += c v v'.
+ *
+ * v    [size: size]
+ * c    >= 0
+ * row  [size: size + SH_SIDES] memory
+ */
+void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real *row);
+
+#endif

@@ -1,0 +1,123 @@
+#include "passes.h"
+
+#include "blocks.h"
+#include "columns.h"
+#include "forgetting.h"
+#include "information.h"
+#include "posterior.h"
+#include "real_math.h"
+
+/* Whether a group has a column that can be told from the spring. */
+static int has_columns(const sh_matched_state *state, const sh_parameters *p, int group)
+{
+    int i;
+
+    for (i = 0; i < state->size; ++i)
+        if (sh_column_group(&state->column[i]) == group &&
+            sh_column_is_distinct(state, p, &state->column[i]))
+            return 1;
+    return 0;
+}
+
+/* The next group that can be tried, 0 if there is none. */
+static int next_trial(sh_matched_state *state, const sh_parameters *p)
+{
+    int tries;
+
+    for (tries = 1; tries < SH_GROUPS; ++tries) {
+        state->next_trial = state->next_trial % (SH_GROUPS - 1) + 1;
+        if (has_columns(state, p, state->next_trial))
+            return state->next_trial;
+    }
+    return 0;
+}
+
+static void start_pass(sh_matched_state *state, const sh_parameters *p)
+{
+    sh_posterior *build = &state->build;
+    int trial = 0;
+    sh_real weight;
+
+    sh_blocks_judge(state, p);
+    state->turn = !state->turn;
+    if (!state->turn && state->blocks.count >= SH_BLOCKS_FIRST)
+        trial = next_trial(state, p);
+    if (trial == 0) {
+        state->turn = 1;
+        /* Two passes of two ticks a row, since the last time. */
+        sh_forgetting_step(state, p, 4 * (sh_real)state->size * state->design.T);
+    }
+    /* Noise that is correlated is no evidence for columns. */
+    weight = trial == 0 ? 1 / state->variance_factor
+                        : 1 / sh_fmax(sh_fmax(1, state->q), state->excess_mean);
+    sh_posterior_start(state, p, build, trial, weight);
+    build->surplus = state->surplus * weight;
+    build->spread = state->spread * weight * weight;
+    state->frozen = state->data;
+    state->row = 0;
+}
+
+void sh_passes_start(sh_matched_state *state, const sh_parameters *p)
+{
+    start_pass(state, p);
+}
+
+static void decide(sh_matched_state *state)
+{
+    sh_posterior *build = &state->build;
+    sh_information *a = &build->information;
+    sh_real gain = 0;
+    int i;
+
+    for (i = 0; i < a->size; ++i) {
+        const sh_real z = sh_information_row(a, i)[a->size - 1 - i + SH_SIDE_Y];
+
+        if (sh_column_group(&state->column[build->column[i]]) == build->trial)
+            gain += (a->D[i] * z * z - sh_log(a->D[i])) / 2;
+    }
+    if (gain > 3)
+        state->used[build->trial] = 1;
+    if (gain < 0)
+        state->used[build->trial] = 0;
+}
+
+static void end_pass(sh_matched_state *state, const sh_parameters *p)
+{
+    if (state->build.trial != 0) {
+        decide(state);
+        return;
+    }
+    state->live = state->build;
+    if (state->live.inertia >= 0)
+        sh_posterior_remove(&state->live, 0, p->prior.B);
+}
+
+/* Takes the next row of the copy of the data. */
+static void take_row(sh_matched_state *state, sh_real *x)
+{
+    const int i = state->row, entries = state->size + SH_SIDES;
+    const sh_real *row = sh_information_row(&state->frozen, i);
+    int j;
+
+    for (j = 0; j < i; ++j)
+        x[j] = 0;
+    x[i] = 1;
+    for (j = i + 1; j < entries; ++j)
+        x[j] = row[j - i - 1];
+    sh_posterior_take(state, &state->build, x, state->frozen.D[i], state->work.row);
+    state->row += 1;
+}
+
+void sh_passes_step(sh_matched_state *state, const sh_parameters *p, sh_real *x, sh_real w)
+{
+    sh_posterior_take(state, &state->build, x, w, state->work.row);
+    state->alternate = !state->alternate;
+    if (state->alternate)
+        return;
+    if (state->row < state->size) {
+        take_row(state, x);
+        return;
+    }
+    end_pass(state, p);
+    start_pass(state, p);
+}

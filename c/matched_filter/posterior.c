@@ -1,0 +1,137 @@
+#include "posterior.h"
+
+#include "columns.h"
+#include "information.h"
+#include "real_math.h"
+
+/* Whether a column is used, and not one of the trial. */
+static int is_used(const sh_matched_state *state, const sh_parameters *p, const sh_column *column,
+                   int trial)
+{
+    const int group = sh_column_group(column);
+
+    return group == 0 ||
+           (group != trial && state->used[group] && sh_column_is_distinct(state, p, column));
+}
+
+void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
+                        sh_posterior *posterior, int trial, sh_real weight)
+{
+    int size = 0, i;
+
+    posterior->trial = trial;
+    posterior->coulomb = posterior->inertia = -1;
+    for (i = 0; i < state->size; ++i) {
+        const sh_column *column = &state->column[i];
+
+        if (!is_used(state, p, column, trial))
+            continue;
+        if (column->kind == SH_COLUMN_COULOMB)
+            posterior->coulomb = size;
+        if (column->kind == SH_COLUMN_INERTIA)
+            posterior->inertia = size;
+        posterior->column[size++] = i;
+    }
+    for (i = 0; i < state->size && trial != 0; ++i)
+        if (sh_column_group(&state->column[i]) == trial &&
+            sh_column_is_distinct(state, p, &state->column[i]))
+            posterior->column[size++] = i;
+    sh_information_start(&posterior->information, size, 1);
+    posterior->weight = weight;
+    posterior->surplus = posterior->removed = posterior->spread = 0;
+}
+
+sh_real sh_posterior_take(const sh_matched_state *state, sh_posterior *posterior, const sh_real *x,
+                          sh_real w, sh_real *row)
+{
+    const int size = posterior->information.size;
+    const sh_real weight = w * posterior->weight;
+    int i;
+
+    for (i = 0; i < size; ++i)
+        row[i] = x[posterior->column[i]];
+    for (i = 0; i < SH_SIDES; ++i)
+        row[size + i] = x[state->size + i];
+    return sh_information_take(&posterior->information, row, weight) / weight;
+}
+
+void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B)
+{
+    const int b = posterior->inertia;
+    sh_real *D = posterior->information.D;
+    sh_real back, left, *z;
+
+    posterior->surplus += information;
+    if (b < 0 || b != posterior->information.size - 1)
+        return;
+    back = sh_fmin(posterior->surplus, D[b] - 1); /* 1: the prior */
+    if (!(back > 0))
+        return;
+    left = D[b] - back;
+    z = sh_information_row(&posterior->information, b);
+    z[SH_SIDE_GAIN] *= D[b] / left;
+    z[SH_SIDE_Y] = (z[SH_SIDE_Y] * D[b] + back / prior_B) / left; /* biased towards b = -1 */
+    D[b] = left;
+    posterior->surplus -= back;
+    posterior->removed += back;
+}
+
+/* Gives the data about b the weight that they have after the removal. */
+static void weigh_inertia(sh_posterior *posterior)
+{
+    const int b = posterior->inertia;
+    sh_real *const D = &posterior->information.D[b];
+    sh_real *const z = sh_information_row(&posterior->information, b) + SH_SIDE_Y;
+    const sh_real of_data = sh_fmax(*D - 1, 0);
+    const sh_real share = of_data / (of_data + posterior->removed + posterior->spread);
+    const sh_real weighted = 1 + of_data * share;
+
+    *z *= *D * share / weighted;
+    *D = weighted;
+}
+
+sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *posterior)
+{
+    sh_information *a = &posterior->information;
+    const int size = a->size, b = posterior->inertia;
+    const int weigh = b >= 0 && posterior->removed > 0;
+    sh_real *const own = state->work.own, *const v = state->work.v;
+    const sh_real D_b = b >= 0 ? a->D[b] : 0;
+    const sh_real z_b = b >= 0 ? sh_information_row(a, b)[SH_SIDE_Y] : 0;
+    sh_stiffness_fit fit = {0, 0};
+    int i;
+
+    if (weigh)
+        weigh_inertia(posterior);
+    for (i = 0; i < size; ++i)
+        own[i] = state->work.dF[posterior->column[i]];
+    sh_information_project(a, own, v);
+    for (i = 0; i < size; ++i) {
+        const sh_real *z = sh_information_row(a, i) + size - 1 - i;
+
+        fit.variance += v[i] * v[i] / a->D[i];
+        fit.by_gain += v[i] * z[SH_SIDE_GAIN];
+    }
+    sh_information_solve(a, SH_SIDE_Y, own);
+    for (i = 0; i < state->size; ++i)
+        state->beta[i] = 0;
+    for (i = 0; i < size; ++i)
+        state->beta[posterior->column[i]] = own[i];
+    if (weigh) {
+        a->D[b] = D_b;
+        sh_information_row(a, b)[SH_SIDE_Y] = z_b;
+    }
+    return fit;
+}
+
+sh_real sh_posterior_variance(sh_posterior *posterior, const sh_real *c, sh_real *v)
+{
+    sh_information *a = &posterior->information;
+    sh_real variance = 0;
+    int i;
+
+    sh_information_project(a, c, v);
+    for (i = 0; i < a->size; ++i)
+        variance += v[i] * v[i] / a->D[i];
+    return variance;
+}
