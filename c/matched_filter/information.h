@@ -17,10 +17,9 @@
 #ifndef SH_INFORMATION_H
 #define SH_INFORMATION_H
 
-#include "real_math.h"
 #include "sigmahat.h"
 
-/* Precision with which data begin, where a prior has 1. */
+/* Precision with which data begin, where a prior has 1; needs real_math.h. */
 #define SH_INFORMATION_LEAST SH_FOR(SH_REAL, 1e-9, 1e-5f)
 
 /* Starts with the estimate 0 of the given precision for each parameter.
