@@ -172,8 +172,8 @@ typedef struct {
     int size;            /* number of columns */
     int alternate;       /* samples modulo 2: a pass advances with every second one */
     int row;             /* next row of `frozen` that `build` takes */
-    int turn;            /* 1: the pass changes the estimate, 0: it is a trial of a group */
-    int next_trial;      /* group that was on trial last */
+    int trial;           /* group that the present pass tries; 0: it changes the estimate */
+    int last_trial;      /* group that was tried last */
     int friction_drifts; /* 1: the data show that friction changes */
     int stiffness_known; /* 1: columns that need the stiffness have an effect */
     int used[SH_GROUPS]; /* 1: the group is used */
@@ -203,6 +203,7 @@ typedef struct {
     sh_information data, frozen;        /* all samples, and a copy for the present pass */
     sh_posterior live, build;           /* the estimate, and the next one while it is built */
     sh_blocks blocks;
+    sh_real since;                       /* samples since the data were last faded */
     sh_real surplus, spread;             /* of all samples, see sh_posterior */
     sh_real q, variance_factor;          /* misfit squared, and the factor of the variances [1] */
     sh_real y;                           /* of the last sample [N.m] */

@@ -379,13 +379,3 @@ sh_real sh_columns_torque(const sh_matched_state *state)
             torque += state->work.F[i] * state->beta[i];
     return torque;
 }
-
-sh_real sh_columns_coefficient(const sh_matched_state *state, int kind, int index)
-{
-    int i;
-
-    for (i = 0; i < state->size; ++i)
-        if (state->column[i].kind == kind && state->column[i].index == index)
-            return state->column[i].prior * state->beta[i];
-    return 0;
-}

@@ -104,7 +104,4 @@ sh_real sh_columns_row(const sh_matched_state *state, const sh_parameters *p, sh
 /* Torque of the spring for the estimate beta at the signals in work.F [N.m]. */
 sh_real sh_columns_torque(const sh_matched_state *state);
 
-/* Estimated coefficient of the column of a kind, in the unit of its prior; 0 if there is none. */
-sh_real sh_columns_coefficient(const sh_matched_state *state, int kind, int index);
-
 #endif

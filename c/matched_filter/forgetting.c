@@ -51,7 +51,7 @@ static void walk_friction(sh_matched_state *state, sh_information *a, sh_real va
     }
 }
 
-static void watch_friction(sh_matched_state *state, sh_real time)
+void sh_forgetting_of_friction(sh_matched_state *state, sh_real time)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->count, parameters = (sh_real)state->size;
@@ -99,7 +99,6 @@ void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, sh_real
     fade_recent(&state->blocks, p, time);
     if (state->variance_factor > CONTRADICTION)
         forget(state, p, time);
-    watch_friction(state, time);
     if (p->matched.drift > 0)
         drift(state, p, time);
 }

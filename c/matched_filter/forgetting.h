@@ -4,7 +4,7 @@
 
 #include "sigmahat.h"
 
-/* Forgets and lets change what it has to, in `time` [s] since the last call.
+/* Forgets, and lets the curve change, in `time` [s] since the last call.
  *
  * Data are forgotten only while they contradict the model: then everything fades with the time
  * constant matched.memory. The misfit is that of the data that remain, so forgetting ends by itself
@@ -12,11 +12,13 @@
  * agree with the model by themselves, then something has changed, and the older data fade five times
  * as fast.
  *
- * Friction may change, as a random walk, if the blocks contradict each other clearly less with it.
- *
  * The curve of the torque may change by matched.drift, along the columns of the last sample: what
  * is not excited is not forgotten.
  */
 void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, sh_real time);
+
+/* Lets friction change as a random walk, if the blocks contradict each other clearly less with it.
+ */
+void sh_forgetting_of_friction(sh_matched_state *state, sh_real time);
 
 #endif

@@ -26,6 +26,16 @@ void sh_information_start(sh_information *a, int size, sh_real precision)
         a->D[i] = precision;
 }
 
+void sh_information_copy(sh_information *to, const sh_information *from)
+{
+    const int size = from->size;
+
+    to->size = size;
+    to->rest = from->rest;
+    memcpy(to->D, from->D, sizeof(sh_real) * (size_t)size);
+    memcpy(to->U, from->U, sizeof(sh_real) * (size_t)row_offset(size, size));
+}
+
 /* Combines a row of U with a sample. What is left of the sample stays in x, for the next row. Four
  * columns at a time, so that compilers can vectorise the loop.
  */

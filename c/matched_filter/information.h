@@ -29,6 +29,9 @@
  */
 void sh_information_start(sh_information *a, int size, sh_real precision);
 
+/* to = from, as far as it is used. */
+void sh_information_copy(sh_information *to, const sh_information *from);
+
 /* Takes a sample.
  *
  * x  [size: size + SH_SIDES] regressor, then the right-hand sides; used as memory. Afterwards the

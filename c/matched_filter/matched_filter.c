@@ -52,74 +52,114 @@ static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
 
 /* ---- what the estimate means ------------------------------------------------------------- */
 
-/* Coefficients of setPoint^j phi^e of the columns that are products of powers. */
-static void report_curve(const sh_matched_state *state, const sh_parameters *p,
-                         sh_estimate *estimate)
+/* Coefficients of the columns, in the units of their priors. */
+typedef struct {
+    sh_real nominal, viscous, inertia, coulomb; /* relative errors; friction [N.m] */
+    sh_real bias, damping, sin_q, cos_q, load, delay, plays, unused;
+} joint_coefficients;
+
+/* Where the coefficient of a kind that has one column is returned. */
+static sh_real *coefficient_of(joint_coefficients *joint, int kind)
 {
-    const int n = p->rls.n, m = p->rls.m;
-    const sh_real curve = 1 + sh_columns_coefficient(state, SH_COLUMN_NOMINAL, 0);
-    int i, j;
-
-    for (j = 0; j < m; ++j)
-        for (i = 0; i < n; ++i)
-            estimate->eta[i][j] = curve * p->rls.eta_0[i][j];
-    for (i = 0; i < state->size; ++i) {
-        const sh_column *column = &state->column[i];
-        const sh_real eta = column->prior * state->beta[i] * column->unit;
-
-        if (column->kind == SH_COLUMN_BASIS)
-            estimate->eta[column->index % n][column->index / n] += eta;
-        if (column->kind == SH_COLUMN_POWER)
-            estimate->eta[n + column->index][0] = eta;
-        if (column->kind == SH_COLUMN_SET_POWER)
-            estimate->eta[p->rls.symmetric ? 0 : 1][m] = eta;
+    switch (kind) {
+    case SH_COLUMN_NOMINAL:
+        return &joint->nominal;
+    case SH_COLUMN_BIAS:
+        return &joint->bias;
+    case SH_COLUMN_SIN_Q:
+        return &joint->sin_q;
+    case SH_COLUMN_COS_Q:
+        return &joint->cos_q;
+    case SH_COLUMN_LOAD:
+        return &joint->load;
+    case SH_COLUMN_DELAY:
+        return &joint->delay;
+    case SH_COLUMN_VISCOUS:
+        return &joint->viscous;
+    case SH_COLUMN_COULOMB:
+        return &joint->coulomb;
+    case SH_COLUMN_INERTIA:
+        return &joint->inertia;
+    default:
+        return &joint->unused;
     }
 }
 
-static sh_real sum_of_plays(const sh_matched_state *state)
+/* Sets the coefficients eta of setPoint^j phi^e in the estimate, and returns those of all columns
+ * that are not products of powers.
+ */
+static joint_coefficients read_columns(const sh_matched_state *state, const sh_parameters *p,
+                                       sh_real set_point, sh_estimate *estimate)
 {
-    sh_real sum = 0;
-    int i;
+    const int n = p->rls.n;
+    const sh_real l = set_point / p->range.setPoint;
+    joint_coefficients joint = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    int i, k;
 
-    for (i = 0; i < SH_PLAYS; ++i)
-        sum += sh_columns_coefficient(state, SH_COLUMN_PLAY, i);
-    return sum;
+    for (i = 0; i < state->size; ++i) {
+        const sh_column *column = &state->column[i];
+        sh_real value = column->prior * state->beta[i];
+
+        switch (column->kind) {
+        case SH_COLUMN_BASIS:
+            estimate->eta[column->index % n][column->index / n] = value * column->unit;
+            break;
+        case SH_COLUMN_POWER:
+            estimate->eta[n + column->index][0] = value * column->unit;
+            break;
+        case SH_COLUMN_SET_POWER:
+            estimate->eta[p->rls.symmetric ? 0 : 1][p->rls.m] = value * column->unit;
+            break;
+        case SH_COLUMN_DAMPING:
+            for (k = 0; k < column->index; ++k)
+                value *= l;
+            joint.damping += value;
+            break;
+        case SH_COLUMN_PLAY:
+            joint.plays += value;
+            break;
+        default:
+            *coefficient_of(&joint, column->kind) = value;
+            break;
+        }
+    }
+    return joint;
 }
 
-/* Damping of the spring at a set-point. */
-static sh_real damping_at(const sh_matched_state *state, const sh_parameters *p, sh_real set_point)
+/* Adds the curve rls.eta_0, whose relative error is `error`. Without one, and without columns of the
+ * basis, the coefficients stay 0.
+ */
+static void add_nominal_curve(const sh_matched_state *state, const sh_parameters *p, sh_real error,
+                              sh_estimate *estimate)
 {
-    const int m = p->rls.m;
-    sh_real damping = sh_columns_coefficient(state, SH_COLUMN_DAMPING, 0), l = 1;
-    int i;
+    const int is_basis = p->prior.tau_e > 0;
+    int i, j;
 
-    for (i = 1; i < m; ++i)
-        l *= set_point / p->range.setPoint;
-    if (m > 1)
-        damping += l * sh_columns_coefficient(state, SH_COLUMN_DAMPING, m - 1);
-    return damping;
+    if (!state->has_nominal)
+        return;
+    for (i = 0; i < p->rls.n; ++i)
+        for (j = 0; j < p->rls.m; ++j)
+            estimate->eta[i][j] =
+                (is_basis ? estimate->eta[i][j] : 0) + (1 + error) * p->rls.eta_0[i][j];
 }
 
-/* Coefficients of all columns but those of the torque. */
-static void report_joint(const sh_matched_state *state, const sh_parameters *p, sh_real set_point,
-                         sh_estimate *estimate)
+static void report_joint(const sh_matched_state *state, const sh_parameters *p,
+                         const joint_coefficients *joint, sh_estimate *estimate)
 {
-    const sh_real d = sh_columns_coefficient(state, SH_COLUMN_VISCOUS, 0);
-    const sh_real b = sh_columns_coefficient(state, SH_COLUMN_INERTIA, 0);
-    const sh_real sin_q = sh_columns_coefficient(state, SH_COLUMN_SIN_Q, 0);
-    const sh_real cos_q = sh_columns_coefficient(state, SH_COLUMN_COS_Q, 0);
     const sh_real stiffness = p->prior.tau_e / p->range.phi;
 
-    estimate->D_theta_hat = p->motor.D_theta * (1 + d);
-    estimate->B_hat = p->motor.B * (1 + b);
-    estimate->tau_coulomb_hat = sh_columns_coefficient(state, SH_COLUMN_COULOMB, 0);
-    estimate->bias_hat = sh_columns_coefficient(state, SH_COLUMN_BIAS, 0);
-    estimate->damping_hat = damping_at(state, p, set_point);
-    estimate->load_friction_hat = sh_columns_coefficient(state, SH_COLUMN_LOAD, 0);
+    estimate->D_theta_hat = p->motor.D_theta * (1 + joint->viscous);
+    estimate->B_hat = p->motor.B * (1 + joint->inertia);
+    estimate->tau_coulomb_hat = joint->coulomb;
+    estimate->bias_hat = joint->bias;
+    estimate->damping_hat = joint->damping;
+    estimate->load_friction_hat = joint->load;
     estimate->eccentric_hat =
-        stiffness > 0 ? sh_sqrt(sin_q * sin_q + cos_q * cos_q) / stiffness : 0;
-    estimate->delay_hat = sh_columns_coefficient(state, SH_COLUMN_DELAY, 0);
-    estimate->hysteresis_hat = sum_of_plays(state);
+        stiffness > 0
+            ? sh_sqrt(joint->sin_q * joint->sin_q + joint->cos_q * joint->cos_q) / stiffness
+            : 0;
+    estimate->delay_hat = joint->delay;
+    estimate->hysteresis_hat = joint->plays;
     estimate->misfit = sh_sqrt(sh_fmax(1, state->q));
 }
 
@@ -127,19 +167,17 @@ static void report_joint(const sh_matched_state *state, const sh_parameters *p, 
  * the misfit itself.
  */
 static int doubt_of(const sh_matched_state *state, const sh_parameters *p,
-                    const sh_estimate *estimate)
+                    const joint_coefficients *joint, const sh_estimate *estimate)
 {
-    const sh_real d = sh_columns_coefficient(state, SH_COLUMN_VISCOUS, 0);
-    const sh_real b = sh_columns_coefficient(state, SH_COLUMN_INERTIA, 0);
     int doubt = SH_DOUBT_NONE;
 
     if (!(estimate->sigma_std < p->confidence * sh_fabs(estimate->sigma)))
         doubt = state->variance_factor > CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
     if (sh_fabs(estimate->phi) > LARGEST_DEFORMATION * p->range.phi)
         doubt = SH_DOUBT_OUT_OF_RANGE;
-    if (sh_fabs(d) > 3 * p->prior.D_theta)
+    if (sh_fabs(joint->viscous) > 3 * p->prior.D_theta)
         doubt = SH_DOUBT_FRICTION;
-    if (sh_fabs(b) > 3 * p->prior.B)
+    if (sh_fabs(joint->inertia) > 3 * p->prior.B)
         doubt = SH_DOUBT_INERTIA;
     if (!(estimate->sigma > 0))
         doubt = SH_DOUBT_NEGATIVE_STIFFNESS;
@@ -151,12 +189,15 @@ static void report(const sh_matched_state *state, const sh_parameters *p, sh_rea
                    const sh_stiffness_fit *fit, sh_estimate *estimate)
 {
     const sh_real by_gain = p->prior.torque_gain * fit->by_gain;
+    joint_coefficients joint;
 
     estimate->sigma_std = sh_sqrt(fit->variance + by_gain * by_gain);
     estimate->sigma_per_gain =
         sh_fabs(estimate->sigma) > 0 ? fit->by_gain / sh_fabs(estimate->sigma) : 0;
-    report_joint(state, p, set_point, estimate);
-    estimate->doubt = doubt_of(state, p, estimate);
+    joint = read_columns(state, p, set_point, estimate);
+    add_nominal_curve(state, p, joint.nominal, estimate);
+    report_joint(state, p, &joint, estimate);
+    estimate->doubt = doubt_of(state, p, &joint, estimate);
 }
 
 /* ---- start and tick ---------------------------------------------------------------------- */
@@ -301,7 +342,6 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
     estimate->a = innovation.a;
     estimate->rho = innovation.rho;
     estimate->epsilon = innovation.epsilon;
-    report_curve(state, p, estimate);
     report(state, p, set_point, &fit, estimate);
     state->delay = sh_fmin(sh_fmax(estimate->delay_hat, -3 * p->prior.delay), 3 * p->prior.delay);
     return 1;

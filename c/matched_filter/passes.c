@@ -25,9 +25,9 @@ static int next_trial(sh_matched_state *state, const sh_parameters *p)
     int tries;
 
     for (tries = 1; tries < SH_GROUPS; ++tries) {
-        state->next_trial = state->next_trial % (SH_GROUPS - 1) + 1;
-        if (has_columns(state, p, state->next_trial))
-            return state->next_trial;
+        state->last_trial = state->last_trial % (SH_GROUPS - 1) + 1;
+        if (has_columns(state, p, state->last_trial))
+            return state->last_trial;
     }
     return 0;
 }
@@ -35,30 +35,32 @@ static int next_trial(sh_matched_state *state, const sh_parameters *p)
 static void start_pass(sh_matched_state *state, const sh_parameters *p)
 {
     sh_posterior *build = &state->build;
-    int trial = 0;
-    sh_real weight;
-
-    sh_blocks_judge(state, p);
-    state->turn = !state->turn;
-    if (!state->turn && state->blocks.count >= SH_BLOCKS_FIRST)
-        trial = next_trial(state, p);
-    if (trial == 0) {
-        state->turn = 1;
-        /* Two passes of two ticks a row, since the last time. */
-        sh_forgetting_step(state, p, 4 * (sh_real)state->size * state->design.T);
-    }
     /* Noise that is correlated is no evidence for columns. */
-    weight = trial == 0 ? 1 / state->variance_factor
-                        : 1 / sh_fmax(sh_fmax(1, state->q), state->excess_mean);
-    sh_posterior_start(state, p, build, trial, weight);
+    const sh_real weight = state->trial == 0
+                               ? 1 / state->variance_factor
+                               : 1 / sh_fmax(sh_fmax(1, state->q), state->excess_mean);
+
+    sh_posterior_start(state, p, build, state->trial, weight);
     build->surplus = state->surplus * weight;
     build->spread = state->spread * weight * weight;
-    state->frozen = state->data;
+    sh_information_copy(&state->frozen, &state->data);
     state->row = 0;
+}
+
+/* Chooses what the next pass is: a trial after every one that changes the estimate. */
+static void plan(sh_matched_state *state, const sh_parameters *p)
+{
+    const int was_trial = state->trial != 0;
+
+    sh_blocks_judge(state, p);
+    state->trial = 0;
+    if (!was_trial && state->blocks.count >= SH_BLOCKS_FIRST)
+        state->trial = next_trial(state, p);
 }
 
 void sh_passes_start(sh_matched_state *state, const sh_parameters *p)
 {
+    state->variance_factor = state->q = 1;
     start_pass(state, p);
 }
 
@@ -87,7 +89,7 @@ static void end_pass(sh_matched_state *state, const sh_parameters *p)
         decide(state);
         return;
     }
-    state->live = state->build;
+    sh_posterior_copy(&state->live, &state->build);
     if (state->live.inertia >= 0)
         sh_posterior_remove(&state->live, 0, p->prior.B);
 }
@@ -108,16 +110,42 @@ static void take_row(sh_matched_state *state, sh_real *x)
     state->row += 1;
 }
 
+/* Time since the data were last treated [s]. */
+static sh_real time_since(const sh_matched_state *state)
+{
+    return state->since * state->design.T;
+}
+
 void sh_passes_step(sh_matched_state *state, const sh_parameters *p, sh_real *x, sh_real w)
 {
+    state->since += 1;
     sh_posterior_take(state, &state->build, x, w, state->work.row);
     state->alternate = !state->alternate;
     if (state->alternate)
         return;
+    /* What a pass needs besides the rows is spread over ticks, too. */
     if (state->row < state->size) {
         take_row(state, x);
         return;
     }
-    end_pass(state, p);
-    start_pass(state, p);
+    switch (state->row - state->size) {
+    case 0:
+        end_pass(state, p);
+        plan(state, p);
+        break;
+    case 1:
+        if (state->trial == 0)
+            sh_forgetting_of_friction(state, time_since(state));
+        break;
+    case 2:
+        if (state->trial == 0)
+            sh_forgetting_step(state, p, time_since(state));
+        break;
+    default:
+        if (state->trial == 0)
+            state->since = 0;
+        start_pass(state, p);
+        return;
+    }
+    state->row += 1;
 }

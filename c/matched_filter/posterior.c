@@ -41,6 +41,22 @@ void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
     posterior->surplus = posterior->removed = posterior->spread = 0;
 }
 
+void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
+{
+    int i;
+
+    sh_information_copy(&to->information, &from->information);
+    for (i = 0; i < from->information.size; ++i)
+        to->column[i] = from->column[i];
+    to->coulomb = from->coulomb;
+    to->inertia = from->inertia;
+    to->trial = from->trial;
+    to->weight = from->weight;
+    to->surplus = from->surplus;
+    to->removed = from->removed;
+    to->spread = from->spread;
+}
+
 sh_real sh_posterior_take(const sh_matched_state *state, sh_posterior *posterior, const sh_real *x,
                           sh_real w, sh_real *row)
 {

@@ -28,6 +28,9 @@
 void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
                         sh_posterior *posterior, int trial, sh_real weight);
 
+/* to = from, as far as it is used. */
+void sh_posterior_copy(sh_posterior *to, const sh_posterior *from);
+
 /* Takes a sample of the weight w times that of the posterior.
  *
  * x    [size: state->size + SH_SIDES] its row, with all columns

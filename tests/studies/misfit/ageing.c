@@ -8,14 +8,14 @@
 
 enum { TENS = 11 };
 
-/* One run. Both settings are standard deviations of priors, see est_settings. */
+/* One run. prior_B is prior.B, drift is matched.drift. */
 static void run(double prior_B, double drift)
 {
-    static est e;
+    static sh_estimator e;
     sim_parameters p;
     sim plant;
-    est_settings s;
-    est_output out;
+    sh_parameters q;
+    sh_estimate out;
     double error[TENS] = {0}, claim[TENS] = {0};
     int n[TENS] = {0}, k;
 
@@ -23,12 +23,14 @@ static void run(double prior_B, double drift)
     p.k_drift = -0.3;
     p.drift_time = -20; /* from 20 to 40 s */
     sim_start(&plant, &p);
-    est_defaults(&s);
-    s.D = (sh_real)1.1e-3;
-    s.prior.torque_gain = 0;
-    s.prior.B = (sh_real)prior_B;
-    s.drift = (sh_real)drift;
-    est_start(&e, &s);
+    sh_parameters_default(&q);
+    q.method = SH_METHOD_MATCHED_FILTER;
+    q.rls.n = 3;
+    q.motor.D_theta = (sh_real)1.1e-3;
+    q.prior.torque_gain = 0;
+    q.prior.B = (sh_real)prior_B;
+    q.matched.drift = (sh_real)drift;
+    sh_estimator_start(&e, &q, &out);
     for (k = 0; k < 105000; ++k) {
         const double t = k * 1e-3;
         const int ten = (int)(t / 10);
@@ -37,8 +39,7 @@ static void run(double prior_B, double drift)
         if (k == 60000)
             p.torque.count = 0;
         sim_next(&plant, &z);
-        est_tick(&e, (sh_real)z.theta, (sh_real)z.q,
-                 (sh_real)setup_set_point(setup_theta_c(&p, z.r)), (sh_real)z.tau, &out);
+        setup_tick(&e, &q, &z, setup_theta_c(&p, z.r), &out);
         if (t > 1) {
             error[ten] += pow((double)out.sigma / z.sigma - 1, 2);
             claim[ten] += pow((double)out.sigma_std / z.sigma, 2);

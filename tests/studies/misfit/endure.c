@@ -9,40 +9,37 @@
 
 enum { MOVING = 20000, ALL = 21000, STILL = 20500 };
 
-static double samples[ALL][4]; /* theta, q, set-point, tau */
+static sim_sample samples[ALL];
+static double theta_c[ALL];
+static sh_parameters q;
 
-static void tick(est *e, int k, est_output *out)
+static void tick(sh_estimator *e, int k, sh_estimate *out)
 {
-    const double *z = samples[k];
-
-    est_tick(e, (sh_real)z[0], (sh_real)z[1], (sh_real)z[2], (sh_real)z[3], out);
+    setup_tick(e, &q, &samples[k], theta_c[k], out);
 }
 
-static void report(const char *when, const est *e, const est_output *out)
+static void report(const char *when, const sh_estimate *out)
 {
     const double sigma = (double)out->sigma, std = (double)out->sigma_std;
 
-    printf("%-16s sigma %.4f +- %.4f q %.3f kappa %.2f finite %d\n", when, sigma, std, (double)e->q,
-           sqrt((double)e->kappa2), isfinite(sigma) && isfinite(std));
+    printf("%-16s sigma %.4f +- %.4f misfit %.3f finite %d\n", when, sigma, std,
+           (double)out->misfit, isfinite(sigma) && isfinite(std));
 }
 
 int main(int argc, char **argv)
 {
-    static est e;
+    static sh_estimator e;
     const long n = argc > 1 ? atol(argv[1]) : 1000000;
     sim_parameters p;
     cat_given given;
     sim s;
-    est_settings settings;
-    est_output out;
+    sh_estimate out;
     long k;
 
     cat_make(AWAS, &CAT_CONDITIONS[0], 1, &p, &given);
     sim_start(&s, &p);
-    est_defaults(&settings);
-    settings.B = (sh_real)given.B;
-    settings.D = (sh_real)given.D;
-    est_start(&e, &settings);
+    setup_parameters(&p, &given, &q);
+    sh_estimator_start(&e, &q, &out);
     for (k = 0; k < ALL; ++k) {
         sim_sample m;
 
@@ -51,18 +48,20 @@ int main(int argc, char **argv)
             p.arm.count = 0;
         }
         sim_next(&s, &m);
-        samples[k][0] = k > STILL ? samples[STILL][0] : m.theta;
-        samples[k][1] = k > STILL ? samples[STILL][1] : m.q;
-        samples[k][2] = m.r * 1000;
-        samples[k][3] = m.tau;
+        if (k > STILL) {
+            m.theta = samples[STILL].theta;
+            m.q = samples[STILL].q;
+        }
+        samples[k] = m;
+        theta_c[k] = setup_theta_c(&p, m.r);
         tick(&e, (int)k, &out);
     }
-    report("after 21 s", &e, &out);
+    report("after 21 s", &out);
     for (k = 0; k < n; ++k)
         tick(&e, STILL + 100 + (int)(k % 400), &out);
-    report("after the rest", &e, &out);
+    report("after the rest", &out);
     for (k = 0; k < 2000000; ++k)
         tick(&e, (int)(k % MOVING), &out);
-    report("after 2e6 ticks", &e, &out);
+    report("after 2e6 ticks", &out);
     return 0;
 }

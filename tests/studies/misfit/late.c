@@ -36,7 +36,7 @@ static void add_misfit(int misfit, int joint, sim_parameters *p)
     }
 }
 
-static void watch(course *c, int k, const est *e, const est_output *out, double sigma)
+static void watch(course *c, int k, const sh_estimator *e, const sh_estimate *out, double sigma)
 {
     const double t = k * 1e-3, error = (double)out->sigma / sigma - 1;
     const int ten = (int)(t / 10);
@@ -48,10 +48,10 @@ static void watch(course *c, int k, const est *e, const est_output *out, double 
         c->wrong += out->confident && fabs(error) > 0.2;
     }
     if (k == 30000)
-        c->kappa2_before = (double)e->kappa2;
+        c->kappa2_before = (double)e->method.matched.variance_factor;
     if (!(t > 30))
         return;
-    if (c->noticed < 0 && (double)e->kappa2 > 1.5 * c->kappa2_before + 0.5)
+    if (c->noticed < 0 && (double)e->method.matched.variance_factor > 1.5 * c->kappa2_before + 0.5)
         c->noticed = t - 30;
     if (!out->confident) {
         if (c->lost < 0)
@@ -62,11 +62,11 @@ static void watch(course *c, int k, const est *e, const est_output *out, double 
 
 static void run(int misfit, int ends, int joint, double memory)
 {
-    static est e;
+    static sh_estimator e;
     sim_parameters p;
     cat_given given;
-    est_settings s;
-    est_output out;
+    sh_parameters q;
+    sh_estimate out;
     sim plant;
     course c;
     int k;
@@ -76,25 +76,24 @@ static void run(int misfit, int ends, int joint, double memory)
     p.on = ends ? -1 : 30;
     p.off = ends ? 30 : 1e9;
     sim_start(&plant, &p);
-    setup_settings(&p, &given, &s);
-    s.prior.torque_gain = 0;
+    setup_parameters(&p, &given, &q);
+    q.prior.torque_gain = 0;
     if (memory > 0)
-        s.memory = (sh_real)memory;
-    est_start(&e, &s);
+        q.matched.memory = (sh_real)memory;
+    sh_estimator_start(&e, &q, &out);
     memset(&c, 0, sizeof c);
     c.noticed = c.lost = c.back = -1;
     for (k = 0; k < 90000; ++k) {
         sim_sample z;
 
         sim_next(&plant, &z);
-        est_tick(&e, (sh_real)z.theta, (sh_real)z.q,
-                 (sh_real)setup_set_point(setup_theta_c(&p, z.r)), (sh_real)z.tau, &out);
+        setup_tick(&e, &q, &z, setup_theta_c(&p, z.r), &out);
         watch(&c, k, &e, &out, z.sigma);
     }
     printf("%s %s, %s: kappa at 30 s %.1f, noticed after %.2f s, not confident from %.2f to %.2f "
            "s after, wrong by 20 %% in %d ticks, kappa at the end %.1f, error/claim %%:",
            NAMES[misfit], ends ? "ends" : "begins", CAT_JOINTS[joint], sqrt(c.kappa2_before),
-           c.noticed, c.lost, c.back, c.wrong, sqrt((double)e.kappa2));
+           c.noticed, c.lost, c.back, c.wrong, sqrt((double)e.method.matched.variance_factor));
     for (k = 0; k < TENS; ++k)
         printf(" %.2f/%.2f", 100 * sqrt(c.error[k] / c.n[k]), 100 * sqrt(c.claim[k] / c.n[k]));
     printf("\n");

@@ -1,15 +1,14 @@
-/* score FIRST LAST [-t] [-c CLASS] [-r ROW] [-j JOINT] [-o key=value] [-v N]
+/* score FIRST LAST [-c CLASS] [-r ROW] [-j JOINT] [-o key=value] [-v N]
  *
  * The table of misfits, over the seeds FIRST to LAST. For each joint, in per cent: RMS error, RMS
  * of sigma_std, share of instants within 1.96 sigma_std, share that is dangerous (error above 10 %,
  * sigma_std below 2 %), share that is confident, share that is confident and over 20 % wrong; then
- * the mean of q and the number of columns that are on.
+ * the mean misfit.
  *
- * -t  the same of MatchedFilter, on the same samples, before
  * -c  one class of catalogue.h
  * -r  rows whose name contains ROW
  * -j  one joint: 0, 1, 2
- * -o  another value of a setting, see override
+ * -o  another value of a parameter, see override
  * -v  prints the estimate every N ticks
  */
 #include <math.h>
@@ -20,7 +19,7 @@
 #include "setup.h"
 
 typedef struct {
-    double error2, claim2, inside, dangerous, confident, wrong20, wrong10, q, n, active;
+    double error2, claim2, inside, dangerous, confident, wrong20, wrong10, misfit, n;
 } score;
 
 static void add(score *s, double truth, double sigma, double std, int confident)
@@ -51,25 +50,26 @@ enum { MAX_OVERRIDES = 40 };
 static int n_overrides;
 static char *overrides[MAX_OVERRIDES]; /* key=value */
 
-static void override(est_settings *s)
+static void override(sh_parameters *q)
 {
     const struct {
         const char *name;
         sh_real *value;
     } keys[] = {
-        {"bias", &s->prior.bias},
-        {"lag", &s->prior.lag},
-        {"loadf", &s->prior.load_friction},
-        {"ecc", &s->prior.eccentric},
-        {"delay", &s->prior.delay},
-        {"rev", &s->prior.reversal},
-        {"power", &s->prior.power},
-        {"gap", &s->prior.gap},
-        {"hyst", &s->prior.hysteresis},
-        {"eccm", &s->prior.eccentric_motor},
-        {"memory", &s->memory},
-        {"slow", &s->slow},
-        {"w", &s->bandwidth},
+        {"prior.torque_gain", &q->prior.torque_gain},
+        {"prior.bias", &q->prior.bias},
+        {"prior.damping", &q->prior.damping},
+        {"prior.load_friction", &q->prior.load_friction},
+        {"prior.eccentric", &q->prior.eccentric},
+        {"prior.delay", &q->prior.delay},
+        {"prior.reversal", &q->prior.reversal},
+        {"prior.power", &q->prior.power},
+        {"prior.gap", &q->prior.gap},
+        {"prior.hysteresis", &q->prior.hysteresis},
+        {"prior.eccentric_motor", &q->prior.eccentric_motor},
+        {"matched.memory", &q->matched.memory},
+        {"matched.slow", &q->matched.slow},
+        {"matched.bandwidth", &q->matched.bandwidth},
     };
     size_t k;
     int i;
@@ -86,27 +86,23 @@ static void override(est_settings *s)
 
 static int trace; /* every so many ticks a line is printed; 0: none */
 
-static void print_trace(double t, const sim_sample *z, const est *e, const est_output *out)
+static void print_trace(double t, const sim_sample *z, const sh_parameters *q, const sh_estimate *e)
 {
-    printf("%7.3f phi %9.5f sigma %9.2f est %9.2f +- %8.2f q %7.3f kappa %7.2f b %7.4f d %7.4f "
-           "C %7.4f bias %7.3f lag %8.5f load %7.4f delay %8.5f on %2x doubt %d\n",
-           t, z->phi, z->sigma, (double)out->sigma, (double)out->sigma_std, (double)e->q,
-           sqrt((double)e->kappa2), (double)out->b, (double)out->d, (double)out->tau_coulomb,
-           (double)out->bias, (double)out->lag, (double)out->load_friction, (double)out->delay,
-           (unsigned)out->on, out->doubt);
+    printf("%7.3f phi %9.5f sigma %9.2f est %9.2f +- %8.2f misfit %7.3f b %7.4f d %7.4f C %7.4f "
+           "bias %7.3f damping %8.4f load %7.4f delay %8.5f hysteresis %7.4f doubt %d\n",
+           t, z->phi, z->sigma, (double)e->sigma, (double)e->sigma_std, (double)e->misfit,
+           (double)(e->B_hat / q->motor.B - 1), (double)(e->D_theta_hat / q->motor.D_theta - 1),
+           (double)e->tau_coulomb_hat, (double)e->bias_hat, (double)e->damping_hat,
+           (double)e->load_friction_hat, (double)e->delay_hat, (double)e->hysteresis_hat, e->doubt);
 }
 
-/* today: score of MatchedFilter, NULL: not wanted */
-static void run(int joint, const cat_condition *c, uint64_t seed, score *found, score *today)
+static void run(int joint, const cat_condition *c, uint64_t seed, score *found)
 {
-    static est e;
     static sh_estimator estimator;
     sim_parameters p;
     cat_given given;
     sim plant;
-    est_settings s;
     sh_parameters q;
-    est_output out;
     sh_estimate estimate;
     const double duration = cat_make(joint, c, seed, &p, &given);
     const int ticks = (int)(duration / p.T + 0.5);
@@ -116,33 +112,20 @@ static void run(int joint, const cat_condition *c, uint64_t seed, score *found, 
     if (!(duration > 0))
         return;
     sim_start(&plant, &p);
-    setup_settings(&p, &given, &s);
-    override(&s);
-    est_start(&e, &s);
-    if (today) {
-        setup_parameters(&p, &given, &q);
-        sh_estimator_start(&estimator, &q, &estimate);
-    }
+    setup_parameters(&p, &given, &q);
+    override(&q);
+    sh_estimator_start(&estimator, &q, &estimate);
     for (k = 0; k < ticks; ++k) {
         sim_sample z;
-        double theta_c;
 
         sim_next(&plant, &z);
-        theta_c = setup_theta_c(&p, z.r);
-        est_tick(&e, (sh_real)z.theta, (sh_real)z.q, (sh_real)setup_set_point(theta_c),
-                 (sh_real)z.tau, &out);
-        if (today)
-            setup_tick(&estimator, &q, &z, theta_c, &estimate);
+        setup_tick(&estimator, &q, &z, setup_theta_c(&p, z.r), &estimate);
         if (trace > 0 && k % trace == 0)
-            print_trace(k * p.T, &z, &e, &out);
+            print_trace(k * p.T, &z, &q, &estimate);
         if (k * p.T < from || z.in_gap || k % 5 != 0)
             continue;
-        add(found, z.sigma, (double)out.sigma, (double)out.sigma_std, out.confident);
-        found->q += (double)e.q;
-        found->active += out.active;
-        if (today)
-            add(today, z.sigma, (double)estimate.sigma, (double)estimate.sigma_std,
-                estimate.confident);
+        add(found, z.sigma, (double)estimate.sigma, (double)estimate.sigma_std, estimate.confident);
+        found->misfit += (double)estimate.misfit;
     }
 }
 
@@ -158,7 +141,6 @@ typedef struct {
     uint64_t first, last; /* seeds */
     const char *row;      /* part of the names of rows, NULL: all */
     int joint, class_;    /* -1: all */
-    int with_today;
 } options;
 
 /* Sums over the rows of a class. */
@@ -173,23 +155,20 @@ static void run_row(const options *o, const cat_condition *c, summary *sum)
 
     printf("%d %-30s", c->class_, c->name);
     for (joint = 0; joint < JOINTS; ++joint) {
-        score found, today;
+        score found;
         uint64_t seed;
 
         if (o->joint >= 0 && joint != o->joint)
             continue;
         memset(&found, 0, sizeof found);
-        memset(&today, 0, sizeof today);
         for (seed = o->first; seed <= o->last; ++seed)
-            run(joint, c, seed, &found, o->with_today ? &today : NULL);
+            run(joint, c, seed, &found);
         if (!(found.n > 0)) {
-            printf(" %40s|", "");
+            printf(" %44s|", "");
             continue;
         }
-        if (o->with_today)
-            print(&today);
         print(&found);
-        printf(" %4.1f %2.0f |", found.q / found.n, found.active / found.n);
+        printf(" %5.2f |", found.misfit / found.n);
         sum->coverage[joint] += 100 * found.inside / found.n;
         sum->errors[joint] += 100 * sqrt(found.error2 / found.n);
         sum->rows[joint] += 1;
@@ -224,16 +203,11 @@ static int parse(int argc, char **argv, options *o)
 
     o->row = NULL;
     o->joint = o->class_ = -1;
-    o->with_today = 0;
     if (argc < 3)
         return 0;
     o->first = strtoull(argv[1], NULL, 10);
     o->last = strtoull(argv[2], NULL, 10);
     for (i = 3; i < argc; ++i) {
-        if (strcmp(argv[i], "-t") == 0) {
-            o->with_today = 1;
-            continue;
-        }
         if (i + 1 >= argc)
             return 0;
         if (strcmp(argv[i], "-r") == 0)
@@ -260,7 +234,7 @@ int main(int argc, char **argv)
     int i;
 
     if (!parse(argc, argv, &o)) {
-        fprintf(stderr, "expected: score FIRST LAST [-t] [-c CLASS] [-r ROW] [-j JOINT] "
+        fprintf(stderr, "expected: score FIRST LAST [-c CLASS] [-r ROW] [-j JOINT] "
                         "[-o key=value] [-v N]\n");
         return 1;
     }

@@ -14,49 +14,15 @@ double setup_theta_c(const sim_parameters *p, double r)
     return p->k_s > 0 ? floor((0.1 - r) / LEAD / count + 0.5) * count : 0;
 }
 
-double setup_set_point(double theta_c)
+void setup_without_candidates(sh_parameters *q)
 {
-    return 100 - LEAD * 1000 * theta_c;
+    q->prior.power = q->prior.gap = q->prior.hysteresis = q->prior.eccentric_motor = 0;
 }
 
-void setup_settings(const sim_parameters *p, const cat_given *given, est_settings *s)
+void setup_without_new_columns(sh_parameters *q)
 {
-    est_defaults(s);
-    s->T = (sh_real)p->T;
-    s->n = given->n;
-    s->m = given->m;
-    s->range_phi = (sh_real)given->range_phi;
-    s->range_set = 100;
-    s->noise = (sh_real)given->noise_tau;
-    s->gamma = (sh_real)p->gamma;
-    s->B = (sh_real)given->B;
-    s->D = (sh_real)given->D;
-    s->count = (sh_real)(2 * PI / p->counts_theta);
-    s->count_q = (sh_real)(2 * PI / p->counts_q);
-    s->prior.tau_e = (sh_real)given->prior_tau_e;
-    s->prior.D = (sh_real)given->prior_D;
-    s->prior.B = (sh_real)given->prior_B;
-    s->prior.tau_coulomb = (sh_real)given->prior_coulomb;
-    s->prior.torque_gain = (sh_real)given->torque_gain;
-}
-
-void setup_without_candidates(est_settings *s)
-{
-    s->prior.power = s->prior.gap = s->prior.hysteresis = s->prior.eccentric_motor = 0;
-}
-
-void setup_without_new_columns(est_settings *s)
-{
-    s->prior.bias = s->prior.lag = s->prior.load_friction = s->prior.eccentric = 0;
-    s->prior.delay = s->prior.reversal = 0;
-}
-
-/* Largest bandwidth at which the noise of the torque is at least as large as that of theta''. */
-static double bandwidth_of(const sim_parameters *p, const cat_given *given)
-{
-    const double noise = 2 * PI / p->counts_theta / sqrt(12.0);
-
-    return fmin(350, 1.42 * sqrt(given->noise_tau / (given->B * p->gamma * noise)));
+    q->prior.bias = q->prior.damping = q->prior.load_friction = q->prior.eccentric = 0;
+    q->prior.delay = q->prior.reversal = 0;
 }
 
 void setup_parameters(const sim_parameters *p, const cat_given *given, sh_parameters *q)
@@ -78,7 +44,6 @@ void setup_parameters(const sim_parameters *p, const cat_given *given, sh_parame
     q->prior.B = (sh_real)given->prior_B;
     q->prior.tau_coulomb = (sh_real)given->prior_coulomb;
     q->prior.torque_gain = (sh_real)given->torque_gain;
-    q->matched.bandwidth = (sh_real)bandwidth_of(p, given);
 }
 
 void setup_tick(sh_estimator *estimator, const sh_parameters *q, const sim_sample *z,

@@ -1,5 +1,5 @@
 /* sines table SEEDS [MODE [REVERSAL]], sines cells RUNS [MODE [REVERSAL]]: single sines on the
- * AwAS, MatchedFilter -> prototype, as in docs/matched-filter.md.
+ * AwAS, MatchedFilter without the columns for misfits -> MODE, as in docs/matched-filter.md.
  *
  * table     the table of frequencies and wrong motor data
  * cells     errors of the motor data drawn from their priors, by frequency and friction
@@ -26,6 +26,8 @@ typedef struct {
     double from; /* instants before are not in the MSREP [s] */
 } motor;
 
+enum { ALL, NONE, NO_CANDIDATES };
+
 static int mode;
 static double reversal = 2e-3;
 
@@ -44,7 +46,7 @@ static void add(sums *s, double t, double from, double truth, double sigma, doub
     }
 }
 
-static void start(const motor *given, sh_parameters *p, est_settings *s)
+static void start(const motor *given, int columns, sh_parameters *p)
 {
     sh_parameters_default(p);
     p->method = SH_METHOD_MATCHED_FILTER;
@@ -54,52 +56,44 @@ static void start(const motor *given, sh_parameters *p, est_settings *s)
     p->prior.D_theta = (sh_real)given->prior_D;
     p->prior.B = (sh_real)given->prior_B;
     p->prior.tau_coulomb = (sh_real)given->prior_C;
-    est_defaults(s);
-    s->D = (sh_real)given->D;
-    s->B = (sh_real)given->B;
-    s->prior.D = (sh_real)given->prior_D;
-    s->prior.B = (sh_real)given->prior_B;
-    s->prior.tau_coulomb = (sh_real)given->prior_C;
-    s->prior.torque_gain = 0;
-    if (mode >= 1)
-        setup_without_candidates(s);
-    if (mode == 1)
-        setup_without_new_columns(s);
-    s->prior.reversal = (sh_real)reversal;
+    p->prior.torque_gain = 0;
+    p->prior.reversal = (sh_real)reversal;
+    if (columns != ALL)
+        setup_without_candidates(p);
+    if (columns == NONE) {
+        setup_without_new_columns(p);
+        p->matched.memory = 0;
+    }
 }
 
-static void run(const sim_parameters *p, const motor *given, sums *today, sums *found)
+static void run(const sim_parameters *p, const motor *given, sums *without, sums *with)
 {
-    static est e;
-    static sh_estimator estimator;
-    sh_parameters q;
-    sh_estimate estimate;
-    est_settings s;
-    est_output out;
+    static sh_estimator estimator[2];
+    sh_parameters q[2];
+    sh_estimate estimate[2];
+    sums *const both[] = {without, with};
     sim plant;
-    int k;
+    int k, i;
 
     sim_start(&plant, p);
-    start(given, &q, &s);
-    sh_estimator_start(&estimator, &q, &estimate);
-    est_start(&e, &s);
+    for (i = 0; i < 2; ++i) {
+        start(given, i == 0 ? NONE : mode, &q[i]);
+        sh_estimator_start(&estimator[i], &q[i], &estimate[i]);
+    }
     for (k = 0; k <= 15000; ++k) {
         sim_sample z;
-        double theta_c;
 
         sim_next(&plant, &z);
-        theta_c = setup_theta_c(p, z.r);
-        est_tick(&e, (sh_real)z.theta, (sh_real)z.q, (sh_real)setup_set_point(theta_c),
-                 (sh_real)z.tau, &out);
-        setup_tick(&estimator, &q, &z, theta_c, &estimate);
-        add(today, k * 1e-3, given->from, z.sigma, (double)estimate.sigma,
-            (double)estimate.sigma_std);
-        add(found, k * 1e-3, given->from, z.sigma, (double)out.sigma, (double)out.sigma_std);
+        for (i = 0; i < 2; ++i) {
+            setup_tick(&estimator[i], &q[i], &z, setup_theta_c(p, z.r), &estimate[i]);
+            add(both[i], k * 1e-3, given->from, z.sigma, (double)estimate[i].sigma,
+                (double)estimate[i].sigma_std);
+        }
     }
-    today->b += (double)estimate.B_hat / p->B;
-    today->C += (double)estimate.tau_coulomb_hat;
-    found->b += given->B * (1 + (double)out.b) / p->B;
-    found->C += (double)out.tau_coulomb;
+    for (i = 0; i < 2; ++i) {
+        both[i]->b += (double)estimate[i].B_hat / p->B;
+        both[i]->C += (double)estimate[i].tau_coulomb_hat;
+    }
 }
 
 static double amplitude(double f)

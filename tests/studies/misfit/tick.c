@@ -1,4 +1,4 @@
-/* tick: time of a tick of MatchedFilter and of the prototype, for several numbers of parameters.
+/* tick: time of a tick of both methods, for several numbers of columns.
  * The time of a tick is the least of all runs; over the ticks, the mean and the worst are printed.
  */
 #define _POSIX_C_SOURCE 199309L
@@ -48,53 +48,27 @@ static void report(const char *name, int p)
            least[FIRST + n / 2], least[FIRST + (int)(n * 0.999)], least[N - 1]);
 }
 
-static void time_today(int n, int m)
+static void time_ticks(const char *name, const sh_parameters *p, int columns)
 {
     static sh_estimator estimator;
-    sh_parameters p;
     sh_estimate estimate;
     int run, k;
 
-    sh_parameters_default(&p);
-    p.method = SH_METHOD_MATCHED_FILTER;
-    p.rls.n = n;
-    p.rls.m = m;
-    p.prior.B = (sh_real)0.1;
     for (run = 0; run < RUNS; ++run) {
-        sh_estimator_start(&estimator, &p, &estimate);
+        sh_estimator_start(&estimator, p, &estimate);
         for (k = 0; k < N; ++k) {
             const double start = now();
 
-            setup_tick(&estimator, &p, &samples[k], theta_c[k], &estimate);
+            setup_tick(&estimator, p, &samples[k], theta_c[k], &estimate);
             keep(run, k, now() - start);
         }
     }
-    report("MatchedFilter", n * m + 3);
-}
-
-static void time_prototype(const char *name, const est_settings *s)
-{
-    static est e;
-    est_output out;
-    int run, k;
-
-    for (run = 0; run < RUNS; ++run) {
-        est_start(&e, s);
-        for (k = 0; k < N; ++k) {
-            const sim_sample *z = &samples[k];
-            const double start = now();
-
-            est_tick(&e, (sh_real)z->theta, (sh_real)z->q, (sh_real)setup_set_point(theta_c[k]),
-                     (sh_real)z->tau, &out);
-            keep(run, k, now() - start);
-        }
-    }
-    report(name, e.columns);
+    report(name, columns > 0 ? columns : estimator.method.matched.size);
 }
 
 int main(void)
 {
-    est_settings s;
+    sh_parameters q;
     sim_parameters p;
     cat_given given;
     sim plant;
@@ -106,21 +80,19 @@ int main(void)
         sim_next(&plant, &samples[k]);
         theta_c[k] = setup_theta_c(&p, samples[k].r);
     }
-    time_today(3, 3);
-    time_today(6, 3);
-    time_today(8, 3);
-    est_defaults(&s);
-    setup_without_candidates(&s);
-    setup_without_new_columns(&s);
-    time_prototype("new columns off", &s);
-    est_defaults(&s);
-    setup_without_candidates(&s);
-    time_prototype("no candidates", &s);
-    est_defaults(&s);
-    time_prototype("all columns", &s);
-    s.n = 4;
-    time_prototype("all columns, n = 4", &s);
-    printf("bytes: MatchedFilter %d, prototype %d (TRI_MAX %d)\n", (int)sizeof(sh_estimator),
-           (int)sizeof(est), TRI_MAX);
+    sh_parameters_default(&q);
+    time_ticks("Paper2011", &q, q.rls.n * q.rls.m);
+    q.method = SH_METHOD_MATCHED_FILTER;
+    q.rls.n = 3;
+    q.prior.B = (sh_real)0.1;
+    time_ticks("all columns", &q, 0);
+    q.rls.n = 4;
+    time_ticks("all columns, n = 4", &q, 0);
+    q.rls.n = 3;
+    setup_without_candidates(&q);
+    time_ticks("no candidates", &q, 0);
+    setup_without_new_columns(&q);
+    time_ticks("torque and motor alone", &q, 0);
+    printf("bytes: %d\n", (int)sizeof(sh_estimator));
     return 0;
 }
