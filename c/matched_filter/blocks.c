@@ -127,6 +127,24 @@ sh_real sh_blocks_threshold(sh_real N)
     return N + 3 * sh_sqrt(2 * N);
 }
 
+/* Mean square of the errors of the recent blocks; 0 while there are too few. The prior, which is
+ * among them, is subtracted.
+ */
+static sh_real recent_misfit(sh_matched_state *state)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_real N = blocks->recent_count;
+    sh_real squares;
+    int i;
+
+    if (N < SH_BLOCKS_FIRST)
+        return 0;
+    squares = sh_information_squares(&blocks->recent, state->beta);
+    for (i = 0; i < state->size; ++i)
+        squares -= state->beta[i] * state->beta[i];
+    return squares > sh_blocks_threshold(N) ? squares / N : 0;
+}
+
 void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;
@@ -141,10 +159,10 @@ void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p)
                                state->beta) /
         free;
     t = sh_blocks_threshold(N) / N;
-    state->q = q;
+    state->q = sh_fmax(q, recent_misfit(state));
     if (!(p->matched.memory > 0)) /* switched off */
         return;
-    state->variance_factor = sh_fmax(1, q);
+    state->variance_factor = sh_fmax(1, state->q);
     if (q > t)
-        state->variance_factor = sh_fmax(q, 1 + (q - t) * sh_fmax(1, N / 5));
+        state->variance_factor = sh_fmax(state->variance_factor, 1 + (q - t) * sh_fmax(1, N / 5));
 }
