@@ -127,8 +127,8 @@ sh_real sh_blocks_threshold(sh_real N)
     return N + 3 * sh_sqrt(2 * N);
 }
 
-/* Mean square of the errors of the recent blocks; 0 while there are too few. The prior, which is
- * among them, is subtracted.
+/* Mean square of the errors of the recent blocks, if it is beyond chance; else 0, and while friction
+ * changes, which they do not contain. The prior, which is among them, is subtracted.
  */
 static sh_real recent_misfit(sh_matched_state *state)
 {
@@ -137,7 +137,7 @@ static sh_real recent_misfit(sh_matched_state *state)
     sh_real squares;
     int i;
 
-    if (N < SH_BLOCKS_FIRST)
+    if (N < SH_BLOCKS_FIRST || state->friction_drifts)
         return 0;
     squares = sh_information_squares(&blocks->recent, state->beta);
     for (i = 0; i < state->size; ++i)
@@ -145,19 +145,30 @@ static sh_real recent_misfit(sh_matched_state *state)
     return squares > sh_blocks_threshold(N) ? squares / N : 0;
 }
 
-void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p)
+/* Mean square of the errors of all blocks: at the estimate, or of the best fit to them if that is
+ * less. Where the misfit is so large that the priors have an effect, the estimate is not the best
+ * fit, and its errors would increase the misfit further.
+ */
+static sh_real whole_misfit(sh_matched_state *state)
 {
     sh_blocks *blocks = &state->blocks;
-    const sh_real N = blocks->count;
-    const sh_real free = N - (sh_real)state->live.information.size / 2;
+    sh_information *a = state->friction_drifts ? &blocks->walking : &blocks->all;
+    const sh_real N = blocks->count, used = (sh_real)state->live.information.size;
+    const sh_real all = (sh_real)state->size;
+    const sh_real q = sh_information_squares(a, state->beta) / (N - used / 2);
+
+    return N > 2 * all ? sh_fmin(q, a->rest / (N - all)) : q;
+}
+
+void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p)
+{
+    const sh_real N = state->blocks.count;
     sh_real q, t;
 
     state->q = state->variance_factor = 1;
-    if (N < SH_BLOCKS_FIRST || !(free > 0))
+    if (N < SH_BLOCKS_FIRST || N <= (sh_real)state->live.information.size)
         return;
-    q = sh_information_squares(state->friction_drifts ? &blocks->walking : &blocks->all,
-                               state->beta) /
-        free;
+    q = whole_misfit(state);
     t = sh_blocks_threshold(N) / N;
     state->q = sh_fmax(q, recent_misfit(state));
     if (!(p->matched.memory > 0)) /* switched off */
