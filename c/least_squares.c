@@ -88,17 +88,3 @@ int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, con
     innovation->a = stability_factor(kind, factor, rho);
     return 1;
 }
-
-int sh_least_squares_weigh(sh_least_squares *rls, sh_real w, const sh_real *F, sh_real y,
-                           sh_innovation *innovation)
-{
-    const sh_real epsilon = prediction_error(rls, F, y);
-    const sh_real rho = sh_ud_factor_project(&rls->P, F);
-
-    if (!take(rls, w, rho, epsilon))
-        return 0;
-    innovation->epsilon = epsilon;
-    innovation->rho = rho;
-    innovation->a = 1;
-    return 1;
-}

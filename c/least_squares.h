@@ -48,15 +48,6 @@ void sh_least_squares_start(sh_least_squares *rls, int size, const sh_real *eta_
 int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
                             sh_real y, sh_innovation *innovation);
 
-/* Takes one sample of a given weight: P^-1 += w F F'. Sets a = 1 in innovation.
- *
- * w  one over the variance of the noise of y, >= 0
- *
- * F, y, innovation and the returned value as for sh_least_squares_update.
- */
-int sh_least_squares_weigh(sh_least_squares *rls, sh_real w, const sh_real *F, sh_real y,
-                           sh_innovation *innovation);
-
 /* Moves the estimate: eta += c v. v [size: size] */
 void sh_least_squares_move(sh_least_squares *rls, sh_real c, const sh_real *v);
 

@@ -58,11 +58,6 @@ void sh_ud_factor_start(sh_ud_factor *P, int size, sh_real P_0)
     }
 }
 
-void sh_ud_factor_set_variance(sh_ud_factor *P, int i, sh_real variance)
-{
-    P->D[i] = variance;
-}
-
 /* Adds one panel's part of a column u of U to its sum in U' F. Even and odd rows have a sum each,
  * as they are neighbours in memory.
  */
@@ -128,17 +123,6 @@ sh_real sh_ud_factor_variance(sh_ud_factor *P, const sh_real *F)
     if (j < P->size)
         even += f[j] * (D[j] * f[j]);
     return even + odd;
-}
-
-sh_real sh_ud_factor_entry(const sh_ud_factor *P, int i, int j)
-{
-    const int last = i > j ? i : j;
-    sh_real sum = 0;
-    int k;
-
-    for (k = last; k < P->size; ++k)
-        sum += P->U[place(P->size, i, k)] * P->D[k] * P->U[place(P->size, j, k)];
-    return sum;
 }
 
 /* f = U' F, g = D f, and rho_j = f_0 g_0 + ... + f_{j-1} g_{j-1}, the part of rho = F' P F that
@@ -223,108 +207,4 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
         g[i + 3] = p[3];
     }
     return g;
-}
-
-/* sum = column i of P, [size: SH_MAX_ROWS]. */
-static void add_up_column(const sh_ud_factor *P, int i, sh_real *sum)
-{
-    int j, k;
-
-    for (j = 0; j < P->size; j += SH_PANEL)
-        sum[j] = sum[j + 1] = sum[j + 2] = sum[j + 3] = 0;
-    /* Columns of U before the i-th have a zero in row i. */
-    for (k = i; k < P->size; ++k) {
-        const sh_real g = P->D[k] * P->U[place(P->size, i, k)];
-        const sh_real *u = P->U + place(P->size, 0, k);
-        int stride = first_stride(P->size);
-
-        for (j = 0; j <= k; j += SH_PANEL) {
-            sum[j] += u[0] * g;
-            sum[j + 1] += u[1] * g;
-            sum[j + 2] += u[2] * g;
-            sum[j + 3] += u[3] * g;
-            u += stride;
-            stride -= SH_PANEL * SH_PANEL;
-        }
-    }
-}
-
-const sh_real *sh_ud_factor_column(sh_ud_factor *P, int i)
-{
-    add_up_column(P, i, P->work.g);
-    return P->work.g;
-}
-
-/* P += c v v' for v in work.f, which is a combination of the columns of U from `first` on.
- * Backwards from the last column:
- *
- *     D_j' = D_j + c v_j^2 ,   v -= v_j U_j ,   U_j += c v_j / D_j' v ,   c *= D_j / D_j' .
- */
-static void widen(sh_ud_factor *P, sh_real c, int first)
-{
-    sh_real *v = P->work.f; /* zero behind its last entry */
-    int i, j;
-
-    for (j = P->size - 1; j >= first; --j) {
-        const sh_real before = P->D[j], v_j = v[j];
-        const sh_real after = before + c * v_j * v_j;
-        const sh_real gain = after > 0 ? c * v_j / after : 0;
-        sh_real *u = P->U + place(P->size, 0, j);
-        int stride = first_stride(P->size);
-
-        for (i = 0; i <= j; i += SH_PANEL) {
-            const sh_real v_0 = v[i] - v_j * u[0], v_1 = v[i + 1] - v_j * u[1];
-            const sh_real v_2 = v[i + 2] - v_j * u[2], v_3 = v[i + 3] - v_j * u[3];
-
-            v[i] = v_0;
-            v[i + 1] = v_1;
-            v[i + 2] = v_2;
-            v[i + 3] = v_3;
-            u[0] += gain * v_0;
-            u[1] += gain * v_1;
-            u[2] += gain * v_2;
-            u[3] += gain * v_3;
-            u += stride;
-            stride -= SH_PANEL * SH_PANEL;
-        }
-        P->D[j] = after;
-        if (after > 0)
-            c *= before / after;
-    }
-}
-
-void sh_ud_factor_widen(sh_ud_factor *P, sh_real c, const sh_real *v)
-{
-    int i;
-
-    for (i = 0; i < P->size; ++i)
-        P->work.f[i] = v[i];
-    for (; i % SH_PANEL != 0; ++i)
-        P->work.f[i] = 0;
-    widen(P, c, 0);
-}
-
-void sh_ud_factor_widen_column(sh_ud_factor *P, sh_real c, int i)
-{
-    add_up_column(P, i, P->work.f);
-    widen(P, c, i);
-}
-
-/* S P S with S = 1 but for its entry i: row i of U grows by that entry, its column shrinks by it.
- */
-void sh_ud_factor_bound(sh_ud_factor *P, int i, sh_real P_max)
-{
-    const int size = P->size;
-    const sh_real variance = sh_ud_factor_entry(P, i, i);
-    sh_real scale;
-    int j;
-
-    if (variance <= P_max)
-        return;
-    scale = sh_sqrt(P_max / variance);
-    P->D[i] *= scale * scale;
-    for (j = i + 1; j < size; ++j)
-        P->U[place(size, i, j)] *= scale;
-    for (j = 0; j < i; ++j)
-        P->U[place(size, j, i)] /= scale;
 }

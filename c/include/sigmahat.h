@@ -39,7 +39,7 @@ typedef SH_REAL sh_real;
  *
  * Paper2011      the paper: Kalman filter (9)-(11), residual (6)-(8), least squares (25)-(27)
  * MatchedFilter  one regression for the torque and the errors of the motor data, from signals
- *                that all passed the same filter: matched_regression.h
+ *                that all passed the same filter: columns.h
  */
 #define SH_METHODS(METHOD)                                                                         \
     METHOD(SH_METHOD_PAPER2011, 1, "Paper2011", sh_paper2011)                                      \
@@ -237,7 +237,7 @@ typedef struct {
                                         engaged, without hysteresis [N.m/rad] */
     sh_real tau_e;                   /* flexibility torque of the fitted model, (21) [N.m] */
     sh_real tau_e_residual;          /* flexibility torque from the motor data: gamma r_e, (8), or
-                                        y of matched_regression.h [N.m] */
+                                        y of columns.h [N.m] */
     sh_real theta_dot;               /* motor velocity used by the residual [rad/s] */
     sh_real phi;                     /* deformation used by the regression [rad] */
     sh_real setPoint;                /* set-point [1] */

@@ -144,7 +144,7 @@ typedef struct {
     sh_real weight;             /* of the data, one over the variance factor of the misfit [1] */
     sh_real surplus;            /* information about b that is rounding, still contained [1] */
     sh_real removed;            /* removed so far [1] */
-    sh_real spread;             /* variance of both [1] */
+    sh_real spread;             /* variance of both, as it acts on the estimate of b [1] */
 } sh_posterior;
 
 /* Blocks of samples, blocks.h. */
@@ -163,6 +163,18 @@ typedef struct {
     sh_real independent;           /* sum of h^2 over what errors that last add to the variance */
     sh_real rounding;              /* sum of squares of the rounding of theta [rad2] */
 } sh_blocks;
+
+/* What a gap in the samples does not end. A refused sample leaves it as it was. */
+typedef struct {
+    sh_real play[SH_PLAYS];        /* states of the play operators [rad] */
+    sh_real phi, phi_min, phi_max; /* deformation: last, least and largest [rad] */
+    sh_real resting;               /* samples since phi changed */
+    sh_real unsure;                /* samples for which the sign of the velocity has been unknown */
+    sh_real settling;              /* time until the filters have forgotten their start [s] */
+    sh_real starting; /* time left in which samples may show that the motor was moving [s] */
+    sh_real rough;    /* mean square of the noise of theta, from its fourth differences [rad2] */
+    sh_real excess, excess_mean; /* noise over what rounding explains, now and its mean [1] */
+} sh_history;
 
 /* The method. */
 typedef struct {
@@ -188,17 +200,10 @@ typedef struct {
     sh_state_variable_filter nominal;       /* torque of the curve rls.eta_0 */
     sh_state_variable_filter filter[SH_MAX_COLUMNS];
     sh_motion_sign motion;
-    sh_real torque_before;         /* torque of the last sample [N.m] */
-    sh_real theta_before[5];       /* the last positions, for differences [rad] */
-    sh_real play[SH_PLAYS];        /* states of the play operators [rad] */
-    sh_real phi, phi_min, phi_max; /* deformation: last, least and largest [rad] */
-    sh_real resting;               /* samples since phi changed */
-    sh_real unsure;                /* samples for which the sign of the velocity has been unknown */
-    sh_real settling;              /* time until the filters have forgotten their start [s] */
-    sh_real starting; /* time left in which samples may show that the motor was moving [s] */
-    sh_real rough;    /* mean square of the noise of theta, from its fourth differences [rad2] */
-    sh_real excess, excess_mean; /* noise over what rounding explains, now and its mean [1] */
-    sh_real R;                   /* variance of the last sample [(N.m)2] */
+    sh_real torque_before;   /* torque of the last sample [N.m] */
+    sh_real theta_before[5]; /* the last positions, for differences [rad] */
+    sh_history history;
+    sh_real R;                          /* variance of the last sample [(N.m)2] */
     sh_real row_before[SH_MAX_COLUMNS]; /* row of the last sample */
     sh_information data, frozen;        /* all samples, and a copy for the present pass */
     sh_posterior live, build;           /* the estimate, and the next one while it is built */

@@ -163,7 +163,7 @@ int sh_column_is_distinct(const sh_matched_state *state, const sh_parameters *p,
                           const sh_column *column)
 {
     /* What is wider than a quarter of the covered range looks like the spring. */
-    const sh_real covered = (state->phi_max - state->phi_min) / 4 / p->range.phi;
+    const sh_real covered = (state->history.phi_max - state->history.phi_min) / 4 / p->range.phi;
 
     if (column->kind == SH_COLUMN_GAP)
         return GAPS[column->index] < covered;
@@ -184,7 +184,7 @@ void sh_columns_move_plays(sh_matched_state *state, const sh_parameters *p, sh_r
     int i;
 
     for (i = 0; i < SH_PLAYS; ++i)
-        state->play[i] = clip(state->play[i] + change, PLAYS[i] * p->range.phi);
+        state->history.play[i] = clip(state->history.play[i] + change, PLAYS[i] * p->range.phi);
 }
 
 /* What the signals depend on. */
@@ -233,7 +233,7 @@ static sh_real input_of(const sh_matched_state *state, const sh_parameters *p,
     case SH_COLUMN_GAP: /* no slope: sigma is that of the spring where it is engaged */
         return clip(at->x, GAPS[column->index]) / GAPS[column->index];
     case SH_COLUMN_PLAY:
-        return state->play[column->index] / (PLAYS[column->index] * p->range.phi);
+        return state->history.play[column->index] / (PLAYS[column->index] * p->range.phi);
     case SH_COLUMN_SIN_M:
         return sh_sin(p->motor.gamma * at->theta);
     case SH_COLUMN_COS_M:

@@ -32,7 +32,7 @@ static void forget(sh_matched_state *state, const sh_parameters *p, sh_real time
     sh_information_fade(&blocks->walking, keep, SH_INFORMATION_LEAST);
     blocks->count *= keep;
     state->surplus *= keep;
-    state->spread *= keep;
+    state->spread *= keep * keep;
 }
 
 static void walk_friction(sh_matched_state *state, sh_information *a, sh_real variance)

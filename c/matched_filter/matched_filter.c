@@ -213,21 +213,35 @@ static void start_matched_filter(sh_estimator *estimator, const sh_parameters *p
     sh_information_start(&state->data, state->size, SH_INFORMATION_LEAST);
     sh_blocks_start(state);
     sh_posterior_start(state, p, &state->live, 0, 1);
-    state->excess = state->excess_mean = 1;
     sh_passes_start(state, p);
     sh_columns_input(state, p, 0, 0, 0, p->setPoint.offset);
     fit = sh_posterior_evaluate(state, &state->live);
     report(state, p, p->setPoint.offset, &fit, estimate);
 }
 
-/* Whether a row can be taken: nothing overflows. */
-static int is_acceptable(const sh_matched_state *state, const sh_real *x, sh_real w)
+static sh_real sum_of_squares(const sh_real *x, int size)
 {
     sh_real sum = 0;
     int i;
 
-    for (i = 0; i < state->size + SH_SIDES; ++i)
+    for (i = 0; i < size; ++i)
         sum += x[i] * x[i];
+    return sum;
+}
+
+/* Whether torque and stiffness do not overflow at the signals in work. */
+static int are_acceptable_signals(const sh_matched_state *state)
+{
+    return sum_of_squares(state->work.F, state->size) <= SH_LARGE &&
+           sum_of_squares(state->work.dF, state->size) <= SH_LARGE &&
+           sh_fabs(state->tau_nominal) <= SH_LARGE && sh_fabs(state->sigma_nominal) <= SH_LARGE;
+}
+
+/* Whether a row can be taken: nothing overflows. */
+static int is_acceptable(const sh_matched_state *state, const sh_real *x, sh_real w)
+{
+    const sh_real sum = sum_of_squares(x, state->size + SH_SIDES);
+
     return sum <= SH_LARGE && w * sum <= SH_LARGE; /* false if not a number */
 }
 
@@ -262,8 +276,11 @@ static int learn(sh_matched_state *state, const sh_parameters *p, innovation_of_
 
     rounding = sh_sample_variance_of_inertia(state, p) * w;
     if (rounding > 0) {
-        /* 6: variance of the square of a noise that is correlated from sample to sample. */
-        const sh_real spread = 6 * rounding * rounding;
+        /* 6: variance of the square of a noise that is correlated from sample to sample. The
+         * removal acts on b over prior.B, see sh_posterior_remove.
+         */
+        const sh_real by_removal = rounding / p->prior.B;
+        const sh_real spread = 6 * by_removal * by_removal;
         sh_posterior *const both[] = {&state->live, &state->build};
 
         state->surplus += rounding;
@@ -286,12 +303,12 @@ static int learn(sh_matched_state *state, const sh_parameters *p, innovation_of_
  */
 static int is_settled(sh_matched_state *state, const sh_parameters *p)
 {
-    state->settling = sh_fmax(state->settling - p->samplePeriod, 0);
-    if (state->settling > 0)
+    state->history.settling = sh_fmax(state->history.settling - p->samplePeriod, 0);
+    if (state->history.settling > 0)
         return 0;
-    if (sh_is_measured(p) || !(state->starting > 0))
+    if (sh_is_measured(p) || !(state->history.starting > 0))
         return 1;
-    state->starting -= p->samplePeriod;
+    state->history.starting -= p->samplePeriod;
     if (!sh_sample_variance_contradicts_rest(state, p, state->work.x))
         return 1;
     sh_signals_unsettle(state);
@@ -302,7 +319,8 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
                                const sh_measurement *z, sh_real set_point, sh_estimate *estimate)
 {
     sh_matched_state *state = &estimator->method.matched;
-    const sh_real phi = z->q - z->theta, phi_min = state->phi_min, phi_max = state->phi_max;
+    const sh_real phi = z->q - z->theta;
+    const sh_history before = state->history;
     innovation_of_sample innovation = {0, 0, 0};
     sh_stiffness_fit fit = {0, 0};
     sh_real y, sigma;
@@ -316,7 +334,7 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
     sh_columns_input(state, p, z->theta, z->q, phi, set_point);
     sh_signals_step(state, p, z->theta, sh_regression_torque(p, z, z->tau));
     y = sh_columns_row(state, p, state->work.x);
-    good = is_acceptable(state, state->work.x, 0);
+    good = are_acceptable_signals(state) && is_acceptable(state, state->work.x, 0);
     if (good && is_settled(state, p))
         good = learn(state, p, &innovation);
     if (good)
@@ -326,8 +344,7 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
         sigma += state->work.dF[i] * state->beta[i];
     if (!good || !isfinite(sigma) || !isfinite(fit.variance)) {
         state->begun = 0; /* the filters start again, so their old state does not matter */
-        state->phi_min = phi_min;
-        state->phi_max = phi_max;
+        state->history = before;
         return 0;
     }
     state->modality = p->modality;

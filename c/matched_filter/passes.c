@@ -38,7 +38,7 @@ static void start_pass(sh_matched_state *state, const sh_parameters *p)
     /* Noise that is correlated is no evidence for columns. */
     const sh_real weight = state->trial == 0
                                ? 1 / state->variance_factor
-                               : 1 / sh_fmax(sh_fmax(1, state->q), state->excess_mean);
+                               : 1 / sh_fmax(sh_fmax(1, state->q), state->history.excess_mean);
 
     sh_posterior_start(state, p, build, state->trial, weight);
     build->surplus = state->surplus * weight;
@@ -138,12 +138,12 @@ void sh_passes_step(sh_matched_state *state, const sh_parameters *p, sh_real *x,
             sh_forgetting_of_friction(state, time_since(state));
         break;
     case 2:
-        if (state->trial == 0)
+        if (state->trial == 0) {
             sh_forgetting_step(state, p, time_since(state));
+            state->since = 0;
+        }
         break;
     default:
-        if (state->trial == 0)
-            state->since = 0;
         start_pass(state, p);
         return;
     }

@@ -60,16 +60,16 @@ sh_sample_variance sh_sample_variance_of(sh_matched_state *state, const sh_param
 {
     const sh_real rounding =
         square(state->sigma) * (square(state->count) + square(state->count_q)) / 12;
-    sh_real R = rounding + square(p->noise.tau_e), stays = rounding * state->resting;
+    sh_real R = rounding + square(p->noise.tau_e), stays = rounding * state->history.resting;
     sh_sample_variance variance;
 
     if (!sh_is_measured(p)) {
         const sh_real friction = friction_variance(state, p);
 
         R = (rounding + square(p->motor.gamma * p->noise.tau)) *
-                (1 + EXCESS * (state->excess - 1)) +
+                (1 + EXCESS * (state->history.excess - 1)) +
             friction / white(state);
-        stays += friction * state->unsure;
+        stays += friction * state->history.unsure;
     }
     variance.last = square(1 + stays / R);
     variance.R = R * variance.last;
@@ -86,9 +86,11 @@ void sh_sample_variance_watch(sh_matched_state *state, const sh_parameters *p)
 
     if (sh_is_measured(p))
         return;
-    state->rough += sh_fmin(T / WATCH, 1) * (sh_signals_roughness(state) - state->rough);
-    state->excess = sh_fmax(1, (torque + inertial * state->rough) / rounded);
-    state->excess_mean += sh_fmin(T / MEAN, 1) * (state->excess - state->excess_mean);
+    state->history.rough +=
+        sh_fmin(T / WATCH, 1) * (sh_signals_roughness(state) - state->history.rough);
+    state->history.excess = sh_fmax(1, (torque + inertial * state->history.rough) / rounded);
+    state->history.excess_mean +=
+        sh_fmin(T / MEAN, 1) * (state->history.excess - state->history.excess_mean);
 }
 
 sh_real sh_sample_variance_of_inertia(const sh_matched_state *state, const sh_parameters *p)

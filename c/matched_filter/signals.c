@@ -23,13 +23,16 @@ void sh_signals_start(sh_matched_state *state, const sh_parameters *p)
     state->count_q = sh_encoder_count(p->encoder.q);
     state->design = sh_state_variable_filter_design(sh_matched_bandwidth(p), p->samplePeriod);
     state->gain_second = sh_state_variable_filter_noise(&state->design);
-    state->starting = SH_FORGOTTEN / state->design.w;
+    state->history.starting = SH_FORGOTTEN / state->design.w;
+    state->history.excess = state->history.excess_mean = 1;
+    state->history.phi_min = SH_LARGE; /* no deformation yet */
+    state->history.phi_max = -SH_LARGE;
 }
 
 void sh_signals_unsettle(sh_matched_state *state)
 {
-    state->starting = 0;
-    state->settling = SH_FORGOTTEN / state->design.w;
+    state->history.starting = 0;
+    state->history.settling = SH_FORGOTTEN / state->design.w;
 }
 
 void sh_signals_resume(sh_matched_state *state)
@@ -40,14 +43,15 @@ void sh_signals_resume(sh_matched_state *state)
 
 void sh_signals_deform(sh_matched_state *state, const sh_parameters *p, sh_real phi)
 {
-    const sh_real change = state->begun ? phi - state->phi : 0;
+    sh_history *history = &state->history;
+    const sh_real change = state->begun ? phi - history->phi : 0;
     const sh_real least = sh_fmin(state->count, state->count_q) / 4;
 
     sh_columns_move_plays(state, p, change);
-    state->phi_min = state->begun ? sh_fmin(state->phi_min, phi) : phi;
-    state->phi_max = state->begun ? sh_fmax(state->phi_max, phi) : phi;
-    state->resting = sh_fabs(change) > least ? 0 : state->resting + 1;
-    state->phi = phi;
+    history->phi_min = sh_fmin(history->phi_min, phi);
+    history->phi_max = sh_fmax(history->phi_max, phi);
+    history->resting = sh_fabs(change) > least ? 0 : history->resting + 1;
+    history->phi = phi;
 }
 
 /* The first sample of the filters. They assume a motor at rest, at any torque. So theta starts at
@@ -117,7 +121,7 @@ static void advance(sh_matched_state *state, const sh_parameters *p, sh_real the
     if (state->has_nominal)
         sh_state_variable_filter_step(&state->nominal, design, state->tau_nominal);
     sh_motion_sign_step(&state->motion, theta, state->count, p->matched.slow * design->T);
-    state->unsure = state->motion.unknown > 0 ? state->unsure + 1 : 0;
+    state->history.unsure = state->motion.unknown > 0 ? state->history.unsure + 1 : 0;
     sh_state_variable_filter_step_mean(&state->friction, design, state->motion.sign);
     sh_state_variable_filter_step_mean(&state->unknown, design, state->motion.unknown);
     advance_columns(state);

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import oracle
-from c_library import Array, Library, load
+from c_library import Array, Library, covariance, load
 from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
 from reference_plant import table1_recording
 
@@ -56,9 +56,7 @@ class Recursion:
 
     @property
     def covariance(self) -> Array:
-        size = range(self.P.size)
-        at = self.c.lib.sh_ud_factor_entry
-        return np.array([[at(self.P, i, j) for j in size] for i in size])
+        return covariance(self.P)
 
     def bytes(self) -> bytes:
         lasting = [self.state.eta, self.state.eta_low, self.P.D, self.P.U, self.innovation]
@@ -257,76 +255,6 @@ def test_P_stays_positive_for_any_samples(
         assert np.all(np.isfinite(recursion.covariance))
 
 
-def test_a_weight_is_the_inverse_of_the_noise_variance(c: Library) -> None:
-    rng = np.random.default_rng(7)
-    F, y, w = rng.normal(size=(30, 4)), rng.normal(size=30), rng.uniform(0, 5, 30)
-    prior = np.array([1.0, 0.0, 9.0, 0.04])
-    recursion = Recursion(c, STANDARD, 1.0, 1.0, np.zeros(4))
-    for i, variance in enumerate(prior):
-        c.lib.sh_ud_factor_set_variance(recursion.P, i, variance)
-    innovation = recursion.innovation
-    for k in range(30):
-        row = F[k].copy()
-        want = y[k] - row @ recursion.eta, row @ recursion.covariance @ row
-        assert c.lib.sh_least_squares_weigh(recursion.state, w[k], c.pointer(row), y[k], innovation)
-        assert (innovation.epsilon, innovation.rho) == pytest.approx(want, rel=1e-9)
-        assert innovation.a == 1.0
-    on = prior > 0
-    information = np.diag(1 / prior[on]) + (F[:, on].T * w) @ F[:, on]
-    assert recursion.eta[on] == pytest.approx(np.linalg.solve(information, F[:, on].T @ (w * y)))
-    assert recursion.covariance[np.ix_(on, on)] == pytest.approx(np.linalg.inv(information))
-    assert recursion.eta[1] == 0.0
-    assert not np.any(recursion.covariance[1])
-
-
-def fitted(c: Library, size: int) -> Recursion:
-    """A recursion after some samples, so that its covariance has no zero entries."""
-    rng = np.random.default_rng(size)
-    recursion = Recursion(c, STANDARD, 1.0, 1.0, np.zeros(size))
-    for row in rng.normal(size=(2 * size, size)):
-        assert recursion.update(row, rng.normal())
-    return recursion
-
-
-@pytest.mark.parametrize("size", [1, 2, 5, 43])
-def test_widening_adds_an_outer_product_to_the_covariance(c: Library, size: int) -> None:
-    recursion = fitted(c, size)
-    v = np.random.default_rng(1).normal(size=size)
-    want = recursion.covariance + 0.3 * np.outer(v, v)
-    c.lib.sh_ud_factor_widen(recursion.P, 0.3, c.pointer(v))
-    assert recursion.covariance == pytest.approx(want, rel=1e-9, abs=1e-12)
-    assert np.all(recursion.diagonal > 0)
-
-
-def test_bounding_shrinks_variances_and_keeps_correlations(c: Library) -> None:
-    recursion = fitted(c, 5)
-    before = recursion.covariance
-    P_max = np.diag(before) * np.array([0.5, 2.0, 1.0, 0.1, 0.9])
-    for i, bound in enumerate(P_max):
-        c.lib.sh_ud_factor_bound(recursion.P, i, bound)
-    scale = np.sqrt(np.minimum(1.0, P_max / np.diag(before)))
-    assert recursion.covariance == pytest.approx(before * np.outer(scale, scale), rel=1e-9)
-
-
-@pytest.mark.parametrize("size", [1, 5, 43])
-def test_a_column_is_that_of_the_covariance(c: Library, size: int) -> None:
-    recursion = fitted(c, size)
-    for i in {0, size // 2, size - 1}:
-        column = c.lib.sh_ud_factor_column(recursion.P, i)[0:size]
-        assert recursion.covariance[:, i] == pytest.approx(list(column), rel=1e-9, abs=1e-12)
-
-
-@pytest.mark.parametrize("size", [1, 5, 43])
-def test_widening_along_a_column_adds_its_outer_product(c: Library, size: int) -> None:
-    for i in {0, size // 2, size - 1}:
-        recursion = fitted(c, size)
-        before = recursion.covariance
-        c.lib.sh_ud_factor_widen_column(recursion.P, 0.3, i)
-        want = before + 0.3 * np.outer(before[i], before[i])
-        assert recursion.covariance == pytest.approx(want, rel=1e-9, abs=1e-12)
-        assert np.all(recursion.diagonal > 0)
-
-
 def test_rounding_errors_of_many_small_moves_do_not_add_up(c: Library) -> None:
     recursion = Recursion(c, STANDARD, 1.0, 1.0, np.array([1e8]))
     v = np.array([1.0])
@@ -345,22 +273,9 @@ def test_nothing_behind_the_end_of_a_regressor_is_used(c: Library, size: int) ->
         for recursion, behind in ((plain, 0.0), (guarded, math.nan)):
             v = np.append(F, np.full(4, behind))
             assert recursion.update(v, y)
-            c.lib.sh_ud_factor_widen(recursion.P, 0.1, c.pointer(v))
             c.lib.sh_least_squares_move(recursion.state, 0.1, c.pointer(v))
             assert c.lib.sh_ud_factor_variance(recursion.P, c.pointer(v)) > 0.0
     assert guarded.bytes() == plain.bytes()
-
-
-@pytest.mark.parametrize("bad", [math.inf, math.nan, 1e300])
-def test_a_bad_weighted_sample_changes_nothing(c: Library, bad: float) -> None:
-    recursion = fitted(c, 3)
-    before = recursion.bytes()
-    for F, y in (([bad, 1.0, 2.0], 1.0), ([1.0, 1.0, 2.0], bad)):
-        row = np.array(F)
-        assert not c.lib.sh_least_squares_weigh(
-            recursion.state, 2.0, c.pointer(row), y, recursion.innovation
-        )
-        assert recursion.bytes() == before
 
 
 @pytest.mark.parametrize("size", [1, 2, 3])

@@ -1,9 +1,9 @@
 /* Runs one estimator for any number of ticks: METHOD N M TORQUE TICKS.
  *
  * TORQUE is the size of a huge torque in the input, in multiples of the usual torque. After every
- * tick, P has to be positive definite and every output finite; if not, the program prints the
- * number of the tick and ends with 1. It prints the outputs at checkpoints, one line each: every
- * time the number of ticks has grown by a third.
+ * tick, P or its inverse has to be positive definite and every output finite; if not, the program
+ * prints the number of the tick and ends with 1. It prints the outputs at checkpoints, one line
+ * each: every time the number of ticks has grown by a third.
  */
 #include <math.h>
 #include <stdio.h>
@@ -12,22 +12,37 @@
 #include "endurance_input.h"
 #include "sigmahat.h"
 
-static int positive(const sh_ud_factor *P)
+static int positive(const sh_real *D, int size)
 {
     int j;
 
-    /* P = U D U' with a unit triangular U */
-    for (j = 0; j < P->size; ++j)
-        if (!(P->D[j] > 0.0))
+    for (j = 0; j < size; ++j)
+        if (!(D[j] > 0.0))
             return 0;
     return 1;
+}
+
+/* Covariance or information, with the factors U D U' or U' D U and a unit triangular U, is positive
+ * definite.
+ */
+static int definite(const sh_estimator *estimator, const sh_parameters *p)
+{
+    const sh_ud_factor *P = &estimator->method.paper2011.rls.P;
+    const sh_matched_state *matched = &estimator->method.matched;
+    const sh_information *posterior = &matched->live.information, *data = &matched->data;
+
+    if (p->method == SH_METHOD_PAPER2011)
+        return positive(P->D, P->size);
+    return positive(posterior->D, posterior->size) && positive(data->D, data->size);
 }
 
 static int finite_outputs(const sh_estimate *e)
 {
     return isfinite(e->sigma + e->tau_e + e->tau_e_residual + e->theta_dot + e->phi + e->setPoint +
                     e->a + e->rho + e->epsilon + e->sigma_std + e->D_theta_hat + e->B_hat +
-                    e->tau_coulomb_hat);
+                    e->tau_coulomb_hat + e->misfit + e->bias_hat + e->damping_hat +
+                    e->load_friction_hat + e->eccentric_hat + e->delay_hat + e->hysteresis_hat +
+                    e->sigma_per_gain);
 }
 
 static void print(long tick, const sh_estimate *e)
@@ -75,7 +90,7 @@ int main(int argc, char **argv)
 
         p.modality = s.modality;
         sh_estimator_tick(&estimator, &p, &z, &estimate);
-        if (!positive(&estimator.rls.P) || !finite_outputs(&estimate)) {
+        if (!definite(&estimator, &p) || !finite_outputs(&estimate)) {
             print(tick, &estimate);
             fprintf(stderr, "failed at tick %ld\n", tick);
             return 1;

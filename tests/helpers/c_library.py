@@ -105,6 +105,20 @@ class Library:
         return name, violation.value, allowed
 
 
+def covariance(P: Any) -> Array:
+    """P = U D U' of a `sh_ud_factor` [size: P.size x P.size]. ud_factor.c says where U is."""
+    size, U = P.size, np.zeros((P.size, P.size))
+    for i in range(size):
+        row = i % 4
+        first = i - row
+        for j in range(i, size):
+            at = first * size - first * (first - 4) // 2 + (j - first) * 4 + row
+            U[i, j] = P.U[at]
+    D = np.array(list(P.D)[:size])
+    product: Array = (U * D) @ U.T
+    return product
+
+
 class Estimator:
     """One estimator with its parameters and its last estimate."""
 
@@ -130,7 +144,9 @@ class Estimator:
         """The state as bytes, without the work arrays, which have no meaning between ticks."""
         ffi = self.library.ffi
         state = ffi.new("sh_estimator *", self.state[0])
-        for part in (state, state.rls.P, state.method.matched):
+        paper2011, matched = state.method.paper2011, state.method.matched
+        is_paper2011 = self.parameters.method == self.library.lib.SH_METHOD_PAPER2011
+        for part in (paper2011, paper2011.rls.P) if is_paper2011 else (matched,):
             size = ffi.sizeof(part.work)
             ffi.memmove(ffi.addressof(part, "work"), bytes(size), size)
         return bytes(ffi.buffer(state))
@@ -162,9 +178,3 @@ class Estimator:
             else ffi.cast("sh_estimate *", ffi.from_buffer(record, require_writable=True)),
         )
         return good
-
-    def covariance(self) -> Array:
-        """P of the regression [size: rls.P.size x rls.P.size]."""
-        P = self.library.ffi.addressof(self.state.rls, "P")
-        at = self.library.lib.sh_ud_factor_entry
-        return np.array([[at(P, i, j) for j in range(P.size)] for i in range(P.size)])

@@ -1,0 +1,275 @@
+"""Least squares in the information form, against dense matrices."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from c_library import Array, Library, load
+from c_matched import SIDES, dense, factors
+
+SIZES = [1, 2, 3, 4, 5, 9, 31, 63]
+Y = 1  # the side of y
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+class Information:
+    """The C struct, and the same as dense matrices."""
+
+    def __init__(self, c: Library, size: int, precision: float = 1.0) -> None:
+        self.c, self.size = c, size
+        self.a = c.new("sh_information")
+        c.lib.sh_information_start(self.a, size, precision)
+        self.matrix = precision * np.eye(size)
+        self.right = np.zeros((size, SIDES))
+        self.squares = 0.0  # sum of w y^2
+
+    def take(self, x: Array, sides: Array, w: float) -> tuple[float, float]:
+        """Returned weight, and the prediction error of y that remains in the row."""
+        row = np.append(x, sides)
+        returned = self.c.lib.sh_information_take(self.a, self.c.pointer(row), w)
+        self.matrix += w * np.outer(x, x)
+        self.right += w * np.outer(x, sides)
+        self.squares += w * sides[Y] ** 2
+        return returned, row[-1]
+
+    def fill(self, rng: np.random.Generator, samples: int) -> None:
+        for _ in range(samples):
+            x, sides = rng.normal(size=self.size), rng.normal(size=SIDES)
+            self.take(x, sides, rng.uniform(0.1, 3.0))
+
+    def solve(self, side: int) -> Array:
+        beta = np.zeros(self.size)
+        self.c.lib.sh_information_solve(self.a, side, self.c.pointer(beta))
+        return beta
+
+    def check(self, rel: float = 1e-9) -> None:
+        """The factors multiply to the dense matrices."""
+        matrix, right = dense(self.a)
+        assert matrix == pytest.approx(self.matrix, rel=rel, abs=rel * np.max(abs(self.matrix)))
+        assert right == pytest.approx(self.right, rel=rel, abs=rel * np.max(abs(self.right)))
+        assert np.all(factors(self.a)[1] > 0)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_samples_add_to_the_information(c: Library, size: int) -> None:
+    rng = np.random.default_rng(size)
+    a = Information(c, size, 0.5)
+    for _ in range(2 * size + 3):
+        x, sides, w = rng.normal(size=size), rng.normal(size=SIDES), rng.uniform(0, 3)
+        inverse = np.linalg.inv(a.matrix)
+        rho = x @ inverse @ x
+        error = sides[Y] - x @ inverse @ a.right[:, Y]
+        assert a.take(x, sides, w) == pytest.approx((w / (1 + w * rho), error), rel=1e-8)
+        a.check()
+    for side in range(SIDES):
+        want = np.linalg.solve(a.matrix, a.right[:, side])
+        assert a.solve(side) == pytest.approx(want, rel=1e-8, abs=1e-10)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_negative_weight_removes_a_sample(c: Library, size: int) -> None:
+    rng = np.random.default_rng(size)
+    a = Information(c, size)
+    a.fill(rng, 2 * size)
+    matrix, squares = a.matrix.copy(), a.a.rest
+    x, sides = rng.normal(size=size), rng.normal(size=SIDES)
+    a.take(x, sides, 2.0)
+    rho = x @ np.linalg.inv(a.matrix) @ x
+    returned, _ = a.take(x, sides, -2.0)
+    assert returned == pytest.approx(-2.0 / (1 - 2.0 * rho), rel=1e-8)
+    assert a.matrix == pytest.approx(matrix)
+    a.check()
+    assert a.a.rest == pytest.approx(squares, rel=1e-8)
+
+
+def test_a_sample_of_zeros_changes_only_the_rest(c: Library) -> None:
+    a = Information(c, 4)
+    a.fill(np.random.default_rng(1), 9)
+    before, rest = [part.copy() for part in factors(a.a)], a.a.rest
+    assert a.take(np.zeros(4), np.array([3.0, 5.0]), 2.0) == (2.0, 5.0)
+    for part, of_before in zip(factors(a.a), before, strict=True):
+        assert np.array_equal(part, of_before)
+    assert a.a.rest == pytest.approx(rest + 2.0 * 5.0**2)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_projection_gives_value_and_variance_of_a_combination(c: Library, size: int) -> None:
+    rng = np.random.default_rng(size)
+    a = Information(c, size)
+    a.fill(rng, size + 2)
+    combination, v = rng.normal(size=size), np.zeros(size)
+    c.lib.sh_information_project(a.a, c.pointer(combination), c.pointer(v))
+    _, D, z = factors(a.a)
+    inverse = np.linalg.inv(a.matrix)
+    assert np.sum(v**2 / D) == pytest.approx(combination @ inverse @ combination, rel=1e-9)
+    assert v @ z == pytest.approx(combination @ inverse @ a.right, rel=1e-8)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_squares_are_those_of_all_samples_and_of_the_start(c: Library, size: int) -> None:
+    rng = np.random.default_rng(size)
+    a = Information(c, size, 0.3)
+    a.fill(rng, size + 5)
+    beta = rng.normal(size=size)
+    want = a.squares - 2 * beta @ a.right[:, Y] + beta @ a.matrix @ beta
+    assert c.lib.sh_information_squares(a.a, c.pointer(beta)) == pytest.approx(want, rel=1e-9)
+    best = a.solve(Y)
+    least = a.squares - a.right[:, Y] @ best
+    assert a.a.rest == pytest.approx(least, rel=1e-8)
+    assert c.lib.sh_information_squares(a.a, c.pointer(best)) == pytest.approx(a.a.rest, rel=1e-9)
+
+
+def test_fading_scales_all_weights(c: Library) -> None:
+    a = Information(c, 5, 1e-9)
+    a.fill(np.random.default_rng(2), 20)
+    estimate, rest = a.solve(Y), a.a.rest
+    c.lib.sh_information_fade(a.a, 0.25, 1e-9)
+    a.matrix *= 0.25
+    a.right *= 0.25
+    a.check()
+    assert a.a.rest == pytest.approx(0.25 * rest)
+    assert a.solve(Y) == pytest.approx(estimate, rel=1e-12)
+
+
+def test_fading_keeps_the_least_precision(c: Library) -> None:
+    a = Information(c, 5)
+    a.fill(np.random.default_rng(3), 20)
+    for _ in range(100):
+        c.lib.sh_information_fade(a.a, 0.5, 1.0)
+    assert factors(a.a)[1].tolist() == [1.0] * 5
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("variance", [0.0, 1e-6, 0.3, 1e6])
+def test_a_walk_adds_to_the_covariance_and_keeps_the_estimate(
+    c: Library, size: int, variance: float
+) -> None:
+    rng = np.random.default_rng(size)
+    a = Information(c, size)
+    a.fill(rng, 2 * size)
+    estimate = [a.solve(side) for side in range(SIDES)]
+    v, row = rng.normal(size=size), np.zeros(size + SIDES)
+    want = np.linalg.inv(a.matrix) + variance * np.outer(v, v)
+    # The information along v that is left is this number of times smaller than before.
+    lost = 1 + variance * (v @ a.matrix @ v)
+    rel, rest = 1e-8 + 1e-14 * lost, a.a.rest
+    c.lib.sh_information_walk(a.a, c.pointer(v), variance, c.pointer(row))
+    matrix, _ = dense(a.a)
+    assert np.linalg.inv(matrix) == pytest.approx(want, abs=rel * np.max(abs(want)))
+    assert np.all(factors(a.a)[1] > 0)
+    for side in range(SIDES):
+        assert a.solve(side) == pytest.approx(estimate[side], abs=rel)
+    assert a.a.rest == pytest.approx(rest, rel=rel)
+
+
+def test_a_walk_of_any_size_leaves_the_information_positive(c: Library) -> None:
+    a = Information(c, 6, 1e-9)
+    rng = np.random.default_rng(4)
+    a.fill(rng, 4)  # fewer samples than parameters
+    for _ in range(200):
+        v, row = rng.normal(size=6), np.zeros(6 + SIDES)
+        c.lib.sh_information_walk(a.a, c.pointer(v), 10.0 ** rng.uniform(-12, 12), c.pointer(row))
+        assert np.all(factors(a.a)[1] > 0)
+        assert all(np.all(np.isfinite(part)) for part in factors(a.a))
+
+
+def exactly(rows: Array, y: Array, precision: float) -> list[Fraction]:
+    """Least squares in rational numbers."""
+    n = rows.shape[1]
+    A = [[Fraction(precision) * (i == j) for j in range(n)] for i in range(n)]
+    b = [Fraction(0)] * n
+    for x, value in zip(rows.tolist(), y.tolist(), strict=True):
+        of_x = [Fraction(number) for number in x]
+        for i in range(n):
+            b[i] += of_x[i] * Fraction(value)
+            for j in range(n):
+                A[i][j] += of_x[i] * of_x[j]
+    for i in range(n):
+        for k in range(i + 1, n):
+            factor = A[k][i] / A[i][i]
+            A[k] = [a - factor * other for a, other in zip(A[k], A[i], strict=True)]
+            b[k] -= factor * b[i]
+    for i in reversed(range(n)):
+        b[i] = (b[i] - sum(A[i][j] * b[j] for j in range(i + 1, n))) / A[i][i]
+    return b
+
+
+@pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12, 0.0])
+def test_columns_that_are_almost_equal(c: Library, distance: float) -> None:
+    """GIVEN a column that two others almost make up, THEN predictions are as good as with exact
+    arithmetic, and with priors so are the parameters: no pivot consists of rounding errors."""
+    rng = np.random.default_rng(5)
+    rows = rng.normal(size=(30, 4))
+    rows[:, 3] = rows[:, 0] + rows[:, 1] + distance * rng.normal(size=30)
+    y = rows @ np.array([1.0, -2.0, 3.0, 0.5]) + 0.1 * rng.normal(size=30)
+    for precision, rel in ((1.0, 1e-9), (1e-9, 1e-3)):
+        a = Information(c, 4, precision)
+        for x, value in zip(rows, y, strict=True):
+            a.take(x, np.array([0.0, value]), 1.0)
+        want = np.array([float(number) for number in exactly(rows, y, precision)])
+        assert rows @ a.solve(Y) == pytest.approx(rows @ want, rel=rel, abs=rel)
+        if precision == 1.0:
+            assert a.solve(Y) == pytest.approx(want, rel=rel)
+        assert np.all(factors(a.a)[1] > 0)
+
+
+@pytest.mark.parametrize("scale", [1e-150, 1e-70, 1e-20, 1e20, 1e70])
+def test_samples_of_extreme_size(c: Library, scale: float) -> None:
+    """As the estimator takes them: the sum of squares of a row is at most 1e150."""
+    rng = np.random.default_rng(6)
+    a = Information(c, 5)
+    for _ in range(50):
+        a.take(scale * rng.normal(size=5), scale * rng.normal(size=SIDES), 1.0)
+    U, D, z = factors(a.a)
+    assert all(np.all(np.isfinite(part)) for part in (U, D, z))
+    assert np.all(D >= 1.0)
+    if scale >= 1:
+        a.check(1e-8)
+
+
+def test_many_samples_of_different_weights_lose_no_digits(c: Library) -> None:
+    rng = np.random.default_rng(7)
+    a = Information(c, 3)
+    rows, y = rng.normal(size=(2000, 3)), rng.normal(size=2000)
+    weights = 10.0 ** rng.uniform(-8, 8, 2000)
+    for x, value, w in zip(rows, y, weights, strict=True):
+        a.take(x, np.array([0.0, value]), w)
+    root = np.sqrt(weights)[:, None]
+    system = np.vstack([root * rows, np.eye(3)]), np.append(root[:, 0] * y, np.zeros(3))
+    want = np.linalg.lstsq(*system, rcond=None)[0]
+    assert a.solve(Y) == pytest.approx(want, rel=1e-10)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_row_is_a_sample_for_another_information(c: Library, size: int) -> None:
+    """All rows with their weights make the same information as all samples."""
+    a, b = Information(c, size, 1e-9), Information(c, size, 1e-9)
+    a.fill(np.random.default_rng(size), size + 4)
+    U, D, z = factors(a.a)
+    for i in range(size):
+        b.take(U[i], z[i], D[i])
+    assert b.matrix == pytest.approx(a.matrix, rel=1e-8, abs=1e-8)
+    b.check()
+
+
+def test_a_copy_is_equal_and_independent(c: Library) -> None:
+    a = Information(c, 4)
+    a.fill(np.random.default_rng(8), 10)
+    copy: Any = c.new("sh_information")
+    c.lib.sh_information_copy(copy, a.a)
+    before = factors(copy)
+    for part, other in zip(before, factors(a.a), strict=True):
+        assert np.array_equal(part, other)
+    assert (copy.size, copy.rest) == (a.a.size, a.a.rest)
+    a.take(np.ones(4), np.ones(SIDES), 1.0)
+    for part, other in zip(before, factors(copy), strict=True):
+        assert np.array_equal(part, other)

@@ -1,0 +1,58 @@
+"""The state of MatchedFilter in C as dense numpy arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from c_library import Array, Estimator
+
+SIDES = 2
+
+
+def factors(a: Any) -> tuple[Array, Array, Array]:
+    """U, D and right-hand sides z of a `sh_information` of n parameters [size: n x n, n, n x 2]."""
+    n = a.size
+    U, z = np.eye(n), np.zeros((n, SIDES))
+    at = 0
+    for i in range(n):
+        others = n - 1 - i
+        row = np.array(list(a.U[at : at + others + SIDES]))
+        U[i, i + 1 :], z[i] = row[:others], row[others:]
+        at += others + SIDES
+    return U, np.array(list(a.D)[:n]), z
+
+
+def dense(a: Any) -> tuple[Array, Array]:
+    """Information matrix sum w x x', and sum w x y for both sides [size: n x n, n x 2]."""
+    U, D, z = factors(a)
+    return (U.T * D) @ U, (U.T * D) @ z
+
+
+def covariance(estimator: Estimator) -> Array:
+    """Covariance of the posterior, with prior variances of 1, in the order of `live.column`."""
+    matrix, _ = dense(estimator.state.method.matched.live.information)
+    inverse: Array = np.linalg.inv(matrix)
+    return inverse
+
+
+def coefficients(estimator: Estimator) -> list[tuple[str, int]]:
+    """Kind and index of each column, as 'BASIS', 0."""
+    names = {
+        getattr(estimator.library.lib, name): name.removeprefix("SH_COLUMN_")
+        for name in dir(estimator.library.lib)
+        if name.startswith("SH_COLUMN_")
+    }
+    matched = estimator.state.method.matched
+    return [(names[column.kind], column.index) for column in matched.column[0 : matched.size]]
+
+
+# Priors of all that a joint has besides the model; 0 removes their columns.
+PLAIN = {
+    f"prior.{name}": 0.0
+    for name in (
+        *("torque_gain", "bias", "damping", "load_friction", "eccentric", "delay", "reversal"),
+        *("power", "gap", "hysteresis", "eccentric_motor"),
+    )
+}
