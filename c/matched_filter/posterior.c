@@ -1,5 +1,7 @@
 #include "posterior.h"
 
+#include <string.h>
+
 #include "columns.h"
 #include "information.h"
 #include "real_math.h"
@@ -92,17 +94,18 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
     posterior->removed += back;
 }
 
-/* Gives the data about b the weight that they have after the removal. */
+/* Gives the data about b the weight that they have after the removal: D[b], and both sides z. */
 static void weigh_inertia(sh_posterior *posterior)
 {
     const int b = posterior->inertia;
     sh_real *const D = &posterior->information.D[b];
-    sh_real *const z = sh_information_row(&posterior->information, b) + SH_SIDE_Y;
+    sh_real *const z = sh_information_row(&posterior->information, b);
     const sh_real of_data = sh_fmax(*D - 1, 0);
     const sh_real share = of_data / (of_data + posterior->removed + posterior->spread);
     const sh_real weighted = 1 + of_data * share;
 
-    *z *= *D * share / weighted;
+    z[SH_SIDE_GAIN] *= *D * share / weighted;
+    z[SH_SIDE_Y] *= *D * share / weighted;
     *D = weighted;
 }
 
@@ -112,13 +115,15 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
     const int size = a->size, b = posterior->inertia;
     const int weigh = b >= 0 && posterior->removed > 0;
     sh_real *const own = state->work.own, *const v = state->work.v;
-    const sh_real D_b = b >= 0 ? a->D[b] : 0;
-    const sh_real z_b = b >= 0 ? sh_information_row(a, b)[SH_SIDE_Y] : 0;
+    sh_real D_b = 0, z_b[SH_SIDES] = {0, 0};
     sh_stiffness_fit fit = {0, 0};
     int i;
 
-    if (weigh)
+    if (weigh) {
+        D_b = a->D[b];
+        memcpy(z_b, sh_information_row(a, b), sizeof z_b);
         weigh_inertia(posterior);
+    }
     for (i = 0; i < size; ++i)
         own[i] = state->work.dF[posterior->column[i]];
     sh_information_project(a, own, v);
@@ -135,7 +140,7 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
         state->beta[posterior->column[i]] = own[i];
     if (weigh) {
         a->D[b] = D_b;
-        sh_information_row(a, b)[SH_SIDE_Y] = z_b;
+        memcpy(sh_information_row(a, b), z_b, sizeof z_b);
     }
     return fit;
 }

@@ -69,7 +69,7 @@ def test_samples_add_to_the_information(c: Library, size: int) -> None:
         rho = x @ inverse @ x
         error = sides[Y] - x @ inverse @ a.right[:, Y]
         assert a.take(x, sides, w) == pytest.approx((w / (1 + w * rho), error), rel=1e-8)
-        a.check()
+    a.check()
     for side in range(SIDES):
         want = np.linalg.solve(a.matrix, a.right[:, side])
         assert a.solve(side) == pytest.approx(want, rel=1e-8, abs=1e-10)
