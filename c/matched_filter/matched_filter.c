@@ -275,7 +275,7 @@ static int learn(sh_matched_state *state, const sh_parameters *p, innovation_of_
     innovation->epsilon = row[state->live.information.size + SH_SIDE_Y];
 
     rounding = sh_sample_variance_of_inertia(state, p) * w;
-    if (rounding > 0) {
+    if (state->live.inertia >= 0) { /* what could not be removed before may be removed now */
         /* 6: variance of the square of a noise that is correlated from sample to sample. The
          * removal acts on b over prior.B, see sh_posterior_remove.
          */

@@ -1,0 +1,530 @@
+"""MatchedFilter in numpy, written from the headers in c/matched_filter/, with dense matrices.
+
+It shares nothing with the C code except the direction of motion, which has its own tests.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from c_library import Array, Library
+from dense_information import SIDES, Information, Long, inverse
+from dense_signals import (
+    CURVE,
+    GROUPS,
+    GAPS,
+    PLAYS,
+    SENSOR,
+    TORQUE,
+    Filtered,
+    Held,
+    Inputs,
+    Parameters,
+    bandwidth,
+    resolution,
+    through,
+)
+
+LEAST = 1e-9
+
+
+class Posterior:
+    """Prior and data of some columns: covariance P and estimates of both sides."""
+
+    def __init__(self, chosen: list[int], weight: float) -> None:
+        n = len(chosen)
+        self.chosen, self.weight = chosen, weight
+        self.surplus = self.removed = self.spread = 0.0
+        self.P: Long = np.eye(n, dtype=np.longdouble)
+        self.beta: Long = np.zeros((n, SIDES), dtype=np.longdouble)
+
+    def sums(self, data: Information) -> tuple[Long, Long]:
+        """Prior and data: information matrix, and right-hand sides."""
+        n, own = len(self.chosen), [*self.chosen, data.size, data.size + 1]
+        matrix = self.weight * data.matrix[np.ix_(own, own)]
+        return matrix[:n, :n] + np.eye(n), matrix[:n, n:]
+
+    def solve(self, data: Information) -> None:
+        matrix, right = self.sums(data)
+        self.P = inverse(matrix)
+        self.beta = self.P @ right
+
+    def learn(self, row: Long, w: float) -> tuple[float, float]:
+        """Returns the prediction error of y, and its variance over that of the sample."""
+        x, sides = row[self.chosen], row[-SIDES:]
+        w = w * self.weight
+        Px = self.P @ x
+        rho = x @ Px * w
+        error = sides - x @ self.beta
+        self.beta = self.beta + np.outer(Px, error) * (w / (1 + rho))
+        self.P = self.P - np.outer(Px, Px) * (w / (1 + rho))
+        return float(error[1]), float(rho)
+
+    def remove(self, information: float, prior_B: float) -> None:
+        self.surplus += information
+        back = min(self.surplus, float(1 / self.P[-1, -1] - 1))
+        if back <= 0:
+            return
+        gain = back / (1 - back * self.P[-1, -1])
+        along = self.P[:, -1].copy()
+        right = np.array([0, 1 / prior_B]) + self.beta[-1]
+        self.beta = self.beta + gain * np.outer(along, right)
+        self.P = self.P + gain * np.outer(along, along)
+        self.surplus -= back
+        self.removed += back
+
+    def weighted(self) -> tuple[Long, Long]:
+        """Estimates and covariance with the weight of the data about b after the removal."""
+        if self.removed <= 0:
+            return self.beta, self.P
+        of_b = max(1 / self.P[-1, -1] - 1, 0)
+        share = of_b / (of_b + self.removed + self.spread)
+        variance = 1 / (1 + of_b * share)
+        along = self.P[:, -1] / self.P[-1, -1]
+        mean = self.beta[-1] / self.P[-1, -1] * share * variance
+        beta = self.beta + np.outer(along, mean - self.beta[-1])
+        return beta, self.P + np.outer(along, along) * (variance - self.P[-1, -1])
+
+
+@dataclass
+class Blocks:
+    """Blocks of 50 ms under a smooth window."""
+
+    all: Information
+    walking: Information
+    recent: Information
+    length: int
+    energy: float
+    energy_second: float
+    count: float = 0.0
+    recent_count: float = 0.0
+    rows: list[Any] = field(default_factory=list)
+
+    def judged(self) -> bool:
+        return self.count >= 20
+
+
+def start_blocks(n: int, w: float, T: float) -> Blocks:
+    length = max(math.floor(0.05 / T + 0.5), 4)
+    k = np.arange(length + math.ceil(30 / (w * T)))
+    h = np.where(k < length, window(k, length), 0.0)
+    filtered = [through(np.append(0.0, h), order, w, T) for order in (0, 2)]
+    shares = [float(np.sum(f**2) / np.sum(h**2)) for f in filtered]
+    sums = [Information(n, precision) for precision in (LEAST, LEAST, 1.0)]
+    return Blocks(*sums, length, *shares)
+
+
+def window(k: Any, length: int) -> Any:
+    x = (k + 0.5) / length
+    return 16 * (x * (1 - x)) ** 2
+
+
+def threshold(N: float) -> float:
+    return N + 3 * math.sqrt(2 * N)
+
+
+class Oracle:
+    """The estimator; `run` gives all outputs of all ticks."""
+
+    def __init__(
+        self, c: Library, p: Parameters, z: Array, eta_0: Array | None, modality: Array
+    ) -> None:
+        self.c, self.p, self.z, self.eta_0, self.modality = c, p, z, eta_0, modality
+        self.good = np.all(np.isfinite(z), axis=1)
+        self.T, self.w = p["samplePeriod"], bandwidth(p)
+        self.runs = self.find_runs()
+        self.inputs = Inputs(p, np.nan_to_num(z), self.runs, eta_0)
+        self.columns = self.inputs.columns
+        self.n = n = len(self.columns)
+        self.kinds = [kind for kind, _, _ in self.columns]
+        self.data = Information(n, LEAST)
+        self.used = [1, 0, 0, 0, 0, 0]
+        self.phi_min, self.phi_max = math.inf, -math.inf
+        self.live = self.posterior(0, 1.0)
+        self.blocks = start_blocks(n, self.w, self.T)
+        self.q = self.factor = 1.0
+        self.surplus = self.spread = 0.0
+        self.trial = self.last_trial = self.row = self.alternate = self.since = 0
+        self.friction_drifts = self.known = False
+        self.beta: Long = np.zeros(n, dtype=np.longdouble)
+        self.sigma = self.y = self.delay = 0.0
+        self.resting = self.unsure = 0
+        self.settling, self.starting = 0.0, 12 / self.w
+        self.rough, self.excess, self.excess_mean = 0.0, 1.0, 1.0
+        self.switched: list[tuple[int, int, int]] = []  # tick, group, whether it is used
+        self.changes = 0  # passes in which the recent data agreed by themselves
+        self.out: dict[str, list[Any]] = {}
+        response = through(np.append([0.0, 1.0], np.zeros(20000)), 2, self.w, self.T)
+        self.gain_second = float(np.sum(response**2))
+        self.start_pass()
+
+    def find_runs(self) -> list[slice]:
+        """Good samples in sequence with one modality."""
+        runs, start = [], None
+        for k in range(len(self.z) + 1):
+            ends = k == len(self.z) or not self.good[k]
+            if start is not None and (ends or self.modality[k] != self.modality[k - 1]):
+                runs.append(slice(start, k))
+                start = None
+            if not ends and start is None:
+                start = k
+        return runs
+
+    # Columns of a posterior
+
+    def is_distinct(self, i: int) -> bool:
+        kind, index, _ = self.columns[i]
+        covered = (self.phi_max - self.phi_min) / 4 / self.p["range.phi"]
+        widths = {"GAP": GAPS, "PLAY": PLAYS}.get(kind)
+        return widths is None or widths[index] < covered
+
+    def group(self, i: int) -> int:
+        return GROUPS.get(self.kinds[i], 0)
+
+    def posterior(self, trial: int, weight: float) -> Posterior:
+        chosen = [
+            i
+            for i in range(self.n)
+            if self.group(i) == 0
+            or (self.group(i) != trial and self.used[self.group(i)] and self.is_distinct(i))
+        ]
+        if trial:
+            chosen += [i for i in self.of_group(trial) if self.is_distinct(i)]
+        return Posterior(chosen, weight)
+
+    def of_group(self, group: int) -> list[int]:
+        return [i for i in range(self.n) if self.group(i) == group]
+
+    # Passes
+
+    def start_pass(self) -> None:
+        least = max(1.0, self.q, self.excess_mean)
+        weight = 1 / (least if self.trial else self.factor)
+        self.build = self.posterior(self.trial, weight)
+        self.build.surplus = self.surplus * weight
+        self.build.spread = self.spread * weight**2
+        self.row = 0
+
+    def end_pass(self, k: int) -> None:
+        if not self.trial:
+            self.build.solve(self.data)
+            self.live = self.build
+            self.build = Posterior([], 1.0)  # until the next pass starts
+            if self.p["prior.B"] > 0:
+                self.live.remove(0.0, self.p["prior.B"])
+            return
+        own = sum(self.group(i) != self.trial for i in self.build.chosen)
+        gain = self.evidence(len(self.build.chosen)) - self.evidence(own)
+        used = 1 if gain > 3 else 0 if gain < 0 else self.used[self.trial]
+        if used != self.used[self.trial]:
+            self.switched.append((k, self.trial, used))
+        self.used[self.trial] = used
+
+    def evidence(self, first: int) -> float:
+        """Logarithm of the evidence of the first columns, but for a constant."""
+        matrix, sides = self.build.sums(self.data)
+        A, right = matrix[:first, :first], sides[:first, 1]
+        _, log_determinant = np.linalg.slogdet(A.astype(float))
+        return float((right @ inverse(A) @ right - log_determinant) / 2)
+
+    def judge(self) -> None:
+        N = self.blocks.count
+        free = N - len(self.live.chosen) / 2
+        self.q = self.factor = 1.0
+        if not self.blocks.judged() or free <= 0:
+            return
+        sums = self.blocks.walking if self.friction_drifts else self.blocks.all
+        self.q = sums.squares(self.beta) / free
+        t = threshold(N) / N
+        if self.p["matched.memory"] > 0:
+            self.factor = max(1.0, self.q)
+            if self.q > t:
+                self.factor = max(self.q, 1 + (self.q - t) * max(1, N / 5))
+
+    def plan(self) -> None:
+        was_trial = self.trial != 0
+        self.judge()
+        self.trial = 0
+        if was_trial or not self.blocks.judged():
+            return
+        for _ in range(5):
+            self.last_trial = self.last_trial % 5 + 1
+            if any(self.is_distinct(i) for i in self.of_group(self.last_trial)):
+                self.trial = self.last_trial
+                return
+
+    def walk_friction(self, sums: Information, time: float) -> None:
+        for i, kind in enumerate(self.kinds):
+            if kind in ("VISCOUS", "COULOMB"):
+                sums.walk(np.eye(self.n, dtype=np.longdouble)[i], 1e-3 * time)
+
+    def watch_friction(self, time: float) -> None:
+        blocks, N = self.blocks, self.blocks.count
+        self.walk_friction(blocks.walking, time)
+        if N > 2 * self.n:
+            constant, walking = blocks.all.rest, blocks.walking.rest
+            if walking < 0.8 * constant and constant > (N - self.n) * threshold(N) / N:
+                self.friction_drifts = True
+            elif walking > 0.95 * constant:
+                self.friction_drifts = False
+        if self.friction_drifts:
+            self.walk_friction(self.data, time)
+
+    def forget(self, time: float) -> None:
+        blocks, memory, drift = self.blocks, self.p["matched.memory"], self.p["matched.drift"]
+        keep = math.exp(-10 * time / memory) if memory else 1.0
+        blocks.recent.fade(keep)
+        blocks.recent_count *= keep
+        both = (self.data, blocks.all, blocks.walking)
+        if self.factor > 1.5:
+            N = blocks.recent_count
+            has_changed = N > 20 and blocks.recent.rest < threshold(N)
+            self.changes += has_changed
+            keep = math.exp(-time / (memory / 5 if has_changed else memory))
+            for sums in both:
+                sums.fade(keep)
+            blocks.count *= keep
+            self.surplus *= keep
+            self.spread *= keep**2
+        v = np.where([kind in CURVE for kind in self.kinds], self.before[: self.n], 0)
+        power = v @ v
+        if drift > 0 and power > 0:
+            for sums in both:
+                sums.walk(v, drift * time / (power + self.R))
+
+    def advance_pass(self, k: int) -> None:
+        self.since += 1
+        self.alternate = not self.alternate
+        if self.alternate:
+            return
+        stage = self.row - self.n
+        if stage == 0:
+            self.end_pass(k)
+            self.plan()
+        if stage == 1 and not self.trial:
+            self.watch_friction(self.since * self.T)
+        if stage == 2 and not self.trial:
+            self.forget(self.since * self.T)
+            self.since = 0
+        if stage == 3:
+            self.start_pass()
+        else:
+            self.row += 1
+
+    # Samples
+
+    def friction_variance(self, unknown: float) -> float:
+        if "COULOMB" not in self.kinds or unknown == 0:
+            return 0.0
+        C = self.kinds.index("COULOMB")
+        own = self.live.chosen.index(C)
+        variance = float(self.beta[C] ** 2 + self.live.P[own, own])
+        return (self.p["motor.gamma"] * self.p["prior.tau_coulomb"] * unknown) ** 2 * variance
+
+    def watch(self, roughness: float) -> None:
+        white = 3 / 16 * self.w * self.T
+        torque = white * (self.p["motor.gamma"] * self.p["noise.tau"]) ** 2
+        inertial = (self.p["motor.gamma"] ** 2 * self.p["motor.B"]) ** 2 * self.gain_second
+        rounded = torque + inertial * resolution(self.p["encoder.theta"]) ** 2 / 12
+        self.rough += min(self.T / 0.1, 1) * (roughness - self.rough)
+        self.excess = max(1.0, (torque + inertial * self.rough) / rounded)
+        self.excess_mean += min(self.T / 5, 1) * (self.excess - self.excess_mean)
+
+    def variance(self, filtered: Filtered, at: int) -> tuple[float, float]:
+        """R, and the factor in it by errors that last."""
+        p = self.p
+        counts = sum(resolution(p[f"encoder.{name}"]) ** 2 for name in ("theta", "q"))
+        rounding = self.sigma**2 * counts / 12
+        stays = rounding * self.resting
+        if filtered.measured:
+            R = rounding + p["noise.tau_e"] ** 2
+        else:
+            friction = self.friction_variance(filtered.unknown_f[at])
+            R = rounding + (p["motor.gamma"] * p["noise.tau"]) ** 2
+            R = R * (1 + 0.3 * (self.excess - 1)) + friction * 16 / (3 * self.w * self.T)
+            stays += friction * self.unsure
+        last = (1 + stays / R) ** 2
+        return R * last, last
+
+    def take_block(self, row: Long, R: float, last: float, rough: float, measured: bool) -> None:
+        blocks = self.blocks
+        blocks.rows.append((row, 1 / R, last, rough))
+        if len(blocks.rows) < blocks.length:
+            return
+        h = window(np.arange(blocks.length), blocks.length)
+        w = np.array([entry[1] for entry in blocks.rows])
+        mean = sum(h[i] * w[i] * entry[0] for i, entry in enumerate(blocks.rows)) / (h @ w)
+        variance = (h**2 @ w) / (h @ w) ** 2 * blocks.energy
+        if not measured:
+            V = (self.p["motor.gamma"] ** 2 * self.p["motor.B"]) ** 2
+            V *= np.mean([entry[3] for entry in blocks.rows])
+            variance += V * blocks.energy_second * np.sum(h**2) / np.sum(h) ** 2
+        count = np.sum(h**2 / np.array([entry[2] for entry in blocks.rows])) / np.sum(h**2)
+        for sums in (blocks.all, blocks.walking, blocks.recent):
+            sums.take(mean, 1 / variance)
+        blocks.count += count
+        blocks.recent_count += count
+        blocks.rows.clear()
+
+    def learn(self, k: int, filtered: Filtered, row: Long, rough: float) -> tuple[float, float]:
+        at = k - filtered.run.start
+        if not filtered.measured:
+            self.watch(rough)
+        R, last = self.variance(filtered, at)
+        self.R, self.before = R, row
+        innovation = self.live.learn(row, 1 / R)
+        prior_B = self.p["prior.B"]
+        if prior_B > 0:
+            inertial = 0.0 if filtered.measured else self.p["motor.gamma"] ** 2 * self.p["motor.B"]
+            N = (inertial * prior_B) ** 2 * self.gain_second * rough / R
+            Q = 6 * (N / prior_B) ** 2
+            self.surplus += N
+            self.spread += Q
+            for posterior in (self.live, self.build):
+                posterior.spread += Q * posterior.weight**2
+            self.build.surplus += N * self.build.weight
+            self.live.remove(N * self.live.weight, prior_B)
+        self.data.take(row, 1 / R)
+        self.take_block(row, R, last, rough, filtered.measured)
+        self.advance_pass(k)
+        return innovation
+
+    def is_settled(self, filtered: Filtered, at: int, row: Long) -> bool:
+        self.settling = max(self.settling - self.T, 0)
+        if self.settling > 0:
+            return False
+        if filtered.measured or self.starting <= 0:
+            return True
+        self.starting -= self.T
+        p = self.p
+        x = row[self.live.chosen]
+        error = row[-1] - x @ self.beta[self.live.chosen]
+        inertial = p["motor.gamma"] ** 2 * p["motor.B"] * resolution(p["encoder.theta"])
+        variance = 3 / 16 * self.w * self.T * (p["motor.gamma"] * p["noise.tau"]) ** 2
+        variance += inertial**2 / 12 * self.gain_second
+        variance += self.friction_variance(filtered.unknown_f[at]) + x @ self.live.P @ x
+        if error**2 <= 25 * variance:
+            return True
+        self.starting, self.settling = 0.0, 12 / self.w
+        return False
+
+    # One run of samples
+
+    def run(self) -> dict[str, Array]:
+        for number, run in enumerate(self.runs):
+            measured = self.modality[run.start] == SENSOR
+            filtered = Filtered(self.c, self.p, self.inputs, self.z, run, measured)
+            if number:
+                self.starting, self.settling = 0.0, 12 / self.w
+                self.blocks.rows.clear()
+            self.go(filtered)
+        return {name: np.array(values, dtype=np.float64) for name, values in self.out.items()}
+
+    def go(self, filtered: Filtered) -> None:
+        run = filtered.run
+        theta = np.concatenate([np.full(4, self.z[run.start, 0]), self.z[run, 0]])
+        rough = np.convolve(theta, [1, -4, 6, -4, 1], "valid") ** 2 / 70
+        derivatives = filtered.torque_derivatives()
+        errors = {
+            i: filtered.encoder_error(i)
+            for i, kind in enumerate(self.kinds)
+            if kind in ("SIN_M", "COS_M")
+        }
+        load = Held(self.w, self.T)
+        for k in range(run.start, run.stop):
+            at = k - run.start
+            self.deform(k, at)
+            if at:
+                self.unsure = self.unsure + 1 if filtered.unknown[at] > 0 else 0
+            row = np.concatenate([filtered.rows[at], filtered.sides[at]]).astype(np.longdouble)
+            for i, (kind, _, prior) in enumerate(self.columns):
+                if kind == "LOAD":
+                    tau_e = self.torque(k) if self.known else self.y
+                    signal = -abs(tau_e) * filtered.sign[at] * prior
+                    value = load.step(signal) if at else 0.0
+                    row[i] = 0.0 if filtered.measured else value
+                if kind == "DELAY":
+                    first, second = derivatives[0][at], derivatives[1][at]
+                    row[i] = -prior * filtered.gain * (first + self.delay / 2 * second)
+                if i in errors and self.known and not filtered.measured:
+                    row[i] = self.sigma * errors[i][0][at] + errors[i][1][at]
+            settled = self.is_settled(filtered, at, row)
+            epsilon, rho = self.learn(k, filtered, row, rough[at]) if settled else (0.0, 0.0)
+            self.report(k, filtered.y[at], epsilon, rho, settled)
+
+    def deform(self, k: int, at: int) -> None:
+        phi = self.inputs.phi
+        change = phi[k] - phi[k - 1] if at else 0.0
+        least = min(resolution(self.p[f"encoder.{name}"]) for name in ("theta", "q")) / 4
+        self.phi_min, self.phi_max = min(self.phi_min, phi[k]), max(self.phi_max, phi[k])
+        self.resting = 0 if abs(change) > least else self.resting + 1
+
+    def torque(self, k: int) -> float:
+        of = [i for i, kind in enumerate(self.kinds) if kind in TORQUE]
+        return float(self.inputs.F[k, of] @ self.beta[of] + self.inputs.nominal[k])
+
+    # Outputs
+
+    def report(self, k: int, y: float, epsilon: float, rho: float, settled: bool) -> None:
+        p = self.p
+        beta, P = self.live.weighted()
+        dF = self.inputs.dF[k, self.live.chosen]
+        self.beta = np.zeros(self.n, dtype=np.longdouble)
+        self.beta[self.live.chosen] = beta[:, 1]
+        self.sigma = float(dF @ beta[:, 1] + self.inputs.nominal_slope[k])
+        by_gain, variance = float(dF @ beta[:, 0]), float(dF @ P @ dF)
+        self.known = math.sqrt(variance) < 0.2 * self.sigma
+        self.y = y
+        of: dict[str, float] = {}
+        for i, (kind, index, prior) in enumerate(self.columns):
+            scale = self.inputs.l[k] ** index if kind == "DAMPING" else 1.0
+            of[kind] = of.get(kind, 0.0) + float(self.beta[i]) * prior * scale
+        delay = of.get("DELAY", 0.0)
+        self.delay = min(max(delay, -3 * p["prior.delay"]), 3 * p["prior.delay"])
+        K_0 = p["prior.tau_e"] / p["range.phi"]
+        eccentric = math.hypot(of.get("SIN_Q", 0.0), of.get("COS_Q", 0.0))
+        values = {
+            "sigma": self.sigma,
+            "sigma_std": math.sqrt(variance + (p["prior.torque_gain"] * by_gain) ** 2),
+            "sigma_per_gain": by_gain / abs(self.sigma) if self.sigma else 0.0,
+            "tau_e": self.torque(k),
+            "tau_e_residual": y,
+            "epsilon": epsilon,
+            "rho": rho,
+            "a": float(settled),
+            "eta": self.curve(of.get("NOMINAL", 0.0)),
+            "D_theta_hat": p["motor.D_theta"] * (1 + of.get("VISCOUS", 0.0)),
+            "B_hat": p["motor.B"] * (1 + of.get("INERTIA", 0.0)),
+            "tau_coulomb_hat": of.get("COULOMB", 0.0),
+            "misfit": math.sqrt(max(1.0, self.q)),
+            "bias_hat": of.get("BIAS", 0.0),
+            "damping_hat": of.get("DAMPING", 0.0),
+            "load_friction_hat": of.get("LOAD", 0.0),
+            "eccentric_hat": eccentric / K_0 if K_0 else 0.0,
+            "delay_hat": delay,
+            "hysteresis_hat": of.get("PLAY", 0.0),
+        }
+        for name, value in values.items():
+            self.out.setdefault(name, []).append(value)
+
+    def curve(self, error: float) -> Array:
+        """Coefficients of setPoint^j phi^e [size: 8 x 5]."""
+        n, eta = self.p["rls.n"], np.zeros((8, 5))
+        if self.eta_0 is not None:
+            eta[: self.eta_0.shape[0], : self.eta_0.shape[1]] = (1 + error) * self.eta_0
+        for i, (kind, index, prior) in enumerate(self.columns):
+            places = {
+                "BASIS": (index % n, index // n),
+                "POWER": (n + index, 0),
+                "SET_POWER": (0 if self.p["rls.symmetric"] else 1, self.p["rls.m"]),
+            }
+            if kind in places:
+                number, j = places[kind]
+                e = self.inputs.exponent(number)
+                unit = self.p["range.phi"] ** e * self.p["range.setPoint"] ** j * max(e, 1)
+                eta[number, j] += float(self.beta[i]) * prior / unit
+        return eta

@@ -1,0 +1,252 @@
+"""The signals of MatchedFilter from whole records, with the filters of scipy.
+
+A record is cut into runs of samples without a gap; in each of them the filters begin anew.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from scipy import signal
+
+from c_library import Array, Library
+
+Parameters = Mapping[str, Any]
+GAPS = (0.01, 0.04, 0.16)
+PLAYS = (0.005, 0.02, 0.08)
+SENSOR = 2
+
+
+def through(x: Array, order: int, w: float, T: float, held: bool = False) -> Array:
+    """x filtered by s^order w^3 / (s + w)^3, from zero: x linear between samples, or held."""
+
+    def response(u: Array, method: str) -> Array:
+        system = [w**3] + [0.0] * order, np.poly([-w] * 3)
+        b, a, _ = signal.cont2discrete(system, T, method=method)
+        return np.asarray(signal.lfilter(b.ravel(), a, u, axis=0))
+
+    if held:
+        return response(x, "zoh")
+    return response(x - x[0], "foh") + response(np.broadcast_to(x[0], x.shape), "zoh")
+
+
+def resolution(counts: float) -> float:
+    """Resolution of an encoder [rad]; 0 without quantisation."""
+    return 2 * math.pi / counts if counts else 0.0
+
+
+def bandwidth(p: Parameters) -> float:
+    """Corner frequency of the filters [rad/s]."""
+    rounding = p["motor.B"] * abs(p["motor.gamma"]) * resolution(p["encoder.theta"]) / math.sqrt(12)
+    if p["modality"] == SENSOR or rounding == 0:
+        return float(p["matched.bandwidth"])
+    return float(min(p["matched.bandwidth"], 1.42 * math.sqrt(p["noise.tau"] / rounding)))
+
+
+def direction(c: Library, theta: Array, count: float, slow: float) -> tuple[Array, Array]:
+    """Mean sign over the sample that ends at each instant, and 0 if it is known, else 1 or more."""
+    motion = c.new("sh_motion_sign")
+    c.lib.sh_motion_sign_start(motion, theta[0])
+    found = [(0.0, 1.0)]
+    for x in theta[1:]:
+        c.lib.sh_motion_sign_step(motion, x, count, slow)
+        found.append((motion.sign, motion.unknown))
+    sign, unknown = np.array(found).T
+    return sign, unknown
+
+
+Column = tuple[str, int, float]  # kind, number in its kind, prior
+
+
+def columns(p: Parameters, nominal: bool) -> list[Column]:
+    """The columns in their order. Those with a prior of 0 are left out."""
+    tau_e, n, m = p["prior.tau_e"], p["rls.n"], p["rls.m"]
+    K_0 = tau_e / p["range.phi"]
+    most_n, most_m = 8, 5
+
+    def of(name: str) -> float:
+        return float(p[f"prior.{name}"])
+
+    found: list[Column] = [("BASIS", i, tau_e) for i in range(n * m)]
+    found += [("NOMINAL", 0, of("nominal") if nominal else 0.0), ("BIAS", 0, of("bias") * tau_e)]
+    found += [("DAMPING", j, of("damping") * K_0) for j in sorted({0, m - 1})]
+    found += [(f"{name}_Q", 0, of("eccentric") * K_0) for name in ("SIN", "COS")]
+    found += [("LOAD", 0, of("load_friction")), ("DELAY", 0, of("delay"))]
+    found += [("REVERSAL", 0, of("reversal") * of("tau_coulomb"))]
+    found += [("POWER", i, of("power") * tau_e) for i in range(2) if n + i < most_n]
+    linear = 0 if p["rls.symmetric"] else 1
+    if 1 < m < most_m and linear < n:
+        found += [("SET_POWER", 0, of("power") * tau_e)]
+    found += [("GAP", i, of("gap") * tau_e) for i in range(3)]
+    found += [("PLAY", i, of("hysteresis") * tau_e) for i in range(3)]
+    found += [(f"{name}_M", 0, of("eccentric_motor")) for name in ("SIN", "COS")]
+    found += [("VISCOUS", 0, of("D_theta")), ("COULOMB", 0, of("tau_coulomb"))]
+    found += [("INERTIA", 0, of("B"))]
+    return [column for column in found if column[2] > 0]
+
+
+GROUPS = {"POWER": 1, "SET_POWER": 2, "GAP": 3, "PLAY": 4, "SIN_M": 5, "COS_M": 5}
+TORQUE = ("BASIS", "NOMINAL", "POWER", "SET_POWER", "GAP")
+CURVE = ("BASIS", "NOMINAL", "POWER", "SET_POWER")
+
+
+def plays(phi: Array, runs: list[slice], range_phi: float) -> Array:
+    """States of the play operators [size: ticks x 3]. They do not move over a gap."""
+    widths = range_phi * np.array(PLAYS)
+    state, states = np.zeros(3), np.zeros((len(phi), 3))
+    for run in runs:
+        for k in range(run.start, run.stop):
+            if k > run.start:
+                state = np.clip(state + phi[k] - phi[k - 1], -widths, widths)
+            states[k] = state
+    return states
+
+
+class Inputs:
+    """Signals of the columns before the filters, and their slopes over phi [size: ticks x n]."""
+
+    def __init__(self, p: Parameters, z: Array, runs: list[slice], eta_0: Array | None) -> None:
+        theta, q, theta_c = z[:, 0], z[:, 1], z[:, 2]
+        self.p, self.theta, self.q, self.phi = p, theta, q, q - theta
+        self.x = self.phi / p["range.phi"]
+        self.set_point = 100 - 2.5 / (2 * math.pi) * theta_c
+        self.l = self.set_point / p["range.setPoint"]
+        self.plays = plays(self.phi, runs, p["range.phi"])
+        self.columns = columns(p, eta_0 is not None)
+        zero = np.zeros(len(z))
+        self.nominal, self.nominal_slope = zero, zero
+        if eta_0 is not None:  # coefficients of setPoint^j phi^e [size: n x m]
+            for (i, j), value in np.ndenumerate(eta_0):
+                e, l = self.exponent(i), value * self.set_point**j
+                self.nominal = self.nominal + l * self.phi**e
+                self.nominal_slope = self.nominal_slope + l * e * self.phi ** max(e - 1, 0)
+        pairs = [self.signal(kind, index) for kind, index, _ in self.columns]
+        priors = np.array([prior for _, _, prior in self.columns])
+        self.F = np.array([f for f, _ in pairs]).T * priors
+        self.dF = np.array([slope for _, slope in pairs]).T * priors
+
+    def exponent(self, i: int) -> int:
+        return 2 * i + 1 if self.p["rls.symmetric"] else i
+
+    def power(self, e: int) -> tuple[Array, Array]:
+        """x^e / e and its slope over phi; 1 for e = 0."""
+        if e == 0:
+            return np.ones(len(self.x)), np.zeros(len(self.x))
+        return self.x**e / e, self.x ** (e - 1) / self.p["range.phi"]
+
+    def signal(self, kind: str, index: int) -> tuple[Array, Array]:
+        n, m, zero = self.p["rls.n"], self.p["rls.m"], np.zeros(len(self.x))
+        if kind == "BASIS":
+            f, slope = self.power(self.exponent(index % n))
+            return f * self.l ** (index // n), slope * self.l ** (index // n)
+        if kind == "POWER":
+            return self.power(self.exponent(n + index))
+        if kind == "SET_POWER":
+            return self.x * self.l**m, self.l**m / self.p["range.phi"]
+        if kind == "NOMINAL":
+            return self.nominal, self.nominal_slope
+        gamma = self.p["motor.gamma"]
+        flat = {
+            "BIAS": lambda: zero + 1,
+            "DAMPING": lambda: self.phi * self.l**index,
+            "SIN_Q": lambda: np.sin(self.q),
+            "COS_Q": lambda: np.cos(self.q),
+            "GAP": lambda: np.clip(self.x / GAPS[index], -1, 1),
+            "PLAY": lambda: self.plays[:, index] / (PLAYS[index] * self.p["range.phi"]),
+            "SIN_M": lambda: np.sin(gamma * self.theta),
+            "COS_M": lambda: np.cos(gamma * self.theta),
+        }
+        return flat.get(kind, lambda: zero)(), zero
+
+
+class Filtered:
+    """Signals of one run of samples behind the filters."""
+
+    def __init__(
+        self, c: Library, p: Parameters, inputs: Inputs, z: Array, run: slice, measured: bool
+    ) -> None:
+        self.p, self.run, self.measured = p, run, measured
+        self.w, self.T = bandwidth(p), p["samplePeriod"]
+        self.F = inputs.F[run]
+        self.columns = inputs.columns
+        B, D, gamma = (p[f"motor.{name}"] for name in ("B", "D_theta", "gamma"))
+        self.gamma, self.of_velocity, self.of_acceleration = gamma, gamma**2 * D, gamma**2 * B
+        theta = z[run, 0]
+        self.moved = theta - theta[0]
+        slow = p["matched.slow"] * self.T
+        self.sign, self.unknown = direction(c, theta, resolution(p["encoder.theta"]), slow)
+        self.unknown_f = self.filtered(np.append(self.unknown[1:], 0.0), 0, True)
+        self.torque = z[run, 4 if measured else 3]
+        self.held = bool(p["torque.held"]) and not measured
+        self.gain = 1.0 if measured else -gamma
+        self.nominal = self.filtered(inputs.nominal[run], 0)
+        torque = self.filtered(self.torque, 0, self.held)
+        inertial = viscous = np.zeros(len(theta))
+        if not measured:
+            torque = torque + self.T**2 / 12 * self.filtered(self.torque, 2, self.held)
+            inertial = self.of_acceleration * self.filtered(self.moved, 2)
+            viscous = self.of_velocity * self.filtered(self.moved, 1)
+        self.inertial, self.viscous = inertial, viscous
+        self.y = inertial + viscous + self.gain * torque
+        self.sides = np.column_stack([self.gain * torque, self.y - self.nominal])
+        self.rows = np.column_stack([self.column(i) for i in range(len(self.columns))])
+
+    def filtered(self, x: Array, order: int, held: bool = False) -> Array:
+        return through(x, order, self.w, self.T, held)
+
+    def column(self, i: int) -> Array:
+        """What does not depend on the estimate; LOAD, DELAY, SIN_M, and COS_M are set later."""
+        kind, _, prior = self.columns[i]
+        friction = np.append(self.sign[1:], 0.0)
+        zero = np.zeros(len(self.y))
+        if kind in ("LOAD", "DELAY", "SIN_M", "COS_M"):
+            return zero
+        if kind == "NOMINAL":
+            return prior * self.nominal
+        if kind == "DAMPING":
+            return self.filtered(self.F[:, i] - self.F[0, i], 1)
+        if kind == "VISCOUS":
+            return -prior * self.viscous
+        if kind == "INERTIA":
+            return -prior * self.inertial
+        if kind == "REVERSAL":
+            return (
+                zero
+                if self.measured
+                else prior * abs(self.gamma) * self.filtered(friction, 1, True)
+            )
+        if kind == "COULOMB":
+            if self.measured:
+                return zero
+            smooth = self.filtered(friction, 0, True) + self.T**2 / 12 * self.filtered(
+                friction, 2, True
+            )
+            return -prior * abs(self.gamma) * smooth
+        return self.filtered(self.F[:, i], 0)
+
+    def torque_derivatives(self) -> tuple[Array, Array]:
+        return self.filtered(self.torque, 1, self.held), self.filtered(self.torque, 2, self.held)
+
+    def encoder_error(self, i: int) -> tuple[Array, Array]:
+        """Of the column i: its signal filtered, and the torque of the motor that it causes."""
+        f = self.F[:, i]
+        motor = self.of_velocity * self.filtered(f - f[0], 1)
+        motor = motor + self.of_acceleration * self.filtered(f - f[0], 2)
+        return f[0] + self.filtered(f - f[0], 0), motor
+
+
+class Held:
+    """A filter of a signal that is given sample by sample, by its mean."""
+
+    def __init__(self, w: float, T: float) -> None:
+        A, B, C, D = signal.tf2ss([[w**3, 0, 0], [0, 0, w**3]], np.poly([-w] * 3))
+        self.A, self.B, self.C, _, _ = signal.cont2discrete((A, B, C, D), T, method="zoh")
+        self.state, self.T = np.zeros((3, 1)), T
+
+    def step(self, mean: float) -> float:
+        self.state = self.A @ self.state + self.B * mean
+        second, output = (self.C @ self.state).ravel()
+        return float(output + self.T**2 / 12 * second)
