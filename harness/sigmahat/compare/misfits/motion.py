@@ -190,5 +190,4 @@ def _theta_c(r: Array | None, samples: int) -> Array:
     """Position of the secondary motor of the AwAS, from its encoder [rad]; 0 without a lever."""
     if r is None:
         return np.zeros(samples)
-    counts: Array = np.floor((_RETRACTED - r) / _LEAD / _COUNT + 0.5)
-    return counts * _COUNT
+    return _COUNT * np.asarray(np.floor((_RETRACTED - r) / _LEAD / _COUNT + 0.5))
