@@ -183,11 +183,13 @@ def _read(experiment: Experiment, t: Array, tau: Array) -> Array:
         return _torque(experiment, t - experiment.late)
     if experiment.drive is Drive.HELD:
         return tau
-    return (tau + np.concatenate([[0.0], tau[:-1]])) / 2
+    mean: Array = (tau + np.concatenate([[0.0], tau[:-1]])) / 2
+    return mean
 
 
 def _theta_c(r: Array | None, samples: int) -> Array:
     """Position of the secondary motor of the AwAS, from its encoder [rad]; 0 without a lever."""
     if r is None:
         return np.zeros(samples)
-    return _COUNT * np.asarray(np.floor((_RETRACTED - r) / _LEAD / _COUNT + 0.5))
+    rounded: Array = _COUNT * np.floor((_RETRACTED - r) / _LEAD / _COUNT + 0.5)
+    return rounded
