@@ -13,24 +13,25 @@ from sigmahat.compare.misfits.conditions import Group
 from sigmahat.compare.misfits.job import Row
 from sigmahat.compare.misfits.joints import JOINTS
 from sigmahat.compare.misfits.score import DANGEROUS_CLAIM, DANGEROUS_ERROR
-from sigmahat.plotting.colors import VERMILION, cycle
+from sigmahat.plotting.colors import cycle
 
 _MARKERS = dict(zip((joint.name for joint in JOINTS), "o^s", strict=True))
 _COLORS = dict(zip(Group, cycle(len(Group)), strict=True))
+_GREY = "#888888"
 _LIMITS = 0.01, 1000.0  # of both axes, wider if a row needs it [%]
 
 
 def draw(rows: Sequence[Row]) -> Figure:
     """RMS error over RMS claim, one point a row, and the corner of the dangerous ones."""
-    figure = Figure(figsize=(7.5, 6.0), layout="constrained")
+    figure = Figure(figsize=(8.0, 6.5), layout="constrained")
     axes = figure.subplots()
     values = [value for row in rows for value in (row.score.error, row.score.claim) if value > 0]
     limits = min(_LIMITS[0], 0.8 * min(values)), max(_LIMITS[1], 1.2 * max(values))
-    axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits)
+    axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, aspect="equal")
     axes.set_xlabel("claim: RMS of sigma_std over the true stiffness [%]")
     axes.set_ylabel("RMS error over the true stiffness [%]")
     _regions(axes, limits)
-    for row in rows:
+    for row in reversed(rows):  # rows of no class, which are last, below the others
         axes.plot(
             row.score.claim,
             row.score.error,
@@ -50,10 +51,11 @@ def _regions(axes: Axes, limits: tuple[float, float]) -> None:
     """The dangerous corner, and the line where error and claim are equal."""
     low, high = limits
     claim, error = 100 * DANGEROUS_CLAIM, 100 * DANGEROUS_ERROR
-    axes.add_patch(Rectangle((low, error), claim - low, high - error, color=VERMILION, alpha=0.12))
-    axes.text(low * 1.3, high / 1.3, "dangerous", color=VERMILION, va="top")
-    axes.plot(limits, limits, color="#888888", linewidth=0.8, zorder=0)
-    axes.text(high / 1.3, high / 2, "error = claim", color="#888888", ha="right", va="top")
+    axes.add_patch(Rectangle((low, error), claim - low, high - error, color=_GREY, alpha=0.25))
+    corner = f"dangerous: over {error:g} % off,\nclaims under {claim:g} %"
+    axes.text(1.3 * low, high / 1.3, corner, va="top")
+    axes.plot(limits, limits, color=_GREY, linewidth=0.8, zorder=0)
+    axes.text(high / 4, high / 6, "error = claim", color=_GREY, ha="center", va="top", rotation=45)
 
 
 def _legend(rows: Sequence[Row]) -> list[Line2D | Patch]:

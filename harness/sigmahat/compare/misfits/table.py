@@ -23,12 +23,12 @@ FIGURES = {
     "confident": "confident",
     "wrong": "confident and over 20 % wrong",
 }
-"""Properties of Score [%], and what they are called."""
+"""Properties of Score [%], and what a file calls them."""
 
 
 def table(rows: Sequence[Row]) -> str:
     """The rows as text, a part for each group; below it the means over its rows by joint."""
-    cells = [["", *(title(name, "%") for name in FIGURES.values())]]
+    cells = [["", *(title(name, "%") for name in FIGURES)]]
     heads: dict[int, str] = {}
     for group in Group:
         own = [row for row in rows if row.condition.group is group]
