@@ -11,7 +11,7 @@ import pytest
 
 from plant_runs import QUIET, times
 from sigmahat.compare.misfits import motion
-from sigmahat.compare.misfits.conditions import CONDITIONS, WAITING, Condition, Group
+from sigmahat.compare.misfits.conditions import CONDITIONS, Condition, Group
 from sigmahat.compare.misfits.experiment import Experiment, draw
 from sigmahat.compare.misfits.job import compare, pairs
 from sigmahat.compare.misfits.joints import AWAS, JOINTS, SEA_1K, SEA_5K, Joint
@@ -214,12 +214,15 @@ def test_a_large_error_counts_as_ten_times_the_stiffness() -> None:
     assert (huge.error, huge.claim) == (1000, 1000)
 
 
-@pytest.mark.parametrize("row", WAITING, ids=lambda row: row.name)
-@pytest.mark.xfail(
-    strict=True,
-    raises=ValueError,
-    reason="the estimator has no prior.torque_gain yet; see settings.py when this test passes",
-)
-def test_rows_with_a_prior_of_the_torque_gain(row: Condition) -> None:
-    (found,) = compare([row], [SEA_1K], [1], processes=1)
-    assert found.score.coverage > 50
+def test_a_gain_of_the_torque_is_an_error_of_its_size_that_the_prior_covers() -> None:
+    (row,) = compare([condition("gain 0.9, prior 0.1")], [AWAS], [1], processes=1)
+    assert row.score.error == pytest.approx(10, abs=1)
+    assert row.score.claim == pytest.approx(10, abs=2)
+    assert row.score.coverage > 90
+
+
+def test_the_estimator_is_given_a_prior_of_the_gain_where_there_is_an_error_of_it() -> None:
+    for each in CONDITIONS:
+        has_error = each.group in (Group.GAIN, Group.RANDOM)
+        assert (each.torque_gain > 0) is has_error
+        assert settings(draw(AWAS, 1), each.torque_gain)["prior.torque_gain"] == each.torque_gain

@@ -79,7 +79,7 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
 
 def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
     """MatchedFilter on the catalogue of misfits."""
-    from sigmahat.compare.misfits.conditions import CONDITIONS, WAITING
+    from sigmahat.compare.misfits.conditions import CONDITIONS
     from sigmahat.compare.misfits.job import ESTIMATOR, compare, pairs
     from sigmahat.compare.misfits.joints import JOINTS
     from sigmahat.compare.misfits.motion import PLANT
@@ -90,10 +90,9 @@ def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
     for fmu in (PLANT, ESTIMATOR):
         common.need_fmu(fmu)
 
-    conditions = [each for each in CONDITIONS if each not in WAITING]
     with common.errors_in_one_line(out), output_folder(out) as folder:
-        with common.progress("Running", len(pairs(conditions, JOINTS)) * seeds) as bar:
-            rows = compare(conditions, JOINTS, range(1, seeds + 1), jobs, bar.update)
+        with common.progress("Running", len(pairs(CONDITIONS, JOINTS)) * seeds) as bar:
+            rows = compare(CONDITIONS, JOINTS, range(1, seeds + 1), jobs, bar.update)
         from sigmahat.compare.misfits.figure import draw
         from sigmahat.plotting.save import save
 

@@ -273,6 +273,3 @@ CONDITIONS: Sequence[Condition] = (
     Condition("random, all misfits at once", Group.RANDOM, all_misfits, torque_gain=0.02),
     Condition("random, without misfits", Group.NONE, other_joint),
 )
-
-WAITING = tuple(each for each in CONDITIONS if each.torque_gain)
-"""Rows that need prior.torque_gain, which the estimator does not have yet; see settings.py."""

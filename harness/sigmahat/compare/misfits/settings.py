@@ -30,10 +30,7 @@ def settings(experiment: Experiment, torque_gain: float) -> dict[str, Value]:
         "prior.B": 0.1,
         # What is known of the kind of joint, not of this one, whose friction may be another.
         "prior.tau_coulomb": joint.plant["motor.tau_coulomb"],
+        "prior.torque_gain": torque_gain,
         "matched.bandwidth": 350.0,
     }
-    # The estimator does not have this parameter yet. When it has, its start value will not be 0:
-    # then this line is for all rows, and WAITING in conditions.py goes.
-    if torque_gain:
-        given["prior.torque_gain"] = torque_gain
     return {**given, **experiment.estimator}
