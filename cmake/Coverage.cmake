@@ -17,4 +17,5 @@ add_custom_target(
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   COMMENT "Tests of the C code, and the branches that they took" USES_TERMINAL VERBATIM)
 add_dependencies(coverage sigmahat_test_driver StiffnessEstimator AntagonisticStiffnessEstimator
-                 AwasPlant FlexibleJointPlant AntagonisticVsaPlant awas_system packages_coverage)
+                 AwasPlant FlexibleJointPlant AntagonisticVsaPlant RealJointPlant awas_system
+                 packages_coverage)

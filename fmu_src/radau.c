@@ -138,13 +138,16 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
         change = norm(dW[0], x) + norm(dW[1], x) + norm(dW[2], x);
         if (change <= NEWTON_TOLERANCE)
             return 1;
-        /* The changes shrink by a constant factor; the error is the sum of those to come. */
+        /* The changes shrink by a constant factor; the error is the sum of those to come. Where f
+         * jumps by more than its size, the change grows once, however short the step is. That is
+         * allowed as long as the change is below the allowed error of the step.
+         */
         if (iteration > 0) {
             const double rate = change / previous;
-            if (!(rate < 1.0))
-                return 0;
-            if (rate / (1.0 - rate) * change <= NEWTON_TOLERANCE)
+            if (rate < 1.0 && rate / (1.0 - rate) * change <= NEWTON_TOLERANCE)
                 return 1;
+            if (!(rate < 1.0) && !(change < ERROR_TOLERANCE))
+                return 0;
         }
     }
     return 0;

@@ -85,7 +85,10 @@ def test_version(tmp_path: Path) -> None:
 
 def test_help_names_every_command_and_option(tmp_path: Path) -> None:
     help_ = run("--help", cwd=tmp_path).stdout
-    options = {"reproduce": ["--scenario", "--seeds", "--out"], "compare": ["--seeds", "--out"]}
+    options = {
+        "reproduce": ["--scenario", "--seeds", "--out"],
+        "compare": ["--misfits", "--seeds", "--jobs", "--out"],
+    }
     for command in (*options, "scenarios"):
         assert command in help_
     for command, named in options.items():
@@ -251,7 +254,7 @@ def test_folder_without_permission(tmp_path: Path) -> None:
     assert list(locked.iterdir()) == []
 
 
-@pytest.mark.parametrize("command", ["reproduce", "compare"])
+@pytest.mark.parametrize("command", ["reproduce", "compare", "compare --misfits"])
 @pytest.mark.parametrize("compiler", [None, "/usr/bin/cc"])
 def test_fmus_not_built(
     command: str,
@@ -265,7 +268,7 @@ def test_fmus_not_built(
 
     monkeypatch.setattr(installed, "fmu", missing)
     monkeypatch.setattr(shutil, "which", lambda name: compiler)
-    assert main([command, "--out", str(tmp_path / "out")]) == 2
+    assert main([*command.split(), "--out", str(tmp_path / "out")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "cmake --workflow --preset build" in line
     assert ("install a C compiler" in line) == (compiler is None)

@@ -15,7 +15,7 @@ import sigmahat
 from fmi_instance import OK, Instance
 
 ESTIMATORS = ["StiffnessEstimator", "AntagonisticStiffnessEstimator"]
-PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant"]
+PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant", "RealJointPlant"]
 FMUS = ESTIMATORS + PLANTS
 
 # Exponents of the base units in each symbol. A power is written behind a symbol: kg.m2.
@@ -139,6 +139,8 @@ def distinct(fmu: Instance, choices: dict[str, int]) -> dict[str, float]:
             start[name] = choices[name]
         elif name in ("rls.n", "rls.m"):
             start[name] = float(v.max)
+        elif name == "spring.gap":
+            start[name] = 1e-3  # so that the spring is engaged
         elif v.causality == "parameter" and v.type == "Real" and float(v.start) == 0:
             start[name] = 0.3 + 0.01 * k
     return start

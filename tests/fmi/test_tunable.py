@@ -29,6 +29,8 @@ CONFIGURATION: dict[str, dict[str, float]] = {
     "model.b": {"modality": 3},
     "noise.tau_e": {"modality": 2},
     "confidence": {"confidence": 1e12},
+    "motor.uneven": {"motor.tau_coulomb": 0.02},
+    "motor.stribeck": {"motor.tau_coulomb": 0.02, "motor.v_stribeck": 5.0},
 }
 # Start values for each method. SIGNALS start in motion, from which a fast filter soon settles.
 METHODS: dict[int, dict[str, float]] = {1: {}, 2: {"method": 2, "matched.bandwidth": 1900}}
@@ -45,6 +47,19 @@ CHANGED = {
     "motor.tau_coulomb": 0.02,
     "motor_1.tau_coulomb": 0.02,
     "motor_2.tau_coulomb": 0.02,
+    "motor.v_bend": 0.1,
+    "motor.uneven": 0.2,
+    "motor.load_friction": 0.2,
+    "motor.stribeck": 0.5,
+    "motor.cogging": 0.01,
+    "gear.kinematic_error": 3e-4,
+    "spring.k_s": 1e4,
+    "spring.gap": 1e-4,
+    "spring.damping": 1e-3,
+    "spring.dahl": 0.1,
+    "contact.k": 1e3,
+    "contact.d": 10.0,
+    "sensor.tau_bias": 0.01,
 }
 SCALARS = (
     "sigma",
@@ -158,6 +173,7 @@ def test_a_plant_continues_from_its_state_with_the_new_value(fmu: str, name: str
         outputs = names(instance, "output")
         value = CHANGED.get(name, 1.5 * float(variables[name].start))
         exact = {n: 0.0 for n in variables if n.endswith("_variance") or n.startswith("encoder.")}
+        exact |= CONFIGURATION.get(name, {})
         states = [n.removeprefix("initial.") for n in variables if n.startswith("initial.")]
     with_change = np.array(run_fmu(fmu, outputs, exact, {name: value}))
     without = np.array(run_fmu(fmu, outputs, exact, {}))

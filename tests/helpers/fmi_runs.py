@@ -11,7 +11,7 @@ from pathlib import Path
 from fmi_instance import OK, Instance
 
 ESTIMATORS = ["StiffnessEstimator", "AntagonisticStiffnessEstimator"]
-PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant"]
+PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant", "RealJointPlant"]
 
 # Inputs of the FMUs as functions of time: measurements that excite all parameters, and torques.
 SIGNALS: dict[str, Callable[[float], float]] = {
@@ -25,6 +25,9 @@ SIGNALS: dict[str, Callable[[float], float]] = {
     "tau_2": lambda t: 0.2 * math.cos(11 * t),
     "tau_c": lambda t: 8 * math.sin(3 * t),
     "tau_ext": lambda t: 0.1 * math.cos(7 * t),
+    "r": lambda t: 0.07 + 0.01 * math.sin(3 * t),
+    "D_theta_change": lambda t: -0.2 * t,
+    "tau_coulomb_change": lambda t: 0.3 * t,
     "tau_e_sensor": lambda t: 2 * math.sin(13 * t),
     "tau_e_sensor_1": lambda t: 2 * math.sin(13 * t),
     "tau_e_sensor_2": lambda t: 1.5 * math.sin(12 * t),

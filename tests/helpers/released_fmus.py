@@ -14,6 +14,7 @@ FMUS = [
     "AntagonisticVsaPlant",
     "AwasPlant",
     "FlexibleJointPlant",
+    "RealJointPlant",
     "StiffnessEstimator",
 ]
 STEP, STEPS = 1e-3, 1000

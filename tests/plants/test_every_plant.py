@@ -15,7 +15,7 @@ from plant_runs import QUIET, STATES, relative_error, run_awas, sinusoids, times
 from reference_joints import COULOMB_VELOCITY
 from reference_plant import SCREW, Awas
 
-PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant"]
+PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant", "RealJointPlant"]
 
 
 @pytest.mark.parametrize("h", [1e-3, 1e-2])
@@ -55,16 +55,20 @@ def test_gain_of_the_sensor_scales_the_torque_and_not_its_noise() -> None:
 
 
 def test_what_is_the_same_in_two_plants_has_the_same_name_and_unit() -> None:
-    awas, single, pair = (
+    awas, single, pair, real = (
         {v.name: v for v in fmpy.read_model_description(sigmahat.fmu(name)).modelVariables}
         for name in PLANTS
     )
     assert set(single) - set(awas) == {"spring.k_1", "spring.k_3"}
     own = {"spring_1.k", "spring_1.a", "spring_2.k", "spring_2.a"}
     assert {name.replace("_1", "").replace("_2", "") for name in set(pair) - own} <= set(single)
-    for name in set(single) & set(awas):
+    assert set(single) < set(real)
+    for name, other in [
+        *((n, awas) for n in set(single) & set(awas)),
+        *((n, real) for n in single),
+    ]:
         for attribute in ("causality", "variability", "unit", "start", "min", "max"):
-            assert getattr(single[name], attribute) == getattr(awas[name], attribute), name
+            assert getattr(single[name], attribute) == getattr(other[name], attribute), name
 
 
 @pytest.mark.parametrize("name", PLANTS)

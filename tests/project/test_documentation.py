@@ -22,6 +22,7 @@ FMUS = [
     "AwasPlant",
     "FlexibleJointPlant",
     "AntagonisticVsaPlant",
+    "RealJointPlant",
 ]
 INDEX = "documentation/index.html"
 ICON = "documentation/icon.svg"

@@ -28,6 +28,7 @@ FMUS = {
     "AwasPlant.fmu",
     "FlexibleJointPlant.fmu",
     "AntagonisticVsaPlant.fmu",
+    "RealJointPlant.fmu",
 }
 
 pytestmark = pytest.mark.slow(

@@ -49,6 +49,13 @@ def _single(axes: Axes, y: float = 50) -> None:
     _link(axes, 80, y - 20, y + 20)
 
 
+def _real(axes: Axes) -> None:
+    """A single transmission, and above it the loop of its hysteresis."""
+    _single(axes, 32)
+    turn = np.linspace(0, 2 * np.pi, 100)
+    axes.plot(50 + 30 * np.sin(turn), 74 + 14 * np.sin(turn - 0.7), color=_SPRING, linewidth=5)
+
+
 def _antagonistic(axes: Axes, centre: float = 50, apart: float = 24) -> None:
     for y in (centre - apart, centre + apart):
         _spring(axes, (22, y), (78, y))
@@ -83,6 +90,7 @@ ICONS: dict[str, Callable[[Axes], None]] = {
     "AwasPlant": _awas,
     "FlexibleJointPlant": _single,
     "AntagonisticVsaPlant": _antagonistic,
+    "RealJointPlant": _real,
 }
 """What draws the icon of each FMU, on axes from 0 to 100."""
 

@@ -31,10 +31,13 @@ def velocity(plant: PlantEquations, name: str) -> ca.SX:
     return plant.state(name, plant.parameter(f"initial.{name}"), scale=1.0)
 
 
-def add_link(plant: PlantEquations, q: ca.SX, q_dot: ca.SX, tau_e: ca.SX) -> None:
+def add_link(
+    plant: PlantEquations, q: ca.SX, q_dot: ca.SX, tau_e: ca.SX, at_encoder: ca.SX | None = None
+) -> None:
     """Adds the link (2) with g(q) = mgl sin q and Coulomb friction, and its encoder.
 
     The input `tau_ext` acts on it, and `tau_e`, the sum of the flexibility torques, against it.
+    The encoder rounds `at_encoder` [rad], or q if it has no error but rounding.
     """
     tau_ext = plant.input("tau_ext")
     friction = plant.parameter("link.D_q") * q_dot
@@ -44,7 +47,8 @@ def add_link(plant: PlantEquations, q: ca.SX, q_dot: ca.SX, tau_e: ca.SX) -> Non
     plant.derivative(q_dot, (tau_ext - friction - tau_e - gravity) / plant.parameter("link.M"))
     plant.output("q", q)
     plant.output("q_dot", q_dot)
-    plant.output("q_measured", encoder(q, plant.parameter("encoder.q")))
+    seen = q if at_encoder is None else at_encoder
+    plant.output("q_measured", encoder(seen, plant.parameter("encoder.q")))
 
 
 def add_motor(

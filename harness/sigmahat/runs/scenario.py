@@ -17,15 +17,17 @@ T = 1e-3
 
 @dataclass(frozen=True)
 class Sine:
-    """amplitude sin(2 pi frequency t)."""
+    """amplitude sin(2 pi frequency t + phase)."""
 
     amplitude: float
     """In the unit of the input."""
     frequency: float
     """[Hz]"""
+    phase: float = 0.0
+    """[rad]"""
 
     def __call__(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self.amplitude * np.sin(2 * math.pi * self.frequency * t)
+        return self.amplitude * np.sin(2 * math.pi * self.frequency * t + self.phase)
 
 
 @dataclass(frozen=True)

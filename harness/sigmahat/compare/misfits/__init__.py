@@ -1,0 +1,1 @@
+"""MatchedFilter on joints that have what its model does not describe: a catalogue of misfits."""

@@ -1,0 +1,275 @@
+"""The conditions of the catalogue, as data: what each adds to an experiment without misfits.
+
+Origin: ``tests/studies/misfit/catalogue.c``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+from sigmahat.compare.misfits.experiment import Control, Drive, Experiment
+from sigmahat.compare.misfits.joints import AWAS, JOINTS, SEA_1K, SEA_5K, Joint
+from sigmahat.compare.misfits.motion import peak_deformation
+from sigmahat.compare.misfits.random_joint import all_misfits, other_joint
+from sigmahat.runs.scenario import Sine, Sines
+
+
+class Group(Enum):
+    """What is asked of the estimate in a condition."""
+
+    CLEAN = "clean"
+    CLASS_1 = "class 1"
+    CLASS_2 = "class 2"
+    CLASS_3 = "class 3"
+    GAIN = "torque gain"
+    RANDOM = "random"
+    NONE = "no class"
+
+
+Change = Callable[[Experiment], Experiment]
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A row of the table for each of its joints."""
+
+    name: str
+    group: Group
+    change: Change
+    """Adds the misfit to an experiment."""
+    joints: Sequence[Joint] = JOINTS
+    """Joints that can have it."""
+    torque_gain: float = 0.0
+    """Prior standard deviation of the gain of the torque that the estimator is given [1]."""
+
+
+def _plant(**start: float) -> Change:
+    """Start values of the plant; "__" stands for the dot in their names."""
+    values = {name.replace("__", "."): value for name, value in start.items()}
+    return lambda experiment: experiment.with_plant(values)
+
+
+def _share_of_torque(name: str, share: float, **others: float) -> Change:
+    """A start value that is a share of the peak of the torque command."""
+
+    def change(experiment: Experiment) -> Experiment:
+        values = {name: share * experiment.joint.torque}
+        return _plant(**others)(experiment.with_plant(values))
+
+    return change
+
+
+def _run(**changed: float | Drive | Mapping[str, float]) -> Change:
+    """Fields of the experiment."""
+    return lambda experiment: replace(experiment, **changed)  # type: ignore[arg-type]
+
+
+def _orders(**orders: int) -> Change:
+    """Orders of the estimator, "n" and "m"."""
+    values = {f"rls.{name}": order for name, order in orders.items()}
+    return lambda experiment: experiment.with_estimator(values)
+
+
+def _counts(counts: float) -> Change:
+    return _plant(encoder__theta=counts, encoder__q=counts)
+
+
+def _contact(experiment: Experiment) -> Experiment:
+    return experiment.with_plant(experiment.joint.contact)
+
+
+def _dahl(share: float) -> Change:
+    """Hysteresis of a share of the peak torque; its deformation is 3 % of the peak."""
+
+    def change(experiment: Experiment) -> Experiment:
+        peak = peak_deformation(experiment)
+        torque = share * experiment.stiffness * peak
+        return experiment.with_plant({"spring.dahl": torque, "spring.dahl_phi": 0.03 * peak})
+
+    return change
+
+
+def _hardening(n: int) -> Change:
+    """A spring that is 30 % stiffer at the usual peak of the deformation."""
+
+    def change(experiment: Experiment) -> Experiment:
+        k_3 = 0.3 * experiment.stiffness / (3 * experiment.joint.deformation**2)
+        return experiment.with_plant({"spring.k_3": k_3}).with_estimator({"rls.n": n})
+
+    return change
+
+
+def _control(link_velocity: bool, gravity: bool = False) -> Change:
+    """PD control of the motor position, slow motion being larger than fast motion."""
+
+    def change(experiment: Experiment) -> Experiment:
+        joint, share = experiment.joint, 0.6 if gravity else 1.0
+        terms = [
+            replace(s, amplitude=3 * share * s.amplitude / joint.torque / (1 + omega))
+            for s in experiment.torque.terms
+            for omega in [2 * math.pi * s.frequency]
+        ]
+        # The reference begins at the mean position.
+        begin = sum(s.amplitude * math.sin(s.phase) for s in terms)
+        middle = math.pi / 2 if gravity else 0.0
+        control = Control(
+            Sines(middle - begin, terms),
+            joint.kp,
+            joint.kd,
+            joint.kd / 2 if link_velocity else 0.0,
+        )
+        heavy = experiment.with_plant({"link.mgl": 12.0}) if gravity else experiment
+        return replace(heavy, control=control, drive=Drive.HELD_MEAN)
+
+    return change
+
+
+def _load(experiment: Experiment) -> Experiment:
+    """A constant load, and the mean torque of the motor that carries it."""
+    load = experiment.joint.load
+    terms = [Sine(0.9 * s.amplitude, s.frequency, s.phase) for s in experiment.torque.terms]
+    return replace(
+        experiment, load=load, torque=Sines(-load / experiment.plant["motor.gamma"], terms)
+    )
+
+
+def _exact_inertia(change: Change, error: float = 0.0) -> Change:
+    """B is given as exact, right or with a relative error."""
+
+    def both(experiment: Experiment) -> Experiment:
+        changed = change(experiment).with_estimator({"prior.B": 0.0})
+        return replace(changed, errors={**changed.errors, "B": error})
+
+    return both
+
+
+def _clean(experiment: Experiment) -> Experiment:
+    return experiment
+
+
+def _gain(gain: float) -> Change:
+    return _plant(sensor__tau_gain=gain)
+
+
+_SEA = (SEA_1K, SEA_5K)
+_COARSE = (AWAS, SEA_1K)
+
+CONDITIONS: Sequence[Condition] = (
+    Condition("none", Group.CLEAN, _clean),
+    Condition("500 Hz", Group.CLEAN, _run(T=2e-3)),
+    Condition("5 kHz", Group.CLEAN, _run(T=2e-4)),
+    Condition("contact", Group.CLEAN, _contact),
+    Condition("PD on motor, mean of held torque", Group.CLEAN, _control(False)),
+    Condition("PD on motor, feedback of q", Group.CLEAN, _control(True)),
+    Condition("PD and gravity, one sign of phi", Group.CLEAN, _control(False, True), _SEA),
+    Condition("constant load, one sign of phi", Group.CLEAN, _load),
+    Condition("torque bias 2 %", Group.CLASS_1, _share_of_torque("sensor.tau_bias", 0.02)),
+    Condition("uneven Coulomb friction 20 %", Group.CLASS_1, _plant(motor__uneven=0.2)),
+    Condition("load friction 0.1", Group.CLASS_1, _plant(motor__load_friction=0.1)),
+    Condition("load friction 0.2", Group.CLASS_1, _plant(motor__load_friction=0.2)),
+    Condition(
+        "eccentric encoder of q, 0.31 mrad",
+        Group.CLASS_1,
+        _plant(encoder__q_eccentricity=0.31e-3),
+    ),
+    Condition(
+        "eccentric encoder of q, 0.87 mrad",
+        Group.CLASS_1,
+        _plant(encoder__q_eccentricity=0.87e-3),
+    ),
+    Condition("zero of q 0.2 mrad off", Group.CLASS_1, _plant(encoder__q_offset=0.2e-3)),
+    Condition("torque 1 ms late", Group.CLASS_1, _run(late=1e-3)),
+    Condition("torque 2 ms late", Group.CLASS_1, _run(late=2e-3)),
+    Condition("damping k/300 s", Group.CLASS_1, _plant(spring__damping=1 / 300)),
+    Condition("damping k/1000 s", Group.CLASS_1, _plant(spring__damping=1 / 1000)),
+    Condition("jitter 5 %", Group.CLASS_1, _run(jitter=0.05)),
+    Condition("zero of q 2 mrad off", Group.CLASS_2, _plant(encoder__q_offset=2e-3)),
+    Condition("hysteresis 2 %", Group.CLASS_2, _dahl(0.02)),
+    Condition("hysteresis 5 %", Group.CLASS_2, _dahl(0.05)),
+    Condition("backlash 1 mrad", Group.CLASS_2, _plant(spring__gap=0.5e-3)),
+    Condition("n = 1, too small", Group.CLASS_2, _orders(n=1), (AWAS,)),
+    Condition("m = 2, too small", Group.CLASS_2, _orders(m=2), (AWAS,)),
+    Condition("hardening spring, n = 1", Group.CLASS_2, _hardening(1), _SEA),
+    Condition(
+        "eccentric encoder of theta, 0.031 mrad",
+        Group.CLASS_2,
+        _plant(encoder__theta_eccentricity=0.031e-3),
+        _COARSE,
+    ),
+    Condition(
+        "eccentric encoder of theta, 0.087 mrad",
+        Group.CLASS_2,
+        _plant(encoder__theta_eccentricity=0.087e-3),
+        _COARSE,
+    ),
+    *(
+        Condition(
+            f"cogging {order} per turn, {100 * share:g} %",
+            Group.CLASS_3,
+            _share_of_torque("motor.cogging", share, motor__cogging_order=order),
+        )
+        for order in (6, 12)
+        for share in (0.02, 0.05)
+    ),
+    Condition("Stribeck 1.5 times", Group.CLASS_3, _plant(motor__stribeck=0.5)),
+    Condition(
+        "viscous friction -30 % in 60 s",
+        Group.CLASS_3,
+        _run(drift={"D_theta_change": -0.3}, duration=60.0),
+    ),
+    Condition(
+        "Coulomb friction -30 % in 60 s",
+        Group.CLASS_3,
+        _run(drift={"tau_coulomb_change": -0.3}, duration=60.0),
+    ),
+    *(
+        Condition(f"gain {gain:g}, prior {prior:g}", Group.GAIN, _gain(gain), torque_gain=prior)
+        for gain, prior in (
+            (0.98, 0.02),
+            (1.025, 0.02),
+            (0.95, 0.05),
+            (1.05, 0.05),
+            (0.90, 0.10),
+            (1.10, 0.10),
+        )
+    ),
+    Condition(
+        "gain 0.9, B exact, prior 0.1",
+        Group.GAIN,
+        _exact_inertia(_gain(0.90)),
+        torque_gain=0.10,
+    ),
+    Condition("viscous friction bends at 4 rad/s", Group.NONE, _plant(motor__v_bend=4.0), _COARSE),
+    Condition("torque 5 ms late", Group.NONE, _run(late=5e-3)),
+    Condition("held torque, u(k)", Group.NONE, _run(drive=Drive.HELD)),
+    Condition("held torque, mean of u", Group.NONE, _run(drive=Drive.HELD_MEAN)),
+    Condition("kinematic error 0.3 mrad", Group.NONE, _plant(gear__kinematic_error=0.3e-3)),
+    Condition("kinematic error 0.1 mrad", Group.NONE, _plant(gear__kinematic_error=0.1e-3), _SEA),
+    Condition("hysteresis 10 %", Group.NONE, _dahl(0.1)),
+    Condition("damping k/100 s", Group.NONE, _plant(spring__damping=1 / 100)),
+    Condition("encoders of 4096 counts", Group.NONE, _counts(4096.0)),
+    Condition("encoders of 65536 counts", Group.NONE, _counts(65536.0)),
+    Condition("encoders of 1048576 counts", Group.NONE, _counts(1048576.0)),
+    Condition("q read 2 ms after theta", Group.NONE, _plant(encoder__q_delay=2e-3)),
+    Condition("hardening spring, n = 3", Group.NONE, _hardening(3), _SEA),
+    Condition("rest for 30 s, then 10 s", Group.NONE, _run(rest=30.0, duration=40.0)),
+    *(
+        Condition(f"B exact: {name}", Group.NONE, _exact_inertia(change))
+        for name, change in (
+            ("none", _clean),
+            ("load friction 0.1", _plant(motor__load_friction=0.1)),
+            ("hysteresis 5 %", _dahl(0.05)),
+            ("damping k/300 s", _plant(spring__damping=1 / 300)),
+            ("eccentric encoder of q, 0.31 mrad", _plant(encoder__q_eccentricity=0.31e-3)),
+            ("zero of q 0.2 mrad off", _plant(encoder__q_offset=0.2e-3)),
+            ("jitter 5 %", _run(jitter=0.05)),
+            ("torque 2 ms late", _run(late=2e-3)),
+        )
+    ),
+    Condition("B 5 % wrong, given as exact", Group.NONE, _exact_inertia(_clean, 0.05)),
+    Condition("random, all misfits at once", Group.RANDOM, all_misfits, torque_gain=0.02),
+    Condition("random, without misfits", Group.NONE, other_joint),
+)

@@ -1,0 +1,134 @@
+"""One experiment: a joint, its command, how it is measured, and what the estimator is given."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import Enum
+
+import numpy as np
+
+from sigmahat.compare.misfits.joints import JOINTS, Joint
+from sigmahat.fmi.instance import Value
+from sigmahat.runs.scenario import Sine, Sines
+
+DRIFT_TIME = 60.0
+"""Time in which a drift reaches its value [s]."""
+LEVER_ARM_CHANGE = 0.012
+"""Peak of the motion of a lever arm [m]."""
+
+
+class Drive(Enum):
+    """The torque between two samples, and the torque that is measured at a sample."""
+
+    LINEAR = 1
+    """Linear between the samples; measured: that at the sample."""
+    HELD = 2
+    """Held; measured: that of the period that begins."""
+    HELD_MEAN = 3
+    """Held; measured: the mean of the period that ends and of that which begins."""
+
+
+@dataclass(frozen=True)
+class Control:
+    """Control of the measured motor position, by the torque that the drive holds."""
+
+    reference: Sines
+    """Wanted position [rad]."""
+    kp: float
+    """Per position error, on the motor axis [N.m/rad]."""
+    kd: float
+    """Per motor velocity, behind the gear [N.m.s/rad]."""
+    kq: float = 0.0
+    """Per link velocity [N.m.s/rad]."""
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """What a run consists of. A draw has no misfits; conditions add them."""
+
+    joint: Joint
+    seed: int
+    """Of noise, and of what else is random in the run."""
+    plant: Mapping[str, float]
+    """Start values of RealJointPlant that differ from its own."""
+    torque: Sines
+    """Torque command, on the motor axis [N.m]; not used under control."""
+    lever_arm: Sines | None
+    """[m]; None for a joint without one."""
+    errors: Mapping[str, float]
+    """Relative errors of B and D_theta as the estimator is given them [1]."""
+    estimator: Mapping[str, Value] = field(default_factory=dict)
+    """Start values of the estimator that differ from `settings`."""
+    T: float = 1e-3
+    """Sample period [s]."""
+    duration: float = 20.0
+    """[s]"""
+    rest: float = 0.0
+    """Time before which there is no torque [s]."""
+    drive: Drive = Drive.LINEAR
+    control: Control | None = None
+    """None: the torque is the command. Else the drive holds its torque."""
+    late: float = 0.0
+    """Delay of the measured torque [s], below 0: it is early; with Drive.LINEAR only."""
+    jitter: float = 0.0
+    """Standard deviation of the sample times, over T [1]."""
+    load: float = 0.0
+    """Constant external torque on the link [N.m]."""
+    drift: Mapping[str, float] = field(default_factory=dict)
+    """Inputs of RealJointPlant that go from 0 to this value in DRIFT_TIME, linearly."""
+
+    @property
+    def stiffness(self) -> float:
+        """Of the undeformed spring, at the mean lever arm [N.m/rad]."""
+        arm = self.joint.lever_arm or 0.0
+        return self.plant["spring.k_1"] + 2 * self.plant.get("spring.k_s", 0.0) * arm**2
+
+    def with_plant(self, changed: Mapping[str, float]) -> Experiment:
+        """The same with other start values of the plant."""
+        return replace(self, plant={**self.plant, **changed})
+
+    def with_estimator(self, changed: Mapping[str, Value]) -> Experiment:
+        """The same with other start values of the estimator."""
+        return replace(self, estimator={**self.estimator, **changed})
+
+    def scaled(self, factors: Mapping[str, float]) -> Experiment:
+        """The same with start values of the plant multiplied by factors [1]."""
+        return self.with_plant({name: f * self.plant[name] for name, f in factors.items()})
+
+
+def draw(joint: Joint, seed: int) -> Experiment:
+    """An experiment without misfits, whose motion and errors of motor data are random.
+
+    The estimator is given friction 10 % and inertia 5 % wrong, each too large or too small.
+    """
+    rng = np.random.default_rng([seed, JOINTS.index(joint)])
+    torque = _multisine(rng, (0.1, 10.0), joint.torque, (3, 6))
+    arm = _multisine(rng, (0.05, 0.5), LEVER_ARM_CHANGE, (1, 3))
+    return Experiment(
+        joint=joint,
+        seed=int(rng.integers(1, 2**31)),
+        plant=joint.plant,
+        torque=torque,
+        lever_arm=None if joint.lever_arm is None else replace(arm, offset=joint.lever_arm),
+        errors={"D_theta": 0.1 * rng.choice((-1, 1)), "B": 0.05 * rng.choice((-1, 1))},
+    )
+
+
+def _multisine(
+    rng: np.random.Generator, band: tuple[float, float], peak: float, count: tuple[int, int]
+) -> Sines:
+    """Sines at random frequencies, one in each of equal parts of the band [Hz] on a log axis.
+
+    The amplitudes add up to the peak. The number of sines is between the two counts.
+    """
+    n = int(rng.integers(count[0], count[1] + 1))
+    low, high = map(math.log, band)
+    places = (np.arange(n) + rng.uniform(size=n)) / n
+    frequencies = np.exp(low + places * (high - low))
+    phases = 2 * math.pi * rng.uniform(size=n)
+    amplitudes = rng.uniform(0.3, 1.0, n)
+    amplitudes *= peak / amplitudes.sum()
+    terms = zip(amplitudes.tolist(), frequencies.tolist(), phases.tolist(), strict=True)
+    return Sines(0.0, tuple(Sine(*term) for term in terms))

@@ -1,0 +1,75 @@
+"""The figure of misfits: the error of each row over what it claims."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+
+from sigmahat.compare.misfits.conditions import Group
+from sigmahat.compare.misfits.job import Row
+from sigmahat.compare.misfits.joints import JOINTS
+from sigmahat.compare.misfits.score import DANGEROUS_CLAIM, DANGEROUS_ERROR
+from sigmahat.plotting.colors import cycle
+
+_MARKERS = dict(zip((joint.name for joint in JOINTS), "o^s", strict=True))
+_COLORS = dict(zip(Group, cycle(len(Group)), strict=True))
+_GREY = "#888888"
+_LIMITS = 0.01, 1000.0  # of both axes, wider if a row needs it [%]
+
+
+def draw(rows: Sequence[Row]) -> Figure:
+    """RMS error over RMS claim, one point a row, and the corner of the dangerous ones."""
+    figure = Figure(figsize=(8.0, 6.5), layout="constrained")
+    axes = figure.subplots()
+    values = [value for row in rows for value in (row.score.error, row.score.claim) if value > 0]
+    limits = min(_LIMITS[0], 0.8 * min(values)), max(_LIMITS[1], 1.2 * max(values))
+    axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, aspect="equal")
+    axes.set_xlabel("claim: RMS of sigma_std over the true stiffness [%]")
+    axes.set_ylabel("RMS error over the true stiffness [%]")
+    _regions(axes, limits)
+    for row in reversed(rows):  # rows of no class, which are last, below the others
+        axes.plot(
+            row.score.claim,
+            row.score.error,
+            marker=_MARKERS[row.joint.name],
+            color=_COLORS[row.condition.group],
+            markersize=5,
+            markeredgewidth=0.5,
+            markeredgecolor="white",
+            linestyle="none",
+            label=f"{row.condition.name}, {row.joint.name}",
+        )
+    figure.legend(handles=_legend(rows), loc="outside right upper", fontsize=8)
+    return figure
+
+
+def _regions(axes: Axes, limits: tuple[float, float]) -> None:
+    """The dangerous corner, and the line where error and claim are equal."""
+    low, high = limits
+    claim, error = 100 * DANGEROUS_CLAIM, 100 * DANGEROUS_ERROR
+    axes.add_patch(Rectangle((low, error), claim - low, high - error, color=_GREY, alpha=0.25))
+    corner = f"dangerous: over {error:g} % off,\nclaims under {claim:g} %"
+    axes.text(1.3 * low, high / 1.3, corner, va="top")
+    axes.plot(limits, limits, color=_GREY, linewidth=0.8, zorder=0)
+    axes.text(high / 4, high / 6, "error = claim", color=_GREY, ha="center", va="top", rotation=45)
+
+
+def _legend(rows: Sequence[Row]) -> list[Line2D | Patch]:
+    joints = {row.joint.name for row in rows}
+    groups = {row.condition.group for row in rows}
+    return [
+        *(
+            Line2D([], [], color="#444444", marker=marker, linestyle="none", label=name)
+            for name, marker in _MARKERS.items()
+            if name in joints
+        ),
+        *(
+            Patch(color=color, label=group.value)
+            for group, color in _COLORS.items()
+            if group in groups
+        ),
+    ]

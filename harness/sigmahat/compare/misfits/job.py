@@ -1,0 +1,90 @@
+"""The job of `sigmahat compare --misfits`: every row with every seed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from sigmahat.compare.misfits.conditions import CONDITIONS, Condition
+from sigmahat.compare.misfits.experiment import Experiment, draw
+from sigmahat.compare.misfits.joints import JOINTS, Joint
+from sigmahat.compare.misfits.motion import Motion, run
+from sigmahat.compare.misfits.score import SETTLED, Score, score
+from sigmahat.compare.misfits.settings import settings
+from sigmahat.fmi.installed import fmu as installed_fmu
+from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.logs.replay import replay
+from sigmahat.logs.sampling import Samples
+from sigmahat.runs.engine import Progress, run_all
+
+ESTIMATOR = "StiffnessEstimator"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A joint in a condition."""
+
+    condition: Condition
+    joint: Joint
+    score: Score
+    """Over all instants of all seeds."""
+
+
+def compare(
+    conditions: Sequence[Condition],
+    joints: Sequence[Joint],
+    seeds: Sequence[int],
+    processes: int | None = None,
+    progress: Progress = lambda done: None,
+) -> list[Row]:
+    """Runs each condition, one of CONDITIONS, on those of the joints that can have it.
+
+    processes, progress   as for sigmahat.runs.engine.run_all(); one run is one job
+
+    Raises ValueError for a start value that an FMU does not have, FmuError if an FMU refuses, and
+    WorkerError if a process was ended from outside.
+    """
+    rows = pairs(conditions, joints)
+    jobs = [
+        # Numbers, as other processes cannot receive the functions in a condition.
+        partial(run_once, CONDITIONS.index(condition), JOINTS.index(joint), seed)
+        for condition, joint in rows
+        for seed in seeds
+    ]
+    scores = iter(run_all(jobs, processes, progress))
+    return [Row(*row, sum((next(scores) for _ in seeds), Score())) for row in rows]
+
+
+def pairs(
+    conditions: Sequence[Condition], joints: Sequence[Joint]
+) -> list[tuple[Condition, Joint]]:
+    """The rows of a table: each condition with those of the joints that can have it."""
+    return [(each, joint) for each in conditions for joint in joints if joint in each.joints]
+
+
+def run_once(condition: int, joint: int, seed: int) -> Score:
+    """The score of one run, of places in CONDITIONS and JOINTS."""
+    row = CONDITIONS[condition]
+    experiment = row.change(draw(JOINTS[joint], seed))
+    return estimate(experiment, run(experiment), row.torque_gain)
+
+
+def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Score:
+    """The score of MatchedFilter on the samples of a run; torque_gain as for settings()."""
+    names = list(motion.measured)
+    values = np.column_stack(list(motion.measured.values()))
+    samples = Samples(experiment.T, names, values, np.arange(len(values)), ())
+    with Fmu(installed_fmu(ESTIMATOR)) as fmu, Slave(fmu, "MatchedFilter") as slave:
+        start = settings(experiment, torque_gain)
+        (found,) = replay(slave, samples, start, len(values))
+    t = experiment.T * np.arange(len(values))
+    judged = t >= experiment.rest + SETTLED
+    return score(
+        motion.sigma[judged],
+        found["sigma"][judged],
+        found["sigma_std"][judged],
+        found["confident"][judged] != 0,
+    )

@@ -1,0 +1,195 @@
+"""Runs the plant of an experiment, as its drive and its control do: measurements and the truth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from fmpy import fmi2
+from numpy.typing import NDArray
+
+from sigmahat.compare.misfits.experiment import DRIFT_TIME, Control, Drive, Experiment
+from sigmahat.fmi.installed import fmu as installed_fmu
+from sigmahat.fmi.instance import Fmu, Recorder, Slave
+
+Array = NDArray[np.float64]
+
+PLANT = "RealJointPlant"
+_RECORD = ("theta_measured", "q_measured", "tau_measured", "phi", "sigma")
+_LEAD = 0.0025 / (2 * math.pi)  # of the ball screw of the AwAS [m/rad]
+_RETRACTED = 0.1  # lever arm at theta_c = 0 [m]
+_COUNT = 2 * math.pi / 1024  # of the encoder of theta_c [rad]
+_LOW_PASS = 200.0  # of the velocities of a control [rad/s]
+_MARGIN = 0.1  # a measured torque may be late or early by so much [s]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Samples of a run, each array of shape (N,), at t = k T but for jitter."""
+
+    measured: Mapping[str, Array]
+    """Inputs of StiffnessEstimator by name."""
+    sigma: Array
+    """True stiffness [N.m/rad]; 0 in the dead zone of the spring."""
+    phi: Array
+    """True deformation [rad]."""
+
+
+def run(experiment: Experiment) -> Motion:
+    """Runs the plant. Raises FileNotFoundError or FmuError as the FMU does."""
+    held = experiment.control is not None or experiment.drive is not Drive.LINEAR
+    ticks = _ticks(experiment, 0, round(experiment.duration / experiment.T))
+    t = _sample_times(experiment, ticks)
+    inputs = {"tau": _torque(experiment, ticks if held else t), **_other_inputs(experiment, t)}
+    first = 0.0 if held else float(inputs["tau"][0])
+    table = np.column_stack(list(inputs.values()))
+    with Fmu(installed_fmu(PLANT)) as fmu, Slave(fmu, "plant") as plant:
+        start = {name: float(values[0]) for name, values in inputs.items()}
+        plant.initialize({**_start(experiment), **start, "tau": first})
+        control = _controller(experiment.control, ticks, experiment.T)
+        columns = _step(plant, list(inputs), table, t, held, control)
+    tau = table[:, 0]
+    acting = np.concatenate([[first], tau[:-1]]) if held else tau
+    gain = experiment.plant.get("sensor.tau_gain", 1.0)
+    columns["tau_measured"] += (_read(experiment, t, tau) - acting) / gain
+    return Motion(
+        {
+            "theta": columns["theta_measured"],
+            "q": columns["q_measured"],
+            "theta_c": _theta_c(inputs.get("r"), len(t)),
+            "tau": columns["tau_measured"],
+        },
+        columns["sigma"],
+        columns["phi"],
+    )
+
+
+def peak_deformation(experiment: Experiment) -> float:
+    """Largest |phi| of the experiment [rad]."""
+    return float(np.abs(run(experiment).phi).max())
+
+
+def _ticks(experiment: Experiment, first: int, end: int) -> Array:
+    """k T [s] for k from first to end - 1."""
+    return experiment.T * np.arange(first, end, dtype=np.float64)
+
+
+def _sample_times(experiment: Experiment, ticks: Array) -> Array:
+    """Times [s] with jitter, which stays below half a period so that they increase."""
+    rng = np.random.default_rng(experiment.seed)
+    off = np.clip(experiment.jitter * rng.standard_normal(len(ticks)), -0.49, 0.49)
+    off[0] = 0.0
+    return ticks + experiment.T * off
+
+
+def _torque(experiment: Experiment, t: Array) -> Array:
+    """Torque command at t [N.m], linear between the sample times k T."""
+    if experiment.control is not None:
+        return np.zeros_like(t)
+    around = math.ceil(_MARGIN / experiment.T)
+    steps = round(experiment.duration / experiment.T)
+    nodes = _ticks(experiment, -around, steps + around)
+    command = experiment.torque(nodes - experiment.rest) * (nodes >= experiment.rest)
+    return np.interp(t, nodes, command)
+
+
+def _other_inputs(experiment: Experiment, t: Array) -> dict[str, Array]:
+    inputs = {"tau_ext": np.full_like(t, experiment.load)}
+    if experiment.lever_arm is not None:
+        inputs["r"] = experiment.lever_arm(t)
+    ramp = np.minimum(t / DRIFT_TIME, 1.0)
+    return {**inputs, **{name: change * ramp for name, change in experiment.drift.items()}}
+
+
+def _start(experiment: Experiment) -> dict[str, float | int]:
+    """Start values: at rest, the spring deformed by the load and the weight."""
+    control = experiment.control
+    theta = float(control.reference(np.zeros(1))[0]) if control else 0.0
+    weight = experiment.plant.get("link.mgl", 0.0) * math.sin(theta)
+    return {
+        **experiment.plant,
+        "initial.theta": theta,
+        "initial.q": theta + (experiment.load - weight) / experiment.stiffness,
+        "noise.seed": experiment.seed,
+    }
+
+
+def _step(
+    plant: Slave,
+    names: list[str],
+    table: Array,
+    t: Array,
+    held: bool,
+    control: Callable[[int, float, float], float] | None,
+) -> dict[str, Array]:
+    """Steps the plant to all times t [s] under the inputs of the table, torque first.
+
+    They are linear from row to row; the torque is held where `held`. A control writes it into the
+    table. Returns the recorded columns.
+    """
+    call, fmi, count = plant.call, plant.functions, len(names)
+    references = plant.fmu.references(names, "input")
+    sensors = plant.fmu.references(_RECORD[:2], "output")
+    orders = (fmi2.fmi2Integer * count)(*[1] * count)
+    h = np.diff(t)
+    slopes = np.diff(table, axis=0) / h[:, None]
+    if held:
+        slopes[:, 0] = 0.0
+    rows, slope_rows = np.ctypeslib.as_ctypes(table), np.ctypeslib.as_ctypes(slopes)
+    angles = (fmi2.fmi2Real * 2)()
+    recorder = Recorder(plant, _RECORD, len(t))
+    for k, (begin, step) in enumerate(zip(t.tolist(), [*h.tolist(), 0.0], strict=True)):
+        recorder.sample(k)
+        if control is not None:
+            call(fmi.fmi2GetReal, sensors, 2, angles)
+            table[k, 0] = control(k, *angles)
+        if step > 0:
+            call(fmi.fmi2SetReal, references, count, rows[k])
+            call(fmi.fmi2SetRealInputDerivatives, references, count, orders, slope_rows[k])
+            call(fmi.fmi2DoStep, begin, step, fmi2.fmi2True)
+    return recorder.columns()
+
+
+def _controller(
+    control: Control | None, ticks: Array, T: float
+) -> Callable[[int, float, float], float] | None:
+    """The torque [N.m] of a control for sample k, from the measured theta and q [rad]."""
+    if control is None:
+        return None
+    wanted: list[float] = control.reference(ticks).tolist()
+    share = -math.expm1(-_LOW_PASS * T)
+    before: list[float] = []
+    velocity = [0.0, 0.0]
+
+    def torque(k: int, theta: float, q: float) -> float:
+        for i, angle in enumerate((theta, q)):
+            if before:
+                velocity[i] += share * ((angle - before[i]) / T - velocity[i])
+        before[:] = theta, q
+        feedback = control.kd * velocity[0] + control.kq * velocity[1]
+        return control.kp * (wanted[k] - theta) - feedback
+
+    return torque
+
+
+def _read(experiment: Experiment, t: Array, tau: Array) -> Array:
+    """The torque that the drive reports at the times t [N.m]: without gain, bias and noise.
+
+    tau  torque at the samples, or where it is held from each sample on
+    """
+    if experiment.drive is Drive.LINEAR:
+        return _torque(experiment, t - experiment.late)
+    if experiment.drive is Drive.HELD:
+        return tau
+    mean: Array = (tau + np.concatenate([[0.0], tau[:-1]])) / 2
+    return mean
+
+
+def _theta_c(r: Array | None, samples: int) -> Array:
+    """Position of the secondary motor of the AwAS, from its encoder [rad]; 0 without a lever."""
+    if r is None:
+        return np.zeros(samples)
+    rounded: Array = _COUNT * np.floor((_RETRACTED - r) / _LEAD / _COUNT + 0.5)
+    return rounded

@@ -1,0 +1,98 @@
+"""How right an estimate is, and how right what it says of itself."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+SETTLED = 2.0
+"""An estimate is judged from this time on after the torque begins [s]."""
+DANGEROUS_ERROR, DANGEROUS_CLAIM = 0.1, 0.02
+"""An instant is dangerous with an error above the one while the claim is below the other [1]."""
+WRONG = 0.2
+"""Error above which a confident estimate is wrong [1]."""
+_LARGEST = 10.0  # a larger relative error or claim counts as this
+
+
+@dataclass(frozen=True)
+class Score:
+    """Sums over instants. The error is relative to the true stiffness, and so is the claim."""
+
+    instants: int = 0
+    error2: float = 0.0
+    """Squares of the error [1]."""
+    claim2: float = 0.0
+    """Squares of sigma_std over the true stiffness [1]."""
+    inside: int = 0
+    """Instants with an error of at most 1.96 sigma_std."""
+    dangerous_instants: int = 0
+    confident_instants: int = 0
+    wrong_instants: int = 0
+    """Instants that are confident, with an error above WRONG."""
+
+    def __add__(self, other: Score) -> Score:
+        return Score(
+            *(a + b for a, b in zip(vars(self).values(), vars(other).values(), strict=True))
+        )
+
+    @property
+    def error(self) -> float:
+        """Root mean square of the error [%]; this and the others are nan without instants."""
+        return 100 * math.sqrt(self._mean(self.error2))
+
+    @property
+    def claim(self) -> float:
+        """Root mean square of the claim [%]"""
+        return 100 * math.sqrt(self._mean(self.claim2))
+
+    @property
+    def coverage(self) -> float:
+        """Share of instants with the truth within 1.96 sigma_std [%]"""
+        return 100 * self._mean(self.inside)
+
+    @property
+    def dangerous(self) -> float:
+        """Share of instants with an error above 10 % while the claim is below 2 % [%]"""
+        return 100 * self._mean(self.dangerous_instants)
+
+    @property
+    def confident(self) -> float:
+        """Share of instants that are confident [%]"""
+        return 100 * self._mean(self.confident_instants)
+
+    @property
+    def wrong(self) -> float:
+        """Share of instants that are confident with an error above 20 % [%]"""
+        return 100 * self._mean(self.wrong_instants)
+
+    def _mean(self, total: float) -> float:
+        return total / self.instants if self.instants else math.nan
+
+
+def score(
+    true: NDArray[np.float64],
+    sigma: NDArray[np.float64],
+    sigma_std: NDArray[np.float64],
+    confident: NDArray[np.bool_],
+) -> Score:
+    """The score of an estimate; arguments [N.m/rad] and flags of shape (N,).
+
+    Instants with a true stiffness of 0 are left out: the spring is in its dead zone.
+    """
+    engaged = true != 0
+    true, sigma, sigma_std, confident = (a[engaged] for a in (true, sigma, sigma_std, confident))
+    error = np.abs(sigma / true - 1)
+    claim = sigma_std / np.abs(true)
+    dangerous = (error > DANGEROUS_ERROR) & (sigma_std < DANGEROUS_CLAIM * np.abs(sigma))
+    return Score(
+        instants=len(true),
+        error2=float(np.sum(np.minimum(error, _LARGEST) ** 2)),
+        claim2=float(np.sum(np.minimum(claim, _LARGEST) ** 2)),
+        inside=int(np.sum(np.abs(sigma - true) <= 1.96 * sigma_std)),
+        dangerous_instants=int(np.sum(dangerous)),
+        confident_instants=int(np.sum(confident)),
+        wrong_instants=int(np.sum(confident & (error > WRONG))),
+    )

@@ -1,0 +1,92 @@
+"""The table of misfits: printed, as a CSV file, and for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sigmahat.compare.misfits.conditions import Group
+from sigmahat.compare.misfits.job import Row
+from sigmahat.compare.misfits.score import Score
+from sigmahat.files.columns import title
+from sigmahat.files.csv_table import write_csv
+from sigmahat.files.text_table import aligned
+
+FIGURES = {
+    "error": "error",
+    "claim": "claim",
+    "coverage": "coverage",
+    "dangerous": "dangerous",
+    "confident": "confident",
+    "wrong": "confident and over 20 % wrong",
+}
+"""Properties of Score [%], and what a file calls them."""
+
+
+def table(rows: Sequence[Row]) -> str:
+    """The rows as text, a part for each group; below it the means over its rows by joint."""
+    cells = [["", *(title(name, "%") for name in FIGURES)]]
+    heads: dict[int, str] = {}
+    for group in Group:
+        own = [row for row in rows if row.condition.group is group]
+        if own:
+            heads[len(cells)] = group.value
+        cells += [
+            [f"  {row.condition.name}, {row.joint.name}", *_cells(figures(row.score))]
+            for row in own
+        ]
+        for joint in dict.fromkeys(row.joint.name for row in own):
+            values = [figures(row.score) for row in own if row.joint.name == joint]
+            if len(values) > 1:
+                means = {name: float(np.mean([v[name] for v in values])) for name in FIGURES}
+                cells.append([f"  mean of {len(values)} rows, {joint}", *_cells(means)])
+    text: list[str] = []
+    for k, line in enumerate(aligned(cells)):
+        text += ["", heads[k], line] if k in heads else [line]
+    return "\n".join(text)
+
+
+def figures(score: Score) -> dict[str, float]:
+    """The figures of a score by the name of their property [%]."""
+    return {name: getattr(score, name) for name in FIGURES}
+
+
+def write(rows: Sequence[Row], seeds: int, path: Path) -> None:
+    """Writes a line for every row, numbers with all digits."""
+    head = ["class", "condition", "joint", "seeds", "prior of the torque gain [1]"]
+    write_csv(
+        path,
+        [*head, *(title(name, "%") for name in FIGURES.values())],
+        (
+            [
+                row.condition.group.value,
+                row.condition.name,
+                row.joint.name,
+                seeds,
+                row.condition.torque_gain,
+                *figures(row.score).values(),
+            ]
+            for row in rows
+        ),
+    )
+
+
+def as_dicts(rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """For JSON."""
+    return [
+        {
+            "class": row.condition.group.value,
+            "condition": row.condition.name,
+            "joint": row.joint.name,
+            **figures(row.score),
+        }
+        for row in rows
+    ]
+
+
+def _cells(values: dict[str, float]) -> list[str]:
+    digits = {"error": 2, "claim": 2}
+    return [f"{value:.{digits.get(name, 1)}f}" for name, value in values.items()]

@@ -1,0 +1,228 @@
+"""The catalogue of misfits as data, the samples of a run, and the measure, in closed form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plant_runs import QUIET, times
+from sigmahat.compare.misfits import motion
+from sigmahat.compare.misfits.conditions import CONDITIONS, Condition, Group
+from sigmahat.compare.misfits.experiment import Experiment, draw
+from sigmahat.compare.misfits.job import compare, pairs
+from sigmahat.compare.misfits.joints import AWAS, JOINTS, SEA_1K, SEA_5K, Joint
+from sigmahat.compare.misfits.random_joint import LAST_LOOK, all_misfits, other_joint
+from sigmahat.compare.misfits.score import Score, score
+from sigmahat.compare.misfits.settings import settings
+from sigmahat.runs.scenario import Sine, Sines
+
+EXACT: Mapping[str, float] = {**QUIET, "encoder.theta": 0.0, "encoder.q": 0.0}
+
+
+def condition(name: str) -> Condition:
+    (found,) = (each for each in CONDITIONS if each.name == name)
+    return found
+
+
+def short(joint: Joint, name: str = "none", duration: float = 0.5) -> Experiment:
+    """The beginning of a condition, measured without rounding and noise."""
+    changed = condition(name).change(draw(joint, 1)).with_plant(EXACT)
+    return replace(changed, duration=duration)
+
+
+def test_rows_have_names_of_their_own_and_joints() -> None:
+    names = [each.name for each in CONDITIONS]
+    assert len(set(names)) == len(names)
+    assert all(each.joints for each in CONDITIONS)
+    assert {each.group for each in CONDITIONS} == set(Group)
+    rows = pairs(CONDITIONS, JOINTS)
+    assert len(rows) == len({(each.name, joint.name) for each, joint in rows})
+    assert [joint for each, joint in rows if each.name == "m = 2, too small"] == [AWAS]
+
+
+@pytest.mark.parametrize("joint", JOINTS, ids=lambda joint: joint.name)
+def test_a_draw_has_the_distributions_of_the_study(joint: Joint) -> None:
+    draws = [draw(joint, seed) for seed in range(1, 201)]
+    assert {len(each.torque.terms) for each in draws} == {3, 4, 5, 6}
+    for each in draws:
+        torque = [term for term in each.torque.terms if isinstance(term, Sine)]
+        assert sum(term.amplitude for term in torque) == pytest.approx(joint.torque)
+        frequencies = [term.frequency for term in torque]
+        assert frequencies == sorted(frequencies) and 0.1 <= frequencies[0] < frequencies[-1] <= 10
+        assert (each.lever_arm is None) == (joint is not AWAS)
+        assert {name: abs(error) for name, error in each.errors.items()} == pytest.approx(
+            {"D_theta": 0.1, "B": 0.05}
+        )
+    for name in ("D_theta", "B"):
+        too_large = np.mean([each.errors[name] > 0 for each in draws])
+        assert too_large == pytest.approx(0.5, abs=4 * 0.5 / math.sqrt(200))
+    assert len({each.seed for each in draws}) == 200
+    assert draw(joint, 7) == draws[6]
+
+
+def test_another_joint_has_the_distributions_of_the_study() -> None:
+    draws = [other_joint(draw(SEA_1K, seed)) for seed in range(1, 401)]
+    deviations = {"motor.B": 0.25, "motor.D_theta": 0.4, "link.M": 0.3, "spring.k_1": 0.3}
+    for name, deviation in deviations.items():
+        factors = np.log([each.plant[name] / SEA_1K.plant[name] for each in draws])
+        assert np.std(factors) == pytest.approx(deviation, rel=4 / math.sqrt(2 * 400))
+        assert abs(np.mean(factors)) < 4 * deviation / 20
+    friction = [each.plant["motor.tau_coulomb"] / 0.03 for each in draws]
+    assert 0 <= min(friction) < 0.05 and 1.95 < max(friction) < 2
+    # The estimator knows the kind of joint, and motor data of this one.
+    given = settings(draws[0], 0.0)
+    assert given["prior.tau_coulomb"] == 0.03
+    B = draws[0].plant["motor.B"]
+    assert given["motor.B"] == pytest.approx((1 + draws[0].errors["B"]) * B)
+
+
+def test_a_random_joint_has_all_misfits() -> None:
+    clean, all_of_them = other_joint(draw(SEA_5K, 3)), all_misfits(draw(SEA_5K, 3))
+    peak = motion.peak_deformation(clean)
+    assert all_of_them.plant["spring.dahl_phi"] == pytest.approx(0.03 * peak)
+    assert 0 < all_of_them.plant["spring.dahl"] < 0.03 * clean.stiffness * peak
+    assert 0 < all_of_them.plant["spring.gap"] < 0.02e-3
+    assert all_of_them.late != 0 and all_of_them.jitter > 0
+    assert all_of_them.drift["D_theta_change"] != 0
+    assert set(LAST_LOOK).isdisjoint(range(1, 101))
+
+
+def test_sizes_that_depend_on_the_joint() -> None:
+    bias, cogging = condition("torque bias 2 %"), condition("cogging 12 per turn, 5 %")
+    for joint in JOINTS:
+        begin = draw(joint, 1)
+        assert bias.change(begin).plant["sensor.tau_bias"] == 0.02 * joint.torque
+        found = cogging.change(begin).plant
+        assert found["motor.cogging"] == 0.05 * joint.torque
+        assert found["motor.cogging_order"] == 12
+    hardening = condition("hardening spring, n = 3").change(draw(SEA_5K, 1))
+    k_3, phi = hardening.plant["spring.k_3"], SEA_5K.deformation
+    assert 3 * k_3 * phi**2 == pytest.approx(0.3 * 5000)
+    assert settings(hardening, 0.0)["rls.n"] == 3
+    exact = condition("B 5 % wrong, given as exact").change(draw(SEA_1K, 1))
+    given = settings(exact, 0.0)
+    assert given["motor.B"] == pytest.approx(1.05e-4)
+    assert given["prior.B"] == 0.0
+    hysteresis = condition("hysteresis 5 %").change(draw(AWAS, 1))
+    peak = motion.peak_deformation(draw(AWAS, 1))
+    stiffness = 2 * 14220 * 0.07**2
+    assert hysteresis.plant["spring.dahl"] == pytest.approx(0.05 * stiffness * peak)
+
+
+@pytest.mark.parametrize("late", [0.0, 2.3e-3, -1.7e-3])
+def test_the_torque_is_measured_late_or_early(late: float) -> None:
+    sines = Sines(0.0, (Sine(0.3, 2.0, 0.5),))
+    experiment = replace(short(SEA_1K), torque=sines, late=late, rest=0.1)
+    t = times(1e-3, 0.499)
+    expected = sines(t - late - 0.1) * (t - late >= 0.1)
+    away = np.abs(t - late - 0.1) > 2e-3  # where the torque begins, it is linear for a sample
+    tau = motion.run(experiment).measured["tau"]
+    assert len(tau) == 500
+    # Between samples it is linear, not a sine.
+    np.testing.assert_allclose(tau[away], expected[away], rtol=0, atol=0.3 * (4e-3 * math.pi) ** 2)
+
+
+def test_the_measured_torque_has_gain_and_bias() -> None:
+    plain = motion.run(short(AWAS)).measured
+    changed = {"sensor.tau_gain": 0.9, "sensor.tau_bias": 0.01}
+    wrong = motion.run(replace(short(AWAS).with_plant(changed), late=1e-3)).measured
+    late = np.concatenate([[0.0], plain["tau"][:-1]])
+    np.testing.assert_allclose(wrong["tau"], (late - 0.01) / 0.9, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(wrong["theta"], plain["theta"])
+
+
+def test_a_held_torque_is_measured_as_it_begins_or_as_a_mean() -> None:
+    command = motion.run(short(SEA_1K)).measured["tau"]
+    held = motion.run(short(SEA_1K, "held torque, u(k)")).measured
+    mean = motion.run(short(SEA_1K, "held torque, mean of u")).measured
+    np.testing.assert_allclose(held["tau"], command, rtol=0, atol=1e-12)
+    before = np.concatenate([[0.0], command[:-1]])
+    np.testing.assert_allclose(mean["tau"], (command + before) / 2, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(held["theta"], mean["theta"])
+    linear = motion.run(short(SEA_1K)).measured["theta"]
+    assert 0 < np.abs(held["theta"] - linear).max() < 0.02 * np.ptp(linear)
+
+
+def test_jitter_moves_the_samples() -> None:
+    exact = motion.run(short(AWAS, "none", 2.0)).measured["theta"]
+    late = motion.run(short(AWAS, "jitter 5 %", 2.0)).measured["theta"]
+    velocity = np.gradient(exact, 1e-3)
+    fast = np.abs(velocity) > 0.3 * np.abs(velocity).max()
+    moved = ((late - exact) / velocity)[fast] / 1e-3
+    assert np.std(moved) == pytest.approx(0.05, rel=0.15)
+    assert abs(np.mean(moved)) < 0.01
+
+
+def test_control_follows_its_reference() -> None:
+    experiment = short(SEA_1K, "PD and gravity, one sign of phi", 3.0)
+    found = motion.run(experiment)
+    control = experiment.control
+    assert control is not None
+    wanted = control.reference(times(1e-3, 2.999))
+    assert wanted[0] == pytest.approx(math.pi / 2)
+    assert np.abs(found.measured["theta"] - wanted).max() < 0.1
+    assert np.all(found.phi < 0)
+    assert found.phi[0] == pytest.approx(-12 / 1000)
+
+
+def test_a_load_is_carried_by_the_mean_torque() -> None:
+    found = motion.run(short(AWAS, "constant load, one sign of phi", 5.0))
+    assert found.phi[0] == pytest.approx(-8 / (2 * 14220 * 0.07**2))
+    assert np.all(found.phi < 0)
+
+
+def test_the_lever_arm_reaches_the_estimator_as_an_angle() -> None:
+    experiment = short(AWAS)
+    theta_c = motion.run(experiment).measured["theta_c"]
+    r = 0.1 - 0.0025 / (2 * math.pi) * theta_c
+    assert experiment.lever_arm is not None
+    wanted = experiment.lever_arm(times(1e-3, 0.499))
+    assert 0 < np.abs(r - wanted).max() <= 0.0025 / 1024 / 2 * (1 + 1e-9)
+    assert not motion.run(short(SEA_1K)).measured["theta_c"].any()
+
+
+def test_the_score_in_closed_form() -> None:
+    true = np.array([100.0, 100.0, 100.0, 200.0, 0.0])
+    sigma = np.array([101.0, 115.0, 130.0, 100.0, 50.0])
+    sigma_std = np.array([1.0, 1.0, 20.0, 4.0, 1.0])
+    confident = np.array([True, True, True, False, True])
+    found = score(true, sigma, sigma_std, confident)
+    assert found.instants == 4  # the last one is in the dead zone
+    assert found.error == pytest.approx(100 * math.sqrt((0.01**2 + 0.15**2 + 0.3**2 + 0.5**2) / 4))
+    assert found.claim == pytest.approx(100 * math.sqrt((0.01**2 + 0.01**2 + 0.2**2 + 0.02**2) / 4))
+    assert found.coverage == 50  # the first and the third
+    # The second claims 1/115; the fourth 4 of an estimate of 100, which is more than 2 %.
+    assert found.dangerous == 25
+    assert (found.confident, found.wrong) == (75, 25)
+
+
+def test_scores_add_up_over_instants() -> None:
+    one = score(np.ones(3), np.ones(3) * 1.3, np.ones(3), np.ones(3, np.bool_))
+    other = score(np.ones(1), np.ones(1), np.zeros(1), np.zeros(1, np.bool_))
+    both = sum([one, other], Score())
+    assert both.error == pytest.approx(30 * math.sqrt(3 / 4))
+    assert (both.coverage, both.confident, both.wrong) == (100, 75, 75)
+    assert math.isnan(Score().error)
+
+
+def test_a_large_error_counts_as_ten_times_the_stiffness() -> None:
+    huge = score(np.ones(1), np.full(1, 1e9), np.full(1, 1e9), np.zeros(1, np.bool_))
+    assert (huge.error, huge.claim) == (1000, 1000)
+
+
+def test_a_gain_of_the_torque_is_an_error_of_its_size_that_the_prior_covers() -> None:
+    (row,) = compare([condition("gain 0.9, prior 0.1")], [AWAS], [1], processes=1)
+    assert row.score.error == pytest.approx(10, abs=1)
+    assert row.score.claim == pytest.approx(10, abs=2)
+    assert row.score.coverage > 90
+
+
+def test_the_estimator_is_given_a_prior_of_the_gain_where_there_is_an_error_of_it() -> None:
+    for each in CONDITIONS:
+        has_error = each.group in (Group.GAIN, Group.RANDOM)
+        assert (each.torque_gain > 0) is has_error
+        assert settings(draw(AWAS, 1), each.torque_gain)["prior.torque_gain"] == each.torque_gain

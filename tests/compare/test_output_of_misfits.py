@@ -1,0 +1,161 @@
+"""What `sigmahat compare --misfits` prints, writes and draws."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from lxml import etree
+from PIL import Image
+
+from sigmahat.cli import main
+from sigmahat.compare.misfits import conditions
+from sigmahat.compare.misfits.conditions import CONDITIONS, Group
+from sigmahat.compare.misfits.figure import draw
+from sigmahat.compare.misfits.job import Row, compare
+from sigmahat.compare.misfits.joints import AWAS, JOINTS, SEA_1K
+from sigmahat.compare.misfits.score import Score
+from sigmahat.compare.misfits.table import FIGURES, figures, table
+
+NAMES = ("none", "uneven Coulomb friction 20 %", "n = 1, too small")
+
+
+@pytest.fixture(scope="module")
+def rows() -> list[Row]:
+    """Seven rows: two conditions of all joints, and one of the AwAS."""
+    chosen = [each for each in CONDITIONS if each.name in NAMES]
+    return compare(chosen, JOINTS, [1], processes=2)
+
+
+def test_rows_are_judged(rows: list[Row]) -> None:
+    assert [(row.condition.name, row.joint.name) for row in rows] == [
+        (name, joint.name)
+        for name in NAMES
+        for joint in (JOINTS if name != "n = 1, too small" else [AWAS])
+    ]
+    assert {row.score.instants for row in rows} == {18000}
+    clean, uneven = (r.score for r in rows if r.joint is AWAS and r.condition.name in NAMES[:2])
+    assert clean.error < 1.0 and clean.coverage > 80 and clean.confident == 100
+    assert uneven.error != clean.error
+
+
+def test_seeds_add_up(rows: list[Row]) -> None:
+    row = rows[0]
+    (both,) = compare([row.condition], [row.joint], [1, 2], processes=1)
+    (second,) = compare([row.condition], [row.joint], [2], processes=1)
+    assert both.score == row.score + second.score
+
+
+def test_printed_table(rows: list[Row]) -> None:
+    head, *lines = table(rows).splitlines()
+    assert head.split() == [word for name in FIGURES for word in (name, "[%]")]
+    assert [line for line in lines if line and not line.startswith(" ")] == [
+        "clean",
+        "class 1",
+        "class 2",
+    ]
+    printed = [line for line in lines if line.startswith("  ") and "mean of" not in line]
+    for row, line in zip(rows, printed, strict=True):
+        assert line.startswith(f"  {row.condition.name}, {row.joint.name} ")
+        cells = [float(cell) for cell in line.split()[-len(FIGURES) :]]
+        assert cells == pytest.approx(list(figures(row.score).values()), abs=0.05)
+
+
+def test_means_are_those_of_the_rows_of_a_class() -> None:
+    clean = [each for each in CONDITIONS if each.group is Group.CLEAN][:2]
+    made = [
+        Row(each, SEA_1K, Score(100, error**2 * 100, 1.0, inside, 0, 0, 0))
+        for each, error, inside in zip(clean, (0.01, 0.03), (90, 70), strict=True)
+    ]
+    (line,) = [line for line in table(made).splitlines() if "mean of 2 rows, SEA1k" in line]
+    assert [float(cell) for cell in line.split()[-6:]] == [2.0, 10.0, 80.0, 0.0, 0.0, 0.0]
+
+
+def test_figure(rows: list[Row]) -> None:
+    figure = draw(rows)
+    (axes,) = figure.axes
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    assert "[%]" in axes.get_xlabel() and "[%]" in axes.get_ylabel()
+    markers = [line for line in axes.get_lines() if line.get_marker() not in ("None", "")]
+    points = markers[::-1]
+    assert len(points) == len(rows)
+    for row, point in zip(rows, points, strict=True):
+        np.testing.assert_array_equal(point.get_xydata(), [[row.score.claim, row.score.error]])
+    joints = {(row.joint.name, point.get_marker()) for row, point in zip(rows, points, strict=True)}
+    groups = {
+        (row.condition.group, point.get_color()) for row, point in zip(rows, points, strict=True)
+    }
+    assert len({marker for _, marker in joints}) == len(joints) == 3
+    assert len({color for _, color in groups}) == len(groups) == 3
+    (corner,) = axes.patches
+    box = corner.get_window_extent().transformed(axes.transData.inverted())
+    assert (box.x1, box.y0) == pytest.approx((2, 10))
+    (legend,) = figure.legends
+    texts = [text.get_text() for text in legend.get_texts()]
+    assert texts == ["AwAS", "SEA1k", "SEA5k", "clean", "class 1", "class 2"]
+
+
+def test_every_class_has_a_color_of_its_own_and_any_value_is_in_the_figure() -> None:
+    one = {each.group: each for each in CONDITIONS}
+    made = [Row(each, AWAS, Score(1, 1e2, 1e-14, 1, 0, 0, 0)) for each in one.values()]
+    (axes,) = draw(made).axes
+    points = axes.get_lines()[1:]
+    assert len({str(point.get_color()) for point in points}) == len(Group)
+    low, high = axes.get_xlim()
+    assert low < 1e-5 and high > 1000
+
+
+@pytest.mark.slow("all rows again, once for each output, in a new process")
+def test_command(
+    rows: list[Row],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    chosen = [each for each in CONDITIONS if each.name in NAMES]
+    monkeypatch.setattr(conditions, "CONDITIONS", chosen)
+    out = tmp_path / "out"
+    arguments = ["compare", "--misfits", "--seeds", "1", "--jobs", "1", "--out", str(out)]
+    assert main(arguments) == 0
+    printed = capsys.readouterr().out
+    assert table(rows) in printed
+    assert "1 seed." in printed and str(out) in printed
+    assert {path.name for path in out.iterdir()} == {"misfits.png", "misfits.svg", "misfits.csv"}
+    with (out / "misfits.csv").open(newline="") as file:
+        lines = list(csv.DictReader(file))
+    for row, line in zip(rows, lines, strict=True):
+        assert (line["condition"], line["joint"]) == (row.condition.name, row.joint.name)
+        assert line["class"] == row.condition.group.value
+        for name, value in figures(row.score).items():
+            assert float(line[f"{FIGURES[name]} [%]"]) == value
+    with Image.open(out / "misfits.png") as image:
+        assert image.width > 800 and len(image.convert("RGB").getcolors(10**6)) > 10
+    svg = etree.parse(out / "misfits.svg").getroot()
+    assert svg.tag.endswith("svg")
+
+    assert main([*arguments, "--json"]) == 0
+    values = json.loads(capsys.readouterr().out)
+    assert [value["error"] for value in values] == [row.score.error for row in rows]
+    assert not any(math.isnan(value["claim"]) for value in values)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "hint"),
+    [
+        (["--misfit"], "--misfits"),
+        (["--misfits", "AwAS"], "AwAS"),
+        (["--misfits", "--jobs", "0"], "--jobs"),
+        (["--misfits", "--jobs", "two"], "--jobs"),
+        (["--misfits", "--seed", "2"], "--seeds"),
+    ],
+)
+def test_an_unknown_argument_is_refused_in_one_line(
+    arguments: list[str], hint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["compare", *arguments]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("sigmahat: error: ") and hint in line
