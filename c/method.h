@@ -12,6 +12,10 @@
 
 #include "sigmahat.h"
 
+/* The value of a macro as a string. */
+#define SH_TEXT(token) #token
+#define SH_TEXT_OF(macro) SH_TEXT(macro)
+
 typedef struct {
     /* Largest deformation for which the method is made, in units of range.phi; may be infinite. */
     sh_real largest_deformation;

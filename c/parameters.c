@@ -82,8 +82,6 @@ typedef struct {
     int min, max;
 } integer_range;
 
-#define TEXT(token) #token
-#define TEXT_OF(macro) TEXT(macro)
 #define AT(designator) #designator, offsetof(sh_parameters, designator)
 
 /* Limits other than 0, 1 and infinity are wide ones of what is squared or raised to a power: within
@@ -150,8 +148,8 @@ static const integer_range INTEGERS[] = {
     {AT(rls.kind), "1 (Enhanced), 2 (Standard) or 3 (ConstantFactor)", SH_RLS_ENHANCED,
      SH_RLS_CONSTANT_FACTOR},
     {AT(rls.symmetric), "0 or 1", 0, 1},
-    {AT(rls.n), "1 to " TEXT_OF(SH_MAX_N), 1, SH_MAX_N},
-    {AT(rls.m), "1 to " TEXT_OF(SH_MAX_M), 1, SH_MAX_M},
+    {AT(rls.n), "1 to " SH_TEXT_OF(SH_MAX_N), 1, SH_MAX_N},
+    {AT(rls.m), "1 to " SH_TEXT_OF(SH_MAX_M), 1, SH_MAX_M},
     {AT(torque.held), "0 or 1", 0, 1},
 };
 

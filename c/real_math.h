@@ -25,6 +25,11 @@
 #define sh_sin SH_FOR(SH_REAL, sin, sinf)
 #define sh_sqrt SH_FOR(SH_REAL, sqrt, sqrtf)
 
+static inline sh_real sh_square(sh_real x)
+{
+    return x * x;
+}
+
 #define SH_PI 3.14159265358979323846
 
 /* A number whose square, and whose product with any number of practical size, is far from overflow.

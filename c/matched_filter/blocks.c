@@ -13,17 +13,12 @@ static const sh_real DURATION = (sh_real)0.05; /* of a block [s] */
  */
 static const sh_real LARGEST_COUNT = 2000;
 
-static sh_real square(sh_real x)
-{
-    return x * x;
-}
-
 /* Window of a block of `length` samples at sample k. */
 static sh_real window(sh_real k, sh_real length)
 {
     const sh_real x = (k + (sh_real)0.5) / length;
 
-    return 16 * square(x * (1 - x));
+    return 16 * sh_square(x * (1 - x));
 }
 
 void sh_blocks_start(sh_matched_state *state)
@@ -43,9 +38,9 @@ void sh_blocks_start(sh_matched_state *state)
         const sh_real h = k < blocks->length ? window(k, blocks->length) : 0;
 
         sh_state_variable_filter_step(&filter, design, h);
-        of_window += square(h);
-        output += square(sh_state_variable_filter_output(&filter));
-        second += square(sh_state_variable_filter_second(&filter, design));
+        of_window += sh_square(h);
+        output += sh_square(sh_state_variable_filter_output(&filter));
+        second += sh_square(sh_state_variable_filter_second(&filter, design));
     }
     blocks->energy = output / of_window;
     blocks->energy_second = second / of_window;
@@ -62,7 +57,7 @@ void sh_blocks_interrupt(sh_blocks *blocks, int size)
 }
 
 /* Takes the mean row of the block. */
-static void take(sh_matched_state *state, sh_information *a, sh_real w)
+static void take_mean_row(sh_matched_state *state, sh_information *a, sh_real w)
 {
     sh_real *const row = state->work.row;
     int i;
@@ -85,16 +80,16 @@ static void end(sh_matched_state *state, const sh_parameters *p)
     sh_blocks *blocks = &state->blocks;
     const sh_motor_parameters *motor = &p->motor;
     const sh_real rounding = sh_is_measured(p) ? 0
-                                               : square(square(motor->gamma) * motor->B) *
+                                               : sh_square(sh_square(motor->gamma) * motor->B) *
                                                      blocks->rounding / blocks->samples;
     const sh_real variance =
-        blocks->weight_window / square(blocks->weight) * blocks->energy +
-        rounding * blocks->energy_second * blocks->window_square / square(blocks->window);
+        blocks->weight_window / sh_square(blocks->weight) * blocks->energy +
+        rounding * blocks->energy_second * blocks->window_square / sh_square(blocks->window);
     const sh_real count = blocks->independent / blocks->window_square;
 
-    take(state, &blocks->walking, 1 / variance);
-    take(state, &blocks->recent, 1 / variance);
-    take(state, &blocks->all, 1 / variance);
+    take_mean_row(state, &blocks->walking, 1 / variance);
+    take_mean_row(state, &blocks->recent, 1 / variance);
+    take_mean_row(state, &blocks->all, 1 / variance);
     blocks->count += count;
     blocks->recent_count += count;
     if (blocks->count > LARGEST_COUNT)
@@ -114,8 +109,8 @@ void sh_blocks_take(sh_matched_state *state, const sh_parameters *p, const sh_re
     blocks->weight += wh;
     blocks->weight_window += wh * h;
     blocks->window += h;
-    blocks->window_square += square(h);
-    blocks->independent += square(h) / last;
+    blocks->window_square += sh_square(h);
+    blocks->independent += sh_square(h) / last;
     blocks->rounding += sh_signals_roughness(state);
     blocks->samples += 1;
     if (blocks->samples >= blocks->length)

@@ -43,6 +43,9 @@ void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p);
 /* Sum of squares that is beyond chance for N blocks with no misfit: N (1 + 3 sqrt(2 / N)). */
 sh_real sh_blocks_threshold(sh_real N);
 
+/* Factor of the variances above which the data contradict the model. */
+#define SH_CONTRADICTION ((sh_real)1.5)
+
 #define SH_BLOCKS_FIRST ((sh_real)20) /* number of blocks below which nothing is judged */
 
 #endif

@@ -8,9 +8,6 @@
 /* Variance by which friction may change in a second, in units of its prior's [1/s]. */
 static const sh_real WALK = (sh_real)1e-3;
 
-/* Factor of the variances above which data are forgotten. */
-static const sh_real CONTRADICTION = (sh_real)1.5;
-
 static void fade_recent(sh_blocks *blocks, const sh_parameters *p, sh_real time)
 {
     const sh_real keep = p->matched.memory > 0 ? sh_exp(-10 * time / p->matched.memory) : 1;
@@ -97,7 +94,7 @@ static void drift(sh_matched_state *state, const sh_parameters *p, sh_real time)
 void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, sh_real time)
 {
     fade_recent(&state->blocks, p, time);
-    if (state->variance_factor > CONTRADICTION)
+    if (state->variance_factor > SH_CONTRADICTION)
         forget(state, p, time);
     if (p->matched.drift > 0)
         drift(state, p, time);

@@ -14,14 +14,8 @@
 #include "signals.h"
 #include "state_variable_filter.h"
 
-#define TEXT(token) #token
-#define TEXT_OF(macro) TEXT(macro)
-
 /* Relative uncertainty of the stiffness below which columns that need it have an effect. */
 static const sh_real KNOWN = (sh_real)0.2;
-
-/* Factor of the variances above which a large uncertainty is a matter of the misfit. */
-static const sh_real CONTRADICTION = (sh_real)1.5;
 
 /* Deformation in units of range.phi above which nothing is claimed. With rls.n = 3, the highest power
  * is there 32 times as large as at range.phi.
@@ -46,7 +40,7 @@ static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
     if (sh_columns_count(p) > SH_MAX_COLUMNS)
         return sh_violates(violation, "rls.n", (sh_real)p->rls.n,
                            "smaller, or more priors 0: this library was compiled for at "
-                           "most " TEXT_OF(SH_MAX_COLUMNS) " columns");
+                           "most " SH_TEXT_OF(SH_MAX_COLUMNS) " columns");
     return 0;
 }
 
@@ -172,7 +166,7 @@ static int doubt_of(const sh_matched_state *state, const sh_parameters *p,
     int doubt = SH_DOUBT_NONE;
 
     if (!(estimate->sigma_std < p->confidence * sh_fabs(estimate->sigma)))
-        doubt = state->variance_factor > CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
+        doubt = state->variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
     if (sh_fabs(estimate->phi) > LARGEST_DEFORMATION * p->range.phi)
         doubt = SH_DOUBT_OUT_OF_RANGE;
     if (sh_fabs(joint->viscous) > 3 * p->prior.D_theta)

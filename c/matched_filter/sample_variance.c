@@ -15,11 +15,6 @@ static const sh_real EXCESS = (sh_real)0.3;
 static const sh_real WATCH = (sh_real)0.1; /* time constant of the noise that is measured [s] */
 static const sh_real MEAN = 5;             /* time constant of the mean excess [s] */
 
-static sh_real square(sh_real x)
-{
-    return x * x;
-}
-
 /* Share of the variance of white noise that the filter leaves: T times the integral of h^2, for the
  * impulse response h of the filter, whose integral is 1.
  */
@@ -42,8 +37,8 @@ static sh_real friction_variance(sh_matched_state *state, const sh_parameters *p
         return 0;
     for (i = 0; i < live->information.size; ++i)
         c[i] = i == C ? 1 : 0;
-    tau_C = square(state->beta[live->column[C]]) + sh_posterior_variance(live, c, state->work.v);
-    return square(p->motor.gamma * p->prior.tau_coulomb * unknown) * tau_C;
+    tau_C = sh_square(state->beta[live->column[C]]) + sh_posterior_variance(live, c, state->work.v);
+    return sh_square(p->motor.gamma * p->prior.tau_coulomb * unknown) * tau_C;
 }
 
 /* White noise enters as it is before the filter. A wrong sign of friction in one sample leaves the
@@ -59,19 +54,19 @@ static sh_real friction_variance(sh_matched_state *state, const sh_parameters *p
 sh_sample_variance sh_sample_variance_of(sh_matched_state *state, const sh_parameters *p)
 {
     const sh_real rounding =
-        square(state->sigma) * (square(state->count) + square(state->count_q)) / 12;
-    sh_real R = rounding + square(p->noise.tau_e), stays = rounding * state->history.resting;
+        sh_square(state->sigma) * (sh_square(state->count) + sh_square(state->count_q)) / 12;
+    sh_real R = rounding + sh_square(p->noise.tau_e), stays = rounding * state->history.resting;
     sh_sample_variance variance;
 
     if (!sh_is_measured(p)) {
         const sh_real friction = friction_variance(state, p);
 
-        R = (rounding + square(p->motor.gamma * p->noise.tau)) *
+        R = (rounding + sh_square(p->motor.gamma * p->noise.tau)) *
                 (1 + EXCESS * (state->history.excess - 1)) +
             friction / white(state);
         stays += friction * state->history.unsure;
     }
-    variance.last = square(1 + stays / R);
+    variance.last = sh_square(1 + stays / R);
     variance.R = R * variance.last;
     return variance;
 }
@@ -79,10 +74,10 @@ sh_sample_variance sh_sample_variance_of(sh_matched_state *state, const sh_param
 void sh_sample_variance_watch(sh_matched_state *state, const sh_parameters *p)
 {
     const sh_real T = state->design.T;
-    const sh_real torque = white(state) * square(p->motor.gamma * p->noise.tau);
+    const sh_real torque = white(state) * sh_square(p->motor.gamma * p->noise.tau);
     const sh_real inertial =
-        square(square(p->motor.gamma) * p->motor.B) * state->gain_second; /* of theta'' */
-    const sh_real rounded = torque + inertial * square(state->count) / 12;
+        sh_square(sh_square(p->motor.gamma) * p->motor.B) * state->gain_second; /* of theta'' */
+    const sh_real rounded = torque + inertial * sh_square(state->count) / 12;
 
     if (sh_is_measured(p))
         return;
@@ -97,7 +92,7 @@ sh_real sh_sample_variance_of_inertia(const sh_matched_state *state, const sh_pa
 {
     if (sh_is_measured(p) || state->live.inertia < 0)
         return 0;
-    return square(square(p->motor.gamma) * p->motor.B * p->prior.B) * state->gain_second *
+    return sh_square(sh_square(p->motor.gamma) * p->motor.B * p->prior.B) * state->gain_second *
            sh_signals_roughness(state);
 }
 
@@ -105,10 +100,10 @@ int sh_sample_variance_contradicts_rest(sh_matched_state *state, const sh_parame
                                         const sh_real *x)
 {
     sh_posterior *live = &state->live;
-    const sh_real inertial = square(p->motor.gamma) * p->motor.B * state->count;
+    const sh_real inertial = sh_square(p->motor.gamma) * p->motor.B * state->count;
     sh_real *const own = state->work.own;
-    sh_real variance = white(state) * square(p->motor.gamma * p->noise.tau) +
-                       square(inertial) / 12 * state->gain_second + friction_variance(state, p);
+    sh_real variance = white(state) * sh_square(p->motor.gamma * p->noise.tau) +
+                       sh_square(inertial) / 12 * state->gain_second + friction_variance(state, p);
     sh_real epsilon = x[state->size + SH_SIDE_Y];
     int i;
 
@@ -117,5 +112,5 @@ int sh_sample_variance_contradicts_rest(sh_matched_state *state, const sh_parame
         epsilon -= own[i] * state->beta[live->column[i]];
     }
     variance += sh_posterior_variance(live, own, state->work.v);
-    return square(epsilon) > 25 * variance;
+    return sh_square(epsilon) > 25 * variance;
 }

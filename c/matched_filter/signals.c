@@ -57,7 +57,7 @@ void sh_signals_deform(sh_matched_state *state, const sh_parameters *p, sh_real 
 /* The first sample of the filters. They assume a motor at rest, at any torque. So theta starts at
  * its value, and the signals of the equation start from zero: the equation holds from now on.
  */
-static void begin(sh_matched_state *state, sh_real theta, sh_real torque)
+static void begin_all(sh_matched_state *state, sh_real theta, sh_real torque)
 {
     int i;
 
@@ -105,7 +105,8 @@ static void advance_columns(sh_matched_state *state)
     }
 }
 
-static void advance(sh_matched_state *state, const sh_parameters *p, sh_real theta, sh_real torque)
+static void advance_all(sh_matched_state *state, const sh_parameters *p, sh_real theta,
+                        sh_real torque)
 {
     const sh_filter_design *design = &state->design;
     int i;
@@ -130,9 +131,9 @@ static void advance(sh_matched_state *state, const sh_parameters *p, sh_real the
 void sh_signals_step(sh_matched_state *state, const sh_parameters *p, sh_real theta, sh_real torque)
 {
     if (state->begun)
-        advance(state, p, theta, torque);
+        advance_all(state, p, theta, torque);
     else
-        begin(state, theta, torque);
+        begin_all(state, theta, torque);
     state->torque_before = torque;
 }
 
