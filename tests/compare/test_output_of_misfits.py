@@ -109,25 +109,24 @@ def test_every_class_has_a_color_of_its_own_and_any_value_is_in_the_figure() -> 
     assert low < 1e-5 and high > 1000
 
 
-@pytest.mark.slow("all rows again, once for each output, in a new process")
 def test_command(
     rows: list[Row],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    chosen = [each for each in CONDITIONS if each.name in NAMES]
-    monkeypatch.setattr(conditions, "CONDITIONS", chosen)
+    few = rows[-1:]
+    monkeypatch.setattr(conditions, "CONDITIONS", [row.condition for row in few])
     out = tmp_path / "out"
     arguments = ["compare", "--misfits", "--seeds", "1", "--jobs", "1", "--out", str(out)]
     assert main(arguments) == 0
     printed = capsys.readouterr().out
-    assert table(rows) in printed
+    assert table(few) in printed
     assert "1 seed." in printed and str(out) in printed
     assert {path.name for path in out.iterdir()} == {"misfits.png", "misfits.svg", "misfits.csv"}
     with (out / "misfits.csv").open(newline="") as file:
         lines = list(csv.DictReader(file))
-    for row, line in zip(rows, lines, strict=True):
+    for row, line in zip(few, lines, strict=True):
         assert (line["condition"], line["joint"]) == (row.condition.name, row.joint.name)
         assert line["class"] == row.condition.group.value
         for name, value in figures(row.score).items():
@@ -139,7 +138,7 @@ def test_command(
 
     assert main([*arguments, "--json"]) == 0
     values = json.loads(capsys.readouterr().out)
-    assert [value["error"] for value in values] == [row.score.error for row in rows]
+    assert [value["error"] for value in values] == [row.score.error for row in few]
     assert not any(math.isnan(value["claim"]) for value in values)
 
 

@@ -13,7 +13,8 @@ from sigmahat.commands import common
 @click.option(
     "--misfits",
     is_flag=True,
-    help="MatchedFilter on joints that its model does not describe, in place of both methods.",
+    help="MatchedFilter on joints with hysteresis, backlash, uneven friction, wrong sensors, ..., "
+    "in place of both methods.",
 )
 @click.option(
     "--seeds",
@@ -100,8 +101,8 @@ def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
         write(rows, seeds, folder / "misfits.csv")
 
     common.answer(
-        f"MatchedFilter on joints that its model does not describe. Error and claim (sigma_std): "
-        f"RMS, relative to the true\nstiffness. Coverage: share of instants with the truth within "
+        f"MatchedFilter on a catalogue of joints and misfits. Error and claim (sigma_std): RMS, "
+        f"relative to the true\nstiffness. Coverage: share of instants with the truth within "
         f"1.96 sigma_std. Dangerous: over 10 % off while\nclaiming under 2 %. Wrong: "
         f"confident and over 20 % off. Instants after {SETTLED:g} s, outside of a dead zone, of\n"
         f"{_counted(seeds)}.\n\n"

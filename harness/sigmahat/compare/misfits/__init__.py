@@ -1,1 +1,1 @@
-"""MatchedFilter on joints that have what its model does not describe: a catalogue of misfits."""
+"""MatchedFilter on a catalogue of misfits: joints that have what real joints have."""
