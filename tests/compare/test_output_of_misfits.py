@@ -109,6 +109,7 @@ def test_every_class_has_a_color_of_its_own_and_any_value_is_in_the_figure() -> 
     assert low < 1e-5 and high > 1000
 
 
+@pytest.mark.slow("the fixture runs seven rows, the command two in processes of its own")
 def test_command(
     rows: list[Row],
     tmp_path: Path,
