@@ -212,13 +212,13 @@ def test_every_tick_of_a_joint_with_a_misfit(c: Library, name: str) -> None:
 @pytest.mark.slow("dense matrices in extended precision")
 def test_every_tick_of_a_misfit_that_begins(c: Library) -> None:
     """The older data are forgotten, five times as fast when the new ones agree by themselves."""
-    joint = replace(JOINT, duration=8.0, stiffness=lambda t: np.where(t < 3.0, 1.0, 0.6))
+    joint = replace(JOINT, duration=12.0, stiffness=lambda t: np.where(t < 3.0, 1.0, 0.95))
     values = {**ONE, **PLAIN, "rls.n": 2}
     z = joint.measurements()
     z[:, 2] = 0.0
     z[:, 3] += (joint.tau_e - 140 * joint.stiffness(joint.t) * joint.motion[3]) / GAMMA
     oracle, found = check(c, {**START, **values}, z)
-    assert np.max(found["misfit"]) > 2
+    assert np.max(found["misfit"]) > 1.4
     assert oracle.changes > 10
 
 

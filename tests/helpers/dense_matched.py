@@ -231,19 +231,33 @@ class Oracle:
         _, log_determinant = np.linalg.slogdet(A.astype(float))
         return float((right @ inverse(A) @ right - log_determinant) / 2)
 
+    def whole_misfit(self) -> float:
+        """Of all blocks, at the estimate, or of the best fit to them."""
+        sums = self.blocks.walking if self.friction_drifts else self.blocks.all
+        N = self.blocks.count
+        q = sums.squares(self.beta) / (N - len(self.live.chosen) / 2)
+        return min(q, sums.rest / (N - self.n)) if N > 2 * self.n else q
+
+    def recent_misfit(self) -> float:
+        """Of the recent blocks without the prior, if it is beyond chance."""
+        N = self.blocks.recent_count
+        if N < 20 or self.friction_drifts:
+            return 0.0
+        squares = self.blocks.recent.squares(self.beta) - float(self.beta @ self.beta)
+        return squares / N if squares > threshold(N) else 0.0
+
     def judge(self) -> None:
         N = self.blocks.count
-        free = N - len(self.live.chosen) / 2
         self.q = self.factor = 1.0
-        if not self.blocks.judged() or free <= 0:
+        if not self.blocks.judged() or len(self.live.chosen) >= N:
             return
-        sums = self.blocks.walking if self.friction_drifts else self.blocks.all
-        self.q = sums.squares(self.beta) / free
-        t = threshold(N) / N
+        whole = self.whole_misfit()
+        self.q = max(whole, self.recent_misfit())
         if self.p["matched.memory"] > 0:
             self.factor = max(1.0, self.q)
-            if self.q > t:
-                self.factor = max(self.q, 1 + (self.q - t) * max(1, N / 5))
+            t = threshold(N) / N
+            if whole > t:
+                self.factor = max(self.factor, 1 + (whole - t) * max(1, N / 5))
 
     def plan(self) -> None:
         was_trial = self.trial != 0
