@@ -75,6 +75,15 @@ SCALARS = (
     "D_theta_hat",
     "B_hat",
     "tau_coulomb_hat",
+    "misfit",
+    "bias_hat",
+    "damping_hat",
+    "load_friction_hat",
+    "eccentric_hat",
+    "delay_hat",
+    "hysteresis_hat",
+    "sigma_per_gain",
+    "doubt",
     "confident",
 )
 ETA = [(i, j) for i in range(8) for j in range(5)]
