@@ -228,7 +228,8 @@ def test_a_parameter_is_that_of_the_contract(
     assert unit is None or variable.unit == unit
     assert start is None or start_of(variable) == pytest.approx(start, rel=1e-15)
     # The library has the same start values.
-    value: Any = Library(build).parameters({})
+    parameters = Library(build).parameters({})  # must live as long as its parts are read
+    value: Any = parameters
     for part in name.split("."):
         value = getattr(value, part)
     assert start_of(variable) == value
