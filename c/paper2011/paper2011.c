@@ -27,7 +27,7 @@ static sh_real unit_of_covariance(const sh_parameters *p)
     return noise * noise * (p->rls.kind == SH_RLS_ENHANCED ? p->rls.c : 1);
 }
 
-/* Sets what follows from the recursion, at the regressor in `work`. The variance contains the white
+/* Sets what follows from the recursion but torque and stiffness, at the regressor in `work`. The variance contains the white
  * noise of the torque only: neither the errors of the motor data nor the lag of the residual. So the
  * method makes no claim.
  */
@@ -38,8 +38,6 @@ static void report_paper2011(sh_paper2011_state *state, const sh_parameters *p,
     const sh_real *eta = state->rls.eta;
     int i, j;
 
-    sh_scalar_products(eta, state->work.F, state->work.dF, n * m, &estimate->tau_e,
-                       &estimate->sigma);
     for (j = 0; j < m; ++j)
         for (i = 0; i < n; ++i)
             estimate->eta[i][j] = eta[j * n + i];
@@ -134,6 +132,8 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
     estimate->a = innovation.a;
     estimate->rho = innovation.rho;
     estimate->epsilon = innovation.epsilon;
+    sh_scalar_products(state->rls.eta, state->work.F, state->work.dF, p->rls.n * p->rls.m,
+                       &estimate->tau_e, &estimate->sigma);
     report_paper2011(state, p, estimate);
     return 1;
 }

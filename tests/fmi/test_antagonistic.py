@@ -14,9 +14,11 @@ from fmi_instance import ERROR, OK, WARNING, Instance
 OUTPUTS = [
     *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),
     *(f"eta[{i},{j}]" for i in range(3) for j in range(3)),
-    *("sigma_std", "D_theta_hat", "B_hat", "tau_coulomb_hat"),
+    *("sigma_std", "D_theta_hat", "B_hat", "tau_coulomb_hat", "misfit", "bias_hat", "damping_hat"),
+    *("load_friction_hat", "eccentric_hat", "delay_hat", "hysteresis_hat", "sigma_per_gain"),
 ]
 INPUTS = ["theta", "tau", "tau_e_sensor"]
+CONFIDENT, NOT_EXCITED, MISFIT = 1, 3, 4  # items of the enumeration Doubt
 
 
 @contextmanager
@@ -53,6 +55,16 @@ def step(instances: list[Instance], k: int, bad: dict[str, float] | None = None)
     return [instance.step(t, 1e-3) for instance in instances]
 
 
+def doubt_of_sum(pair: Instance, one: Instance, two: Instance) -> float:
+    """The worse reason of the sides; that a side alone is not certain enough is none."""
+    worst = max(one.get("doubt"), two.get("doubt"))
+    if worst not in (CONFIDENT, NOT_EXCITED, MISFIT):
+        return worst
+    if pair.get("sigma_std") < pair.get("confidence") * abs(pair.get("sigma")):
+        return CONFIDENT
+    return max(worst, NOT_EXCITED)
+
+
 @pytest.mark.parametrize(
     "values",
     [
@@ -79,13 +91,13 @@ def test_bit_identical_to_two_estimators(
                     for name in OUTPUTS
                 ]
                 assert pair.get_all(names) == single.get_all(OUTPUTS)
-                for name in ("valid", "confident"):
+                for name in ("valid", "confident", "doubt"):
                     assert pair.get(f"{name}_{i}") == single.get(name)
             assert pair.get("sigma") == one.get("sigma") + two.get("sigma")
             sigma_std = math.hypot(one.get("sigma_std"), two.get("sigma_std"))
             assert pair.get("sigma_std") == pytest.approx(sigma_std, rel=1e-15)
-            confident = pair.get("sigma_std") < pair.get("confidence") * abs(pair.get("sigma"))
-            assert pair.get("confident") == confident
+            assert pair.get("doubt") == doubt_of_sum(pair, one, two)
+            assert pair.get("confident") == (pair.get("doubt") == CONFIDENT)
             assert pair.get("valid") == (0 if bad else 1)
         assert pair.get("sigma") != 0.0
 
@@ -94,7 +106,7 @@ def test_variables_are_those_of_the_estimator_for_each_motor(
     antagonistic_fmu: Path, estimator_fmu: Path
 ) -> None:
     with Instance(antagonistic_fmu) as pair, Instance(estimator_fmu) as single:
-        expected = {"sigma", "sigma_std", "confident", "valid"}
+        expected = {"sigma", "sigma_std", "doubt", "confident", "valid"}
         for name, variable in single.variables.items():
             base, bracket, index = name.partition("[")
             if name in ("theta_c", "encoder.theta_c", "setPoint.scale", "model.b"):

@@ -32,6 +32,14 @@ OUTPUTS = {
     "rho": "1",
     "epsilon": "N.m",
     "sigma_std": "N.m/rad",
+    "misfit": "1",
+    "bias_hat": "N.m",
+    "damping_hat": "N.m.s/rad",
+    "load_friction_hat": "1",
+    "eccentric_hat": "rad",
+    "delay_hat": "s",
+    "hysteresis_hat": "N.m",
+    "sigma_per_gain": "1",
 }
 PARAMETERS = {
     "samplePeriod": ("fixed", "s", 1e-3),
@@ -70,6 +78,19 @@ PARAMETERS = {
     "prior.D_theta": ("fixed", "1", None),
     "prior.B": ("fixed", "1", None),
     "prior.tau_coulomb": ("fixed", "N.m", None),
+    "prior.torque_gain": ("fixed", "1", 0.02),
+    "prior.bias": ("fixed", "1", None),
+    "prior.damping": ("fixed", "s", None),
+    "prior.load_friction": ("fixed", "1", None),
+    "prior.eccentric": ("fixed", "rad", None),
+    "prior.delay": ("fixed", "s", None),
+    "prior.reversal": ("fixed", "s", None),
+    "prior.power": ("fixed", "1", None),
+    "prior.gap": ("fixed", "1", None),
+    "prior.hysteresis": ("fixed", "1", None),
+    "prior.eccentric_motor": ("fixed", "rad", None),
+    "torque.held": ("tunable", None, 0),
+    "matched.memory": ("tunable", "s", 20),
 }
 ONE, COUNTS = "1", "1"
 PLANT_IN = ("input", None)
@@ -117,6 +138,10 @@ ITEMS = {
     "filter.weighting": ["Normalized", "AsPrinted"],
     "deformation": ["Raw", "Filtered"],
     "rls.kind": ["Enhanced", "Standard", "ConstantFactor"],
+    "doubt": [
+        *("None", "NoClaim", "NotExcited", "Misfit", "OutOfRange"),
+        *("FrictionOutsidePrior", "InertiaOutsidePrior", "NegativeStiffness"),
+    ],
 }
 FMUS = [
     "estimator_fmu",
@@ -203,7 +228,8 @@ def test_a_parameter_is_that_of_the_contract(
     assert unit is None or variable.unit == unit
     assert start is None or start_of(variable) == pytest.approx(start, rel=1e-15)
     # The library has the same start values.
-    value: Any = Library(build).parameters({})
+    parameters = Library(build).parameters({})  # must live as long as its parts are read
+    value: Any = parameters
     for part in name.split("."):
         value = getattr(value, part)
     assert start_of(variable) == value

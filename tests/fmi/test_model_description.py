@@ -170,7 +170,8 @@ def observed(path: Path, choices: dict[str, int]) -> dict[str, set[str]]:
 def test_initial_unknowns_depend_on_what_changes_them(fmu: Path) -> None:
     """Every variable that has an effect is listed, and no other one.
 
-    A Boolean changes only if a threshold is crossed, so for a Boolean only the first is checked.
+    A Boolean or an enumeration changes only if a threshold is crossed, so for these only the first
+    is checked.
     """
     root = read(fmu)
     variables = root.findall("ModelVariables/ScalarVariable")
@@ -186,10 +187,10 @@ def test_initial_unknowns_depend_on_what_changes_them(fmu: Path) -> None:
         choices = choices[:1]
     names_of_choices = ("rls.symmetric", "method", "modality")
     runs = [observed(fmu, dict(zip(names_of_choices, c, strict=True))) for c in choices]
-    booleans = {v.get("name") for v in variables if v[0].tag == "Boolean"}
+    steps = {v.get("name") for v in variables if v[0].tag in ("Boolean", "Enumeration")}
     for name in runs[0]:
         found = set().union(*(run[name] for run in runs))
-        if name in booleans:
+        if name in steps:
             assert found <= declared[name], name
         else:
             assert (found - declared[name], declared[name] - found) == (set(), set()), name

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +18,7 @@ from sigmahat.cli import main
 from sigmahat.fmi.instance import Fmu
 from sigmahat.identification.identify import identify
 from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
-from sigmahat.identification.quantities import Identified
+from sigmahat.identification.quantities import Identified, Quantity
 from sigmahat.identification.regression import Signals, equations, fit
 from sigmahat.identification.write import write
 from sigmahat.logs.configuration import read_configuration
@@ -120,6 +122,7 @@ def test_command_writes_what_is_determined_and_keeps_the_comments(
     assert motor["B"] == 1.84e-5  # not determined, not written
     assert motor["D_theta"] == pytest.approx(1e-3, rel=0.05)
     assert document["identified"]["B"]["value"] == "cannot tell"
+    assert document["parameters"]["prior"]["B"] == 1.0  # the start value 0 would be exact
     for comment in ("# a comment of mine", "# on the axis of the motor", "# 20 % less than it is"):
         assert comment in text
     # THEN the file is one that estimate and identify read
@@ -153,6 +156,57 @@ def test_values_are_written_where_they_stand(
     assert read["prior.tau_coulomb"] == pytest.approx(TRUE["tau_coulomb"], rel=0.05)
     assert read["noise.tau"] == pytest.approx(np.sqrt(1e-5), rel=0.05)
     assert "# mine" in path.read_text()
+
+
+def cannot_tell(found: Identified) -> Identified:
+    """The same, but without any motor data; the interval of tau_coulomb is known."""
+    unknown = {name: replace(q, determined=False) for name, q in found.quantities.items()}
+    unknown["B"] = replace(unknown["B"], value=math.nan, half_width=math.inf)
+    unknown["tau_coulomb"] = Quantity(0.01, 0.05, "N.m", determined=False)
+    return replace(found, quantities=unknown)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "kept"),
+    [
+        ("", {}),
+        ("[parameters]\nprior.B = 0 # mine", {}),
+        ('[parameters]\n"prior.B" = 0.0 # mine', {}),
+        ("[parameters.prior]\nB = 0 # mine", {}),
+        ("[parameters]\nprior = {B = 0} # mine", {}),
+        ("[parameters]\nprior.B = 0.05 # mine", {"prior.B": 0.05}),
+        ("[parameters]\nprior.D_theta = 0.3 # mine", {"prior.D_theta": 0.3}),
+    ],
+)
+def test_what_is_not_determined_is_never_exact(
+    parameters: str, kept: dict[str, float], found: dict[float, Identified], tmp_path: Path
+) -> None:
+    path = tmp_path / "log.toml"
+    path.write_text(f'[ports.q]\ncolumn = "q"\n{parameters}\n')
+    for _ in range(2):  # a second run finds what the first one wrote
+        written = write(cannot_tell(found[1.0]), path)
+        read = read_configuration(path).parameters
+        wide = {"prior.B": 1.0, "prior.D_theta": 1.0, "prior.tau_coulomb": 0.06, **kept}
+        assert {name: read[name] for name in wide} == wide
+        assert not any(f"parameters.{name}" in written for name in kept)
+        assert not any(name.startswith("motor.") for name in read)
+        assert ("# mine" in path.read_text()) == ("# mine" in parameters)
+    # WHEN another log determines them THEN nothing of this is left
+    write(found[1.0], path)
+    read = read_configuration(path).parameters
+    inertia = found[1.0].quantities["B"]
+    assert read["prior.B"] == pytest.approx(inertia.half_width / inertia.value, rel=1e-5)
+    assert read["prior.tau_coulomb"] == pytest.approx(TRUE["tau_coulomb"], rel=0.05)
+    if "{" not in parameters:  # there is no place for a comment inside of braces
+        assert read.get("prior.D_theta") == kept.get("prior.D_theta")
+        assert "cannot tell" not in path.read_text()
+
+
+def test_the_bandwidth_is_that_of_the_inertia_found(found: dict[float, Identified]) -> None:
+    B, W = found[1.0].quantities["B"], found[1.0].bandwidth
+    torque, theta = found[1.0].tau_variance, found[1.0].theta_variance
+    assert B.determined
+    assert (B.value * 50 * W**2) ** 2 * theta == pytest.approx(torque)
 
 
 def test_ranges_hold_what_the_log_shows(found: dict[float, Identified], tmp_path: Path) -> None:

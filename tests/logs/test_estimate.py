@@ -195,6 +195,68 @@ def test_json_and_quiet(
     assert (captured.out, captured.err) == ("", "")
 
 
+MATCHED = CONFIGURATION + 'method = "MatchedFilter"\nrls.n = 3\n'
+
+
+def test_why_and_how_often_the_estimate_is_not_confident(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # GIVEN a limit that only part of the estimates meets
+    path = write_log(awas_log(1.0, 0.3), tmp_path / "log.parquet")
+    configuration = MATCHED + "confidence = 0.022\nprior.torque_gain = 0.01\n"
+    assert estimate(path, tmp_path, configuration, "--json") == 0
+    result = json.loads(capsys.readouterr().out)
+    table = read_estimate(tmp_path / "out")
+    doubt = np.array(table["estimate.doubt"].to_pylist())
+    confident = table["estimate.confident"].to_numpy()
+    # THEN the reason is None where it is confident, and only there
+    assert np.array_equal(doubt == "None", confident)
+    half = len(doubt) // 2
+    assert 0 < result["confident"] < 1
+    assert result["confident"] == np.mean(confident[half:])
+    assert result["doubt"] == {
+        item: np.mean(doubt[half:] == item) for item in set(doubt[half:]) - {"None"}
+    }
+    # THEN what it rests on is that of the FMU, and the summary says it
+    for name in ("misfit", "sigma_per_gain"):
+        assert result[name] == table[f"estimate.{name} [1]"].to_numpy()[-1]
+    assert result["joint"]["bias_hat"] == table["estimate.bias_hat [N.m]"].to_numpy()[-1]
+    assert estimate(path, tmp_path, configuration) == 0
+    text = capsys.readouterr().out
+    assert len(text.splitlines()) <= 24
+    assert re.search(r"not confident +\S+ % of the time \(NotExcited \S+ %\)", text)
+    by_gain = f"1 % of it changes sigma by {result['sigma_per_gain']:.3g} %"
+    gain = f"known to 1 % (prior.torque_gain); {by_gain}"
+    for line in (gain, "motor.B = 1.84e-05 kg.m2, exactly (prior.B = 0)", "range.phi = 0.3 rad"):
+        assert line in text
+
+
+def test_what_is_absent_because_its_prior_is_0_is_listed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write_log(awas_log(1.0, 0.3, duration=2.0), tmp_path / "log.parquet")
+    absent = "prior.B = 0.1\nprior.delay = 0\nprior.load_friction = 0\nprior.tau_coulomb = 0\n"
+    assert estimate(path, tmp_path, MATCHED + absent) == 0
+    text = capsys.readouterr().out
+    assert "no Coulomb friction, no load friction, no delay (priors of 0)" in text
+    assert "exactly" not in text
+
+
+def test_paper2011_makes_no_claim(
+    log: dict[str, Array], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write_log(log, tmp_path / "log.csv")
+    assert estimate(path, tmp_path) == 0
+    text = capsys.readouterr().out
+    assert "of which the method claims no uncertainty" in text
+    assert "standard deviation" not in text and "confident" not in text
+    assert set(read_estimate(tmp_path / "out")["estimate.doubt"].to_pylist()) == {"NoClaim"}
+    band = "1.96 standard deviations"
+    assert band not in (tmp_path / "out" / "estimate.svg").read_text()
+    assert estimate(path, tmp_path, AS_IN_THE_FMU + 'method = "MatchedFilter"\n') == 0
+    assert band in (tmp_path / "out" / "estimate.svg").read_text()
+
+
 def test_a_nan_is_reported_on_one_screen(log: dict[str, Array], tmp_path: Path) -> None:
     log = {name: values.copy() for name, values in log.items()}
     log["tau"][100] = np.nan

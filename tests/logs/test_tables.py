@@ -83,7 +83,8 @@ def test_estimates_are_read_as_they_were_written(
     assert not units.keys() & {"note", "q", "theta"}  # these are in the log
     for name, signal in signals.items():
         assert signal.name == name
-        assert signal.values.dtype == (bool if name in ("valid", "confident") else np.float64)
+        kind = {"doubt": object, "valid": bool, "confident": bool}.get(name, np.float64)
+        assert signal.values.dtype == kind
         assert signal.values.shape == (ROWS,)
     phi = columns()["q"] - columns()["theta"]
     assert np.allclose(signals["phi"].values, phi, rtol=1e-12, atol=1e-15)

@@ -166,6 +166,7 @@ def test_a_log_has_the_numbers_of_its_table(results: Callable[[str], Path]) -> N
     with opened(folder / "report.html") as page:
         rows = page.driver.find_elements(By.CSS_SELECTOR, "tbody tr")
         assert rows[0].text.split() == ["sigma", "[N.m/rad]", *cells]
+        assert rows[-1].text.split() == ["NoClaim", "100"]
         drawn = np.array(page.run(DATA, "trace-0-0", "trace-0-0"))
     assert np.array_equal(drawn, sigma.astype(np.float32))
 

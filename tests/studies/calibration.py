@@ -40,6 +40,7 @@ def drawn(run: int, with_inertia: bool) -> Scenario:
         "motor.D_theta": 1e-3 / (1 + d),
         "prior.D_theta": 0.2,
         "prior.tau_coulomb": 0.02,
+        "prior.torque_gain": 0.0,  # that of the plant is exact
     }
     if with_inertia:
         values |= {"motor.B": 2.3e-5 / (1 + b), "prior.B": 0.1}

@@ -105,7 +105,13 @@ def _methods(
         for output in (*_STIFFNESS, *(_MOTOR_DATA if part or len(parts) == 1 else ()))
     ]
     paper = replace(base, start={**base.start, **given}, record=record)
-    matched = {"method": MATCHED, "rls.n": 3, "prior.tau_coulomb": 0.0, **case.matched}
+    matched = {
+        "method": MATCHED,
+        "rls.n": 3,
+        "prior.tau_coulomb": 0.0,
+        "prior.torque_gain": 0.0,  # that of the joints is exact
+        **case.matched,
+    }
     return {PAPER2011: paper, MATCHED: replace(paper, start={**paper.start, **matched})}
 
 

@@ -84,7 +84,7 @@ class Fmu:
         """Returns the value as FMI takes it. Raises ValueError if it does not fit the variable."""
         variable = self.variable(name)
         if variable.type == "Enumeration" and isinstance(value, str):
-            items = {item.name: int(item.value) for item in variable.declaredType.items}
+            items = {item: number for number, item in self.items(name).items()}
             if value not in items:
                 raise ValueError(unknown(f"value of {self.name}.{name}", value, items))
             return items[value]
@@ -96,6 +96,17 @@ class Fmu:
             raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {value!r}")
         return int(value)
 
+    def items(self, name: str) -> dict[int, str]:
+        """Returns the items of an enumeration: their names by their numbers."""
+        return {int(item.value): item.name for item in self.variable(name).declaredType.items}
+
+    def item_names(self, name: str, numbers: NDArray[np.int32]) -> NDArray[np.str_]:
+        """Returns the names of the items of an enumeration, which FMI gives as numbers.
+
+        numbers  of items, from 1 on, without a gap, shape (N,)
+        """
+        return np.array(["", *self.items(name).values()])[numbers]
+
     def parameters(self, start: Mapping[str, Value]) -> dict[str, Value]:
         """Returns the parameters of a slave with these start values: given ones, else the FMU's."""
         values: dict[str, Value] = {}
@@ -106,8 +117,7 @@ class Fmu:
             default = variable.start == "true" if boolean else float(variable.start)
             value: Value = self.number(name, start.get(name, default))
             if variable.type == "Enumeration":
-                items = variable.declaredType.items
-                value = next(item.name for item in items if int(item.value) == value)
+                value = self.items(name)[int(value)]
             values[name] = value
         return values
 
@@ -219,11 +229,18 @@ class Recorder:
             self._slave.call(getter, references, count, rows[k])
 
     def columns(self) -> dict[str, NDArray[Any]]:
-        """Returns the recorded values by name, each of shape (samples,)."""
-        return {
+        """Returns the recorded values by name, each of shape (samples,); of an enumeration the
+        names of its items.
+        """
+        values = {
             name: np.ascontiguousarray(table[:, i])
             for names, table in self._tables
             for i, name in enumerate(names)
+        }
+        fmu = self._slave.fmu
+        return {
+            name: fmu.item_names(name, each) if fmu.variable(name).type == "Enumeration" else each
+            for name, each in values.items()
         }
 
 

@@ -57,6 +57,8 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         motor = fit_motor(pieces, T, gamma, bool(every["rls.symmetric"]), f_0)
         V_a = _best_V_a(fmu, samples, start, longest, f_0)
     quantities = {name: motor.quantity(name) for name in MOTOR}
+    if quantities["B"].determined:  # until here it was that of the configuration
+        f_0 = bandwidth(tau_variance, theta_variance, quantities["B"].value * abs(gamma), T)
     nominal = configuration.ports["tau"].torque_constant
     if torque_constant and nominal is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)

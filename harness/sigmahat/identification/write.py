@@ -9,22 +9,30 @@ from pathlib import Path
 from typing import Any
 
 import tomlkit
+from tomlkit.items import InlineTable, Item
 
 from sigmahat.identification.quantities import Identified
 from sigmahat.logs.configuration import read_document
+from sigmahat.user_input import toml_file
 
 _ABOVE = 1.4
 """matched.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
 _ROOM = 1.2
 """Ranges over the largest values of the log: another motion may go further."""
+_WIDE = 1.0
+"""Relative prior of motor data that the log does not determine. MatchedFilter would take a prior of
+0, the start value of prior.B, as exact; with 1 it accepts up to 4 times the value."""
+_CANNOT_TELL = "wide, because identify cannot tell; make it smaller if you know better"
 
 
 def write(found: Identified, path: Path) -> list[str]:
     """Writes what is determined into [parameters] and [ports.tau], everything into [identified].
 
+    What is not determined gets a wide prior, unless the file has one above 0.
+
     Returns the keys that were written. The file is replaced at once, or not changed.
     """
-    document = read_document(path)
+    document = _without_wide_priors(read_document(path))
     values: dict[str, Any] = {
         "filter.V_a": found.V_a,
         "rls.n": found.n,
@@ -45,9 +53,14 @@ def write(found: Identified, path: Path) -> list[str]:
                 values["prior.B"] = q.half_width / q.value
     values = {name: _short(value) for name, value in values.items() if value != 0}
     parameters = document.setdefault("parameters", tomlkit.table())
+    given = dict(toml_file.dotted(parameters.unwrap()))
+    wide = {n: _short(value) for n, value in _wide_priors(found).items() if not given.get(n)}
     for name, value in values.items():
-        _set(parameters, name, value)
-    written = [f"parameters.{name}" for name in values]
+        _set(parameters, name, tomlkit.item(value))
+    for name, value in wide.items():
+        item = tomlkit.item(value)
+        _set(parameters, name, item if name in given else item.comment(_CANNOT_TELL))
+    written = [f"parameters.{name}" for name in (*values, *wide)]
     constant = found.quantities.get("torque_constant")
     if constant is not None and constant.determined:
         document["ports"]["tau"]["torque_constant"] = _short(constant.value)
@@ -59,19 +72,38 @@ def write(found: Identified, path: Path) -> list[str]:
     return written
 
 
+def _wide_priors(found: Identified) -> dict[str, float]:
+    """Priors of the motor data that are not determined, by parameter."""
+    undetermined = {name: q for name, q in found.quantities.items() if not q.determined}
+    priors = {f"prior.{name}": _WIDE for name in ("B", "D_theta") if name in undetermined}
+    tau_coulomb = undetermined.get("tau_coulomb")
+    if tau_coulomb is not None and math.isfinite(tau_coulomb.half_width):
+        priors["prior.tau_coulomb"] = max(abs(end) for end in tau_coulomb.interval)
+    return priors
+
+
+def _without_wide_priors(document: tomlkit.TOMLDocument) -> tomlkit.TOMLDocument:
+    """Without what an earlier run wrote because it could not tell: this one may be able to."""
+    lines = tomlkit.dumps(document).splitlines(keepends=True)
+    kept = [line for line in lines if not line.rstrip().endswith(f"# {_CANNOT_TELL}")]
+    return tomlkit.parse("".join(kept))
+
+
 def _short(value: float) -> float:
     return value if isinstance(value, int) else float(f"{value:.6g}")
 
 
-def _set(table: MutableMapping[str, Any], name: str, value: Any) -> None:
+def _set(table: MutableMapping[str, Any], name: str, item: Item) -> None:
     """Sets motor.B in the form of the file: motor.B, "motor.B", or B in [parameters.motor]."""
     group, _, last = name.partition(".")
     if name in table:
-        table[name] = value
+        table[name] = item
     elif group in table:
-        table[group][last] = value
+        if isinstance(table[group], InlineTable):
+            item.trivia.comment = ""  # it would end the line inside of the braces
+        table[group][last] = item
     else:
-        table.append(tomlkit.key([group, last]), tomlkit.item(value))  # type: ignore[attr-defined]
+        table.append(tomlkit.key([group, last]), item)  # type: ignore[attr-defined]
 
 
 def _record(found: Identified) -> tomlkit.items.Table:

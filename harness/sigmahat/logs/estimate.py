@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from sigmahat.logs.sampling import sample
 from sigmahat.logs.statistics import ReplayStatistics
 
 _CHUNK = 1 << 16  # ticks that are replayed at a time, about
+_MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,10 @@ class Estimate:
     """Its standard deviation as the method gives it [N.m/rad]."""
     confident: float
     """Share of the ticks in the second half at which the estimator was confident."""
+    doubt: Mapping[str, float]
+    """Share of the ticks in the second half at which it was not, by reason: items of `doubt`."""
+    misfit: float
+    """Misfit of the model at the end [1]; 1 where it holds."""
     sigma_range: tuple[float, float]
     """Minimum and maximum in the second half [N.m/rad]."""
     tau_e_range: tuple[float, float]
@@ -51,6 +56,10 @@ class Estimate:
     """Coefficients at the end, [size: rls.n x rls.m], (21)."""
     motor: dict[str, float]
     """Motor data that the method MatchedFilter estimated, at the end, by output of the FMU."""
+    joint: dict[str, float]
+    """What else it estimated, at the end, by output of the FMU: bias_hat, damping_hat and so on."""
+    sigma_per_gain: float
+    """Relative change of the stiffness with a relative change of the gain of the torque [1]."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""
 
@@ -64,12 +73,16 @@ class Estimate:
             "sigma [N.m/rad]": self.sigma,
             "sigma_std [N.m/rad]": self.sigma_std,
             "confident": self.confident,
+            "doubt": self.doubt,
+            "misfit": self.misfit,
             "sigma range [N.m/rad]": self.sigma_range,
             "tau_e range [N.m]": self.tau_e_range,
             "phi range [rad]": self.phi_range,
             "epsilon rms [N.m]": self.epsilon_rms,
             "eta": self.eta,
             "motor": self.motor,
+            "joint": self.joint,
+            "sigma_per_gain": self.sigma_per_gain,
             "notes": self.notes,
             "parameters": self.parameters,
         }
@@ -116,20 +129,25 @@ def estimate(
         Replay(samples, statistics, str(every["modality"]), str(every["method"])),
         folder / "estimate",
     )
+    last, doubts = statistics.last, statistics.doubts
     return Estimate(
         log=log.path,
         ticks=len(samples.values),
         skipped=statistics.skipped,
         T=samples.T,
         parameters={n: v for n, v in every.items() if not n.startswith("rls.eta_0")},
-        sigma=statistics.last["sigma"],
-        sigma_std=statistics.last["sigma_std"],
-        confident=statistics.confident,
+        sigma=last["sigma"],
+        sigma_std=last["sigma_std"],
+        confident=doubts.pop("None", 0.0),
+        doubt=doubts,
+        misfit=last["misfit"],
         sigma_range=statistics.later("sigma"),
         tau_e_range=statistics.later("tau_e"),
         phi_range=statistics.later("phi"),
         epsilon_rms=statistics.rms,
         eta=eta,
-        motor={name: statistics.last[name] for name in ("D_theta_hat", "B_hat", "tau_coulomb_hat")},
+        motor={name: last[name] for name in _MOTOR},
+        joint={name: last[name] for name in last if name.endswith("_hat") and name not in _MOTOR},
+        sigma_per_gain=last["sigma_per_gain"],
         notes=samples.notes,
     )

@@ -39,9 +39,9 @@ class EstimatedSignal:
     name: str
     """Output of the estimator FMU, or "t"."""
     unit: str | None
-    """Of the output; a Boolean has none."""
+    """Of the output; a Boolean and an enumeration have none."""
     values: NDArray[Any]
-    """float64 or bool, [size: rows]."""
+    """float64, bool, or of an enumeration the names of its items, [size: rows]."""
 
 
 class EstimateWriter(AbstractContextManager["EstimateWriter"]):
@@ -128,7 +128,7 @@ def read_estimate(folder: Path) -> dict[str, EstimatedSignal]:
         what = "not readable as CSV" if path.suffix == ".csv" else "damaged"
         raise LogError(f"{path}: {what}; run `sigmahat estimate` again") from error
     for (name, unit), column in zip(names, table.columns, strict=True):
-        if column.type != pa.bool_():
+        if column.type not in (pa.bool_(), pa.string()):
             column = column.cast(pa.float64())
         signals[name] = EstimatedSignal(name, unit, column.to_numpy())
     return signals

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from fmpy import fmi2
+from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Fmu, Slave, Value
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Array
 from sigmahat.logs.sampling import Samples
 from sigmahat.logs.units import counts_per_turn
 
@@ -28,10 +29,20 @@ OUTPUTS = (
     "D_theta_hat",
     "B_hat",
     "tau_coulomb_hat",
+    "misfit",
+    "bias_hat",
+    "damping_hat",
+    "load_friction_hat",
+    "eccentric_hat",
+    "delay_hat",
+    "hysteresis_hat",
+    "sigma_per_gain",
 )
 """Real outputs that are recorded."""
 FLAGS = ("confident", "valid")
 """Boolean outputs that are recorded."""
+_REASON = "doubt"
+"""Output that is an enumeration; the names of its items are recorded."""
 
 
 def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
@@ -57,7 +68,7 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
 
 def replay(
     slave: Slave, samples: Samples, start: Mapping[str, Value], chunk: int
-) -> Iterator[dict[str, Array]]:
+) -> Iterator[dict[str, NDArray[Any]]]:
     """Initialises the estimator, and yields its outputs by name, a chunk of ticks at a time.
 
     The sample at t_k is the input of the tick at t_k; ports that are not configured stay 0.
@@ -66,24 +77,37 @@ def replay(
     slave.initialize(start)
     fmu, T, component = slave.fmu, samples.T, slave.component
     # Not by slave.call, whose checks would take twice the time of a tick.
-    functions = (slave.functions, "fmi2SetReal", "fmi2DoStep", "fmi2GetReal", "fmi2GetBoolean")
-    set_real, do_step, get_real, get_boolean = (getattr(functions[0], f) for f in functions[1:])
+    fmi = slave.functions
+    set_real, do_step = fmi.fmi2SetReal, fmi.fmi2DoStep
+    get_real, get_boolean, get_integer = fmi.fmi2GetReal, fmi.fmi2GetBoolean, fmi.fmi2GetInteger
     inputs = fmu.references(samples.names, "input")
     outputs = fmu.references(OUTPUTS, "output")
     n, m, f = len(inputs), len(outputs), len(FLAGS)
-    flags = (fmi2.fmi2ValueReference * f)(*(fmu.variable(name).valueReference for name in FLAGS))
+    flags, reason = _references(fmu, FLAGS), _references(fmu, [_REASON])
     for first in range(0, len(samples.values), chunk):
         part = np.ascontiguousarray(samples.values[first : first + chunk])
         table, raised = np.empty((len(part), m)), np.empty((len(part), f), np.int32)
-        rows = (np.ctypeslib.as_ctypes(a) for a in (part, table, raised))
-        for k, (row, out, flag) in enumerate(zip(*rows, strict=True), first):
+        reasons = np.empty((len(part), 1), np.int32)
+        rows = (np.ctypeslib.as_ctypes(a) for a in (part, table, raised, reasons))
+        for k, (row, out, flag, why) in enumerate(zip(*rows, strict=True), first):
             set_real(component, inputs, n, row)
             if do_step(component, k * T, T, fmi2.fmi2True) > fmi2.fmi2Warning:
                 raise slave.failure("fmi2DoStep")
             get_real(component, outputs, m, out)
             get_boolean(component, flags, f, flag)
+            get_integer(component, reason, 1, why)
         columns = {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(OUTPUTS)}
-        yield {**columns, **dict(zip(FLAGS, raised.T.astype(bool), strict=True))}
+        yield {
+            **columns,
+            _REASON: fmu.item_names(_REASON, reasons[:, 0]),
+            **dict(zip(FLAGS, raised.T.astype(bool), strict=True)),
+        }
+
+
+def _references(fmu: Fmu, names: Sequence[str]) -> Any:
+    """Value references of variables that are not Real."""
+    references = [fmu.variable(name).valueReference for name in names]
+    return (fmi2.fmi2ValueReference * len(references))(*references)
 
 
 def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from sigmahat.logs.log import Array
+from sigmahat.logs.replay import OUTPUTS
 
 _BUCKETS = 4000
 DRAWN = ("sigma", "sigma_std", "tau_e", "tau_e_residual", "phi", "setPoint")
-_LAST = (*DRAWN, "D_theta_hat", "B_hat", "tau_coulomb_hat")
 
 
 class ReplayStatistics:
@@ -26,12 +27,13 @@ class ReplayStatistics:
         """Ticks in an interval; each chunk but the last must be a multiple of it."""
         self._parts: dict[str, list[Array]] = {name: [] for name in DRAWN}
         self._half = ticks // 2
-        self._ticks = self._later = self._confident = self.skipped = 0
+        self._ticks = self._later = self.skipped = 0
+        self._doubts: Counter[str] = Counter()
         self._squares = 0.0
         self._low = {name: np.inf for name in DRAWN}
         self._high = {name: -np.inf for name in DRAWN}
         self.last: dict[str, float] = {}
-        """Outputs of the last tick."""
+        """Real outputs of the last tick."""
 
     def add(self, outputs: Mapping[str, np.ndarray[Any, Any]]) -> None:
         """Adds the outputs of the next ticks."""
@@ -47,13 +49,13 @@ class ReplayStatistics:
             valid = outputs["valid"][first:]
             self._squares += float(np.sum(outputs["epsilon"][first:][valid] ** 2))
             self._later += int(np.count_nonzero(valid))
-            self._confident += int(np.count_nonzero(outputs["confident"][first:]))
+            self._doubts.update(outputs["doubt"][first:].tolist())
             for name in DRAWN:
                 self._low[name] = min(self._low[name], float(outputs[name][first:].min()))
                 self._high[name] = max(self._high[name], float(outputs[name][first:].max()))
         self.skipped += int(np.count_nonzero(~outputs["valid"]))
         self._ticks += count
-        self.last = {name: float(outputs[name][-1]) for name in _LAST}
+        self.last = {name: float(outputs[name][-1]) for name in OUTPUTS}
 
     def ends(self, name: str) -> Array:
         """Minimum and maximum in each interval, [size: intervals x 2]."""
@@ -64,9 +66,10 @@ class ReplayStatistics:
         return self._low[name], self._high[name]
 
     @property
-    def confident(self) -> float:
-        """Share of the ticks in the second half at which the estimator was confident."""
-        return self._confident / max(self._ticks - self._half, 1)
+    def doubts(self) -> dict[str, float]:
+        """Share of the ticks in the second half by item of the output doubt, the largest first."""
+        ticks = self._doubts.total()
+        return {item: count / ticks for item, count in self._doubts.most_common()}
 
     @property
     def rms(self) -> float:

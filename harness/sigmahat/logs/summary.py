@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+
+from sigmahat.fmi.instance import Value
 from sigmahat.logs.estimate import Estimate
+
+_NEGLIGIBLE = 0.1
+"""Of the standard deviation of its prior: what is estimated to be smaller is not shown."""
+_UNITS = {
+    "bias": "N.m",
+    "damping": "N.m.s/rad",
+    "load_friction": "",
+    "eccentric": "rad",
+    "delay": "s",
+    "hysteresis": "N.m",
+}
+"""Of what MatchedFilter estimates besides the motor data: output bias_hat, parameter prior.bias."""
+_WORDS = {"load_friction": "load friction", "eccentric": "eccentricity"}
 
 
 def summary(result: Estimate) -> str:
     """One screen."""
     p = result.parameters
-    low, high = result.sigma_range
-    torque = result.tau_e_range[1] - result.tau_e_range[0]
-    relative = 100 * result.epsilon_rms / torque if torque else float("nan")
     lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
     lines += [
         f"method {p['method']}, modality {p['modality']}, T = {result.T:g} s, "
@@ -19,23 +32,81 @@ def summary(result: Estimate) -> str:
         f"motor: B = {p['motor.B']:.4g} kg.m2, D_theta = {p['motor.D_theta']:.4g} N.m.s/rad, "
         f"gamma = {p['motor.gamma']:g}",
         "",
-        "in the second half of the log:",
-        f"  stiffness sigma       {low:10.4g} to {high:10.4g} N.m/rad",
-        f"  torque tau_e, fitted  {result.tau_e_range[0]:10.4g} to {result.tau_e_range[1]:10.4g} "
-        "N.m",
-        f"  deformation phi       {result.phi_range[0]:10.4g} to {result.phi_range[1]:10.4g} rad",
-        f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative:.2g} % of the torque)",
-        f"at the end: sigma = {result.sigma:.6g} N.m/rad, "
-        f"standard deviation {result.sigma_std:.2g} N.m/rad; "
+        *_second_half(result),
+        f"at the end: sigma = {result.sigma:.6g} N.m/rad, {_uncertainty(result)}; "
         f"{result.skipped} of {result.ticks} ticks skipped",
     ]
     if p["method"] == "MatchedFilter":
-        B, D_theta, tau_coulomb = (
-            result.motor[name] for name in ("B_hat", "D_theta_hat", "tau_coulomb_hat")
-        )
-        lines += [
-            f"motor data found: B = {B:.4g} kg.m2, D_theta = {D_theta:.4g} N.m.s/rad, "
-            f"Coulomb friction {tau_coulomb:.3g} N.m",
-            f"confident {100 * result.confident:.3g} % of the second half",
-        ]
+        lines += [*_found(result), "this answer rests on:"]
+        lines += [f"  {each}" for each in _rests_on(result)]
     return "\n".join(lines)
+
+
+def _second_half(result: Estimate) -> Iterator[str]:
+    (low, high), (least, most) = result.sigma_range, result.tau_e_range
+    relative = 100 * result.epsilon_rms / (most - least) if most > least else float("nan")
+    yield "in the second half of the log:"
+    yield f"  stiffness sigma       {low:10.4g} to {high:10.4g} N.m/rad"
+    yield f"  torque tau_e, fitted  {least:10.4g} to {most:10.4g} N.m"
+    yield f"  deformation phi       {result.phi_range[0]:10.4g} to {result.phi_range[1]:10.4g} rad"
+    yield f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative:.2g} % of the torque)"
+    if result.parameters["method"] == "MatchedFilter":
+        reasons = ", ".join(f"{item} {100 * share:.3g} %" for item, share in result.doubt.items())
+        why = f" ({reasons})" if reasons else ""
+        yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time{why}"
+
+
+def _uncertainty(result: Estimate) -> str:
+    if result.parameters["method"] == "MatchedFilter":
+        return f"standard deviation {result.sigma_std:.2g} N.m/rad"
+    return "of which the method claims no uncertainty"
+
+
+def _found(result: Estimate) -> Iterator[str]:
+    """What MatchedFilter estimated besides the stiffness, unless it is negligible."""
+    B, D_theta, tau_coulomb = (
+        result.motor[name] for name in ("B_hat", "D_theta_hat", "tau_coulomb_hat")
+    )
+    yield (
+        f"motor data found: B = {B:.4g} kg.m2, D_theta = {D_theta:.4g} N.m.s/rad, "
+        f"Coulomb friction {tau_coulomb:.3g} N.m"
+    )
+    others = [
+        f"{_WORDS.get(name, name)} {value:.3g} {_UNITS[name]}".rstrip()
+        for name, std in _priors(result.parameters).items()
+        if abs(value := result.joint[f"{name}_hat"]) > _NEGLIGIBLE * std
+    ]
+    yield f"of the joint: {', '.join([f'misfit of the model {result.misfit:.3g}', *others])}"
+
+
+def _priors(p: Mapping[str, Value]) -> dict[str, float]:
+    """Standard deviations of the priors, in the units of the outputs."""
+    tau_e, phi = float(p["prior.tau_e"]), float(p["range.phi"])
+    per_unit = {"bias": tau_e, "damping": tau_e / phi, "hysteresis": tau_e}
+    return {name: float(p[f"prior.{name}"]) * per_unit.get(name, 1.0) for name in _UNITS}
+
+
+def _rests_on(result: Estimate) -> Iterator[str]:
+    """What no data show, or what the parameters say is exact."""
+    p = result.parameters
+    gain = float(p["prior.torque_gain"])
+    known = f"known to {100 * gain:.3g} %" if gain else "exact"
+    yield (
+        f"gain of the torque: {known} (prior.torque_gain); 1 % of it changes sigma by "
+        f"{result.sigma_per_gain:.3g} %"
+    )
+    if p["modality"] == "Residual":
+        for name, unit in (("B", "kg.m2"), ("D_theta", "N.m.s/rad")):
+            value, prior = float(p[f"motor.{name}"]), float(p[f"prior.{name}"])
+            if not value * prior:
+                why = f"prior.{name} = 0" if value else "0 stays 0"
+                yield f"motor.{name} = {value:.4g} {unit}, exactly ({why})"
+    absent = [_WORDS.get(name, name) for name, std in _priors(p).items() if not std]
+    if p["modality"] == "Residual" and not p["prior.tau_coulomb"]:
+        absent.insert(0, "Coulomb friction")
+    if absent:
+        yield f"no {', no '.join(absent)} (priors of 0)"
+    yield (
+        f"ranges: torque about {p['prior.tau_e']:.3g} N.m at range.phi = {p['range.phi']:.3g} rad, "
+        f"range.setPoint = {p['range.setPoint']:.3g}"
+    )

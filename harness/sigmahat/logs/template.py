@@ -109,6 +109,11 @@ def _parameters(guess: Guess, defaults: Mapping[str, float]) -> Table:
     if not sensor:
         for name, value in defaults.items():
             _add(table, name, value, f"[{_MOTOR_UNITS[name]}] of the AwAS: replace it with yours")
+        for line in (
+            "torque.held = true   # if a drive holds each value of tau until the next one",
+            "prior.torque_gain = 0.02   # how wrong the gain of tau may be: no data show it",
+        ):
+            table.add(tomlkit.comment(line))
     for name in ("theta", "q"):
         if name in ports and ports[name].unit != "counts":
             counts = ports[name].counts_per_turn

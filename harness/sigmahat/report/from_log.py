@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ def from_log(folder: Path) -> Contents:
     """
     signals = read_estimate(folder)
     used = signals.pop("valid").values.astype(bool)
+    doubt = signals.pop("doubt", None)
     t = signals.pop("t").values
     reduced = reduce(t, {name: signal.values for name, signal in signals.items()})
     return Contents(
@@ -34,7 +36,7 @@ def from_log(folder: Path) -> Contents:
             "the estimator skipped the tick",
             *sampling(reduced),
         ],
-        [_estimates(signals, used)],
+        [_estimates(signals, used), *([] if doubt is None else [_doubts(doubt)])],
         [
             *stiffness_panels(reduced, [Estimate("estimate", {"sigma": "sigma"})]),
             *quantity_panels(reduced, ""),
@@ -57,6 +59,19 @@ def _estimates(signals: dict[str, EstimatedSignal], used: NDArray[np.bool_]) -> 
         rows,
         [True, False, False, False, False],
         note="* in the second half",
+    )
+
+
+def _doubts(doubt: EstimatedSignal) -> TextTable:
+    """How often the estimator was confident, and why not, in the second half."""
+    late = doubt.values[len(doubt.values) // 2 :]
+    rows = [[item, f"{100 * count / len(late):.3g}"] for item, count in Counter(late).most_common()]
+    return TextTable(
+        "Doubt",
+        ["why not confident", "share of rows [%] *"],
+        rows,
+        [True, False],
+        note="* in the second half; None: it was confident",
     )
 
 

@@ -85,6 +85,9 @@ _QUANTITIES = (
         ],
         of_an_estimator=False,
     ),
+    _Quantity(
+        "Misfit of the model", "misfit [1]", [_Signal("misfit{}", "1 where the model holds")]
+    ),
     _Quantity("Set-point", "set-point [1]", [_Signal("setPoint{}", "set-point of the regression")]),
 )
 
