@@ -37,21 +37,27 @@ CPU_SECONDS = (
 REQUIRED = 0.9  # share of the mutants that the tests have to notice
 # For each file, the tests of other files that use it. They are run besides its own tests.
 USERS = {
+    "blocks": ("forgetting", "passes", "matched_*"),
+    "columns": ("matched_*",),
+    "forgetting": ("passes", "matched_*"),
+    "information": ("posterior", "blocks", "forgetting", "passes", "matched_*"),
     "kinematic_kalman": ("stiffness_estimator",),
-    "least_squares": ("matched_*", "stiffness_estimator"),
+    "least_squares": ("stiffness_estimator",),
     "matched_filter": ("prior", "stiffness_estimator", "matched_*"),
-    "matched_regression": ("matched_*",),
     "method": ("stiffness_estimator", "matched_*"),
-    "motion_sign": ("matched_*",),
+    "motion_sign": ("signals", "matched_*"),
     "paper2011": ("prior", "stiffness_estimator"),
     "parameters": ("stiffness_estimator",),
-    "rounding_bias": ("matched_*",),
-    "scaled_basis": ("prior", "matched_*"),
-    "state_variable_filter": ("matched_*",),
+    "passes": ("matched_*",),
+    "posterior": ("passes", "matched_*"),
+    "sample_variance": ("matched_*",),
+    "scaled_basis": ("columns", "prior", "matched_*"),
+    "signals": ("columns", "matched_*"),
+    "state_variable_filter": ("signals", "matched_*"),
     "stiffness_estimator": ("prior", "matched_*"),
     "torque_basis": ("stiffness_estimator",),
     "torque_residual": ("stiffness_estimator",),
-    "ud_factor": ("least_squares", "matched_*", "stiffness_estimator"),
+    "ud_factor": ("least_squares", "stiffness_estimator"),
 }
 PYTEST = ("-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", "-m", "not slow")
 FLAGS = (
@@ -73,7 +79,7 @@ SWAPS = {
     "+=": ("-=",), "-=": ("+=",), "*=": ("/=",), "/=": ("*=",), "++": ("--",),
     "i": ("j",), "j": ("i", "k"), "k": ("j",),
     "sh_fmin": ("sh_fmax",), "sh_fmax": ("sh_fmin",), "sh_fabs": ("-",), "sh_sqrt": ("sh_fabs",),
-    "sh_exp": ("cos",), "sh_sin": ("cos",), "!": ("",),
+    "sh_exp": ("cos",), "sh_log": ("cos",), "sh_sin": ("cos",), "sh_cos": ("sin",), "!": ("",),
     "break": ("continue",), "continue": ("break",),
 }  # fmt: skip
 TOKEN = re.compile(
@@ -84,26 +90,6 @@ TOKEN = re.compile(
 
 # Equivalent mutants: file, changed code, why no test can notice the change.
 EQUIVALENT: tuple[tuple[str, str, str], ...] = (
-    (
-        "matched_regression.c",
-        "for (i = 0; i <= matched->basis; ++i) F[i] =",
-        "the entry behind the basis is overwritten by that of the motor",
-    ),
-    (
-        "matched_regression.c",
-        "for (i = 0; i <= matched->basis; ++i) sh_state_variable_filter_",
-        "the output of the filter behind the last column is not used",
-    ),
-    (
-        "matched_regression.c",
-        "p->prior.B >= 0)",
-        "without a prior the variance is zero, and nothing is removed",
-    ),
-    (
-        "matched_regression.c",
-        "if (p->matched.drift >= 0)",
-        "without drift the covariance is increased by zero and is not above the prior",
-    ),
     (
         "method.c",
         "return p->method >= 1 &&",
@@ -118,11 +104,6 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
         "state_variable_filter.c",
         "sh_fabs(behind[1]) <= SMALL",
         "the value is never exactly 1e-30",
-    ),
-    (
-        "ud_factor.c",
-        "for (i = 0; i < j; i += SH_PANEL) { const sh_real v_0",
-        "for i = j the rest of v is zero, and so is U beyond",
     ),
     *(
         ("ud_factor.c", code, "what it sets behind the last one is not used")
