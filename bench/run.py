@@ -124,8 +124,7 @@ def main() -> None:
         every = all_subjects(library, fmus, 100 if arguments.check else SAMPLES)
         times = measure(every, 1 if arguments.check else ROUNDS)
     footprints = {
-        method: footprint(arguments.build, method, library)
-        for method in subjects.available_methods(library)
+        method: footprint(arguments.build, method, library) for method in subjects.METHODS
     }
     if arguments.check:
         print(f"{len(times)} subjects work")

@@ -13,15 +13,18 @@ typedef struct {
 
 static int choose(sh_parameters *p, const char *method)
 {
-    p->method = SH_METHOD_PAPER2011;
-    if (strcmp(method, "MatchedFilter") == 0) {
-        p->method = SH_METHOD_MATCHED_FILTER;
-        p->prior.D_theta = 0.2;
-        p->prior.B = 0.03;
-        p->prior.tau_coulomb = 0.02;
+    sh_prior_parameters *prior = &p->prior;
+
+    if (strcmp(method, "Paper2011") == 0)
         return 1;
-    }
-    return strcmp(method, "Paper2011") == 0;
+    p->method = SH_METHOD_MATCHED_FILTER;
+    prior->B = 0.03;
+    if (strcmp(method, "MatchedFilter") == 0)
+        return 1;
+    prior->bias = prior->damping = prior->load_friction = prior->eccentric = 0;
+    prior->delay = prior->reversal = 0;
+    prior->power = prior->gap = prior->hysteresis = prior->eccentric_motor = 0;
+    return strcmp(method, "MatchedFilter, torque and motor data alone") == 0;
 }
 
 void *tick_start(const char *method)
