@@ -13,7 +13,7 @@ from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Log
 from sigmahat.logs.output import EstimateWriter
 from sigmahat.logs.replay import OUTPUTS, coefficients, parameters, replay
-from sigmahat.logs.sampling import sample
+from sigmahat.logs.sampling import Samples, sample
 from sigmahat.logs.statistics import ReplayStatistics
 
 _CHUNK = 1 << 16  # ticks that are replayed at a time, about
@@ -121,14 +121,7 @@ def estimate(
                 done = now
             eta = coefficients(slave, int(every["rls.n"]), int(every["rls.m"]))
 
-    from sigmahat.logs.figure import Replay, draw
-    from sigmahat.plotting.save import save
-
-    save(
-        draw,
-        Replay(samples, statistics, str(every["modality"]), str(every["method"])),
-        folder / "estimate",
-    )
+    _save_figure(samples, statistics, every, folder)
     last, doubts = statistics.last, statistics.doubts
     return Estimate(
         log=log.path,
@@ -151,3 +144,13 @@ def estimate(
         sigma_per_gain=last["sigma_per_gain"],
         notes=samples.notes,
     )
+
+
+def _save_figure(
+    samples: Samples, statistics: ReplayStatistics, every: Mapping[str, Value], folder: Path
+) -> None:
+    from sigmahat.logs.figure import Replay, draw
+    from sigmahat.plotting.save import save
+
+    replayed = Replay(samples, statistics, str(every["modality"]), str(every["method"]))
+    save(draw, replayed, folder / "estimate")
