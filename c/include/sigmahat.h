@@ -90,7 +90,7 @@ enum {
     SH_DOUBT_OUT_OF_RANGE,      /* the deformation is beyond what the parameters are made for */
     SH_DOUBT_FRICTION,          /* D_theta_hat is beyond three std deviations of its prior */
     SH_DOUBT_INERTIA,           /* B_hat is beyond three std deviations of its prior */
-    SH_DOUBT_NEGATIVE_STIFFNESS /* sigma is not above 0 */
+    SH_DOUBT_NEGATIVE_STIFFNESS /* sigma is below 0 */
 };
 
 /* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. They

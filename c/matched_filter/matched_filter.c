@@ -173,7 +173,7 @@ static int doubt_of(const sh_matched_state *state, const sh_parameters *p,
         doubt = SH_DOUBT_FRICTION;
     if (sh_fabs(joint->inertia) > 3 * p->prior.B)
         doubt = SH_DOUBT_INERTIA;
-    if (!(estimate->sigma > 0))
+    if (estimate->sigma < 0)
         doubt = SH_DOUBT_NEGATIVE_STIFFNESS;
     return doubt;
 }
@@ -251,7 +251,7 @@ static int learn(sh_matched_state *state, const sh_parameters *p, innovation_of_
 {
     sh_real *const x = state->work.x, *const row = state->work.row;
     sh_sample_variance variance;
-    sh_real w, rounding, share;
+    sh_real w, epsilon, rounding, share;
     int i;
 
     sh_sample_variance_watch(state, p);
@@ -263,10 +263,13 @@ static int learn(sh_matched_state *state, const sh_parameters *p, innovation_of_
     for (i = 0; i < state->size; ++i)
         state->row_before[i] = x[i];
 
+    epsilon = x[state->size + SH_SIDE_Y];
+    for (i = 0; i < state->size; ++i)
+        epsilon -= x[i] * state->beta[i];
     share = sh_posterior_take(state, &state->live, x, w, row);
     innovation->a = 1;
     innovation->rho = (1 - share) / share;
-    innovation->epsilon = row[state->live.information.size + SH_SIDE_Y];
+    innovation->epsilon = epsilon;
 
     rounding = sh_sample_variance_of_inertia(state, p) * w;
     if (state->live.inertia >= 0) { /* what could not be removed before may be removed now */
