@@ -64,6 +64,14 @@ int sh_column_is_torque(const sh_column *column)
     return TRAITS[column->kind].is_torque;
 }
 
+int sh_column_is_of_equation(const sh_column *column)
+{
+    const int kind = column->kind;
+
+    return kind == SH_COLUMN_BASIS || kind == SH_COLUMN_NOMINAL || kind == SH_COLUMN_VISCOUS ||
+           kind == SH_COLUMN_COULOMB || kind == SH_COLUMN_INERTIA;
+}
+
 int sh_column_signal(const sh_column *column)
 {
     return TRAITS[column->kind].signal;

@@ -73,6 +73,9 @@ int sh_column_is_distinct(const sh_matched_state *state, const sh_parameters *p,
 /* Whether the column is part of the torque of the spring. */
 int sh_column_is_torque(const sh_column *column);
 
+/* Whether the column is in the equation above, and does not stand for something more. */
+int sh_column_is_of_equation(const sh_column *column);
+
 /* Sets the signals of the columns before the filter, and their slopes over phi, in work.F and
  * work.dF; and torque and stiffness of the nominal curve.
  *

@@ -108,8 +108,13 @@ int sh_sample_variance_contradicts_rest(sh_matched_state *state, const sh_parame
     int i;
 
     for (i = 0; i < live->information.size; ++i) {
-        own[i] = x[live->column[i]];
-        epsilon -= own[i] * state->beta[live->column[i]];
+        const int column = live->column[i];
+
+        epsilon -= x[column] * state->beta[column];
+        /* A bias, or another thing that the joint may have, would hide a slow motion. If there is
+         * one, the estimate waits once in vain.
+         */
+        own[i] = sh_column_is_of_equation(&state->column[column]) ? x[column] : 0;
     }
     variance += sh_posterior_variance(live, own, state->work.v);
     return sh_square(epsilon) > 25 * variance;
