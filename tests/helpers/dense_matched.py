@@ -102,6 +102,7 @@ class Blocks:
     energy_second: float
     count: float = 0.0
     recent_count: float = 0.0
+    gained: float = 0.0
     rows: list[Any] = field(default_factory=list)
 
     def judged(self) -> bool:
@@ -290,7 +291,8 @@ class Oracle:
 
     def forget(self, time: float) -> None:
         blocks, memory, drift = self.blocks, self.p["matched.memory"], self.p["matched.drift"]
-        keep = math.exp(-10 * time / memory) if memory else 1.0
+        gained, blocks.gained = blocks.gained, 0.0
+        keep = math.exp(-10 * gained / memory) if memory else 1.0
         blocks.recent.fade(keep)
         blocks.recent_count *= keep
         both = (self.data, blocks.all, blocks.walking)
@@ -298,7 +300,7 @@ class Oracle:
             N = blocks.recent_count
             has_changed = N > 20 and blocks.recent.rest < threshold(N)
             self.changes += has_changed
-            keep = math.exp(-time / (memory / 5 if has_changed else memory))
+            keep = math.exp(-gained / (memory / 5 if has_changed else memory))
             for sums in both:
                 sums.fade(keep)
             blocks.count *= keep
@@ -382,6 +384,7 @@ class Oracle:
             sums.take(mean, 1 / variance)
         blocks.count += count
         blocks.recent_count += count
+        blocks.gained += count * blocks.length * self.T
         blocks.rows.clear()
 
     def learn(self, k: int, filtered: Filtered, row: Long, rough: float) -> tuple[float, float]:
