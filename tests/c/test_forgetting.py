@@ -84,7 +84,7 @@ def test_the_recent_blocks_fade_with_a_tenth_of_the_memory_to_the_prior(c: Libra
     for _ in range(2000):
         state.forget()
     D = list(state.matched.blocks.recent.D[0 : state.matched.size])
-    assert D == [1.0] * state.matched.size
+    assert [1.0] * state.matched.size == D
 
 
 def test_without_a_memory_nothing_is_forgotten(c: Library) -> None:

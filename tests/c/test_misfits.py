@@ -1,11 +1,13 @@
-"""What a real joint has beside the model: it is estimated, it can be switched off, it is doubted."""
+"""What a joint has beside the model: it is estimated, can be switched off, and is doubted."""
 
 from __future__ import annotations
 
 import math
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,7 +39,7 @@ def accuracy(estimator: Estimator, *kinds: str) -> float:
 
 
 # output: misfit, kinds of its columns
-OUTPUTS: dict[str, tuple[dict[str, float], tuple[str, ...]]] = {
+OUTPUTS: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
     "bias_hat": ({"bias": 0.5}, ("BIAS",)),
     "load_friction_hat": ({"load_friction": 0.1}, ("LOAD",)),
     "delay_hat": ({"delay": 3e-3}, ("DELAY",)),
@@ -58,7 +60,7 @@ def test_each_misfit_is_estimated(c: Library, output: str, way: int, gamma: floa
     right sign whatever the gear; and the stiffness is right."""
     misfit, kinds = OUTPUTS[output]
     ((name, size),) = misfit.items()
-    joint = MisfitJoint(gamma=gamma, **{name: way * size})
+    joint = replace(MisfitJoint(gamma=gamma), **{name: way * size})
     estimator = Estimator(c, {**SETTINGS, "motor.gamma": gamma})
     found = estimator.run(joint.measurements())
     std = accuracy(estimator, *kinds)

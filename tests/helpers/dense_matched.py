@@ -15,8 +15,8 @@ from c_library import Array, Library
 from dense_information import SIDES, Information, Long, inverse
 from dense_signals import (
     CURVE,
-    GROUPS,
     GAPS,
+    GROUPS,
     PLAYS,
     SENSOR,
     TORQUE,
@@ -45,8 +45,8 @@ class Posterior:
     def sums(self, data: Information) -> tuple[Long, Long]:
         """Prior and data: information matrix, and right-hand sides."""
         n, own = len(self.chosen), [*self.chosen, data.size, data.size + 1]
-        matrix = self.weight * data.matrix[np.ix_(own, own)]
-        return matrix[:n, :n] + np.eye(n), matrix[:n, n:]
+        matrix: Long = self.weight * data.matrix[np.ix_(own, own)]
+        return matrix[:n, :n] + np.eye(n, dtype=np.longdouble), matrix[:n, n:]
 
     def solve(self, data: Information) -> None:
         matrix, right = self.sums(data)
@@ -114,9 +114,9 @@ def start_blocks(n: int, w: float, T: float) -> Blocks:
     k = np.arange(length + math.ceil(30 / (w * T)))
     h = np.where(k < length, window(k, length), 0.0)
     filtered = [through(np.append(0.0, h), order, w, T) for order in (0, 2)]
-    shares = [float(np.sum(f**2) / np.sum(h**2)) for f in filtered]
-    sums = [Information(n, precision) for precision in (LEAST, LEAST, 1.0)]
-    return Blocks(*sums, length, *shares)
+    energy, of_second = (float(np.sum(f**2) / np.sum(h**2)) for f in filtered)
+    every, walking, recent = (Information(n, precision) for precision in (LEAST, LEAST, 1.0))
+    return Blocks(every, walking, recent, length, energy, of_second)
 
 
 def window(k: Any, length: int) -> Any:
@@ -237,7 +237,7 @@ class Oracle:
         sums = self.blocks.walking if self.friction_drifts else self.blocks.all
         N = self.blocks.count
         q = sums.squares(self.beta) / (N - len(self.live.chosen) / 2)
-        return min(q, sums.rest / (N - self.n)) if N > 2 * self.n else q
+        return min(q, sums.rest / (N - self.n)) if 2 * self.n < N else q
 
     def recent_misfit(self) -> float:
         """Of the recent blocks without the prior, if it is beyond chance."""
@@ -280,7 +280,7 @@ class Oracle:
     def watch_friction(self, time: float) -> None:
         blocks, N = self.blocks, self.blocks.count
         self.walk_friction(blocks.walking, time)
-        if N > 2 * self.n:
+        if 2 * self.n < N:
             constant, walking = blocks.all.rest, blocks.walking.rest
             if walking < 0.8 * constant and constant > (N - self.n) * threshold(N) / N:
                 self.friction_drifts = True
@@ -339,7 +339,8 @@ class Oracle:
         C = self.kinds.index("COULOMB")
         own = self.live.chosen.index(C)
         variance = float(self.beta[C] ** 2 + self.live.P[own, own])
-        return (self.p["motor.gamma"] * self.p["prior.tau_coulomb"] * unknown) ** 2 * variance
+        largest = self.p["motor.gamma"] * self.p["prior.tau_coulomb"] * unknown
+        return float(largest**2 * variance)
 
     def watch(self, roughness: float) -> None:
         white = 3 / 16 * self.w * self.T

@@ -48,7 +48,7 @@ class MisfitJoint:
 
     @property
     def t(self) -> Array:
-        return T * np.arange(round(self.duration / T))
+        return T * np.arange(round(self.duration / T), dtype=np.float64)
 
     def sum_of_sines(self, size: float, frequencies: tuple[float, ...]) -> tuple[Array, ...]:
         """Signal of about this size, zero at the start, and two derivatives."""
