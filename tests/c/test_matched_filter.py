@@ -11,7 +11,7 @@ import pytest
 
 import c_library
 from c_library import Estimator, Library, load
-from c_matched import covariance
+from c_matched import PLAIN, covariance
 from matched_joint import GAMMA, Joint, T
 from oracle import MODEL, RESIDUAL, SENSOR
 from reference_plant import table1_recording
