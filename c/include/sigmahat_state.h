@@ -149,11 +149,12 @@ typedef struct {
 
 /* Blocks of samples, blocks.h. */
 typedef struct {
-    sh_information all;            /* of blocks, parameters constant */
-    sh_information walking;        /* of blocks, friction may drift */
-    sh_information recent;         /* of the last blocks, with the prior */
-    sh_real count, recent_count;   /* effective number of blocks [1] */
-    sh_real length;                /* samples of a block */
+    sh_information all;          /* of blocks, parameters constant */
+    sh_information walking;      /* of blocks, friction may drift */
+    sh_information recent;       /* of the last blocks, with the prior */
+    sh_real count, recent_count; /* effective number of blocks [1] */
+    sh_real gained; /* duration of the blocks since the last fading, without what repeats [s] */
+    sh_real length; /* samples of a block */
     sh_real energy, energy_second; /* share of white noise that H, and s^2 H [1/s4], leave in a
                                       block */
     sh_real samples;               /* in the block so far */

@@ -92,6 +92,7 @@ static void end(sh_matched_state *state, const sh_parameters *p)
     take_mean_row(state, &blocks->all, 1 / variance);
     blocks->count += count;
     blocks->recent_count += count;
+    blocks->gained += count * blocks->length * state->design.T;
     if (blocks->count > LARGEST_COUNT)
         fade(blocks, LARGEST_COUNT / blocks->count);
     sh_blocks_interrupt(blocks, state->size);

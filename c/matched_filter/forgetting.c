@@ -93,9 +93,12 @@ static void drift(sh_matched_state *state, const sh_parameters *p, sh_real time)
 
 void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, sh_real time)
 {
-    fade_recent(&state->blocks, p, time);
+    const sh_real gained = state->blocks.gained;
+
+    state->blocks.gained = 0;
+    fade_recent(&state->blocks, p, gained);
     if (state->variance_factor > SH_CONTRADICTION)
-        forget(state, p, time);
+        forget(state, p, gained);
     if (p->matched.drift > 0)
         drift(state, p, time);
 }

@@ -6,6 +6,9 @@
 
 /* Forgets, and lets the curve change, in `time` [s] since the last call.
  *
+ * The time of forgetting is that of the blocks since then, of which those with the same error count
+ * as fewer (blocks.h): while a joint rests, nothing is learned, and so nothing is forgotten.
+ *
  * Data are forgotten only while they contradict the model: then everything fades with the time
  * constant matched.memory. The misfit is that of the data that remain, so forgetting ends by itself
  * when the contradicting data are gone, and data that agree are never forgotten. If the recent data

@@ -33,8 +33,8 @@ def chi_square(estimator: Estimator) -> float:
     """Mean square of the blocks of y over their variances."""
     library, blocks = estimator.library, matched_of(estimator).blocks
     zero, information = np.zeros(blocks.all.size), library.ffi.addressof(blocks, "all")
-    squares: float = library.lib.sh_information_squares(information, library.pointer(zero))
-    return squares / blocks.count
+    squares = library.lib.sh_information_squares(information, library.pointer(zero))
+    return float(squares / blocks.count)
 
 
 @pytest.mark.parametrize("bandwidth", [50.0, 350.0, 1500.0])
@@ -52,7 +52,7 @@ def test_the_variance_of_a_block_is_that_of_the_noise_of_the_torque(
     estimator = Estimator(c, {**VALUES, **values, "matched.bandwidth": bandwidth})
     estimator.run(z)
     N = matched_of(estimator).blocks.count
-    assert N == pytest.approx(600, rel=0.02)
+    assert pytest.approx(600, rel=0.02) == N
     assert abs(chi_square(estimator) - 1) < 3 * np.sqrt(2 / N)
 
 

@@ -37,7 +37,7 @@ theta_dot = 5.6 * np.sin(7 * t)
 phi = 0.1 * np.sin(11 * t) * (1 - np.cos(5 * t))
 q = theta + phi
 theta_c = 30.0 * np.sin(3 * t)
-l = (100.0 - 2.5 / (2 * np.pi) * theta_c) / SET_POINT
+lever = (100.0 - 2.5 / (2 * np.pi) * theta_c) / SET_POINT
 tau = 0.4 * np.sin(9 * t)
 
 
@@ -76,7 +76,8 @@ def assert_close(got: Array, want: Array) -> None:
 
 
 def nominal() -> Array:
-    return 100.0 * phi + 3.0 * SET_POINT * l * phi**3
+    torque: Array = 100.0 * phi + 3.0 * SET_POINT * lever * phi**3
+    return torque
 
 
 def definitions(gamma: float) -> dict[tuple[str, int], Array]:
@@ -90,17 +91,17 @@ def definitions(gamma: float) -> dict[tuple[str, int], Array]:
         play = np.clip(play + (phi[k] - phi[k - 1] if k else 0.0), -widths, widths)
         plays.append(play / widths)
     want = {
-        **{("BASIS", 3 * j + i): filtered(x ** (2 * i + 1) / (2 * i + 1) * l**j)
+        **{("BASIS", 3 * j + i): filtered(x ** (2 * i + 1) / (2 * i + 1) * lever**j)
            for i in range(3) for j in range(3)},
         ("NOMINAL", 0): filtered(nominal()),
         ("BIAS", 0): filtered(np.ones(len(t))),
         ("DAMPING", 0): steady(phi, 1),
-        ("DAMPING", 2): steady(phi * l**2, 1),
+        ("DAMPING", 2): steady(phi * lever**2, 1),
         ("SIN_Q", 0): filtered(np.sin(q)),
         ("COS_Q", 0): filtered(np.cos(q)),
         ("POWER", 0): filtered(x**7 / 7),
         ("POWER", 1): filtered(x**9 / 9),
-        ("SET_POWER", 0): filtered(x * l**3),
+        ("SET_POWER", 0): filtered(x * lever**3),
         **{("GAP", i): filtered(np.clip(x, -GAPS[i], GAPS[i]) / GAPS[i]) for i in range(3)},
         **{("PLAY", i): filtered(np.array(plays)[:, i]) for i in range(3)},
         ("VISCOUS", 0): -(gamma**2) * D * steady(theta, 1),

@@ -41,6 +41,7 @@ class State:
         return {name: dense(part)[0] for name, part in parts.items()}
 
     def forget(self) -> None:
+        self.matched.blocks.gained = TIME
         self.c.lib.sh_forgetting_step(self.matched, self.estimator.parameters, TIME)
 
 
@@ -83,13 +84,24 @@ def test_the_recent_blocks_fade_with_a_tenth_of_the_memory_to_the_prior(c: Libra
     for _ in range(2000):
         state.forget()
     D = list(state.matched.blocks.recent.D[0 : state.matched.size])
-    assert D == [1.0] * state.matched.size
+    assert [1.0] * state.matched.size == D
 
 
 def test_without_a_memory_nothing_is_forgotten(c: Library) -> None:
     state = State(c, **{"matched.memory": 0.0})
     before = state.information()
     state.forget()
+    for name, matrix in state.information().items():
+        assert np.array_equal(matrix, before[name])
+
+
+def test_nothing_is_forgotten_while_no_block_is_gained(c: Library) -> None:
+    """At rest, where all samples have the same error, the contradiction stays known."""
+    state = State(c)
+    before = state.information()
+    state.matched.variance_factor = 100.0
+    state.matched.blocks.gained = 0.0
+    c.lib.sh_forgetting_step(state.matched, state.estimator.parameters, 1e6)
     for name, matrix in state.information().items():
         assert np.array_equal(matrix, before[name])
 

@@ -160,7 +160,7 @@ def test_a_walk_adds_to_the_covariance_and_keeps_the_estimate(
     v, row = rng.normal(size=size), np.zeros(size + SIDES)
     want = np.linalg.inv(a.matrix) + variance * np.outer(v, v)
     # The information along v that is left is this number of times smaller than before.
-    lost = 1 + variance * (v @ a.matrix @ v)
+    lost = 1 + variance * float(v @ a.matrix @ v)
     rel, rest = 1e-8 + 1e-14 * lost, a.a.rest
     c.lib.sh_information_walk(a.a, c.pointer(v), variance, c.pointer(row))
     matrix, _ = dense(a.a)

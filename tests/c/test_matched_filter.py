@@ -72,7 +72,9 @@ def test_errors_of_the_friction_are_estimated(c: Library, frequency: float, wron
 def test_an_error_of_the_inertia_is_estimated(c: Library, frequency: float) -> None:
     joint = Joint(frequency=frequency, amplitude=0.8 / frequency, tau_coulomb=0.015)
     wrong = {"motor.D_theta": 1.1e-3, "motor.B": 1.1 * 2.3e-5}
-    found = Estimator(c, {**ALL, **wrong}).run(joint.measurements())
+    # At one slow sine, theta'' is nearly proportional to the error of an eccentric link encoder, to
+    # a delay of the torque, and to damping. With them, the data know b 300 times less.
+    found = Estimator(c, {**ALL, **wrong, **PLAIN}).run(joint.measurements())
     assert found["B_hat"][-1] == pytest.approx(2.3e-5, rel=0.03)
     assert error(found, joint, 2.0) < 0.03
 

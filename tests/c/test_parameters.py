@@ -26,7 +26,8 @@ def test_defaults_are_the_start_values_of_the_fmu(c: Library, estimator_fmu: Pat
         value = p
         for name in variable.name.split("."):
             value = getattr(value, name)
-        start = {"true": 1.0, "false": 0.0}.get(variable.start) or float(variable.start)
+        switch = {"true": 1.0, "false": 0.0}
+        start = switch[variable.start] if variable.start in switch else float(variable.start)
         assert value == pytest.approx(start, rel=1e-12, abs=0.0), variable.name
         compared += 1
     assert compared > 40

@@ -28,7 +28,10 @@ def test_after_a_pass_the_posterior_is_prior_and_weighted_data(c: Library, misfi
     z[:, 3] += misfit * np.sin(5 * GAMMA * joint.motion[0])
     estimator = Estimator(c, VALUES)
     matched = estimator.state.method.matched
-    n, ended, tried, factors = matched.size, [], [], []
+    n = matched.size
+    ended: list[int] = []
+    tried: list[int] = []
+    factors: list[float] = []
     for k, sample in enumerate(z):
         row, trial = matched.row, matched.trial
         estimator.tick(sample)

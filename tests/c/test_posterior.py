@@ -109,7 +109,7 @@ def test_the_removal_leaves_the_prior(c: Library) -> None:
     _, D, _ = factors(posterior.c_struct.information)
     assert D[4] == pytest.approx(1.0, rel=1e-9)
     assert posterior.c_struct.surplus + posterior.c_struct.removed == pytest.approx(1e9)
-    beta, fit = posterior.evaluate()
+    beta, _ = posterior.evaluate()
     assert beta[4] == pytest.approx(0.0, abs=1e-6)  # the data say nothing about b
 
 
@@ -128,7 +128,7 @@ def expected(x: Array, N: float, Q: float) -> tuple[Array, float, float]:
     along = P[:, 4] / P[4, 4]
     beta = P @ right + np.outer(along, mean - (P @ right)[4])
     covariance = P + np.outer(along, along) * (variance - P[4, 4])
-    return beta[:, Y], dF @ covariance @ dF, dF @ beta[:, GAIN]
+    return beta[:, Y], float(dF @ covariance @ dF), float(dF @ beta[:, GAIN])
 
 
 @pytest.mark.parametrize("N", [1.0, 50.0, 300.0])

@@ -123,8 +123,8 @@ def test_the_plays_are_elastic_up_to_their_widths(c: Library) -> None:
 
 
 def test_a_gap_does_not_end_what_is_known_of_the_deformation(c: Library) -> None:
-    """GIVEN plays that are displaced, WHEN samples are lost or refused, THEN the plays and the range
-    of the deformation are as before, whichever way a sample is bad."""
+    """GIVEN plays that are displaced, WHEN samples are lost or refused, THEN the plays and the
+    range of the deformation are as before."""
     z = Joint(duration=1.0).measurements()
     states = []
     for bad in (np.nan, 1e11):

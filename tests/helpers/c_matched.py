@@ -33,8 +33,7 @@ def dense(a: Any) -> tuple[Array, Array]:
 def covariance(estimator: Estimator) -> Array:
     """Covariance of the posterior, with prior variances of 1, in the order of `live.column`."""
     matrix, _ = dense(estimator.state.method.matched.live.information)
-    inverse: Array = np.linalg.inv(matrix)
-    return inverse
+    return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
 
 def coefficients(estimator: Estimator) -> list[tuple[str, int]]:

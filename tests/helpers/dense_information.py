@@ -15,8 +15,8 @@ SIDES = 2
 def factors(matrix: Long, size: int) -> tuple[Long, Long, np.longdouble]:
     """Rows (U, U z) [size: size x size + 2], D, and the rest, by elimination."""
     left = matrix.copy()
-    rows = np.zeros((size, len(left)), dtype=np.longdouble)
-    D = np.zeros(size, dtype=np.longdouble)
+    rows: Long = np.zeros((size, len(left)), dtype=np.longdouble)
+    D: Long = np.zeros(size, dtype=np.longdouble)
     for i in range(size):
         D[i] = left[i, i]
         rows[i, i:] = left[i, i:] / D[i]

@@ -15,8 +15,8 @@ from c_library import Array, Library
 from dense_information import SIDES, Information, Long, inverse
 from dense_signals import (
     CURVE,
-    GROUPS,
     GAPS,
+    GROUPS,
     PLAYS,
     SENSOR,
     TORQUE,
@@ -45,8 +45,8 @@ class Posterior:
     def sums(self, data: Information) -> tuple[Long, Long]:
         """Prior and data: information matrix, and right-hand sides."""
         n, own = len(self.chosen), [*self.chosen, data.size, data.size + 1]
-        matrix = self.weight * data.matrix[np.ix_(own, own)]
-        return matrix[:n, :n] + np.eye(n), matrix[:n, n:]
+        matrix: Long = self.weight * data.matrix[np.ix_(own, own)]
+        return matrix[:n, :n] + np.eye(n, dtype=np.longdouble), matrix[:n, n:]
 
     def solve(self, data: Information) -> None:
         matrix, right = self.sums(data)
@@ -102,6 +102,7 @@ class Blocks:
     energy_second: float
     count: float = 0.0
     recent_count: float = 0.0
+    gained: float = 0.0
     rows: list[Any] = field(default_factory=list)
 
     def judged(self) -> bool:
@@ -113,9 +114,9 @@ def start_blocks(n: int, w: float, T: float) -> Blocks:
     k = np.arange(length + math.ceil(30 / (w * T)))
     h = np.where(k < length, window(k, length), 0.0)
     filtered = [through(np.append(0.0, h), order, w, T) for order in (0, 2)]
-    shares = [float(np.sum(f**2) / np.sum(h**2)) for f in filtered]
-    sums = [Information(n, precision) for precision in (LEAST, LEAST, 1.0)]
-    return Blocks(*sums, length, *shares)
+    energy, of_second = (float(np.sum(f**2) / np.sum(h**2)) for f in filtered)
+    every, walking, recent = (Information(n, precision) for precision in (LEAST, LEAST, 1.0))
+    return Blocks(every, walking, recent, length, energy, of_second)
 
 
 def window(k: Any, length: int) -> Any:
@@ -236,7 +237,7 @@ class Oracle:
         sums = self.blocks.walking if self.friction_drifts else self.blocks.all
         N = self.blocks.count
         q = sums.squares(self.beta) / (N - len(self.live.chosen) / 2)
-        return min(q, sums.rest / (N - self.n)) if N > 2 * self.n else q
+        return min(q, sums.rest / (N - self.n)) if 2 * self.n < N else q
 
     def recent_misfit(self) -> float:
         """Of the recent blocks without the prior, if it is beyond chance."""
@@ -279,7 +280,7 @@ class Oracle:
     def watch_friction(self, time: float) -> None:
         blocks, N = self.blocks, self.blocks.count
         self.walk_friction(blocks.walking, time)
-        if N > 2 * self.n:
+        if 2 * self.n < N:
             constant, walking = blocks.all.rest, blocks.walking.rest
             if walking < 0.8 * constant and constant > (N - self.n) * threshold(N) / N:
                 self.friction_drifts = True
@@ -290,7 +291,8 @@ class Oracle:
 
     def forget(self, time: float) -> None:
         blocks, memory, drift = self.blocks, self.p["matched.memory"], self.p["matched.drift"]
-        keep = math.exp(-10 * time / memory) if memory else 1.0
+        gained, blocks.gained = blocks.gained, 0.0
+        keep = math.exp(-10 * gained / memory) if memory else 1.0
         blocks.recent.fade(keep)
         blocks.recent_count *= keep
         both = (self.data, blocks.all, blocks.walking)
@@ -298,7 +300,7 @@ class Oracle:
             N = blocks.recent_count
             has_changed = N > 20 and blocks.recent.rest < threshold(N)
             self.changes += has_changed
-            keep = math.exp(-time / (memory / 5 if has_changed else memory))
+            keep = math.exp(-gained / (memory / 5 if has_changed else memory))
             for sums in both:
                 sums.fade(keep)
             blocks.count *= keep
@@ -337,7 +339,8 @@ class Oracle:
         C = self.kinds.index("COULOMB")
         own = self.live.chosen.index(C)
         variance = float(self.beta[C] ** 2 + self.live.P[own, own])
-        return (self.p["motor.gamma"] * self.p["prior.tau_coulomb"] * unknown) ** 2 * variance
+        largest = self.p["motor.gamma"] * self.p["prior.tau_coulomb"] * unknown
+        return float(largest**2 * variance)
 
     def watch(self, roughness: float) -> None:
         white = 3 / 16 * self.w * self.T
@@ -382,6 +385,7 @@ class Oracle:
             sums.take(mean, 1 / variance)
         blocks.count += count
         blocks.recent_count += count
+        blocks.gained += count * blocks.length * self.T
         blocks.rows.clear()
 
     def learn(self, k: int, filtered: Filtered, row: Long, rough: float) -> tuple[float, float]:

@@ -6,7 +6,7 @@ A record is cut into runs of samples without a gap; in each of them the filters 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -120,9 +120,9 @@ class Inputs:
         self.nominal, self.nominal_slope = zero, zero
         if eta_0 is not None:  # coefficients of setPoint^j phi^e [size: n x m]
             for (i, j), value in np.ndenumerate(eta_0):
-                e, l = self.exponent(i), value * self.set_point**j
-                self.nominal = self.nominal + l * self.phi**e
-                self.nominal_slope = self.nominal_slope + l * e * self.phi ** max(e - 1, 0)
+                e, factor = self.exponent(i), value * self.set_point**j
+                self.nominal = self.nominal + factor * self.phi**e
+                self.nominal_slope = self.nominal_slope + factor * e * self.phi ** max(e - 1, 0)
         pairs = [self.signal(kind, index) for kind, index, _ in self.columns]
         priors = np.array([prior for _, _, prior in self.columns])
         self.F = np.array([f for f, _ in pairs]).T * priors
@@ -149,7 +149,7 @@ class Inputs:
         if kind == "NOMINAL":
             return self.nominal, self.nominal_slope
         gamma = self.p["motor.gamma"]
-        flat = {
+        flat: dict[str, Callable[[], Array]] = {
             "BIAS": lambda: zero + 1,
             "DAMPING": lambda: self.phi * self.l**index,
             "SIN_Q": lambda: np.sin(self.q),
@@ -224,7 +224,8 @@ class Filtered:
             smooth = self.filtered(friction, 0, True) + self.T**2 / 12 * self.filtered(
                 friction, 2, True
             )
-            return -prior * abs(self.gamma) * smooth
+            column: Array = -prior * abs(self.gamma) * smooth
+            return column
         return self.filtered(self.F[:, i], 0)
 
     def torque_derivatives(self) -> tuple[Array, Array]:

@@ -1,0 +1,356 @@
+"""What a joint has beside the model: it is estimated, can be switched off, and is doubted."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import signal
+
+import c_sources
+from c_library import Estimator, Library, load
+from c_matched import PLAIN, coefficients, covariance
+from gate import missing
+from matched_joint import Joint
+from misfit_joint import SETTINGS, STIFFNESS, MisfitJoint
+
+T = 1e-3
+GAP, HYSTERESIS = 3, 4
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+def accuracy(estimator: Estimator, *kinds: str) -> float:
+    """Standard deviation of the sum of the coefficients of some kinds, in their own unit."""
+    matched = estimator.state.method.matched
+    names = coefficients(estimator)
+    own = list(matched.live.column[0 : matched.live.information.size])
+    chosen = np.array([matched.column[i].prior * (names[i][0] in kinds) for i in own])
+    return float(np.sqrt(chosen @ covariance(estimator) @ chosen))
+
+
+# output: misfit, kinds of its columns
+OUTPUTS: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
+    "bias_hat": ({"bias": 0.5}, ("BIAS",)),
+    "load_friction_hat": ({"load_friction": 0.1}, ("LOAD",)),
+    "delay_hat": ({"delay": 3e-3}, ("DELAY",)),
+    "damping_hat": ({"damping": 0.6}, ("DAMPING",)),
+    "hysteresis_hat": ({"hysteresis": 0.25}, ("PLAY",)),
+}
+NO_HYSTERESIS = ("hysteresis_hat", -1)
+
+
+@pytest.mark.parametrize("gamma", [50.0, -50.0])
+@pytest.mark.parametrize(
+    ("output", "way"),
+    # There is no hysteresis that gives energy.
+    [(output, way) for output in OUTPUTS for way in (1, -1) if (output, way) != NO_HYSTERESIS],
+)
+def test_each_misfit_is_estimated(c: Library, output: str, way: int, gamma: float) -> None:
+    """The output has the true value within its accuracy, which is a small part of it, with the
+    right sign whatever the gear; and the stiffness is right."""
+    misfit, kinds = OUTPUTS[output]
+    ((name, size),) = misfit.items()
+    joint = replace(MisfitJoint(gamma=gamma), **{name: way * size})
+    estimator = Estimator(c, {**SETTINGS, "motor.gamma": gamma})
+    found = estimator.run(joint.measurements())
+    std = accuracy(estimator, *kinds)
+    assert std < 0.3 * size
+    assert found[output][-1] == pytest.approx(way * size, abs=3 * std + 0.03 * size)
+    assert found["sigma"][-1] == pytest.approx(STIFFNESS, rel=0.01)
+    assert found["misfit"][-1] < 1.3
+    assert found["confident"][-1]
+
+
+def test_an_eccentric_encoder_of_the_link_is_estimated(c: Library) -> None:
+    estimator = Estimator(c, SETTINGS)
+    found = estimator.run(MisfitJoint(eccentric=8e-4).measurements())
+    std = math.hypot(accuracy(estimator, "SIN_Q"), accuracy(estimator, "COS_Q")) / STIFFNESS
+    assert std < 4e-4
+    assert found["eccentric_hat"][-1] == pytest.approx(8e-4, abs=3 * std)
+    assert found["sigma"][-1] == pytest.approx(STIFFNESS, abs=3 * found["sigma_std"][-1])
+
+
+def test_a_dead_zone_is_left_out_of_the_stiffness(c: Library) -> None:
+    """sigma is the slope where the spring is engaged."""
+    joint = MisfitJoint(gap=4e-3)
+    estimator = Estimator(c, SETTINGS)
+    found = estimator.run(joint.measurements())
+    assert estimator.state.method.matched.used[GAP]
+    late = slice(-3000, None)
+    engaged = np.abs(joint.phi[0][late]) > 8e-3
+    error = np.abs(found["sigma"][late] - STIFFNESS)[engaged]
+    assert np.max(error) < 0.05 * STIFFNESS
+    assert np.mean(error < 1.96 * found["sigma_std"][late][engaged]) > 0.85
+
+
+@pytest.mark.parametrize("group", [GAP, HYSTERESIS])
+def test_a_joint_without_a_misfit_has_no_columns_of_one(c: Library, group: int) -> None:
+    estimator = Estimator(c, SETTINGS)
+    found = estimator.run(MisfitJoint().measurements())
+    assert not estimator.state.method.matched.used[group]
+    assert found["hysteresis_hat"][-1] == 0.0 or group != HYSTERESIS
+    assert found["misfit"][-1] < 1.2
+
+
+@pytest.mark.parametrize("prior", [name for name in PLAIN if name != "prior.torque_gain"])
+def test_a_prior_of_zero_is_the_limit_of_small_priors(c: Library, prior: str) -> None:
+    z = MisfitJoint(duration=3.0).measurements()
+    zero = Estimator(c, {**SETTINGS, prior: 0.0}).run(z)
+    small = Estimator(c, {**SETTINGS, prior: 1e-10}).run(z)
+    # The next passes begin at other times, as a pass has as many steps as there are columns.
+    late = slice(2900, None)
+    assert zero["sigma"][late] == pytest.approx(small["sigma"][late], rel=1e-2)
+    assert zero["sigma_std"][late] == pytest.approx(small["sigma_std"][late], rel=0.1)
+
+
+# The gain of the torque
+
+
+def test_the_gain_of_the_torque_is_in_the_standard_deviation_only(c: Library) -> None:
+    z = MisfitJoint(duration=3.0).measurements()
+    exact, unsure = (
+        Estimator(c, {**SETTINGS, "prior.torque_gain": gain}).run(z)[-1] for gain in (0.0, 0.05)
+    )
+    assert unsure["sigma"] == exact["sigma"]
+    by_gain = 0.05 * unsure["sigma_per_gain"] * unsure["sigma"]
+    assert unsure["sigma_std"] == pytest.approx(math.hypot(exact["sigma_std"], by_gain), rel=1e-9)
+
+
+@pytest.mark.parametrize("values", [{}, {"prior.B": 0.1}], ids=["exact B", "unknown B"])
+def test_the_effect_of_the_gain_is_that_of_a_wrong_gain(
+    c: Library, values: dict[str, float]
+) -> None:
+    """GIVEN a torque that is recorded 1 % too large, THEN the stiffness changes by what
+    sigma_per_gain says."""
+    z = MisfitJoint(duration=3.0, tau_coulomb=0.0).measurements()
+    larger = z.copy()
+    larger[:, 3] *= 1.01
+    # Without Coulomb friction, whose size decides on the weights of samples.
+    settings = {**SETTINGS, **PLAIN, "prior.tau_coulomb": 0.0, **values}
+    first, second = (Estimator(c, settings).run(samples)[-1] for samples in (z, larger))
+    change = (second["sigma"] / first["sigma"] - 1) / 0.01
+    assert first["sigma_per_gain"] == pytest.approx(change, rel=5e-3)
+
+
+# Doubt
+
+DOUBTS = {
+    name: number
+    for number, name in enumerate(
+        (
+            *("NONE", "NO_CLAIM", "NOT_EXCITED", "MISFIT", "OUT_OF_RANGE", "FRICTION", "INERTIA"),
+            "NEGATIVE_STIFFNESS",
+        ),
+        1,
+    )
+}
+
+
+def doubt(c: Library, joint: Joint, **values: float) -> int:
+    estimator = Estimator(c, {"method": 2, "rls.n": 3, **values})
+    return int(estimator.run(joint.measurements())["doubt"][-1])
+
+
+def test_every_doubt_has_its_name(c: Library) -> None:
+    for name, number in DOUBTS.items():
+        assert getattr(c.lib, f"SH_DOUBT_{name}") == number
+
+
+def test_there_is_no_doubt_where_the_model_holds(c: Library) -> None:
+    assert doubt(c, Joint(duration=4.0)) == DOUBTS["NONE"]
+
+
+def test_the_paper_makes_no_claim(c: Library) -> None:
+    assert doubt(c, Joint(duration=1.0), method=1) == DOUBTS["NO_CLAIM"]
+
+
+def test_too_little_motion_is_a_doubt(c: Library) -> None:
+    still = Joint(duration=1.0, deformation=0.0, amplitude=0.0)
+    assert doubt(c, still) in (DOUBTS["NOT_EXCITED"], DOUBTS["NEGATIVE_STIFFNESS"])
+    assert doubt(c, Joint(duration=0.3, deformation=2e-4)) == DOUBTS["NOT_EXCITED"]
+
+
+def test_data_that_contradict_the_model_are_a_doubt(c: Library) -> None:
+    joint = Joint(duration=6.0, deformation=0.01)
+    z = joint.measurements()
+    z[:, 3] += 0.1 * np.sin(3 * 50 * joint.motion[0])
+    found = Estimator(c, {"method": 2, "rls.n": 3, "confidence": 0.02}).run(z)[-1]
+    assert found["misfit"] > 2
+    assert found["doubt"] == DOUBTS["MISFIT"]
+
+
+def test_a_deformation_beyond_the_range_is_a_doubt(c: Library) -> None:
+    z = Joint(duration=4.0).measurements()
+    estimator = Estimator(c, {"method": 2, "rls.n": 3, "range.phi": 0.02})
+    found = estimator.run(z)
+    beyond = np.abs(found["phi"]) > 2 * 0.02
+    negative = DOUBTS["NEGATIVE_STIFFNESS"]
+    assert not np.any(beyond)
+    z[-1, 1] += 0.06
+    found = estimator.run(z[-1:])
+    assert found["doubt"][-1] in (DOUBTS["OUT_OF_RANGE"], negative)
+
+
+def test_motor_data_far_from_their_priors_are_a_doubt(c: Library) -> None:
+    joint = Joint(duration=4.0, frequency=2.0, D_theta=2.5e-3)
+    assert doubt(c, joint) == DOUBTS["FRICTION"]
+    heavy = Joint(duration=4.0, frequency=8.0, amplitude=0.1, B=4.6e-5)
+    assert doubt(c, heavy, **{"prior.B": 0.1}) == DOUBTS["INERTIA"]
+
+
+def test_a_negative_stiffness_is_a_doubt(c: Library) -> None:
+    joint = Joint(duration=4.0, stiffness=lambda t: -np.ones_like(t))
+    assert doubt(c, joint) == DOUBTS["NEGATIVE_STIFFNESS"]
+
+
+# Bad samples
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, 1e12, -1e12])
+@pytest.mark.parametrize("column", [0, 1])
+def test_a_refused_sample_leaves_the_state_as_a_lost_one(
+    c: Library, column: int, bad: float
+) -> None:
+    """From the next sample on, everything is as if this one had been lost."""
+    z = Joint(duration=2.0, tau_coulomb=0.02).measurements()
+    z[1000, column] = bad
+    lost = z.copy()
+    lost[1000] = math.nan
+    values = {"method": 2, "rls.n": 3, "prior.B": 0.1}
+    found, want = Estimator(c, values).run(z), Estimator(c, values).run(lost)
+    assert found["valid"][1000] == 0
+    assert np.all(found["valid"][1001:])
+    assert found.tobytes() == want.tobytes()
+
+
+def test_a_long_rest_changes_neither_the_estimate_nor_the_misfit(c: Library) -> None:
+    joint = MisfitJoint(load_friction=0.15, duration=4.0, stops=True)
+    z = joint.measurements()
+    z[:, 3] += 0.02 * np.sin(150 * z[:, 0])  # a misfit that no column explains
+    estimator = Estimator(c, {**SETTINGS, "prior.B": 0.1})
+    estimator.run(z)
+    rest = z[-1:].repeat(1000, 0)
+    rest[:, 3] += 3.2e-3 * np.random.default_rng(3).normal(size=1000)
+    assert estimator.repeat(rest, 1000) == 1000
+    before = c.ffi.new("sh_estimate *", estimator.estimate[0])
+    assert before.misfit > 1.2
+    assert estimator.repeat(rest, 1_000_000) == 1_000_000
+    after = estimator.estimate
+    assert after.sigma == pytest.approx(before.sigma, abs=0.5 * before.sigma_std)
+    assert after.sigma_std > 0.5 * before.sigma_std
+    assert after.misfit == pytest.approx(before.misfit, rel=0.1)
+    assert np.all(np.isfinite(covariance(estimator)))
+
+
+# A torque that a drive holds
+
+
+def held(frequency: float, hold: bool) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    """Motor, spring and load, exactly, with a torque that is held or linear between samples."""
+    gamma, B, D, M = 50.0, 2.3e-5, 1e-3, 0.02
+    inertia, damping = gamma**2 * B, gamma**2 * D  # behind the gear
+    k = STIFFNESS
+    A = [[0, 1, 0, 0], [-k / inertia, -damping / inertia, k / inertia, 0]]
+    A += [[0, 0, 0, 1], [k / M, 0, -k / M, -0.1 / M]]
+    b = np.array([[0.0], [gamma / inertia], [0.0], [0.0]])
+    system = (np.array(A), b, np.eye(4)[[0, 2]], np.zeros((2, 1)))
+    t = T * np.arange(6000)
+    rng = np.random.default_rng(1)
+    tones = [frequency * f for f in (0.6, 1.0, 1.37)]
+    tau = sum(np.sin(2 * np.pi * f * t + rng.uniform(0, 6)) for f in tones) * 0.3
+    tau = tau * (1 - np.exp(-((t / 0.2) ** 3)))
+    discrete = signal.cont2discrete(system, T, method="zoh" if hold else "foh")
+    _, outputs, _ = signal.dlsim((*discrete[:4], T), tau)
+    zero = np.zeros(len(t))
+    return np.column_stack([outputs[:, 0], outputs[:, 1], zero, tau, zero])
+
+
+@pytest.mark.parametrize("hold", [True, False])
+def test_a_held_torque_is_exact(c: Library, hold: bool) -> None:
+    """At 20 Hz, with exact encoders and without noise."""
+    z = held(20.0, hold)
+    values = {**SETTINGS, **PLAIN, "encoder.theta": 0.0, "encoder.q": 0.0, "noise.tau": 1e-5}
+    errors = []
+    for parameter in (0, 1):
+        found = Estimator(c, {**values, "torque.held": parameter}).run(z)
+        errors.append(abs(found["sigma"][-1] / STIFFNESS - 1))
+    right, wrong = errors[::-1] if hold else errors
+    assert right < 1e-3
+    assert wrong > 10 * right
+
+
+# Sizes given to the compiler
+
+PROGRAM = """
+#include <stdio.h>
+#include "sigmahat.h"
+
+int main(void)
+{
+    static sh_parameters p;
+    static sh_estimator estimator;
+    static sh_estimate e;
+    sh_violation violation;
+    double z[5];
+
+    sh_parameters_default(&p);
+    p.method = SH_METHOD_MATCHED_FILTER;
+    p.rls.n = 3;
+    p.rls.m = 1;
+    p.prior.power = 0;
+    if (sh_parameters_check(&p, &violation)) {
+        printf("%s %s", violation.name, violation.range);
+        return 0;
+    }
+    sh_estimator_start(&estimator, &p, &e);
+    while (fread(z, sizeof z, 1, stdin) == 1) {
+        const sh_measurement measurement = {z[0], z[1], z[2], z[3], z[4]};
+        sh_estimator_tick(&estimator, &p, &measurement, &e);
+    }
+    printf("%zu %.17g %.17g %.17g", sizeof estimator, e.sigma, e.sigma_std, e.bias_hat);
+    return 0;
+}
+"""
+
+
+def compiled(folder: Path, *flags: str) -> list[str]:
+    """What the program prints if it is compiled with these options, as words."""
+    if shutil.which("gcc") is None:
+        missing("gcc", "apt-get install gcc")
+    source, program = folder / "main.c", folder / "program"
+    source.write_text(PROGRAM)
+    subprocess.run(
+        [
+            *("gcc", "-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror", *flags),
+            *(f"-I{path}" for path in c_sources.FOLDERS),
+            *map(str, [source, *c_sources.SOURCES]),
+            *("-lm", "-o", str(program)),
+        ],
+        check=True,
+    )
+    z = MisfitJoint(duration=3.0).measurements()
+    done = subprocess.run([program], input=z.tobytes(), capture_output=True, check=True)
+    return done.stdout.decode().split()
+
+
+def test_smaller_sizes_give_the_same_numbers(tmp_path: Path) -> None:
+    full = compiled(tmp_path)
+    small = compiled(tmp_path, "-DSH_MAX_N=3", "-DSH_MAX_M=1", "-DSH_MAX_COLUMNS=20")
+    assert small[1:] == full[1:]
+    assert int(small[0]) < 0.25 * int(full[0])
+
+
+def test_too_many_columns_for_the_compiled_size_violate_the_parameters(tmp_path: Path) -> None:
+    found = compiled(tmp_path, "-DSH_MAX_N=3", "-DSH_MAX_M=1", "-DSH_MAX_COLUMNS=19")
+    assert found[0] == "rls.n"
+    assert "19" in found
