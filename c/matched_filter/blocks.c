@@ -26,7 +26,8 @@ void sh_blocks_start(sh_matched_state *state)
     sh_blocks *blocks = &state->blocks;
     const sh_filter_design *design = &state->design;
     sh_state_variable_filter filter;
-    sh_real k, of_window = 0, output = 0, second = 0;
+    sh_real of_window = 0, output = 0, second = 0;
+    int samples, k;
 
     sh_information_start(&blocks->all, state->size, SH_INFORMATION_LEAST);
     sh_information_start(&blocks->walking, state->size, SH_INFORMATION_LEAST);
@@ -34,8 +35,9 @@ void sh_blocks_start(sh_matched_state *state)
     blocks->length = sh_fmax(sh_floor(DURATION / design->T + (sh_real)0.5), 4);
     /* What is left of white noise: the energy of the filtered window. */
     sh_state_variable_filter_start(&filter, 0);
-    for (k = 0; k < blocks->length + 30 / (design->w * design->T); ++k) {
-        const sh_real h = k < blocks->length ? window(k, blocks->length) : 0;
+    samples = (int)(blocks->length + 30 / (design->w * design->T));
+    for (k = 0; k < samples; ++k) {
+        const sh_real h = (sh_real)k < blocks->length ? window((sh_real)k, blocks->length) : 0;
 
         sh_state_variable_filter_step(&filter, design, h);
         of_window += sh_square(h);

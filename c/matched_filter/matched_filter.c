@@ -29,11 +29,6 @@ static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
     if (wT < (sh_real)1e-4 || wT >= 2)
         return sh_violates(violation, "matched.bandwidth", p->matched.bandwidth,
                            ">= 1e-4 / samplePeriod and < 2 / samplePeriod");
-    if (sh_matched_bandwidth(p) * p->samplePeriod < (sh_real)1e-4)
-        return sh_violates(
-            violation, "encoder.theta", p->encoder.theta,
-            "finer: with this one, noise.tau and motor.B, the filter would be slower "
-            "than 1e-4 / samplePeriod");
     if (!(p->prior.tau_e > 0) && !(sh_has_nominal_curve(p) && p->prior.nominal > 0))
         return sh_violates(violation, "prior.tau_e", p->prior.tau_e,
                            "> 0, or 0 with a curve rls.eta_0 and prior.nominal > 0");

@@ -90,10 +90,14 @@ void sh_sample_variance_watch(sh_matched_state *state, const sh_parameters *p)
 
 sh_real sh_sample_variance_of_inertia(const sh_matched_state *state, const sh_parameters *p)
 {
+    const sh_real *theta = state->theta_before;
+    /* Rounding of a slow motion is a little less rough than white noise of its variance. */
+    const sh_real rounding = sh_fabs(theta[0] - theta[1]) > 0 ? sh_square(state->count) / 12 : 0;
+
     if (sh_is_measured(p) || state->live.inertia < 0)
         return 0;
     return sh_square(sh_square(p->motor.gamma) * p->motor.B * p->prior.B) * state->gain_second *
-           sh_signals_roughness(state);
+           sh_fmax(state->history.rough, rounding);
 }
 
 int sh_sample_variance_contradicts_rest(sh_matched_state *state, const sh_parameters *p,

@@ -13,7 +13,8 @@ sh_real sh_matched_bandwidth(const sh_parameters *p)
 
     if (sh_is_measured(p) || !(rounding > 0))
         return p->matched.bandwidth;
-    return sh_fmin(p->matched.bandwidth, (sh_real)1.42 * sh_sqrt(p->noise.tau / rounding));
+    return sh_fmax(sh_fmin(p->matched.bandwidth, (sh_real)1.42 * sh_sqrt(p->noise.tau / rounding)),
+                   (sh_real)1e-4 / p->samplePeriod);
 }
 
 void sh_signals_start(sh_matched_state *state, const sh_parameters *p)

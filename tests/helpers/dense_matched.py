@@ -32,6 +32,10 @@ from dense_signals import (
 LEAST = 1e-9
 
 
+EQUATION = ("BASIS", "NOMINAL", "VISCOUS", "COULOMB", "INERTIA")
+"""Columns of the joint without anything that real joints have besides."""
+
+
 class Posterior:
     """Prior and data of some columns: covariance P and estimates of both sides."""
 
@@ -220,7 +224,9 @@ class Oracle:
             return
         own = sum(self.group(i) != self.trial for i in self.build.chosen)
         gain = self.evidence(len(self.build.chosen)) - self.evidence(own)
-        used = 1 if gain > 3 else 0 if gain < 0 else self.used[self.trial]
+        N = self.blocks.count
+        off = 0 if gain < 0.025 * N else self.used[self.trial]
+        used = 1 if gain > 3 + 0.05 * N else off
         if used != self.used[self.trial]:
             self.switched.append((k, self.trial, used))
         self.used[self.trial] = used
@@ -394,11 +400,14 @@ class Oracle:
             self.watch(rough)
         R, last = self.variance(filtered, at)
         self.R, self.before = R, row
-        innovation = self.live.learn(row, 1 / R)
+        epsilon = float(row[-1] - row[: len(self.columns)] @ self.beta)
+        _, rho = self.live.learn(row, 1 / R)
         prior_B = self.p["prior.B"]
         if prior_B > 0:
             inertial = 0.0 if filtered.measured else self.p["motor.gamma"] ** 2 * self.p["motor.B"]
-            N = (inertial * prior_B) ** 2 * self.gain_second * rough / R
+            moved = at > 0 and self.z[k, 0] != self.z[k - 1, 0]
+            rounding = moved * resolution(self.p["encoder.theta"]) ** 2 / 12
+            N = (inertial * prior_B) ** 2 * self.gain_second * max(self.rough, rounding) / R
             Q = 6 * (N / prior_B) ** 2
             self.surplus += N
             self.spread += Q
@@ -409,7 +418,7 @@ class Oracle:
         self.data.take(row, 1 / R)
         self.take_block(row, R, last, rough, filtered.measured)
         self.advance_pass(k)
-        return innovation
+        return epsilon, rho
 
     def is_settled(self, filtered: Filtered, at: int, row: Long) -> bool:
         self.settling = max(self.settling - self.T, 0)
@@ -419,8 +428,9 @@ class Oracle:
             return True
         self.starting -= self.T
         p = self.p
-        x = row[self.live.chosen]
-        error = row[-1] - x @ self.beta[self.live.chosen]
+        chosen = self.live.chosen
+        error = row[-1] - row[chosen] @ self.beta[chosen]
+        x = np.where([self.kinds[i] in EQUATION for i in chosen], row[chosen], 0.0)
         inertial = p["motor.gamma"] ** 2 * p["motor.B"] * resolution(p["encoder.theta"])
         variance = 3 / 16 * self.w * self.T * (p["motor.gamma"] * p["noise.tau"]) ** 2
         variance += inertial**2 / 12 * self.gain_second
