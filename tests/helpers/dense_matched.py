@@ -53,8 +53,8 @@ class Posterior:
         self.P = inverse(matrix)
         self.beta = self.P @ right
 
-    def learn(self, row: Long, w: float) -> tuple[float, float]:
-        """Returns the prediction error of y, and its variance over that of the sample."""
+    def learn(self, row: Long, w: float) -> float:
+        """Returns the variance of the prediction of y over that of the sample."""
         x, sides = row[self.chosen], row[-SIDES:]
         w = w * self.weight
         Px = self.P @ x
@@ -62,7 +62,7 @@ class Posterior:
         error = sides - x @ self.beta
         self.beta = self.beta + np.outer(Px, error) * (w / (1 + rho))
         self.P = self.P - np.outer(Px, Px) * (w / (1 + rho))
-        return float(error[1]), float(rho)
+        return float(rho)
 
     def remove(self, information: float, prior_B: float) -> None:
         self.surplus += information
@@ -220,7 +220,8 @@ class Oracle:
             return
         own = sum(self.group(i) != self.trial for i in self.build.chosen)
         gain = self.evidence(len(self.build.chosen)) - self.evidence(own)
-        used = 1 if gain > 3 else 0 if gain < 0 else self.used[self.trial]
+        N, used = self.blocks.count, self.used[self.trial]
+        used = 1 if gain > 3 + 0.05 * N else 0 if gain < 0.025 * N else used
         if used != self.used[self.trial]:
             self.switched.append((k, self.trial, used))
         self.used[self.trial] = used
@@ -394,7 +395,8 @@ class Oracle:
             self.watch(rough)
         R, last = self.variance(filtered, at)
         self.R, self.before = R, row
-        innovation = self.live.learn(row, 1 / R)
+        epsilon = float(row[-1] - row[:-SIDES] @ self.beta)
+        rho = self.live.learn(row, 1 / R)
         prior_B = self.p["prior.B"]
         if prior_B > 0:
             inertial = 0.0 if filtered.measured else self.p["motor.gamma"] ** 2 * self.p["motor.B"]
@@ -409,7 +411,7 @@ class Oracle:
         self.data.take(row, 1 / R)
         self.take_block(row, R, last, rough, filtered.measured)
         self.advance_pass(k)
-        return innovation
+        return epsilon, rho
 
     def is_settled(self, filtered: Filtered, at: int, row: Long) -> bool:
         self.settling = max(self.settling - self.T, 0)
