@@ -30,6 +30,7 @@ from dense_signals import (
 )
 
 LEAST = 1e-9
+EQUATION = ("BASIS", "NOMINAL", "VISCOUS", "COULOMB", "INERTIA")
 
 
 class Posterior:
@@ -138,7 +139,7 @@ class Oracle:
         self.good = np.all(np.isfinite(z), axis=1)
         self.T, self.w = p["samplePeriod"], bandwidth(p)
         self.runs = self.find_runs()
-        self.inputs = Inputs(p, np.nan_to_num(z), self.runs, eta_0)
+        self.inputs = Inputs(p, np.nan_to_num(z, posinf=0.0, neginf=0.0), self.runs, eta_0)
         self.columns = self.inputs.columns
         self.n = n = len(self.columns)
         self.kinds = [kind for kind, _, _ in self.columns]
@@ -423,6 +424,8 @@ class Oracle:
         p = self.p
         x = row[self.live.chosen]
         error = row[-1] - x @ self.beta[self.live.chosen]
+        # What a joint has beside the equation must not hide a slow motion.
+        x = np.where([self.kinds[i] in EQUATION for i in self.live.chosen], x, 0)
         inertial = p["motor.gamma"] ** 2 * p["motor.B"] * resolution(p["encoder.theta"])
         variance = 3 / 16 * self.w * self.T * (p["motor.gamma"] * p["noise.tau"]) ** 2
         variance += inertial**2 / 12 * self.gain_second
