@@ -7,6 +7,7 @@
 #include "state_variable_filter.h"
 
 static const sh_real DURATION = (sh_real)0.05; /* of a block [s] */
+static const sh_real LONGEST = 100000;         /* samples of a block: the start has as many steps */
 
 /* Blocks that are remembered: the misfit is that of the last minutes, so that one that begins after
  * hours is noticed as soon as one that begins after a minute.
@@ -32,12 +33,14 @@ void sh_blocks_start(sh_matched_state *state)
     sh_information_start(&blocks->all, state->size, SH_INFORMATION_LEAST);
     sh_information_start(&blocks->walking, state->size, SH_INFORMATION_LEAST);
     sh_information_start(&blocks->recent, state->size, 1);
-    blocks->length = sh_fmax(sh_floor(DURATION / design->T + (sh_real)0.5), 4);
+    blocks->length = sh_floor(DURATION / design->T + (sh_real)0.5);
+    blocks->length = sh_fmin(sh_fmax(blocks->length, 4), LONGEST);
+    samples = (int)(blocks->length + 30 / (design->w * design->T));
     /* What is left of white noise: the energy of the filtered window. */
     sh_state_variable_filter_start(&filter, 0);
-    samples = (int)(blocks->length + 30 / (design->w * design->T));
     for (k = 0; k < samples; ++k) {
-        const sh_real h = (sh_real)k < blocks->length ? window((sh_real)k, blocks->length) : 0;
+        const sh_real place = (sh_real)k;
+        const sh_real h = place < blocks->length ? window(place, blocks->length) : 0;
 
         sh_state_variable_filter_step(&filter, design, h);
         of_window += sh_square(h);

@@ -225,8 +225,7 @@ def test_every_tick_of_a_misfit_that_begins(c: Library) -> None:
 @pytest.mark.parametrize("modality", [RESIDUAL, SENSOR])
 def test_every_tick_of_a_joint_that_already_moves(c: Library, modality: int) -> None:
     z = FAST.measurements()[5:500]  # 0.6 rad/s
-    # With PLAIN: the priors of the other columns could explain the torque of so slow a motion.
-    _, found = check(c, {**START, **PLAIN, "modality": modality}, z)
+    _, found = check(c, {**START, "modality": modality}, z)
     assert np.all(found["a"][1:30] == 0) == (modality == RESIDUAL)
 
 

@@ -98,13 +98,21 @@ def test_the_excess_is_measured_from_the_positions(c: Library, noise: float) -> 
 
 
 def test_the_information_about_the_inertia_that_is_rounding(c: Library) -> None:
+    """The measured noise of theta; in motion at least that of its rounding."""
     sample = Sample(c)
-    sample.matched.theta_before[2] = 1e-4
     of_theta = (GAMMA**2 * B * 0.1) ** 2 * sample.matched.gain_second
-    want = of_theta * (6e-4) ** 2 / 70
-    got = c.lib.sh_sample_variance_of_inertia(sample.matched, sample.p)
-    assert got == pytest.approx(want, rel=1e-12)
+
+    def information() -> float:
+        return float(c.lib.sh_sample_variance_of_inertia(sample.matched, sample.p))
+
+    sample.matched.history.rough = 3e-9
+    assert information() == pytest.approx(of_theta * 3e-9, rel=1e-12)
+    sample.matched.history.rough = 0.0
+    assert information() == 0.0
+    sample.matched.theta_before[1] = 1e-4  # the last sample has moved
+    count = sample.matched.count
+    assert information() == pytest.approx(of_theta * count**2 / 12, rel=1e-12)
     for values in ({"prior.B": 0.0}, {"modality": 2}):
         other = Sample(c, **values)
-        other.matched.theta_before[2] = 1e-4
+        other.matched.history.rough = 3e-9
         assert c.lib.sh_sample_variance_of_inertia(other.matched, other.p) == 0.0

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from c_library import Estimator, Library, load
-from c_matched import PLAIN, covariance
+from c_matched import covariance
 from matched_joint import Joint, T
 
 VALUES = {"method": 2, "rls.n": 2, "rls.m": 1, "prior.B": 0.1, "prior.tau_coulomb": 0.02}
@@ -59,8 +59,7 @@ def test_a_motor_at_rest_at_any_position_is_used_from_the_first_sample(c: Librar
 def test_a_motor_that_moves_at_the_first_step_is_used_later(c: Library) -> None:
     z = np.zeros((50, 5))
     z[1:, 0] = z[1:, 1] = 3 * 2 * np.pi / 40000 + 0.05 * T
-    # Their priors could explain the torque of so small a motion.
-    found = Estimator(c, {**VALUES, **PLAIN}).run(z)
+    found = Estimator(c, VALUES).run(z)
     settling = 12 / 350.0 / T  # number of ticks in twelve time constants of the filter
     assert np.flatnonzero(found["a"][1:])[0] == pytest.approx(settling, abs=2)
 

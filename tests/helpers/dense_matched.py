@@ -30,10 +30,7 @@ from dense_signals import (
 )
 
 LEAST = 1e-9
-
-
 EQUATION = ("BASIS", "NOMINAL", "VISCOUS", "COULOMB", "INERTIA")
-"""Columns of the joint without anything that real joints have besides."""
 
 
 class Posterior:
@@ -57,8 +54,8 @@ class Posterior:
         self.P = inverse(matrix)
         self.beta = self.P @ right
 
-    def learn(self, row: Long, w: float) -> tuple[float, float]:
-        """Returns the prediction error of y, and its variance over that of the sample."""
+    def learn(self, row: Long, w: float) -> float:
+        """Returns the variance of the prediction of y over that of the sample."""
         x, sides = row[self.chosen], row[-SIDES:]
         w = w * self.weight
         Px = self.P @ x
@@ -66,7 +63,7 @@ class Posterior:
         error = sides - x @ self.beta
         self.beta = self.beta + np.outer(Px, error) * (w / (1 + rho))
         self.P = self.P - np.outer(Px, Px) * (w / (1 + rho))
-        return float(error[1]), float(rho)
+        return float(rho)
 
     def remove(self, information: float, prior_B: float) -> None:
         self.surplus += information
@@ -142,7 +139,7 @@ class Oracle:
         self.good = np.all(np.isfinite(z), axis=1)
         self.T, self.w = p["samplePeriod"], bandwidth(p)
         self.runs = self.find_runs()
-        self.inputs = Inputs(p, np.nan_to_num(z), self.runs, eta_0)
+        self.inputs = Inputs(p, np.nan_to_num(z, posinf=0.0, neginf=0.0), self.runs, eta_0)
         self.columns = self.inputs.columns
         self.n = n = len(self.columns)
         self.kinds = [kind for kind, _, _ in self.columns]
@@ -224,9 +221,8 @@ class Oracle:
             return
         own = sum(self.group(i) != self.trial for i in self.build.chosen)
         gain = self.evidence(len(self.build.chosen)) - self.evidence(own)
-        N = self.blocks.count
-        off = 0 if gain < 0.025 * N else self.used[self.trial]
-        used = 1 if gain > 3 + 0.05 * N else off
+        N, used = self.blocks.count, self.used[self.trial]
+        used = 1 if gain > 3 + 0.05 * N else 0 if gain < 0.025 * N else used
         if used != self.used[self.trial]:
             self.switched.append((k, self.trial, used))
         self.used[self.trial] = used
@@ -400,8 +396,8 @@ class Oracle:
             self.watch(rough)
         R, last = self.variance(filtered, at)
         self.R, self.before = R, row
-        epsilon = float(row[-1] - row[: len(self.columns)] @ self.beta)
-        _, rho = self.live.learn(row, 1 / R)
+        epsilon = float(row[-1] - row[:-SIDES] @ self.beta)
+        rho = self.live.learn(row, 1 / R)
         prior_B = self.p["prior.B"]
         if prior_B > 0:
             inertial = 0.0 if filtered.measured else self.p["motor.gamma"] ** 2 * self.p["motor.B"]
@@ -428,9 +424,10 @@ class Oracle:
             return True
         self.starting -= self.T
         p = self.p
-        chosen = self.live.chosen
-        error = row[-1] - row[chosen] @ self.beta[chosen]
-        x = np.where([self.kinds[i] in EQUATION for i in chosen], row[chosen], 0.0)
+        x = row[self.live.chosen]
+        error = row[-1] - x @ self.beta[self.live.chosen]
+        # What a joint has beside the equation must not hide a slow motion.
+        x = np.where([self.kinds[i] in EQUATION for i in self.live.chosen], x, 0)
         inertial = p["motor.gamma"] ** 2 * p["motor.B"] * resolution(p["encoder.theta"])
         variance = 3 / 16 * self.w * self.T * (p["motor.gamma"] * p["noise.tau"]) ** 2
         variance += inertial**2 / 12 * self.gain_second
