@@ -70,9 +70,11 @@ def test_a_processor_computes_what_the_host_computes(
         for t in (HOST, target)
     )
     assert 0 < np.count_nonzero(here["valid"] == 0) < 30
+    # Torque and stiffness of MatchedFilter are sums of up to 44 terms that nearly cancel.
+    terms = 10 if configuration in MATCHED else 1
     for name, expected in here.items():
-        largest = np.abs(expected).max()
-        np.testing.assert_allclose(there[name], expected, rtol=0, atol=ROUNDING[real] * largest)
+        atol = terms * ROUNDING[real] * np.abs(expected).max()
+        np.testing.assert_allclose(there[name], expected, rtol=0, atol=atol, err_msg=name)
 
 
 @pytest.mark.parametrize("configuration", "abcdeghi")  # not f: noise dominates it, also in double
@@ -85,7 +87,7 @@ def test_single_precision_gives_the_stiffness_of_table1(
         for real in ("float", "double")
     )
     assert single["valid"].all()
-    assert deviation(single, double) < 1e-3
+    assert deviation(single, double) < (1e-3 if configuration in PAPER else 3e-3)
 
 
 @pytest.mark.parametrize("configuration", "ag")
@@ -145,7 +147,7 @@ def test_the_library_needs_only_memory_and_math_functions(
     names = ("exp", "log", "sin", "cos", "floor", "sqrt", "fmin", "fmax")
     functions = {name + suffix for name in names}
     helpers = {f for f in needed if f.startswith("__aeabi_")} if real == "double" else set()
-    assert needed - own - helpers <= functions | {"memcpy", "memset"}
+    assert needed - own - helpers <= functions | {"memcpy", "memmove", "memset"}
 
 
 @each_real
