@@ -98,21 +98,20 @@ def test_the_excess_is_measured_from_the_positions(c: Library, noise: float) -> 
 
 
 def test_the_information_about_the_inertia_that_is_rounding(c: Library) -> None:
-    """The measured noise of theta; in motion at least that of its rounding."""
+    """The measured noise of theta, and in motion what fourth differences miss of its rounding."""
     sample = Sample(c)
     of_theta = (GAMMA**2 * B * 0.1) ** 2 * sample.matched.gain_second
 
     def information() -> float:
         return float(c.lib.sh_sample_variance_of_inertia(sample.matched, sample.p))
 
-    sample.matched.history.rough = 3e-9
-    assert information() == pytest.approx(of_theta * 3e-9, rel=1e-12)
-    sample.matched.history.rough = 0.0
-    assert information() == 0.0
-    sample.matched.theta_before[1] = 1e-4  # the last sample has moved
-    count = sample.matched.count
-    assert information() == pytest.approx(of_theta * count**2 / 12, rel=1e-12)
+    sample.matched.theta_before[2] = 1e-4
+    measured = (6e-4) ** 2 / 70
+    assert information() == pytest.approx(of_theta * measured, rel=1e-12)
+    sample.matched.theta_before = [1e-4, 0.0, 0.0, 0.0, 0.0]  # the last sample has moved
+    rounding = 0.09 * sample.matched.count**2 / 12
+    assert information() == pytest.approx(of_theta * (1e-8 / 70 + rounding), rel=1e-12)
     for values in ({"prior.B": 0.0}, {"modality": 2}):
         other = Sample(c, **values)
-        other.matched.history.rough = 3e-9
+        other.matched.theta_before[2] = 1e-4
         assert c.lib.sh_sample_variance_of_inertia(other.matched, other.p) == 0.0

@@ -402,8 +402,8 @@ class Oracle:
         if prior_B > 0:
             inertial = 0.0 if filtered.measured else self.p["motor.gamma"] ** 2 * self.p["motor.B"]
             moved = at > 0 and self.z[k, 0] != self.z[k - 1, 0]
-            rounding = moved * resolution(self.p["encoder.theta"]) ** 2 / 12
-            N = (inertial * prior_B) ** 2 * self.gain_second * max(self.rough, rounding) / R
+            V = rough + 0.09 * moved * resolution(self.p["encoder.theta"]) ** 2 / 12
+            N = (inertial * prior_B) ** 2 * self.gain_second * V / R
             Q = 6 * (N / prior_B) ** 2
             self.surplus += N
             self.spread += Q
