@@ -145,6 +145,7 @@ typedef struct {
     sh_real surplus;            /* information about b that is rounding, still contained [1] */
     sh_real removed;            /* removed so far [1] */
     sh_real spread;             /* variance of both, as it acts on the estimate of b [1] */
+    sh_real removal_error;      /* relative error of the removed, over prior.B [1] */
 } sh_posterior;
 
 /* Blocks of samples, blocks.h. */

@@ -129,16 +129,16 @@ sh_real sh_blocks_threshold(sh_real N)
 }
 
 /* Mean square of the errors of the recent blocks, if it is beyond chance; else 0, and while friction
- * changes, which they do not contain. The prior, which is among them, is subtracted.
+ * or the curve changes, which they do not contain. The prior, which is among them, is subtracted.
  */
-static sh_real recent_misfit(sh_matched_state *state)
+static sh_real recent_misfit(sh_matched_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->recent_count;
     sh_real squares;
     int i;
 
-    if (N < SH_BLOCKS_FIRST || state->friction_drifts)
+    if (N < SH_BLOCKS_FIRST || state->friction_drifts || p->matched.drift > 0)
         return 0;
     squares = sh_information_squares(&blocks->recent, state->beta);
     for (i = 0; i < state->size; ++i)
@@ -146,32 +146,20 @@ static sh_real recent_misfit(sh_matched_state *state)
     return squares > sh_blocks_threshold(N) ? squares / N : 0;
 }
 
-/* Mean square of the errors of all blocks: at the estimate, or of the best fit to them if that is
- * less. Where the misfit is so large that the priors have an effect, the estimate is not the best
- * fit, and its errors would increase the misfit further.
- */
-static sh_real whole_misfit(sh_matched_state *state)
-{
-    sh_blocks *blocks = &state->blocks;
-    sh_information *a = state->friction_drifts ? &blocks->walking : &blocks->all;
-    const sh_real N = blocks->count, used = (sh_real)state->live.information.size;
-    const sh_real all = (sh_real)state->size;
-    const sh_real q = sh_information_squares(a, state->beta) / (N - used / 2);
-
-    return N > 2 * all ? sh_fmin(q, a->rest / (N - all)) : q;
-}
-
 void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p)
 {
-    const sh_real N = state->blocks.count;
+    sh_blocks *blocks = &state->blocks;
+    const sh_real N = blocks->count;
     sh_real q, t;
 
     state->q = state->variance_factor = 1;
     if (N < SH_BLOCKS_FIRST || N <= (sh_real)state->live.information.size)
         return;
-    q = whole_misfit(state);
+    q = sh_information_squares(state->friction_drifts ? &blocks->walking : &blocks->all,
+                               state->beta) /
+        (N - (sh_real)state->live.information.size / 2);
     t = sh_blocks_threshold(N) / N;
-    state->q = sh_fmax(q, recent_misfit(state));
+    state->q = sh_fmax(q, recent_misfit(state, p));
     if (!(p->matched.memory > 0)) /* switched off */
         return;
     state->variance_factor = sh_fmax(1, state->q);

@@ -6,6 +6,9 @@
 #include "information.h"
 #include "real_math.h"
 
+/* Relative error of the removed information. Rounding depends on the motion, and repeats with it. */
+static const sh_real REMOVAL_ERROR = (sh_real)0.05;
+
 /* Whether a column is used, and not one of the trial. */
 static int is_used(const sh_matched_state *state, const sh_parameters *p, const sh_column *column,
                    int trial)
@@ -41,6 +44,7 @@ void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
     sh_information_start(&posterior->information, size, 1);
     posterior->weight = weight;
     posterior->surplus = posterior->removed = posterior->spread = 0;
+    posterior->removal_error = p->prior.B > 0 ? REMOVAL_ERROR / p->prior.B : 0;
 }
 
 void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
@@ -57,6 +61,7 @@ void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
     to->surplus = from->surplus;
     to->removed = from->removed;
     to->spread = from->spread;
+    to->removal_error = from->removal_error;
 }
 
 sh_real sh_posterior_take(const sh_matched_state *state, sh_posterior *posterior, const sh_real *x,
@@ -101,7 +106,9 @@ static void weigh_inertia(sh_posterior *posterior)
     sh_real *const D = &posterior->information.D[b];
     sh_real *const z = sh_information_row(&posterior->information, b);
     const sh_real of_data = sh_fmax(*D - 1, 0);
-    const sh_real share = of_data / (of_data + posterior->removed + posterior->spread);
+    const sh_real unsure = posterior->removal_error * posterior->removed;
+    const sh_real share =
+        of_data / (of_data + posterior->removed + posterior->spread + unsure * unsure);
     const sh_real weighted = 1 + of_data * share;
 
     z[SH_SIDE_GAIN] *= *D * share / weighted;

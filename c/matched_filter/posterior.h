@@ -11,9 +11,10 @@
  * information is removed, as far as b does not become less certain than its prior.
  *
  * What remains is an equation I b = s for b, in which the other parameters are eliminated. It is
- * unbiased, but the variance of s is I + N + Q, where Q is the variance of N / prior.B. So the data
- * have the information I^2 / (I + N + Q), by which the estimate is computed. The other parameters
- * keep their distribution for a given b.
+ * unbiased, but the variance of s is I + N + Q, where Q is the variance of N / prior.B: of its
+ * noise, and of 5 % by which rounding may differ from its model. So the data have the information
+ * I^2 / (I + N + Q), by which the estimate is computed. The other parameters keep their
+ * distribution for a given b.
  */
 #ifndef SH_POSTERIOR_H
 #define SH_POSTERIOR_H

@@ -12,10 +12,10 @@
  */
 static const sh_real EXCESS = (sh_real)0.3;
 
-/* Rounding is not white: fourth differences contain 0.944, but s^2 H contains 1.034 of what white
- * noise of its variance would have there. Mean over motions of 1 to 100 counts in a sample.
+/* Rounding is not white: fourth differences contain 0.944 of what white noise of its variance would
+ * have there. Mean over motions of 1 to 100 counts in a sample.
  */
-static const sh_real ROUNDING = (sh_real)0.09;
+static const sh_real ROUNDING = (sh_real)0.056;
 
 static const sh_real WATCH = (sh_real)0.1; /* time constant of the noise that is measured [s] */
 static const sh_real MEAN = 5;             /* time constant of the mean excess [s] */

@@ -122,7 +122,7 @@ def expected(x: Array, N: float, Q: float) -> tuple[Array, float, float]:
     P = np.linalg.inv(A)
     information = 1 / P[4, 4] - 1
     b = (P @ right)[4] / P[4, 4] / information  # by the data alone, for both sides
-    weighed = information**2 / (information + N + Q)
+    weighed = information**2 / (information + N + Q + (0.05 * N / PRIOR_B) ** 2)
     variance = 1 / (1 + weighed)
     mean = weighed * b * variance
     along = P[:, 4] / P[4, 4]

@@ -109,7 +109,7 @@ def test_the_information_about_the_inertia_that_is_rounding(c: Library) -> None:
     measured = (6e-4) ** 2 / 70
     assert information() == pytest.approx(of_theta * measured, rel=1e-12)
     sample.matched.theta_before = [1e-4, 0.0, 0.0, 0.0, 0.0]  # the last sample has moved
-    rounding = 0.09 * sample.matched.count**2 / 12
+    rounding = 0.056 * sample.matched.count**2 / 12
     assert information() == pytest.approx(of_theta * (1e-8 / 70 + rounding), rel=1e-12)
     for values in ({"prior.B": 0.0}, {"modality": 2}):
         other = Sample(c, **values)

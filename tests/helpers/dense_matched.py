@@ -36,8 +36,9 @@ EQUATION = ("BASIS", "NOMINAL", "VISCOUS", "COULOMB", "INERTIA")
 class Posterior:
     """Prior and data of some columns: covariance P and estimates of both sides."""
 
-    def __init__(self, chosen: list[int], weight: float) -> None:
+    def __init__(self, chosen: list[int], weight: float, prior_B: float) -> None:
         n = len(chosen)
+        self.removal_error = 0.05 / prior_B if prior_B > 0 else 0.0
         self.chosen, self.weight = chosen, weight
         self.surplus = self.removed = self.spread = 0.0
         self.P: Long = np.eye(n, dtype=np.longdouble)
@@ -83,7 +84,8 @@ class Posterior:
         if self.removed <= 0:
             return self.beta, self.P
         of_b = max(1 / self.P[-1, -1] - 1, 0)
-        share = of_b / (of_b + self.removed + self.spread)
+        unsure = (self.removal_error * self.removed) ** 2
+        share = of_b / (of_b + self.removed + self.spread + unsure)
         variance = 1 / (1 + of_b * share)
         along = self.P[:, -1] / self.P[-1, -1]
         mean = self.beta[-1] / self.P[-1, -1] * share * variance
@@ -196,7 +198,7 @@ class Oracle:
         ]
         if trial:
             chosen += [i for i in self.of_group(trial) if self.is_distinct(i)]
-        return Posterior(chosen, weight)
+        return Posterior(chosen, weight, self.p["prior.B"])
 
     def of_group(self, group: int) -> list[int]:
         return [i for i in range(self.n) if self.group(i) == group]
@@ -215,7 +217,7 @@ class Oracle:
         if not self.trial:
             self.build.solve(self.data)
             self.live = self.build
-            self.build = Posterior([], 1.0)  # until the next pass starts
+            self.build = Posterior([], 1.0, 0.0)  # until the next pass starts
             if self.p["prior.B"] > 0:
                 self.live.remove(0.0, self.p["prior.B"])
             return
@@ -235,16 +237,14 @@ class Oracle:
         return float((right @ inverse(A) @ right - log_determinant) / 2)
 
     def whole_misfit(self) -> float:
-        """Of all blocks, at the estimate, or of the best fit to them."""
+        """Of all blocks, at the estimate."""
         sums = self.blocks.walking if self.friction_drifts else self.blocks.all
-        N = self.blocks.count
-        q = sums.squares(self.beta) / (N - len(self.live.chosen) / 2)
-        return min(q, sums.rest / (N - self.n)) if 2 * self.n < N else q
+        return sums.squares(self.beta) / (self.blocks.count - len(self.live.chosen) / 2)
 
     def recent_misfit(self) -> float:
         """Of the recent blocks without the prior, if it is beyond chance."""
         N = self.blocks.recent_count
-        if N < 20 or self.friction_drifts:
+        if N < 20 or self.friction_drifts or self.p["matched.drift"] > 0:
             return 0.0
         squares = self.blocks.recent.squares(self.beta) - float(self.beta @ self.beta)
         return squares / N if squares > threshold(N) else 0.0
@@ -402,7 +402,7 @@ class Oracle:
         if prior_B > 0:
             inertial = 0.0 if filtered.measured else self.p["motor.gamma"] ** 2 * self.p["motor.B"]
             moved = at > 0 and self.z[k, 0] != self.z[k - 1, 0]
-            V = rough + 0.09 * moved * resolution(self.p["encoder.theta"]) ** 2 / 12
+            V = rough + 0.056 * moved * resolution(self.p["encoder.theta"]) ** 2 / 12
             N = (inertial * prior_B) ** 2 * self.gain_second * V / R
             Q = 6 * (N / prior_B) ** 2
             self.surplus += N
