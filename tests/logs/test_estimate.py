@@ -224,7 +224,7 @@ def test_why_and_how_often_the_estimate_is_not_confident(
     assert estimate(path, tmp_path, configuration) == 0
     text = capsys.readouterr().out
     assert len(text.splitlines()) <= 24
-    assert re.search(r"not confident +\S+ % of the time \(NotExcited \S+ %\)", text)
+    assert re.search(r"not confident +\S+ % of the time \(\w+ \S+ %", text)
     by_gain = f"1 % of it changes sigma by {result['sigma_per_gain']:.3g} %"
     gain = f"known to 1 % (prior.torque_gain); {by_gain}"
     for line in (gain, "motor.B = 1.84e-05 kg.m2, exactly (prior.B = 0)", "range.phi = 0.3 rad"):
