@@ -54,7 +54,7 @@ void sh_parameters_default(sh_parameters *p)
     p->prior.B = 0;
     p->prior.tau_coulomb = (sh_real)0.02;
     p->prior.torque_gain = (sh_real)0.02;
-    p->prior.bias = (sh_real)0.02;
+    p->prior.bias = (sh_real)0.05;
     p->prior.damping = (sh_real)4e-3;
     p->prior.load_friction = (sh_real)0.05;
     p->prior.eccentric = (sh_real)3e-4;
