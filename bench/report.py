@@ -72,7 +72,7 @@ def _requirements(
         1.5,
         "x",
     )
-    alone = "tick MatchedFilter, torque and motor data alone"
+    alone = "tick MatchedFilter, 21 columns"
     at_most(
         "tick of MatchedFilter with 21 columns, relative to Paper2011",
         ratio(times, alone, tick),

@@ -24,7 +24,7 @@ static int choose(sh_parameters *p, const char *method)
     prior->bias = prior->damping = prior->load_friction = prior->eccentric = 0;
     prior->delay = prior->reversal = 0;
     prior->power = prior->gap = prior->hysteresis = prior->eccentric_motor = 0;
-    return strcmp(method, "MatchedFilter, torque and motor data alone") == 0;
+    return strcmp(method, "MatchedFilter, 21 columns") == 0;
 }
 
 void *tick_start(const char *method)
