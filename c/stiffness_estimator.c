@@ -3,6 +3,7 @@
 
 #include "method.h"
 #include "real_math.h"
+#include "torque_basis.h"
 
 static void judge(sh_real set_point, sh_estimate *estimate)
 {
@@ -25,7 +26,7 @@ static sh_real polynomial(const sh_parameters *p, int i, sh_real set_point)
 /* Sets the curve rls.eta_0, at phi = 0: only the powers 0 and 1 of phi count there. */
 static void start_curve(const sh_parameters *p, sh_real set_point, sh_estimate *estimate)
 {
-    const int linear = p->rls.symmetric ? 0 : 1;
+    const int linear = sh_torque_basis_linear(p->rls.symmetric);
     int i, j;
 
     for (i = 0; i < p->rls.n; ++i)

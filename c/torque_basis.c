@@ -25,3 +25,8 @@ void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi
         dF[i] = dF[i - n] * set_point;
     }
 }
+
+int sh_torque_basis_linear(int symmetric)
+{
+    return symmetric ? 0 : 1;
+}

@@ -140,12 +140,10 @@ typedef struct {
     sh_information information;
     int column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */
     int coulomb, inertia;       /* places of these among its own, -1 if none */
-    int trial;                  /* group whose columns are on trial, at the end; 0: none */
     sh_real weight;             /* of the data, one over the variance factor of the misfit [1] */
     sh_real surplus;            /* information about b that is rounding, still contained [1] */
     sh_real removed;            /* removed so far [1] */
     sh_real spread;             /* variance of both, as it acts on the estimate of b [1] */
-    sh_real removal_error;      /* relative error of the removed, over prior.B [1] */
 } sh_posterior;
 
 /* Blocks of samples, blocks.h. */
@@ -205,10 +203,9 @@ typedef struct {
     sh_real torque_before;   /* torque of the last sample [N.m] */
     sh_real theta_before[5]; /* the last positions, for differences [rad] */
     sh_history history;
-    sh_real R;                          /* variance of the last sample [(N.m)2] */
-    sh_real row_before[SH_MAX_COLUMNS]; /* row of the last sample */
-    sh_information data, frozen;        /* all samples, and a copy for the present pass */
-    sh_posterior live, build;           /* the estimate, and the next one while it is built */
+    sh_real R;                   /* variance of the last sample [(N.m)2] */
+    sh_information data, frozen; /* all samples, and a copy for the present pass */
+    sh_posterior live, build;    /* the estimate, and the next one while it is built */
     sh_blocks blocks;
     sh_real since;                       /* samples since the data were last faded */
     sh_real surplus, spread;             /* of all samples, see sh_posterior */

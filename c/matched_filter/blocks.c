@@ -72,7 +72,7 @@ static void take_mean_row(sh_matched_state *state, sh_information *a, sh_real w)
     sh_information_take(a, row, w);
 }
 
-static void fade(sh_blocks *blocks, sh_real keep)
+void sh_blocks_fade(sh_blocks *blocks, sh_real keep)
 {
     sh_information_fade(&blocks->all, keep, SH_INFORMATION_LEAST);
     sh_information_fade(&blocks->walking, keep, SH_INFORMATION_LEAST);
@@ -99,7 +99,7 @@ static void end(sh_matched_state *state, const sh_parameters *p)
     blocks->recent_count += count;
     blocks->gained += count * blocks->length * state->design.T;
     if (blocks->count > LARGEST_COUNT)
-        fade(blocks, LARGEST_COUNT / blocks->count);
+        sh_blocks_fade(blocks, LARGEST_COUNT / blocks->count);
     sh_blocks_interrupt(blocks, state->size);
 }
 

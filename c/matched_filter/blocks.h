@@ -37,6 +37,9 @@ void sh_blocks_take(sh_matched_state *state, const sh_parameters *p, const sh_re
 /* Leaves out the samples of the present block: they are not in sequence with the next one. */
 void sh_blocks_interrupt(sh_blocks *blocks, int size);
 
+/* Multiplies the weights of all blocks by keep, 0..1; not those of the recent ones. */
+void sh_blocks_fade(sh_blocks *blocks, sh_real keep);
+
 /* Sets state->q and state->variance_factor by the estimate beta. */
 void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p);
 

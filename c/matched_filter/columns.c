@@ -6,6 +6,7 @@
 #include "scalar_product.h"
 #include "scaled_basis.h"
 #include "state_variable_filter.h"
+#include "torque_basis.h"
 
 /* Half widths of dead zones and of plays, in units of range.phi. They do not follow the range that
  * the deformation has covered, so that the columns are the same for all samples.
@@ -16,26 +17,26 @@ static const sh_real PLAYS[SH_PLAYS] = {(sh_real)0.005, (sh_real)0.02, (sh_real)
 enum { ALWAYS = 0, POWERS, SET_POWER, GAP, HYSTERESIS, MOTOR_ENCODER };
 
 static const struct {
-    int group, is_torque, signal;
+    int group, is_torque, is_of_equation, signal;
 } TRAITS[SH_COLUMN_KINDS] = {
-    [SH_COLUMN_BASIS] = {ALWAYS, 1, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_NOMINAL] = {ALWAYS, 1, SH_SIGNAL_NONE},
-    [SH_COLUMN_BIAS] = {ALWAYS, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_DAMPING] = {ALWAYS, 0, SH_SIGNAL_STEADY},
-    [SH_COLUMN_SIN_Q] = {ALWAYS, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_COS_Q] = {ALWAYS, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_LOAD] = {ALWAYS, 0, SH_SIGNAL_MEAN},
-    [SH_COLUMN_DELAY] = {ALWAYS, 0, SH_SIGNAL_NONE},
-    [SH_COLUMN_REVERSAL] = {ALWAYS, 0, SH_SIGNAL_NONE},
-    [SH_COLUMN_POWER] = {POWERS, 1, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_SET_POWER] = {SET_POWER, 1, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_GAP] = {GAP, 1, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_PLAY] = {HYSTERESIS, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_SIN_M] = {MOTOR_ENCODER, 0, SH_SIGNAL_STEADY},
-    [SH_COLUMN_COS_M] = {MOTOR_ENCODER, 0, SH_SIGNAL_STEADY},
-    [SH_COLUMN_VISCOUS] = {ALWAYS, 0, SH_SIGNAL_NONE},
-    [SH_COLUMN_COULOMB] = {ALWAYS, 0, SH_SIGNAL_NONE},
-    [SH_COLUMN_INERTIA] = {ALWAYS, 0, SH_SIGNAL_NONE},
+    [SH_COLUMN_BASIS] = {ALWAYS, 1, 1, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_NOMINAL] = {ALWAYS, 1, 1, SH_SIGNAL_NONE},
+    [SH_COLUMN_BIAS] = {ALWAYS, 0, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_DAMPING] = {ALWAYS, 0, 0, SH_SIGNAL_STEADY},
+    [SH_COLUMN_SIN_Q] = {ALWAYS, 0, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_COS_Q] = {ALWAYS, 0, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_LOAD] = {ALWAYS, 0, 0, SH_SIGNAL_MEAN},
+    [SH_COLUMN_DELAY] = {ALWAYS, 0, 0, SH_SIGNAL_NONE},
+    [SH_COLUMN_REVERSAL] = {ALWAYS, 0, 0, SH_SIGNAL_NONE},
+    [SH_COLUMN_POWER] = {POWERS, 1, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_SET_POWER] = {SET_POWER, 1, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_GAP] = {GAP, 1, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_PLAY] = {HYSTERESIS, 0, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_SIN_M] = {MOTOR_ENCODER, 0, 0, SH_SIGNAL_STEADY},
+    [SH_COLUMN_COS_M] = {MOTOR_ENCODER, 0, 0, SH_SIGNAL_STEADY},
+    [SH_COLUMN_VISCOUS] = {ALWAYS, 0, 1, SH_SIGNAL_NONE},
+    [SH_COLUMN_COULOMB] = {ALWAYS, 0, 1, SH_SIGNAL_NONE},
+    [SH_COLUMN_INERTIA] = {ALWAYS, 0, 1, SH_SIGNAL_NONE},
 };
 
 int sh_is_measured(const sh_parameters *p)
@@ -66,21 +67,12 @@ int sh_column_is_torque(const sh_column *column)
 
 int sh_column_is_of_equation(const sh_column *column)
 {
-    const int kind = column->kind;
-
-    return kind == SH_COLUMN_BASIS || kind == SH_COLUMN_NOMINAL || kind == SH_COLUMN_VISCOUS ||
-           kind == SH_COLUMN_COULOMB || kind == SH_COLUMN_INERTIA;
+    return TRAITS[column->kind].is_of_equation;
 }
 
 int sh_column_signal(const sh_column *column)
 {
     return TRAITS[column->kind].signal;
-}
-
-/* Number in the deformation of the linear coefficient: eta[i]. */
-static int linear(const sh_parameters *p)
-{
-    return p->rls.symmetric ? 0 : 1;
 }
 
 /* ---- which columns there are ------------------------------------------------------------- */
@@ -112,6 +104,7 @@ static void list_columns(const sh_parameters *p, column_list *list)
     const sh_prior_parameters *prior = &p->prior;
     const sh_real tau_e = prior->tau_e, K_0 = tau_e / p->range.phi;
     const int n = p->rls.n, m = p->rls.m, symmetric = p->rls.symmetric;
+    const int linear = sh_torque_basis_linear(symmetric);
     int i;
 
     for (i = 0; i < n * m; ++i)
@@ -130,9 +123,9 @@ static void list_columns(const sh_parameters *p, column_list *list)
     for (i = 0; i < 2 && n + i < SH_MAX_N; ++i)
         add(list, SH_COLUMN_POWER, i, prior->power * tau_e,
             sh_scaled_basis_unit(&p->range, symmetric, n + i, 0));
-    if (m > 1 && m < SH_MAX_M && linear(p) < n)
+    if (m > 1 && m < SH_MAX_M && linear < n)
         add(list, SH_COLUMN_SET_POWER, 0, prior->power * tau_e,
-            sh_scaled_basis_unit(&p->range, symmetric, linear(p), m));
+            sh_scaled_basis_unit(&p->range, symmetric, linear, m));
     for (i = 0; i < SH_PLAYS; ++i)
         add(list, SH_COLUMN_GAP, i, prior->gap * tau_e, 0);
     for (i = 0; i < SH_PLAYS; ++i)
@@ -167,12 +160,14 @@ void sh_columns_start(sh_matched_state *state, const sh_parameters *p)
                 p->rls.eta_0[i][j] / sh_scaled_basis_unit(&p->range, p->rls.symmetric, i, j);
 }
 
-int sh_column_is_distinct(const sh_matched_state *state, const sh_parameters *p,
-                          const sh_column *column)
+int sh_column_can_join(const sh_matched_state *state, const sh_parameters *p,
+                       const sh_column *column, int group)
 {
     /* What is wider than a quarter of the covered range looks like the spring. */
     const sh_real covered = (state->history.phi_max - state->history.phi_min) / 4 / p->range.phi;
 
+    if (sh_column_group(column) != group)
+        return 0;
     if (column->kind == SH_COLUMN_GAP)
         return GAPS[column->index] < covered;
     if (column->kind == SH_COLUMN_PLAY)
@@ -200,15 +195,6 @@ typedef struct {
     sh_real theta, q, phi, x, l; /* x and l: deformation and set-point over their ranges */
 } joint_point;
 
-static sh_real power_of(sh_real x, int exponent)
-{
-    sh_real power = 1;
-
-    for (; exponent > 0; --exponent)
-        power *= x;
-    return power;
-}
-
 /* Signal of a column, and its slope over phi. */
 static sh_real input_of(const sh_matched_state *state, const sh_parameters *p,
                         const sh_column *column, const joint_point *at, sh_real *slope)
@@ -226,18 +212,18 @@ static sh_real input_of(const sh_matched_state *state, const sh_parameters *p,
     case SH_COLUMN_BIAS:
         return 1;
     case SH_COLUMN_DAMPING: /* as the stiffness, it may depend on the set-point */
-        return at->phi * power_of(at->l, column->index);
+        return at->phi * sh_power(at->l, column->index);
     case SH_COLUMN_SIN_Q:
         return sh_sin(at->q);
     case SH_COLUMN_COS_Q:
         return sh_cos(at->q);
     case SH_COLUMN_POWER:
         e = sh_scaled_basis_power(p->rls.symmetric, p->rls.n + column->index);
-        *slope = power_of(at->x, e - 1) / p->range.phi;
-        return power_of(at->x, e) / (sh_real)e;
+        *slope = sh_power(at->x, e - 1) / p->range.phi;
+        return sh_power(at->x, e) / (sh_real)e;
     case SH_COLUMN_SET_POWER:
-        *slope = power_of(at->l, p->rls.m) / p->range.phi;
-        return at->x * power_of(at->l, p->rls.m);
+        *slope = sh_power(at->l, p->rls.m) / p->range.phi;
+        return at->x * sh_power(at->l, p->rls.m);
     case SH_COLUMN_GAP: /* no slope: sigma is that of the spring where it is engaged */
         return clip(at->x, GAPS[column->index]) / GAPS[column->index];
     case SH_COLUMN_PLAY:

@@ -66,9 +66,11 @@ void sh_columns_start(sh_matched_state *state, const sh_parameters *p);
 /* The group of a column, 0: it is always used. */
 int sh_column_group(const sh_column *column);
 
-/* Whether the deformation has been large enough to distinguish the column from the spring. */
-int sh_column_is_distinct(const sh_matched_state *state, const sh_parameters *p,
-                          const sh_column *column);
+/* Whether the column is one of the group, and the deformation has been large enough to distinguish
+ * it from the spring.
+ */
+int sh_column_can_join(const sh_matched_state *state, const sh_parameters *p,
+                       const sh_column *column, int group);
 
 /* Whether the column is part of the torque of the spring. */
 int sh_column_is_torque(const sh_column *column);

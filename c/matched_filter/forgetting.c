@@ -25,9 +25,7 @@ static void forget(sh_matched_state *state, const sh_parameters *p, sh_real time
     const sh_real keep = sh_exp(-time / memory);
 
     sh_information_fade(&state->data, keep, SH_INFORMATION_LEAST);
-    sh_information_fade(&blocks->all, keep, SH_INFORMATION_LEAST);
-    sh_information_fade(&blocks->walking, keep, SH_INFORMATION_LEAST);
-    blocks->count *= keep;
+    sh_blocks_fade(blocks, keep);
     state->surplus *= keep;
     state->spread *= keep * keep;
 }
@@ -73,14 +71,14 @@ static int is_curve(const sh_column *column)
     return sh_column_is_torque(column) && column->kind != SH_COLUMN_GAP;
 }
 
-static void drift(sh_matched_state *state, const sh_parameters *p, sh_real time)
+static void drift(sh_matched_state *state, const sh_parameters *p, const sh_real *x, sh_real time)
 {
     sh_real *const v = state->work.own;
     sh_real power = 0, variance;
     int i;
 
     for (i = 0; i < state->size; ++i) {
-        v[i] = is_curve(&state->column[i]) ? state->row_before[i] : 0;
+        v[i] = is_curve(&state->column[i]) ? x[i] : 0;
         power += v[i] * v[i];
     }
     if (!(power > 0))
@@ -91,7 +89,8 @@ static void drift(sh_matched_state *state, const sh_parameters *p, sh_real time)
     sh_information_walk(&state->blocks.walking, v, variance, state->work.row);
 }
 
-void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, sh_real time)
+void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, const sh_real *x,
+                        sh_real time)
 {
     const sh_real gained = state->blocks.gained;
 
@@ -100,5 +99,5 @@ void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, sh_real
     if (state->variance_factor > SH_CONTRADICTION)
         forget(state, p, gained);
     if (p->matched.drift > 0)
-        drift(state, p, time);
+        drift(state, p, x, time);
 }

@@ -17,8 +17,11 @@
  *
  * The curve of the torque may change by matched.drift, along the columns of the last sample: what
  * is not excited is not forgotten.
+ *
+ * x  [size: state->size] row of the last sample
  */
-void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, sh_real time);
+void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, const sh_real *x,
+                        sh_real time);
 
 /* Lets friction change as a random walk, if the blocks contradict each other clearly less with it.
  */

@@ -13,6 +13,7 @@
 #include "scaled_basis.h"
 #include "signals.h"
 #include "state_variable_filter.h"
+#include "torque_basis.h"
 
 /* Relative uncertainty of the stiffness below which columns that need it have an effect. */
 static const sh_real KNOWN = (sh_real)0.2;
@@ -83,11 +84,11 @@ static joint_coefficients read_columns(const sh_matched_state *state, const sh_p
     const int n = p->rls.n;
     const sh_real l = set_point / p->range.setPoint;
     joint_coefficients joint = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-    int i, k;
+    int i;
 
     for (i = 0; i < state->size; ++i) {
         const sh_column *column = &state->column[i];
-        sh_real value = column->prior * state->beta[i];
+        const sh_real value = column->prior * state->beta[i];
 
         switch (column->kind) {
         case SH_COLUMN_BASIS:
@@ -97,12 +98,11 @@ static joint_coefficients read_columns(const sh_matched_state *state, const sh_p
             estimate->eta[n + column->index][0] = value * column->unit;
             break;
         case SH_COLUMN_SET_POWER:
-            estimate->eta[p->rls.symmetric ? 0 : 1][p->rls.m] = value * column->unit;
+            estimate->eta[sh_torque_basis_linear(p->rls.symmetric)][p->rls.m] =
+                value * column->unit;
             break;
         case SH_COLUMN_DAMPING:
-            for (k = 0; k < column->index; ++k)
-                value *= l;
-            joint.damping += value;
+            joint.damping += value * sh_power(l, column->index);
             break;
         case SH_COLUMN_PLAY:
             joint.plays += value;
@@ -226,23 +226,16 @@ static int are_acceptable_signals(const sh_matched_state *state)
            sh_fabs(state->tau_nominal) <= SH_LARGE && sh_fabs(state->sigma_nominal) <= SH_LARGE;
 }
 
-/* Whether a row can be taken: nothing overflows. */
-static int is_acceptable(const sh_matched_state *state, const sh_real *x, sh_real w)
-{
-    const sh_real sum = sum_of_squares(x, state->size + SH_SIDES);
-
-    return sum <= SH_LARGE && w * sum <= SH_LARGE; /* false if not a number */
-}
-
 /* As the outputs of the same names. */
 typedef struct {
     sh_real a, rho, epsilon;
 } innovation_of_sample;
 
-/* Learns from the row x in work. Sets what follows from the prediction. Returns 0 if the numbers are
- * too large.
+/* Learns from the row x in work, whose sum of squares is `size2`. Sets what follows from the
+ * prediction. Returns 0 if the numbers are too large.
  */
-static int learn(sh_matched_state *state, const sh_parameters *p, innovation_of_sample *innovation)
+static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
+                 innovation_of_sample *innovation)
 {
     sh_real *const x = state->work.x, *const row = state->work.row;
     sh_sample_variance variance;
@@ -252,12 +245,9 @@ static int learn(sh_matched_state *state, const sh_parameters *p, innovation_of_
     sh_sample_variance_watch(state, p);
     variance = sh_sample_variance_of(state, p);
     w = 1 / variance.R;
-    if (!(w > 0) || !is_acceptable(state, x, w))
+    if (!(w > 0) || !(w * size2 <= SH_LARGE))
         return 0;
     state->R = variance.R;
-    for (i = 0; i < state->size; ++i)
-        state->row_before[i] = x[i];
-
     epsilon = x[state->size + SH_SIDE_Y];
     for (i = 0; i < state->size; ++i)
         epsilon -= x[i] * state->beta[i];
@@ -315,7 +305,7 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
     const sh_history before = state->history;
     innovation_of_sample innovation = {0, 0, 0};
     sh_stiffness_fit fit = {0, 0};
-    sh_real y, sigma;
+    sh_real y, size2, sigma;
     int good, i;
 
     if (estimator->started && (estimator->skipped > 0 || state->modality != p->modality)) {
@@ -326,9 +316,10 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
     sh_columns_input(state, p, z->theta, z->q, phi, set_point);
     sh_signals_step(state, p, z->theta, sh_regression_torque(p, z, z->tau));
     y = sh_columns_row(state, p, state->work.x);
-    good = are_acceptable_signals(state) && is_acceptable(state, state->work.x, 0);
+    size2 = sum_of_squares(state->work.x, state->size + SH_SIDES);
+    good = are_acceptable_signals(state) && size2 <= SH_LARGE; /* false if not a number */
     if (good && is_settled(state, p))
-        good = learn(state, p, &innovation);
+        good = learn(state, p, size2, &innovation);
     if (good)
         fit = sh_posterior_evaluate(state, &state->live);
     sigma = state->sigma_nominal;

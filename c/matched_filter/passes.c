@@ -19,8 +19,7 @@ static int has_columns(const sh_matched_state *state, const sh_parameters *p, in
     int i;
 
     for (i = 0; i < state->size; ++i)
-        if (sh_column_group(&state->column[i]) == group &&
-            sh_column_is_distinct(state, p, &state->column[i]))
+        if (sh_column_can_join(state, p, &state->column[i], group))
             return 1;
     return 0;
 }
@@ -80,18 +79,18 @@ static void decide(sh_matched_state *state)
     for (i = 0; i < a->size; ++i) {
         const sh_real z = sh_information_row(a, i)[a->size - 1 - i + SH_SIDE_Y];
 
-        if (sh_column_group(&state->column[build->column[i]]) == build->trial)
+        if (sh_column_group(&state->column[build->column[i]]) == state->trial)
             gain += (a->D[i] * z * z - sh_log(a->D[i])) / 2;
     }
     if (gain > FIRST_GAIN + GAIN_PER_BLOCK * state->blocks.count)
-        state->used[build->trial] = 1;
+        state->used[state->trial] = 1;
     if (gain < GAIN_PER_BLOCK / 2 * state->blocks.count)
-        state->used[build->trial] = 0;
+        state->used[state->trial] = 0;
 }
 
 static void end_pass(sh_matched_state *state, const sh_parameters *p)
 {
-    if (state->build.trial != 0) {
+    if (state->trial != 0) {
         decide(state);
         return;
     }
@@ -145,7 +144,7 @@ void sh_passes_step(sh_matched_state *state, const sh_parameters *p, sh_real *x,
         break;
     case 2:
         if (state->trial == 0) {
-            sh_forgetting_step(state, p, time_since(state));
+            sh_forgetting_step(state, p, x, time_since(state));
             state->since = 0;
         }
         break;

@@ -16,7 +16,7 @@ static int is_used(const sh_matched_state *state, const sh_parameters *p, const 
     const int group = sh_column_group(column);
 
     return group == 0 ||
-           (group != trial && state->used[group] && sh_column_is_distinct(state, p, column));
+           (group != trial && state->used[group] && sh_column_can_join(state, p, column, group));
 }
 
 void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
@@ -24,7 +24,6 @@ void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
 {
     int size = 0, i;
 
-    posterior->trial = trial;
     posterior->coulomb = posterior->inertia = -1;
     for (i = 0; i < state->size; ++i) {
         const sh_column *column = &state->column[i];
@@ -38,13 +37,11 @@ void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
         posterior->column[size++] = i;
     }
     for (i = 0; i < state->size && trial != 0; ++i)
-        if (sh_column_group(&state->column[i]) == trial &&
-            sh_column_is_distinct(state, p, &state->column[i]))
+        if (sh_column_can_join(state, p, &state->column[i], trial))
             posterior->column[size++] = i;
     sh_information_start(&posterior->information, size, 1);
     posterior->weight = weight;
     posterior->surplus = posterior->removed = posterior->spread = 0;
-    posterior->removal_error = p->prior.B > 0 ? REMOVAL_ERROR / p->prior.B : 0;
 }
 
 void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
@@ -56,12 +53,10 @@ void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
         to->column[i] = from->column[i];
     to->coulomb = from->coulomb;
     to->inertia = from->inertia;
-    to->trial = from->trial;
     to->weight = from->weight;
     to->surplus = from->surplus;
     to->removed = from->removed;
     to->spread = from->spread;
-    to->removal_error = from->removal_error;
 }
 
 sh_real sh_posterior_take(const sh_matched_state *state, sh_posterior *posterior, const sh_real *x,
@@ -100,13 +95,13 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
 }
 
 /* Gives the data about b the weight that they have after the removal: D[b], and both sides z. */
-static void weigh_inertia(sh_posterior *posterior)
+static void weigh_inertia(sh_posterior *posterior, sh_real prior_B)
 {
     const int b = posterior->inertia;
     sh_real *const D = &posterior->information.D[b];
     sh_real *const z = sh_information_row(&posterior->information, b);
     const sh_real of_data = sh_fmax(*D - 1, 0);
-    const sh_real unsure = posterior->removal_error * posterior->removed;
+    const sh_real unsure = REMOVAL_ERROR / prior_B * posterior->removed;
     const sh_real share =
         of_data / (of_data + posterior->removed + posterior->spread + unsure * unsure);
     const sh_real weighted = 1 + of_data * share;
@@ -129,7 +124,7 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
     if (weigh) {
         D_b = a->D[b];
         memcpy(z_b, sh_information_row(a, b), sizeof z_b);
-        weigh_inertia(posterior);
+        weigh_inertia(posterior, state->column[posterior->column[b]].prior);
     }
     for (i = 0; i < size; ++i)
         own[i] = state->work.dF[posterior->column[i]];

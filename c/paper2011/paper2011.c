@@ -27,9 +27,9 @@ static sh_real unit_of_covariance(const sh_parameters *p)
     return noise * noise * (p->rls.kind == SH_RLS_ENHANCED ? p->rls.c : 1);
 }
 
-/* Sets what follows from the recursion but torque and stiffness, at the regressor in `work`. The variance contains the white
- * noise of the torque only: neither the errors of the motor data nor the lag of the residual. So the
- * method makes no claim.
+/* Sets what follows from the recursion but torque and stiffness, at the regressor in `work`. The
+ * variance contains the white noise of the torque only: neither the errors of the motor data nor the
+ * lag of the residual. So the method makes no claim.
  */
 static void report_paper2011(sh_paper2011_state *state, const sh_parameters *p,
                              sh_estimate *estimate)

@@ -33,6 +33,7 @@ class State:
         z[:, 3] += (joint.tau_e - 140 * joint.motion[3]) / 50
         self.estimator.run(z)
         self.matched: Any = c.ffi.addressof(self.estimator.state.method, "matched")
+        self.row: Array = np.random.default_rng(2).normal(size=self.matched.size)
 
     def information(self) -> dict[str, Array]:
         blocks = self.matched.blocks
@@ -40,9 +41,10 @@ class State:
         parts |= {"walking": blocks.walking, "recent": blocks.recent}
         return {name: dense(part)[0] for name, part in parts.items()}
 
-    def forget(self) -> None:
-        self.matched.blocks.gained = TIME
-        self.c.lib.sh_forgetting_step(self.matched, self.estimator.parameters, TIME)
+    def forget(self, gained: float = TIME, time: float = TIME) -> None:
+        self.matched.blocks.gained = gained
+        row = self.c.pointer(self.row)
+        self.c.lib.sh_forgetting_step(self.matched, self.estimator.parameters, row, time)
 
 
 def test_data_that_agree_are_not_forgotten(c: Library) -> None:
@@ -100,8 +102,7 @@ def test_nothing_is_forgotten_while_no_block_is_gained(c: Library) -> None:
     state = State(c)
     before = state.information()
     state.matched.variance_factor = 100.0
-    state.matched.blocks.gained = 0.0
-    c.lib.sh_forgetting_step(state.matched, state.estimator.parameters, 1e6)
+    state.forget(gained=0.0, time=1e6)
     for name, matrix in state.information().items():
         assert np.array_equal(matrix, before[name])
 
@@ -111,7 +112,7 @@ def test_the_curve_drifts_along_the_last_sample(c: Library) -> None:
     drift = 0.3
     state = State(c, **{"matched.drift": drift})
     before = state.information()
-    v = np.array(list(state.matched.row_before[0 : state.matched.size]))
+    v = state.row.copy()
     v[[kind != "BASIS" for kind, _ in coefficients(state.estimator)]] = 0.0
     state.forget()
     variance = drift * TIME / (v @ v + state.matched.R)

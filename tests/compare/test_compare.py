@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import calibration
+from misfit_priors import WITHOUT_MISFITS
 from sigmahat.cli import main
 from sigmahat.compare import conditions, labels
 from sigmahat.compare.conditions import JOINTS, MATCHED, METHODS, Joint
@@ -27,13 +28,6 @@ BOUNDS = {  # MSREP [%] by group and case, for 0.1, 0.3, 1, 3, 8 and 20 Hz
     (FRICTION, "D_theta +10 %, B +10 %"): (math.inf, math.inf, 3.0, 1.0, 1.0, 3.0),
     ("r(0) = 130 mm", "D_theta +10 %"): (4.0, 0.7, 0.25, 0.2, 0.2, 0.2),
 }
-NO_MISFITS = {
-    f"prior.{name}": 0.0
-    for name in (
-        *("bias", "damping", "load_friction", "eccentric", "delay", "reversal"),
-        *("power", "gap", "hysteresis", "eccentric_motor"),
-    )
-}
 FREQUENCIES = ("0.1 Hz", "0.3 Hz", "1 Hz", "3 Hz", "8 Hz", "20 Hz")
 
 
@@ -46,7 +40,7 @@ def runs() -> list[list[Row]]:
 def without_misfits(joint: Joint) -> Joint:
     """The same joint, whose estimators have no columns for misfits."""
     estimators = {
-        name: replace(each, start={**each.start, **NO_MISFITS})
+        name: replace(each, start={**each.start, **WITHOUT_MISFITS})
         for name, each in joint.scenario.estimators.items()
     }
     return replace(joint, scenario=replace(joint.scenario, estimators=estimators))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from c_library import Array, Estimator
+from misfit_priors import WITHOUT_MISFITS
 
 SIDES = 2
 
@@ -48,10 +49,4 @@ def coefficients(estimator: Estimator) -> list[tuple[str, int]]:
 
 
 # Priors of all that a joint has besides the model; 0 removes their columns.
-PLAIN = {
-    f"prior.{name}": 0.0
-    for name in (
-        *("torque_gain", "bias", "damping", "load_friction", "eccentric", "delay", "reversal"),
-        *("power", "gap", "hysteresis", "eccentric_motor"),
-    )
-}
+PLAIN = {"prior.torque_gain": 0.0, **WITHOUT_MISFITS}

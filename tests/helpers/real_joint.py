@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,6 +22,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import sigmahat
+from misfit_priors import WITHOUT_MISFITS
 from sigmahat.fmi.instance import Fmu, Recorder, Slave, Value
 
 Array = NDArray[np.float64]
@@ -55,16 +56,7 @@ MATCHED_FILTER: dict[str, Value] = {
     # The six logs take 86 s.
     "matched.memory": 100.0,
 }
-WITHOUT_MISFITS: dict[str, Value] = {
-    "matched.memory": 0.0,
-    **{
-        f"prior.{name}": 0.0
-        for name in (
-            *("bias", "damping", "load_friction", "eccentric", "delay", "reversal"),
-            *("power", "gap", "hysteresis", "eccentric_motor"),
-        )
-    },
-}
+SPRING_ALONE: dict[str, Value] = {**MATCHED_FILTER, **WITHOUT_MISFITS, "matched.memory": 0.0}
 """MatchedFilter without the columns for misfits, and without their effect."""
 BIN = 5e-3  # width over which the measured curve is averaged [rad]
 POINTS = (-0.1, 0.1)  # where the stiffness is compared [rad]
@@ -192,19 +184,24 @@ def samples(played: Sequence[Log]) -> Array:
     return np.column_stack(columns)
 
 
+def play(slave: Slave, rows: Array, start: Mapping[str, Value]) -> Iterator[int]:
+    """Initialises the estimator, runs a tick for each row of INPUTS, and yields its number."""
+    slave.initialize({**PARAMETERS, **start})
+    inputs = slave.fmu.references(list(INPUTS), "input")
+    set_real, do_step = slave.functions.fmi2SetReal, slave.functions.fmi2DoStep
+    for k, row in enumerate(np.ctypeslib.as_ctypes(rows)):
+        slave.call(set_real, inputs, len(INPUTS), row)
+        slave.call(do_step, k * SAMPLE_PERIOD, SAMPLE_PERIOD, fmi2.fmi2True)
+        yield k
+
+
 def replay(
     fmu: Fmu, played: Sequence[Log], symmetric: bool, method: Mapping[str, Value] = PAPER2011
 ) -> Fit:
     """Replays logs, one after another, through a new instance of the estimator."""
-    names = list(INPUTS)
-    rows = np.ctypeslib.as_ctypes(samples(played))
     with Slave(fmu, "real joint") as slave:
-        slave.initialize({**PARAMETERS, **method, "rls.symmetric": symmetric})
-        inputs = fmu.references(names, "input")
-        set_real, do_step = slave.functions.fmi2SetReal, slave.functions.fmi2DoStep
-        for k, row in enumerate(rows):
-            slave.call(set_real, inputs, len(names), row)
-            slave.call(do_step, k * SAMPLE_PERIOD, SAMPLE_PERIOD, fmi2.fmi2True)
+        for _ in play(slave, samples(played), {**method, "rls.symmetric": symmetric}):
+            pass
         coefficients = [f"eta[{i},{j}]" for i in range(N) for j in range(M)]
         end = Recorder(slave, [*coefficients, "tau_e", "sigma"], 1)
         end.sample(0)
@@ -218,13 +215,8 @@ def coverage(fmu: Fmu, measured: Sequence[Log], method: Mapping[str, Value]) -> 
     within 1.96 sigma_std of the estimate, when the logs are replayed a second time [%]."""
     rows = samples([*measured, *measured])
     with Slave(fmu, "real joint") as slave:
-        slave.initialize({**PARAMETERS, **method, "rls.symmetric": False})
         recorder = Recorder(slave, ["sigma", "sigma_std", "phi"], len(rows))
-        inputs = fmu.references(list(INPUTS), "input")
-        set_real, do_step = slave.functions.fmi2SetReal, slave.functions.fmi2DoStep
-        for k, row in enumerate(np.ctypeslib.as_ctypes(rows)):
-            slave.call(set_real, inputs, len(INPUTS), row)
-            slave.call(do_step, k * SAMPLE_PERIOD, SAMPLE_PERIOD, fmi2.fmi2True)
+        for k in play(slave, rows, {**method, "rls.symmetric": False}):
             recorder.sample(k)
         found = {name: column[len(rows) // 2 :] for name, column in recorder.columns().items()}
     inside, first = [], 0

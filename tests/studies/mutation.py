@@ -101,11 +101,6 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
         "it is not used if the change is zero",
     ),
     (
-        "posterior.c",
-        "posterior->removal_error = p->prior.B >= 0 ? REMOVAL_ERROR / p->prior.B : 0;",
-        "without a prior of B there is no column of b, and nothing is removed",
-    ),
-    (
         "state_variable_filter.c",
         "sh_fabs(behind[1]) <= SMALL",
         "the value is never exactly 1e-30",

@@ -86,5 +86,5 @@ def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Scor
         motion.sigma[judged],
         found["sigma"][judged],
         found["sigma_std"][judged],
-        found["confident"][judged] != 0,
+        found["confident"][judged],
     )
