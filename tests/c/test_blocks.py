@@ -122,6 +122,7 @@ def test_samples_with_the_same_error_count_as_fewer_blocks(c: Library) -> None:
     estimator = Estimator(c, VALUES)
     fill(estimator, 10, 1.0, 4.0)
     assert matched_of(estimator).blocks.count == pytest.approx(2.5)
+    assert matched_of(estimator).blocks.recent_count == pytest.approx(2.5)
 
 
 def test_a_gap_ends_the_present_block(c: Library) -> None:

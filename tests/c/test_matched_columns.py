@@ -207,3 +207,24 @@ def test_a_prior_of_zero_removes_its_columns_and_no_other(c: Library, prior: str
     without = coefficients(Estimator(c, {**values, prior: 0.0}))
     assert without == [name for name in of_all if name[0] not in NEW[prior]]
     assert {kind for kind, _ in of_all} - {kind for kind, _ in without} == set(NEW[prior])
+
+
+@pytest.mark.parametrize("symmetric", [0, 1])
+def test_the_slope_of_a_column_of_the_torque_is_its_derivative(c: Library, symmetric: int) -> None:
+    """Dead zone, hysteresis and all that is not of the spring have none."""
+    estimator = Estimator(c, {**VALUES, "rls.symmetric": symmetric})
+    matched = c.ffi.addressof(estimator.state.method, "matched")
+
+    def signals(phi: float) -> tuple[Array, Array]:
+        c.lib.sh_columns_input(matched, estimator.parameters, 0.3, 0.2, phi, 80.0)
+        inputs, slopes = (
+            np.array(list(a[0 : matched.size])) for a in (matched.work.F, matched.work.dF)
+        )
+        return inputs, slopes
+
+    small = 1e-5
+    above, below = signals(0.15 + small)[0], signals(0.15 - small)[0]
+    curve = [kind in ("BASIS", "POWER", "SET_POWER") for kind, _ in coefficients(estimator)]
+    assert sum(curve) == 12
+    slopes = np.where(curve, (above - below) / (2 * small), 0.0)
+    assert signals(0.15)[1] == pytest.approx(slopes, rel=1e-6)

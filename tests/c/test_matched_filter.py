@@ -303,3 +303,39 @@ def test_the_standard_deviation_of_the_paper_is_that_of_white_noise(c: Library) 
     want = 0.01 * GAMMA * math.sqrt(1e-20 * (dF @ P @ dF))
     assert found["sigma_std"][-1] == pytest.approx(want, rel=1e-9)
     assert found["B_hat"][-1] == 2.3e-5
+
+
+@pytest.mark.parametrize("symmetric", [0, 1])
+def test_torque_and_stiffness_are_those_of_the_coefficients(c: Library, symmetric: int) -> None:
+    """GIVEN a nominal curve, a spring with more powers than rls.n and rls.m have, and a joint with
+    damping and a bias, THEN tau_e and sigma are the polynomial with eta, of the spring alone."""
+    values = {**MATCHED, "rls.symmetric": symmetric, "rls.n": 2, "rls.m": 2, "prior.nominal": 0.3}
+    estimator = Estimator(c, {**values, "prior.gap": 0.0})
+    for (i, j), value in np.ndenumerate(np.array([[5.0, 0.2], [30.0, 0.4]])):
+        estimator.parameters.rls.eta_0[i][j] = value
+    c.lib.sh_estimator_start(estimator.state, estimator.parameters, estimator.estimate)
+    matched = estimator.state.method.matched
+    matched.used[1] = matched.used[2] = 1  # powers of the deformation and of the set-point
+    joint = Joint(duration=0.9)
+    z = joint.measurements()
+    for sample in z:
+        assert estimator.tick(sample)
+    e = estimator.estimate
+    eta = np.array([list(row) for row in e.eta])
+    powers = 2 * np.arange(8) + 1 if symmetric else np.arange(8)
+    of_set_point = e.setPoint ** np.arange(5)
+    assert eta[2, 0] != 0 != eta[3, 0] and eta[0 if symmetric else 1, 2] != 0
+    assert e.tau_e == pytest.approx(e.phi**powers @ eta @ of_set_point, rel=1e-9)
+    slopes = powers * e.phi ** np.maximum(powers - 1.0, 0.0)
+    assert e.sigma == pytest.approx(slopes @ eta @ of_set_point, rel=1e-9)
+
+
+@pytest.mark.parametrize("velocity", [0.0, 1.0])
+def test_it_learns_at_once_only_from_a_motor_at_rest(c: Library, velocity: float) -> None:
+    t = T * np.arange(100)
+    z = np.zeros((len(t), 5))
+    z[:, 0] = z[:, 1] = np.round(velocity * t / (2 * np.pi / 40000)) * (2 * np.pi / 40000)
+    z[:, 3] = GAMMA * 1e-3 * velocity
+    a = Estimator(c, MATCHED).run(z)["a"]
+    assert a[-1] == 1.0
+    assert np.count_nonzero(a == 0.0) == (0 if velocity == 0 else math.ceil(12 / 350 / T))

@@ -57,6 +57,8 @@ def test_after_a_pass_the_posterior_is_prior_and_weighted_data(c: Library, misfi
     assert np.all(np.diff(tried) == 2 * (2 * (n + 3) + 2))
     assert (max(factors) > 1.5) == (misfit > 0)
     assert min(factors) == 1.0
+    # no group has evidence where the model holds
+    assert misfit > 0 or not any(matched.used)
 
 
 def test_every_group_is_tried_in_turn(c: Library) -> None:

@@ -235,3 +235,17 @@ def test_a_trial_puts_its_group_behind_all_other_columns(c: Library) -> None:
     assert used[0, 0] == always
     assert used[1, 0] == [*always[:2], "POWER", "POWER", *always[2:]]
     assert used[0, 1] == used[1, 1] == [*always, "POWER", "POWER"]
+
+
+def test_the_variance_of_a_combination(c: Library) -> None:
+    posterior = Posterior(c)
+    x = rows(7)
+    for row in x:
+        posterior.take(row, 1.0)
+    A, _ = normal_equations(x, np.ones(len(x)), 1.0)
+    memory = np.zeros(5)
+    for combination in (*np.eye(5), np.arange(1.0, 6.0)):
+        variance = c.lib.sh_posterior_variance(
+            posterior.c_struct, c.pointer(combination), c.pointer(memory)
+        )
+        assert variance == pytest.approx(combination @ np.linalg.solve(A, combination), rel=1e-9)
