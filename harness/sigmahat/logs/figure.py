@@ -60,7 +60,7 @@ def draw(replay: Replay) -> Figure:
             settled = line.ends[int(_SETTLED * len(line.ends)) :]
             limits += np.nanpercentile(settled, [line.outer, 100 - line.outer]).tolist()
         if axes is every[0] and replay.method == "MatchedFilter":
-            _interval(axes, replay)
+            limits += _interval(axes, replay)
         _scale(axes, min(limits), max(limits))
         _skipped(axes, replay.samples)
         axes.set_ylabel(label)
@@ -109,18 +109,23 @@ def _sensor(replay: Replay) -> Array:
     return ends
 
 
-def _interval(axes: Axes, replay: Replay) -> None:
-    """A band of 1.96 standard deviations on both sides of the estimate."""
+def _interval(axes: Axes, replay: Replay) -> tuple[float, float]:
+    """A band of 1.96 standard deviations on both sides of the estimate.
+
+    Returns its limits at the end, which the scale is to show.
+    """
     sigma, std = replay.statistics.ends("sigma"), replay.statistics.ends("sigma_std")[:, 1]
+    low, high = sigma[:, 0] - 1.96 * std, sigma[:, 1] + 1.96 * std
     axes.fill_between(
         _times(replay, sigma),
-        sigma[:, 0] - 1.96 * std,
-        sigma[:, 1] + 1.96 * std,
+        low,
+        high,
         color=SKY,
         alpha=0.4,
         linewidth=0,
         label=r"$\pm$ 1.96 standard deviations",
     )
+    return float(low[-1]), float(high[-1])
 
 
 def _scale(axes: Axes, low: float, high: float) -> None:
