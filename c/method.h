@@ -17,8 +17,8 @@
 #define SH_TEXT_OF(macro) SH_TEXT(macro)
 
 typedef struct {
-    /* Largest deformation for which the method is made, in units of range.phi; may be infinite. */
-    sh_real largest_deformation;
+    /* Largest deformation for which the parameters are made [rad]; may be infinite. */
+    sh_real (*largest_deformation)(const sh_parameters *p);
 
     /* Checks what this method alone requires of the parameters; all are in their ranges. Returns 0,
      * or 1 after sh_violates.

@@ -191,5 +191,5 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
 
 sh_real sh_parameters_largest_deformation(const sh_parameters *p)
 {
-    return sh_method_of(p)->largest_deformation * p->range.phi;
+    return sh_method_of(p)->largest_deformation(p);
 }

@@ -209,7 +209,10 @@ typedef struct {
     sh_blocks blocks;
     sh_real since;                       /* samples since the data were last faded */
     sh_real surplus, spread;             /* of all samples, see sh_posterior */
+    sh_real rounding;                    /* information about sigma that is only rounding of phi, of
+                                            all samples [(rad/N.m)2] */
     sh_real q, variance_factor;          /* misfit squared, and the factor of the variances [1] */
+    sh_real largest_deformation;         /* above it, nothing is claimed [rad] */
     sh_real y;                           /* of the last sample [N.m] */
     sh_real delay;                       /* estimated delay of the torque [s] */
     sh_real sigma;                       /* estimated stiffness [N.m/rad] */

@@ -28,6 +28,7 @@ static void forget(sh_matched_state *state, const sh_parameters *p, sh_real time
     sh_blocks_fade(blocks, keep);
     state->surplus *= keep;
     state->spread *= keep * keep;
+    state->rounding *= keep;
 }
 
 static void walk_friction(sh_matched_state *state, sh_information *a, sh_real variance)

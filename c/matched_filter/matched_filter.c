@@ -18,10 +18,10 @@
 /* Relative uncertainty of the stiffness below which columns that need it have an effect. */
 static const sh_real KNOWN = (sh_real)0.2;
 
-/* Deformation in units of range.phi above which nothing is claimed. With rls.n = 3, the highest power
- * is there 32 times as large as at range.phi.
+/* Where the highest power of the curve is this many times as large as at range.phi, nothing is
+ * claimed. But up to LEAST_LIMIT range.phi, something is.
  */
-#define LARGEST_DEFORMATION 2
+static const sh_real LARGEST_POWER = 32, LEAST_LIMIT = 2;
 
 static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
 {
@@ -38,6 +38,13 @@ static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
                            "smaller, or more priors 0: this library was compiled for at "
                            "most " SH_TEXT_OF(SH_MAX_COLUMNS) " columns");
     return 0;
+}
+
+static sh_real largest_deformation(const sh_parameters *p)
+{
+    const int highest = sh_scaled_basis_power(p->rls.symmetric, p->rls.n - 1);
+
+    return p->range.phi * sh_fmax(LEAST_LIMIT, sh_exp(sh_log(LARGEST_POWER) / (sh_real)highest));
 }
 
 /* ---- what the estimate means ------------------------------------------------------------- */
@@ -162,7 +169,7 @@ static int doubt_of(const sh_matched_state *state, const sh_parameters *p,
 
     if (!(estimate->sigma_std < p->confidence * sh_fabs(estimate->sigma)))
         doubt = state->variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
-    if (sh_fabs(estimate->phi) > LARGEST_DEFORMATION * p->range.phi)
+    if (sh_fabs(estimate->phi) > state->largest_deformation)
         doubt = SH_DOUBT_OUT_OF_RANGE;
     if (sh_fabs(joint->viscous) > 3 * p->prior.D_theta)
         doubt = SH_DOUBT_FRICTION;
@@ -173,6 +180,15 @@ static int doubt_of(const sh_matched_state *state, const sh_parameters *p,
     return doubt;
 }
 
+/* Share by which the rounding of phi reduces sigma, to first order, if the spring has the slope of
+ * this instant in all samples. sigma is not corrected by it: slopes differ, and rounding is not
+ * quite white. It widens the interval.
+ */
+static sh_real attenuation(const sh_matched_state *state, const sh_stiffness_fit *fit)
+{
+    return state->rounding * state->live.weight * fit->variance;
+}
+
 /* Sets all that follows from the fit. */
 static void report(const sh_matched_state *state, const sh_parameters *p, sh_real set_point,
                    const sh_stiffness_fit *fit, sh_estimate *estimate)
@@ -180,7 +196,10 @@ static void report(const sh_matched_state *state, const sh_parameters *p, sh_rea
     const sh_real by_gain = p->prior.torque_gain * fit->by_gain;
     joint_coefficients joint;
 
-    estimate->sigma_std = sh_sqrt(fit->variance + by_gain * by_gain);
+    const sh_real by_rounding = attenuation(state, fit) * estimate->sigma;
+
+    estimate->sigma_std =
+        sh_sqrt(fit->variance + by_gain * by_gain + by_rounding * by_rounding);
     estimate->sigma_per_gain =
         sh_fabs(estimate->sigma) > 0 ? fit->by_gain / sh_fabs(estimate->sigma) : 0;
     joint = read_columns(state, p, set_point, estimate);
@@ -197,6 +216,7 @@ static void start_matched_filter(sh_estimator *estimator, const sh_parameters *p
     sh_matched_state *state = &estimator->method.matched;
     sh_stiffness_fit fit;
 
+    state->largest_deformation = largest_deformation(p);
     sh_signals_start(state, p);
     sh_columns_start(state, p);
     sh_information_start(&state->data, state->size, SH_INFORMATION_LEAST);
@@ -256,6 +276,7 @@ static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
     innovation->rho = (1 - share) / share;
     innovation->epsilon = epsilon;
 
+    state->rounding += sh_sample_variance_of_deformation(state) * w;
     rounding = sh_sample_variance_of_inertia(state, p) * w;
     if (state->live.inertia >= 0) { /* what could not be removed before may be removed now */
         /* 6: variance of the square of a noise that is correlated from sample to sample. The
@@ -348,7 +369,7 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
 }
 
 const sh_method sh_matched_filter = {
-    .largest_deformation = LARGEST_DEFORMATION,
+    .largest_deformation = largest_deformation,
     .check = check_matched_filter,
     .start = start_matched_filter,
     .tick = tick_matched_filter,

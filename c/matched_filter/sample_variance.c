@@ -93,6 +93,11 @@ void sh_sample_variance_watch(sh_matched_state *state, const sh_parameters *p)
         sh_fmin(T / MEAN, 1) * (state->history.excess - state->history.excess_mean);
 }
 
+sh_real sh_sample_variance_of_deformation(const sh_matched_state *state)
+{
+    return white(state) * (sh_square(state->count) + sh_square(state->count_q)) / 12;
+}
+
 sh_real sh_sample_variance_of_inertia(const sh_matched_state *state, const sh_parameters *p)
 {
     const sh_real *theta = state->theta_before;

@@ -22,6 +22,9 @@ void sh_sample_variance_watch(sh_matched_state *state, const sh_parameters *p);
 /* Information about b that is only rounding in this sample, times R; 0 without a column of b. */
 sh_real sh_sample_variance_of_inertia(const sh_matched_state *state, const sh_parameters *p);
 
+/* Variance of the rounding of phi that is left after the filter, if it is white [rad2]. */
+sh_real sh_sample_variance_of_deformation(const sh_matched_state *state);
+
 /* Whether the prediction error of a sample shows, at the start, that the motor was not at rest.
  *
  * x  [size: state->size + SH_SIDES] row of the sample

@@ -189,16 +189,18 @@ def test_data_that_contradict_the_model_are_a_doubt(c: Library) -> None:
     assert found["doubt"] == DOUBTS["MISFIT"]
 
 
-def test_a_deformation_beyond_the_range_is_a_doubt(c: Library) -> None:
+@pytest.mark.parametrize(("n", "times"), [(1, 32), (2, 32 ** (1 / 3)), (3, 2), (4, 2)])
+def test_a_deformation_far_beyond_the_range_is_a_doubt(c: Library, n: int, times: float) -> None:
+    """Where the highest power is over 32 times as large as at range.phi."""
     z = Joint(duration=4.0).measurements()
-    estimator = Estimator(c, {"method": 2, "rls.n": 3, "range.phi": 0.02})
+    estimator = Estimator(c, {"method": 2, "rls.n": n, "range.phi": 0.02})
     found = estimator.run(z)
-    beyond = np.abs(found["phi"]) > 2 * 0.02
-    negative = DOUBTS["NEGATIVE_STIFFNESS"]
-    assert not np.any(beyond)
-    z[-1, 1] += 0.06
-    found = estimator.run(z[-1:])
-    assert found["doubt"][-1] in (DOUBTS["OUT_OF_RANGE"], negative)
+    assert np.all(np.abs(found["phi"]) < 0.04)
+    for share, is_beyond in ((0.98, False), (1.02, True)):
+        z[-1, 1] = z[-1, 0] + share * times * 0.02
+        doubt = estimator.run(z[-1:])["doubt"][-1]
+        assert doubt != DOUBTS["NEGATIVE_STIFFNESS"]
+        assert (doubt == DOUBTS["OUT_OF_RANGE"]) == is_beyond
 
 
 def test_motor_data_far_from_their_priors_are_a_doubt(c: Library) -> None:

@@ -151,7 +151,7 @@ class Oracle:
         self.live = self.posterior(0, 1.0)
         self.blocks = start_blocks(n, self.w, self.T)
         self.q = self.factor = 1.0
-        self.surplus = self.spread = 0.0
+        self.surplus = self.spread = self.rounding = 0.0
         self.trial = self.last_trial = self.row = self.alternate = self.since = 0
         self.friction_drifts = self.known = False
         self.beta: Long = np.zeros(n, dtype=np.longdouble)
@@ -308,6 +308,7 @@ class Oracle:
             blocks.count *= keep
             self.surplus *= keep
             self.spread *= keep**2
+            self.rounding *= keep
         v = np.where([kind in CURVE for kind in self.kinds], self.before[: self.n], 0)
         power = v @ v
         if drift > 0 and power > 0:
@@ -396,6 +397,8 @@ class Oracle:
             self.watch(rough)
         R, last = self.variance(filtered, at)
         self.R, self.before = R, row
+        counts = [resolution(self.p[key]) for key in ("encoder.theta", "encoder.q")]
+        self.rounding += 3 / 16 * self.w * self.T * float(np.square(counts).sum()) / 12 / R
         epsilon = float(row[-1] - row[:-SIDES] @ self.beta)
         rho = self.live.learn(row, 1 / R)
         prior_B = self.p["prior.B"]
@@ -514,7 +517,11 @@ class Oracle:
         eccentric = math.hypot(of.get("SIN_Q", 0.0), of.get("COS_Q", 0.0))
         values = {
             "sigma": self.sigma,
-            "sigma_std": math.sqrt(variance + (p["prior.torque_gain"] * by_gain) ** 2),
+            "sigma_std": math.sqrt(
+                variance
+                + (p["prior.torque_gain"] * by_gain) ** 2
+                + (self.rounding * self.live.weight * variance * self.sigma) ** 2
+            ),
             "sigma_per_gain": by_gain / abs(self.sigma) if self.sigma else 0.0,
             "tau_e": self.torque(k),
             "tau_e_residual": y,
