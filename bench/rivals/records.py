@@ -1,0 +1,55 @@
+"""What the joints hand to the methods, and what the methods return."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Known:
+    """What the owner of a joint knows about it. Values are data sheet values, so they are wrong."""
+
+    gamma: float  # gear ratio
+    B: float  # motor inertia on the motor's axis [kg.m2]
+    D_theta: float  # viscous friction on the motor's axis [N.m.s/rad]
+    relative_std_B: float
+    relative_std_D_theta: float
+    tau_coulomb: float  # largest plausible Coulomb friction on the motor's axis [N.m]
+    noise_tau: float  # standard deviation of the measured motor torque [N.m]
+    counts_theta: int  # counts of the motor encoder per turn behind the gear; 0: not quantised
+    counts_q: int  # counts of the link encoder per turn; 0: not quantised
+    range_phi: float  # largest expected deformation [rad]
+    range_tau_e: float  # largest expected torque of the spring [N.m]
+
+
+@dataclass(frozen=True)
+class JointLog:
+    """One run of one joint. All arrays have one entry a sample."""
+
+    kind: str  # series_elastic, variable_stiffness or arm
+    engine: str  # mujoco or drake
+    seed: int
+    sample_period: float  # [s]
+    theta: Array  # measured motor position behind the gear [rad]
+    q: Array  # measured link position [rad]
+    tau: Array  # measured motor torque on the motor's axis [N.m]
+    theta_c: Array  # measured position of the stiffness motor; 0 where there is none [rad]
+    tau_e: Array  # true torque of the spring, which acts on the motor [N.m]
+    stiffness: Array  # true slope d tau_e / d phi, phi = q - theta [N.m/rad]
+    known: Known
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What a method says about a log. NaN where it says nothing."""
+
+    stiffness: Array  # at every sample [N.m/rad]
+    std: Array  # its claimed standard deviation [N.m/rad]; NaN: no claim
+    confident: NDArray[np.bool_]
+    seconds: float  # wall time of the estimation
+    remark: str = ""  # why it has no answer
