@@ -7,17 +7,18 @@ sensor, the noise of the signals, a bandwidth and V_a for the filters, and the p
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.identification.motor import fit_motor
+from sigmahat.identification.coherence import TorqueNoise, coherent_range
+from sigmahat.identification.motor import KnownInertia, fit_motor
 from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
-from sigmahat.identification.quantities import Identified
-from sigmahat.identification.regression import MOTOR, Signals, shortest
+from sigmahat.identification.quantities import Identified, Quantity
+from sigmahat.identification.regression import Signals, shortest
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Array, Log
@@ -27,6 +28,7 @@ from sigmahat.logs.sampling import Samples, sample
 
 _LONGEST = 600.0  # [s] of a log that are used
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
+_MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _V_A_TICKS = 10000
 _V_A_HIGHEST = 0.1  # low pass of the velocity to compare with, in sampling frequencies
 
@@ -53,32 +55,62 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         counts = float(every["encoder.theta"])
         tau_variance = variance(longest.tau)
         theta_variance = variance(longest.theta, 2 * math.pi / counts if counts else 0.0)
-        f_0 = bandwidth(tau_variance, theta_variance, float(every["motor.B"]) * abs(gamma), T)
-        motor = fit_motor(pieces, T, gamma, bool(every["rls.symmetric"]), f_0)
+        B, symmetric = float(every["motor.B"]), bool(every["rls.symmetric"])
+        f_0 = bandwidth(tau_variance, theta_variance, B * abs(gamma), T)
+        coherent = math.inf
+        if not torque_constant:
+            noise = TorqueNoise(tau_variance, theta_variance, B * abs(gamma), T)
+            coherent = coherent_range(longest, gamma, symmetric, f_0, noise)
+        motor = fit_motor(
+            pieces, T, gamma, symmetric, min(f_0, coherent), _known_inertia(every, configuration)
+        )
         V_a = _best_V_a(fmu, samples, start, longest, f_0)
-    quantities = {name: motor.quantity(name) for name in MOTOR}
+    quantities = dict(motor.quantities)
     if quantities["B"].determined:  # until here it was that of the configuration
         f_0 = bandwidth(tau_variance, theta_variance, quantities["B"].value * abs(gamma), T)
     nominal = configuration.ports["tau"].torque_constant
     if torque_constant and nominal is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
-    phi, set_point, tau = (
+    set_point, tau = (
         max(float(np.max(np.abs(getattr(piece, name)))) for piece in pieces)
-        for name in ("phi", "set_point", "tau")
+        for name in ("set_point", "tau")
     )
+    zero = quantities["zero"].value if _is_wrong(quantities.get("zero"), pieces) else 0.0
     return Identified(
         quantities=quantities,
         n=motor.orders[0],
         m=motor.orders[1],
         tau_variance=tau_variance,
         theta_variance=theta_variance,
-        bandwidth=2 * math.pi * f_0,
+        bandwidth=2 * math.pi * min(f_0, coherent),
+        coherent=coherent,
         V_a=V_a,
-        phi=phi,
+        phi=max(float(np.max(np.abs(piece.phi - zero))) for piece in pieces),
+        zero=zero,
         set_point=set_point,
-        torque=abs(gamma) * tau,
+        torque=max(abs(gamma) * tau, _finite(motor.spring)),
+        D_theta=float(every["motor.D_theta"]),
         notes=samples.notes,
     )
+
+
+def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> KnownInertia | None:
+    """B of the configuration, if somebody has said how certain it is."""
+    std = float(every["prior.B"])
+    given = "motor.B" in configuration.parameters
+    return KnownInertia(float(every["motor.B"]), std) if given and std > 0 else None
+
+
+def _is_wrong(zero: Quantity | None, pieces: Sequence[Signals]) -> bool:
+    """Whether the zero is surely not 0, and far enough to matter."""
+    if zero is None or not zero.determined:
+        return False
+    covered = max(float(np.ptp(piece.phi)) for piece in pieces)
+    return abs(zero.value) > max(zero.half_width, _MATTERS * covered)
+
+
+def _finite(value: float) -> float:
+    return value if math.isfinite(value) else 0.0
 
 
 def _check(configuration: Configuration, torque_constant: bool) -> None:

@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from sigmahat.identification.orders import Orders, choose
 from sigmahat.identification.quantities import Quantity
-from sigmahat.identification.regression import Fit, Signals, equations, fit
+from sigmahat.identification.regression import (
+    CONSTANT,
+    MOTOR,
+    Equations,
+    Fit,
+    Form,
+    Signals,
+    equations,
+    fit,
+)
+from sigmahat.identification.spring import Spring
 
+Item = TypeVar("Item")
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
 _WIDEST = 0.1
 """Of the sampling frequency: highest low pass of the velocity in the Coulomb friction."""
@@ -20,73 +33,169 @@ _NEGLIGIBLE = 0.005
 """The same for Coulomb friction, over the torque: it may be determined to be zero."""
 _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
 """Relative error without any noise, at a period of 1 ms: reversals fall between samples."""
+_OF_COVERED = 0.05
+"""Half width of the interval of the zero over the covered deformation, up to which it is known."""
 _N, _M = 4, 4  # highest orders of the polynomial that are tried
+
+
+@dataclass(frozen=True)
+class KnownInertia:
+    """What the configuration says about B."""
+
+    value: float
+    """[kg.m2]"""
+    std: float
+    """Standard deviation of its relative error, > 0."""
 
 
 @dataclass(frozen=True)
 class MotorFit:
     """Fit of the motor equation to the stretches of a log."""
 
-    found: Fit
-    """Coefficients; their intervals hold for other filters too."""
+    quantities: dict[str, Quantity]
+    """B, D_theta and tau_coulomb, and the zero of the deformation where there is one."""
+    gain: tuple[float, float]
+    """Of the torque, if it was measured: value and half of the 95 % interval."""
     orders: Orders
     """Of the polynomial."""
-    torque: float
-    """Standard deviation of the torque of the motor [N.m]."""
-
-    def quantity(self, name: str) -> Quantity:
-        """B, D_theta or tau_coulomb."""
-        negligible = _NEGLIGIBLE * self.torque if name == "tau_coulomb" else 0.0
-        found = self.found
-        return _quantity(found.value[name], found.half_width[name], _UNITS[name], negligible)
+    spring: float
+    """Largest torque of the spring in the log [N.m]."""
 
     def torque_constant(self, nominal: float) -> Quantity:
         """K_t, if the pieces have the torque of a sensor and the current times a nominal K_t."""
-        value, half_width = self.found.value["gain"], self.found.half_width["gain"]
+        value, half_width = self.gain
         return _quantity(value * nominal, half_width * nominal, "N.m/A", 0.0)
 
 
 def fit_motor(
-    pieces: Sequence[Signals], T: float, gamma: float, symmetric: bool, f_0: float
+    pieces: Sequence[Signals],
+    T: float,
+    gamma: float,
+    symmetric: bool,
+    f_0: float,
+    inertia: KnownInertia | None,
 ) -> MotorFit:
     """Fits the motor equation with the orders of the polynomial that suit the pieces.
 
-    T      time between samples [s]
-    gamma  gear ratio
-    f_0    low pass of the equations [Hz]
+    T        time between samples [s]
+    gamma    gear ratio
+    f_0      low pass of the equations [Hz]
+    inertia  what is known of B: if the pieces do not determine it, the other quantities are
+             identified with this value
     """
     longest = max(pieces, key=lambda piece: len(piece.theta))
     m_most = _M if np.ptp(longest.set_point) > 0 else 1
-    wide = min(2.5 * f_0, _WIDEST / T)
+    form = Form(f_0, min(2.5 * f_0, _WIDEST / T), _N, m_most, symmetric)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
-    best, smallest = choose(
-        equations(without_sensor, T, gamma, _N, m_most, symmetric, f_0, wide), _N, m_most
-    )
-    fits = [
-        fit(equations(pieces, T, gamma, *best, symmetric, *filters))
-        for filters in ((f_0, wide), (f_0, min(2 * wide, 2 * _WIDEST / T)), (0.6 * f_0, wide))
-    ]
+    (n, m), smallest = choose(equations(without_sensor, T, gamma, form), _N, m_most)
+    form = replace(form, n=n, m=m)
+    systems = _systems(pieces, T, gamma, form)
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
-    return MotorFit(_with_spread(fits), smallest, torque)
+    fits = _fits(systems)
+    quantities = {name: _motor_quantity(name, fits, torque) for name in MOTOR}
+    if inertia is not None and not quantities["B"].determined:
+        fits = _fits(systems, inertia)
+        quantities |= {name: _motor_quantity(name, fits, torque) for name in MOTOR[1:]}
+    spring = Spring(form, systems.first.units)
+    if CONSTANT in fits.first.value and "gain" not in fits.first.value:
+        quantities["zero"] = _zero(spring, fits, pieces)
+    gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
+    return MotorFit(quantities, gain, smallest, spring.largest(fits.first, pieces, abs(gamma)))
 
 
-def _with_spread(fits: Sequence[Fit]) -> Fit:
-    """The first fit, its intervals widened by two errors that a single fit does not show.
+@dataclass(frozen=True)
+class Variants(Generic[Item]):
+    """The equations or their fits, and others that differ in what nobody knows.
 
-    The first is the distance of the other fits, which have other filters: where rounding matters
-    they differ by more than chance. The second is _SAMPLING, which is the same for all filters.
+    Where rounding matters, or friction is not of the form of the equation, the results differ by
+    more than chance.
     """
-    first = fits[0]
-    half_width = {
-        name: half
-        + max(abs(other.value[name] - first.value[name]) for other in fits[1:])
-        + _SAMPLING.get(name, 0.0) * abs(first.value[name])
-        for name, half in first.half_width.items()
-    }
-    return replace(first, half_width=half_width)
+
+    first: Item
+    others: Sequence[Item]
+    """With other filters, or the ends of the interval of a known inertia."""
+    frictions: Sequence[Item]
+    """With other forms of friction."""
+
+
+def _systems(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Variants[Equations]:
+    v_s = form.coulomb_velocity
+    filters = (
+        replace(form, wide=min(2 * form.wide, 2 * _WIDEST / T)),
+        replace(form, f_0=0.6 * form.f_0),
+    )
+    frictions = (
+        replace(form, coulomb_velocity=v_s / 4),
+        replace(form, coulomb_velocity=v_s * 2),
+        replace(form, load_friction=True),
+    )
+    return Variants(
+        equations(pieces, T, gamma, form),
+        [equations(pieces, T, gamma, each) for each in filters],
+        [equations(pieces, T, gamma, each) for each in frictions],
+    )
+
+
+def _fits(systems: Variants[Equations], inertia: KnownInertia | None = None) -> Variants[Fit]:
+    """Fits all equations, with B as known if it is."""
+    if inertia is None:
+        others = [fit(each) for each in systems.others]
+        return Variants(fit(systems.first), others, [fit(each) for each in systems.frictions])
+    B = inertia.value
+    ends = [B * (1 + side * inertia.std) for side in (-1.96, 1.96)]
+    others = [fit(each.known("B", B)) for each in systems.others]
+    others += [fit(systems.first.known("B", end)) for end in ends]
+    frictions = [fit(each.known("B", B)) for each in systems.frictions]
+    return Variants(fit(systems.first.known("B", B)), others, frictions)
+
+
+def _half_width(name: str, fits: Variants[Fit]) -> float:
+    """Half of the interval of the first fit, and the largest distance of the others.
+
+    Another form of friction counts if it explains the log not significantly worse, and by the
+    distance that its own uncertainty does not explain.
+    """
+    first = fits.first
+    if not math.isfinite(first.value.get(name, math.nan)):
+        return math.inf
+    distances = [abs(other.value[name] - first.value[name]) for other in fits.others]
+    for friction in fits.frictions:
+        distance = abs(friction.value[name] - first.value[name]) - friction.half_width[name]
+        if not _is_worse(friction, first):
+            distances.append(max(distance, 0.0))
+    distance = max(distances)
+    return first.half_width[name] + (distance if math.isfinite(distance) else math.inf)
+
+
+def _is_worse(one: Fit, other: Fit) -> bool:
+    """Whether the squared errors of one fit are significantly larger."""
+    more = one.squares - other.squares
+    return bool(np.mean(more) > 2 * np.std(more, ddof=1) / math.sqrt(len(more)))
+
+
+def _motor_quantity(name: str, fits: Variants[Fit], torque: float) -> Quantity:
+    value = fits.first.value[name]
+    negligible = _NEGLIGIBLE * torque if name == "tau_coulomb" else 0.0
+    half_width = _half_width(name, fits) + _SAMPLING[name] * abs(value)
+    return _quantity(value, half_width, _UNITS[name], negligible)
 
 
 def _quantity(value: float, half_width: float, unit: str, negligible: float) -> Quantity:
     """negligible  half width below which any value is determined, be it zero"""
     determined = value > -negligible and half_width <= max(_RELATIVE * value, negligible)
     return Quantity(value, half_width, unit, bool(determined))
+
+
+def _zero(spring: Spring, fits: Variants[Fit], pieces: Sequence[Signals]) -> Quantity:
+    """The deformation at which spring and constant torque cancel.
+
+    It is determined if its interval is short compared with the covered deformation.
+    """
+    value = spring.zero(fits.first, pieces)
+    others = [spring.zero(each, pieces) for each in fits.others]
+    if not all(map(math.isfinite, [value, *others])):
+        return Quantity(math.nan, math.inf, "rad", False)
+    half_width = spring.half_width(fits.first, value, pieces)
+    half_width += max(abs(other - value) for other in others)
+    covered = max(float(np.max(p.phi)) for p in pieces) - min(float(np.min(p.phi)) for p in pieces)
+    return Quantity(value, half_width, "rad", bool(half_width < _OF_COVERED * covered))

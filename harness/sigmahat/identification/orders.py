@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from sigmahat.identification.regression import MOTOR, Equations, eta, left_out
+from sigmahat.identification.regression import Equations, eta, left_out
 
 Orders = tuple[int, int]
 """n and m of (16), as in rls.n and rls.m."""
@@ -17,11 +17,13 @@ def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, Orde
 
     equations      with all columns up to the orders n_most, m_most
 
-    As good are orders whose error is larger, in the mean over the parts, by less than the standard
-    error of the difference.
+    As good are orders whose error, in the mean over the parts, is not significantly larger (5 %).
     """
+    from scipy.special import stdtrit
+
+    others = [name for name in equations.names if name not in eta(n_most, m_most)]
     errors = {
-        (n, m): left_out(equations.only([*MOTOR, *eta(n, m)]))
+        (n, m): left_out(equations.only([*others, *eta(n, m)]))
         for n in range(1, n_most + 1)
         for m in range(1, m_most + 1)
     }
@@ -29,6 +31,7 @@ def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, Orde
 
     def as_good(each: Orders) -> bool:
         worse = errors[each] - errors[best]
-        return bool(np.mean(worse) <= np.std(worse, ddof=1) / math.sqrt(len(worse)))
+        limit = float(stdtrit(len(worse) - 1, 0.95))
+        return bool(np.mean(worse) <= limit * np.std(worse, ddof=1) / math.sqrt(len(worse)))
 
     return best, min(filter(as_good, errors), key=lambda each: (each[0] * each[1], each))

@@ -16,10 +16,11 @@ class Quantity:
     half_width: float
     """Half the width of the interval, in the same unit; inf if the motion does not show it."""
     unit: str
-    """kg.m2 for B, N.m.s/rad for D_theta, N.m for tau_coulomb, N.m/A for torque_constant."""
+    """kg.m2 for B, N.m.s/rad for D_theta, N.m for tau_coulomb, rad for zero, N.m/A for
+    torque_constant."""
     determined: bool
     """Whether the interval is narrow enough to use the value: within 10 % of it on either side, or
-    for tau_coulomb within 0.5 % of the torque."""
+    for tau_coulomb within 0.5 % of the torque, for zero within 5 % of the covered deformation."""
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -38,7 +39,7 @@ class Identified:
     """Motor data, polynomial orders and noise, identified from a log."""
 
     quantities: Mapping[str, Quantity]
-    """B, D_theta, tau_coulomb, and torque_constant if it was asked for."""
+    """B, D_theta, tau_coulomb, zero of the deformation, and torque_constant if it was asked for."""
     n: int
     """For rls.n, see m."""
     m: int
@@ -49,14 +50,21 @@ class Identified:
     theta_variance: float
     """Variance of the noise of the motor position, rounding included [rad2]."""
     bandwidth: float
-    """Bandwidth of a filter that balances both noises [rad/s]."""
+    """Bandwidth of a filter that balances both noises, or up to which the deformation is coherent
+    with the torque, if that is lower [rad/s]."""
+    coherent: float
+    """Frequency above which the deformation is noise [Hz]; inf if there is none."""
     V_a: float
     """For filter.V_a [rad2/s4]."""
     phi: float
-    """Largest magnitude of the deformation [rad]."""
+    """Largest magnitude of the deformation, from its zero [rad]."""
+    zero: float
+    """Deformation at which the spring has no torque [rad], where it is surely not 0; else 0."""
     set_point: float
     """Largest magnitude of the set-point [1]."""
     torque: float
-    """Largest magnitude of the torque of the motor after its gear [N.m]."""
+    """Largest magnitude of the torque of the motor after its gear, or of the spring [N.m]."""
+    D_theta: float
+    """That of the configuration [N.m.s/rad]."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""

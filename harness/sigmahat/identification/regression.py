@@ -3,19 +3,22 @@
 The motor (3) with Coulomb friction, on its axis, with the flexibility torque as a polynomial (16)
 whose coefficients are unknown as well:
 
-    tau = B gamma theta'' + D_theta gamma theta' + tau_coulomb tanh(theta'/v_s) - tau_e/gamma
+    tau = B gamma theta'' + D_theta gamma theta' + tau_coulomb tanh(theta'/v_s) - tau_e/gamma + c
 
-is linear in all unknowns. Least squares would be biased: theta'' of a rounded position is mostly
-noise, and noise in a regressor makes its coefficient too small. Therefore even and odd samples are
-filtered and differentiated separately. Their rounding errors are independent while the joint moves,
-and the regressors of each half are the instruments of the other half: the sums Z'X contain no
+is linear in all unknowns. The constant c is a torque that does not change, and the torque of the
+spring at a wrong zero of the deformation.
+
+Least squares would be biased: theta'' of a rounded position is mostly noise, and noise in a
+regressor makes its coefficient too small. Therefore even and odd samples are filtered and
+differentiated separately. Their rounding errors are independent while the joint moves, and the
+regressors of each half are the instruments of the other half: the sums Z'X contain no
 squared noise.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +30,8 @@ MOTOR = ("B", "D_theta", "tau_coulomb")
 """Names of the first columns, which describe the motor."""
 COULOMB_VELOCITY = 0.02
 """v_s, the velocity over which the friction changes its sign [rad/s]."""
+CONSTANT = "constant"
+"""Name of the column of c."""
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
 _EDGE = 0.1  # [s] left out at both ends of a piece, where the filter has not settled
 
@@ -44,6 +49,36 @@ class Signals:
 
 
 @dataclass(frozen=True)
+class Form:
+    """What the equations contain, and the filters."""
+
+    f_0: float
+    """Low pass of both sides [Hz]."""
+    wide: float
+    """Low pass of the velocity in the Coulomb friction, which changes fast [Hz]."""
+    n: int = 1
+    """Order of the polynomial, as rls.n."""
+    m: int = 1
+    """As rls.m."""
+    symmetric: bool = True
+    """Only odd powers of the deformation, as rls.symmetric."""
+    coulomb_velocity: float = COULOMB_VELOCITY
+    """v_s [rad/s]."""
+    load_friction: bool = False
+    """Whether there is friction that is proportional to the magnitude of the motor torque."""
+
+    def names(self, sensor: bool) -> list[str]:
+        """Names of the columns. With a torque sensor the polynomial is replaced by a gain."""
+        has_constant = sensor or self.symmetric  # else it is a coefficient of the polynomial
+        return [
+            *MOTOR,
+            *(["load"] if self.load_friction else []),
+            *([CONSTANT] if has_constant else []),
+            *(["gain"] if sensor else eta(self.n, self.m)),
+        ]
+
+
+@dataclass(frozen=True)
 class Equations:
     """y = X p + error, with instruments Z; both halves of all pieces, one after another."""
 
@@ -53,40 +88,33 @@ class Equations:
     block: NDArray[np.int64]
     """Stretch of time of each row, [size: rows]."""
     names: Sequence[str]
-    """Names of the columns: MOTOR, then "eta[i,j]" of the polynomial, or "gain" of the torque."""
+    """Names of the columns, see Form.names."""
+    units: tuple[float, float]
+    """What deformation and set-point are divided by in the polynomial [rad, 1]."""
 
     def only(self, names: Sequence[str]) -> Equations:
         """The same equations with some of the columns."""
         kept = [self.names.index(name) for name in names]
-        return Equations(self.y, self.X[:, kept], self.Z[:, kept], self.block, list(names))
+        X, Z = self.X[:, kept], self.Z[:, kept]
+        return replace(self, X=X, Z=Z, names=list(names))
+
+    def known(self, name: str, value: float) -> Equations:
+        """The same equations without a column whose coefficient is known."""
+        rest = self.only([each for each in self.names if each != name])
+        return replace(rest, y=self.y - value * self.X[:, self.names.index(name)])
 
 
-def equations(
-    pieces: Sequence[Signals],
-    T: float,
-    gamma: float,
-    n: int,
-    m: int,
-    symmetric: bool,
-    f_0: float,
-    wide: float,
-) -> Equations:
-    """The equations of all pieces, weighted by the low pass at f_0 [Hz].
+def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Equations:
+    """The equations of all pieces, weighted by the low pass.
 
-    T          time between samples [s]
-    gamma      gear ratio
-    n, m       polynomial orders, as rls.n and rls.m
-    symmetric  only odd powers of the deformation, as rls.symmetric
-    wide       low pass of the velocity in the Coulomb friction, which changes fast [Hz]
-
-    With the torque of a sensor there is no polynomial, but a gain of the motor torque.
+    T      time between samples [s]
+    gamma  gear ratio
     """
     units = _unit([p.phi for p in pieces]), _unit([p.set_point for p in pieces])
     parts = []
     blocks = 0
     for piece in pieces:
-        orders = n, m, symmetric
-        halves = [_half(piece, s, 2 * T, gamma, orders, units, f_0, wide) for s in (0, 1)]
+        halves = [_half(piece, s, 2 * T, gamma, form, units) for s in (0, 1)]
         rows = min(len(y) for y, _ in halves)
         (y_0, X_0), (y_1, X_1) = ((y[:rows], X[:rows]) for y, X in halves)
         between_1 = np.vstack([X_1[:1], (X_1[1:] + X_1[:-1]) / 2])  # at the times of half 0
@@ -100,13 +128,17 @@ def equations(
             (y_1[inner], X_1[inner], between_0[inner], block),
         ]
     y, X, Z, block = (np.concatenate(each) for each in zip(*parts, strict=True))
-    sensor = pieces[0].tau_e is not None
-    return Equations(y, X, Z, block, [*MOTOR, *(["gain"] if sensor else eta(n, m))])
+    return Equations(y, X, Z, block, form.names(pieces[0].tau_e is not None), units)
 
 
 def eta(n: int, m: int) -> list[str]:
     """Names of the columns of a polynomial of orders n and m."""
     return [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
+
+
+def powers(n: int, symmetric: bool) -> list[int]:
+    """Exponents of the deformation in a polynomial of order n."""
+    return [2 * i + 1 if symmetric else i for i in range(n)]
 
 
 def shortest(T: float) -> int:
@@ -115,42 +147,36 @@ def shortest(T: float) -> int:
 
 
 def _half(
-    s: Signals,
-    first: int,
-    h: float,
-    gamma: float,
-    orders: tuple[int, int, bool],
-    units: tuple[float, float],
-    f_0: float,
-    wide: float,
+    s: Signals, first: int, h: float, gamma: float, form: Form, units: tuple[float, float]
 ) -> tuple[Array, Array]:
     """Response and regressors of every second sample, h [s] apart, from a first one on."""
-    n, m, symmetric = orders
     kept = slice(first, None, 2)
-    theta = s.theta[kept]
-    friction = _direction(s.theta, h / 2, wide)[kept]
-    tau = s.tau[kept]
-    if s.tau_e is not None:  # tau_e/gamma = B gamma theta'' + ... - gain tau
-        raw = [s.tau_e[kept] / gamma, friction, -tau]
+    theta, tau = s.theta[kept], s.tau[kept]
+    sensor = s.tau_e is not None
+    friction = _direction(s.theta, h / 2, form.wide, form.coulomb_velocity)[kept]
+    raw = [tau if s.tau_e is None else s.tau_e[kept] / gamma, friction]
+    if form.load_friction:
+        raw.append(np.abs(tau) * friction)
+    if CONSTANT in form.names(sensor):
+        raw.append(np.ones_like(tau))
+    if sensor:  # tau_e/gamma = B gamma theta'' + ... - gain tau
+        raw.append(-tau)
     else:
-        phi, set_point = s.phi[kept], s.set_point[kept]
-        powers = [2 * i + 1 if symmetric else i for i in range(n)]
-        raw = [tau, friction]
-        x, y = phi / units[0], set_point / units[1]
-        raw += [x**e * y**j for e in powers for j in range(m)]
-    filtered = low_pass(np.column_stack(raw), f_0, h)
-    smooth = low_pass(theta, f_0, h)
+        x, y = s.phi[kept] / units[0], s.set_point[kept] / units[1]
+        raw += [x**e * y**j for e in powers(form.n, form.symmetric) for j in range(form.m)]
+    filtered = low_pass(np.column_stack(raw), form.f_0, h)
+    smooth = low_pass(theta, form.f_0, h)
     motion = [gamma * _second(smooth, h), gamma * _first(smooth, h)]
     return filtered[:, 0], np.column_stack([*motion, filtered[:, 1:]])
 
 
-def _direction(theta: Array, T: float, wide: float) -> Array:
+def _direction(theta: Array, T: float, wide: float, v_s: float) -> Array:
     """Mean of tanh(theta'/v_s) around each sample, for a velocity that is linear in between.
 
     A fast reversal happens between two samples: with the value at one of them its time would be
     wrong by up to half a period. For the same reason theta has all samples here, T [s] apart.
     """
-    x = _first(low_pass(theta, wide, T), T) / COULOMB_VELOCITY
+    x = _first(low_pass(theta, wide, T), T) / v_s
     middle = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
     integral = np.logaddexp(middle, -middle)  # of tanh
     step = np.diff(middle)
@@ -182,12 +208,21 @@ def _second(x: Array, h: float) -> Array:
 
 @dataclass(frozen=True)
 class Fit:
-    """Coefficients and their 95 % intervals; inf where the data do not determine them."""
+    """Coefficients, and how certain they are; nan and inf where the data do not determine them."""
 
     value: dict[str, float]
-    half_width: dict[str, float]
-    rms: float
-    """RMS of the residuals."""
+    covariance: Array
+    """[size: coefficients, coefficients], in their order."""
+    quantile: float
+    """Half a 95 % interval over the standard deviation."""
+    squares: Array
+    """Sum of the squared errors of each block, [size: blocks]."""
+
+    @property
+    def half_width(self) -> dict[str, float]:
+        """Half of the 95 % intervals."""
+        std = np.sqrt(np.diag(self.covariance))
+        return dict(zip(self.value, (self.quantile * std).tolist(), strict=True))
 
 
 def fit(e: Equations) -> Fit:
@@ -214,17 +249,18 @@ def fit(e: Equations) -> Fit:
 
     inverse = np.linalg.inv(A)
     covariance = inverse @ (scores.T @ scores) @ inverse.T * blocks / freedom
-    half = float(stdtrit(freedom, 0.975)) * np.sqrt(np.diag(covariance)) / scale
-    names = e.names
     return Fit(
-        dict(zip(names, (p / scale).tolist(), strict=True)),
-        dict(zip(names, half.tolist(), strict=True)),
-        float(np.sqrt(np.mean(error**2))),
+        dict(zip(e.names, (p / scale).tolist(), strict=True)),
+        covariance / np.outer(scale, scale),
+        float(stdtrit(freedom, 0.975)),
+        np.bincount(e.block, error**2, blocks).astype(np.float64),
     )
 
 
 def _nothing(e: Equations) -> Fit:
-    return Fit(dict.fromkeys(e.names, np.nan), dict.fromkeys(e.names, np.inf), np.nan)
+    size = len(e.names)
+    unknown = np.full((size, size), np.inf)
+    return Fit(dict.fromkeys(e.names, np.nan), unknown, 1.0, np.full(int(e.block[-1]) + 1, np.nan))
 
 
 def left_out(e: Equations, parts: int = 8) -> Array:

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from sigmahat.identification.quantities import Identified, Quantity
-from sigmahat.identification.regression import COULOMB_VELOCITY
+from sigmahat.identification.regression import COULOMB_VELOCITY, MOTOR
 
 
 def as_dict(identified: Identified) -> dict[str, Any]:
@@ -26,6 +26,8 @@ def as_dict(identified: Identified) -> dict[str, Any]:
         "theta noise variance [rad2]": identified.theta_variance,
         "filter bandwidth [rad/s]": identified.bandwidth,
         "filter.V_a": identified.V_a,
+        "deformation is noise above [Hz]": _or_none(identified.coherent),
+        "zero of the deformation [rad]": identified.zero,
         "largest phi [rad]": identified.phi,
         "largest setPoint [1]": identified.set_point,
         "largest gamma tau [N.m]": identified.torque,
@@ -38,7 +40,7 @@ def summary(identified: Identified) -> str:
     lines = [f"  {note}" for note in identified.notes]
     lines.append("")
     lines += [f"{name:16}{_text(each)}" for name, each in identified.quantities.items()]
-    if not all(quantity.determined for quantity in identified.quantities.values()):
+    if not all(identified.quantities[name].determined for name in MOTOR):
         lines.append("  Record faster motion for B, and many reversals for tau_coulomb.")
     lines += [
         "",
@@ -51,7 +53,16 @@ def summary(identified: Identified) -> str:
         f"set-point {identified.set_point:.3g}, gamma tau {identified.torque:.3g} N.m",
         f"friction is     tau_coulomb tanh(theta_dot / ({COULOMB_VELOCITY:g} rad/s))",
     ]
+    if math.isfinite(identified.coherent):
+        lines.append(
+            f"above {identified.coherent:.2g} Hz the deformation is noise, "
+            "not caused by a torque; the bandwidth is below that"
+        )
     return "\n".join(lines)
+
+
+def _or_none(value: float) -> float | None:
+    return value if math.isfinite(value) else None
 
 
 def _text(quantity: Quantity) -> str:

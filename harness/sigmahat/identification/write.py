@@ -12,7 +12,9 @@ import tomlkit
 from tomlkit.items import InlineTable, Item
 
 from sigmahat.identification.quantities import Identified
-from sigmahat.logs.configuration import read_document
+from sigmahat.identification.regression import MOTOR
+from sigmahat.logs.configuration import Port, read_document
+from sigmahat.logs.units import factor
 from sigmahat.user_input import toml_file
 
 _ABOVE = 1.4
@@ -44,7 +46,7 @@ def write(found: Identified, path: Path) -> list[str]:
         "prior.tau_e": _ROOM * found.torque,
     }
     for name, q in found.quantities.items():
-        if q.determined:
+        if q.determined and name in MOTOR:
             if name == "tau_coulomb":
                 values["prior.tau_coulomb"] = max(abs(q.value), q.half_width)
             else:
@@ -65,6 +67,9 @@ def write(found: Identified, path: Path) -> list[str]:
     if constant is not None and constant.determined:
         document["ports"]["tau"]["torque_constant"] = _short(constant.value)
         written.append("ports.tau.torque_constant")
+    if found.zero and "q" in document["ports"]:
+        _move_zero(document["ports"]["q"], found.zero)
+        written.append("ports.q.zero")
     document["identified"] = _record(found)
     unfinished = path.with_name(f".{path.name}-{os.getpid()}")
     unfinished.write_text(tomlkit.dumps(document), encoding="utf-8")
@@ -76,10 +81,22 @@ def _wide_priors(found: Identified) -> dict[str, float]:
     """Priors of the motor data that are not determined, by parameter."""
     undetermined = {name: q for name, q in found.quantities.items() if not q.determined}
     priors = {f"prior.{name}": _WIDE for name in ("B", "D_theta") if name in undetermined}
+    D_theta = undetermined.get("D_theta")
+    if D_theta is not None and math.isfinite(D_theta.half_width) and found.D_theta > 0:
+        # Encoders that are read at different times look like friction, of any sign and size.
+        largest = max(abs(end / found.D_theta - 1) for end in D_theta.interval)
+        priors["prior.D_theta"] = max(_WIDE, largest)
     tau_coulomb = undetermined.get("tau_coulomb")
     if tau_coulomb is not None and math.isfinite(tau_coulomb.half_width):
         priors["prior.tau_coulomb"] = max(abs(end) for end in tau_coulomb.interval)
     return priors
+
+
+def _move_zero(port: MutableMapping[str, Any], zero: float) -> None:
+    """Moves the zero of [ports.q] by an angle of the link [rad]."""
+    read = Port(**{key: value.unwrap() for key, value in port.items()})
+    angle = read.sign * factor("q", read) / read.gear_ratio
+    port["zero"] = float(f"{read.zero + zero / angle:.9g}")
 
 
 def _without_wide_priors(document: tomlkit.TOMLDocument) -> tomlkit.TOMLDocument:

@@ -1,0 +1,85 @@
+"""Up to which frequency the deformation is caused by the torque of the spring.
+
+Above it, what the encoders show as a deformation are errors: of gears, of couplings, of the
+encoders between their counts. As the regressor of the stiffness, such errors make it too small.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import coherence, welch
+
+from sigmahat.identification.regression import MOTOR, Form, Signals, equations, fit
+from sigmahat.logs.log import Array
+
+_FIRST = 5.0  # [Hz] low pass of the fit that the spectra are computed from
+_SEGMENT = 2.0  # [s] of a spectrum
+_LOWEST = 2.0  # [Hz]
+_COHERENT = 0.5
+_LARGER = 4.0  # power of the deformation over what the noise of the torque explains
+
+
+@dataclass(frozen=True)
+class TorqueNoise:
+    """White noise of torque and position, as a torque on the motor's axis."""
+
+    torque: float
+    """Variance [(N.m)2]."""
+    position: float
+    """Variance [rad2]."""
+    inertia: float
+    """Torque per acceleration, B gamma [kg.m2]."""
+    T: float
+    """Time between samples [s]."""
+
+    def density(self, f: Array) -> Array:
+        """Power spectral density, one-sided [(N.m)2/Hz], at the frequencies f [Hz]."""
+        by_position = (self.inertia * (2 * math.pi * f) ** 2) ** 2 * self.position
+        density: Array = 2 * self.T * (self.torque + by_position)
+        return density
+
+
+def coherent_range(
+    piece: Signals, gamma: float, symmetric: bool, highest: float, noise: TorqueNoise
+) -> float:
+    """Frequency above which the deformation is noise [Hz]; inf if it is not up to `highest`.
+
+    Bands of half an octave. From the frequency on, the coherence of deformation and torque is below
+    one half in all of them, and in the first one the deformation has more power than the noise of
+    the torque explains.
+    """
+    T = noise.T
+    if highest <= _LOWEST or len(piece.theta) * T < 2 * _SEGMENT:
+        return math.inf
+    low = Form(min(_FIRST, highest), min(_FIRST, highest), symmetric=symmetric)
+    found = fit(equations([piece], T, gamma, low))
+    all_of_it = equations([piece], T, gamma, Form(highest, highest, symmetric=symmetric))
+    first_half = slice(0, len(all_of_it.y) // 2)
+    coefficients = np.array([found.value[name] for name in all_of_it.names])
+    parts = all_of_it.X[first_half] * coefficients
+    if not np.all(np.isfinite(parts)):
+        return math.inf
+    torque = all_of_it.y[first_half] - parts[:, : len(MOTOR)].sum(axis=1)
+    spring = parts[:, len(MOTOR) :].sum(axis=1)
+    return _incoherent_above(torque, spring, highest, noise)
+
+
+def _incoherent_above(torque: Array, spring: Array, highest: float, noise: TorqueNoise) -> float:
+    h = 2 * noise.T  # every second sample
+    segment = round(_SEGMENT / h)
+    frequency, shared = coherence(torque, spring, 1 / h, nperseg=segment)
+    power = welch(spring, 1 / h, nperseg=segment)[1]
+    bands = math.ceil(2 * math.log2(highest / _LOWEST))
+    limit = math.inf
+    edges = np.geomspace(_LOWEST, highest, bands + 1)
+    for low, high in reversed(list(itertools.pairwise(edges))):
+        band = (frequency >= low) & (frequency < high)
+        if not band.any() or np.mean(shared[band]) >= _COHERENT:
+            break
+        if np.mean(power[band]) > _LARGER * np.mean(noise.density(frequency[band])):
+            limit = float(low)
+    return limit

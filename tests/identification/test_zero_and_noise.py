@@ -1,0 +1,104 @@
+"""`sigmahat identify`: the zero of the deformation, and a deformation that is noise."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recorded_logs import CONFIGURATION, Array, T, awas_log
+from sigmahat.identification.coherence import TorqueNoise, coherent_range
+from sigmahat.identification.identify import identify
+from sigmahat.identification.quantities import Identified
+from sigmahat.identification.regression import Signals
+from sigmahat.identification.write import write
+from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.log import LogInMemory
+from sigmahat.logs.units import convert
+
+
+def identified(log: dict[str, Array], path: Path, configuration: str) -> Identified:
+    path.write_text(configuration)
+    return identify(LogInMemory(Path("log"), log), read_configuration(path))
+
+
+@pytest.mark.parametrize(
+    ("keys", "times"),
+    [("", 1.0), ('unit = "deg"\nsign = -1\nzero = 0.5\ngear_ratio = 2.0', -360 / math.pi)],
+)
+def test_the_zero_is_moved_to_where_the_spring_has_no_torque(
+    keys: str, times: float, tmp_path: Path
+) -> None:
+    log = awas_log(1.0, 0.3)
+    true, offset = log["q"], 5e-3
+    log = {**log, "q": times * (true + offset) + (0.5 if keys else 0.0)}
+    path = tmp_path / "log.toml"
+    found = identified(log, path, CONFIGURATION.replace('"q"', f'"q"\n{keys}'))
+    zero = found.quantities["zero"]
+    assert zero.determined
+    assert abs(zero.value - offset) <= zero.half_width < 1e-3
+    assert found.phi == pytest.approx(np.max(np.abs(true - log["theta"])), abs=zero.half_width)
+    assert "ports.q.zero" in write(found, path)
+    q = convert("q", read_configuration(path).ports["q"], log["q"])
+    assert np.max(np.abs(q - true)) <= zero.half_width
+    # THEN a second run leaves it
+    again = identify(LogInMemory(Path("log"), log), read_configuration(path))
+    assert again.zero == 0 and "ports.q.zero" not in write(again, path)
+
+
+def test_a_right_zero_is_left(tmp_path: Path) -> None:
+    path = tmp_path / "log.toml"
+    found = identified(awas_log(3.0, 0.3), path, CONFIGURATION)
+    assert found.zero == 0
+    assert abs(found.quantities["zero"].value) <= found.quantities["zero"].half_width
+    assert "ports.q.zero" not in write(found, path)
+
+
+def test_encoders_read_at_different_times_get_a_prior_that_holds_the_friction_they_show(
+    tmp_path: Path,
+) -> None:
+    # GIVEN a link encoder read 30 ms late: its error is -30 ms times the velocity of the link,
+    # which the equation shows as negative friction
+    log = awas_log(0.3, 0.3)
+    log["q"] = np.concatenate([np.full(30, log["q"][0]), log["q"][:-30]])
+    path = tmp_path / "log.toml"
+    found = identified(log, path, CONFIGURATION)
+    D_theta = found.quantities["D_theta"]
+    assert not D_theta.determined and D_theta.value < 0
+    write(found, path)
+    prior = float(read_configuration(path).parameters["prior.D_theta"])
+    for end in D_theta.interval:
+        assert abs(end - 1.2e-3) <= prior * 1.2e-3 * (1 + 1e-5)
+
+
+def motor(noise_of_phi: float) -> Signals:
+    """A spring of 300 N.m/rad on a motor that follows two sines, and noise above 3 Hz in phi."""
+    rng = np.random.default_rng(1)
+    t = T * np.arange(20000)
+    theta = np.sin(2 * np.pi * 0.7 * t)
+    velocity = 2 * np.pi * 0.7 * np.cos(2 * np.pi * 0.7 * t)
+    phi = 0.01 * np.sin(3.0 * t) + 0.01 * np.sin(2 * np.pi * 1.5 * t)
+    acceleration = -((2 * np.pi * 0.7) ** 2) * theta
+    tau = 2e-5 * 50 * acceleration + 1e-3 * 50 * velocity - 300 * phi / 50
+    tau = tau + rng.normal(0, 3e-3, len(t))
+    return Signals(theta, phi + rng.normal(0, noise_of_phi, len(t)), np.ones_like(t), tau, None)
+
+
+@pytest.mark.parametrize(("noise_of_phi", "is_noise"), [(1e-7, False), (2e-3, True)])
+def test_a_deformation_that_is_noise_limits_the_bandwidth(
+    noise_of_phi: float, is_noise: bool
+) -> None:
+    noise = TorqueNoise(torque=9e-6, position=0.0, inertia=1e-3, T=T)
+    limit = coherent_range(motor(noise_of_phi), 50.0, True, 40.0, noise)
+    assert (limit < 6.0) if is_noise else limit == math.inf
+
+
+def test_the_noise_of_the_torque_has_the_density_of_its_variance() -> None:
+    noise = TorqueNoise(torque=9e-6, position=1e-12, inertia=1e-3, T=T)
+    f = np.linspace(0.0, 0.5 / T, 1001)
+    without = TorqueNoise(torque=9e-6, position=0.0, inertia=1e-3, T=T)
+    assert np.trapezoid(without.density(f), f) == pytest.approx(9e-6)
+    by_position = (1e-3 * (2 * math.pi * f) ** 2) ** 2 * 1e-12
+    assert noise.density(f) - without.density(f) == pytest.approx(2 * T * by_position)
