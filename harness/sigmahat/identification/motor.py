@@ -13,6 +13,7 @@ from sigmahat.identification.orders import Orders, choose
 from sigmahat.identification.quantities import Quantity
 from sigmahat.identification.regression import (
     CONSTANT,
+    COULOMB_VELOCITY,
     MOTOR,
     Equations,
     Fit,
@@ -35,6 +36,8 @@ _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
 """Relative error without any noise, at a period of 1 ms: reversals fall between samples."""
 _OF_COVERED = 0.05
 """Half width of the interval of the zero over the covered deformation, up to which it is known."""
+_STRIBECK = (0.03, 0.1, 0.3)
+"""Velocities over which the friction of slow motion decreases [rad/s]."""
 _N, _M = 4, 4  # highest orders of the polynomial that are tried
 
 
@@ -89,7 +92,7 @@ def fit_motor(
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     (n, m), smallest = choose(equations(without_sensor, T, gamma, form), _N, m_most)
     form = replace(form, n=n, m=m)
-    systems = _systems(pieces, T, gamma, form)
+    systems = _systems(pieces, T, gamma, _with_friction(pieces, T, gamma, form))
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
     fits = _fits(systems)
     quantities = {name: _motor_quantity(name, fits, torque) for name in MOTOR}
@@ -118,21 +121,44 @@ class Variants(Generic[Item]):
     """With other forms of friction."""
 
 
+def _frictions(form: Form) -> list[Form]:
+    """All forms of friction, the one of the plain equation first."""
+    plain = replace(
+        form, coulomb_velocity=COULOMB_VELOCITY, load_friction=False, stribeck_velocity=0.0
+    )
+    load = replace(plain, load_friction=True)
+    return [
+        plain,
+        replace(plain, coulomb_velocity=COULOMB_VELOCITY / 4),
+        replace(plain, coulomb_velocity=COULOMB_VELOCITY * 2),
+        load,
+        *(
+            replace(each, stribeck_velocity=v, stribeck_exponent=delta)
+            for each in (plain, load)
+            for v in _STRIBECK
+            for delta in (1.0, 2.0)
+        ),
+    ]
+
+
+def _with_friction(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Form:
+    """The form of friction with the least errors, if the plain one is significantly worse."""
+    forms = _frictions(form)
+    fits = [fit(equations(pieces, T, gamma, each)) for each in forms]
+    sums = [float(np.sum(each.squares)) for each in fits]
+    best = int(np.nanargmin(sums)) if np.isfinite(sums[0]) else 0
+    return forms[best] if _is_worse(fits[0], fits[best]) else forms[0]
+
+
 def _systems(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Variants[Equations]:
-    v_s = form.coulomb_velocity
     filters = (
         replace(form, wide=min(2 * form.wide, 2 * _WIDEST / T)),
         replace(form, f_0=0.6 * form.f_0),
     )
-    frictions = (
-        replace(form, coulomb_velocity=v_s / 4),
-        replace(form, coulomb_velocity=v_s * 2),
-        replace(form, load_friction=True),
-    )
     return Variants(
         equations(pieces, T, gamma, form),
         [equations(pieces, T, gamma, each) for each in filters],
-        [equations(pieces, T, gamma, each) for each in frictions],
+        [equations(pieces, T, gamma, each) for each in _frictions(form) if each != form],
     )
 
 

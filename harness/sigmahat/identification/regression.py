@@ -65,7 +65,13 @@ class Form:
     coulomb_velocity: float = COULOMB_VELOCITY
     """v_s [rad/s]."""
     load_friction: bool = False
-    """Whether there is friction that is proportional to the magnitude of the motor torque."""
+    """Whether there is friction that is proportional to the magnitude of the deformation."""
+    stribeck_velocity: float = 0.0
+    """v, if friction is larger in slow motion [rad/s]; 0 if it is not. The additional part falls as
+    exp(-|theta'/v|^delta) (Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30:1083-1138,
+    1994)."""
+    stribeck_exponent: float = 2.0
+    """delta, usually 1 or 2."""
 
     def names(self, sensor: bool) -> list[str]:
         """Names of the columns. With a torque sensor the polynomial is replaced by a gain."""
@@ -73,6 +79,7 @@ class Form:
         return [
             *MOTOR,
             *(["load"] if self.load_friction else []),
+            *(["stribeck"] if self.stribeck_velocity else []),
             *([CONSTANT] if has_constant else []),
             *(["gain"] if sensor else eta(self.n, self.m)),
         ]
@@ -156,7 +163,10 @@ def _half(
     friction = _direction(s.theta, h / 2, form.wide, form.coulomb_velocity)[kept]
     raw = [tau if s.tau_e is None else s.tau_e[kept] / gamma, friction]
     if form.load_friction:
-        raw.append(np.abs(tau) * friction)
+        raw.append(np.abs(s.phi[kept] if s.tau_e is None else s.tau_e[kept]) * friction)
+    if form.stribeck_velocity:
+        speed = np.abs(_first(low_pass(s.theta, form.wide, h / 2), h / 2))[kept]
+        raw.append(np.exp(-((speed / form.stribeck_velocity) ** form.stribeck_exponent)) * friction)
     if CONSTANT in form.names(sensor):
         raw.append(np.ones_like(tau))
     if sensor:  # tau_e/gamma = B gamma theta'' + ... - gain tau
