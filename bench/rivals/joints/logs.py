@@ -42,9 +42,7 @@ def log(
     )
 
 
-def _known(
-    motor: Motor, instruments: Instruments, sheet: Sheet, phi: Array, tau_e: Array
-) -> Known:
+def _known(motor: Motor, instruments: Instruments, sheet: Sheet, phi: Array, tau_e: Array) -> Known:
     return Known(
         gamma=motor.gear,
         B=sheet.B * motor.B,
