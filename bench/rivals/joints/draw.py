@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 
 from rivals.joints.encoders import count
-from rivals.joints.excitation import Drive, Multisine
+from rivals.joints.excitation import Complex, Drive, Multisine
 from rivals.joints.friction import MODELS, Friction
 from rivals.joints.logs import STD_B, STD_D
 from rivals.joints.parameters import (
@@ -105,7 +105,7 @@ CENTRING = 0.3  # bandwidth of what keeps a joint near zero while a torque is fe
 SPRING_STANDS = 1.5  # torque of the spring by that of the motor at its peak, at most
 LARGEST_PHI = 0.2  # [rad]
 
-TIMES: Array = np.arange(round(DURATION / SAMPLE_PERIOD)) * SAMPLE_PERIOD
+TIMES: Array = SAMPLE_PERIOD * np.arange(round(DURATION / SAMPLE_PERIOD), dtype=np.float64)
 
 T = TypeVar("T")
 
@@ -203,7 +203,7 @@ def _instruments(rng: Rng, peak: float, phi: float) -> Instruments:
     """Encoders that see the deformation phi [rad]."""
 
     def encoder() -> int:
-        return 2 ** int(rng.integers(BITS[0], BITS[1] + 1))
+        return 1 << int(rng.integers(BITS[0], BITS[1] + 1))
 
     def sees(counts: int) -> bool:
         return counts == 2 ** BITS[1] or phi >= COUNTS * count(counts)
@@ -236,7 +236,7 @@ def _gains(motor: Motor, load: float, bandwidth: float) -> tuple[float, float]:
     return kd * omega / 1.4, kd
 
 
-def _linear(motor: Motor, load: float, stiffness: float, s: Array) -> tuple[Array, Array]:
+def _linear(motor: Motor, load: float, stiffness: float, s: Complex) -> tuple[Complex, Complex]:
     """Motor position and deformation by torque of a linear joint at s = 2 pi j f."""
     c = stiffness * (1 + 1e-3 * s)
     phi_by_theta = -load * s**2 / (load * s**2 + c)
@@ -249,7 +249,7 @@ def _torque_drive(rng: Rng, motor: Motor, load: float, stiffness: float) -> tupl
     """A multisine of torque, and the deformation of a linear joint under it [rad]."""
     own = math.sqrt(stiffness / load) / 2 / math.pi
     sines = _multisine(rng, max(_even(rng, HIGHEST) * own, 3 * LOWEST))
-    s = 2j * math.pi * sines.frequencies
+    s = 2j * np.pi * sines.frequencies.astype(np.complex128)
     theta_by_torque, phi_by_torque = _linear(motor, load, stiffness, s)
     speed = motor.gear * _peak(sines.harmonics(TIMES, s * theta_by_torque))
     phi = _peak(sines.harmonics(TIMES, phi_by_torque))
@@ -268,7 +268,7 @@ def _position_drive(
     bandwidth = _even(rng, BANDWIDTH)
     sines = _multisine(rng, bandwidth)
     sines = Multisine(sines.frequencies, 1 / sines.frequencies, sines.phases)
-    s = 2j * math.pi * sines.frequencies
+    s = 2j * np.pi * sines.frequencies.astype(np.complex128)
     acceleration = _peak(sines.harmonics(TIMES, s**2))
     torque = (motor.inertia + load) / motor.gear * acceleration
     scale = min(

@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rivals.records import Array
+
+Complex = NDArray[np.complex128]
 
 FADE = 1.0  # [s] that a motion takes to begin
 
@@ -21,11 +24,11 @@ class Multisine:
 
     def __call__(self, t: Array) -> Array:
         """Values at the times t [s]; it fades in."""
-        return _fade(t) * self.harmonics(t, np.ones(len(self.frequencies), dtype=complex))
+        return _fade(t) * self.harmonics(t, np.ones(len(self.frequencies), np.complex128))
 
-    def harmonics(self, t: Array, response: Array) -> Array:
+    def harmonics(self, t: Array, response: Complex) -> Array:
         """What a linear system with this complex response to each line makes of it, at rest 0."""
-        lines = self.amplitudes * np.asarray(response)
+        lines = self.amplitudes * response
         angles = 2 * np.pi * np.outer(t, self.frequencies) + self.phases
         summed: Array = np.imag(np.exp(1j * angles) @ lines)
         return summed
