@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,7 @@ def test_encoders_round_and_count_on() -> None:
     np.testing.assert_allclose(rounded(angle, 4096) / count(4096), [0, 1, 1, -1, 1e6])
 
 
+@cache
 def drawn(kind: str, engine: str) -> list[Any]:
     return [catalogue.drawn(kind, engine, seed) for seed in SEEDS]
 

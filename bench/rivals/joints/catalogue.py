@@ -26,9 +26,10 @@ BUILDS = {
     ("variable_stiffness", "mujoco"): "mujoco_tendons",
     ("arm", "mujoco"): "mujoco_arm",
     ("series_elastic", "drake"): "drake_series_elastic",
+    ("variable_stiffness", "drake"): "drake_springs",
     ("arm", "drake"): "drake_arm",
 }
-"""The module that builds each kind in each engine, where there is one."""
+"""The module that builds each kind in each engine."""
 
 
 def rng(kind: str, engine: str, seed: int) -> np.random.Generator:
@@ -42,7 +43,7 @@ def drawn(kind: str, engine: str, seed: int) -> Any:
     if kind == "series_elastic":
         return draw.series_elastic(numbers, hardens=engine == "mujoco")
     if kind == "variable_stiffness":
-        return draw.variable_stiffness(numbers)
+        return draw.variable_stiffness(numbers, straight=engine == "drake")
     return draw.arm(numbers, hardens=engine == "mujoco")
 
 
@@ -53,7 +54,7 @@ def simulate(kind: str, engine: str, joint: Any, step: float = STEP) -> Run:
 
 
 def make(kind: str, engine: str, seed: int) -> JointLog:
-    """The log of a joint. Raises KeyError where the engine has no joint of the kind."""
+    """The log of a joint: one of KINDS in one of ENGINES."""
     joint = drawn(kind, engine, seed)
     run = simulate(kind, engine, joint)
     motor, instruments = _observed(joint)

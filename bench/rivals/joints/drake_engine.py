@@ -12,6 +12,7 @@ torque that would stop the motor within the step, cut off at what friction can d
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
@@ -33,10 +34,33 @@ AXIS = np.array([0.0, -1.0, 0.0])
 LIGHT = 1e-6  # mass of a flange [kg]
 
 
+class Elastic(Protocol):
+    """What is between a motor and its link."""
+
+    @property
+    def damping(self) -> float:
+        """[N.m.s/rad]"""
+
+    def torque(self, phi: float) -> float:
+        """On the motor at rest [N.m]."""
+
+    def slope(self, phi: float) -> float:
+        """Of the torque [N.m/rad]."""
+
+
 def flexible_joint(
     plant: MultibodyPlant, i: int, parent: Frame, motor: Motor, spring: Spring, link: Link
 ) -> RigidBody:
     """Adds a motor, a spring and a link behind a frame; the link, which hangs down at q = 0."""
+    _, body, phi = joint(plant, i, parent, motor, spring.damping, link)
+    plant.AddForceElement(RevoluteSpring(phi, 0.0, spring.stiffness))
+    return body
+
+
+def joint(
+    plant: MultibodyPlant, i: int, parent: Frame, motor: Motor, damping: float, link: Link
+) -> tuple[RigidBody, RigidBody, RevoluteJoint]:
+    """Adds the same without a spring: the flange, the link, and the joint between them."""
     turning = FLANGE * motor.inertia
     flange = plant.AddRigidBody(f"flange_{i}", _inertia(LIGHT, 0.0, turning))
     body = plant.AddRigidBody(f"link_{i}", _inertia(link.mass, link.centre, link.inertia))
@@ -44,13 +68,12 @@ def flexible_joint(
         RevoluteJoint(f"theta_{i}", parent, flange.body_frame(), AXIS, motor.D * motor.gear**2)
     )
     phi = plant.AddJoint(
-        RevoluteJoint(f"phi_{i}", flange.body_frame(), body.body_frame(), AXIS, spring.damping)
+        RevoluteJoint(f"phi_{i}", flange.body_frame(), body.body_frame(), AXIS, damping)
     )
-    plant.AddForceElement(RevoluteSpring(phi, 0.0, spring.stiffness))
     actuator = plant.AddJointActuator(f"theta_{i}", theta)
     actuator.set_default_rotor_inertia((1 - FLANGE) * motor.B)
     actuator.set_default_gear_ratio(motor.gear)
-    return body
+    return flange, body, phi
 
 
 def _inertia(mass: float, centre: float, turning: float) -> SpatialInertia:
@@ -60,14 +83,14 @@ def _inertia(mass: float, centre: float, turning: float) -> SpatialInertia:
 
 
 class DrakePhysics:
-    """Implements `simulation.Physics` with a plant of `flexible_joint`s."""
+    """Implements `simulation.Physics` with a plant of such joints."""
 
     def __init__(
         self,
         diagram: Diagram,
         plant: MultibodyPlant,
         motors: Sequence[Motor],
-        springs: Sequence[Spring],
+        springs: Sequence[Elastic],
         observed: int = 0,
     ) -> None:
         self._simulator = Simulator(diagram)
@@ -75,8 +98,8 @@ class DrakePhysics:
         self._plant, self._motors, self._springs = plant, motors, springs
         self._step = plant.time_step()
         self._steps = 0
-        port, nothing = plant.get_actuation_input_port(), np.zeros(len(motors))
-        self._actuation = port.FixValue(self._context, nothing)
+        nothing = np.zeros(plant.num_actuators())
+        self._actuation = plant.get_actuation_input_port().FixValue(self._context, nothing)
         self._observed = observed
         names = range(len(motors))
         positions = plant.num_positions()
@@ -101,40 +124,43 @@ class DrakePhysics:
         self._plant.SetPositionsAndVelocities(self._context, state)
         self._now = self._state()
 
-    def _state(self) -> list[list[float]]:
-        """theta, phi and their velocities, for each joint."""
+    def _state(self) -> list[tuple[float, float, float, float, float]]:
+        """theta, phi, their velocities, and the load of the motor, for each joint."""
         state = self._plant.GetPositionsAndVelocities(self._context).tolist()
-        return [[state[i] for i in indices] for indices in self._x]
-
-    def _load(self, i: int, phi: float, phi_dot: float) -> float:
-        return self._springs[i].torque(phi) + self._springs[i].damping * phi_dot
+        now = []
+        for indices, spring in zip(self._x, self._springs, strict=True):
+            theta, phi, v, phi_dot = (state[i] for i in indices)
+            now.append((theta, phi, v, phi_dot, spring.torque(phi) + spring.damping * phi_dot))
+        return now
 
     def motors(self) -> list[tuple[float, float, float]]:
         """Position, velocity and load of each motor, behind its gear [rad, rad/s, N.m]."""
-        return [
-            (theta, v, self._load(i, phi, phi_dot))
-            for i, (theta, phi, v, phi_dot) in enumerate(self._now)
-        ]
+        return [(theta, v, load) for theta, _, v, _, load in self._now]
 
     def advance(self, torques: Sequence[float], dry: Sequence[float], target: float) -> None:
-        """One step; the torques are on the axes of the motors. There is no stiffness motor."""
-        applied = [0.0] * len(self._motors)
+        """One step; the torques are on the axes of the motors, `target` is for a subclass."""
+        applied = []
         for i, (motor, (_, v, load)) in enumerate(zip(self._motors, self.motors(), strict=True)):
             driving = motor.gear * torques[i] + load - motor.D * motor.gear**2 * v
             stops = -(motor.inertia / self._step * v + driving)
             most = motor.gear * dry[i]
             self._friction[i] = min(max(stops, -most), most)
-            applied[i] = motor.gear * torques[i] + self._friction[i]
+            applied.append(motor.gear * torques[i] + self._friction[i])
+        applied += self._others(target)
         self._actuation.GetMutableData().get_mutable_value().SetFromVector(applied)
         self._steps += 1
         self._simulator.AdvanceTo(self._steps * self._step)
         self._before, self._now = self._now, self._state()
 
+    def _others(self, target: float) -> list[float]:
+        """What actuators other than the motors do, in the order in which they were added."""
+        return []
+
     def instant(self) -> Instant:
         """The beginning of the step that `advance` made."""
         i = self._observed
-        theta, phi, v, phi_dot = self._before[i]
-        spring = self._springs[i]
+        theta, phi, v, phi_dot, load = self._before[i]
+        damper = self._springs[i].damping * phi_dot
         return Instant(
             theta=theta,
             phi=phi,
@@ -142,8 +168,8 @@ class DrakePhysics:
             phi_dot=phi_dot,
             theta_ddot=(self._now[i][2] - v) / self._step,
             friction=self._friction[i],
-            damper=spring.damping * phi_dot,
-            tau_e=spring.torque(phi),
-            stiffness=spring.slope(phi),
+            damper=damper,
+            tau_e=load - damper,
+            stiffness=self._springs[i].slope(phi),
             theta_c=0.0,
         )

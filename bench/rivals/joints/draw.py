@@ -68,6 +68,8 @@ EYELET_BY_LEVER: Range = (2.0, 3.0)
 SPREAD: Range = (0.3, 0.7)  # [rad]
 STIFFEST: Range = (1.5, 4.0)  # stiffness at the highest tension by that at the lowest
 OF_TENDONS: Range = (0.1, 0.4)  # share of their stiffness in that of the joint at the lowest
+LARGEST_STRETCH = 0.8  # of springs that run straight, by their length
+LARGEST_TRAVEL = 0.6  # of their ends, by the radius where they end
 RANGE_THETA_C: Range = (1.0, 6.0)  # [rad]
 KNOTS = 2.5  # between them the stiffness motor turns evenly [s]
 
@@ -327,11 +329,22 @@ def _tendons(rng: Rng, stiffness: float, load: float) -> Tendons:
     return Tendons(lever, eyelet, spread, k, tension, travel, range_theta_c, damping)
 
 
-def variable_stiffness(rng: Rng) -> VariableStiffness:
-    """A joint with two tendons, whose stiffness motor turns during the run."""
+def _is_spring(tendons: Tendons) -> bool:
+    length, stretched = tendons.length(tendons.spread), tendons.tension / tendons.stiffness
+    travel = tendons.travel * tendons.range_theta_c
+    return stretched < LARGEST_STRETCH * length and travel < LARGEST_TRAVEL * tendons.eyelet
+
+
+def variable_stiffness(rng: Rng, straight: bool) -> VariableStiffness:
+    """A joint with two tendons, whose stiffness motor turns during the run.
+
+    If the tendons are springs that run straight, they are longer than what stretches them.
+    """
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS_VARIABLE, load)
-    tendons = _tendons(rng, stiffness, load)
+    tendons = _until(
+        lambda: _tendons(rng, stiffness, load), lambda drawn: not straight or _is_spring(drawn)
+    )
     motor, link, gravity, drive, instruments, sheet = _single(rng, load, stiffness)
     knots = np.arange(0, DURATION + KNOTS, KNOTS)
     theta_c = np.interp(TIMES, knots, rng.uniform(0, tendons.range_theta_c, len(knots)))
