@@ -24,6 +24,7 @@ from rivals.records import Array
 
 SECONDS = 4.0  # of a run here
 SEED = 1
+HARDENING = 2  # a seed of springs that harden
 TOUCHING = 3  # a seed of an arm that touches the floor soon, in both engines
 BUILDS = [*catalogue.BUILDS]
 
@@ -144,6 +145,7 @@ def test_the_true_stiffness_is_the_slope_of_the_torque(run: Run) -> None:
     assert (x["stiffness"] > 0).all()
 
 
+@pytest.mark.slow("the steps of a joint in Drake are slow, and here are three times as many")
 def test_smaller_steps_give_the_same_motion(
     build_of: tuple[str, str], joint: Any, run: Run
 ) -> None:
@@ -212,6 +214,20 @@ def test_the_tip_touches_the_floor(engine: str) -> None:
     touching = catalogue.simulate("arm", engine, joint).signals["tau_e"]
     free = catalogue.simulate("arm", engine, replace(joint, floor=-10.0)).signals["tau_e"]
     assert rms(touching - free) > 0.02 * rms(free)
+
+
+@pytest.mark.parametrize("kind", ["series_elastic", "arm"])
+def test_a_spring_of_mujoco_hardens(kind: str) -> None:
+    """Linear and cubic, as its polynomial says."""
+    need("mujoco")
+    joint = shortened(catalogue.drawn(kind, "mujoco", HARDENING))
+    spring = joint.springs[joint.observed] if isinstance(joint, Arm) else joint.spring
+    x = catalogue.simulate(kind, "mujoco", joint).signals
+    assert spring.k_3 > 0
+    np.testing.assert_allclose(
+        x["tau_e"], [spring.torque(phi) for phi in x["phi"]], rtol=1e-9, atol=1e-9
+    )
+    np.testing.assert_allclose(x["stiffness"], [spring.slope(phi) for phi in x["phi"]], rtol=1e-6)
 
 
 def test_a_log_is_what_the_instruments_make_of_the_run(
