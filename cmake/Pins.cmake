@@ -15,5 +15,6 @@ add_custom_target(
   COMMAND ${consistent} --group release -o requirements/release.txt
   COMMAND ${consistent} --group bench -o requirements/bench.txt
   COMMAND ${consistent} --group coverage -o requirements/coverage.txt
+  COMMAND ${consistent} --group rivals -o requirements/rivals.txt
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   COMMENT "Writing requirements/*.txt" VERBATIM)

@@ -1,0 +1,1 @@
+"""Joints in physics engines that we did not write: MuJoCo and Drake."""

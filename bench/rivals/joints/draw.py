@@ -1,0 +1,429 @@
+"""Draws joints at random, from ranges that are stated here. Nothing is tuned to any method.
+
+A range is log-uniform if its name begins with LOG_, else uniform. Draws that no designer would make
+are drawn again: a motor that does not match its load, a joint that swings slower or faster than
+joints do, an encoder that cannot see the deformation, a motor too weak to hold its arm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from rivals.joints.encoders import count
+from rivals.joints.excitation import Complex, Drive, Multisine
+from rivals.joints.friction import MODELS, Friction
+from rivals.joints.logs import STD_B, STD_D
+from rivals.joints.parameters import (
+    Arm,
+    Instruments,
+    Link,
+    Motor,
+    SeriesElastic,
+    Sheet,
+    Spring,
+    Tendons,
+    VariableStiffness,
+)
+from rivals.joints.simulation import DURATION, SAMPLE_PERIOD
+from rivals.records import Array
+
+Range = tuple[float, float]
+Rng = np.random.Generator
+
+G = 9.81  # [m/s2]
+
+# The motor.
+LOG_GEAR: Range = (30.0, 160.0)
+LOG_B: Range = (1e-5, 2e-4)  # [kg.m2]
+LOG_PEAK_BY_B: Range = (3e3, 15e3)  # peak torque by inertia [rad/s2]
+LOG_D_BY_B: Range = (1.0, 30.0)  # [1/s]
+LOG_STICTION_TIME: Range = (1e-3, 1e-2)  # [s]
+
+# Its friction, with one of the models M1 to M6. Torques by the peak torque.
+LOG_DRY: Range = (0.005, 0.08)
+STATIC_SHARE: Range = (0.0, 0.6)  # share of the dry friction at rest that motion takes away
+LOG_V_S: Range = (0.05, 2.0)  # [rad/s]
+ALPHA: Range = (1.0, 3.0)
+LOAD: Range = (0.0, 0.1)
+QUADRATIC: Range = (0.0, 0.05)  # by 1 / peak
+
+# The spring, and the load that it carries.
+LOG_STIFFNESS: Range = (100.0, 10000.0)  # [N.m/rad]
+LOG_STIFFNESS_VARIABLE: Range = (100.0, 400.0)  # at the lowest tension [N.m/rad]
+LOG_STIFFNESS_ARM: Range = (500.0, 10000.0)  # [N.m/rad]
+HARDENING: Range = (0.0, 0.5)  # more stiffness at the largest deformation, in half of the joints
+DAMPING_RATIO: Range = (0.002, 0.03)  # of the link on its spring, motor held
+LOG_LINK: Range = (0.05, 1.0)  # [kg.m2]
+LOG_LOAD_BY_MOTOR: Range = (0.25, 8.0)  # inertia of the load by that of the motor behind the gear
+FREQUENCY: Range = (2.0, 25.0)  # of the link on its spring, motor held [Hz]
+
+# The tendons.
+LEVER: Range = (0.05, 0.08)  # [m]
+EYELET_BY_LEVER: Range = (2.0, 3.0)
+SPREAD: Range = (0.3, 0.7)  # [rad]
+STIFFEST: Range = (1.5, 4.0)  # stiffness at the highest tension by that at the lowest
+OF_TENDONS: Range = (0.1, 0.4)  # share of their stiffness in that of the joint at the lowest
+LARGEST_STRETCH = 0.8  # of springs that run straight, by their length
+LARGEST_TRAVEL = 0.6  # of their ends, by the radius where they end
+RANGE_THETA_C: Range = (1.0, 6.0)  # [rad]
+KNOTS = 2.5  # between them the stiffness motor turns evenly [s]
+
+# The arm.
+LENGTHS: Range = (0.25, 0.45)  # [m]
+LOG_MASS_1: Range = (0.5, 2.5)  # [kg]
+LOG_MASS_2: Range = (0.6, 3.0)  # with its load [kg]
+CENTRE: Range = (0.4, 0.7)  # by the length
+POSE: Range = (0.2, 1.2)  # of both motors, around which they move [rad]
+GRAVITY_KNOWN: Range = (0.9, 1.1)  # what the drives make up for, by what is there
+TIP = 0.02  # radius [m]
+HOLDS: float = 1.8  # peak torque by the largest torque of gravity, at least
+TOUCHES: Range = (0.05, 0.25)  # share of the time for which the tip is asked to be in the floor
+
+# Instruments and log.
+BITS = (14, 19)  # of the encoders, of the link's and, behind the gear, of the motor's
+COUNTS = 30  # of both encoders for the expected deformation, at least
+LOG_NOISE: Range = (0.005, 0.03)  # by the peak torque
+DELAY: Range = (0.0, 2e-3)  # [s]
+LAG: Range = (2e-4, 6e-4)  # [s]
+STD_GAIN = 0.015
+COULOMB_KNOWN: Range = (1.0, 2.0)  # largest plausible by true
+MARGIN: Range = (1.05, 1.5)  # largest expected by largest, of deformation and torque
+
+# What the drives do.
+EFFORT: Range = (0.4, 0.8)  # of the peak torque
+LINES = 10  # of a multisine
+LOWEST = 0.3  # line [Hz]
+HIGHEST: Range = (0.6, 1.3)  # line of a torque by the frequency of the link on its spring
+BANDWIDTH: Range = (1.5, 4.0)  # of position control [Hz]
+LARGEST_SPEED = 500.0  # of a motor [rad/s]
+LARGEST_GAIN = 60.0  # kd by inertia, so that control is stable in spite of delays [1/s]
+LARGEST_SWING: Range = (0.3, 1.0)  # [rad]
+CENTRING = 0.3  # bandwidth of what keeps a joint near zero while a torque is fed forward [Hz]
+SPRING_STANDS = 1.5  # torque of the spring by that of the motor at its peak, at most
+LARGEST_PHI = 0.2  # [rad]
+
+TIMES: Array = SAMPLE_PERIOD * np.arange(round(DURATION / SAMPLE_PERIOD), dtype=np.float64)
+
+T = TypeVar("T")
+
+
+def _log(rng: Rng, limits: Range) -> float:
+    return float(np.exp(rng.uniform(*np.log(limits))))
+
+
+def _even(rng: Rng, limits: Range) -> float:
+    return float(rng.uniform(*limits))
+
+
+def _within(value: float, limits: Range) -> bool:
+    return limits[0] <= value <= limits[1]
+
+
+def _until(draw: Callable[[], T], good: Callable[[T], bool]) -> T:
+    """The first draw that is good."""
+    for _ in range(100_000):
+        drawn = draw()
+        if good(drawn):
+            return drawn
+    raise RuntimeError("no draw was good; the ranges contradict each other")
+
+
+def _friction(rng: Rng, peak: float) -> Friction:
+    model = int(rng.choice(MODELS))
+    dry = _log(rng, LOG_DRY) * peak
+    static = _even(rng, STATIC_SHARE) if model in (2, 4, 5, 6) else 0.0
+    m, e, ms, es = rng.uniform(*LOAD, 4)
+    mq, eq = rng.uniform(*QUADRATIC, 2) / peak
+    if model in (3, 4):
+        e, es = m, ms
+    return Friction(
+        model=model,
+        K_c=(1 - static) * dry,
+        K_cs=static * dry,
+        v_s=_log(rng, LOG_V_S),
+        alpha=_even(rng, ALPHA),
+        K_m=float(m) if model >= 3 else 0.0,
+        K_e=float(e) if model >= 3 else 0.0,
+        K_ms=float(ms) if model >= 4 else 0.0,
+        K_es=float(es) if model >= 4 else 0.0,
+        K_mq=float(mq) if model == 6 else 0.0,
+        K_eq=float(eq) if model == 6 else 0.0,
+    )
+
+
+def _motor(rng: Rng, load: float, holds: float = 0.0) -> Motor:
+    """A motor for an inertia [kg.m2] that lifts a torque `holds` [N.m]."""
+
+    def draw() -> Motor:
+        B = _log(rng, LOG_B)
+        peak = B * _log(rng, LOG_PEAK_BY_B)
+        return Motor(
+            gear=_log(rng, LOG_GEAR),
+            B=B,
+            D=B * _log(rng, LOG_D_BY_B),
+            peak=peak,
+            friction=_friction(rng, peak),
+            stiction_time=_log(rng, LOG_STICTION_TIME),
+        )
+
+    def good(motor: Motor) -> bool:
+        matches = _within(load / motor.inertia, LOG_LOAD_BY_MOTOR)
+        return matches and motor.gear * motor.peak >= HOLDS * holds
+
+    return _until(draw, good)
+
+
+def _spring(rng: Rng, stiffness: float, load: float, torque: float, hardens: bool) -> Spring:
+    """A spring that hardens at the deformation under this torque [N.m]."""
+    more = _even(rng, HARDENING) * int(rng.integers(2)) if hardens else 0.0
+    damping = 2 * _even(rng, DAMPING_RATIO) * math.sqrt(stiffness * load)
+    return Spring(stiffness, stiffness * more / 3 / (torque / stiffness) ** 2, damping)
+
+
+def _stiffness(rng: Rng, limits: Range, load: float) -> float:
+    return _until(
+        lambda: _log(rng, limits), lambda k: _within(math.sqrt(k / load) / 2 / math.pi, FREQUENCY)
+    )
+
+
+def _sheet(rng: Rng) -> Sheet:
+    return Sheet(
+        B=1 + STD_B * float(rng.standard_normal()),
+        D=1 + STD_D * float(rng.standard_normal()),
+        coulomb=_even(rng, COULOMB_KNOWN),
+        phi=_even(rng, MARGIN),
+        tau_e=_even(rng, MARGIN),
+    )
+
+
+def _instruments(rng: Rng, peak: float, phi: float) -> Instruments:
+    """Encoders that see the deformation phi [rad]."""
+
+    def encoder() -> int:
+        return 1 << int(rng.integers(BITS[0], BITS[1] + 1))
+
+    def sees(counts: int) -> bool:
+        return counts == 2 ** BITS[1] or phi >= COUNTS * count(counts)
+
+    return Instruments(
+        commanded=bool(rng.integers(2)),
+        delay=_even(rng, DELAY),
+        lag=_even(rng, LAG),
+        gain=1 + STD_GAIN * float(rng.standard_normal()),
+        noise=_log(rng, LOG_NOISE) * peak,
+        counts_theta=_until(encoder, sees),
+        counts_q=_until(encoder, sees),
+    )
+
+
+def _multisine(rng: Rng, highest: float) -> Multisine:
+    frequencies = np.geomspace(LOWEST, highest, LINES) * rng.uniform(0.9, 1.1, LINES)
+    return Multisine(frequencies, np.ones(LINES), rng.uniform(0, 2 * math.pi, LINES))
+
+
+def _peak(values: Array) -> float:
+    return float(np.abs(values).max())
+
+
+def _gains(motor: Motor, load: float, bandwidth: float) -> tuple[float, float]:
+    """kp and kd of a motor with a load [kg.m2] for a bandwidth [Hz]."""
+    omega = 2 * math.pi * bandwidth
+    total = (motor.inertia + load) / motor.gear
+    kd = min(2 * 0.7 * omega * total, LARGEST_GAIN * motor.B * motor.gear)
+    return kd * omega / 1.4, kd
+
+
+def _linear(motor: Motor, load: float, stiffness: float, s: Complex) -> tuple[Complex, Complex]:
+    """Motor position and deformation by torque of a linear joint at s = 2 pi j f."""
+    c = stiffness * (1 + 1e-3 * s)
+    phi_by_theta = -load * s**2 / (load * s**2 + c)
+    own = motor.inertia * s**2 + motor.gear**2 * motor.D * s
+    theta = motor.gear / (own - c * phi_by_theta)
+    return theta, phi_by_theta * theta
+
+
+def _torque_drive(rng: Rng, motor: Motor, load: float, stiffness: float) -> tuple[Drive, float]:
+    """A multisine of torque, and the deformation of a linear joint under it [rad]."""
+    own = math.sqrt(stiffness / load) / 2 / math.pi
+    sines = _multisine(rng, max(_even(rng, HIGHEST) * own, 3 * LOWEST))
+    s = 2j * np.pi * sines.frequencies.astype(np.complex128)
+    theta_by_torque, phi_by_torque = _linear(motor, load, stiffness, s)
+    speed = motor.gear * _peak(sines.harmonics(TIMES, s * theta_by_torque))
+    phi = _peak(sines.harmonics(TIMES, phi_by_torque))
+    most = min(SPRING_STANDS * motor.gear * motor.peak / stiffness, LARGEST_PHI)
+    effort = _even(rng, EFFORT) * motor.peak / _peak(sines(TIMES))
+    scale = min(effort, LARGEST_SPEED / speed, most / phi)
+    kp, kd = _gains(motor, load, CENTRING)
+    drive = Drive(scale * sines(TIMES), np.zeros_like(TIMES), kp, kd, motor.peak)
+    return drive, scale * phi
+
+
+def _position_drive(
+    rng: Rng, motor: Motor, load: float, stiffness: float, centre: float = 0.0
+) -> tuple[Drive, float]:
+    """Position control along a multisine, and the deformation by the inertia alone [rad]."""
+    bandwidth = _even(rng, BANDWIDTH)
+    sines = _multisine(rng, bandwidth)
+    sines = Multisine(sines.frequencies, 1 / sines.frequencies, sines.phases)
+    s = 2j * np.pi * sines.frequencies.astype(np.complex128)
+    acceleration = _peak(sines.harmonics(TIMES, s**2))
+    torque = (motor.inertia + load) / motor.gear * acceleration
+    scale = min(
+        _even(rng, EFFORT) * motor.peak / torque,
+        LARGEST_SPEED / motor.gear / _peak(sines.harmonics(TIMES, s)),
+        _even(rng, LARGEST_SWING) / _peak(sines(TIMES)),
+        LARGEST_PHI * stiffness / load / acceleration,
+    )
+    kp, kd = _gains(motor, load, bandwidth)
+    drive = Drive(np.zeros_like(TIMES), centre + scale * sines(TIMES), kp, kd, motor.peak)
+    return drive, scale * load * acceleration / stiffness
+
+
+def _rod(inertia: float, length: float) -> Link:
+    """A uniform rod with this inertia about its end [kg.m2]."""
+    mass = 3 * inertia / length**2
+    return Link(mass, length, length / 2, mass * length**2 / 12)
+
+
+def _single(
+    rng: Rng, load: float, stiffness: float
+) -> tuple[Motor, Link, float, Drive, Instruments, Sheet]:
+    """All of a joint with one motor but its spring; its axis is horizontal if the motor can lift
+    the link, in half of the cases."""
+    motor = _motor(rng, load)
+    link = _rod(load, _even(rng, LENGTHS))
+    lifts = HOLDS * link.mass * G * link.centre <= motor.gear * motor.peak
+    gravity = G if lifts and rng.integers(2) else 0.0
+    make = _torque_drive if rng.integers(2) else _position_drive
+    drive, phi = make(rng, motor, load, stiffness)
+    return motor, link, gravity, drive, _instruments(rng, motor.peak, phi), _sheet(rng)
+
+
+def series_elastic(rng: Rng, hardens: bool) -> SeriesElastic:
+    """A series elastic joint, whose spring may harden or is linear."""
+    load = _log(rng, LOG_LINK)
+    stiffness = _stiffness(rng, LOG_STIFFNESS, load)
+    motor, link, gravity, drive, instruments, sheet = _single(rng, load, stiffness)
+    spring = _spring(rng, stiffness, load, motor.gear * motor.peak, hardens)
+    return SeriesElastic(motor, spring, link, gravity, drive, instruments, sheet)
+
+
+def _tendons(rng: Rng, stiffness: float, load: float) -> Tendons:
+    lever = _even(rng, LEVER)
+    eyelet = lever * _even(rng, EYELET_BY_LEVER)
+    range_theta_c = _even(rng, RANGE_THETA_C)
+    share, stiffest = _even(rng, OF_TENDONS), _even(rng, STIFFEST)
+    damping = 2 * _even(rng, DAMPING_RATIO) * math.sqrt(stiffness * load)
+    spread = _even(rng, SPREAD)
+    # The stiffness of a joint is linear in stiffness and tension of its tendons.
+    by_stiffness = Tendons(lever, eyelet, spread, 1, 0, 0, 1, damping).joint_stiffness(0)
+    by_tension = Tendons(lever, eyelet, spread, 0, 1, 0, 1, damping).joint_stiffness(0)
+    k = share * stiffness / by_stiffness
+    tension = (1 - share) * stiffness / by_tension
+    travel = (stiffest - 1) * stiffness / by_tension / k / range_theta_c
+    return Tendons(lever, eyelet, spread, k, tension, travel, range_theta_c, damping)
+
+
+def _is_spring(tendons: Tendons) -> bool:
+    length, stretched = tendons.length(tendons.spread), tendons.tension / tendons.stiffness
+    travel = tendons.travel * tendons.range_theta_c
+    return stretched < LARGEST_STRETCH * length and travel < LARGEST_TRAVEL * tendons.eyelet
+
+
+def variable_stiffness(rng: Rng, straight: bool) -> VariableStiffness:
+    """A joint with two tendons, whose stiffness motor turns during the run.
+
+    If the tendons are springs that run straight, they are longer than what stretches them.
+    """
+    load = _log(rng, LOG_LINK)
+    stiffness = _stiffness(rng, LOG_STIFFNESS_VARIABLE, load)
+    tendons = _until(
+        lambda: _tendons(rng, stiffness, load), lambda drawn: not straight or _is_spring(drawn)
+    )
+    motor, link, gravity, drive, instruments, sheet = _single(rng, load, stiffness)
+    knots = np.arange(0, DURATION + KNOTS, KNOTS)
+    theta_c = np.interp(TIMES, knots, rng.uniform(0, tendons.range_theta_c, len(knots)))
+    return VariableStiffness(motor, tendons, link, gravity, drive, theta_c, instruments, sheet)
+
+
+def _links(rng: Rng) -> tuple[Link, Link]:
+    def draw(masses: Range) -> Link:
+        mass, length = _log(rng, masses), _even(rng, LENGTHS)
+        return Link(mass, length, _even(rng, CENTRE) * length, mass * length**2 / 12)
+
+    return _until(
+        lambda: (draw(LOG_MASS_1), draw(LOG_MASS_2)),
+        lambda links: all(_within(load, LOG_LINK) for load in _loads(links)),
+    )
+
+
+def _loads(links: tuple[Link, Link]) -> tuple[float, float]:
+    """Inertia about both axes, the elbow bent by a right angle [kg.m2]."""
+    upper, lower = links
+    at_elbow = lower.about_axis
+    return upper.about_axis + lower.mass * upper.length**2 + at_elbow, at_elbow
+
+
+def gravity_torques(links: tuple[Link, Link], q_1: Array, q_2: Array) -> tuple[Array, Array]:
+    """What holds the arm at these angles, the second one against the first link [N.m]."""
+    upper, lower = links
+    elbow = G * lower.mass * lower.centre * np.sin(q_1 + q_2)
+    at_shoulder = G * (upper.mass * upper.centre + lower.mass * upper.length) * np.sin(q_1)
+    return at_shoulder + elbow, elbow
+
+
+def _floor(rng: Rng, links: tuple[Link, Link], q_1: Array, q_2: Array) -> float | None:
+    """Where the tip is asked to be under it for some of the time, but not at the beginning."""
+    height = -links[0].length * np.cos(q_1) - links[1].length * np.cos(q_1 + q_2) - TIP
+    floor = float(np.quantile(height, _even(rng, TOUCHES)))
+    return floor if height[0] > floor + TIP else None
+
+
+def arm(rng: Rng, hardens: bool) -> Arm:
+    """An arm with two flexible joints; which one is in the log is drawn."""
+    return _until(lambda: _arm(rng, hardens), lambda drawn: drawn is not None)  # type: ignore
+
+
+def _arm(rng: Rng, hardens: bool) -> Arm | None:
+    links = _links(rng)
+    loads = _loads(links)
+    quarter = np.full(1, math.pi / 2)
+    holds = [float(each[0]) for each in gravity_torques(links, quarter, 0 * quarter)]
+    stiffness = [_stiffness(rng, LOG_STIFFNESS_ARM, load) for load in loads]
+    motors = [_motor(rng, load, hold) for load, hold in zip(loads, holds, strict=True)]
+    centres = [float(each) for each in rng.uniform(*POSE, 2)]
+    made = [
+        _position_drive(rng, motor, load, k, centre)
+        for motor, load, k, centre in zip(motors, loads, stiffness, centres, strict=True)
+    ]
+    references = [drive.reference for drive, _ in made]
+    floor = _floor(rng, links, references[0], references[1])
+    if floor is None:
+        return None
+    weights = gravity_torques(links, references[0], references[1])
+    drives, instruments, springs = [], [], []
+    for motor, (drive, phi), weight, k, load in zip(
+        motors, made, weights, stiffness, loads, strict=True
+    ):
+        known = _even(rng, GRAVITY_KNOWN) * weight / motor.gear
+        drives.append(replace(drive, feed_forward=known))
+        instruments.append(_instruments(rng, motor.peak, phi + float(np.ptp(weight)) / 2 / k))
+        springs.append(_spring(rng, k, load, motor.gear * motor.peak, hardens))
+    return Arm(
+        motors=(motors[0], motors[1]),
+        springs=(springs[0], springs[1]),
+        links=links,
+        gravity=G,
+        tip=TIP,
+        floor=floor,
+        start=(centres[0], centres[1]),
+        drives=(drives[0], drives[1]),
+        observed=int(rng.integers(2)),
+        instruments=(instruments[0], instruments[1]),
+        sheet=_sheet(rng),
+    )

@@ -1,0 +1,58 @@
+"""From clean signals to a log: encoders, torque as it is logged, what the owner knows."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rivals.joints.encoders import rounded
+from rivals.joints.parameters import Instruments, Motor, Sheet
+from rivals.joints.simulation import SAMPLE_PERIOD, Run
+from rivals.records import Array, JointLog, Known
+
+STD_B = 0.05
+STD_D = 0.2
+"""Relative standard deviations of the data sheets, as drawn and as told to the methods."""
+
+
+def log(
+    name: tuple[str, str, int],
+    run: Run,
+    motor: Motor,
+    instruments: Instruments,
+    sheet: Sheet,
+    rng: np.random.Generator,
+) -> JointLog:
+    """The log of a run; `name` is kind, engine, seed, and `rng` draws the noise."""
+    kind, engine, seed = name
+    theta, phi = run.signals["theta"], run.signals["phi"]
+    torque = run.command if instruments.commanded else run.late
+    noise = instruments.noise * rng.standard_normal(len(theta))
+    return JointLog(
+        kind=kind,
+        engine=engine,
+        seed=seed,
+        sample_period=SAMPLE_PERIOD,
+        theta=rounded(theta, instruments.counts_theta),
+        q=rounded(theta + phi, instruments.counts_q),
+        tau=instruments.gain * torque + noise,
+        theta_c=run.signals["theta_c"],
+        tau_e=run.signals["tau_e"],
+        stiffness=run.signals["stiffness"],
+        known=_known(motor, instruments, sheet, phi, run.signals["tau_e"]),
+    )
+
+
+def _known(motor: Motor, instruments: Instruments, sheet: Sheet, phi: Array, tau_e: Array) -> Known:
+    return Known(
+        gamma=motor.gear,
+        B=sheet.B * motor.B,
+        D_theta=sheet.D * motor.D,
+        relative_std_B=STD_B,
+        relative_std_D_theta=STD_D,
+        tau_coulomb=sheet.coulomb * motor.friction.at_rest,
+        noise_tau=instruments.noise,
+        counts_theta=instruments.counts_theta,
+        counts_q=instruments.counts_q,
+        range_phi=sheet.phi * float(np.abs(phi).max()),
+        range_tau_e=sheet.tau_e * float(np.abs(tau_e).max()),
+    )
