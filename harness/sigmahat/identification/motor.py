@@ -92,7 +92,7 @@ def fit_motor(
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     (n, m), smallest = choose(equations(without_sensor, T, gamma, form), _N, m_most)
     form = replace(form, n=n, m=m)
-    systems = _systems(pieces, T, gamma, _with_friction(pieces, T, gamma, form))
+    systems = _systems(pieces, T, gamma, form)
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
     fits = _fits(systems)
     quantities = {name: _motor_quantity(name, fits, torque) for name in MOTOR}
@@ -141,24 +141,21 @@ def _frictions(form: Form) -> list[Form]:
     ]
 
 
-def _with_friction(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Form:
-    """The form of friction with the least errors, if the plain one is significantly worse."""
-    forms = _frictions(form)
-    fits = [fit(equations(pieces, T, gamma, each)) for each in forms]
-    sums = [float(np.sum(each.squares)) for each in fits]
-    best = int(np.nanargmin(sums)) if np.isfinite(sums[0]) else 0
-    return forms[best] if _is_worse(fits[0], fits[best]) else forms[0]
-
-
 def _systems(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Variants[Equations]:
+    """With the form of friction of the least errors, if the plain one is significantly worse."""
+    every = {each: equations(pieces, T, gamma, each) for each in _frictions(form)}
+    fits = {each: fit(system) for each, system in every.items()}
+    plain = next(iter(every))
+    best = min(fits, key=lambda each: float(np.nan_to_num(np.sum(fits[each].squares), nan=np.inf)))
+    chosen = best if _is_worse(fits[plain], fits[best]) else plain
     filters = (
-        replace(form, wide=min(2 * form.wide, 2 * _WIDEST / T)),
-        replace(form, f_0=0.6 * form.f_0),
+        replace(chosen, wide=min(2 * form.wide, 2 * _WIDEST / T)),
+        replace(chosen, f_0=0.6 * form.f_0),
     )
     return Variants(
-        equations(pieces, T, gamma, form),
+        every[chosen],
         [equations(pieces, T, gamma, each) for each in filters],
-        [equations(pieces, T, gamma, each) for each in _frictions(form) if each != form],
+        [system for each, system in every.items() if each != chosen],
     )
 
 
