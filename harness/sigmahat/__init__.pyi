@@ -34,6 +34,10 @@ from .runs.scenario import Comparison as Comparison
 from .runs.scenario import Scenario as Scenario
 from .runs.scenario import Sine as Sine
 from .runs.scenario import Sines as Sines
+from .validation.agreement import Agreement as Agreement
+from .validation.torque import TorqueError as TorqueError
+from .validation.validate import Validation as Validation
+from .validation.validate import validate as validate
 
 __all__: list[str]
 __version__: str

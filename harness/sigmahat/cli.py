@@ -9,12 +9,14 @@ import click
 
 from sigmahat.commands.compare import compare
 from sigmahat.commands.estimate import estimate
+from sigmahat.commands.export import export
 from sigmahat.commands.identify import identify
 from sigmahat.commands.init import init
 from sigmahat.commands.report import report
 from sigmahat.commands.reproduce import reproduce
 from sigmahat.commands.scenarios import scenarios
 from sigmahat.commands.sweep import sweep
+from sigmahat.commands.validate import validate
 
 _ERROR, _INTERRUPTED = 2, 130
 
@@ -27,11 +29,14 @@ def cli() -> None:
     \b
     Example: sigmahat reproduce
 
-    Exit status: 0 done; 2 error, one line on stderr says which; 130 interrupted.
+    Exit status: 0 done; 1 validate: the logs do not agree; 2 error, one line on stderr says
+    which; 130 interrupted.
     """
 
 
-for command in (reproduce, compare, scenarios, init, estimate, identify, sweep, report):
+for command in (
+    *(reproduce, compare, scenarios, init, estimate, identify, validate, export, sweep, report),
+):
     cli.add_command(command)
 
 

@@ -115,6 +115,8 @@ def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
         ("reproduce", {"--json", "--quiet"}),
         ("estimate", {"--json", "--quiet"}),
         ("identify", {"--json", "--quiet"}),
+        ("validate", {"--json", "--quiet"}),
+        ("export", {"--quiet"}),  # it writes a file for programs
         ("init", {"--quiet"}),  # it writes a file for people
         ("scenarios", {"--json"}),  # it is asked for nothing but what it prints
     ],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 import h5py
 import numpy as np
@@ -49,10 +50,19 @@ motor.gamma = 50
 """
 
 
-def awas_log(f: float, amplitude: float, duration: float = 15.0, seed: int = 1) -> dict[str, Array]:
-    """AwAS with friction and noise, tau = amplitude sin(2 pi f t): ports, t, true stiffness."""
+def awas_log(
+    f: float,
+    amplitude: float,
+    duration: float = 15.0,
+    seed: int = 1,
+    plant: Mapping[str, float] = MappingProxyType({}),
+) -> dict[str, Array]:
+    """AwAS with friction and noise, tau = amplitude sin(2 pi f t): ports, t, true stiffness.
+
+    plant  other start values of it
+    """
     t = times(T, duration)
-    start = {**RETRACTED, "motor.tau_coulomb": TRUE["tau_coulomb"], "noise.seed": seed}
+    start = {**RETRACTED, "motor.tau_coulomb": TRUE["tau_coulomb"], "noise.seed": seed, **plant}
     torques = sinusoids(t, (amplitude, f), (8.0, 0.1), (0.0, 0.0))
     run = run_awas(T, torques, start, (*COLUMNS.values(), "sigma"))
     return {"t": t, **{port: run[name] for port, name in COLUMNS.items()}, "true": run["sigma"]}

@@ -60,7 +60,7 @@ def test_replay_is_the_cosimulation(
         title = f"estimate.{name} [{unit}]" if unit else f"estimate.{name}"
         assert table[title].to_numpy() == pytest.approx(expected[name], rel=1e-12, abs=1e-12)
     files = {path.suffix for path in (tmp_path / "out").iterdir()}
-    assert files == {".png", ".svg", ".csv" if suffix == ".csv" else ".parquet"}
+    assert files == {".png", ".svg", ".json", ".csv" if suffix == ".csv" else ".parquet"}
 
 
 def test_mat_of_version_7_3(table1: Recording, log: dict[str, Array], tmp_path: Path) -> None:

@@ -21,13 +21,19 @@ from sigmahat.commands import common
     callback=common.folder,
     help="Folder for table and figure.  [default: sigmahat-results/LOG]",
 )
+@click.option(
+    "--start-from",
+    type=click.Path(path_type=Path),
+    help="Go on from what was learned before: the folder of another log, or its state.json.",
+)
 @common.json_option
 @common.quiet_option
-def estimate(log: Path, config: Path | None, out: Path | None) -> None:
+def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path | None) -> None:
     """Replay LOG through the estimator, and add the stiffness to its table.
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag; `sigmahat init LOG` writes the
-    configuration. Writes a table (CSV for CSV, else Parquet) and a figure.
+    configuration. Writes a table (CSV for CSV, else Parquet), a figure, a data sheet of the joint
+    (joint.json) for `sigmahat export`, and what was learned (state.json) for --start-from.
 
     \b
     Example: sigmahat estimate knee.parquet --config knee.toml --out knee
@@ -44,6 +50,6 @@ def estimate(log: Path, config: Path | None, out: Path | None) -> None:
         opened = open_log(log)
         configuration = read_configuration(config or common.configuration_of(log))
         with output_folder(out) as folder, common.progress("Replaying", 1000) as bar:
-            result = run(opened, configuration, folder, progress=bar.update)
-    where = f"Table and figure (PNG, SVG) are in {out.resolve()}"
+            result = run(opened, configuration, folder, bar.update, start_from)
+    where = f"Table, figure (PNG, SVG), joint.json and state.json are in {out.resolve()}"
     common.answer(f"{summary(result)}\n\n{where}", result.as_dict())

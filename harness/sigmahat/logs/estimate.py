@@ -1,4 +1,4 @@
-"""The job of `sigmahat estimate`: replays a log, writes its table and figure."""
+"""The job of `sigmahat estimate`: replays a log, writes table, figure, data sheet and state."""
 
 from __future__ import annotations
 
@@ -7,12 +7,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sigmahat.files.digest import sha256
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.joint import sheet
+from sigmahat.joint.records import LearnedLog
 from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.data_sheet import data_sheet
+from sigmahat.logs.learned import LEARNED, Learned, go_on, read_learned, write_learned
 from sigmahat.logs.log import Log
 from sigmahat.logs.output import EstimateWriter
-from sigmahat.logs.replay import OUTPUTS, coefficients, parameters, replay
+from sigmahat.logs.replay import OUTPUTS, coefficients, parameters, play
 from sigmahat.logs.sampling import Samples, sample
 from sigmahat.logs.statistics import ReplayStatistics
 
@@ -62,6 +67,8 @@ class Estimate:
     """Relative change of the stiffness with a relative change of the gain of the torque [1]."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""
+    learned_from: Sequence[str] = ()
+    """Logs that were learned from before this one."""
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON; units are in the names."""
@@ -84,6 +91,7 @@ class Estimate:
             "joint": self.joint,
             "sigma_per_gain": self.sigma_per_gain,
             "notes": self.notes,
+            "learned_from": self.learned_from,
             "parameters": self.parameters,
         }
 
@@ -93,36 +101,93 @@ def estimate(
     configuration: Configuration,
     folder: Path,
     progress: Callable[[int], object] = lambda thousandths: None,
+    start_from: Path | None = None,
 ) -> Estimate:
-    """Replays the log and writes estimate.csv or .parquet, estimate.png and .svg into folder.
+    """Replays the log and writes estimate.csv or .parquet, estimate.png and .svg, the data sheet of
+    the joint (joint.json) and what was learned (state.json) into folder.
 
     Now and then progress is called with the thousandths of the log done since the last call.
+    With start_from, a folder of results or its state.json, the estimator goes on from there.
 
-    Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
+    Raises LogError for a log and configuration that do not fit, and for a start_from that does not
+    fit the configuration; FmuError if the FMU refuses.
     """
-    with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
+    learned = None if start_from is None else read_learned(start_from)
+    with Fmu(installed_fmu("StiffnessEstimator")) as fmu, Slave(fmu, "estimator") as slave:
         start = parameters(fmu, configuration)
         every = fmu.parameters(start)
         configuration.need_ports(str(every["modality"]))
+        t_0 = begin(slave, configuration, learned)
         samples = sample(log, configuration, float(every["samplePeriod"]))
         statistics = ReplayStatistics(len(samples.values))
-        chunk = statistics.bucket * max(1, _CHUNK // statistics.bucket)
         units = {name: fmu.variable(name).unit for name in OUTPUTS}
-        done = 0
-        with (
-            Slave(fmu, "estimator") as slave,
-            EstimateWriter(log, samples, units, folder) as table,
-        ):
-            for outputs in replay(slave, samples, start, chunk):
-                statistics.add(outputs)
-                table.add(outputs)
-                now = done + len(outputs["valid"])
-                progress(1000 * now // len(samples.values) - 1000 * done // len(samples.values))
-                done = now
-            eta = coefficients(slave, int(every["rls.n"]), int(every["rls.m"]))
-
+        with EstimateWriter(log, samples, units, folder) as table:
+            run(slave, samples, statistics, t_0, table.add, progress)
+        eta = coefficients(slave, int(every["rls.n"]), int(every["rls.m"]))
+        logs = [*(learned.logs if learned else []), learned_log(log, statistics)]
+        write_learned(slave, every, logs, folder / LEARNED.file)
+        path, last = configuration.path, statistics.last
+        found = data_sheet(slave, every, logs, path, last, statistics.last_doubt)
+        sheet.write(found, folder / sheet.FORMAT.file)
     _save_figure(samples, statistics, every, folder)
+    return _estimate(log, samples, statistics, every, eta, logs[:-1])
+
+
+def begin(slave: Slave, configuration: Configuration, learned: Learned | None) -> float:
+    """Initialises a slave; with what was learned before, it goes on from there.
+
+    Returns the time that it has reached [s]. Raises LogError, FmuError if something does not fit.
+    """
+    start = parameters(slave.fmu, configuration)
+    slave.initialize(start)
+    if learned is None:
+        return 0.0
+    return go_on(slave, learned, slave.fmu.parameters(start), configuration.path)
+
+
+def run(
+    slave: Slave,
+    samples: Samples,
+    statistics: ReplayStatistics,
+    t_0: float,
+    add: Callable[[Mapping[str, Any]], object] = lambda outputs: None,
+    progress: Callable[[int], object] = lambda thousandths: None,
+) -> None:
+    """Plays all samples, from the time t_0 [s]; statistics and `add` are given the outputs."""
+    chunk = statistics.bucket * max(1, _CHUNK // statistics.bucket)
+    done, ticks = 0, len(samples.values)
+    for outputs in play(slave, samples, chunk, t_0):
+        statistics.add(outputs)
+        add(outputs)
+        now = done + len(outputs["valid"])
+        progress(1000 * now // ticks - 1000 * done // ticks)
+        done = now
+
+
+def learned_log(log: Log, statistics: ReplayStatistics) -> LearnedLog:
+    """The record of a log that was replayed to its end."""
+    return LearnedLog(
+        file=str(log.path),
+        sha256=sha256(log.path),
+        ticks=statistics.ticks,
+        skipped=statistics.skipped,
+        phi=statistics.used("phi"),
+        set_point=statistics.used("setPoint"),
+    )
+
+
+def _estimate(
+    log: Log,
+    samples: Samples,
+    statistics: ReplayStatistics,
+    every: Mapping[str, Value],
+    eta: Sequence[Sequence[float]],
+    before: Sequence[LearnedLog],
+) -> Estimate:
     last, doubts = statistics.last, statistics.doubts
+    notes = list(samples.notes)
+    if before:
+        notes.insert(0, f"continued from what was learned from {', '.join(b.file for b in before)}")
     return Estimate(
         log=log.path,
         ticks=len(samples.values),
@@ -142,7 +207,8 @@ def estimate(
         motor={name: last[name] for name in _MOTOR},
         joint={name: last[name] for name in last if name.endswith("_hat") and name not in _MOTOR},
         sigma_per_gain=last["sigma_per_gain"],
-        notes=samples.notes,
+        notes=notes,
+        learned_from=[each.file for each in before],
     )
 
 

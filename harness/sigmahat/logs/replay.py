@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -10,7 +11,7 @@ from fmpy import fmi2
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.configuration import PORTS, Configuration
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.sampling import Samples
 from sigmahat.logs.units import counts_per_turn
@@ -41,6 +42,8 @@ OUTPUTS = (
 """Real outputs that are recorded."""
 FLAGS = ("confident", "valid")
 """Boolean outputs that are recorded."""
+_LONGEST_GAP = 1_000_000
+"""Most samples that `gap` takes out."""
 _REASON = "doubt"
 """Output that is an enumeration; the names of its items are recorded."""
 
@@ -71,10 +74,20 @@ def replay(
 ) -> Iterator[dict[str, NDArray[Any]]]:
     """Initialises the estimator, and yields its outputs by name, a chunk of ticks at a time.
 
-    The sample at t_k is the input of the tick at t_k; ports that are not configured stay 0.
     Raises FmuError if the FMU refuses a value.
     """
     slave.initialize(start)
+    return play(slave, samples, chunk)
+
+
+def play(
+    slave: Slave, samples: Samples, chunk: int, t_0: float = 0.0
+) -> Iterator[dict[str, NDArray[Any]]]:
+    """The same for an estimator that has reached the time t_0 [s].
+
+    The sample at t_0 + t_k is the input of the tick at that time; ports that are not configured
+    keep their values, which are 0 at the start and after a gap.
+    """
     fmu, T, component = slave.fmu, samples.T, slave.component
     # Not by slave.call, whose checks would take twice the time of a tick.
     fmi = slave.functions
@@ -91,7 +104,7 @@ def replay(
         rows = (np.ctypeslib.as_ctypes(a) for a in (part, table, raised, reasons))
         for k, (row, out, flag, why) in enumerate(zip(*rows, strict=True), first):
             set_real(component, inputs, n, row)
-            if do_step(component, k * T, T, fmi2.fmi2True) > fmi2.fmi2Warning:
+            if do_step(component, t_0 + k * T, T, fmi2.fmi2True) > fmi2.fmi2Warning:
                 raise slave.failure("fmi2DoStep")
             get_real(component, outputs, m, out)
             get_boolean(component, flags, f, flag)
@@ -117,3 +130,28 @@ def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
     references = slave.fmu.references(names, "output")
     slave.call(slave.functions.fmi2GetReal, references, len(names), values)
     return np.array(values).reshape(n, m).tolist()
+
+
+def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:
+    """Samples that are missing, at the time t_0 [s]: the filters start again with the next sample.
+
+    What is learned stays. It is as after a gap in a log: MatchedFilter needs one missing sample,
+    Paper2011 as many as its residual needs to give up what it has integrated (sigmahat.h).
+
+    every  parameters of the slave
+
+    Returns the time at the end [s].
+    """
+    T = float(every["samplePeriod"])
+    ticks = 1
+    if every["method"] == "Paper2011":
+        ticks = math.ceil(min(2 / (float(every["residual.K_I"]) * T), _LONGEST_GAP))
+    inputs, count = slave.fmu.references(PORTS, "input"), len(PORTS)
+    functions = slave.functions
+    only_errors = (fmi2.fmi2String * 1)(b"logStatusError")  # this gap is no news to the user
+    slave.call(functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, only_errors)
+    slave.call(functions.fmi2SetReal, inputs, count, (fmi2.fmi2Real * count)(*[math.nan] * count))
+    slave.call(functions.fmi2DoStep, t_0, ticks * T, fmi2.fmi2True)
+    slave.call(functions.fmi2SetReal, inputs, count, (fmi2.fmi2Real * count)())
+    slave.call(functions.fmi2SetDebugLogging, fmi2.fmi2True, 0, None)
+    return t_0 + ticks * T

@@ -12,6 +12,7 @@ from sigmahat.logs.log import Array
 from sigmahat.logs.replay import OUTPUTS
 
 _BUCKETS = 4000
+_OPERATION = ("phi", "setPoint")
 DRAWN = ("sigma", "sigma_std", "tau_e", "tau_e_residual", "phi", "setPoint")
 
 
@@ -27,13 +28,16 @@ class ReplayStatistics:
         """Ticks in an interval; each chunk but the last must be a multiple of it."""
         self._parts: dict[str, list[Array]] = {name: [] for name in DRAWN}
         self._half = ticks // 2
-        self._ticks = self._later = self.skipped = 0
+        self.ticks = self._later = self.skipped = 0
         self._doubts: Counter[str] = Counter()
         self._squares = 0.0
         self._low = {name: np.inf for name in DRAWN}
         self._high = {name: -np.inf for name in DRAWN}
+        self._used: dict[str, tuple[float, float]] = {}
         self.last: dict[str, float] = {}
         """Real outputs of the last tick."""
+        self.last_doubt = ""
+        """Item of the output doubt at the last tick."""
 
     def add(self, outputs: Mapping[str, np.ndarray[Any, Any]]) -> None:
         """Adds the outputs of the next ticks."""
@@ -44,7 +48,7 @@ class ReplayStatistics:
             low = np.minimum.reduceat(values, starts)
             high = np.maximum.reduceat(values, starts)
             self._parts[name].append(np.column_stack([low, high]))
-        first = max(0, self._half - self._ticks)
+        first = max(0, self._half - self.ticks)
         if first < count:
             valid = outputs["valid"][first:]
             self._squares += float(np.sum(outputs["epsilon"][first:][valid] ** 2))
@@ -54,8 +58,14 @@ class ReplayStatistics:
                 self._low[name] = min(self._low[name], float(outputs[name][first:].min()))
                 self._high[name] = max(self._high[name], float(outputs[name][first:].max()))
         self.skipped += int(np.count_nonzero(~outputs["valid"]))
-        self._ticks += count
+        self.ticks += count
         self.last = {name: float(outputs[name][-1]) for name in OUTPUTS}
+        self.last_doubt = str(outputs["doubt"][-1])
+        learning = outputs["valid"] & (outputs["a"] > 0)
+        for name in _OPERATION if learning.any() else ():
+            used = outputs[name][learning]
+            least, most = self._used.get(name, (np.inf, -np.inf))
+            self._used[name] = min(least, float(used.min())), max(most, float(used.max()))
 
     def ends(self, name: str) -> Array:
         """Minimum and maximum in each interval, [size: intervals x 2]."""
@@ -64,6 +74,10 @@ class ReplayStatistics:
     def later(self, name: str) -> tuple[float, float]:
         """Minimum and maximum in the second half of the log."""
         return self._low[name], self._high[name]
+
+    def used(self, name: str) -> tuple[float, float] | None:
+        """Least and largest phi or setPoint at the samples that the regression used, if any."""
+        return self._used.get(name)
 
     @property
     def doubts(self) -> dict[str, float]:

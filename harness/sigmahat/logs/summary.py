@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
-from sigmahat.fmi.instance import Value
+from sigmahat.logs.assumptions import MOTOR, UNITS, absent, exact, priors
 from sigmahat.logs.estimate import Estimate
 
 _NEGLIGIBLE = 0.1
 """Of the standard deviation of its prior: what is estimated to be smaller is not shown."""
-_UNITS = {
-    "bias": "N.m",
-    "damping": "N.m.s/rad",
-    "load_friction": "",
-    "eccentric": "rad",
-    "delay": "s",
-    "hysteresis": "N.m",
+_WORDS = {
+    "tau_coulomb": "Coulomb friction",
+    "load_friction": "load friction",
+    "eccentric": "eccentricity",
 }
-"""Of what MatchedFilter estimates besides the motor data: output bias_hat, parameter prior.bias."""
-_WORDS = {"load_friction": "load friction", "eccentric": "eccentricity"}
 
 
 def summary(result: Estimate) -> str:
@@ -72,18 +67,11 @@ def _found(result: Estimate) -> Iterator[str]:
         f"Coulomb friction {tau_coulomb:.3g} N.m"
     )
     others = [
-        f"{_WORDS.get(name, name)} {value:.3g} {_UNITS[name]}".rstrip()
-        for name, std in _priors(result.parameters).items()
+        f"{_WORDS.get(name, name)} {value:.3g} {UNITS[name]}".rstrip()
+        for name, std in priors(result.parameters).items()
         if abs(value := result.joint[f"{name}_hat"]) > _NEGLIGIBLE * std
     ]
     yield f"of the joint: {', '.join([f'misfit of the model {result.misfit:.3g}', *others])}"
-
-
-def _priors(p: Mapping[str, Value]) -> dict[str, float]:
-    """Standard deviations of the priors, in the units of the outputs."""
-    tau_e, phi = float(p["prior.tau_e"]), float(p["range.phi"])
-    per_unit = {"bias": tau_e, "damping": tau_e / phi, "hysteresis": tau_e}
-    return {name: float(p[f"prior.{name}"]) * per_unit.get(name, 1.0) for name in _UNITS}
 
 
 def _rests_on(result: Estimate) -> Iterator[str]:
@@ -95,17 +83,13 @@ def _rests_on(result: Estimate) -> Iterator[str]:
         f"gain of the torque: {known} (prior.torque_gain); 1 % of it changes sigma by "
         f"{result.sigma_per_gain:.3g} %"
     )
-    if p["modality"] == "Residual":
-        for name, unit in (("B", "kg.m2"), ("D_theta", "N.m.s/rad")):
-            value, prior = float(p[f"motor.{name}"]), float(p[f"prior.{name}"])
-            if not value * prior:
-                why = f"prior.{name} = 0" if value else "0 stays 0"
-                yield f"motor.{name} = {value:.4g} {unit}, exactly ({why})"
-    absent = [_WORDS.get(name, name) for name, std in _priors(p).items() if not std]
-    if p["modality"] == "Residual" and not p["prior.tau_coulomb"]:
-        absent.insert(0, "Coulomb friction")
-    if absent:
-        yield f"no {', no '.join(absent)} (priors of 0)"
+    for name in exact(p):
+        value = float(p[f"motor.{name}"])
+        why = f"prior.{name} = 0" if value else "0 stays 0"
+        yield f"motor.{name} = {value:.4g} {MOTOR[name]}, exactly ({why})"
+    names = [_WORDS.get(name, name) for name in absent(p)]
+    if names:
+        yield f"no {', no '.join(names)} (priors of 0)"
     yield (
         f"ranges: torque about {p['prior.tau_e']:.3g} N.m at range.phi = {p['range.phi']:.3g} rad, "
         f"range.setPoint = {p['range.setPoint']:.3g}"

@@ -1,0 +1,186 @@
+"""The data sheet of a joint, `joint.json`: what logs told, for people, scripts and other tools.
+
+Numbers are written with all of their digits, so that what is read is what was estimated.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from sigmahat.fmi.instance import Value
+from sigmahat.joint.records import NO_OTHER_KEYS, FmuId, LearnedLog, Range, Text
+from sigmahat.joint.stored import Format
+
+UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "misfit": "1"}
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file that the sheet rests on."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    file: Text
+    """Its path."""
+    sha256: Text | None
+    """Of its bytes; None if there is no such file."""
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """The stiffness at a point."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    phi: float
+    """Deformation [rad]."""
+    set_point: float
+    """Set-point [1]."""
+    sigma: float
+    """Stiffness there [N.m/rad]."""
+    interval: Range | None
+    """Of 95 % [N.m/rad]; None if the method claims none."""
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """Torque of the spring: sum of eta[i][j] set-point^powers_of_set_point[j] phi^powers_of_phi[i].
+
+    The stiffness is its slope over phi.
+    """
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    powers_of_phi: list[int]
+    powers_of_set_point: list[int]
+    eta: list[list[float]]
+    """[size: powers of phi x powers of the set-point]"""
+    units: list[list[Text]]
+    """Of eta; phi is in rad, the set-point has none."""
+    phi: Range | None
+    """Deformation of the data: outside, the polynomial is a guess [rad]."""
+    set_point: Range | None
+    """Set-point of the data [1]."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of the joint."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    value: float
+    unit: Text
+    interval: Range | None
+    """Of 95 %; None if the value is taken as exact, or nothing is claimed."""
+    interval_from: Text
+    """Where the interval is from: "identify", "prior"; or why there is none."""
+
+
+@dataclass(frozen=True)
+class RestsOn:
+    """What the answer rests on, because no data show it."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    torque_gain: float
+    """Relative standard deviation of the gain of the torque [1]; it is part of the intervals."""
+    sigma_per_gain: float
+    """Relative change of the stiffness with a relative change of that gain [1]."""
+    exact: list[Text]
+    """Parameters that are taken as exact."""
+    absent: list[Text]
+    """What is taken as absent."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """Outputs of the FMU with the start values, before any sample: to see that they arrived."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    sigma: float
+    """[N.m/rad]"""
+    tau_e: float
+    """[N.m]"""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The contents of the file."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    format: Text
+    version: int
+    sigmahat: Text
+    """Version of the package that wrote it."""
+    units: dict[str, Text]
+    """Of the numbers with these keys, everywhere in the file; an interval has that of its value."""
+    fmu: FmuId
+    logs: list[LearnedLog]
+    """What was learned from, in this order."""
+    configuration: Source
+    method: Text
+    modality: Text
+    at_the_end: Stiffness
+    """The last estimate."""
+    confident: bool
+    """Whether the estimator was confident then."""
+    doubt: Text
+    """Why not."""
+    misfit: float
+    """Of the model; 1 where it holds [1]."""
+    polynomial: Polynomial
+    curve: list[Stiffness] | None
+    """The stiffness over the range of the data; None if the method claims no interval."""
+    parameters: dict[str, Parameter]
+    rests_on: RestsOn
+    start_values: dict[str, bool | int | float | str]
+    """Of the FMU, by its names, so that it begins with what was learned."""
+    check: Check
+
+
+FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)
+"""Of the file."""
+
+
+def write(sheet: Sheet, path: Path) -> None:
+    """Writes a sheet. A number that is not finite becomes null."""
+    text = json.dumps(_finite(asdict(sheet)), indent=1, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def _finite(values: Any) -> Any:
+    if isinstance(values, Mapping):
+        return {key: _finite(value) for key, value in values.items()}
+    if isinstance(values, Sequence) and not isinstance(values, str):
+        return [_finite(value) for value in values]
+    return None if isinstance(values, float) and not math.isfinite(values) else values
+
+
+def powers_of_phi(symmetric: bool, n: int) -> list[int]:
+    """Powers of the deformation in a polynomial of order n, (18)."""
+    return [2 * i + 1 if symmetric else i for i in range(n)]
+
+
+def polynomial(
+    start: Mapping[str, Value], phi: Range | None, set_point: Range | None
+) -> Polynomial:
+    """The curve of start values; phi and set_point are the ranges of the data."""
+    n, m = int(start["rls.n"]), int(start["rls.m"])
+    powers = powers_of_phi(bool(start["rls.symmetric"]), n)
+    units = {0: "N.m", 1: "N.m/rad"}
+    return Polynomial(
+        powers_of_phi=powers,
+        powers_of_set_point=list(range(m)),
+        eta=[[float(start[f"rls.eta_0[{i},{j}]"]) for j in range(m)] for i in range(n)],
+        units=[[units.get(p, f"N.m/rad{p}")] * m for p in powers],
+        phi=phi,
+        set_point=set_point,
+    )

@@ -1,0 +1,68 @@
+"""Start values of the estimator FMU, so that it begins with what another one has learned."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sigmahat.fmi.instance import Recorder, Slave, Value
+
+_CURVE = "rls.eta_0["
+_NOT_IN_A_RUN = (
+    *("B", "load_friction", "eccentric", "eccentric_motor", "delay", "reversal", "power", "gap"),
+    "hysteresis",
+)
+"""Priors of what does not differ from run to run."""
+_NONE = 1e-6
+"""Of the uncertainty of a curve: so little that it stays as it is."""
+_LARGEST = 1e12
+"""Prior that the FMU accepts."""
+
+
+def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
+    """Start values of an FMU whose curve and motor data are those that a slave has now.
+
+    The curve is a polynomial of the orders that it needs: MatchedFilter may use higher powers than
+    rls.n and rls.m have. Priors stay as they are: the new FMU begins with the curve as the mean of
+    its prior, and does not know how certain it is.
+
+    every  parameters of the slave
+    """
+    eta = [name for name in slave.fmu.variables if name.startswith("eta[")]
+    outputs = Recorder(slave, [*eta, "B_hat", "D_theta_hat"], 1)
+    outputs.sample(0)
+    found = {name: float(column[0]) for name, column in outputs.columns().items()}
+    at = {name: tuple(map(int, name[4:-1].split(","))) for name in eta}
+    used = [at[name] for name in eta if found[name]]
+    n = max([int(every["rls.n"]), *(i + 1 for i, _ in used)])
+    m = max([int(every["rls.m"]), *(j + 1 for _, j in used)])
+    start = {name: value for name, value in every.items() if not name.startswith(_CURVE)}
+    start |= {"rls.n": n, "rls.m": m}
+    for name, value in (("motor.B", found["B_hat"]), ("motor.D_theta", found["D_theta_hat"])):
+        if value > 0:  # else the FMU would refuse it, and `doubt` says that it is wrong
+            start[name] = value
+    for name, (i, j) in at.items():
+        if i < n and j < m:
+            start[f"{_CURVE}{i},{j}]"] = found[name]
+    kinds = {name: slave.fmu.variable(name).type for name in start}
+    return {n: bool(v) if kinds[n] == "Boolean" else v for n, v in start.items()}
+
+
+def as_fixed_curve(start: Mapping[str, Value]) -> dict[str, Value]:
+    """Start values with which the curve and the inertia do not change.
+
+    Only what differs from run to run is estimated, by a fit to all samples: bias of the torque or
+    zero of the deformation, friction, and the time between the encoders, which is a damping. What
+    else MatchedFilter can estimate would hide a stiffness that is wrong: in a motion of one
+    frequency, for example, a delay of the torque looks like it.
+
+    start  from start_values, of the method MatchedFilter
+    """
+    fixed = {**start, **{f"prior.{name}": 0.0 for name in _NOT_IN_A_RUN}}
+    fixed |= {"matched.memory": 0.0, "matched.drift": 0.0}
+    tau_e = float(start["prior.tau_e"])
+    if not tau_e:
+        return {**fixed, "prior.nominal": _NONE}
+    # What is given as a share of prior.tau_e stays as large as it is.
+    shares = ("bias", "damping")
+    wider = {f"prior.{n}": min(float(start[f"prior.{n}"]) / _NONE, _LARGEST) for n in shares}
+    return {**fixed, **wider, "prior.nominal": 0.0, "prior.tau_e": tau_e * _NONE}

@@ -1,0 +1,65 @@
+"""JSON files that name their format: read, and refused in words if they are something else."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+_Contents = TypeVar("_Contents")
+_AGAIN = "run `sigmahat estimate` again"
+
+
+@dataclass(frozen=True)
+class Format(Generic[_Contents]):
+    """A kind of file that `sigmahat estimate` writes into its folder."""
+
+    file: str
+    """Its name there."""
+    name: str
+    """What its key "format" says."""
+    version: int
+    """Of the format."""
+    contents: type[_Contents]
+    """A dataclass with the fields format and version, and all others of the file."""
+
+    def path(self, given: Path) -> Path:
+        """The file itself: given is the file, or the folder that it is in."""
+        return given / self.file if given.is_dir() else given
+
+    def read(self, given: Path) -> _Contents:
+        """Reads a file. Raises ValueError, which says what was expected and what came instead."""
+        path = self.path(given)
+        try:
+            text = path.read_text(encoding="utf-8")
+        except OSError as error:
+            hint = f"name the folder or the {self.file} that `sigmahat estimate` wrote"
+            raise ValueError(f"{path}: {error.strerror}; {hint}") from error
+        except UnicodeDecodeError as error:
+            raise self._unexpected(path, "a file that is not text") from error
+        try:
+            document: Any = json.loads(text)
+        except ValueError as error:
+            damaged = f"one that is cut off or damaged ({error})"
+            raise self._unexpected(path, damaged if self.name in text else "no JSON") from error
+        found = document.get("format") if isinstance(document, dict) else None
+        if found != self.name:
+            raise self._unexpected(path, f"format {found!r}" if found else "something else")
+        if document.get("version") != self.version:
+            raise ValueError(
+                f"{path}: expected version {self.version} of the format, got "
+                f"{document.get('version')!r}; {_AGAIN}"
+            )
+        try:
+            return TypeAdapter(self.contents).validate_python(document)
+        except ValidationError as error:
+            first = error.errors()[0]
+            where = ".".join(map(str, first["loc"]))
+            raise ValueError(f"{path}: damaged: {where}: {first['msg']}; {_AGAIN}") from error
+
+    def _unexpected(self, path: Path, got: str) -> ValueError:
+        expected = f"expected a {self.file} that `sigmahat estimate` wrote"
+        return ValueError(f"{path}: {expected}, got {got}")

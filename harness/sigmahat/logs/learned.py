@@ -1,0 +1,152 @@
+"""`state.json`: what the estimator has learned from a log, so that it goes on with the next one.
+
+It is one JSON file: what it is of, which logs it was learned from, and the state of the FMU as
+fmi2SerializeFMUstate gives it, in base64. The state contains the parameters of the estimator.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from sigmahat.fmi.installed import version
+from sigmahat.fmi.instance import FmuError, Recorder, Slave, Value
+from sigmahat.fmi.saved_state import restore, save
+from sigmahat.joint.records import NO_OTHER_KEYS, FmuId, LearnedLog, Text
+from sigmahat.joint.stored import Format
+from sigmahat.logs.errors import LogError
+from sigmahat.logs.replay import gap
+
+_AGAIN = "run `sigmahat estimate` on the first log again"
+_OTHER = f"a learned state contains its parameters: use those, or {_AGAIN}"
+
+
+@dataclass(frozen=True)
+class Learned:
+    """The contents of the file."""
+
+    path: Path
+    """The file itself."""
+    fmu: FmuId
+    """Which FMU it is a state of."""
+    logs: Sequence[LearnedLog]
+    """What was learned from, in this order."""
+    state: bytes
+    """Of the FMU."""
+
+
+@dataclass(frozen=True)
+class _File:
+    """The form of the file."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    format: Text
+    version: int
+    sigmahat: Text
+    fmu: FmuId
+    method: Text
+    logs: list[LearnedLog]
+    parameters: dict[str, Any]
+    state: Text
+
+
+LEARNED = Format("state.json", "sigmahat learned state", 1, _File)
+"""Of the file."""
+
+
+def write_learned(
+    slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], path: Path
+) -> None:
+    """Writes what a slave has learned from logs; every are its parameters."""
+    parameters = {n: v for n, v in every.items() if v or not n.startswith("rls.eta_0")}
+    state = base64.b64encode(save(slave)).decode()
+    contents = _File(
+        format=LEARNED.name,
+        version=LEARNED.version,
+        sigmahat=version(),
+        fmu=FmuId.of(slave.fmu),
+        method=str(every["method"]),
+        logs=list(logs),
+        parameters=parameters,
+        state=state,
+    )
+    path.write_text(json.dumps(asdict(contents), indent=1) + "\n", encoding="utf-8")
+
+
+def read_learned(path: Path) -> Learned:
+    """Reads a file, or the one in a folder of results.
+
+    Raises LogError, which says what was expected, if there is none or it is damaged.
+    """
+    try:
+        file = LEARNED.read(path)
+    except ValueError as error:
+        raise LogError(str(error)) from error
+    path = LEARNED.path(path)
+    try:
+        state = base64.b64decode(file.state, validate=True)
+    except ValueError as error:
+        raise LogError(f"{path}: damaged: state is not base64; {_AGAIN}") from error
+    return Learned(path, file.fmu, file.logs, state)
+
+
+def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configuration: Path) -> float:
+    """Gives an initialised slave what was learned; its filters start again with the next sample.
+
+    every          parameters of the slave
+    configuration  the file that they are from, for messages
+
+    Returns the time that the slave has reached [s]. Raises LogError if the state is of another FMU,
+    is damaged, or was learned with other parameters.
+    """
+    ours = FmuId.of(slave.fmu)
+    if learned.fmu != ours:
+        raise LogError(
+            f"{learned.path}: learned by {_describe(learned.fmu)}, expected {_describe(ours)}; "
+            f"{_AGAIN}"
+        )
+    try:
+        t_0 = restore(slave, learned.state)
+    except FmuError as error:
+        raise LogError(f"{learned.path}: damaged: {error}; {_AGAIN}") from error
+    _compare(learned, _parameters(slave), every, configuration)
+    return gap(slave, t_0, every)
+
+
+def _describe(fmu: FmuId) -> str:
+    return f"{fmu.name}.fmu {fmu.version} ({fmu.guid})"
+
+
+def _parameters(slave: Slave) -> dict[str, Value]:
+    """All parameters, as the FMU itself has them."""
+    fmu = slave.fmu
+    names = [name for name, v in fmu.variables.items() if v.causality == "parameter"]
+    recorder = Recorder(slave, names, 1)
+    recorder.sample(0)
+    columns = recorder.columns()
+    return {name: columns[name][0].item() for name in names}
+
+
+def _compare(
+    learned: Learned, theirs: Mapping[str, Value], ours: Mapping[str, Value], configuration: Path
+) -> None:
+    """Raises LogError for the first parameter that differs; method and samplePeriod first."""
+    order = {"method": 0, "samplePeriod": 1}
+    differ = [name for name in ours if theirs[name] != ours[name]]
+    if not differ:
+        return
+    name = min(differ, key=lambda each: order.get(each, 2))
+    more = f" (and {len(differ) - 1} more)" if len(differ) > 1 else ""
+    raise LogError(
+        f"{configuration}: {name} = {_shown(ours[name])}, but {learned.path} was learned with "
+        f"{_shown(theirs[name])}{more}; {_OTHER}"
+    )
+
+
+def _shown(value: Value) -> str:
+    return value if isinstance(value, str) else repr(value)

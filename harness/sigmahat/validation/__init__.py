@@ -1,0 +1,1 @@
+"""Whether another log of the same joint confirms what was learned from a first one."""

@@ -1,0 +1,166 @@
+"""The job of `sigmahat validate`: another log of the same joint, with what was learned before."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sigmahat.files.digest import sha256
+from sigmahat.fmi.installed import fmu as installed_fmu
+from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.joint.start_values import as_fixed_curve, start_values
+from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.errors import LogError
+from sigmahat.logs.estimate import begin, run
+from sigmahat.logs.frozen import stiffness_at
+from sigmahat.logs.learned import Learned, read_learned
+from sigmahat.logs.log import Array, Log
+from sigmahat.logs.replay import parameters
+from sigmahat.logs.sampling import Samples, sample
+from sigmahat.logs.statistics import ReplayStatistics
+from sigmahat.validation.agreement import Agreement, agreement
+from sigmahat.validation.torque import TorqueError, torque_errors
+
+_INSTANTS = 20_000
+"""At which the stiffness is compared, at most: they are evenly spaced over the log."""
+
+
+@dataclass(frozen=True)
+class Validation:
+    """What a log says about what was learned before."""
+
+    log: Path
+    """The file."""
+    configuration: Path
+    """That of the estimator."""
+    start_from: Path
+    """The file of what was learned."""
+    learned_from: Sequence[str]
+    """Logs that it was learned from."""
+    repeated: bool
+    """Whether the log is one of them: then it confirms nothing."""
+    ticks: int
+    """Number of ticks of the estimator over the log."""
+    torque: TorqueError | None
+    """Of the torque that the learned curve predicts; None if the regression used no sample."""
+    torque_below: TorqueError | None
+    """The same below 2 Hz; None if the log is too short for this."""
+    stiffness: Agreement
+    """The learned stiffness beside that of this log alone."""
+    notes: Sequence[str]
+    """What had to be done to the samples of the log, in sentences."""
+
+    @property
+    def agree(self) -> bool | None:
+        """Whether the logs agree; None if they cannot tell."""
+        return None if self.repeated else self.stiffness.agree
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON; units are in the names."""
+        both = self.stiffness
+        return {
+            "log": str(self.log),
+            "with": str(self.configuration),
+            "start_from": str(self.start_from),
+            "learned_from": self.learned_from,
+            "repeated": self.repeated,
+            "ticks": self.ticks,
+            "torque": _torque(self.torque),
+            "torque below 2 Hz": _torque(self.torque_below),
+            "stiffness learned [N.m/rad]": both.before,
+            "stiffness of this log [N.m/rad]": both.alone,
+            "this log within learned": both.alone_in_before,
+            "learned within this log": both.before_in_alone,
+            "overlap": both.overlap,
+            "z": both.z,
+            "agree": self.agree,
+            "notes": self.notes,
+        }
+
+
+def _torque(error: TorqueError | None) -> dict[str, float] | None:
+    if error is None:
+        return None
+    return {
+        "rms [N.m]": error.rms,
+        "std [N.m]": error.std,
+        "relative [1]": error.relative,
+        "share": error.share,
+    }
+
+
+def validate(log: Log, configuration: Configuration, start_from: Path) -> Validation:
+    """Replays a log with what was learned before, and alone, and compares.
+
+    start_from  a folder of results of `estimate`, or its state.json
+
+    Raises LogError for a log, a configuration and a start_from that do not fit, and for method
+    Paper2011, which claims no interval; FmuError if the FMU refuses.
+    """
+    learned = read_learned(start_from)
+    with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
+        every = fmu.parameters(parameters(fmu, configuration))
+        if every["method"] != "MatchedFilter":
+            raise LogError(
+                f"{configuration.path}: method = {every['method']} claims no interval, by which to "
+                "validate; expected method = MatchedFilter"
+            )
+        configuration.need_ports(str(every["modality"]))
+        with Slave(fmu, "learned") as slave:
+            t_0 = begin(slave, configuration, learned)  # before the log is read: it may not fit
+            samples = sample(log, configuration, float(every["samplePeriod"]))
+            points = _points(log, samples)
+            start = start_values(slave, every)
+            before = stiffness_at(slave, samples.names, points, t_0, samples.T)
+        alone = _alone(fmu, configuration, samples, points)
+        torque, below = torque_errors(fmu, samples, as_fixed_curve(start))
+    return _validation(log, configuration, learned, samples, torque, below, before, alone, every)
+
+
+def _points(log: Log, samples: Samples) -> Array:
+    """Values of the ports at the instants that are compared."""
+    complete = samples.values[np.isfinite(samples.values).all(axis=1)]
+    if not len(complete):
+        raise LogError(f"{log.path}: no instant at which every port has a value")
+    return complete[:: -(-len(complete) // _INSTANTS)]
+
+
+def _alone(
+    fmu: Fmu, configuration: Configuration, samples: Samples, points: Array
+) -> dict[str, Array]:
+    """What the log alone gives, at its end."""
+    with Slave(fmu, "alone") as slave:
+        t_0 = begin(slave, configuration, None)
+        run(slave, samples, ReplayStatistics(len(samples.values)), t_0)
+        end = samples.T * len(samples.values)
+        return stiffness_at(slave, samples.names, points, end, samples.T)
+
+
+def _validation(
+    log: Log,
+    configuration: Configuration,
+    learned: Learned,
+    samples: Samples,
+    torque: TorqueError | None,
+    below: TorqueError | None,
+    before: dict[str, Array],
+    alone: dict[str, Array],
+    every: dict[str, Value],
+) -> Validation:
+    digest = sha256(log.path)
+    return Validation(
+        log=log.path,
+        configuration=configuration.path,
+        start_from=learned.path,
+        learned_from=[each.file for each in learned.logs],
+        repeated=any(each.sha256 == digest for each in learned.logs),
+        ticks=len(samples.values),
+        torque=torque,
+        torque_below=below,
+        stiffness=agreement(before, alone, float(every["prior.torque_gain"])),
+        notes=samples.notes,
+    )

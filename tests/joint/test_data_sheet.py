@@ -1,0 +1,450 @@
+"""The data sheet of a joint, what is made of it for other tools, and the way back into the FMU."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.ssp.ssd import read_ssv
+
+import sigmahat
+from recorded_logs import CONFIGURATION, LEAD, awas_log, read_estimate, write_log
+from sigmahat.cli import main
+from sigmahat.files.digest import sha256
+
+MATCHED = CONFIGURATION + 'method = "MatchedFilter"\nprior.B = 0.2\n'
+CASES = {
+    "powers that suffice": "rls.n = 3\n",
+    "powers that do not": "rls.n = 1\nrls.m = 2\n",
+    "a general polynomial": "rls.n = 4\nrls.symmetric = false\ntorque.held = true\n",
+}
+SUFFIXES = {"ssv": ".ssv", "matlab": ".m", "modelica": ".mo"}
+K_S = 14220.0
+OFFSET, SCALE = 100.0, -1e3 * LEAD
+
+
+def estimated(folder: Path, configuration: str, duration: float = 10.0) -> Path:
+    """A new folder with a log and what `sigmahat estimate` wrote, and its --json beside it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
+        write_log(awas_log(1.0, 0.3, duration), Path("knee.parquet"))
+        Path("knee.toml").write_text(configuration)
+        answers: list[Any] = []
+        patch.setattr("sigmahat.commands.common.print_json", answers.append)
+        assert main(["estimate", "knee.parquet", "--out", "knee", "--json"]) == 0
+        Path("answer.json").write_text(json.dumps(answers[0]))
+    return folder
+
+
+@pytest.fixture(scope="module", params=list(CASES.values()), ids=list(CASES))
+def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return estimated(tmp_path_factory.mktemp("case"), MATCHED + request.param)
+
+
+@pytest.fixture(scope="module")
+def original(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return estimated(tmp_path_factory.mktemp("original"), MATCHED + "rls.n = 3\n")
+
+
+@pytest.fixture
+def knee(original: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with the log and its results, to work in."""
+    folder = tmp_path / "here"
+    shutil.copytree(original, folder)
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def sheet_of(folder: Path) -> dict[str, Any]:
+    sheet: dict[str, Any] = json.loads((folder / "knee" / "joint.json").read_text())
+    return sheet
+
+
+def export(folder: Path, kind: str, out: Path) -> Path:
+    path = out / f"knee{SUFFIXES[kind]}"
+    assert main(["export", str(folder / "knee"), "--to", kind, "--out", str(path)]) == 0
+    return path
+
+
+# ---- what it says -------------------------------------------------------------------------------
+
+
+def test_what_it_rests_on(original: Path) -> None:
+    sheet = sheet_of(original)
+    assert (sheet["format"], sheet["version"]) == ("sigmahat joint data sheet", 1)
+    assert sheet["sigmahat"] == sigmahat.__version__
+    description = fmpy.read_model_description(sigmahat.fmu("StiffnessEstimator"))
+    assert sheet["fmu"]["guid"] == description.guid
+    (log,) = sheet["logs"]
+    assert (log["file"], log["ticks"]) == ("knee.parquet", 10001)
+    assert log["sha256"] == sha256(original / "knee.parquet")
+    assert sheet["configuration"] == {
+        "file": "knee.toml",
+        "sha256": sha256(original / "knee.toml"),
+    }
+    assert sheet["rests_on"]["torque_gain"] == 0.02
+    assert sheet["rests_on"]["exact"] == [] and sheet["rests_on"]["absent"] == []
+
+
+def test_the_stiffness_is_that_of_the_table(original: Path) -> None:
+    sheet, table = sheet_of(original), read_estimate(original / "knee")
+    end = {name: table[name].to_numpy()[-1] for name in table.column_names if "[" in name}
+    at = sheet["at_the_end"]
+    assert at["sigma"] == end["estimate.sigma [N.m/rad]"]
+    assert (at["phi"], at["set_point"]) == (end["estimate.phi [rad]"], end["estimate.setPoint [1]"])
+    half = 1.96 * end["estimate.sigma_std [N.m/rad]"]
+    assert at["interval"] == [at["sigma"] - half, at["sigma"] + half]
+    for name, unit in (("B", "kg.m2"), ("D_theta", "N.m.s/rad"), ("tau_coulomb", "N.m")):
+        parameter = sheet["parameters"][name]
+        assert (parameter["value"], parameter["unit"]) == (
+            end[f"estimate.{name}_hat [{unit}]"],
+            unit,
+        )
+    assert sheet["polynomial"]["phi"] == [
+        table["estimate.phi [rad]"].to_numpy().min(),
+        table["estimate.phi [rad]"].to_numpy().max(),
+    ]
+
+
+def test_the_intervals_of_the_curve_hold_the_true_stiffness(original: Path) -> None:
+    """(29): sigma = 2 k_s r^2 cos(2 phi), over the whole range of the data."""
+    curve = sheet_of(original)["curve"]
+    assert len(curve) == 5 * 21
+    inside = []
+    for point in curve:
+        low, high = point["interval"]
+        assert low < point["sigma"] < high
+        r = point["set_point"] / 1e3
+        inside.append(low < 2 * K_S * r**2 * np.cos(2 * point["phi"]) < high)
+    assert np.mean(inside) > 0.9
+
+
+def test_the_polynomial_is_the_curve(case: Path) -> None:
+    """The curve is from the FMU, at its last state; the polynomial is evaluated here."""
+    sheet = sheet_of(case)
+    p = sheet["polynomial"]
+    eta, powers = np.array(p["eta"]), np.array(p["powers_of_phi"])
+    for point in sheet["curve"]:
+        slope = powers * point["phi"] ** np.maximum(powers - 1, 0.0)
+        sigma = slope @ eta @ point["set_point"] ** np.array(p["powers_of_set_point"], float)
+        assert sigma == pytest.approx(point["sigma"], rel=1e-9)
+
+
+def test_units_of_the_coefficients(case: Path) -> None:
+    p = sheet_of(case)["polynomial"]
+    names = {0: "N.m", 1: "N.m/rad"}
+    for row, power in zip(p["units"], p["powers_of_phi"], strict=True):
+        assert set(row) == {names.get(power, f"N.m/rad{power}")}
+
+
+def test_intervals_of_the_parameters(tmp_path: Path) -> None:
+    """Of `identify` where it wrote one, else of the prior; none where a value is exact."""
+    identified = (
+        '[identified]\nB = {value = 2.3e-5, half_width = 1e-6, unit = "kg.m2"}\n'
+        'D_theta = {value = "cannot tell", half_width = 1e-4, unit = "N.m.s/rad"}\n'
+        "tau_noise = 1e-3\n"
+    )
+    text = MATCHED + "prior.delay = 0\n" + identified
+    parameters = sheet_of(estimated(tmp_path, text, duration=2.0))["parameters"]
+    kinds = {name: (p["interval"], p["interval_from"]) for name, p in parameters.items()}
+    assert kinds["B"] == (pytest.approx([2.2e-5, 2.4e-5]), "identify")
+    assert kinds["D_theta"] == (pytest.approx([1.2e-3 * (1 - 0.392), 1.2e-3 * 1.392]), "prior")
+    assert kinds["tau_coulomb"] == (pytest.approx([-0.0392, 0.0392]), "prior")
+    assert kinds["delay"] == (None, "exact") == kinds["gamma"]
+    assert kinds["eccentric"][0][0] == 0.0
+
+
+def test_paper2011_claims_no_interval(tmp_path: Path) -> None:
+    folder = estimated(tmp_path, CONFIGURATION, duration=2.0)
+    sheet = sheet_of(folder)
+    assert sheet["curve"] is None and sheet["at_the_end"]["interval"] is None
+    assert {p["interval"] for p in sheet["parameters"].values()} == {None}
+    assert set(sheet["parameters"]) == {"gamma", "B", "D_theta"}
+    assert sheet["start_values"]["rls.n"] == 6
+
+
+def test_the_log_of_a_motor_at_rest_has_a_sheet(tmp_path: Path) -> None:
+    text = MATCHED.replace("[ports.theta_c]", "[ports.theta_c]\nscale = 0.01")
+    sheet = sheet_of(estimated(tmp_path, text, duration=0.02))
+    assert sheet["logs"][0]["ticks"] == 21
+    assert not sheet["confident"]
+
+
+# ---- into the FMU -------------------------------------------------------------------------------
+
+
+def initial_outputs(start: dict[str, Any]) -> Any:
+    """Outputs of the FMU before any sample, with FMPy alone."""
+    path = sigmahat.fmu("StiffnessEstimator")
+    names = [v.name for v in fmpy.read_model_description(path).modelVariables]
+    outputs = ["sigma", "tau_e", *(name for name in names if name.startswith("eta["))]
+    return fmpy.simulate_fmu(
+        path, start_values=start, stop_time=1e-3, output_interval=1e-3, output=outputs
+    )[0]
+
+
+def for_fmpy(start: dict[str, Any]) -> dict[str, Any]:
+    """FMPy takes the number of an item of an enumeration, and not its name."""
+    variables = fmpy.read_model_description(sigmahat.fmu("StiffnessEstimator")).modelVariables
+    kinds = {v.name: v.declaredType for v in variables if v.type == "Enumeration"}
+    items = {n: {item.name: int(item.value) for item in t.items} for n, t in kinds.items()}
+    return {n: items[n].get(v, v) if n in items else v for n, v in start.items()}
+
+
+def from_ssv(path: Path) -> dict[str, Any]:
+    parameters = read_ssv(str(path), validate=True).parameters
+    read: dict[str, Callable[[str], Any]] = {
+        **{"Real": float, "Integer": int},
+        "Boolean": lambda text: text == "true",
+    }
+    return {p.name: read.get(p.type, str)(p.value) for p in parameters}
+
+
+def test_the_fmu_begins_with_what_was_learned_to_the_last_bit(case: Path, tmp_path: Path) -> None:
+    """Data sheet to SSV to FMU: the curve is the one that the estimator had at the end.
+
+    Before any sample the FMU evaluates it at phi = 0 and theta_c = 0.
+    """
+    sheet, answer = sheet_of(case), json.loads((case / "answer.json").read_text())
+    start = from_ssv(export(case, "ssv", tmp_path))
+    outputs = initial_outputs(for_fmpy(start))
+    eta = np.array(sheet["polynomial"]["eta"])
+    n, m = eta.shape
+    for i in range(n):
+        for j in range(m):
+            assert outputs[f"eta[{i},{j}]"] == eta[i, j]
+    # THEN what the estimator itself said at the end is a part of it
+    own = np.array(answer["eta"])
+    assert np.array_equal(eta[: own.shape[0], : own.shape[1]], own)
+    # THEN the stiffness is that of the sheet, and the closed form, both to the last bit
+    row = eta[sheet["polynomial"]["powers_of_phi"].index(1)]
+    sigma = 0.0
+    for coefficient in row[::-1]:
+        sigma = sigma * start["setPoint.offset"] + coefficient
+    assert outputs["sigma"] == sigma == sheet["check"]["sigma"]
+    assert outputs["tau_e"] == sheet["check"]["tau_e"]
+
+
+def test_higher_powers_that_the_data_asked_for_are_part_of_the_curve(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    folder = estimated(tmp_path_factory.mktemp("powers"), MATCHED + CASES["powers that do not"])
+    start, answer = (
+        sheet_of(folder)["start_values"],
+        json.loads((folder / "answer.json").read_text()),
+    )
+    assert (start["rls.n"], start["rls.m"]) > (1, 2)
+    # THEN the stiffness of the first sample is that of the last one, which these powers are part of
+    assert first_sigma(folder) == pytest.approx(answer["sigma [N.m/rad]"], rel=1e-12)
+
+
+def test_the_first_sample_gives_the_last_stiffness(case: Path) -> None:
+    """At the deformation and the set-point of the end, up to rounding: the estimator adds up the
+    products of its columns, the FMU those of the curve."""
+    assert first_sigma(case) == pytest.approx(sheet_of(case)["at_the_end"]["sigma"], rel=1e-12)
+
+
+def first_sigma(folder: Path) -> float:
+    sheet = sheet_of(folder)
+    at, start = sheet["at_the_end"], sheet["start_values"]
+    theta_c = (at["set_point"] - start["setPoint.offset"]) / start["setPoint.scale"]
+    inputs = {"q": at["phi"], "theta_c": theta_c}
+    return float(
+        fmpy.simulate_fmu(
+            sigmahat.fmu("StiffnessEstimator"),
+            start_values={**for_fmpy(start), **inputs},
+            stop_time=1e-3,
+            output_interval=1e-3,
+            output=["sigma"],
+        )["sigma"][-1]
+    )
+
+
+# ---- files for other tools ----------------------------------------------------------------------
+
+
+def from_matlab(path: Path) -> dict[str, Any]:
+    """Of a MATLAB function: what each line of it sets."""
+    lines = path.read_text().splitlines()
+    assert lines[0] == f"function p = {path.stem}" and lines[-1] == "end"
+    found: dict[str, Any] = {}
+    for line in lines[1:-1]:
+        if not line.startswith("%"):
+            name, value = re.fullmatch(r"p\.([\w.]+) = ([^;%]+|\[.*\]);(?: % \S+)?", line).groups()  # type: ignore[union-attr]
+            found[name] = literal(value)
+    return with_curve(found)
+
+
+def from_modelica(path: Path) -> dict[str, Any]:
+    """Of a Modelica record with records in it."""
+    found: dict[str, Any] = {}
+    inside: list[tuple[str, dict[str, Any]]] = []
+    named = r"parameter (Real|Integer|Boolean) (\w+)(?:\[(\d+), (\d+)\])?(\(unit=\"[^\"]+\"\))?"
+    for line in path.read_text().splitlines():
+        text = line.strip()
+        if text.startswith("//"):
+            continue
+        if match := re.fullmatch(r"record (\w+)(?: \"[^\"]*\")?", text):
+            inside.append((match[1], {}))
+        elif match := re.fullmatch(r"end (\w+);", text):
+            name, members = inside.pop()
+            assert match[1] == name
+            (inside[-1][1] if inside else found)[f"record {name}"] = members
+        elif match := re.fullmatch(named + r' = (.*?) "(?:[^"\\]|\\.)*";', text):
+            inside[-1][1][match[2]] = literal(match[6])
+            if match[3]:
+                assert np.shape(inside[-1][1][match[2]]) == (int(match[3]), int(match[4]))
+        else:
+            match = re.fullmatch(r"(\w+) ('?)(\w+)\2;", text)
+            assert match, text
+            assert (match[2] == "'") == (match[3] in MODELICA)
+            for name, value in inside[-1][1].pop(f"record {match[1]}").items():
+                inside[-1][1][f"{match[3]}.{name}"] = value
+    assert not inside
+    return with_curve(found[f"record {path.stem}"])
+
+
+MODELICA = {"model", "record", "parameter", "input", "output", "block", "type", "end", "initial"}
+
+
+def literal(text: str) -> Any:
+    if text.startswith("["):
+        return [[float(x) for x in row.split(",")] for row in text[1:-1].split(";")]
+    return {"true": True, "false": False}[text] if text[0] in "tf" else ast.literal_eval(text)
+
+
+def with_curve(found: dict[str, Any]) -> dict[str, Any]:
+    rows = found.pop("rls.eta_0")
+    curve = {f"rls.eta_0[{i},{j}]": x for i, row in enumerate(rows) for j, x in enumerate(row)}
+    return {**found, **curve}
+
+
+@pytest.mark.parametrize(("kind", "read"), [("matlab", from_matlab), ("modelica", from_modelica)])
+def test_a_file_has_every_start_value_to_the_last_bit(
+    kind: str, read: Callable[[Path], dict[str, Any]], case: Path, tmp_path: Path
+) -> None:
+    assert read(export(case, kind, tmp_path)) == for_fmpy(sheet_of(case)["start_values"])
+
+
+def test_the_ssv_has_every_start_value_that_importers_agree_on(case: Path, tmp_path: Path) -> None:
+    """Booleans and enumerations are in it where the FMU has another value itself."""
+    path = export(case, "ssv", tmp_path)
+    found, expected = from_ssv(path), sheet_of(case)["start_values"]
+    assert found["method"] == "MatchedFilter"
+    assert found.items() <= expected.items()
+    defaults = {"modality": "Residual", "rls.symmetric": True, "torque.held": False}
+    defaults |= {"filter.kind": "ModifiedKalman", "filter.weighting": "Normalized"}
+    defaults |= {"deformation": "Raw", "rls.kind": "Enhanced"}
+    left_out = expected.keys() - found.keys()
+    assert left_out <= defaults.keys()
+    assert all(expected[name] == defaults[name] for name in left_out)
+    assert all(defaults[name] != found[name] for name in defaults.keys() & found.keys())
+
+
+@pytest.mark.parametrize("kind", SUFFIXES)
+def test_a_file_says_where_it_is_from(kind: str, knee: Path) -> None:
+    assert main(["export", "knee/joint.json", "--to", kind]) == 0
+    text = (knee / "knee" / f"joint{SUFFIXES[kind]}").read_text()
+    assert f"learned from knee.parquet, SHA-256 {sha256(knee / 'knee.parquet')}" in text
+    assert f"sigmahat {sigmahat.__version__}" in text
+
+
+@pytest.mark.parametrize("kind", SUFFIXES)
+def test_the_name_of_a_log_cannot_end_a_comment(kind: str, knee: Path) -> None:
+    path = Path("knee/joint.json")
+    sheet = json.loads(path.read_text())
+    sheet["logs"][0]["file"] = 'a--->\n<!DOCTYPE x>"; end knee;\r\n%}\nquit /* é'
+    path.write_text(json.dumps(sheet))
+    found = export(knee, kind, knee)
+    if kind == "ssv":
+        assert from_ssv(found)["method"] == "MatchedFilter"
+    else:
+        read = {"matlab": from_matlab, "modelica": from_modelica}[kind]
+        assert read(found) == for_fmpy(sheet["start_values"])
+
+
+# ---- wrong arguments ----------------------------------------------------------------------------
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    before = {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()}
+    capsys.readouterr()
+    assert main(["export", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    (line,) = captured.err.splitlines()
+    assert {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()} == before
+    return line
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["knee"], "Missing option '--to'"),
+        (["knee", "--to", "simulink"], "'simulink' is not one of 'ssv', 'matlab', 'modelica'"),
+        (["nothere", "--to", "ssv"], "nothere: No such file or directory; name the folder or the"),
+        ([".", "--to", "ssv"], "joint.json: No such file"),
+        (["knee.toml", "--to", "ssv"], "expected a joint.json that `sigmahat estimate` wrote"),
+        (["knee/state.json", "--to", "ssv"], "got format 'sigmahat learned state'"),
+        (["knee", "--to", "matlab", "--out", "my-joint.m"], "'my-joint', names what is in it"),
+        (["knee", "--to", "matlab", "--out", "2nd.m"], "a letter first"),
+        (["knee", "--to", "modelica", "--out", "model.mo"], "no keyword"),
+        (["knee", "--to", "ssv", "--out", "no/x.ssv"], "cannot write"),
+        (["knee", "--to", "ssv", "--out", "knee"], "is a directory"),
+    ],
+)
+def test_wrong_arguments(
+    arguments: list[str], words: str, knee: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert words in refused(capsys, *arguments)
+
+
+def edited(**values: Any) -> Callable[[dict[str, Any]], None]:
+    return lambda sheet: sheet.update(values)
+
+
+def started(**values: Any) -> Callable[[dict[str, Any]], None]:
+    return lambda sheet: sheet["start_values"].update(values)
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        (edited(version=2), "expected version 1 of the format, got 2"),
+        (edited(polynomial=None), "damaged: polynomial"),
+        (edited(mine=1), "damaged: mine"),
+        (started(**{"motor.b": 1.0}), "did you mean 'motor.B'"),
+        (started(**{"motor.B": "1; quit"}), "expected Real"),
+        (started(method="Matched"), "did you mean 'MatchedFilter'"),
+        (started(**{"rls.n": 2.5}), "expected Integer"),
+    ],
+)
+def test_a_sheet_that_does_not_fit_is_refused(
+    edit: Callable[[dict[str, Any]], None],
+    words: str,
+    knee: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = Path("knee/joint.json")
+    sheet = json.loads(path.read_text())
+    edit(sheet)
+    path.write_text(json.dumps(sheet))
+    assert words in refused(capsys, "knee", "--to", "ssv")
+
+
+def test_a_file_that_exists_is_kept(knee: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("mine.m").write_text("mine")
+    arguments = ["knee", "--to", "matlab", "--out", "mine.m"]
+    assert "mine.m exists; --force overwrites it" in refused(capsys, *arguments)
+    assert main(["export", *arguments, "--force", "--quiet"]) == 0
+    assert Path("mine.m").read_text().startswith("function p = mine")
+    assert capsys.readouterr().out == ""
