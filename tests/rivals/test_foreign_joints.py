@@ -30,9 +30,12 @@ BUILDS = [*catalogue.BUILDS]
 
 
 def need(engine: str) -> None:
-    """Skips where the engine is missing."""
+    """Skips where the engine is missing. Drake is too large for every run of the tests."""
     if find_spec({"mujoco": "mujoco", "drake": "pydrake"}[engine]) is None:
-        missing(engine, "cmake --build build --target packages_rivals")
+        how = "cmake --build build --target packages_rivals"
+        if engine == "drake":
+            pytest.skip(f"drake is not installed; to install it: {how}")
+        missing(engine, how)
 
 
 def shortened(joint: Any) -> Any:
