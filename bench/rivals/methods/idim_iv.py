@@ -1,0 +1,107 @@
+"""Instrumental variables: IDIM-IV.
+
+A. Janot, P.-O. Vandanjon, M. Gautier, "A generic instrumental variable approach for industrial
+robot identification", IEEE Trans. Control Systems Technology 22(1):132-145, 2014, section III: the
+instruments are the columns of the regression for a motion that is simulated with the last
+coefficients, and so without the noise of the measurements; estimation and simulation alternate
+until neither the coefficients nor the residual change by more than 2.5 %. The authors simulate the
+closed loop. A log names no controller, so the motor is simulated here: the measured torque drives
+it, and the spring pulls it to the measured link position after the filter of the regression.
+The first coefficients are those of least squares. The covariance is that of the instrumental
+variables, (Z'X)^-1 Z'Z (X'Z)^-1 times the variance of the residual.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+from scipy import signal
+
+from rivals.answer import answer, no_answer
+from rivals.methods import least_squares
+from rivals.records import Array, Estimate, JointLog
+from rivals.regression import (
+    COULOMB,
+    INERTIA,
+    OFFSET,
+    SPRING,
+    VISCOUS,
+    Motion,
+    Regression,
+    columns,
+    regression,
+)
+
+TOLERANCE = 0.025
+ITERATIONS = 20
+
+
+def estimate(log: JointLog) -> Estimate:
+    """The estimate of the whole log, the same at every sample but for the deformation."""
+    begin = time.perf_counter()
+    rows = regression(log)
+    beta, covariance = least_squares.solve(rows.X, rows.y, log.known)
+    error = float(np.linalg.norm(rows.y - rows.X @ beta))
+    for _ in range(ITERATIONS):
+        if beta[INERTIA] <= 0:
+            return no_answer(log, time.perf_counter() - begin, "the inertia became negative")
+        motion = simulate(log, rows, beta)
+        if motion is None:
+            return no_answer(log, time.perf_counter() - begin, "the simulation diverged")
+        Z = rows.filters.decimated(columns(log, motion, rows.spring))
+        last, last_error = beta, error
+        beta, covariance = solve(Z, rows.X, rows.y)
+        error = float(np.linalg.norm(rows.y - rows.X @ beta))
+        change = np.abs(beta - last) <= np.maximum(
+            TOLERANCE * np.abs(last), np.sqrt(np.diag(covariance))
+        )
+        if np.all(change) and abs(error - last_error) <= TOLERANCE * last_error:
+            return answer(*rows.stiffness(log, beta, covariance), time.perf_counter() - begin)
+    return no_answer(log, time.perf_counter() - begin, f"not converged after {ITERATIONS} rounds")
+
+
+def solve(Z: Array, X: Array, y: Array) -> tuple[Array, Array]:
+    """Coefficients and covariance from instruments Z."""
+    scale = np.sqrt(np.mean(X**2, axis=0))
+    Z, X = Z / scale, X / scale
+    inverse = np.linalg.inv(Z.T @ X)
+    beta = inverse @ (Z.T @ y)
+    residual = y - X @ beta
+    variance = residual @ residual / (len(y) - len(beta))
+    covariance = variance * inverse @ (Z.T @ Z) @ inverse.T
+    return beta / scale, covariance / np.outer(scale, scale)
+
+
+def simulate(log: JointLog, rows: Regression, beta: Array) -> Motion | None:
+    """The motion of the motor with these coefficients; None if it does not stay finite.
+
+    Each step is one of the semi-implicit Euler method; Coulomb friction stops the motor or takes
+    its share of the momentum. Instruments need not be exact: they have to be free of noise.
+    """
+    T, g, shape = log.sample_period, log.known.gamma, rows.spring
+    inertia, viscous = g**2 * beta[INERTIA], g**2 * beta[VISCOUS]
+    friction = max(g * beta[COULOMB], 0.0) * T / inertia
+    q = signal.sosfiltfilt(rows.filters.butterworth, log.q)
+    # tau_e as a polynomial in the deformation at every sample: sum of curve[k, i] phi^(2i+1)
+    powers = np.arange(1, 2 * shape.n, 2)
+    of_l = (log.theta_c[:, None] / shape.range_theta_c) ** np.arange(shape.m)
+    curve = of_l @ beta[SPRING:].reshape(shape.n, shape.m).T
+    curve = curve / (powers * shape.range_phi**powers)
+    drive = g * log.tau - beta[OFFSET]
+    limit = 100 * (np.ptp(log.theta) + np.ptp(log.q))
+    theta, velocity = float(rows.motion.theta[0]), float(rows.motion.theta_dot[0])
+    positions, velocities = np.empty(len(q)), np.empty(len(q))
+    for k, (force, link, coefficients) in enumerate(
+        zip(drive.tolist(), q.tolist(), curve.tolist(), strict=True)
+    ):
+        positions[k], velocities[k] = theta, velocity
+        phi = link - theta
+        torque = math.fsum(c * phi ** (2 * i + 1) for i, c in enumerate(coefficients))
+        free = velocity + T * (force + torque - viscous * velocity) / inertia
+        velocity = math.copysign(max(abs(free) - friction, 0.0), free)
+        theta += T * velocity
+        if not abs(theta - positions[0]) < limit:
+            return None
+    return Motion(positions, velocities, np.gradient(velocities, T), q - positions)
