@@ -21,6 +21,8 @@ def replayed(log: JointLog, start: Mapping[str, Value]) -> tuple[dict[str, Array
     """Outputs by name at every sample, and the wall time of the ticks [s].
 
     start  values besides those of the motor, the sampling and the spring's orders
+
+    Raises FmuError if the FMU refuses a value.
     """
     names = ("theta", "q", "theta_c", "tau")
     values = np.column_stack([log.theta, log.q, log.theta_c, log.tau])

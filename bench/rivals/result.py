@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from functools import partial
 from pathlib import Path
 
-from rivals.score import Score
+from rivals.records import Estimate, JointLog
+from rivals.score import Score, score
 from sigmahat.files.csv_table import write_csv
 
 
@@ -24,6 +27,18 @@ class Result:
     """None if the method has no answer."""
     remark: str
     """Why it has none."""
+
+
+def judge(method: str, estimate: Callable[[JointLog], Estimate], log: JointLog) -> Result:
+    """Result of a method on a log. A method that raises an exception has no answer."""
+    result = partial(Result, log.kind, log.engine, log.seed, method)
+    try:
+        found = estimate(log)
+        if found.remark:
+            return result(found.seconds, None, found.remark)
+        return result(found.seconds, score(log, found), "")
+    except Exception as error:  # whatever a rival raises is a row of the table
+        return result(math.nan, None, f"{type(error).__name__}: {error}")
 
 
 def write_results(path: Path, results: Sequence[Result]) -> None:

@@ -47,10 +47,8 @@ def score(log: JointLog, estimate: Estimate) -> Score:
     judged = (time >= SETTLED) & (log.stiffness > 0)
     if not judged.any():
         raise ValueError(f"the log has no stiffness after {SETTLED:g} s")
-    true, found, std, confident = (
-        array[judged]
-        for array in (log.stiffness, estimate.stiffness, estimate.std, estimate.confident)
-    )
+    confident = estimate.confident[judged]
+    true, found, std = (a[judged] for a in (log.stiffness, estimate.stiffness, estimate.std))
     if not np.isfinite(found).all():
         raise ValueError(f"not finite at {np.count_nonzero(~np.isfinite(found))} instants")
     error = np.abs(found / true - 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -23,6 +24,7 @@ KINDS = {
     "arm": "Arm under gravity with contact",
 }
 ENGINES = {"mujoco": "MuJoCo", "drake": "Drake"}
+_T = TypeVar("_T")
 _HEAD = (
     "method",
     "answers",
@@ -119,7 +121,7 @@ def _names(result: Result) -> list[str]:
 def _figure(
     scores: Sequence[Score],
     name: str,
-    over: Callable[[list[float]], np.floating],
+    over: Callable[[list[float]], Any],
     digits: int | None = None,
 ) -> str:
     values = [getattr(score, name) for score in scores if not math.isnan(getattr(score, name))]
@@ -139,7 +141,7 @@ def _number(value: float) -> str:
     return f"{value:.{digits}f}"
 
 
-def _unique(values: Iterable[object]) -> list[object]:
+def _unique(values: Iterable[_T]) -> list[_T]:
     return list(dict.fromkeys(values))
 
 

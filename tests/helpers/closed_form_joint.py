@@ -6,7 +6,7 @@ import numpy as np
 
 from rivals.records import Array, JointLog, Known
 
-T = 1e-3
+T, DURATION = 1e-3, 12.0  # [s]
 GAMMA, B, D_THETA, TAU_COULOMB = 50.0, 2.3e-5, 1e-3, 0.01
 COUNTS = 1 << 18
 RANGE_PHI = 0.1
@@ -15,35 +15,39 @@ LINEAR, CUBIC, OF_THETA_C = 140.0, 3000.0, 0.3
 the position of the stiffness motor [rad] changes the stiffness."""
 
 
-def _sines(t: Array, *terms: tuple[float, float, float]) -> tuple[Array, Array, Array]:
-    """Sum of sines and two derivatives; terms: amplitude, frequency [Hz], phase."""
+def _cosines(t: Array, *terms: tuple[float, float]) -> tuple[Array, Array, Array]:
+    """A signal that begins at 0 and at rest, and two derivatives; terms: amplitude, frequency."""
     signal, first, second = np.zeros(len(t)), np.zeros(len(t)), np.zeros(len(t))
-    for amplitude, f, phase in terms:
+    for amplitude, f in terms:
         w = 2 * np.pi * f
-        signal += amplitude * np.sin(w * t + phase)
-        first += amplitude * w * np.cos(w * t + phase)
-        second -= amplitude * w**2 * np.sin(w * t + phase)
+        signal += amplitude * (1 - np.cos(w * t))
+        first += amplitude * w * np.sin(w * t)
+        second += amplitude * w**2 * np.cos(w * t)
     return signal, first, second
 
 
 def closed_form_log(
-    kind: str, duration: float = 12.0, noise_tau: float = 1e-3, counts: int = COUNTS
+    kind: str,
+    noise_tau: float = 1e-3,
+    tau_coulomb: float = TAU_COULOMB,
+    counts: int = COUNTS,
+    seed: int = 1,
 ) -> JointLog:
     """A log of a joint with Coulomb friction; the data sheet's inertia and friction are true.
 
-    Its noise is seeded. The stiffness is constant but for the kind variable_stiffness.
+    The stiffness is constant but for the kind variable_stiffness. The seed is that of the noise.
     """
-    t = T * np.arange(round(duration / T))
-    theta, theta_dot, theta_ddot = _sines(t, (0.3, 0.31, 0), (0.15, 0.83, 1), (0.06, 2.3, 2))
-    phi, _, _ = _sines(t, (0.03, 0.45, 0), (0.03, 1.13, 2), (0.015, 2.9, 1))
+    t = T * np.arange(DURATION / T)
+    theta, theta_dot, theta_ddot = _cosines(t, (0.3, 0.31), (-0.15, 0.83), (0.06, 2.3))
+    phi, _, _ = _cosines(t, (0.03, 0.45), (-0.03, 1.13), (0.015, 2.9))
     variable = kind == "variable_stiffness"
     theta_c = np.sin(2 * np.pi * 0.11 * t) if variable else np.zeros(len(t))
     share = 1 + OF_THETA_C * theta_c
     cubic = CUBIC if variable else 0.0
     tau_e = share * (LINEAR * phi + cubic * phi**3)
     stiffness = share * (LINEAR + 3 * cubic * phi**2)
-    tau = GAMMA * (B * theta_ddot + D_THETA * theta_dot) + TAU_COULOMB * np.sign(theta_dot)
-    tau = tau - tau_e / GAMMA + noise_tau * np.random.default_rng(1).normal(size=len(t))
+    tau = GAMMA * (B * theta_ddot + D_THETA * theta_dot) + tau_coulomb * np.sign(theta_dot)
+    tau = tau - tau_e / GAMMA + noise_tau * np.random.default_rng(seed).normal(size=len(t))
     count = 2 * np.pi / counts if counts else 0.0
     rounded = [np.round(x / count) * count if counts else x for x in (theta, theta + phi)]
     known = Known(
@@ -60,5 +64,5 @@ def closed_form_log(
         range_tau_e=20.0,
     )
     return JointLog(
-        kind, "closed form", 1, T, rounded[0], rounded[1], tau, theta_c, tau_e, stiffness, known
+        kind, "closed form", seed, T, rounded[0], rounded[1], tau, theta_c, tau_e, stiffness, known
     )

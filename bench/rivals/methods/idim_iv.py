@@ -7,8 +7,9 @@ coefficients, and so without the noise of the measurements; estimation and simul
 until neither the coefficients nor the residual change by more than 2.5 %. The authors simulate the
 closed loop. A log names no controller, so the motor is simulated here: the measured torque drives
 it, and the spring pulls it to the measured link position after the filter of the regression.
-The first coefficients are those of least squares. The covariance is that of the instrumental
-variables, (Z'X)^-1 Z'Z (X'Z)^-1 times the variance of the residual.
+The first coefficients are those of least squares, and the data sheet takes part as there. The
+covariance is that of instrumental variables, (Z'X)^-1 Z'Z (X'Z)^-1 times the variance of the
+residual.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from scipy import signal
 
 from rivals.answer import answer, no_answer
 from rivals.methods import least_squares
-from rivals.records import Array, Estimate, JointLog
+from rivals.records import Array, Estimate, JointLog, Known
 from rivals.regression import (
     COULOMB,
     INERTIA,
@@ -52,7 +53,7 @@ def estimate(log: JointLog) -> Estimate:
             return no_answer(log, time.perf_counter() - begin, "the simulation diverged")
         Z = rows.filters.decimated(columns(log, motion, rows.spring))
         last, last_error = beta, error
-        beta, covariance = solve(Z, rows.X, rows.y)
+        beta, covariance = solve(Z, rows.X, rows.y, log.known)
         error = float(np.linalg.norm(rows.y - rows.X @ beta))
         change = np.abs(beta - last) <= np.maximum(
             TOLERANCE * np.abs(last), np.sqrt(np.diag(covariance))
@@ -62,15 +63,18 @@ def estimate(log: JointLog) -> Estimate:
     return no_answer(log, time.perf_counter() - begin, f"not converged after {ITERATIONS} rounds")
 
 
-def solve(Z: Array, X: Array, y: Array) -> tuple[Array, Array]:
-    """Coefficients and covariance from instruments Z."""
+def solve(Z: Array, X: Array, y: Array, known: Known) -> tuple[Array, Array]:
+    """Coefficients and covariance from instruments Z. The rows' variance is of their residual."""
     scale = np.sqrt(np.mean(X**2, axis=0))
     Z, X = Z / scale, X / scale
-    inverse = np.linalg.inv(Z.T @ X)
-    beta = inverse @ (Z.T @ y)
-    residual = y - X @ beta
-    variance = residual @ residual / (len(y) - len(beta))
-    covariance = variance * inverse @ (Z.T @ Z) @ inverse.T
+    mean, information = least_squares.a_priori(known, scale)
+    beta = np.linalg.lstsq(X, y)[0]
+    for _ in range(2):  # the first time the residual is that of least squares
+        residual = y - X @ beta
+        variance = residual @ residual / (len(y) - len(beta))
+        inverse = np.linalg.inv(Z.T @ X / variance + np.diag(information))
+        beta = inverse @ (Z.T @ y / variance + information * mean)
+    covariance = inverse @ (Z.T @ Z / variance + np.diag(information)) @ inverse.T
     return beta / scale, covariance / np.outer(scale, scale)
 
 

@@ -38,14 +38,14 @@ def estimate(log: JointLog) -> Estimate:
     """The estimate on line: at each sample from those up to it."""
     begin = time.perf_counter()
     shape = spring(log)
-    filtered = _Filter(log, shape)
+    filtered = Filter(log, shape)
     phi = log.q - log.theta
     slope = shape.slope(phi, log.theta_c)
     stiffness, variance = np.empty(len(phi)), np.empty(len(phi))
     stiffness[0] = slope[0] @ filtered.x[SPRING:]
     variance[0] = slope[0] @ filtered.P[SPRING:, SPRING:] @ slope[0]
     for k in range(1, len(phi)):
-        filtered.predict(_mean(log, k))
+        filtered.predict(inputs(log, k))
         filtered.correct(log.theta[k])
         if not np.isfinite(filtered.x[THETA]) or filtered.P[THETA, THETA] < 0:
             return no_answer(log, time.perf_counter() - begin, f"diverged at sample {k}")
@@ -56,7 +56,7 @@ def estimate(log: JointLog) -> Estimate:
 
 
 @dataclass(frozen=True)
-class _Inputs:
+class Inputs:
     """Means over a step."""
 
     tau: float
@@ -64,12 +64,12 @@ class _Inputs:
     theta_c: float
 
 
-def _mean(log: JointLog, k: int) -> _Inputs:
+def inputs(log: JointLog, k: int) -> Inputs:
     """Inputs from sample k-1 to k."""
-    return _Inputs(*(float(a[k - 1] + a[k]) / 2 for a in (log.tau, log.q, log.theta_c)))
+    return Inputs(*(float(a[k - 1] + a[k]) / 2 for a in (log.tau, log.q, log.theta_c)))
 
 
-class _Filter:
+class Filter:
     """State and covariance."""
 
     def __init__(self, log: JointLog, shape: Spring) -> None:
@@ -93,7 +93,7 @@ class _Filter:
         self.walk = np.zeros(size)
         self.walk[SPRING:] = (WALK * known.range_tau_e) ** 2 * T
 
-    def predict(self, u: _Inputs) -> None:
+    def predict(self, u: Inputs) -> None:
         """To the next sample, with the midpoint of the position."""
         known, T, x = self.known, self.T, self.x
         g, v = known.gamma, float(x[VELOCITY])

@@ -1,14 +1,16 @@
 """The system identification toolbox of MuJoCo, `mujoco.sysid`, for a spring without a motor.
 
-Part of the package mujoco (extra `sysid`), as documented there: nonlinear least squares of simulated
-against measured sensors, parameters within bounds, intervals from the Jacobian and the residual
-(`calculate_intervals`). As in its examples a model is written and its parameters are fitted: a
-hinge with armature, damping, frictionloss and an offset, which the measured motor torque drives, and
-which a position actuator, whose gain is the stiffness, pulls to the measured link position. The only
-sensor is the motor position, and the whole log is one sequence. So nothing is assumed of the load,
-as with the other methods. Bounds are from the data sheet: three standard deviations. The gain of an
-actuator is constant: hardening is not in the model, and the method is not applicable where a motor
-changes the stiffness.
+Part of the package mujoco (extra `sysid`), as documented there: nonlinear least squares of
+simulated against measured sensors, parameters within bounds, intervals from the Jacobian and the
+residual (`calculate_intervals`). As in its examples a model is written and its parameters are
+fitted: a hinge with armature, damping, frictionloss and an offset, which the measured motor torque
+drives, and which a position actuator, whose gain is the stiffness, pulls to the measured link
+position. The only sensor is the motor position, and the whole log is one sequence. So nothing is
+assumed of the load, as with the other methods. Bounds are from the data sheet: three standard
+deviations. The fit ends after 30 steps at the latest: what comes later is slow, because the motor
+sticks or slips, which its numeric derivatives do not see. The gain of an actuator is constant:
+hardening is not in the model, and the method is not applicable where a motor changes the
+stiffness.
 """
 
 from __future__ import annotations
@@ -45,6 +47,7 @@ _XML = """
 RANGE = 10.0
 """The stiffness is sought from its scale over this to its scale times this; the scale is the
 largest torque over the largest deformation."""
+STEPS = 30
 _SPEED = 0.05  # [s] in which the velocity at the start is measured
 
 
@@ -79,7 +82,12 @@ def estimate(log: JointLog) -> Estimate:
     )
     with contextlib.redirect_stdout(io.StringIO()):  # each iteration is printed
         fitted, result = sysid.optimize(
-            _parameters(log.known), residual, optimizer="mujoco", verbose=False, x_scale="jac"
+            _parameters(log.known),
+            residual,
+            optimizer="mujoco",
+            verbose=False,
+            x_scale="jac",
+            max_iters=STEPS,
         )
     residuals, _, _ = residual(result.x, fitted)
     _, half = sysid.calculate_intervals(residuals, result.jac)
