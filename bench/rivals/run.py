@@ -6,6 +6,7 @@ Needs the folders bench/ and harness/ on the path; cmake --workflow --preset riv
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -24,8 +25,12 @@ def run_joint(joint: tuple[str, str, int]) -> list[Result]:
 
 def run(joints: Iterable[tuple[str, str, int]], jobs: int) -> list[Result]:
     """Results of all methods on all joints, in this order, in so many processes."""
+    every: list[Result] = []
     with ProcessPoolExecutor(jobs) as pool:
-        return [result for results in pool.map(run_joint, joints) for result in results]
+        for results in pool.map(run_joint, joints):
+            every += results
+            print(results[0].kind, results[0].engine, results[0].seed, file=sys.stderr, flush=True)
+    return every
 
 
 def main() -> None:

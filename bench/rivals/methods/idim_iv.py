@@ -5,11 +5,12 @@ robot identification", IEEE Trans. Control Systems Technology 22(1):132-145, 201
 instruments are the columns of the regression for a motion that is simulated with the last
 coefficients, and so without the noise of the measurements; estimation and simulation alternate
 until neither the coefficients nor the residual change by more than 2.5 %. The authors simulate the
-closed loop. A log names no controller, so the motor is simulated here: the measured torque drives
-it, and the spring pulls it to the measured link position after the filter of the regression.
-The first coefficients are those of least squares, and the data sheet takes part as there. The
-covariance is that of instrumental variables, (Z'X)^-1 Z'Z (X'Z)^-1 times the variance of the
-residual.
+closed loop of robot and controller, so that the noise of the measured torque is no part of the
+instruments. A log names no controller: here a proportional-derivative controller, as stiff as the
+sample period allows, makes the motor follow the measured motion, while the spring pulls it to the
+measured link position; both after the filter of the regression. The first coefficients are those
+of least squares, and the data sheet takes part as there. The covariance is that of instrumental
+variables, (Z'X)^-1 Z'Z (X'Z)^-1 times the variance of the residual.
 """
 
 from __future__ import annotations
@@ -18,7 +19,6 @@ import math
 import time
 
 import numpy as np
-from scipy import signal
 
 from rivals.answer import answer, no_answer
 from rivals.methods import least_squares
@@ -34,9 +34,12 @@ from rivals.regression import (
     columns,
     regression,
 )
+from rivals.spring import Spring
 
 TOLERANCE = 0.025
 ITERATIONS = 20
+LOOP = 0.5
+"""Bandwidth of the simulated loop times the sample period."""
 
 
 def estimate(log: JointLog) -> Estimate:
@@ -87,25 +90,34 @@ def simulate(log: JointLog, rows: Regression, beta: Array) -> Motion | None:
     T, g, shape = log.sample_period, log.known.gamma, rows.spring
     inertia, viscous = g**2 * beta[INERTIA], g**2 * beta[VISCOUS]
     friction = max(g * beta[COULOMB], 0.0) * T / inertia
-    q = signal.sosfiltfilt(rows.filters.butterworth, log.q)
-    # tau_e as a polynomial in the deformation at every sample: sum of curve[k, i] phi^(2i+1)
-    powers = np.arange(1, 2 * shape.n, 2)
-    of_l = (log.theta_c[:, None] / shape.range_theta_c) ** np.arange(shape.m)
-    curve = of_l @ beta[SPRING:].reshape(shape.n, shape.m).T
-    curve = curve / (powers * shape.range_phi**powers)
-    drive = g * log.tau - beta[OFFSET]
+    omega = LOOP / T
+    kp, kd = g**2 * log.known.B * omega**2, 2 * g**2 * log.known.B * omega
+    reference, velocities = rows.motion.theta, rows.motion.theta_dot
+    drive = kp * reference + kd * velocities - beta[OFFSET]
+    q = reference + rows.motion.phi
+    curve = polynomial(log, shape, beta[SPRING:])
     limit = 100 * (np.ptp(log.theta) + np.ptp(log.q))
-    theta, velocity = float(rows.motion.theta[0]), float(rows.motion.theta_dot[0])
-    positions, velocities = np.empty(len(q)), np.empty(len(q))
+    theta, velocity = float(reference[0]), float(velocities[0])
+    moved = np.empty((len(q), 2))
     for k, (force, link, coefficients) in enumerate(
         zip(drive.tolist(), q.tolist(), curve.tolist(), strict=True)
     ):
-        positions[k], velocities[k] = theta, velocity
+        moved[k] = theta, velocity
         phi = link - theta
         torque = math.fsum(c * phi ** (2 * i + 1) for i, c in enumerate(coefficients))
-        free = velocity + T * (force + torque - viscous * velocity) / inertia
+        torque += force - kp * theta - (kd + viscous) * velocity
+        free = velocity + T * torque / inertia
         velocity = math.copysign(max(abs(free) - friction, 0.0), free)
         theta += T * velocity
-        if not abs(theta - positions[0]) < limit:
+        if not abs(theta - reference[0]) < limit:
             return None
+    positions, velocities = moved.T
     return Motion(positions, velocities, np.gradient(velocities, T), q - positions)
+
+
+def polynomial(log: JointLog, shape: Spring, coefficients: Array) -> Array:
+    """Coefficients of phi, phi^3, ... in the torque at every sample [size: samples x n]."""
+    powers = np.arange(1, 2 * shape.n, 2)
+    of_theta_c = (log.theta_c[:, None] / shape.range_theta_c) ** np.arange(shape.m)
+    curve = of_theta_c @ coefficients.reshape(shape.n, shape.m).T
+    return np.asarray(curve / (powers * shape.range_phi**powers))
