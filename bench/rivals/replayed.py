@@ -10,11 +10,9 @@ import numpy as np
 import sigmahat
 from rivals.records import Array, JointLog
 from rivals.spring import Spring, spring
-from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.logs.replay import replay
-from sigmahat.logs.sampling import Samples
+from sigmahat.fmi.instance import Fmu, Recorder, Slave, Value
 
-_CHUNK = 1 << 14
+OUTPUTS = ("sigma", "sigma_std", "confident")
 
 
 def replayed(log: JointLog, start: Mapping[str, Value]) -> tuple[dict[str, Array], float]:
@@ -24,17 +22,22 @@ def replayed(log: JointLog, start: Mapping[str, Value]) -> tuple[dict[str, Array
 
     Raises FmuError if the FMU refuses a value.
     """
-    names = ("theta", "q", "theta_c", "tau")
-    values = np.column_stack([log.theta, log.q, log.theta_c, log.tau])
-    samples = Samples(log.sample_period, names, values, np.arange(len(values)), [])
+    samples = np.column_stack([log.theta, log.q, log.theta_c, log.tau])
     with (
         Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu,
         Slave(fmu, "estimator") as slave,
     ):
+        slave.initialize({**_common(log, spring(log)), **start})
+        inputs = fmu.references(("theta", "q", "theta_c", "tau"), "input")
+        recorder = Recorder(slave, OUTPUTS, len(samples))
+        T, fmi = log.sample_period, slave.functions
         begin = time.perf_counter()
-        parts = list(replay(slave, samples, {**_common(log, spring(log)), **start}, _CHUNK))
+        for k, row in enumerate(np.ctypeslib.as_ctypes(samples)):
+            slave.call(fmi.fmi2SetReal, inputs, len(inputs), row)
+            slave.call(fmi.fmi2DoStep, k * T, T, 1)
+            recorder.sample(k)
         seconds = time.perf_counter() - begin
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}, seconds
+        return recorder.columns(), seconds
 
 
 def _common(log: JointLog, shape: Spring) -> dict[str, Value]:
