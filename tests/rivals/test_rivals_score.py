@@ -20,10 +20,9 @@ def test_the_interval_score_is_the_width_and_40_times_what_is_outside() -> None:
 
 def log() -> JointLog:
     """A log of 4 s, every half second; four samples are judged."""
-    every = np.zeros(8)
-    some = closed_form_log("series_elastic")
-    stiffness = np.full(8, 100.0)
-    return JointLog("arm", "drake", 1, 0.5, *[every] * 5, stiffness, some.known)
+    zero, true = np.zeros(8), np.full(8, 100.0)
+    known = closed_form_log("series_elastic").known
+    return JointLog("arm", "drake", 1, 0.5, zero, zero, zero, zero, zero, true, known)
 
 
 def estimate(stiffness: list[float], std: list[float], confident: list[bool]) -> Estimate:
