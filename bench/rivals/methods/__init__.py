@@ -1,0 +1,26 @@
+"""The methods that are compared, by name: each has a file of its own, with its source."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from rivals.methods import (
+    idim_iv,
+    kalman,
+    least_squares,
+    matched_filter,
+    mujoco_sysid,
+    paper2011,
+    total_least_squares,
+)
+from rivals.records import Estimate, JointLog
+
+METHODS: dict[str, Callable[[JointLog], Estimate]] = {
+    "MatchedFilter": matched_filter.estimate,
+    "Paper2011": paper2011.estimate,
+    "least_squares": least_squares.estimate,
+    "total_least_squares": total_least_squares.estimate,
+    "idim_iv": idim_iv.estimate,
+    "kalman": kalman.estimate,
+    "mujoco_sysid": mujoco_sysid.estimate,
+}

@@ -1,0 +1,68 @@
+"""Logs of joints whose motion is prescribed, so that the motor torque follows in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rivals.records import Array, JointLog, Known
+
+T, DURATION = 1e-3, 12.0  # [s]
+GAMMA, B, D_THETA, TAU_COULOMB = 50.0, 2.3e-5, 1e-3, 0.01
+COUNTS = 1 << 18
+RANGE_PHI = 0.1
+LINEAR, CUBIC, OF_THETA_C = 140.0, 3000.0, 0.3
+"""Stiffness [N.m/rad], coefficient of the cube of the deformation [N.m/rad3], and share by which
+the position of the stiffness motor [rad] changes the stiffness."""
+
+
+def _cosines(t: Array, *terms: tuple[float, float]) -> tuple[Array, Array, Array]:
+    """A signal that begins at 0 and at rest, and two derivatives; terms: amplitude, frequency."""
+    signal, first, second = np.zeros(len(t)), np.zeros(len(t)), np.zeros(len(t))
+    for amplitude, f in terms:
+        w = 2 * np.pi * f
+        signal += amplitude * (1 - np.cos(w * t))
+        first += amplitude * w * np.sin(w * t)
+        second += amplitude * w**2 * np.cos(w * t)
+    return signal, first, second
+
+
+def closed_form_log(
+    kind: str,
+    noise_tau: float = 1e-3,
+    tau_coulomb: float = TAU_COULOMB,
+    counts: int = COUNTS,
+    seed: int = 1,
+) -> JointLog:
+    """A log of a joint with Coulomb friction; the data sheet's inertia and friction are true.
+
+    The stiffness is constant but for the kind variable_stiffness. The seed is that of the noise.
+    """
+    t = T * np.arange(DURATION / T)
+    theta, theta_dot, theta_ddot = _cosines(t, (0.3, 0.31), (-0.15, 0.83), (0.06, 2.3))
+    phi, _, _ = _cosines(t, (0.03, 0.45), (-0.03, 1.13), (0.015, 2.9))
+    variable = kind == "variable_stiffness"
+    theta_c = np.sin(2 * np.pi * 0.11 * t) if variable else np.zeros(len(t))
+    share = 1 + OF_THETA_C * theta_c
+    cubic = CUBIC if variable else 0.0
+    tau_e = share * (LINEAR * phi + cubic * phi**3)
+    stiffness = share * (LINEAR + 3 * cubic * phi**2)
+    tau = GAMMA * (B * theta_ddot + D_THETA * theta_dot) + tau_coulomb * np.sign(theta_dot)
+    tau = tau - tau_e / GAMMA + noise_tau * np.random.default_rng(seed).normal(size=len(t))
+    count = 2 * np.pi / counts if counts else 0.0
+    rounded = [np.round(x / count) * count if counts else x for x in (theta, theta + phi)]
+    known = Known(
+        gamma=GAMMA,
+        B=B,
+        D_theta=D_THETA,
+        relative_std_B=0.05,
+        relative_std_D_theta=0.2,
+        tau_coulomb=0.02,
+        noise_tau=max(noise_tau, 1e-6),
+        counts_theta=counts,
+        counts_q=counts,
+        range_phi=RANGE_PHI,
+        range_tau_e=20.0,
+    )
+    return JointLog(
+        kind, "closed form", seed, T, rounded[0], rounded[1], tau, theta_c, tau_e, stiffness, known
+    )

@@ -1,0 +1,204 @@
+"""Every method of the comparison finds the stiffness of a joint that is as its equation says."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+from closed_form_joint import LINEAR, TAU_COULOMB, closed_form_log
+from gate import missing
+from rivals.methods import METHODS, idim_iv, kalman, least_squares, total_least_squares
+from rivals.records import Array, Estimate, JointLog
+from rivals.regression import COULOMB, filters, regression
+from rivals.score import score
+from rivals.spring import spring
+
+KINDS = ("series_elastic", "variable_stiffness")
+ERRORS = {
+    "MatchedFilter": 0.5,
+    "least_squares": 0.1,
+    "total_least_squares": 0.1,
+    "idim_iv": 0.1,
+    "kalman": 1.0,
+}
+"""Largest root mean square error of the stiffness [%]."""
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def log(request: pytest.FixtureRequest) -> JointLog:
+    return closed_form_log(request.param)
+
+
+@pytest.mark.parametrize("method", ERRORS)
+def test_the_stiffness_of_an_ideal_joint_is_found(method: str, log: JointLog) -> None:
+    found = score(log, METHODS[method](log))
+    assert found.error < ERRORS[method]
+    assert found.confident == 100
+    assert found.wrong == 0
+
+
+@pytest.mark.parametrize("method", ["MatchedFilter", "kalman"])
+def test_on_line_intervals_hold_the_truth(method: str, log: JointLog) -> None:
+    assert score(log, METHODS[method](log)).coverage > 90
+
+
+@pytest.mark.slow("the logs of 40 seeds")
+@pytest.mark.parametrize("method", ["least_squares", "total_least_squares", "idim_iv"])
+def test_the_error_off_line_is_as_large_as_it_is_claimed(method: str) -> None:
+    ratios = []
+    for seed in range(40):
+        log = closed_form_log("series_elastic", noise_tau=0.01, seed=seed)
+        found = METHODS[method](log)
+        ratios.append((found.stiffness[5000] - LINEAR) / found.std[5000])
+    # The mean square of 40 numbers of variance 1 is within 0.55 and 1.55 with 99 %.
+    assert 0.55 < np.mean(np.square(ratios)) < 1.55
+
+
+def test_paper2011_finds_the_stiffness_of_a_joint_without_coulomb_friction() -> None:
+    log = closed_form_log("series_elastic", tau_coulomb=0.0)
+    estimate = METHODS["Paper2011"](log)
+    assert score(log, estimate).error < 5
+    assert np.isnan(estimate.std).all()
+    assert not estimate.confident.any()
+
+
+def mujoco_sysid(log: JointLog) -> Estimate:
+    if find_spec("mujoco") is None or find_spec("mujoco.sysid") is None:
+        missing("mujoco with its extra sysid", "cmake --build build --target packages_rivals")
+    return METHODS["mujoco_sysid"](log)
+
+
+@pytest.mark.slow("each of some 50 simulations of MuJoCo takes 0.1 s")
+def test_mujoco_finds_a_constant_stiffness() -> None:
+    log = closed_form_log("series_elastic")
+    found = score(log, mujoco_sysid(log))
+    assert found.error < 0.1
+    assert found.width < 0.1
+
+
+def test_mujoco_has_no_answer_where_a_motor_changes_the_stiffness() -> None:
+    estimate = mujoco_sysid(closed_form_log("variable_stiffness"))
+    assert estimate.remark
+    assert np.isnan(estimate.stiffness).all()
+
+
+def noisy(seed: int = 1) -> tuple[Array, Array, Array]:
+    """A column without noise, the same with noise of the same variance, and 2 times the first."""
+    rng = np.random.default_rng(seed)
+    clean, noise = rng.normal(size=(2, 20000))
+    x = np.column_stack([np.zeros((20000, 4)), clean + noise])
+    x[:, :4] = rng.normal(size=(20000, 4))
+    return np.column_stack([x[:, :4], clean]), x, 2 * clean
+
+
+def test_noise_of_a_column_halves_what_least_squares_finds_and_not_what_the_others_find() -> None:
+    clean, X, y = noisy()
+    known = closed_form_log("series_elastic").known
+    without = type(known)(**{**vars(known), "relative_std_B": 0.0, "relative_std_D_theta": 0.0})
+    attenuated, _ = least_squares.solve(X, y, without)
+    assert attenuated[4] == pytest.approx(1.0, abs=0.03)
+    instrumental, covariance = idim_iv.solve(clean, X, y, without)
+    assert instrumental[4] == pytest.approx(2.0, abs=4 * np.sqrt(covariance[4, 4]))
+    C = np.diag([1e-12, 1e-12, 0, 0, 1.0, 1e-12])
+    total, covariance = total_least_squares.solve(X, y, C)
+    assert total[4] == pytest.approx(2.0, abs=4 * np.sqrt(covariance[4, 4]))
+    assert np.sqrt(covariance[4, 4]) < 0.05
+
+
+def test_the_data_sheet_decides_where_the_data_say_nothing() -> None:
+    log = closed_form_log("series_elastic")
+    rows = regression(log)
+    X = rows.X.copy()
+    X[:, 0] = 1e-3 * X[:, 4]  # inertia and stiffness look the same
+    beta, covariance = least_squares.solve(X, rows.y, log.known)
+    assert beta[0] == pytest.approx(log.known.B, rel=1e-3)
+    assert np.sqrt(covariance[0, 0]) == pytest.approx(0.05 * log.known.B, rel=1e-2)
+
+
+def test_the_frequency_of_the_dynamics_is_that_of_the_fastest_motion() -> None:
+    passed = filters(closed_form_log("series_elastic"))
+    assert passed.dynamics == pytest.approx(2.3, abs=0.2)
+    # What passes the decimation is below 0.8 times the new Nyquist frequency.
+    assert 2 * passed.dynamics <= 0.8 / passed.sample_period / passed.decimation / 2
+
+
+def test_total_least_squares_knows_how_much_noise_passes_the_filters() -> None:
+    log = closed_form_log("series_elastic")
+    rows = regression(log)
+    std = 1e-4
+    noise = std * np.random.default_rng(3).normal(size=400_000)
+    still = JointLog(**{**vars(log), "theta": noise, "q": 0 * noise})
+    motion = rows.filters.motion(still)
+    passed = rows.filters.decimated(
+        np.column_stack([motion.phi, motion.theta_dot, motion.theta_ddot])
+    )
+    measured = np.var(passed, axis=0) / std**2
+    np.testing.assert_allclose(total_least_squares.spectrum(rows.filters), measured, rtol=0.1)
+
+
+def test_the_simulated_motor_moves_as_the_joint_did() -> None:
+    log = closed_form_log("series_elastic", noise_tau=0.0, counts=0)
+    rows = regression(log)
+    known = log.known
+    beta = np.array([known.B, known.D_theta, TAU_COULOMB, 0.0, LINEAR * known.range_phi, 0.0])
+    motion = idim_iv.simulate(log, rows, beta)
+    assert motion is not None
+    # In a loop with the gain kp the motor is off by the torque over kp, while it moves steadily.
+    kp = known.gamma**2 * known.B * (idim_iv.LOOP / log.sample_period) ** 2
+    off = np.abs(motion.theta - log.theta)[500:-500]
+    assert off.max() < 1.5 * known.gamma * np.abs(log.tau).max() / kp
+    assert off.max() < 2e-3 * np.ptp(log.theta)
+
+
+def test_a_simulation_that_diverges_is_none() -> None:
+    log = closed_form_log("series_elastic")
+    rows = regression(log)
+    beta = np.array([log.known.B, log.known.D_theta, 0.0, 0.0, -1e4, 0.0])
+    assert idim_iv.simulate(log, rows, beta) is None
+
+
+def test_the_derivatives_of_the_kalman_filter_are_those_of_its_prediction() -> None:
+    log = closed_form_log("variable_stiffness")
+    u = kalman.inputs(log, 500)
+
+    def predicted(x: Array) -> kalman.Filter:
+        each = kalman.Filter(log, spring(log))
+        each.x = x.copy()
+        each.walk[:] = 0.0
+        each.P = np.eye(len(x))
+        each.predict(u)
+        return each
+
+    x = kalman.Filter(log, spring(log)).x
+    x[[kalman.THETA, kalman.VELOCITY, kalman.COULOMB]] = 0.01, 0.003, TAU_COULOMB
+    step = 1e-6 * np.maximum(np.abs(x), 1e-2)
+    F = np.column_stack(
+        [
+            (predicted(x + h * e).x - predicted(x - h * e).x) / (2 * h)
+            for h, e in zip(step, np.eye(len(x)), strict=True)
+        ]
+    )
+    P = predicted(x).P
+    P[kalman.VELOCITY, kalman.VELOCITY] -= noise_of_the_velocity(log, x)
+    np.testing.assert_allclose(P, F @ F.T, rtol=1e-5, atol=1e-8)
+
+
+def noise_of_the_velocity(log: JointLog, x: Array) -> float:
+    """What a prediction adds: all of the variance of an exactly known state."""
+    each = kalman.Filter(log, spring(log))
+    each.x = x.copy()
+    each.walk[:] = 0.0
+    each.P = np.zeros_like(each.P)
+    each.predict(kalman.inputs(log, 500))
+    return float(each.P[kalman.VELOCITY, kalman.VELOCITY])
+
+
+def test_columns_are_those_of_the_equation() -> None:
+    log = closed_form_log("series_elastic", noise_tau=0.0, counts=0)
+    rows = regression(log)
+    known = log.known
+    beta = np.array([known.B, known.D_theta, TAU_COULOMB, 0.0, LINEAR * known.range_phi, 0.0])
+    assert rows.X[:, COULOMB] @ rows.X[:, COULOMB] > 0
+    np.testing.assert_allclose(rows.X @ beta, rows.y, atol=2e-3 * np.abs(rows.y).max())
