@@ -11,12 +11,15 @@ CONFIDENT = 0.1
 MatchedFilter is at most."""
 
 
-def answer(stiffness: Array, std: Array, seconds: float) -> Estimate:
+def answer(log: JointLog, stiffness: Array, std: Array, seconds: float) -> Estimate:
     """The estimate of a method that claims a standard deviation.
+
+    What is known of the gain of the torque is added to it: the stiffness is proportional to it.
 
     stiffness, std  at every sample [N.m/rad]
     seconds         wall time
     """
+    std = np.hypot(std, log.known.relative_std_gain * stiffness)
     confident = np.isfinite(stiffness) & np.isfinite(std) & (std < CONFIDENT * stiffness)
     return Estimate(stiffness, std, confident, seconds)
 

@@ -19,6 +19,7 @@ class Known:
     D_theta: float  # viscous friction on the motor's axis [N.m.s/rad]
     relative_std_B: float
     relative_std_D_theta: float
+    relative_std_gain: float  # of the measured torque, which no log shows
     tau_coulomb: float  # largest plausible Coulomb friction on the motor's axis [N.m]
     noise_tau: float  # standard deviation of the measured motor torque [N.m]
     counts_theta: int  # counts of the motor encoder per turn behind the gear; 0: not quantised

@@ -56,6 +56,7 @@ def closed_form_log(
         D_theta=D_THETA,
         relative_std_B=0.05,
         relative_std_D_theta=0.2,
+        relative_std_gain=0.0,
         tau_coulomb=0.02,
         noise_tau=max(noise_tau, 1e-6),
         counts_theta=counts,

@@ -17,7 +17,7 @@ import numpy as np
 from rivals.joints.encoders import count
 from rivals.joints.excitation import Complex, Drive, Multisine
 from rivals.joints.friction import MODELS, Friction
-from rivals.joints.logs import STD_B, STD_D
+from rivals.joints.logs import STD_B, STD_D, STD_GAIN
 from rivals.joints.parameters import (
     Arm,
     Instruments,
@@ -90,7 +90,6 @@ COUNTS = 30  # of both encoders for the expected deformation, at least
 LOG_NOISE: Range = (0.005, 0.03)  # by the peak torque
 DELAY: Range = (0.0, 2e-3)  # [s]
 LAG: Range = (2e-4, 6e-4)  # [s]
-STD_GAIN = 0.015
 COULOMB_KNOWN: Range = (1.0, 2.0)  # largest plausible by true
 MARGIN: Range = (1.05, 1.5)  # largest expected by largest, of deformation and torque
 

@@ -11,6 +11,7 @@ from rivals.records import Array, JointLog, Known
 
 STD_B = 0.05
 STD_D = 0.2
+STD_GAIN = 0.015
 """Relative standard deviations of the data sheets, as drawn and as told to the methods."""
 
 
@@ -49,6 +50,7 @@ def _known(motor: Motor, instruments: Instruments, sheet: Sheet, phi: Array, tau
         D_theta=sheet.D * motor.D,
         relative_std_B=STD_B,
         relative_std_D_theta=STD_D,
+        relative_std_gain=STD_GAIN,
         tau_coulomb=sheet.coulomb * motor.friction.at_rest,
         noise_tau=instruments.noise,
         counts_theta=instruments.counts_theta,

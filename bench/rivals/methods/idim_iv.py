@@ -62,7 +62,7 @@ def estimate(log: JointLog) -> Estimate:
             TOLERANCE * np.abs(last), np.sqrt(np.diag(covariance))
         )
         if np.all(change) and abs(error - last_error) <= TOLERANCE * last_error:
-            return answer(*rows.stiffness(log, beta, covariance), time.perf_counter() - begin)
+            return answer(log, *rows.stiffness(log, beta, covariance), time.perf_counter() - begin)
     return no_answer(log, time.perf_counter() - begin, f"not converged after {ITERATIONS} rounds")
 
 

@@ -52,7 +52,7 @@ def estimate(log: JointLog) -> Estimate:
         stiffness[k] = slope[k] @ filtered.x[SPRING:]
         variance[k] = slope[k] @ filtered.P[SPRING:, SPRING:] @ slope[k]
     std = np.sqrt(np.maximum(variance, 0.0))
-    return answer(stiffness, std, time.perf_counter() - begin)
+    return answer(log, stiffness, std, time.perf_counter() - begin)
 
 
 @dataclass(frozen=True)

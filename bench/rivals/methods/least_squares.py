@@ -25,7 +25,7 @@ def estimate(log: JointLog) -> Estimate:
     begin = time.perf_counter()
     rows = regression(log)
     beta, covariance = solve(rows.X, rows.y, log.known)
-    return answer(*rows.stiffness(log, beta, covariance), time.perf_counter() - begin)
+    return answer(log, *rows.stiffness(log, beta, covariance), time.perf_counter() - begin)
 
 
 def solve(X: Array, y: Array, known: Known) -> tuple[Array, Array]:

@@ -23,6 +23,7 @@ def estimate(log: JointLog) -> Estimate:
             "prior.B": known.relative_std_B,
             "prior.D_theta": known.relative_std_D_theta,
             "prior.tau_coulomb": known.tau_coulomb,
+            "prior.torque_gain": known.relative_std_gain,
         },
     )
     confident = found["confident"].astype(bool)

@@ -94,7 +94,7 @@ def estimate(log: JointLog) -> Estimate:
     every = np.ones(len(times))
     stiffness = float(fitted["stiffness"].value[0])
     std = float(half[0]) / 1.96
-    return answer(stiffness * every, std * every, time.perf_counter() - begin)
+    return answer(log, stiffness * every, std * every, time.perf_counter() - begin)
 
 
 def _parameters(known: Known) -> Any:

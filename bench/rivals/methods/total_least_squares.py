@@ -38,7 +38,7 @@ def estimate(log: JointLog) -> Estimate:
     begin = time.perf_counter()
     rows = regression(log)
     beta, covariance = solve(rows.X, rows.y, errors(log, rows))
-    return answer(*rows.stiffness(log, beta, covariance), time.perf_counter() - begin)
+    return answer(log, *rows.stiffness(log, beta, covariance), time.perf_counter() - begin)
 
 
 def solve(X: Array, y: Array, C: Array) -> tuple[Array, Array]:
