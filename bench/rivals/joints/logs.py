@@ -12,7 +12,7 @@ from rivals.records import Array, JointLog, Known
 STD_B = 0.05
 STD_D = 0.2
 STD_GAIN = 0.015
-"""Relative standard deviations of the data sheets, as drawn and as told to the methods."""
+"""Relative standard deviations of the data sheets, as drawn, and as the methods are given them."""
 
 
 def log(

@@ -1,1 +1,1 @@
-"""What logs told about a joint: its data sheet, and the files made of it for other tools."""
+"""What logs show about a joint: its data sheet, and the files made of it for other tools."""

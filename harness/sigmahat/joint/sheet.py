@@ -1,4 +1,4 @@
-"""The data sheet of a joint, `joint.json`: what logs told, for people, scripts and other tools.
+"""The data sheet of a joint, `joint.json`: what logs show, for people, scripts and other tools.
 
 Numbers are written with all of their digits, so that what is read is what was estimated.
 """

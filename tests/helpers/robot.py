@@ -1,0 +1,194 @@
+"""Axes 1 to 3 of an industrial robot: identified, estimated and validated as a user does it.
+
+    python tests/helpers/robot.py FIGURE.png
+
+prints the table of docs/robot.md and draws its figure. The data are looked for in
+../shared/data/kr300 next to the checkout, or in the folder that the environment variable
+SIGMAHAT_KR300 names.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+from matplotlib.figure import Figure
+
+from recorded_logs import read_estimate
+
+RUNS = ("a", "b")
+AXES = (3, 2, 1)
+GEAR_RATIO = {1: 256.857142857, 2: 267.428571429, 3: 252.333333333}
+INERTIA = {1: 0.00923, 2: 0.0118, 3: 0.0118}  # of the authors [kg.m2]
+STIFFNESS = {1: 4.5778e6, 2: 7.5189e6, 3: 4.0999e6}  # of the authors [N.m/rad]
+SIGMA, STD = "estimate.sigma [N.m/rad]", "estimate.sigma_std [N.m/rad]"
+
+CONFIGURATION = """\
+[time]
+column = "time_s"
+unit = "s"
+[ports.theta]
+column = "a{axis}_motor_deg"
+unit = "deg"
+[ports.q]
+column = "a{axis}_link_deg"
+unit = "deg"
+[ports.tau]
+column = "a{axis}_motor_torque_Nm"
+unit = "N.m"
+[parameters]
+samplePeriod = 0.004
+method = "MatchedFilter"
+motor.gamma = {gear}
+motor.B = {inertia}
+prior.B = 0.05
+motor.D_theta = 0.03
+encoder.theta = 0
+encoder.q = 0
+rls.m = 1
+"""
+
+
+@dataclass(frozen=True)
+class Estimated:
+    """The estimate from the log of a run."""
+
+    runs: str
+    """One of RUNS, or "ab" for b after a."""
+    table: pa.Table
+    """What `sigmahat estimate` wrote for each sample of the last run."""
+
+    @property
+    def stiffness(self) -> float:
+        """At the end [N.m/rad]."""
+        return float(self.table[SIGMA][-1].as_py())
+
+    @property
+    def std(self) -> float:
+        """Its standard deviation [N.m/rad]."""
+        return float(self.table[STD][-1].as_py())
+
+    @property
+    def confident(self) -> float:
+        """Share of the samples [1]."""
+        return float(np.mean(self.table["estimate.confident"].to_numpy()))
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis of the robot."""
+
+    number: int
+    estimated: Sequence[Estimated]
+    validated: Sequence[dict[str, Any]]
+    """What `sigmahat validate --json` says of run b with a, and of a with b."""
+
+
+def folder() -> Path:
+    """The folder with the data. Raises FileNotFoundError if there is none."""
+    beside = Path(__file__).parents[3] / "shared" / "data" / "kr300"
+    found = Path(os.environ.get("SIGMAHAT_KR300", beside))
+    if not (found / "kr300_a.csv").exists():
+        raise FileNotFoundError(f"{found} has no kr300_a.csv; name the folder in SIGMAHAT_KR300")
+    return found
+
+
+def study(number: int, data: Path, place: Path) -> Axis:
+    """Runs the commands for an axis, in an empty folder."""
+    estimated = []
+    for run in RUNS:
+        config = place / f"{run}.toml"
+        config.write_text(
+            CONFIGURATION.format(axis=number, gear=GEAR_RATIO[number], inertia=INERTIA[number])
+        )
+        log = data / f"kr300_{run}.csv"
+        _sigmahat("identify", log, "--config", config, "--quiet")
+        estimated.append(_estimate(run, log, config, place / run))
+    second = data / "kr300_b.csv"
+    both = _estimate("ab", second, place / "a.toml", place / "ab", "--start-from", place / "a")
+    validated = [
+        json.loads(
+            _sigmahat(
+                *("validate", data / f"kr300_{other}.csv", "--with", place / f"{run}.toml"),
+                *("--start-from", place / run, "--json"),
+                may_disagree=True,
+            )
+        )
+        for run, other in (("a", "b"), ("b", "a"))
+    ]
+    return Axis(number, [*estimated, both], validated)
+
+
+def _estimate(runs: str, log: Path, config: Path, out: Path, *more: object) -> Estimated:
+    _sigmahat("estimate", log, "--config", config, "--out", out, "--quiet", *more)
+    return Estimated(runs, read_estimate(out))
+
+
+def _sigmahat(*arguments: object, may_disagree: bool = False) -> str:
+    command = [sys.executable, "-m", "sigmahat", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode not in ((0, 1) if may_disagree else (0,)):
+        raise RuntimeError(done.stderr)
+    return done.stdout
+
+
+def draw(axes: Sequence[Axis]) -> Figure:
+    """Stiffness over time, with its interval, and the authors' value."""
+    figure = Figure(figsize=(9, 3.8), layout="constrained")
+    for axis, panel in zip(axes, figure.subplots(1, len(axes)), strict=True):
+        for each, colour in zip(axis.estimated[:2], ("#0072B2", "#D55E00"), strict=True):
+            sigma, std = (each.table[name].to_numpy() / 1e6 for name in (SIGMA, STD))
+            t = 0.004 * np.arange(len(sigma))
+            panel.plot(t, sigma, color=colour, label=f"run {each.runs}")
+            low, high = sigma - 1.96 * std, sigma + 1.96 * std
+            band = f"run {each.runs}, 95 % interval"
+            panel.fill_between(t, low, high, color=colour, alpha=0.2, linewidth=0, label=band)
+        authors = STIFFNESS[axis.number] / 1e6
+        panel.axhline(authors, color="black", linestyle="--", label="authors of the data")
+        panel.set(title=f"axis {axis.number}", xlabel="time [s]", ylim=(-5, 15), xlim=(0, 10))
+    figure.axes[0].set_ylabel(r"stiffness [$10^6$ N.m/rad]")
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=5, fontsize="small")
+    return figure
+
+
+def table(axes: Sequence[Axis]) -> str:
+    """Rows for each axis."""
+    lines = [
+        "| axis | run a | run b | a, then b | confident | torque of the other run below 2 Hz |",
+        "|---|---|---|---|---|---|",
+    ]
+    for axis in axes:
+        values = [
+            f"{each.stiffness / 1e6:.2f} ± {1.96 * each.std / 1e6:.2f}" for each in axis.estimated
+        ]
+        confident = ", ".join(f"{100 * each.confident:.0f}" for each in axis.estimated)
+        errors = ", ".join(
+            f"{100 * each['torque below 2 Hz']['relative [1]']:.1f}" for each in axis.validated
+        )
+        lines.append(f"| {axis.number} | {' | '.join(values)} | {confident} % | {errors} % |")
+    return "\n".join(lines)
+
+
+def main(picture: Path) -> None:
+    """Prints the table and draws the figure."""
+    data = folder()
+    axes = []
+    for number in AXES:
+        with tempfile.TemporaryDirectory() as place:
+            axes.append(study(number, data, Path(place)))
+    print(table(axes))
+    draw(axes).savefig(picture, dpi=120)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
