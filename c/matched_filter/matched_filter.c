@@ -40,7 +40,7 @@ static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
     return 0;
 }
 
-static sh_real largest_deformation(const sh_parameters *p)
+static sh_real largest_deformation_matched_filter(const sh_parameters *p)
 {
     const int highest = sh_scaled_basis_power(p->rls.symmetric, p->rls.n - 1);
 
@@ -198,8 +198,7 @@ static void report(const sh_matched_state *state, const sh_parameters *p, sh_rea
 
     const sh_real by_rounding = attenuation(state, fit) * estimate->sigma;
 
-    estimate->sigma_std =
-        sh_sqrt(fit->variance + by_gain * by_gain + by_rounding * by_rounding);
+    estimate->sigma_std = sh_sqrt(fit->variance + by_gain * by_gain + by_rounding * by_rounding);
     estimate->sigma_per_gain =
         sh_fabs(estimate->sigma) > 0 ? fit->by_gain / sh_fabs(estimate->sigma) : 0;
     joint = read_columns(state, p, set_point, estimate);
@@ -216,7 +215,7 @@ static void start_matched_filter(sh_estimator *estimator, const sh_parameters *p
     sh_matched_state *state = &estimator->method.matched;
     sh_stiffness_fit fit;
 
-    state->largest_deformation = largest_deformation(p);
+    state->largest_deformation = largest_deformation_matched_filter(p);
     sh_signals_start(state, p);
     sh_columns_start(state, p);
     sh_information_start(&state->data, state->size, SH_INFORMATION_LEAST);
@@ -369,7 +368,7 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
 }
 
 const sh_method sh_matched_filter = {
-    .largest_deformation = largest_deformation,
+    .largest_deformation = largest_deformation_matched_filter,
     .check = check_matched_filter,
     .start = start_matched_filter,
     .tick = tick_matched_filter,

@@ -138,14 +138,14 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
     return 1;
 }
 
-static sh_real largest_deformation(const sh_parameters *p)
+static sh_real largest_deformation_paper2011(const sh_parameters *p)
 {
     (void)p;
     return INFINITY;
 }
 
 const sh_method sh_paper2011 = {
-    .largest_deformation = largest_deformation,
+    .largest_deformation = largest_deformation_paper2011,
     .check = check_paper2011,
     .start = start_paper2011,
     .tick = tick_paper2011,

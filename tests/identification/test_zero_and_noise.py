@@ -75,7 +75,8 @@ def test_encoders_read_at_different_times_get_a_prior_that_holds_the_friction_th
     # GIVEN a link encoder read 20 ms late: k times -20 ms times the velocity looks like friction
     joint, late = motor(0.0), 20
     q = joint.theta + joint.phi
-    log = {"t": T * np.arange(len(q)), "theta": joint.theta, "tau": joint.tau}
+    t: Array = np.arange(len(q)) * np.float64(T)
+    log = {"t": t, "theta": joint.theta, "tau": joint.tau}
     log |= {"q": np.concatenate([q[:late], q[:-late]]), "theta_c": np.zeros(len(q))}
     path = tmp_path / "log.toml"
     found = identified(log, path, CONFIGURATION)
