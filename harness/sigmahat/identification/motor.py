@@ -101,7 +101,7 @@ def fit_motor(
         quantities |= {name: _motor_quantity(name, fits, torque) for name in MOTOR[1:]}
     spring = Spring(form, systems.first.units)
     if CONSTANT in fits.first.value and "gain" not in fits.first.value:
-        quantities["zero"] = _zero(spring, fits, pieces)
+        quantities["zero"] = _zero(spring, fits, pieces, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
     return MotorFit(quantities, gain, smallest, spring.largest(fits.first, pieces, abs(gamma)))
 
@@ -209,10 +209,11 @@ def _quantity(value: float, half_width: float, unit: str, negligible: float) -> 
     return Quantity(value, half_width, unit, bool(determined))
 
 
-def _zero(spring: Spring, fits: Variants[Fit], pieces: Sequence[Signals]) -> Quantity:
+def _zero(spring: Spring, fits: Variants[Fit], pieces: Sequence[Signals], gamma: float) -> Quantity:
     """The deformation at which spring and constant torque cancel.
 
-    It is determined if its interval is short compared with the covered deformation.
+    It is determined if its interval is short compared with the covered deformation, and if the
+    stiffness is positive: else a sign or a gear ratio is wrong, and the zero means nothing.
     """
     value = spring.zero(fits.first, pieces)
     others = [spring.zero(each, pieces) for each in fits.others]
@@ -221,4 +222,5 @@ def _zero(spring: Spring, fits: Variants[Fit], pieces: Sequence[Signals]) -> Qua
     half_width = spring.half_width(fits.first, value, pieces)
     half_width += max(abs(other - value) for other in others)
     covered = max(float(np.max(p.phi)) for p in pieces) - min(float(np.min(p.phi)) for p in pieces)
-    return Quantity(value, half_width, "rad", bool(half_width < _OF_COVERED * covered))
+    is_stiff = spring.slope(fits.first, value, pieces) * gamma < 0
+    return Quantity(value, half_width, "rad", bool(is_stiff and half_width < _OF_COVERED * covered))

@@ -45,12 +45,20 @@ class Spring:
         gradient = np.zeros(len(names))
         gradient[names.index(CONSTANT)] = 1.0
         gradient[-len(by_eta) :] = by_eta
-        e = self._exponents
-        slope = float(np.sum(e * x ** np.maximum(e - 1, 0) * self._at(set_point, fit)))
+        slope = self.slope(fit, zero, pieces)
         if not abs(slope) > 0:
             return math.inf
         variance = float(gradient @ fit.covariance @ gradient)
-        return fit.quantile * math.sqrt(variance) / abs(slope) * self.units[0]
+        return fit.quantile * math.sqrt(variance) / abs(slope)
+
+    def slope(self, fit: Fit, phi: float, pieces: Sequence[Signals]) -> float:
+        """Slope of the motor torque over the deformation [N.m/rad], at the mean set-point.
+
+        It is the stiffness over the gear ratio, with the other sign.
+        """
+        e, x = self._exponents, phi / self.units[0]
+        coefficients = self._at(_mean_set_point(pieces), fit)
+        return float(np.sum(e * x ** np.maximum(e - 1, 0) * coefficients)) / self.units[0]
 
     def largest(self, fit: Fit, pieces: Sequence[Signals], gamma: float) -> float:
         """Largest torque of the spring in the log, behind the gear [N.m]; nan if not known."""
