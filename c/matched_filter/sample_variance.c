@@ -28,6 +28,12 @@ static sh_real white(const sh_matched_state *state)
     return (sh_real)(3.0 / 16) * state->design.w * state->design.T;
 }
 
+/* Sum over both encoders [rad2]: rounding of phi has a twelfth of it as its variance. */
+static sh_real counts_squared(const sh_matched_state *state)
+{
+    return sh_square(state->count) + sh_square(state->count_q);
+}
+
 /* Variance of the friction whose sign is unknown [(N.m)2]. */
 static sh_real friction_variance(sh_matched_state *state, const sh_parameters *p)
 {
@@ -58,8 +64,7 @@ static sh_real friction_variance(sh_matched_state *state, const sh_parameters *p
  */
 sh_sample_variance sh_sample_variance_of(sh_matched_state *state, const sh_parameters *p)
 {
-    const sh_real rounding =
-        sh_square(state->sigma) * (sh_square(state->count) + sh_square(state->count_q)) / 12;
+    const sh_real rounding = sh_square(state->sigma) * counts_squared(state) / 12;
     sh_real R = rounding + sh_square(p->noise.tau_e), stays = rounding * state->history.resting;
     sh_sample_variance variance;
 
@@ -95,7 +100,7 @@ void sh_sample_variance_watch(sh_matched_state *state, const sh_parameters *p)
 
 sh_real sh_sample_variance_of_deformation(const sh_matched_state *state)
 {
-    return white(state) * (sh_square(state->count) + sh_square(state->count_q)) / 12;
+    return white(state) * counts_squared(state) / 12;
 }
 
 sh_real sh_sample_variance_of_inertia(const sh_matched_state *state, const sh_parameters *p)

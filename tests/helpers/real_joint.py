@@ -10,7 +10,6 @@ SIGMAHAT_DESR names.
 from __future__ import annotations
 
 import math
-import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,6 +22,7 @@ from numpy.typing import NDArray
 
 import sigmahat
 from misfit_priors import WITHOUT_MISFITS
+from shared_data import data_folder
 from sigmahat.fmi.instance import Fmu, Recorder, Slave, Value
 
 Array = NDArray[np.float64]
@@ -154,11 +154,7 @@ def slope(x: Array, y: Array, at: float, half_width: float) -> float:
 
 def folder() -> Path:
     """Where the data are. Raises FileNotFoundError if they are not there."""
-    default = Path(__file__).resolve().parents[3] / "shared" / "data" / "desr"
-    path = Path(os.environ.get("SIGMAHAT_DESR", default))
-    if not (path / "desr_x00.csv").is_file():
-        raise FileNotFoundError(f"no DESR data in {path}; SIGMAHAT_DESR can name another folder")
-    return path
+    return data_folder("desr", "desr_x00.csv")
 
 
 def logs(path: Path) -> list[Log]:

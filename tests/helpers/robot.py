@@ -10,7 +10,6 @@ SIGMAHAT_KR300 names.
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 import tempfile
@@ -24,6 +23,7 @@ import pyarrow as pa
 from matplotlib.figure import Figure
 
 from recorded_logs import read_estimate
+from shared_data import data_folder
 
 RUNS = ("a", "b")
 AXES = (3, 2, 1)
@@ -95,11 +95,7 @@ class Axis:
 
 def folder() -> Path:
     """The folder with the data. Raises FileNotFoundError if there is none."""
-    beside = Path(__file__).parents[3] / "shared" / "data" / "kr300"
-    found = Path(os.environ.get("SIGMAHAT_KR300", beside))
-    if not (found / "kr300_a.csv").exists():
-        raise FileNotFoundError(f"{found} has no kr300_a.csv; name the folder in SIGMAHAT_KR300")
-    return found
+    return data_folder("kr300", "kr300_a.csv")
 
 
 def study(number: int, data: Path, place: Path) -> Axis:

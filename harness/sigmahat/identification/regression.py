@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.identification.noise import low_pass
+from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.logs.log import Array
 
 MOTOR = ("B", "D_theta", "tau_coulomb")
@@ -143,11 +144,6 @@ def eta(n: int, m: int) -> list[str]:
     return [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
 
 
-def powers(n: int, symmetric: bool) -> list[int]:
-    """Exponents of the deformation in a polynomial of order n."""
-    return [2 * i + 1 if symmetric else i for i in range(n)]
-
-
 def shortest(T: float) -> int:
     """Least number of samples of a piece."""
     return round((2 * _EDGE + 2 * _BLOCK) / T)
@@ -173,7 +169,7 @@ def _half(
         raw.append(-tau)
     else:
         x, y = s.phi[kept] / units[0], s.set_point[kept] / units[1]
-        raw += [x**e * y**j for e in powers(form.n, form.symmetric) for j in range(form.m)]
+        raw += [x**e * y**j for e in powers_of_phi(form.symmetric, form.n) for j in range(form.m)]
     filtered = low_pass(np.column_stack(raw), form.f_0, h)
     smooth = low_pass(theta, form.f_0, h)
     motion = [gamma * _second(smooth, h), gamma * _first(smooth, h)]

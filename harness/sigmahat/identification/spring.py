@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sigmahat.identification.regression import CONSTANT, Fit, Form, Signals, powers
+from sigmahat.identification.regression import CONSTANT, Fit, Form, Signals
+from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.logs.log import Array
 
 
@@ -75,7 +76,7 @@ class Spring:
 
     @property
     def _exponents(self) -> Array:
-        return np.array(powers(self.form.n, self.form.symmetric))
+        return np.array(powers_of_phi(self.form.symmetric, self.form.n))
 
     def _of_set_point(self, set_point: Array | float) -> Array:
         """Powers of the set-point, the last axis of size m."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import MutableMapping
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ from typing import Any
 import tomlkit
 from tomlkit.items import InlineTable, Item
 
+from sigmahat.files.whole_file import write_whole
 from sigmahat.identification.quantities import Identified
 from sigmahat.identification.regression import MOTOR
 from sigmahat.logs.configuration import Port, read_document
@@ -71,9 +71,7 @@ def write(found: Identified, path: Path) -> list[str]:
         _move_zero(document["ports"]["q"], found.zero)
         written.append("ports.q.zero")
     document["identified"] = _record(found)
-    unfinished = path.with_name(f".{path.name}-{os.getpid()}")
-    unfinished.write_text(tomlkit.dumps(document), encoding="utf-8")
-    unfinished.replace(path)
+    write_whole(tomlkit.dumps(document), path)
     return written
 
 

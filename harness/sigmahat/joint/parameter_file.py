@@ -6,7 +6,6 @@ bit.
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
+from sigmahat.files.whole_file import write_whole
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.joint.sheet import Sheet
 
@@ -49,10 +49,7 @@ def write(sheet: Sheet, fmu: Fmu, kind: str, path: Path) -> None:
     Raises ValueError for a start value that does not fit the FMU, and for a file name that cannot
     be the name of what is in it.
     """
-    text = KINDS[kind](sheet, fmu, list(_starts(sheet, fmu)), path.stem)
-    unfinished = path.with_name(f".{path.name}-{os.getpid()}")
-    unfinished.write_text(text, encoding="utf-8")
-    unfinished.replace(path)
+    write_whole(KINDS[kind](sheet, fmu, list(_starts(sheet, fmu)), path.stem), path)
 
 
 def _starts(sheet: Sheet, fmu: Fmu) -> Iterator[_Start]:
