@@ -146,7 +146,7 @@ typedef struct {
                               uneven friction; share of prior.tau_e [1] */
     sh_real damping;       /* of the damping of the spring over K_0; also of encoders that are read
                               at different times [s] */
-    sh_real load_friction; /* of the friction per flexibility torque [1] */
+    sh_real load_friction; /* of the friction per flexibility torque, and per motor torque [1] */
     sh_real eccentric;     /* of the once-per-turn error of the link encoder [rad] */
     sh_real delay;         /* of the delay of the torque against the positions [s] */
     sh_real reversal;      /* of a delay of the reversals of friction [s] */
@@ -253,7 +253,7 @@ typedef struct {
                                         holds [1] */
     sh_real bias_hat;                /* constant torque, see prior.bias [N.m] */
     sh_real damping_hat;             /* damping of the spring [N.m.s/rad] */
-    sh_real load_friction_hat;       /* friction per flexibility torque [1] */
+    sh_real load_friction_hat;       /* friction per torque, of spring and motor [1] */
     sh_real eccentric_hat;           /* amplitude of the once-per-turn error of the link encoder
                                         [rad] */
     sh_real delay_hat;               /* delay of the torque [s] */

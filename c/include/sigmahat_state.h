@@ -105,7 +105,7 @@ typedef struct {
  * smaller one, given to the compiler, saves memory where priors of 0 remove columns.
  */
 #ifndef SH_MAX_COLUMNS
-#define SH_MAX_COLUMNS (SH_MAX_BASIS + 23)
+#define SH_MAX_COLUMNS (SH_MAX_BASIS + 24)
 #endif
 enum {
     SH_SIDES = 2, /* right-hand sides of the regression: the change of y with the gain of the

@@ -26,6 +26,7 @@ static const struct {
     [SH_COLUMN_SIN_Q] = {ALWAYS, 0, 0, SH_SIGNAL_LINEAR},
     [SH_COLUMN_COS_Q] = {ALWAYS, 0, 0, SH_SIGNAL_LINEAR},
     [SH_COLUMN_LOAD] = {ALWAYS, 0, 0, SH_SIGNAL_MEAN},
+    [SH_COLUMN_DRIVE] = {ALWAYS, 0, 0, SH_SIGNAL_NONE},
     [SH_COLUMN_DELAY] = {ALWAYS, 0, 0, SH_SIGNAL_NONE},
     [SH_COLUMN_REVERSAL] = {ALWAYS, 0, 0, SH_SIGNAL_NONE},
     [SH_COLUMN_POWER] = {POWERS, 1, 0, SH_SIGNAL_LINEAR},
@@ -118,6 +119,7 @@ static void list_columns(const sh_parameters *p, column_list *list)
     add(list, SH_COLUMN_SIN_Q, 0, prior->eccentric * K_0, 0);
     add(list, SH_COLUMN_COS_Q, 0, prior->eccentric * K_0, 0);
     add(list, SH_COLUMN_LOAD, 0, prior->load_friction, 0);
+    add(list, SH_COLUMN_DRIVE, 0, prior->load_friction, 0);
     add(list, SH_COLUMN_DELAY, 0, prior->delay, 0);
     add(list, SH_COLUMN_REVERSAL, 0, prior->reversal * prior->tau_coulomb, 0);
     for (i = 0; i < 2 && n + i < SH_MAX_N; ++i)
@@ -293,6 +295,19 @@ static motor_terms motor_terms_of(const sh_matched_state *state, const sh_parame
     return terms;
 }
 
+/* Filtered torque in y [N.m]. */
+static sh_real filtered_torque(const sh_matched_state *state, const motor_terms *motor)
+{
+    return motor->gain * (motor->is_measured ? sh_state_variable_filter_output(&state->torque)
+                                             : as_if_smooth(&state->torque, &state->design));
+}
+
+/* Friction by a torque of the motor behind the gear, filtered [N.m]. */
+static sh_real drive_friction(const sh_matched_state *state, sh_real torque)
+{
+    return -sh_fabs(torque) * as_if_smooth(&state->friction, &state->design);
+}
+
 /* Error of y by an encoder of the motor that is wrong by the signal of a filter [N.m]. */
 static sh_real encoder_error(const sh_matched_state *state, const sh_parameters *p,
                              const sh_state_variable_filter *filter)
@@ -325,6 +340,9 @@ static sh_real entry_of(const sh_matched_state *state, const sh_parameters *p,
                 state->delay / 2 * sh_state_variable_filter_second(&state->torque, design));
     case SH_COLUMN_LOAD:
         return motor->is_measured ? 0 : as_if_smooth(filter, design);
+    case SH_COLUMN_DRIVE:
+        return motor->is_measured ? 0
+                                  : prior * drive_friction(state, filtered_torque(state, motor));
     case SH_COLUMN_REVERSAL:
         return motor->is_measured
                    ? 0
@@ -346,9 +364,7 @@ static sh_real entry_of(const sh_matched_state *state, const sh_parameters *p,
 sh_real sh_columns_row(const sh_matched_state *state, const sh_parameters *p, sh_real *x)
 {
     const motor_terms motor = motor_terms_of(state, p);
-    const sh_real torque =
-        motor.gain * (motor.is_measured ? sh_state_variable_filter_output(&state->torque)
-                                        : as_if_smooth(&state->torque, &state->design));
+    const sh_real torque = filtered_torque(state, &motor);
     const sh_real y = motor.inertial + motor.viscous + torque;
     int i;
 
@@ -359,6 +375,23 @@ sh_real sh_columns_row(const sh_matched_state *state, const sh_parameters *p, sh
     if (state->has_nominal)
         x[state->size + SH_SIDE_Y] -= sh_state_variable_filter_output(&state->nominal);
     return y;
+}
+
+sh_real sh_columns_remove_noise(const sh_matched_state *state, const sh_parameters *p,
+                                sh_real noise, sh_real *x)
+{
+    const sh_real torque = x[state->size + SH_SIDE_GAIN];
+    sh_real change = 0;
+    int i;
+
+    for (i = 0; i < state->size; ++i)
+        if (state->column[i].kind == SH_COLUMN_DRIVE && !sh_is_measured(p)) {
+            const sh_real entry = state->column[i].prior * drive_friction(state, torque - noise);
+
+            change += (entry - x[i]) * state->beta[i];
+            x[i] = entry;
+        }
+    return change;
 }
 
 /* ---- what the estimate means ------------------------------------------------------------- */

@@ -37,6 +37,7 @@ enum {
     SH_COLUMN_SIN_Q,   /* sin q, cos q: link encoder that is not centred */
     SH_COLUMN_COS_Q,
     SH_COLUMN_LOAD,      /* -|tau_e| sign(theta'): friction that grows with the load */
+    SH_COLUMN_DRIVE,     /* -|gamma tau_f| sign(theta')_f: and with the torque of the motor */
     SH_COLUMN_DELAY,     /* derivative of the torque: it is late or early */
     SH_COLUMN_REVERSAL,  /* derivative of sign(theta'): friction reverses late or early */
     SH_COLUMN_POWER,     /* torque: more powers of phi */
@@ -105,6 +106,16 @@ int sh_column_signal(const sh_column *column);
  * Returns y [N.m]. The last entry of x is y less the torque of the nominal curve.
  */
 sh_real sh_columns_row(const sh_matched_state *state, const sh_parameters *p, sh_real *x);
+
+/* Removes from the row x what is noise of the torque, as far as it is known, where it would be
+ * mistaken for friction: the noise of y and that of |tau_f| are the same.
+ *
+ * noise  share of y that is noise of the torque [N.m]
+ *
+ * Returns by how much this changes the prediction of y [N.m].
+ */
+sh_real sh_columns_remove_noise(const sh_matched_state *state, const sh_parameters *p,
+                                sh_real noise, sh_real *x);
 
 /* Torque of the spring for the estimate beta at the signals in work.F [N.m]. */
 sh_real sh_columns_torque(const sh_matched_state *state);

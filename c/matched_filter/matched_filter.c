@@ -67,8 +67,6 @@ static sh_real *coefficient_of(joint_coefficients *joint, int kind)
         return &joint->sin_q;
     case SH_COLUMN_COS_Q:
         return &joint->cos_q;
-    case SH_COLUMN_LOAD:
-        return &joint->load;
     case SH_COLUMN_DELAY:
         return &joint->delay;
     case SH_COLUMN_VISCOUS:
@@ -110,6 +108,10 @@ static joint_coefficients read_columns(const sh_matched_state *state, const sh_p
             break;
         case SH_COLUMN_DAMPING:
             joint.damping += value * sh_power(l, column->index);
+            break;
+        case SH_COLUMN_LOAD:
+        case SH_COLUMN_DRIVE: /* both torques are nearly the same where the motion is slow */
+            joint.load += value;
             break;
         case SH_COLUMN_PLAY:
             joint.plays += value;
@@ -270,6 +272,8 @@ static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
     epsilon = x[state->size + SH_SIDE_Y];
     for (i = 0; i < state->size; ++i)
         epsilon -= x[i] * state->beta[i];
+    epsilon -=
+        sh_columns_remove_noise(state, p, sh_sample_variance_of_torque(state, p) * epsilon, x);
     share = sh_posterior_take(state, &state->live, x, w, row);
     innovation->a = 1;
     innovation->rho = (1 - share) / share;

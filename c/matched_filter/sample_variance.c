@@ -81,12 +81,32 @@ sh_sample_variance sh_sample_variance_of(sh_matched_state *state, const sh_param
     return variance;
 }
 
+/* Noise of the torque after the filter, behind the gear [(N.m)2]. */
+static sh_real torque_noise(const sh_matched_state *state, const sh_parameters *p)
+{
+    return white(state) * sh_square(p->motor.gamma * p->noise.tau);
+}
+
+/* Noise of the inertial torque after the filter by noise of theta [(N.m/rad)2]. */
+static sh_real inertial_noise(const sh_matched_state *state, const sh_parameters *p)
+{
+    return sh_square(sh_square(p->motor.gamma) * p->motor.B) * state->gain_second;
+}
+
+sh_real sh_sample_variance_of_torque(const sh_matched_state *state, const sh_parameters *p)
+{
+    const sh_real theta = sh_fmax(state->history.rough, sh_square(state->count) / 12);
+    const sh_real torque = torque_noise(state, p);
+    const sh_real sum = torque + inertial_noise(state, p) * theta;
+
+    return sum > 0 ? torque / sum : 0;
+}
+
 void sh_sample_variance_watch(sh_matched_state *state, const sh_parameters *p)
 {
     const sh_real T = state->design.T;
-    const sh_real torque = white(state) * sh_square(p->motor.gamma * p->noise.tau);
-    const sh_real inertial =
-        sh_square(sh_square(p->motor.gamma) * p->motor.B) * state->gain_second; /* of theta'' */
+    const sh_real torque = torque_noise(state, p);
+    const sh_real inertial = inertial_noise(state, p);
     const sh_real rounded = torque + inertial * sh_square(state->count) / 12;
 
     if (sh_is_measured(p))
@@ -120,8 +140,8 @@ int sh_sample_variance_contradicts_rest(sh_matched_state *state, const sh_parame
     sh_posterior *live = &state->live;
     const sh_real inertial = sh_square(p->motor.gamma) * p->motor.B * state->count;
     sh_real *const own = state->work.own;
-    sh_real variance = white(state) * sh_square(p->motor.gamma * p->noise.tau) +
-                       sh_square(inertial) / 12 * state->gain_second + friction_variance(state, p);
+    sh_real variance = torque_noise(state, p) + sh_square(inertial) / 12 * state->gain_second +
+                       friction_variance(state, p);
     sh_real epsilon = x[state->size + SH_SIDE_Y];
     int i;
 

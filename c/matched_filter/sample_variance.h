@@ -14,6 +14,11 @@ typedef struct {
  */
 sh_sample_variance sh_sample_variance_of(sh_matched_state *state, const sh_parameters *p);
 
+/* Share of the torque's noise in the variance of the noise after the filter, 0..1; the rest is noise
+ * of theta.
+ */
+sh_real sh_sample_variance_of_torque(const sh_matched_state *state, const sh_parameters *p);
+
 /* Measures how much larger the noise after the filter is than what the rounding of theta explains.
  * Jitter of the sample times makes it larger.
  */

@@ -107,6 +107,7 @@ def definitions(gamma: float) -> dict[tuple[str, int], Array]:
         ("VISCOUS", 0): -(gamma**2) * D * steady(theta, 1),
         ("INERTIA", 0): -(gamma**2) * B * steady(theta, 2),
         ("COULOMB", 0): -abs(gamma) * as_if_smooth(sign, held=True),
+        ("DRIVE", 0): -np.abs(gamma * as_if_smooth(tau)) * as_if_smooth(sign, held=True),
         ("REVERSAL", 0): abs(gamma) * filtered(sign, 1, held=True),
     }  # fmt: skip
     return want
@@ -119,7 +120,7 @@ def test_every_column_is_its_definition(c: Library, gamma: float) -> None:
     assert found.keys() - want.keys() == {("LOAD", 0), ("DELAY", 0), ("SIN_M", 0), ("COS_M", 0)}
     assert want.keys() <= found.keys()
     for name, column in want.items():
-        if name[0] in ("COULOMB", "REVERSAL"):  # the sign is detected from the positions
+        if name[0] in ("COULOMB", "DRIVE", "REVERSAL"):  # the sign is detected from the positions
             late = 12  # from the second sample on
             error = np.abs(found[name] - column)[late:]
             assert np.mean(error) < 0.03 * np.max(np.abs(column)), name
@@ -143,7 +144,7 @@ def test_a_measured_torque_has_no_columns_of_the_motor(c: Library) -> None:
     found, by_gain, y = rows(c, **{"modality": 2, "prior.delay": 1e-12})
     assert_close(by_gain, filtered(5 * tau))
     assert_close(y, filtered(5 * tau) - filtered(nominal()))
-    for kind in ("LOAD", "REVERSAL", "SIN_M", "COS_M", "VISCOUS", "COULOMB", "INERTIA"):
+    for kind in ("LOAD", "DRIVE", "REVERSAL", "SIN_M", "COS_M", "VISCOUS", "COULOMB", "INERTIA"):
         assert not np.any(found[kind, 0])
     assert_close(found["DELAY", 0], -filtered(5 * tau, 1))
 
@@ -168,7 +169,7 @@ def test_friction_of_the_load_acts_against_the_motion(c: Library, gamma: float) 
     found, _, _ = rows(c, **{"motor.gamma": gamma})
     forwards, backwards = slice(50, 440), slice(520, 600)
     assert np.all(theta_dot[forwards] > 0) and np.all(theta_dot[backwards] < 0)
-    for kind in ("LOAD", "COULOMB"):
+    for kind in ("LOAD", "DRIVE", "COULOMB"):
         assert np.all(found[kind, 0][forwards] <= 0)
         assert np.all(found[kind, 0][backwards] >= 0)
     assert np.min(found["LOAD", 0]) < 0 < np.max(found["LOAD", 0])
@@ -185,7 +186,7 @@ NEW: dict[str, tuple[str, ...]] = {
     "prior.bias": ("BIAS",),
     "prior.damping": ("DAMPING",),
     "prior.eccentric": ("SIN_Q", "COS_Q"),
-    "prior.load_friction": ("LOAD",),
+    "prior.load_friction": ("LOAD", "DRIVE"),
     "prior.delay": ("DELAY",),
     "prior.reversal": ("REVERSAL",),
     "prior.power": ("POWER", "SET_POWER"),

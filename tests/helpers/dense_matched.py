@@ -345,10 +345,19 @@ class Oracle:
         largest = self.p["motor.gamma"] * self.p["prior.tau_coulomb"] * unknown
         return float(largest**2 * variance)
 
-    def watch(self, roughness: float) -> None:
-        white = 3 / 16 * self.w * self.T
-        torque = white * (self.p["motor.gamma"] * self.p["noise.tau"]) ** 2
+    def noise(self) -> tuple[float, float]:
+        """After the filter: of the torque [(N.m)2], of theta by its variance [(N.m/rad)2]."""
+        torque = 3 / 16 * self.w * self.T * (self.p["motor.gamma"] * self.p["noise.tau"]) ** 2
         inertial = (self.p["motor.gamma"] ** 2 * self.p["motor.B"]) ** 2 * self.gain_second
+        return torque, inertial
+
+    def share_of_torque(self) -> float:
+        torque, inertial = self.noise()
+        rough = max(self.rough, resolution(self.p["encoder.theta"]) ** 2 / 12)
+        return torque / (torque + inertial * rough)
+
+    def watch(self, roughness: float) -> None:
+        torque, inertial = self.noise()
         rounded = torque + inertial * resolution(self.p["encoder.theta"]) ** 2 / 12
         self.rough += min(self.T / 0.1, 1) * (roughness - self.rough)
         self.excess = max(1.0, (torque + inertial * self.rough) / rounded)
@@ -399,6 +408,10 @@ class Oracle:
         self.R, self.before = R, row
         counts = [resolution(self.p[key]) for key in ("encoder.theta", "encoder.q")]
         self.rounding += 3 / 16 * self.w * self.T * float(np.square(counts).sum()) / 12 / R
+        epsilon = float(row[-1] - row[:-SIDES] @ self.beta)
+        for i, kind in enumerate(self.kinds):
+            if kind == "DRIVE" and row[-SIDES] != 0:  # its torque without the noise that y has, too
+                row[i] *= abs(1 - self.share_of_torque() * epsilon / row[-SIDES])
         epsilon = float(row[-1] - row[:-SIDES] @ self.beta)
         rho = self.live.learn(row, 1 / R)
         prior_B = self.p["prior.B"]
@@ -535,7 +548,7 @@ class Oracle:
             "misfit": math.sqrt(max(1.0, self.q)),
             "bias_hat": of.get("BIAS", 0.0),
             "damping_hat": of.get("DAMPING", 0.0),
-            "load_friction_hat": of.get("LOAD", 0.0),
+            "load_friction_hat": of.get("LOAD", 0.0) + of.get("DRIVE", 0.0),
             "eccentric_hat": eccentric / K_0 if K_0 else 0.0,
             "delay_hat": delay,
             "hysteresis_hat": of.get("PLAY", 0.0),

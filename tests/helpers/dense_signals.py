@@ -74,7 +74,8 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
     found += [("NOMINAL", 0, of("nominal") if nominal else 0.0), ("BIAS", 0, of("bias") * tau_e)]
     found += [("DAMPING", j, of("damping") * K_0) for j in sorted({0, m - 1})]
     found += [(f"{name}_Q", 0, of("eccentric") * K_0) for name in ("SIN", "COS")]
-    found += [("LOAD", 0, of("load_friction")), ("DELAY", 0, of("delay"))]
+    found += [(kind, 0, of("load_friction")) for kind in ("LOAD", "DRIVE")]
+    found += [("DELAY", 0, of("delay"))]
     found += [("REVERSAL", 0, of("reversal") * of("tau_coulomb"))]
     found += [("POWER", i, of("power") * tau_e) for i in range(2) if n + i < most_n]
     linear = 0 if p["rls.symmetric"] else 1
@@ -221,12 +222,18 @@ class Filtered:
         if kind == "COULOMB":
             if self.measured:
                 return zero
-            smooth = self.filtered(friction, 0, True) + self.T**2 / 12 * self.filtered(
-                friction, 2, True
-            )
-            column: Array = -prior * abs(self.gamma) * smooth
+            column: Array = -prior * abs(self.gamma) * self.friction()
             return column
+        if kind == "DRIVE":
+            return zero if self.measured else -prior * np.abs(self.sides[:, 0]) * self.friction()
         return self.filtered(self.F[:, i], 0)
+
+    def friction(self) -> Array:
+        """The sign of the motion, as if it were smooth."""
+        sign = np.append(self.sign[1:], 0.0)
+        smooth: Array = self.filtered(sign, 0, True)
+        smooth = smooth + self.T**2 / 12 * self.filtered(sign, 2, True)
+        return smooth
 
     def torque_derivatives(self) -> tuple[Array, Array]:
         return self.filtered(self.torque, 1, self.held), self.filtered(self.torque, 2, self.held)
