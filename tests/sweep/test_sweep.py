@@ -137,7 +137,7 @@ def made_up(path: Path, plan: Plan) -> dict[int, Outcome]:
     opened = Records(path, plan)
     for each in plan.runs:
         if each.number not in opened.outcomes:
-            mse = 10 * each.parameters["plant.link.M"] + each.seed
+            mse = 10 * float(each.parameters["plant.link.M"]) + each.seed
             opened.add(Outcome(each.number, {"a": Indices(*[mse] * len(INDICES))}, None))
     opened.close()
     return opened.outcomes
@@ -149,12 +149,14 @@ def test_more_seeds_wherever_a_sweep_was_killed(tmp_path: Path) -> None:
     expected = made_up(tmp_path / "whole.jsonl", plans[-1])
     for plan in plans[:-1]:
         made_up(path, plan)
-    # At each length of the file: all the larger sweeps go on from it.
-    content = path.read_bytes()
-    for size in range(0, len(content), 7):
-        killed.write_bytes(content[:size])
-        assert made_up(killed, plans[-1]) == expected
-        assert killed.read_bytes().startswith(content[: content[:size].rfind(b"\n") + 1])
+    # At the end of each line, and in the middle of the next one: the largest goes on from there.
+    lines = path.read_bytes().splitlines(keepends=True)
+    for count in range(len(lines)):
+        whole = b"".join(lines[:count])
+        for cut in (b"", lines[count][:20]):
+            killed.write_bytes(whole + cut)
+            assert made_up(killed, plans[-1]) == expected
+            assert killed.read_bytes().startswith(whole)
     # AND none goes on with fewer seeds, or with other values
     done = killed.read_bytes()
     with pytest.raises(ValueError, match="with 4 seeds; expected as many or more, got 2; choose"):

@@ -79,7 +79,7 @@ class Records:
     def _seeds_of(self, head: Any) -> int:
         """How many seeds the records behind this line are of."""
         plan, hint = self._plan, "choose another folder with --out, or delete this file"
-        seeds = head.get("runs", 0) * plan.seeds // len(plan)
+        seeds = int(head.get("runs", 0)) * plan.seeds // len(plan)
         if seeds < 1 or head != _head(replace(plan, seeds=seeds)):
             raise ValueError(f"{self.path} is of another sweep, or of other FMUs; {hint}")
         if seeds > plan.seeds:
