@@ -203,6 +203,7 @@ def test_two_sweeps_at_once_in_one_folder(tmp_path: Path) -> None:
     process.communicate(timeout=300)
 
 
+@pytest.mark.slow("six commands, each in a process of its own")
 def test_records_that_do_not_fit(tmp_path: Path) -> None:
     arguments = [*QUICK, "--seeds", "2", "--out", "out"]
     assert run(*arguments, cwd=tmp_path).returncode == 0
