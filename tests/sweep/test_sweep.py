@@ -194,6 +194,7 @@ def test_a_process_that_is_killed(tmp_path: Path) -> None:
     assert 2 <= len(records(path)) < 200
 
 
+@pytest.mark.slow("two sweeps, each in processes of its own")
 def test_two_sweeps_at_once_in_one_folder(tmp_path: Path) -> None:
     arguments = [*QUICK, "--seeds", "50", "--out", "out"]
     process = start(arguments, tmp_path)
