@@ -35,6 +35,7 @@ def extended(folder: Path) -> Path:
     return endurance.compile_program(folder, "long double")
 
 
+@pytest.mark.slow("a million ticks, in double and in the slower long double")
 @pytest.mark.parametrize(
     "method,n,m,torque", [(1, 1, 1, 1e6), (1, 6, 3, 1e6), (2, 1, 1, 1e3), (2, 3, 3, 1e3)]
 )
@@ -46,6 +47,7 @@ def test_a_million_ticks_agree_with_those_in_long_double(
     assert largest < BOUND, output
 
 
+@pytest.mark.slow("quadruple precision is computed in software")
 @pytest.mark.parametrize("method", endurance.METHODS)
 def test_long_double_is_much_more_precise_than_the_bound(
     folder: Path, extended: Path, method: int
@@ -56,6 +58,7 @@ def test_long_double_is_much_more_precise_than_the_bound(
     assert largest < BOUND / 1000.0, output
 
 
+@pytest.mark.slow("the library is compiled with sanitizers, and runs slower with them")
 @pytest.mark.parametrize("n,m", [(1, 1), (8, 5)])
 @pytest.mark.parametrize("method", endurance.METHODS)
 def test_sanitizers_find_no_undefined_behaviour(folder: Path, method: int, n: int, m: int) -> None:

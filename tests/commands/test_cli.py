@@ -126,6 +126,7 @@ def test_options_for_scripts(name: str, options: set[str]) -> None:
     assert have & {"--json", "--quiet"} == options
 
 
+@pytest.mark.slow("a whole reproduction with its figures")
 def test_json_of_reproduce_is_its_table(tmp_path: Path) -> None:
     done = run("reproduce", "--scenario", "single-linear", "--json", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")

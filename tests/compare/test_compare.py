@@ -156,6 +156,7 @@ def test_figure(runs: list[list[Row]], tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"compare.png", "compare.svg"}
 
 
+@pytest.mark.slow("two joints of the comparison, twice over two seeds")
 def test_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -31,6 +31,7 @@ def ticks(fmu: Instance) -> int:
     return round(1.0 / fmu.get("rho"))
 
 
+@pytest.mark.slow("a million steps of an FMU, each called from Python")
 @pytest.mark.parametrize("name", ESTIMATORS)
 def test_a_million_steps_of_a_sample_period_are_a_million_ticks(name: str) -> None:
     with Instance(sigmahat.fmu(name)) as fmu:

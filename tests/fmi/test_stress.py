@@ -62,6 +62,7 @@ def test_sanitizers_find_no_leak_and_no_undefined_behaviour(
     run(compile_driver("cycles", fmu, build, folder, compiler, ADDRESS), str(CYCLES))
 
 
+@pytest.mark.slow("valgrind executes a thousand life cycles of an instance, tens of times slower")
 @every_fmu
 def test_valgrind_finds_nothing(fmu: str, build: Path, folder: Path) -> None:
     if shutil.which("valgrind") is None:

@@ -372,6 +372,12 @@ def test_the_name_of_a_log_cannot_end_a_comment(kind: str, knee: Path) -> None:
         assert read(found) == for_fmpy(sheet["start_values"])
 
 
+def test_the_name_of_an_ssv_may_have_characters_that_xml_writes_otherwise(knee: Path) -> None:
+    path = Path('knee "left" <1> & é.ssv')
+    assert main(["export", "knee", "--to", "ssv", "--out", str(path)]) == 0
+    assert read_ssv(str(path), validate=True).name == path.stem
+
+
 # ---- wrong arguments ----------------------------------------------------------------------------
 
 
@@ -398,7 +404,8 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
         (["knee", "--to", "matlab", "--out", "my-joint.m"], "'my-joint', names what is in it"),
         (["knee", "--to", "matlab", "--out", "2nd.m"], "a letter first"),
         (["knee", "--to", "modelica", "--out", "model.mo"], "no keyword"),
-        (["knee", "--to", "ssv", "--out", "no/x.ssv"], "cannot write"),
+        (["knee", "--to", "ssv", "--out", "a\x01b.ssv"], "'a\\x01b', names what is in it"),
+        (["knee", "--to", "ssv", "--out", "no/x.ssv"], "cannot write no/x.ssv: No such file"),
         (["knee", "--to", "ssv", "--out", "knee"], "is a directory"),
     ],
 )

@@ -61,6 +61,7 @@ def random_walk(rng: np.random.Generator, t: Array) -> tuple[Array, Array]:
     return tau, tau_c - tau_c.mean()
 
 
+@pytest.mark.slow("twenty motions of 15 s are simulated and estimated")
 def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
     """Seeds fixed beforehand; D_theta wrong by 10 %; after 2 s."""
     t = times(T, 15.0)

@@ -65,6 +65,7 @@ def test_table1_is_the_solution_of_the_equations(h: float) -> None:
     assert relative_error(run, solution(t).T).max() < 1e-7
 
 
+@pytest.mark.slow("a Radau solution with tight tolerances for each of 1500 steps")
 def test_table1_in_steps_of_10_ms_is_the_solution_of_the_equations() -> None:
     h = 1e-2
     torques = sinusoids(times(h, 15.0), (0.3, 0.1), (8.0, 0.1), (0.0, 0.0))
@@ -81,6 +82,7 @@ def test_friction_gravity_and_external_torque_enter_as_in_the_equations(h: float
     assert relative_error(run_awas(h, torques, start), reference).max() < 1e-7
 
 
+@pytest.mark.slow("a Radau solution with tight tolerances for each of up to 500 steps")
 @pytest.mark.parametrize(("h", "tolerance"), [(1e-3, 1e-7), (1e-2, 1e-8)])
 def test_held_torques_are_held(h: float, tolerance: float) -> None:
     torques = sinusoids(times(h, 0.5), (0.3, 1.0), (8.0, 1.0), (1.0, 2.0))

@@ -40,6 +40,7 @@ def test_scenario_is_the_solution_of_the_equations(k_3: float, steps: int) -> No
     assert relative_error(states, reference, steps).max() < 1e-9
 
 
+@pytest.mark.slow("a Radau solution with tight tolerances for each step")
 @pytest.mark.parametrize("h", [1e-3, 1e-2])
 def test_friction_gravity_and_external_torque_enter_as_in_the_equations(h: float) -> None:
     start = {

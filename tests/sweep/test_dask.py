@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import json
+import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import distributed
 import pytest
 
 from sigmahat.runs.pool import WorkerError
+from sigmahat.sweep.cluster import need_listener, spread_on_cluster
 from sigmahat.sweep.execution import execute
 from sigmahat.sweep.fmus import fmu_digest
 from sigmahat.sweep.plan_file import read_plan
-from sweeps import QUICK, records, refused, run, start, wait_for_records
+from sweeps import QUICK, records, run, start, wait_for_records
 
 DASK = [sys.executable, "-m", "dask"]
 HERE = ["--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", "scheduler.json"]
@@ -92,11 +96,52 @@ def test_one_of_two_workers_killed(address: str, tmp_path: Path) -> None:
         assert (tmp_path / "cluster" / name).read_bytes() == (tmp_path / "here" / name).read_bytes()
 
 
-@pytest.mark.slow("the sweep waits for workers before it gives up")
-def test_a_scheduler_without_workers(address: str, tmp_path: Path) -> None:
-    line = refused(*QUICK, "--scheduler", address, "--out", "out", cwd=tmp_path)
+@pytest.mark.slow("the sweep waits for a slow scheduler, and for workers, before it gives up")
+def test_a_scheduler_that_is_slow_and_without_workers(
+    scheduler: subprocess.Popen[bytes], address: str, tmp_path: Path
+) -> None:
+    # GIVEN a scheduler that does nothing for much longer than one that is not there is waited for
+    scheduler.send_signal(signal.SIGSTOP)
+    process = start([*QUICK, "--scheduler", address, "--out", "out"], tmp_path)
+    time.sleep(6)
+    assert process.poll() is None
+    scheduler.send_signal(signal.SIGCONT)
+    # THEN it is found; what is missing are its workers
+    output, errors = process.communicate(timeout=300)
+    assert (process.returncode, output) == (2, "")
+    (line,) = errors.splitlines()
     assert f"start one with `dask worker {address}`" in line
     assert not (tmp_path / "out").exists()
+
+
+def test_a_scheduler_that_is_about_to_start(tmp_path: Path) -> None:
+    """It accepts connections a moment after the sweep has asked for the first time."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
+        timer = threading.Timer(0.3, listener.listen)
+        timer.start()
+        need_listener(address)
+        timer.join()
+
+
+def test_something_else_that_answers_there() -> None:
+    """Such as an SSH server, which speaks first."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def answer() -> None:
+            for _ in range(2):  # one call asks whether somebody is there
+                connection, _ = server.accept()
+                with connection, suppress(OSError):
+                    connection.sendall(b"SSH-2.0-OpenSSH_9.2p1\r\n" * 10)
+                    connection.recv(1 << 16)
+
+        thread = threading.Thread(target=answer)
+        thread.start()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(WorkerError, match=f"no Dask scheduler at {address}; start one"):
+            next(spread_on_cluster([int], address))
+        thread.join()
 
 
 def test_the_scheduler_is_lost(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import signal
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +15,12 @@ import scipy.stats
 
 from sigmahat.paper.reproduction import reproduce
 from sigmahat.paper.scenarios import SCENARIOS
+from sigmahat.runs.metrics import INDICES, Indices
 from sigmahat.sweep.columns import ParameterColumn, Role
 from sigmahat.sweep.job import sweep
+from sigmahat.sweep.plan import Outcome, Plan
 from sigmahat.sweep.plan_file import read_plan
+from sigmahat.sweep.records import Records
 from sigmahat.sweep.table import read
 from sweeps import QUICK, records, refused, run, start, wait_for_records
 
@@ -107,6 +111,63 @@ def test_killed_and_resumed_is_the_same_file(tmp_path: Path) -> None:
     assert path.read_bytes() == complete
 
 
+@pytest.mark.slow("several sweeps, each in processes of its own")
+def test_more_seeds_than_before_are_those_of_one_sweep(tmp_path: Path) -> None:
+    settings = ["--set", "estimator.residual.K_I=200,300", "--set", "plant.link.M=normal(0.1,5e-3)"]
+    arguments = [*QUICK, *settings, "--seeds"]
+    path = tmp_path / "grown" / "runs.jsonl"
+    # GIVEN a sweep with few seeds, and the same one with all of them
+    assert run(*arguments, "2", "--out", "grown", cwd=tmp_path).returncode == 0
+    few = path.read_bytes()
+    whole = run(*arguments, "5", "--out", "whole", cwd=tmp_path)
+    # WHEN it gets more seeds
+    grown = run(*arguments, "5", "--out", "grown", cwd=tmp_path)
+    # THEN only the runs that were missing were done, and all that was written is the same
+    assert (grown.returncode, grown.stderr) == (0, "")
+    assert grown.stdout.splitlines()[:-1] == whole.stdout.splitlines()[:-1]
+    assert path.read_bytes().startswith(few)
+    contents = [json.loads(line.partition(b" ")[2]) for line in path.read_bytes().splitlines()]
+    assert sum("number" in content for content in contents) == 2 * 5
+    for name in FILES - {"runs.jsonl"}:
+        assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "grown" / name).read_bytes()
+
+
+def made_up(path: Path, plan: Plan) -> dict[int, Outcome]:
+    """Adds an outcome of every run that the records in a file lack; returns all of them."""
+    opened = Records(path, plan)
+    for each in plan.runs:
+        if each.number not in opened.outcomes:
+            mse = 10 * float(each.parameters["plant.link.M"]) + each.seed
+            opened.add(Outcome(each.number, {"a": Indices(*[mse] * len(INDICES))}, None))
+    opened.close()
+    return opened.outcomes
+
+
+def test_more_seeds_wherever_a_sweep_was_killed(tmp_path: Path) -> None:
+    plans = [Plan(("table1",), seeds, (), {"plant.link.M": (1, 2, 3)}) for seeds in (1, 2, 4)]
+    path, killed = tmp_path / "runs.jsonl", tmp_path / "killed.jsonl"
+    expected = made_up(tmp_path / "whole.jsonl", plans[-1])
+    for plan in plans[:-1]:
+        made_up(path, plan)
+    # At the end of each line, and in the middle of the next one: the largest goes on from there.
+    lines = path.read_bytes().splitlines(keepends=True)
+    for count in range(len(lines)):
+        whole = b"".join(lines[:count])
+        for cut in (b"", lines[count][:20]):
+            killed.write_bytes(whole + cut)
+            assert made_up(killed, plans[-1]) == expected
+            assert killed.read_bytes().startswith(whole)
+    # AND none goes on with fewer seeds, or with other values
+    done = killed.read_bytes()
+    with pytest.raises(ValueError, match="with 4 seeds; expected as many or more, got 2; choose"):
+        Records(killed, plans[1])
+    others = [replace(plans[-1], parameters={"plant.link.M": v}) for v in ((1, 2), (1, 2, 4))]
+    for other in (*others, replace(others[0], seeds=6)):
+        with pytest.raises(ValueError, match="of another sweep, or of other FMUs; choose"):
+            Records(killed, other)
+    assert killed.read_bytes() == done
+
+
 def test_an_interrupt_keeps_what_is_done(tmp_path: Path) -> None:
     process = start([*QUICK, "--seeds", "200", "--out", "out"], tmp_path)
     wait_for_records(tmp_path / "out" / "runs.jsonl", 2, process)
@@ -133,6 +194,7 @@ def test_a_process_that_is_killed(tmp_path: Path) -> None:
     assert 2 <= len(records(path)) < 200
 
 
+@pytest.mark.slow("two sweeps, each in processes of its own")
 def test_two_sweeps_at_once_in_one_folder(tmp_path: Path) -> None:
     arguments = [*QUICK, "--seeds", "50", "--out", "out"]
     process = start(arguments, tmp_path)
@@ -142,14 +204,19 @@ def test_two_sweeps_at_once_in_one_folder(tmp_path: Path) -> None:
     process.communicate(timeout=300)
 
 
+@pytest.mark.slow("six commands, each in a process of its own")
 def test_records_that_do_not_fit(tmp_path: Path) -> None:
     arguments = [*QUICK, "--seeds", "2", "--out", "out"]
     assert run(*arguments, cwd=tmp_path).returncode == 0
     path = tmp_path / "out" / "runs.jsonl"
     good = path.read_bytes()
-    line = refused(*QUICK, "--seeds", "3", "--out", "out", cwd=tmp_path)
-    assert "another sweep" in line
-    assert "--out" in line
+    for other, words in (
+        (["--seeds", "1"], "expected as many or more, got 1"),
+        (["--seeds", "3", "--set", "plant.link.M=0.2"], "another sweep"),
+    ):
+        line = refused(*QUICK, *other, "--out", "out", cwd=tmp_path)
+        assert words in line and "--out" in line
+        assert path.read_bytes() == good
     for damaged, words in (
         (good.replace(b'"number": 1', b'"number": 0'), "line"),
         (good + records(path)[0], "line 4: run"),
@@ -192,7 +259,6 @@ def test_runs_that_fail_are_reported(tmp_path: Path) -> None:
         (["--scheduler", "nonsense"], "start one with `dask scheduler`"),
     ],
 )
-@pytest.mark.slow("one case waits for a scheduler that is not there")
 def test_bad_input(arguments: list[str], words: str, tmp_path: Path) -> None:
     assert words in refused(
         *QUICK[: 0 if "--modality" in arguments else 2], *arguments, cwd=tmp_path

@@ -26,6 +26,7 @@ def init(log: Path, config: Path | None, force: bool) -> None:
     \b
     Example: sigmahat init knee.csv
     """
+    from sigmahat.files.whole_file import write_whole
     from sigmahat.fmi.installed import fmu as installed_fmu
     from sigmahat.fmi.instance import Fmu
     from sigmahat.logs import template
@@ -44,7 +45,7 @@ def init(log: Path, config: Path | None, force: bool) -> None:
             motor = {name: float(fmu.variable(name).start) for name in names}
         opened = open_log(log)
         guessed = guess(opened)
-        config.write_text(template.write(opened, guessed, motor), encoding="utf-8")
+        write_whole(template.write(opened, guessed, motor), config)
     ports = (f"{port:13} {each.column} [{each.unit}]" for port, each in guessed.ports.items())
     then = f"Check {config}, fill in what it asks for, then: sigmahat estimate {log}"
     common.answer("\n".join([*ports, "", then]))

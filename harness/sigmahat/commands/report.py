@@ -25,10 +25,11 @@ def report(folder: Path, out: Path | None) -> None:
     \b
     Example: sigmahat report sigmahat-results/table1
     """
+    from sigmahat.files.whole_file import write_whole
     from sigmahat.report.page import report as make
 
     out = out or folder / "report.html"
     with common.errors_in_one_line(out, "--out FILE"):
         text = make(folder)
-        out.write_text(text, encoding="utf-8")
+        write_whole(text, out)
     common.answer(f"{out.resolve()} ({len(text.encode()) / 1e6:.1f} MB)")

@@ -50,7 +50,8 @@ def sweep(
     """Run scenarios over seeds and parameters, in parallel; Monte Carlo.
 
     PLAN is a TOML file with the keys scenario, seeds, modality and a table [parameters]; options
-    replace them. After an interruption the same command does the runs that are missing.
+    replace them. After an interruption the same command does the runs that are missing; with more
+    seeds, those of the new seeds.
 
     \b
     Example: sigmahat sweep --seeds 100 --modality RESIDUAL \\

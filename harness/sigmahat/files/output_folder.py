@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import platform
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -36,15 +38,53 @@ def output_folder(path: Path) -> Iterator[Path]:
     Creates path, and leaves nothing behind after an exception. Raises OSError if path cannot be
     written to.
     """
+    with created_folder(path), unfinished_folder(path) as unfinished:
+        yield unfinished
+
+
+@contextmanager
+def unfinished_folder(path: Path) -> Iterator[Path]:
+    """The same for a folder that exists.
+
+    What processes that were killed have left there is removed.
+    """
     # The name is fixed before the folder is made: an interrupt at any moment leaves nothing.
-    unfinished = path / f".unfinished-{os.getpid()}"
-    with created_folder(path):
-        try:
-            unfinished.mkdir()
-            yield unfinished
-            for file in sorted(unfinished.iterdir()):
-                file.replace(path / file.name)
-            unfinished.rmdir()
-        except BaseException:
-            rmtree(unfinished, ignore_errors=True)
-            raise
+    unfinished = path / f".unfinished-{os.getpid()}{_HOST}"
+    _remove_abandoned(path)
+    try:
+        unfinished.mkdir()
+        yield unfinished
+        for file in sorted(unfinished.iterdir()):
+            file.replace(path / file.name)
+        unfinished.rmdir()
+    except BaseException:
+        rmtree(unfinished, ignore_errors=True)
+        raise
+
+
+_HOST = "@" + re.sub(r"[^\w.-]", "_", platform.node())
+"""Of names: the number of a process says nothing on another machine, which may share the folder."""
+_UNFINISHED = re.compile(rf"\.unfinished-(\d{{1,9}}){re.escape(_HOST)}")
+
+
+def _remove_abandoned(path: Path) -> None:
+    """Removes the unfinished folders of processes of this machine that have ended."""
+    for each in path.glob(".unfinished-*"):
+        match = _UNFINISHED.fullmatch(each.name)
+        if match and not _runs(int(match[1])):
+            rmtree(each, ignore_errors=True)
+
+
+def _runs(process: int) -> bool:
+    """Whether another process with this number may be running."""
+    if process == os.getpid():
+        return False
+    if os.name != "posix":  # there os.kill ends processes
+        return True
+    try:
+        os.kill(process, 0)  # sends nothing
+    except ProcessLookupError:
+        return False
+    except OSError:  # it is of another user
+        return True
+    return True

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from ctypes import byref
 from importlib import import_module
 from pathlib import Path
@@ -187,6 +188,14 @@ class Slave:
             self.call(setter, _references([variable]), 1, (kind * 1)(number))
         self.call(self.functions.fmi2EnterInitializationMode)
         self.call(self.functions.fmi2ExitInitializationMode)
+
+    @contextmanager
+    def only_errors(self) -> Iterator[None]:
+        """Inside, the FMU reports errors alone: what it would warn of is no news to the user."""
+        category = (fmi2.fmi2String * 1)(b"logStatusError")
+        self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, category)
+        yield
+        self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2False, 0, None)
 
     def _on_message(
         self, _environment: int, _instance: bytes, status: int, _category: bytes, message: bytes

@@ -11,13 +11,19 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
+
+from lxml import etree
 
 from sigmahat.files.whole_file import write_whole
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.joint.sheet import Sheet
 
 _CURVE = "rls.eta_0["
+_NAMESPACES = {
+    "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
+    "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
+}
+_SSC, _SSV = (f"{{{namespace}}}" for namespace in _NAMESPACES.values())
 
 
 @dataclass(frozen=True)
@@ -90,32 +96,33 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     """
     listed = [s for s in starts if s.type in ("Real", "Integer") or not s.own]
     units = {s.unit for s in listed if s.unit}
-    lines = ['<?xml version="1.0" encoding="UTF-8"?>']
-    lines += [f"<!-- {line} -->" for line in _origin(sheet)]
-    lines += [
-        f'<ssv:ParameterSet name={quoteattr(name)} version="1.0"',
-        '    xmlns:ssc="http://ssp-standard.org/SSP1/SystemStructureCommon"',
-        '    xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues">',
-        "  <ssv:Parameters>",
-    ]
+    try:
+        root = etree.Element(_SSV + "ParameterSet", name=name, version="1.0", nsmap=_NAMESPACES)
+    except ValueError as error:
+        raise ValueError(
+            f"the name of the file, {name!r}, names what is in it: expected characters that XML "
+            "has; choose another with --out"
+        ) from error
+    for line in _origin(sheet):
+        root.addprevious(etree.Comment(f" {line} "))
+    parameters = etree.SubElement(root, _SSV + "Parameters")
     for s in listed:
-        value = s.item or s.text
-        unit = f" unit={quoteattr(s.unit)}" if s.unit else ""
-        inner = f"<ssv:{s.type} value={quoteattr(value)}{unit}/>"
-        lines.append(f"    <ssv:Parameter name={quoteattr(s.name)}>{inner}</ssv:Parameter>")
-    lines += ["  </ssv:Parameters>", "  <ssv:Units>"]
+        parameter = etree.SubElement(parameters, _SSV + "Parameter", name=s.name)
+        unit = {"unit": s.unit} if s.unit else {}
+        etree.SubElement(parameter, _SSV + s.type, value=s.item or s.text, **unit)
+    defined = etree.SubElement(root, _SSV + "Units")
     for unit in fmu.description.unitDefinitions:
         if unit.name in units:
-            lines.append(
-                f"    <ssc:Unit name={quoteattr(unit.name)}><ssc:BaseUnit{_base(unit)}/></ssc:Unit>"
-            )
-    return "\n".join([*lines, "  </ssv:Units>", "</ssv:ParameterSet>", ""])
+            element = etree.SubElement(defined, _SSC + "Unit", name=unit.name)
+            etree.SubElement(element, _SSC + "BaseUnit", _base(unit))
+    head, document = '<?xml version="1.0" encoding="UTF-8"?>\n', root.getroottree()
+    return head + str(etree.tostring(document, encoding="unicode", pretty_print=True))
 
 
-def _base(unit: Any) -> str:
+def _base(unit: Any) -> dict[str, str]:
     base = unit.baseUnit
     powers = {name: getattr(base, name) for name in ("kg", "m", "s", "rad")} if base else {}
-    return "".join(f' {name}="{power}"' for name, power in powers.items() if power)
+    return {name: str(power) for name, power in powers.items() if power}
 
 
 def _matlab(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:

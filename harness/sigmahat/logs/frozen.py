@@ -37,14 +37,13 @@ def stiffness_at(
     table = np.empty((len(points), len(_OUTPUTS)))
     rows = np.ctypeslib.as_ctypes(np.ascontiguousarray(points))
     slave.call(fmi.fmi2SetReal, every, len(PORTS), zeros)
-    only_errors = (fmi2.fmi2String * 1)(b"logStatusError")
-    slave.call(fmi.fmi2SetDebugLogging, fmi2.fmi2True, 1, only_errors)
     t = [t_0 + T * k for k in range(2 * len(points))]
-    for k, (row, out) in enumerate(zip(rows, np.ctypeslib.as_ctypes(table), strict=True)):
-        fmi.fmi2SetReal(component, missing, 1, nan)
-        fmi.fmi2DoStep(component, t[2 * k], T, fmi2.fmi2True)
-        fmi.fmi2SetReal(component, inputs, len(names), row)
-        if fmi.fmi2DoStep(component, t[2 * k + 1], T, fmi2.fmi2True) > fmi2.fmi2Warning:
-            raise slave.failure("fmi2DoStep")
-        fmi.fmi2GetReal(component, outputs, len(_OUTPUTS), out)
+    with slave.only_errors():
+        for k, (row, out) in enumerate(zip(rows, np.ctypeslib.as_ctypes(table), strict=True)):
+            fmi.fmi2SetReal(component, missing, 1, nan)
+            fmi.fmi2DoStep(component, t[2 * k], T, fmi2.fmi2True)
+            fmi.fmi2SetReal(component, inputs, len(names), row)
+            if fmi.fmi2DoStep(component, t[2 * k + 1], T, fmi2.fmi2True) > fmi2.fmi2Warning:
+                raise slave.failure("fmi2DoStep")
+            fmi.fmi2GetReal(component, outputs, len(_OUTPUTS), out)
     return {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(_OUTPUTS)}

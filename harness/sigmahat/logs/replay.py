@@ -147,11 +147,9 @@ def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:
     if every["method"] == "Paper2011":
         ticks = math.ceil(min(2 / (float(every["residual.K_I"]) * T), _LONGEST_GAP))
     inputs, count = slave.fmu.references(PORTS, "input"), len(PORTS)
-    functions = slave.functions
-    only_errors = (fmi2.fmi2String * 1)(b"logStatusError")  # this gap is no news to the user
-    slave.call(functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, only_errors)
-    slave.call(functions.fmi2SetReal, inputs, count, (fmi2.fmi2Real * count)(*[math.nan] * count))
-    slave.call(functions.fmi2DoStep, t_0, ticks * T, fmi2.fmi2True)
-    slave.call(functions.fmi2SetReal, inputs, count, (fmi2.fmi2Real * count)())
-    slave.call(functions.fmi2SetDebugLogging, fmi2.fmi2True, 0, None)
+    fmi = slave.functions
+    with slave.only_errors():
+        slave.call(fmi.fmi2SetReal, inputs, count, (fmi2.fmi2Real * count)(*[math.nan] * count))
+        slave.call(fmi.fmi2DoStep, t_0, ticks * T, fmi2.fmi2True)
+        slave.call(fmi.fmi2SetReal, inputs, count, (fmi2.fmi2Real * count)())
     return t_0 + ticks * T

@@ -1,6 +1,8 @@
 """The runs of a sweep that are done, on disk: one line for each, so that a sweep can go on later.
 
-A line is the CRC-32 of a JSON text, a space and the text. The first says which sweep it is.
+A line is the CRC-32 of a JSON text, a space and the text. The first says which sweep it is. If the
+sweep gets more seeds later, another such line is appended, and the numbers of the runs behind it
+are those of the larger plan.
 """
 
 from __future__ import annotations
@@ -9,7 +11,7 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from pathlib import Path
 from typing import Any
 from zlib import crc32
@@ -34,27 +36,25 @@ class Records:
         """
         self.path = path
         self.outcomes: dict[int, Outcome] = {}
-        head = {"sweep": sweep_digest(plan), "runs": len(plan)}
+        self._plan = plan
         lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
         if lines and not lines[-1].endswith(b"\n"):
             lines.pop()  # what a kill cut off; that run is done again
-        whole = sum(map(len, lines))
+        self._seeds = 0  # of the last line that says which sweep it is
         for i, line in enumerate(lines, 1):
             content = self._parse(line, i)
-            if i > 1:
-                self._take(content, i, len(plan))
-            elif content != head:
-                raise ValueError(
-                    f"{path} is of another sweep, or of other FMUs; "
-                    "choose another folder with --out, or delete this file"
-                )
+            if i == 1 or "sweep" in content:
+                self._seeds = self._seeds_of(content)
+            else:
+                self._take(content, i)
         self._file = path.open("ab")
-        self._file.truncate(whole)
-        if not lines:
-            self._write(head)
+        self._file.truncate(sum(map(len, lines)))
 
     def add(self, outcome: Outcome) -> None:
         """Writes an outcome; it is on the disk before this returns."""
+        if self._seeds != self._plan.seeds:  # before the first of the runs that are new
+            self._seeds = self._plan.seeds
+            self._write(_head(self._plan))
         self.outcomes[outcome.number] = outcome
         indices = {name: astuple(each) for name, each in outcome.indices.items()}
         self._write({"number": outcome.number, "indices": indices, "failure": outcome.failure})
@@ -76,15 +76,35 @@ class Records:
             raise ValueError(f"{self.path}, line {number}: damaged; {what} and start again")
         return json.loads(text)
 
-    def _take(self, content: Any, line: int, runs: int) -> None:
+    def _seeds_of(self, head: Any) -> int:
+        """How many seeds the records behind this line are of."""
+        plan, hint = self._plan, "choose another folder with --out, or delete this file"
+        seeds = int(head.get("runs", 0)) * plan.seeds // len(plan)
+        if seeds < 1 or head != _head(replace(plan, seeds=seeds)):
+            raise ValueError(f"{self.path} is of another sweep, or of other FMUs; {hint}")
+        if seeds > plan.seeds:
+            raise ValueError(
+                f"{self.path} is of this sweep with {seeds} seeds; "
+                f"expected as many or more, got {plan.seeds}; {hint}"
+            )
+        return seeds
+
+    def _take(self, content: Any, line: int) -> None:
         number = content["number"]
-        if number in self.outcomes or not 0 <= number < runs:
+        setting, seed = divmod(number, self._seeds)
+        numbered = setting * self._plan.seeds + seed
+        if numbered in self.outcomes or not 0 <= numbered < len(self._plan):
             raise ValueError(
                 f"{self.path}, line {line}: run {number} is there twice; "
                 "delete this line and start again"
             )
         indices = {name: Indices(*values) for name, values in content["indices"].items()}
-        self.outcomes[number] = Outcome(number, indices, content["failure"])
+        self.outcomes[numbered] = Outcome(numbered, indices, content["failure"])
+
+
+def _head(plan: Plan) -> dict[str, Any]:
+    """Says which sweep records are of."""
+    return {"sweep": sweep_digest(plan), "runs": len(plan)}
 
 
 @contextmanager
