@@ -17,7 +17,7 @@ from rivals.joints.parameters import Arm
 from rivals.joints.simulation import STEP, Run
 from rivals.records import JointLog
 
-SEEDS = range(7001, 7041)
+SEEDS = range(9001, 9041)
 
 KINDS = ("series_elastic", "variable_stiffness", "arm")
 ENGINES = ("mujoco", "drake")
