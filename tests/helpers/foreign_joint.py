@@ -26,7 +26,11 @@ GRAVITY = 4.0  # torque of the link at 90 degrees [N.m]
 STIFFNESS = 260.0  # of the series elastic joint [N.m/rad]
 PER_LEVER = 5200.0  # of the spring of the other joint: stiffness over lever squared [N/m]
 _GAIN, _DAMPING = 900.0, 40.0  # of the controller, behind the gear [N.m/rad, N.m.s/rad]
-_MOTION = ((0.45, 0.4), (0.16, 1.3), (0.05, 3.1))  # amplitude [rad] and frequency [Hz] of its target
+_MOTION = (
+    (0.45, 0.4),
+    (0.16, 1.3),
+    (0.05, 3.1),
+)  # amplitude [rad] and frequency [Hz] of its target
 
 
 @dataclass(frozen=True)
@@ -66,7 +70,7 @@ def _lever(t: Array | float) -> Array | float:
 
 
 @cache
-def joint(has_lever: bool, seconds: float = 12.0) -> Motion:
+def joint(has_lever: bool, seconds: float = 7.0) -> Motion:
     """A motion from rest."""
 
     def spring(phi: Array | float, t: Array | float) -> tuple[Array | float, Array | float]:

@@ -71,7 +71,7 @@ def _knee_counts(m: Motion) -> Columns:
     t = m.t * 1e3 + rng.uniform(-0.12, 0.12, len(m.t))
     link = counts(m.q, 2**17, 70_000).astype(float)
     link[rng.choice(len(link), 40, replace=False)] = np.nan
-    keep = (m.t < 5.0) | (m.t > 5.7)
+    keep = (m.t < 3.0) | (m.t > 3.3)
     columns = {
         "time_ms": np.round(t, 3),
         "motor_enc": counts(m.theta * GEAR, 4096, 30_000, 2**16),
@@ -136,7 +136,7 @@ def _write_bag(columns: Columns, path: Path) -> Path:
 
 
 def _bag(m: Motion) -> Columns:
-    n = len(m.t) * 2 // 3
+    n = len(m.t)
     columns: Columns = {
         "t": m.t,
         "left_knee_motor": noisy(other_joint(m, m.theta), 1e-5, 4),
@@ -403,3 +403,155 @@ TUNED = [
     ),
 ]
 """The styles that the vocabulary and the rules were made with."""
+
+
+# --- CiA 402 objects in a PLC: torque and position as integers, torque in thousandths of the rated
+
+
+def _drive_objects(m: Motion) -> Columns:
+    return {
+        "Timestamp [ns]": 133_000_000_000_000_000 + np.round(m.t * 1e9).astype(np.int64),
+        "Axis 1.Position actual value": counts(m.theta * GEAR, 2**20, -123_456),
+        "Axis 1.Target position": counts(m.target * GEAR, 2**20, -123_456),
+        "Axis 1.Velocity actual value": np.round(m.velocity * GEAR * 1000).astype(np.int64),
+        "Axis 1.Torque actual value": np.round(1000 * noisy(m.tau, 2e-3, 21) / 2.0).astype(int),
+        "Axis 1.Additional position actual value": counts(m.q, 2**19, 5000),
+        "Axis 1.Statusword": np.full(len(m.t), 4663),
+    }
+
+
+# --- Chinese in Latin letters
+
+
+def _pinyin(m: Motion) -> Columns:
+    return {
+        "shijian_s": m.t,
+        "dianji_jiaodu_deg": m.theta * DEG,
+        "guanjie_jiaodu_deg": m.q * DEG,
+        "dianliu_A": current(m, 22),
+        "mubiao_jiaodu_deg": m.target * DEG,
+        "wendu": np.round(30 + m.t / 3, 1),
+    }
+
+
+# --- names of variables in the firmware of a drive: turns, camel case
+
+
+def _firmware(m: Motion) -> Columns:
+    return {
+        "tickUs": np.round(1e6 * m.t).astype(np.int64) + 4_711,
+        "axis0.encoder.posEstimate": m.theta * GEAR / (2 * np.pi),
+        "axis0.encoder.velEstimate": m.velocity * GEAR / (2 * np.pi),
+        "axis0.controller.posSetpoint": m.target * GEAR / (2 * np.pi),
+        "axis0.motor.IqMeasured": current(m, 23),
+        "axis0.motor.IdMeasured": noisy(0 * m.t, 0.02, 24),
+        "axis0.loadEncoder.posAbs": -m.q / (2 * np.pi) + 0.25,
+        "vbusVoltage": noisy(24 + 0 * m.t, 0.05, 25),
+    }
+
+
+# --- Swedish
+
+
+def _swedish(m: Motion) -> Columns:
+    return {
+        "tid_ms": np.round(1e3 * m.t).astype(np.int64),
+        "motorvinkel_grader": m.theta * DEG * GEAR,
+        "ledvinkel_grader": m.q * DEG,
+        "havarmslangd_mm": np.round(1e3 * m.lever, 3),
+        "motormoment_Nm": noisy(m.tau, 2e-3, 26),
+        "varvtal_rpm": m.velocity * GEAR * 60 / (2 * np.pi),
+    }
+
+
+# --- signals that Simulink logged, each with its times, in HDF5
+
+
+def _write_simulink(columns: Columns, path: Path) -> Path:
+    import h5py
+
+    with h5py.File(path, "w") as file:
+        for name, values in columns.items():
+            file[name] = values
+    return path
+
+
+def _simulink(m: Motion) -> Columns:
+    out: Columns = {}
+    for name, values in {
+        "PhiMot": noisy(m.theta * GEAR, 2e-4, 27),
+        "PhiLast": noisy(m.q, 5e-6, 28),
+        "MMot": noisy(m.tau, 2e-3, 29),
+        "PhiMotSoll": m.target * GEAR,
+    }.items():
+        out[f"logsout/{name}/Data"] = values
+        out[f"logsout/{name}/Time"] = m.t
+    return out
+
+
+UNTUNED = [
+    Style(
+        "CiA 402",
+        "scope.csv",
+        _drive_objects,
+        {
+            "theta": ("Axis 1.Position actual value", "counts"),
+            "q": ("Axis 1.Additional position actual value", "counts"),
+            "tau": ("Axis 1.Torque actual value", None),
+        },
+        {
+            "ports.theta.counts_per_turn": 2**20,
+            "ports.theta.gear_ratio": GEAR,
+            "ports.q.counts_per_turn": 2**19,
+            "ports.tau.scale": 2.0 / 1000,  # the rated torque is 2 N.m
+        },
+    ),
+    Style(
+        "Chinese",
+        "shiyan.csv",
+        _pinyin,
+        {
+            "theta": ("dianji_jiaodu_deg", "deg"),
+            "q": ("guanjie_jiaodu_deg", "deg"),
+            "tau": ("dianliu_A", "A"),
+        },
+        {**CURRENT, **AFTER_GEAR},
+    ),
+    Style(
+        "firmware",
+        "capture.csv",
+        _firmware,
+        {
+            "theta": ("axis0.encoder.posEstimate", "turn"),
+            "q": ("axis0.loadEncoder.posAbs", "turn"),
+            "tau": ("axis0.motor.IqMeasured", "A"),
+        },
+        {**CURRENT, "ports.theta.gear_ratio": GEAR},
+    ),
+    Style(
+        "Swedish",
+        "prov.csv",
+        _swedish,
+        {
+            "theta": ("motorvinkel_grader", "deg"),
+            "q": ("ledvinkel_grader", "deg"),
+            "theta_c": ("havarmslangd_mm", "mm"),
+            "tau": ("motormoment_Nm", "N.m"),
+        },
+        {"ports.theta.gear_ratio": GEAR},
+        has_lever=True,
+    ),
+    Style(
+        "Simulink",
+        "run.h5",
+        _simulink,
+        {
+            "theta": ("logsout.PhiMot.Data", "rad"),
+            "q": ("logsout.PhiLast.Data", "rad"),
+            "tau": ("logsout.MMot.Data", "N.m"),
+        },
+        {"ports.theta.gear_ratio": GEAR},
+        write=_write_simulink,
+    ),
+]
+"""Styles that were written when the others worked, and on which nothing was tuned at first."""

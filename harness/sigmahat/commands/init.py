@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None:
     """Write a configuration for LOG, to be checked and completed.
 
-    LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. Ports, units, signs and gear are guessed from
-    names and values of the columns. What cannot be guessed is marked with FILL IN.
+    LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. Ports, units, signs and gear are guessed
+    from names and values of the columns. What cannot be guessed is marked with FILL IN.
 
     For a log of several joints, one file for each of them is written, LOG-JOINT.toml.
 

@@ -112,7 +112,7 @@ def _windows(
     samples: dict[str, tuple[Array, Array]] = {}
     for name in names:
         column = clocks[name]
-        t = T * np.arange(len(values[name])) if column is None else times[column]
+        t = times[column] if column else np.arange(len(values[name]), dtype=np.float64) * T
         good = np.isfinite(t) & np.isfinite(values[name])
         t, x = t[good], values[name][good]
         if len(t) and not np.all(np.diff(t) > 0):

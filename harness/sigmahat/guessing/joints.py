@@ -45,9 +45,7 @@ def _all_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
     common = set.intersection(*(set(each.meaning.rest) for each in columns)) if columns else set()
     return {
         each.name: [
-            word
-            for word in each.meaning.rest
-            if word not in common or word in each.meaning.joints
+            word for word in each.meaning.rest if word not in common or word in each.meaning.joints
         ]
         for each in columns
     }

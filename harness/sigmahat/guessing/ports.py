@@ -105,8 +105,9 @@ def _angle(column: Column, columns: Columns, is_link: bool) -> tuple[str, str]:
     if unit:
         return unit, "by its velocity"
     farthest = max(abs(column.facts.low), abs(column.facts.high))
-    if column.facts.wrap in TURN.values():
-        return {turn: unit for unit, turn in TURN.items()}[column.facts.wrap], "by its wrap"
+    for unit, turn in TURN.items():
+        if column.facts.wrap == turn:
+            return unit, "by its wrap"
     if is_link and farthest > _RADIANS:
         return "deg", "CHECK: too far for rad"
     return "rad", "CHECK: its name says none"

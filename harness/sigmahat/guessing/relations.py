@@ -1,4 +1,4 @@
-"""What two or three columns say about each other: copies, derivatives, the equation of the motor."""
+"""What columns say about each other: copies, derivatives, the equation of the motor."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from sigmahat.logs.log import Array
 _SMOOTH = 15  # samples of the polynomial with which columns are differentiated
 _DERIVATIVE = 0.97  # correlation from which on a column is the derivative of another one
 _COPY = 1e-4  # rest of a fit over the column, up to which it is a copy in another unit
-_SHARE = 0.02  # of the torque: a smaller part of it tells no sign
 _BLOCKS = 8
 
 
@@ -69,20 +68,18 @@ class Drive:
     """Share of the variance of the torque [1]."""
     sign: int
     """1 if the torque drives the motion, -1 if it is counted the other way round, 0: not sure."""
-    lead: int
-    """1 if the first position is on the side of the torque (the motor), -1 if the second is, 0:
-    not sure."""
 
 
 def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     """Relates a torque to two positions, whatever their units are; all [size: samples].
 
-    A motor that moves a joint loses power by friction, on the average. It is ahead of the link if
-    it pulls it. So tau = B x'' + D x' + C sign(x') + K (x - y), where only the part of y that does
-    not go as x does counts.
+    tau = B x'' + D x' + C sign(x') + K (x - y) for a linear spring, where only the part of y that
+    does not go as x does counts. The equation has the acceleration of the motor, not of the link:
+    it explains the torque better if x is the motor. Friction takes power from the motor, on the
+    average, and that gives the torque its sign.
     """
     if len(x) < 8 * _SMOOTH or not np.ptp(x) or not np.ptp(tau):
-        return Drive(0.0, 0, 0)
+        return Drive(0.0, 0)
     fitted = line(x, y)
     behind = x - (y - fitted.offset) / fitted.slope if fitted.slope else np.zeros_like(x)
     velocity = derivative(x, T)
@@ -102,14 +99,7 @@ def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     spread = float(np.var(torque))
     explained = 1 - float(np.var(torque - parts @ factors)) / spread if spread else 0.0
     sign = _sign(np.array_split((torque - torque.mean()) * velocity, _BLOCKS))
-    pull = [
-        np.linalg.lstsq(part, piece, rcond=1e-10)[0][4]
-        for part, piece in zip(np.array_split(parts, 3), np.array_split(torque, 3), strict=True)
-    ]
-    strong = np.std(parts[:, 4] * factors[4]) > _SHARE * np.sqrt(spread)
-    agree = len({bool(each > 0) for each in pull}) == 1
-    lead = int(np.sign(factors[4])) * sign if strong and agree else 0
-    return Drive(explained, sign, lead)
+    return Drive(explained, sign)
 
 
 def _sign(blocks: list[Array]) -> int:

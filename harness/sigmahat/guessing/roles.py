@@ -17,6 +17,7 @@ _REFERENCE, _COMPUTED, _COPY, _APART = -6.0, -3.0, -5.0, -2.0
 _CLOSE, _ALIKE, _UNLIKE = 0.98, 0.9, 0.7
 """Correlations of two positions of one joint: surely, likely, and not likely so."""
 _SAME = 0.995  # correlation with a position from which on a column is no torque
+_BETTER = 0.7  # of what motor and link leave unexplained of the torque, to be swapped
 _EXPLAINED = 0.5  # of a torque without a name by the motion
 
 
@@ -47,27 +48,41 @@ def assign(columns: Sequence[Column], T: float) -> Roles:
     """Ports of the columns of one joint, whose windows have samples T apart [s]."""
     moving = [each for each in columns if each.facts.varies and len(each.window)]
     positions = _positions(moving, T)
-    ports = dict(_pair(positions))
+    ports: dict[str, Role] = dict(_pair(positions))
     taken = {role.column.name for role in ports.values()}
     rest = [each for each in moving if each.name not in taken]
     ports |= _setting(rest, ports)
     taken |= {role.column.name for role in ports.values()}
     ports |= _torques([each for each in rest if each.name not in taken], ports, T)
     found = _drive(ports, T)
-    theta, q = ports.get("theta"), ports.get("q")
-    if theta and q and found.lead < 0 and _side(theta.column, "motor") == _side(q.column, "motor"):
-        why = "the torque pulls it ahead of the other one"
-        ports |= {"theta": Role(q.column, why), "q": Role(theta.column, "it follows the motor")}
+    swapped = _swapped(ports)
+    if swapped and 1 - _drive(swapped, T).explained < _BETTER * (1 - found.explained):
+        ports = swapped
         found = _drive(ports, T)
     order = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
     return Roles({port: ports[port] for port in order if port in ports}, found)
 
 
+def _swapped(ports: Mapping[str, Role]) -> dict[str, Role]:
+    """Motor and link the other way round; empty if names tell them apart, or one is missing."""
+    if not {"theta", "q", "tau"} <= ports.keys():
+        return {}
+    theta, q = ports["theta"].column, ports["q"].column
+    if _points(theta, "motor") + _points(q, "link") > _points(q, "motor") + _points(theta, "link"):
+        return {}
+    why = "explains the torque better as {}"
+    return {
+        **ports,
+        "theta": Role(q, why.format("the motor")),
+        "q": Role(theta, why.format("the link")),
+    }
+
+
 def _drive(ports: Mapping[str, Role], T: float) -> Drive:
     if not {"theta", "q", "tau"} <= ports.keys():
-        return Drive(0.0, 0, 0)
-    windows = (ports[port].column.window for port in ("theta", "q", "tau"))
-    return drive(*windows, T)
+        return Drive(0.0, 0)
+    theta, q, tau = (ports[port].column.window for port in ("theta", "q", "tau"))
+    return drive(theta, q, tau, T)
 
 
 def _positions(columns: Sequence[Column], T: float) -> list[Column]:

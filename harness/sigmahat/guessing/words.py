@@ -13,7 +13,7 @@ from typing import Any
 import tomlkit
 
 _ORDER = (*("other", "acceleration", "velocity", "position", "current", "torque", "time", "index"),)
-"""Quantities; where a name says several, the first one counts: "current position", "torque current"."""
+"""Quantities; of several in a name the first one counts: "current position", "torque current"."""
 _UNIT_OF = {
     **dict.fromkeys(("rad", "mrad", "deg", "turn"), "position"),
     **dict.fromkeys(("N.m", "mN.m", "kN.m", "N.cm"), "torque"),
@@ -81,6 +81,8 @@ def meaning(name: str) -> Meaning:
         if entry is not None:
             entries.append(entry)
     quantity = _quantity(entries)
+    if _is_time(re.split(r"[./]", name)[-1]):
+        quantity = "time"
     if unit.foreign is not None:
         quantity = unit.foreign
     elif quantity not in ("other", "velocity", "acceleration"):
@@ -97,6 +99,12 @@ def meaning(name: str) -> Meaning:
         joints=tuple(joints),
         rest=tuple(rest),
     )
+
+
+def _is_time(part: str) -> bool:
+    """Whether the last part of a path names a time: the times of a topic, /current.time"""
+    entry = _vocabulary().entries.get(_plain(part).lower())
+    return entry is not None and entry.quantity == "time" and not entry.symbol
 
 
 def _quantity(entries: Sequence[_Word]) -> str | None:
