@@ -55,7 +55,9 @@ def read_document(path: Path) -> dict[str, Any]:
     return tomlkit.parse(path.read_text()).unwrap()
 
 
-@pytest.mark.parametrize("style", [*log_styles.TUNED, *log_styles.UNTUNED], ids=lambda style: style.name)
+@pytest.mark.parametrize(
+    "style", [*log_styles.TUNED, *log_styles.UNTUNED], ids=lambda style: style.name
+)
 def test_from_log_to_stiffness(
     style: Style, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

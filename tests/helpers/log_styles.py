@@ -467,15 +467,6 @@ def _swedish(m: Motion) -> Columns:
 # --- signals that Simulink logged, each with its times, in HDF5
 
 
-def _write_simulink(columns: Columns, path: Path) -> Path:
-    import h5py
-
-    with h5py.File(path, "w") as file:
-        for name, values in columns.items():
-            file[name] = values
-    return path
-
-
 def _simulink(m: Motion) -> Columns:
     out: Columns = {}
     for name, values in {
@@ -522,11 +513,13 @@ UNTUNED = [
         "capture.csv",
         _firmware,
         {
-            "theta": ("axis0.encoder.posEstimate", "turn"),
-            "q": ("axis0.loadEncoder.posAbs", "turn"),
+            "theta": ("axis0.encoder.posEstimate", "rad"),
+            "q": ("axis0.loadEncoder.posAbs", "rad"),
             "tau": ("axis0.motor.IqMeasured", "A"),
         },
         {**CURRENT, "ports.theta.gear_ratio": GEAR},
+        # Neither names nor values say that these are turns: as radians they were as likely.
+        edits={"ports.theta.unit": "turn", "ports.q.unit": "turn"},
     ),
     Style(
         "Swedish",
@@ -551,7 +544,9 @@ UNTUNED = [
             "tau": ("logsout.MMot.Data", "N.m"),
         },
         {"ports.theta.gear_ratio": GEAR},
-        write=_write_simulink,
     ),
 ]
-"""Styles that were written when the others worked, and on which nothing was tuned at first."""
+"""Styles that were written when the others worked. Before anything was changed for them, all found
+the right joint. Edits beyond the data sheet: Simulink 0; CiA 402 1 (torque of the motor taken for
+that of a sensor); Chinese 1 (A taken for N.m); firmware 2 (turns taken for radians, which is still
+so); Swedish 3 (a lever in mm was left out: its port, and rls.m)."""

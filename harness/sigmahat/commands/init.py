@@ -89,5 +89,6 @@ def _text(log: Path, joint: JointGuess, path: Path) -> str:
     asked = sum("FILL IN" in line for line in text.splitlines() if not line.startswith("#"))
     option = "" if path == common.configuration_of(log) else f" --config {path}"
     fill_in = f"fill in {asked} values (FILL IN)" if asked else "nothing to fill in"
-    lines += ["", f"Check {path}, {fill_in}, then: sigmahat identify {log}{option}"]
+    then = "estimate" if "tau" not in joint.ports and "tau_e_sensor" in joint.ports else "identify"
+    lines += ["", f"Check {path}, {fill_in}, then: sigmahat {then} {log}{option}"]
     return "\n".join(lines)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -142,6 +143,6 @@ def _liveliest(
     motion = np.zeros(parts)
     for t, x in samples:
         at = np.searchsorted(t, edges)
-        spread = [float(np.std(x[a:b])) if b > a else 0.0 for a, b in zip(at, at[1:], strict=False)]
+        spread = [float(np.std(x[a:b])) if b > a else 0.0 for a, b in pairwise(at)]
         motion += np.array(spread) / (max(spread) or 1.0)
     return float(edges[int(np.argmax(motion))])

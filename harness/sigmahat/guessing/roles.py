@@ -165,33 +165,31 @@ def _points(column: Column, side: str) -> float:
 
 def _torques(columns: Sequence[Column], ports: Mapping[str, Role], T: float) -> dict[str, Role]:
     """The torque of the motor, and the measured one of the link."""
-    sensors = [each for each in columns if each.meaning.quantity == "torque" and _is_sensor(each)]
-    named = [
-        each
-        for each in columns
-        if each.meaning.quantity in ("torque", "current")
-        and each not in sensors
-        and each.meaning.side != "setting"
-    ]
-    currents = [each for each in named if each.meaning.quantity == "current"]
-    for each in [n for n in named if n.meaning.quantity == "torque" and not _is_motor(n)]:
-        if currents and not any(is_copy(each.window, other.window) for other in currents):
-            named.remove(each)  # beside a current, a torque is measured by itself
-            sensors.append(each)
+    torques = [each for each in columns if each.meaning.quantity == "torque"]
+    currents = [each for each in columns if each.meaning.quantity == "current"]
+    possible = [each for each in (*torques, *currents) if each.meaning.side != "setting"]
+    sensors = [each for each in torques if _is_sensor(each, [*torques, *currents], ports)]
+    named = [each for each in possible if each not in sensors]
     found = {}
     if named:
-        best = max(named, key=_torque_points)
-        found["tau"] = Role(best, "by its name")
+        found["tau"] = Role(max(named, key=_torque_points), "by its name")
     elif ports.keys() >= {"theta", "q"}:
         found |= _silent_torque([each for each in columns if each not in sensors], ports, T)
     if sensors:
-        found["tau_e_sensor"] = Role(max(sensors, key=_torque_points), "by its name")
+        why = "by its name" if sensors[0].meaning.side else "the motor has another one, or none"
+        found["tau_e_sensor"] = Role(max(sensors, key=_torque_points), why)
     return found
 
 
-def _is_sensor(column: Column) -> bool:
+def _is_sensor(column: Column, others: Sequence[Column], ports: Mapping[str, Role]) -> bool:
+    """Whether a torque is measured behind the motor, as its name or the other columns say."""
     meaning = column.meaning
-    return meaning.side in ("sensor", "link") or (not meaning.side and meaning.suggested == "link")
+    if meaning.side is not None or _is_motor(column):
+        return meaning.side in ("sensor", "link")
+    motors = [each for each in others if each.meaning.quantity == "current" or _is_motor(each)]
+    if not motors:
+        return "theta" not in ports  # an angle and a torque: a test bench
+    return not any(is_copy(column.window, each.window) for each in motors)
 
 
 def _is_motor(column: Column) -> bool:
@@ -230,12 +228,15 @@ def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, 
         each
         for each in columns
         if each.meaning.quantity in ("position", None)
-        and not any(_follows(each, role.column) for role in ports.values())
+        and (_says_setting(each) or not _follows(each, ports))
     ]
     named = [each for each in possible if each.meaning.side == "setting"]
     if named:
         measured = [each for each in named if not each.meaning.reference]
         return {"theta_c": Role((measured or named)[0], "by its name")}
+    lengths = [each for each in possible if each.meaning.unit == "mm"]
+    if lengths:
+        return {"theta_c": Role(lengths[0], "the only length, which sets the stiffness of a joint")}
     second = [
         each
         for each in possible
@@ -248,5 +249,12 @@ def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, 
     return {}
 
 
-def _follows(one: Column, other: Column) -> bool:
-    return abs(line(one.window, other.window).correlation) > _CLOSE
+def _says_setting(column: Column) -> bool:
+    """Whether its name leaves no doubt; a set-point may as well be that of a position."""
+    return column.meaning.side == "setting" and not column.meaning.reference
+
+
+def _follows(column: Column, ports: Mapping[str, Role]) -> bool:
+    """Whether it moves as motor or link do."""
+    windows = [role.column.window for role in ports.values()]
+    return any(abs(line(column.window, each).correlation) > _CLOSE for each in windows)

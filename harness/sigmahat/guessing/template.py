@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 import tomlkit
 from tomlkit.items import Item, Table
 
+from sigmahat.guessing.facts import TURN
 from sigmahat.guessing.guess import JointGuess, Seen
 from sigmahat.guessing.ports import PortGuess
 from sigmahat.logs.configuration import NOT_YOURS, PORTS, WIDE_PRIOR
@@ -21,6 +22,7 @@ _MEANING = {
     "tau_e_sensor": "measured flexibility torque, for modality Sensor",
 }
 _MOTOR_UNITS = {"motor.B": "kg.m2", "motor.D_theta": "N.m.s/rad"}
+_TORQUES = {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3, "N.cm": 1e-2}
 _RANGE = (1.0, 100.0)  # of the set-point
 _HEAD = """\
 Configuration for {log}{joint}, guessed from names and values of its columns.
@@ -144,7 +146,9 @@ def _parameters(guess: JointGuess, defaults: Mapping[str, float]) -> Table:
     _add(table, "method", "MatchedFilter", "or Paper2011, which needs exact motor data")
     sensor = _is_sensor(guess)
     _add(table, "modality", "Sensor" if sensor else "Residual", "Residual, Sensor or Model")
-    if not sensor:
+    if sensor:
+        _add_ranges(table, guess)
+    else:
         _add_motor(table, ports.get("theta"), defaults)
     for name in ("theta", "q"):
         if name in ports and ports[name].unit != "counts":
@@ -170,6 +174,28 @@ def _add_motor(table: Table, theta: PortGuess | None, defaults: Mapping[str, flo
         table.add(tomlkit.comment(line))
 
 
+def _add_ranges(table: Table, guess: JointGuess) -> None:
+    """What `identify` writes where there is a motor: it finds nothing to do without one."""
+    q, sensor = guess.ports.get("q"), guess.ports["tau_e_sensor"]
+    if q is not None and q.unit in TURN and "theta" not in guess.ports:
+        in_rad = 2 * math.pi / TURN[q.unit]
+        _add(table, "range.phi", _largest(q) * in_rad, "[rad] largest deformation, with some room")
+    else:
+        table.add(tomlkit.comment("range.phi = 0.3   # [rad] CHECK: the largest deformation"))
+    if sensor.unit in _TORQUES:
+        largest = _largest(sensor) * _TORQUES[sensor.unit]
+        _add(table, "prior.tau_e", largest, "[N.m] largest torque, with some room")
+    else:
+        table.add(tomlkit.comment("prior.tau_e = 45   # [N.m] CHECK: the largest torque"))
+    noise = "noise.tau_e = 0.032   # [N.m] CHECK: standard deviation of the noise of the torque"
+    table.add(tomlkit.comment(noise))
+
+
+def _largest(port: PortGuess) -> float:
+    """Largest magnitude of a port in the unit of its column, and a fifth more."""
+    return float(f"{1.2 * max(abs(port.low - port.zero), abs(port.high - port.zero)):.3g}")
+
+
 def _encoder(port: PortGuess) -> tuple[int, str]:
     """Counts in a turn of the joint, and why."""
     if not port.steps:
@@ -184,7 +210,7 @@ def _set_point(port: PortGuess | None) -> Iterator[tuple[str, float, str]]:
     if port is None:
         yield "rls.m", 1, "no set-point"
         return
-    in_port = {"deg": math.pi / 180, "turn": 2 * math.pi, "mrad": 1e-3}.get(port.unit or "", 1.0)
+    in_port = 2 * math.pi / TURN[port.unit] if port.unit in TURN else 1.0
     largest = in_port * max(abs(port.low - port.zero), abs(port.high - port.zero))
     scale = 1.0
     if port.unit != "counts" and largest > 0 and math.isfinite(largest):

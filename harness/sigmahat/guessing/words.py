@@ -164,7 +164,8 @@ def _is_unit(tokens: Sequence[str], count: int, unit: _Unit) -> bool:
         return len(tokens) > count or len(tokens[-1]) > 2
     before = _quantity([entry for _, entry in _entries(tokens[:-1]) if entry is not None])
     of = _UNIT_OF.get(unit.name or "")
-    return of is not None and (of == before or (of, before) == ("current", "torque"))
+    fits = of == before or (of, before) == ("current", "torque")
+    return of is not None and (fits or (before is None and tokens[-1] == "A" and len(tokens) > 1))
 
 
 def _unit(text: str) -> _Unit:
