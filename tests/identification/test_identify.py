@@ -187,7 +187,7 @@ def test_what_is_not_determined_is_never_exact(
     for _ in range(2):  # a second run finds what the first one wrote
         written = write(cannot_tell(found[1.0]), path)
         read = read_configuration(path).parameters
-        wide = {"prior.B": 1.0, "prior.D_theta": 1.0, "prior.tau_coulomb": 0.06, **kept}
+        wide = {"prior.B": 1000.0, "prior.D_theta": 1.0, "prior.tau_coulomb": 0.06, **kept}
         assert {name: read[name] for name in wide} == wide
         assert not any(f"parameters.{name}" in written for name in kept)
         # No value of another robot stays without a word: B has no interval, D_theta has one.

@@ -11,7 +11,13 @@ from tomlkit.items import Item, Table
 from sigmahat.guessing.facts import TURN
 from sigmahat.guessing.guess import JointGuess, Seen
 from sigmahat.guessing.ports import PortGuess
-from sigmahat.logs.configuration import NOT_YOURS, PORTS, WIDE_PRIOR
+from sigmahat.logs.configuration import (
+    ANOTHER_ROBOT,
+    ANY_COULOMB,
+    NOT_YOURS,
+    PORTS,
+    WIDE_PRIOR,
+)
 from sigmahat.logs.log import Log
 
 _MEANING = {
@@ -166,7 +172,8 @@ def _add_motor(table: Table, theta: PortGuess | None, defaults: Mapping[str, flo
         table.add(tomlkit.comment("motor.gamma is the gear_ratio of theta, unless it is set here"))
     for name, value in defaults.items():
         _add(table, name, value, f"[{_MOTOR_UNITS[name]}] {NOT_YOURS}")
-        _add(table, name.replace("motor.", "prior."), 1.0, WIDE_PRIOR)
+        _add(table, name.replace("motor.", "prior."), ANOTHER_ROBOT, WIDE_PRIOR)
+    _add(table, "prior.tau_coulomb", ANY_COULOMB, WIDE_PRIOR)
     for line in (
         "torque.held = true   # if a drive holds each value of tau until the next one",
         "prior.torque_gain = 0.02   # how wrong the gain of tau may be: no data show it",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Container, MutableMapping
+from collections.abc import Mapping, MutableMapping
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,14 @@ from tomlkit.items import InlineTable, Item
 from sigmahat.files.whole_file import write_whole
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import MOTOR
-from sigmahat.logs.configuration import NOT_YOURS, WIDE_PRIOR, Port, read_document
+from sigmahat.logs.configuration import (
+    ANOTHER_ROBOT,
+    ANY_COULOMB,
+    NOT_YOURS,
+    WIDE_PRIOR,
+    Port,
+    read_document,
+)
 from sigmahat.logs.units import factor
 from sigmahat.user_input import toml_file
 
@@ -57,8 +64,8 @@ def write(found: Identified, path: Path) -> list[str]:
     parameters = document.setdefault("parameters", tomlkit.table())
     given = dict(toml_file.dotted(parameters.unwrap()))
     unknown = {name: each for name, each in _unknown(found).items() if name not in given}
-    middle = {name for name, (_, comment) in unknown.items() if comment == _MIDDLE}
-    priors = {name: _short(value) for name, value in _wide_priors(found, middle).items()}
+    comments = {name: comment for name, (_, comment) in unknown.items()}
+    priors = {name: _short(value) for name, value in _wide_priors(found, comments).items()}
     wide = {name: value for name, value in priors.items() if not given.get(name)}
     for name, value in values.items():
         _set(parameters, name, tomlkit.item(value))
@@ -98,21 +105,29 @@ def _middle(quantity: Quantity) -> float | None:
     return 0.5 * (max(low, 0.0) + high) if math.isfinite(high) and high > 0 else None
 
 
-def _wide_priors(found: Identified, middle: Container[str]) -> dict[str, float]:
+def _wide_priors(found: Identified, comments: Mapping[str, str]) -> dict[str, float]:
     """Priors of the motor data that are not determined, by parameter.
 
-    middle  parameters that get the middle of their interval: around it, WIDE holds all of it
+    comments  of the parameters that nobody has set; around the middle of an interval, WIDE holds
+              all of it
     """
     undetermined = {name: q for name, q in found.quantities.items() if not q.determined}
-    priors = {f"prior.{name}": WIDE for name in ("B", "D_theta") if name in undetermined}
-    D_theta = None if "motor.D_theta" in middle else undetermined.get("D_theta")
+    priors = {}
+    for name in ("B", "D_theta"):
+        if name in undetermined:
+            not_yours = comments.get(f"motor.{name}") == NOT_YOURS
+            priors[f"prior.{name}"] = ANOTHER_ROBOT if not_yours else WIDE
+    D_theta = undetermined.get("D_theta")
+    if comments.get("motor.D_theta") == _MIDDLE:
+        D_theta = None
     if D_theta is not None and math.isfinite(D_theta.half_width) and found.D_theta > 0:
         # Encoders that are read at different times look like friction, of any sign and size.
         largest = max(abs(end / found.D_theta - 1) for end in D_theta.interval)
-        priors["prior.D_theta"] = max(WIDE, largest)
+        priors["prior.D_theta"] = max(priors["prior.D_theta"], largest)
     tau_coulomb = undetermined.get("tau_coulomb")
-    if tau_coulomb is not None and math.isfinite(tau_coulomb.half_width):
-        priors["prior.tau_coulomb"] = max(abs(end) for end in tau_coulomb.interval)
+    if tau_coulomb is not None:
+        largest = max(abs(end) for end in tau_coulomb.interval)
+        priors["prior.tau_coulomb"] = largest if math.isfinite(largest) else ANY_COULOMB
     return priors
 
 
