@@ -98,7 +98,7 @@ def nothing(log: dict[str, Array]) -> dict[str, Array]:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (text, "column 'q' holds text ('fast')"),
+        (text, "column 'q' holds text ('fast' in row 2)"),
         (back, "does not increase: 1.4 s in row 1501 after 1.499 s"),
         (nothing, "no number"),
     ],

@@ -44,7 +44,7 @@ def test_a_column_that_begins_with_numbers_may_go_on_with_text(tmp_path: Path) -
     assert path.stat().st_size > 2 << 20
     log = open_log(path)
     assert np.array_equal(log.read("q"), columns(rows)["q"])
-    with pytest.raises(LogError, match=r"'note' holds text \('end'\)"):
+    with pytest.raises(LogError, match=r"'note' holds text \('end' in row 40000\)"):
         log.read("note")
     assert [each for batch in log.batches(["note"], rows) for each in batch["note"].to_pylist()][
         -2:
