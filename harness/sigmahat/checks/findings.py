@@ -98,9 +98,19 @@ class Checked:
         return bool(self.of(Severity.WRONG))
 
 
-def as_dict(finding: Finding) -> dict[str, Any]:
+def as_dict(checked: Checked) -> dict[str, Any]:
     """For JSON."""
-    values = asdict(finding)
-    values["kind"], values["severity"] = finding.kind.value, finding.severity.value
-    values["others"] = dict(finding.others)
-    return values
+    return {
+        "wrong": checked.is_wrong,
+        "ticks": checked.ticks,
+        "samplePeriod [s]": checked.T,
+        "findings": [
+            {
+                **asdict(each),
+                "kind": each.kind.value,
+                "severity": each.severity.value,
+                "others": dict(each.others),
+            }
+            for each in checked.findings
+        ],
+    }
