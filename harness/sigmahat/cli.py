@@ -37,7 +37,19 @@ def cli() -> None:
 
 
 for command in (
-    *(reproduce, compare, scenarios, init, check, identify, estimate, validate, export, sweep, report),
+    *(
+        reproduce,
+        compare,
+        scenarios,
+        init,
+        check,
+        identify,
+        estimate,
+        validate,
+        export,
+        sweep,
+        report,
+    ),
 ):
     cli.add_command(command)
 

@@ -36,7 +36,9 @@ def check(log: Log, configuration: Configuration) -> Checked:
     if not any(each.severity is Severity.WRONG for each in findings):
         # Else these are its symptoms.
         findings += replayed(seen, outputs)
-    findings += rests_on(configuration, every, fmu.parameters({}), _per_gain(outputs, every["method"]))
+    findings += rests_on(
+        configuration, every, fmu.parameters({}), _per_gain(outputs, every["method"])
+    )
     order = list(Severity)
     findings.sort(key=lambda each: order.index(each.severity))
     return Checked(findings, len(seen.samples.values), seen.T)

@@ -1,4 +1,4 @@
-"""What the columns show as they were recorded: steps of encoders, jumps, a torque that saturates."""
+"""What the columns show as they were recorded: steps, jumps, a torque that saturates."""
 
 from __future__ import annotations
 

@@ -8,22 +8,17 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from sigmahat.checks.findings import Finding, Kind, Severity
-from sigmahat.checks.motor import LINEAR, Fitted, delay, with_inertia
+from sigmahat.checks.inertia import inertia
+from sigmahat.checks.motor import LINEAR, Fitted, delay, explains
 from sigmahat.checks.relation import Relation
-from sigmahat.checks.scales import like
 from sigmahat.checks.view import View
-from sigmahat.identification.regression import MOTOR, Fit, Signals, is_worse
+from sigmahat.identification.regression import MOTOR, Signals
 from sigmahat.logs.configuration import Port
 from sigmahat.logs.units import factor
 
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _STD = 3.0
 """Standard deviations of a prior, beyond which it contradicts the log."""
-_GEARED = 3.0  # a ratio of inertias is that of the gear up to this factor
-_INERTIA = 2.0  # and a torque constant is not wrong by more than this
-_BETTER = 0.7
-"""Squared errors over those before, if something explains the log: friction of another form than
-that of the equation makes nearly everything significant."""
 
 
 def dynamics(seen: View, here: Relation) -> Iterator[Finding]:
@@ -41,7 +36,7 @@ def dynamics(seen: View, here: Relation) -> Iterator[Finding]:
     if not seen.has_sensor:
         yield from _late(seen, here, found)
         yield from _encoder_lag(seen, found)
-        yield from _inertia(seen, here, found)
+        yield from inertia(seen, here.pieces, found)
 
 
 def _sign(seen: View, found: Fitted) -> Finding | None:
@@ -104,12 +99,13 @@ def _late(seen: View, here: Relation, found: Fitted) -> Iterator[Finding]:
     if late is None:
         return
     least = abs(late.value) - late.half_width
-    if least < seen.T or not _explains(found.fit, late.fit):
+    if least < seen.T or not explains(found.fit, late.fit):
         return
     is_expected = least < _STD * float(seen.every["prior.delay"])
     severity = Severity.NOTE if is_expected else Severity.WRONG
     port = seen.configuration.ports["tau"]
-    proposed = float(f"{port.delay + late.value:.3g}")
+    # Expected ones are left to the estimator: damping of the spring looks like an early torque.
+    proposed = None if is_expected else float(f"{port.delay + late.value:.3g}")
     yield Finding(Kind.TORQUE_LAG, severity, "ports.tau.delay", late.value, "s", 0.0, proposed)
 
 
@@ -128,36 +124,3 @@ def _encoder_lag(seen: View, found: Fitted) -> Iterator[Finding]:
     others = [("ports.theta.delay", float(f"{seen.configuration.ports['theta'].delay - lag:.3g}"))]
     key = "ports.q.delay"
     yield Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others)
-
-
-def _inertia(seen: View, here: Relation, found: Fitted) -> Iterator[Finding]:
-    """B of the log beside that of the configuration: a torque geared twice shows in it."""
-    B, half = found.linear.value["B"], found.linear.half_width["B"]
-    told = float(seen.every["motor.B"])
-    if not (told > 0 and B > half and math.isfinite(half)):
-        return
-    low, high = (B - half) / told, (B + half) / told
-    known = with_inertia(seen, here.pieces, found.form, told)
-    if not (low > _INERTIA or high < 1 / _INERTIA) or not _explains(known, found.fit):
-        return
-    ratio, gamma, rounded = B / told, abs(seen.gamma), float(f"{B:.3g}")
-    if "motor.B" in seen.configuration.parameters and gamma > _GEARED**2:
-        for times in (gamma, 1 / gamma):
-            if max(ratio / times, times / ratio) < _GEARED:
-                key, kind = "ports.tau.gear_ratio", Kind.TORQUE_SCALE
-                proposed = float(f"{seen.configuration.ports['tau'].gear_ratio * times:.6g}")
-                others = [("motor.B", rounded)]
-                yield Finding(
-                    kind, Severity.WRONG, key, B, "kg.m2", told, proposed, others
-                )
-                return
-    is_free = abs(ratio - 1) < _STD * float(seen.every["prior.B"])
-    severity = Severity.NOTE if is_free else Severity.WRONG
-    keys = [("ports.tau.torque_constant", None)]
-    yield Finding(Kind.INERTIA, severity, "motor.B", B, "kg.m2", told, rounded, keys)
-
-
-def _explains(before: Fit, after: Fit) -> bool:
-    """Whether a change explains much of what was not explained before."""
-    less = float(np.sum(after.squares)) < _BETTER * float(np.sum(before.squares))
-    return less and is_worse(before, after)

@@ -18,7 +18,6 @@ from sigmahat.identification.coherence import TorqueNoise, coherent_range
 from sigmahat.identification.noise import bandwidth, variance
 from sigmahat.identification.orders import choose
 from sigmahat.identification.regression import (
-    CONSTANT,
     MOTOR,
     Equations,
     Fit,
@@ -26,6 +25,7 @@ from sigmahat.identification.regression import (
     Signals,
     equations,
     fit,
+    is_worse,
 )
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
@@ -37,6 +37,9 @@ _HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Cou
 _ORDERS = 3
 _STEPS = 4  # of Newton's method for the delay
 _LONGEST = 0.1  # [s] of a delay
+_BETTER = 0.7
+"""Squared errors over those before, if something explains the log: friction of another form than
+that of the equation makes nearly everything significant."""
 
 
 @dataclass(frozen=True)
@@ -101,9 +104,29 @@ def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Delay | None:
     return Delay(late, half_width + abs(step), found) if math.isfinite(half_width) else None
 
 
+def variants(form: Form) -> list[Form]:
+    """Forms that differ in what nobody knows: the low pass, and the form of friction."""
+    return [
+        replace(form, f_0=0.6 * form.f_0),
+        replace(form, load_friction=True),
+        replace(form, stribeck_velocity=0.1),
+    ]
+
+
+def with_form(seen: View, pieces: Sequence[Signals], form: Form) -> Fit:
+    """The fit with another form."""
+    return fit(_equations(seen, pieces, form))
+
+
 def with_inertia(seen: View, pieces: Sequence[Signals], form: Form, B: float) -> Fit:
     """The fit with a known inertia [kg.m2]."""
     return fit(_equations(seen, pieces, form).known("B", B))
+
+
+def explains(before: Fit, after: Fit) -> bool:
+    """Whether a change explains much of what was not explained before."""
+    less = float(np.sum(after.squares)) < _BETTER * float(np.sum(before.squares))
+    return less and is_worse(before, after)
 
 
 def _band(seen: View, pieces: Sequence[Signals]) -> float:
@@ -145,5 +168,3 @@ def _moved(tau: Array, ticks: float) -> Array:
     at = np.arange(len(tau), dtype=np.float64)
     moved: Array = np.interp(at + ticks, at, tau)
     return moved
-
-

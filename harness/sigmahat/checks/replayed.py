@@ -25,7 +25,7 @@ _TORQUE = 3.0  # torque over the one that is told
 Outputs = Mapping[str, np.ndarray[Any, Any]]
 _KEYS = {
     "NotExcited": "ports.q.column",
-    "Misfit": "prior.tau_e",
+    "Misfit": "rls.n",
     "OutOfRange": "range.phi",
     "FrictionOutsidePrior": "motor.D_theta",
     "InertiaOutsidePrior": "motor.B",
@@ -49,9 +49,7 @@ def replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
     valid = outputs["valid"]
     learned = float(np.mean(valid & (outputs["a"] > 0)))
     if learned < _LEARNED:
-        yield Finding(
-            Kind.LEARNED, Severity.NOTE, "time.longest_gap", learned, "", 1.0
-        )
+        yield Finding(Kind.LEARNED, Severity.NOTE, "time.longest_gap", learned, "", 1.0)
     if seen.every["method"] == "MatchedFilter":
         yield from _claims(outputs)
 
@@ -88,9 +86,9 @@ def _claims(outputs: Outputs) -> Iterator[Finding]:
     """How certain the estimator is."""
     misfit = float(outputs["misfit"][-1])
     if misfit > _MISFIT:
-        yield Finding(Kind.MISFIT, Severity.NOTE, "prior.tau_e", misfit, "", 1.0)
+        yield Finding(Kind.MISFIT, Severity.NOTE, "rls.n", misfit, "", 1.0)
     doubts = outputs["doubt"][len(outputs["doubt"]) // 2 :]
     for item, key in _KEYS.items():
         share = float(np.mean(doubts == item))
-        if share > _DOUBTED:
+        if share > _DOUBTED and not (item == "Misfit" and misfit > _MISFIT):
             yield Finding(Kind.DOUBT, Severity.NOTE, key, share, "", 0.0, about=item)

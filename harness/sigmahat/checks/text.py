@@ -92,8 +92,10 @@ def _zero(f: Finding) -> str:
 
 
 def _torque_lag(f: Finding) -> str:
-    side = "later" if f.measured > 0 else "earlier"
-    return f"the torque comes {1e3 * abs(f.measured):.3g} ms {side} than the motion explains"
+    ms = f"{1e3 * abs(f.measured):.3g} ms"
+    if f.measured > 0:
+        return f"the torque comes {ms} later than the motion explains"
+    return f"the torque comes {ms} earlier than the motion explains, or the spring is damped"
 
 
 def _encoder_lag(f: Finding) -> str:
@@ -106,9 +108,7 @@ def _encoder_lag(f: Finding) -> str:
 
 def _inertia(f: Finding) -> str:
     ratio = f.measured / f.expected if f.expected else float("nan")
-    return (
-        f"the log shows an inertia of {_number(f.measured, f.unit)}, {ratio:.3g} times motor.B"
-    )
+    return f"the log shows an inertia of {_number(f.measured, f.unit)}, {ratio:.3g} times motor.B"
 
 
 def _torque_scale(f: Finding) -> str:

@@ -35,7 +35,7 @@ class View:
     that of the motor, or the one of the sensor over the gear ratio, with the sign of tau."""
 
     @property
-    def T(self) -> float:  # noqa: N802
+    def T(self) -> float:
         """Time between ticks [s]."""
         return self.samples.T
 
