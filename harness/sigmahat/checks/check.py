@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 
 from sigmahat.checks.columns import columns
@@ -17,6 +18,8 @@ from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Log
 from sigmahat.logs.replay import parameters
+
+_INERTIA = (Kind.INERTIA, Kind.TORQUE_SCALE)
 
 
 def check(log: Log, configuration: Configuration) -> Checked:
@@ -42,6 +45,20 @@ def check(log: Log, configuration: Configuration) -> Checked:
     order = list(Severity)
     findings.sort(key=lambda each: order.index(each.severity))
     return Checked(findings, len(seen.samples.values), seen.T)
+
+
+def check_identified(log: Log, before: Configuration, after: Configuration) -> Checked:
+    """Checks a configuration that identify has completed.
+
+    The inertia is compared with the one that was there before: it came from elsewhere.
+
+    Raises LogError, FmuError as `check`.
+    """
+    checked = check(log, after)
+    if before == after:
+        return checked
+    of_inertia = [each for each in check(log, before).findings if each.kind in _INERTIA]
+    return replace(checked, findings=[*of_inertia, *checked.findings])
 
 
 @cache

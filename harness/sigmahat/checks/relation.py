@@ -26,6 +26,7 @@ _CORRELATED = 0.9
 _FAR = 5.0  # a spring may make the motion of the link so much larger, below its resonance
 _DIFFERENT = 1.5  # a slope so near to 1 is that of a soft spring
 _BETTER = 0.8  # squared errors over those before
+_AS_WELL = 0.25  # of the logarithm of a factor: another one explains the same
 PORTS = ("theta", "q")
 
 
@@ -59,27 +60,31 @@ def _scale(seen: View, here: Relation, slope: float) -> Relation:
         (name, change)
         for name in PORTS
         for change in changes(name, seen.configuration.ports[name], seen.gamma)
-        if like(_on_theta(name, change) ** -1, abs(1 / slope))
+        if like(_on_theta(name, change), abs(slope))
     ]
-    if not every:
-        return here
     every.sort(key=lambda each: round(distance(_on_theta(*each), abs(slope)), 1))
-    (name, first), others = every[0], every[1:]
-    repaired = [_scaled(piece, name, first.factor) for piece in here.pieces]
-    after = fitted(seen, repaired)
-    if not _is_plausible(here.fitted, after, abs(slope)):
+    best: tuple[str, Change] | None = None
+    found = here
+    for name, change in every:
+        repaired = [_scaled(piece, name, change.factor) for piece in here.pieces]
+        after = fitted(seen, repaired)
+        if best is None:
+            is_next = _is_plausible(here.fitted, after, abs(slope))
+        else:
+            is_next = _is_better(found.fitted, after)
+        if is_next:
+            best, found = (name, change), Relation((), repaired, after)
+    if best is None:
         return here
-    finding = Finding(
-        Kind.SLOPE,
-        Severity.WRONG,
-        first.key,
-        slope,
-        "",
-        1.0,
-        first.value,
-        [(change.key, change.value) for _, change in others],
-    )
-    return Relation([finding], repaired, after)
+    first, factor = best[1], _on_theta(*best)
+    others = [
+        (change.key, change.value)
+        for name, change in every
+        if (name, change) != best and distance(_on_theta(name, change), factor) < _AS_WELL
+    ]
+    key, proposed = first.key, first.value
+    finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, proposed, others)
+    return replace(found, findings=[finding])
 
 
 def _sign(seen: View, here: Relation, slope: float) -> Relation:
@@ -87,8 +92,6 @@ def _sign(seen: View, here: Relation, slope: float) -> Relation:
         return here
     flipped = [_scaled(piece, "q", -1.0) for piece in here.pieces]
     after = fitted(seen, flipped)
-    if not here.findings and not like(abs(slope), 1.0):
-        return here
     before = here.fitted
     if before is not None and after is not None:
         is_stiff = before.linear.value[LINEAR] * seen.gamma < 0
@@ -140,7 +143,9 @@ def _is_plausible(before: Fitted | None, after: Fitted | None, slope: float) -> 
     return _is_better(before, after)
 
 
-def _is_better(before: Fitted, after: Fitted) -> bool:
+def _is_better(before: Fitted | None, after: Fitted | None) -> bool:
+    if before is None or after is None:
+        return False
     return is_worse(before.fit, after.fit) and after.error < _BETTER * before.error
 
 

@@ -12,7 +12,7 @@ from sigmahat.logs.units import factor
 
 _ANGLES = ("rad", "deg", "turn")
 _COUNTS = (4.0, 0.25, 2.0, 0.5)
-_LIKE = math.log(1.3)
+_LIKE = math.log(2.0)
 """A spring deforms, so q and theta do not move alike: a factor is recognised up to this."""
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
 
+IN_LOG = (Severity.WRONG, Severity.NOTE)
+"""What the log shows. The commands that estimate say themselves what their answer rests on."""
 _TITLES = {
-    Severity.WRONG: "likely wrong:",
+    Severity.WRONG: "checked, likely wrong in the configuration:",
     Severity.NOTE: "worth a look:",
     Severity.RESTS_ON: "no log can show; the answer rests on it:",
 }
@@ -27,11 +29,14 @@ _ABSENT = {
 }
 
 
-def summary(checked: Checked) -> str:
-    """One screen."""
+def summary(checked: Checked, severities: Sequence[Severity] = tuple(Severity)) -> str:
+    """One screen, with findings of these severities."""
     seconds = f"{checked.ticks * checked.T:.6g} s"
-    lines = [] if checked.is_wrong else [f"nothing in {seconds} of the log contradicts it"]
+    nothing = f"checked: nothing in {seconds} of the log contradicts the configuration"
+    lines = [] if checked.is_wrong else [nothing]
     for severity, title in _TITLES.items():
+        if severity not in severities:
+            continue
         found = checked.of(severity)
         lines += [title, *(f"  {sentence(each)}" for each in found)] if found else []
     return "\n".join(lines)
