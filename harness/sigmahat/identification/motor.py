@@ -21,6 +21,7 @@ from sigmahat.identification.regression import (
     Signals,
     equations,
     fit,
+    is_worse,
 )
 from sigmahat.identification.spring import Spring
 
@@ -147,7 +148,7 @@ def _systems(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> V
     fits = {each: fit(system) for each, system in every.items()}
     plain = next(iter(every))
     best = min(fits, key=lambda each: float(np.nan_to_num(np.sum(fits[each].squares), nan=np.inf)))
-    chosen = best if _is_worse(fits[plain], fits[best]) else plain
+    chosen = best if is_worse(fits[plain], fits[best]) else plain
     filters = (
         replace(chosen, wide=min(2 * form.wide, 2 * _WIDEST / T)),
         replace(chosen, f_0=0.6 * form.f_0),
@@ -184,16 +185,10 @@ def _half_width(name: str, fits: Variants[Fit]) -> float:
     distances = [abs(other.value[name] - first.value[name]) for other in fits.others]
     for friction in fits.frictions:
         distance = abs(friction.value[name] - first.value[name]) - friction.half_width[name]
-        if not _is_worse(friction, first):
+        if not is_worse(friction, first):
             distances.append(max(distance, 0.0))
     distance = max(distances)
     return first.half_width[name] + (distance if math.isfinite(distance) else math.inf)
-
-
-def _is_worse(one: Fit, other: Fit) -> bool:
-    """Whether the squared errors of one fit are significantly larger."""
-    more = one.squares - other.squares
-    return bool(np.mean(more) > 2 * np.std(more, ddof=1) / math.sqrt(len(more)))
 
 
 def _motor_quantity(name: str, fits: Variants[Fit], torque: float) -> Quantity:
