@@ -45,7 +45,7 @@ def from_reproduction(folder: Path) -> Contents:
             *stiffness_panels(reduced, estimates),
             *quantity_panels(reduced, main if len(files.series) > 1 else ""),
         ],
-        reduced.every if reduced.bucket > 1 else None,
+        every=reduced.every if reduced.bucket > 1 else None,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from pathlib import Path
 
 from bokeh.embed import components
@@ -46,13 +47,15 @@ def report(folder: Path) -> str:
 
 def _page(contents: Contents) -> str:
     """The report as HTML."""
-    made = plots(contents.panels, contents.every)
+    made = plots([*contents.answer, *contents.panels], contents.every)
     script, divs = components([plot.figure for plot in made]) if made else ("", [])
     loader = FileSystemLoader(Path(__file__).parent)
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
     return environment.get_template("page.html").render(
         contents=contents,
-        plots=list(zip(made, divs, strict=True)),
+        answer=list(zip(made, divs, strict=True))[: len(contents.answer)],
+        plots=list(zip(made, divs, strict=True))[len(contents.answer) :],
+        pictures=[b64encode(path.read_bytes()).decode() for path in contents.pictures],
         library=Resources(mode="inline", components=["bokeh"]).render(),
         script=script,
     )

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 
 from sigmahat.fmi.master import Recording
 from sigmahat.plotting.colors import BLUE, GREEN, VERMILION
+from sigmahat.plotting.symbols import math_axis
 
 Array = NDArray[np.float64]
 
 # Wide and light, so that an estimate on top of the truth still shows it.
 TRUE: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 3.0, "label": "true"}
-STIFFNESS = r"stiffness $\sigma$ [N$\cdot$m/rad]"
-TORQUE = r"flexibility torque $\tau_e$ [N$\cdot$m]"
+STIFFNESS = math_axis("sigma")
+TORQUE = math_axis("tau_e")
 
 _ESTIMATORS: dict[str, dict[str, Any]] = {
     "RESIDUAL": {"color": BLUE},

@@ -1,0 +1,87 @@
+"""`estimate.curve.csv`: the curve of a joint as a table, for every tool. Written and read here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from sigmahat.files.columns import title
+from sigmahat.files.csv_table import write_csv
+from sigmahat.files.read_table import numeric_columns, read_csv
+from sigmahat.joint.curve import Array, Branch, Curve
+from sigmahat.joint.sheet import Polynomial
+
+CURVE = "estimate.curve.csv"
+"""Name of the file in the folder of results."""
+_UNITS = {
+    "setPoint": "1",
+    "phi": "rad",
+    "tau_e": "N.m",
+    "tau_e_std": "N.m",
+    "tau_e low": "N.m",
+    "tau_e high": "N.m",
+    "sigma": "N.m/rad",
+    "sigma_std": "N.m/rad",
+    "sigma low": "N.m/rad",
+    "sigma high": "N.m/rad",
+    "in the data": None,
+}
+
+
+def write_curve(curve: Curve, path: Path) -> None:
+    """Writes a row for each point, numbers with all digits; without intervals, they are empty."""
+    rows = (row for branch in curve.branches for row in _rows(branch))
+    write_csv(path, [title(name, unit) for name, unit in _UNITS.items()], rows)
+
+
+def _rows(branch: Branch) -> Iterator[tuple[object, ...]]:
+    none = [None] * len(branch.phi)
+    torque, stiffness = branch.torque_interval(), branch.stiffness_interval()
+    columns: list[list[object]] = [
+        [branch.set_point] * len(branch.phi),
+        branch.phi.tolist(),
+        branch.tau_e.tolist(),
+        none if branch.tau_e_std is None else branch.tau_e_std.tolist(),
+        *([none, none] if torque is None else [end.tolist() for end in torque]),
+        branch.sigma.tolist(),
+        none if branch.sigma_std is None else branch.sigma_std.tolist(),
+        *([none, none] if stiffness is None else [end.tolist() for end in stiffness]),
+        ["true" if each else "false" for each in branch.within],
+    ]
+    yield from zip(*columns, strict=True)
+
+
+def read_curve(path: Path, polynomial: Polynomial) -> Curve:
+    """Reads it back; the polynomial is in the data sheet beside it. Raises ValueError, which says what to do, for anything else."""
+    again = "run `sigmahat estimate` again"
+    try:
+        table = read_csv(path)
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror}; {again}") from error
+    if [name.partition(" [")[0] for name in table.column_names] != list(_UNITS):
+        raise ValueError(f"{path}: expected the curve that `sigmahat estimate` writes; {again}")
+    if not table.num_rows:
+        return Curve(polynomial, ())
+    empty = [name for name in table.column_names if pa.types.is_null(table[name].type)]
+    columns = {name: c.values for name, c in numeric_columns(table.drop_columns(empty)).items()}
+    if missing := set(_UNITS) - set(columns) - {name.partition(" [")[0] for name in empty}:
+        raise ValueError(f"{path}: no numbers in column {min(missing)!r}; {again}")
+    settings = np.unique(columns["setPoint"])
+    return Curve(polynomial, [_branch(columns, columns["setPoint"] == each) for each in settings])
+
+
+def _branch(columns: dict[str, Array], rows: Array) -> Branch:
+    own = {name: values[rows] for name, values in columns.items()}
+    within = own["phi"][own["in the data"] == 1]
+    return Branch(
+        set_point=float(own["setPoint"][0]),
+        reach=(float(within.min()), float(within.max())),
+        phi=own["phi"],
+        tau_e=own["tau_e"],
+        tau_e_std=own.get("tau_e_std"),
+        sigma=own["sigma"],
+        sigma_std=own.get("sigma_std"),
+    )
