@@ -96,6 +96,6 @@ def nearest(settings: Sequence[float], set_points: Array) -> NDArray[np.intp]:
     levels = np.asarray(settings, np.float64)
     steps = np.diff(levels)
     width = _NEAR * np.minimum(np.append(steps, np.inf), np.insert(steps, 0, np.inf))
-    found = np.abs(set_points[:, None] - levels).argmin(axis=1)
+    found: NDArray[np.intp] = np.abs(set_points[:, None] - levels).argmin(axis=1)
     found[np.abs(set_points - levels[found]) > width[found]] = -1
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -38,24 +38,31 @@ def write_curve(curve: Curve, path: Path) -> None:
 
 
 def _rows(branch: Branch) -> Iterator[tuple[object, ...]]:
-    none = [None] * len(branch.phi)
-    torque, stiffness = branch.torque_interval(), branch.stiffness_interval()
-    columns: list[list[object]] = [
-        [branch.set_point] * len(branch.phi),
+    count = len(branch.phi)
+    columns: list[Sequence[object]] = [
+        [branch.set_point] * count,
         branch.phi.tolist(),
         branch.tau_e.tolist(),
-        none if branch.tau_e_std is None else branch.tau_e_std.tolist(),
-        *([none, none] if torque is None else [end.tolist() for end in torque]),
+        *_or_empty([branch.tau_e_std], count),
+        *_or_empty(branch.torque_interval() or [None, None], count),
         branch.sigma.tolist(),
-        none if branch.sigma_std is None else branch.sigma_std.tolist(),
-        *([none, none] if stiffness is None else [end.tolist() for end in stiffness]),
+        *_or_empty([branch.sigma_std], count),
+        *_or_empty(branch.stiffness_interval() or [None, None], count),
         ["true" if each else "false" for each in branch.within],
     ]
     yield from zip(*columns, strict=True)
 
 
+def _or_empty(columns: Sequence[Array | None], count: int) -> Iterator[Sequence[object]]:
+    for column in columns:
+        yield [None] * count if column is None else column.tolist()
+
+
 def read_curve(path: Path, polynomial: Polynomial) -> Curve:
-    """Reads it back; the polynomial is in the data sheet beside it. Raises ValueError, which says what to do, for anything else."""
+    """Reads it back; the polynomial is in the data sheet beside it.
+
+    Raises ValueError, which says what to do, for anything else.
+    """
     again = "run `sigmahat estimate` again"
     try:
         table = read_csv(path)

@@ -113,9 +113,10 @@ def estimate(
     progress: Callable[[int], object] = lambda thousandths: None,
     start_from: Path | None = None,
 ) -> Estimate:
-    """Replays the log and writes into folder: estimate.csv or .parquet, the curve
-    (estimate.curve.csv) and the measured points behind it (estimate.points.csv), estimate.png and .svg, the data sheet of the joint (joint.json), what was
-    learned (state.json), and notes for the report (estimate.json).
+    """Replays the log and writes into folder: the table (estimate.csv or .parquet), the curve
+    (estimate.curve.csv) and the measured points behind it (estimate.points.csv), the figure
+    (estimate.png and .svg), the data sheet of the joint (joint.json), what was learned
+    (state.json), and notes for the report (estimate.json).
 
     Now and then progress is called with the thousandths of the log done since the last call.
     With start_from, a folder of results or its state.json, the estimator goes on from there.

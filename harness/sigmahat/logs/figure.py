@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -57,11 +57,13 @@ def draw(replay: Replay) -> Figure:
     """The curve, and below it panels over the time since the start of the log."""
     panels = _panels(replay)
     figure = Figure(figsize=(8.4, 3.6 + 2.0 * len(panels)), layout="constrained")
-    top, below = figure.subfigures(2, height_ratios=[3.4, 2.0 * len(panels) + 0.2])
-    draw_curve(*top.subplots(1, 2), replay.curve, replay.points)
+    parts: Any = figure.subfigures(2, height_ratios=[3.4, 2.0 * len(panels) + 0.2])
+    top, below = parts
+    torque, stiffness = top.subplots(1, 2)
+    draw_curve(torque, stiffness, replay.curve, replay.points)
     every = below.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
     for axes, (label, lines) in zip(every, panels.items(), strict=True):
-        limits = []
+        limits: list[float] = []
         for line in lines:
             axes.plot(
                 np.repeat(_times(replay, line.ends), 2),

@@ -56,8 +56,9 @@ def with_what_was_learned(
 ) -> MeasuredPoints:
     """About 3000 points of up to 60000 samples, as MatchedFilter sees them at the end of a log.
 
-    At the start it does not yet know friction and bias, and sees other torques. So a copy of it, with
-    all that it has learned, is given up to 12 parts of the log again. The slave does not change.
+    At the start it does not yet know friction and bias, and sees other torques. So a copy of it,
+    with all that it has learned, is given up to 12 parts of the log again. The slave does not
+    change.
 
     every  parameters of the slave
     """

@@ -19,7 +19,7 @@ class Quantity:
 
 
 QUANTITIES = {
-    "sigma": Quantity("stiffness", r"\sigma", "σ", "N.m/rad"),
+    "sigma": Quantity("stiffness", r"\sigma", "\u03c3", "N.m/rad"),  # sigma
     "tau_e": Quantity("flexibility torque", r"\tau_e", "τₑ", "N.m"),
     "phi": Quantity("deformation", r"\phi", "φ", "rad"),
     "theta_dot": Quantity("motor velocity", r"\dot\theta", "θ̇", "rad/s"),
@@ -45,7 +45,7 @@ def plain_axis(name: str) -> str:
 
 def plain_unit(unit: str) -> str:
     """A unit of the FMUs in a page: N·m for N.m, kg·m² for kg.m2."""
-    powers = re.sub(r"(?<=[A-Za-z])\d", lambda digit: digit[0].translate(_DIGITS), unit)
+    powers = re.sub(r"(?<=[A-Za-z)])\d", lambda digit: digit[0].translate(_DIGITS), unit)
     return powers.replace(".", "·")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -33,13 +34,10 @@ def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
         label = f"set-point {branch.set_point:.3g}" if len(settings) > 1 else "estimate"
         color = COLORS[i % len(COLORS)]
         behind = points.phi[own], points.tau_e[own]
-        shape = {"label": label, "color": color, "x": branch.phi, "within": branch.within}
-        torques.append(
-            Curve(**shape, y=branch.tau_e, band=branch.torque_interval(), behind=behind, width=2.0)
-        )
-        stiffnesses.append(
-            Curve(**shape, y=branch.sigma, band=branch.stiffness_interval(), width=2.0)
-        )
+        line = Curve(label, color, branch.phi, branch.sigma, within=branch.within, width=2.0)
+        stiffnesses.append(replace(line, band=branch.stiffness_interval()))
+        band = branch.torque_interval()
+        torques.append(replace(line, y=branch.tau_e, band=band, behind=behind))
     for name, curves in (("tau_e", torques), ("sigma", stiffnesses)):
         words = QUANTITIES[name].words.capitalize()
         yield Panel(
@@ -78,11 +76,10 @@ def _scale(curves: list[Curve]) -> tuple[float, float] | None:
 def curve_table(curve: joint.Curve) -> TextTable:
     """The stiffness with its interval, over which range it holds, and the polynomial."""
     several = len(curve.branches) > 1
-    head = FAMILY_HEAD if several else STIFFNESS_HEAD
+    head = [plain_text(cell) for cell in (FAMILY_HEAD if several else STIFFNESS_HEAD)]
     rows = list(family_rows(curve) if several else stiffness_rows(curve))
     words = plain_text(polynomial_in_words(curve.polynomial))
     reach = plain_text(reach_in_words(curve))
-    head = [plain_text(cell) for cell in head]
     note = f"It holds {reach}; beyond, where the plots are faded, it is a guess. {words}."
     if not curve.claims:
         note += " The method claims no interval."

@@ -133,7 +133,9 @@ def _draw(plot: figure, curve: Curve, name: str, sources: dict[int, ColumnDataSo
     if curve.kind is Kind.LINE:
         _draw_line(plot, curve, name, source)
     elif curve.kind is Kind.POINTS:
-        plot.scatter("x", name, source=source, color=curve.color, alpha=0.6, name=name)
+        plot.scatter(
+            "x", name, source=source, color=curve.color, alpha=0.6, size=3 * curve.width, name=name
+        )
     else:
         _draw_means(plot, curve, name, source)
 

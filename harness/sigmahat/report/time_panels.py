@@ -18,7 +18,7 @@ from sigmahat.report.reduction import Reduced
 Band = tuple[NDArray[Any], NDArray[Any]]
 _TIME = plain_axis("t")
 _WIDE = 3.5  # of the truth, so that an estimate on top of it still shows it
-_SIDES = ("", "_1", "_2")
+SIDES = ("", "_1", "_2")
 """What variables end with: of the joint, or of the sides of an antagonistic pair."""
 _OUTER = 1.0  # percent of a stiffness at either end that do not set the scale
 
@@ -100,7 +100,7 @@ _QUANTITIES = (
 
 def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterator[Panel]:
     """Stiffness, and its relative error where the truth was recorded; for each side of a pair."""
-    for side in _SIDES:
+    for side in SIDES:
         signals = {
             each.label: reduced.signals[each.signals[f"sigma{side}"]]
             for each in estimates
@@ -116,7 +116,7 @@ def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterato
         truth = [] if true is None else [Curve("true", TRUE, reduced.t, true, width=_WIDE)]
         scale = lines[0].y[len(lines[0].y) // 20 :] if true is None else true
         yield Panel(
-            f"Stiffness{_of(side)}",
+            f"Stiffness{of_side(side)}",
             _TIME,
             plain_axis("sigma"),
             [*truth, *lines],
@@ -125,7 +125,7 @@ def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterato
         )
         if true is not None:
             yield Panel(
-                f"Relative error of the stiffness{_of(side)}",
+                f"Relative error of the stiffness{of_side(side)}",
                 _TIME,
                 "|error| [%]",
                 [
@@ -158,7 +158,7 @@ def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
         for side in _sides(quantity, reduced):
             curves = _curves(quantity, side, reduced)
             if curves:
-                title = f"{quantity.title}{_of(side)}{whose}"
+                title = f"{quantity.title}{of_side(side)}{whose}"
                 yield Panel(title, _TIME, quantity.axis, curves, y_range=_every(curves))
 
 
@@ -174,7 +174,7 @@ def sampling(reduced: Reduced) -> list[str]:
     ]
 
 
-def _of(side: str) -> str:
+def of_side(side: str) -> str:
     return f" of side {side[1:]}" if side else ""
 
 
@@ -185,7 +185,7 @@ def _sides(quantity: _Quantity, reduced: Reduced) -> list[str]:
             side
             for signal in quantity.signals
             if "{}" in signal.variable
-            for side in _SIDES
+            for side in SIDES
             if signal.variable.format(side) in reduced.signals
         )
     )
