@@ -23,17 +23,17 @@ FAMILY_HEAD = (
 
 
 def curve_text(curve: Curve) -> list[str]:
-    """Lines for a terminal; none without data."""
+    """Lines for a terminal, at most 3 or 4 of many set-points; none without data."""
     if not curve.branches:
         return []
     lines = [
         f"the answer as a curve, {reach_in_words(curve)}:",
         f"  {polynomial_in_words(curve.polynomial)}",
     ]
-    several = len(curve.branches) > 1
-    rows: list[Sequence[str]] = (
-        [FAMILY_HEAD, *family_rows(curve)] if several else [STIFFNESS_HEAD, *stiffness_rows(curve)]
-    )
+    rows: list[Sequence[str]] = [STIFFNESS_HEAD, *stiffness_rows(curve)]
+    if len(curve.branches) > 1:
+        every = list(family_rows(curve))
+        rows = [FAMILY_HEAD, *every[:: len(every) // 2]]
     lines += [f"  {line}" for line in aligned(rows, left=())]
     return lines
 

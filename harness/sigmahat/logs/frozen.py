@@ -10,6 +10,7 @@ from fmpy import fmi2
 from sigmahat.fmi.instance import Slave
 from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Array
+from sigmahat.logs.replay import report_only_errors
 
 _OUTPUTS = ("sigma", "sigma_std", "sigma_per_gain", "phi", "setPoint")
 
@@ -37,8 +38,7 @@ def stiffness_at(
     table = np.empty((len(points), len(_OUTPUTS)))
     rows = np.ctypeslib.as_ctypes(np.ascontiguousarray(points))
     slave.call(fmi.fmi2SetReal, every, len(PORTS), zeros)
-    only_errors = (fmi2.fmi2String * 1)(b"logStatusError")
-    slave.call(fmi.fmi2SetDebugLogging, fmi2.fmi2True, 1, only_errors)
+    report_only_errors(slave)
     t = [t_0 + T * k for k in range(2 * len(points))]
     for k, (row, out) in enumerate(zip(rows, np.ctypeslib.as_ctypes(table), strict=True)):
         fmi.fmi2SetReal(component, missing, 1, nan)

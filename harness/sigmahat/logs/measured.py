@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.saved_state import restore, save
 from sigmahat.logs.log import Array
-from sigmahat.logs.replay import gap, play
+from sigmahat.logs.replay import gap, play, report_only_errors
 from sigmahat.logs.sampling import Samples
 
 NEEDED = ("phi", "setPoint", "tau_e", "tau_e_residual", "epsilon", "a", "valid")
@@ -71,6 +71,7 @@ def with_what_was_learned(
         t = restore(other, save(slave))
         for first in starts:
             t = gap(other, t, every)
+            report_only_errors(other)
             part = replace(samples, values=samples.values[first : first + _TICKS])
             found += play(other, part, _TICKS, t)
             t += len(part.values) * samples.T

@@ -132,6 +132,12 @@ def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
     return np.array(values).reshape(n, m).tolist()
 
 
+def report_only_errors(slave: Slave) -> None:
+    """Switches warnings of a slave off, for example of a sample that is missing."""
+    category = (fmi2.fmi2String * 1)(b"logStatusError")
+    slave.call(slave.functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, category)
+
+
 def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:
     """Samples that are missing, at the time t_0 [s]: the filters start again with the next sample.
 
@@ -148,8 +154,7 @@ def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:
         ticks = math.ceil(min(2 / (float(every["residual.K_I"]) * T), _LONGEST_GAP))
     inputs, count = slave.fmu.references(PORTS, "input"), len(PORTS)
     functions = slave.functions
-    only_errors = (fmi2.fmi2String * 1)(b"logStatusError")  # this gap is no news to the user
-    slave.call(functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, only_errors)
+    report_only_errors(slave)  # this gap is no news to the user
     slave.call(functions.fmi2SetReal, inputs, count, (fmi2.fmi2Real * count)(*[math.nan] * count))
     slave.call(functions.fmi2DoStep, t_0, ticks * T, fmi2.fmi2True)
     slave.call(functions.fmi2SetReal, inputs, count, (fmi2.fmi2Real * count)())

@@ -24,11 +24,7 @@ class ShownFinding:
     severity: Text
     """How much it matters: "wrong", "rests on", "note"."""
     text: Text
-    """A sentence with the number."""
-    key: Text
-    """Of the configuration."""
-    proposed: Text
-    """Value of the key that agrees with the log; "" if there is none."""
+    """A sentence: the key of the configuration, the number, and a value that is proposed."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +57,6 @@ def findings_table(folder: Path) -> list[TextTable]:
     if not (folder / FINDINGS.file).is_file():
         return []
     found = FINDINGS.read(folder).findings
-    rows = [[each.severity, each.text, each.key, each.proposed or "-"] for each in found]
-    note = "" if rows else "The checks found nothing."
-    head = ["", "finding", "key", "proposed"]
-    return [TextTable("Checks", head, rows, [True, True, True, True], note=note)]
+    rows = [[each.severity, each.text] for each in found]
+    note = "" if rows else "Nothing in the log contradicts the configuration."
+    return [TextTable("Checks", ["", "finding"], rows, [True, True], note=note)]
