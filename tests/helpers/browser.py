@@ -16,8 +16,9 @@ from gate import missing
 
 _IDLE = """
 const done = arguments[0];
-const look = () => typeof Bokeh !== "undefined" && Bokeh.documents.length
-  && Bokeh.documents.every(d => d.is_idle) ? done() : setTimeout(look, 20);
+const look = () => !document.querySelector(".plots") || (typeof Bokeh !== "undefined"
+  && Bokeh.documents.length && Bokeh.documents.every(d => d.is_idle))
+  ? done() : setTimeout(look, 20);
 look();
 """
 
@@ -53,7 +54,7 @@ class Page:
 
 @contextmanager
 def opened(file: Path, width: int = 1400, dark: bool = False) -> Iterator[Page]:
-    """Opens a report and waits until its plots are drawn."""
+    """Opens a report and waits until its plots, if it has any, are drawn."""
     chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
     if chromium is None or driver is None:
         missing("chromium", "apt-get install chromium chromium-driver")
