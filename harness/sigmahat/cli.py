@@ -13,6 +13,7 @@ from sigmahat.commands.estimate import estimate
 from sigmahat.commands.export import export
 from sigmahat.commands.identify import identify
 from sigmahat.commands.init import init
+from sigmahat.commands.open import open_page
 from sigmahat.commands.report import report
 from sigmahat.commands.reproduce import reproduce
 from sigmahat.commands.scenarios import scenarios
@@ -42,6 +43,7 @@ for command in (
         compare,
         scenarios,
         init,
+        open_page,
         check,
         identify,
         estimate,

@@ -8,7 +8,7 @@ from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
 
 IN_LOG = (Severity.WRONG, Severity.NOTE)
 """What the log shows. The commands that estimate say themselves what their answer rests on."""
-_TITLES = {
+TITLES = {
     Severity.WRONG: "checked, likely wrong in the configuration:",
     Severity.NOTE: "worth a look:",
     Severity.RESTS_ON: "no log can show; the answer rests on it:",
@@ -31,15 +31,19 @@ _ABSENT = {
 
 def summary(checked: Checked, severities: Sequence[Severity] = tuple(Severity)) -> str:
     """One screen, with findings of these severities."""
-    seconds = f"{checked.ticks * checked.T:.6g} s"
-    nothing = f"checked: nothing in {seconds} of the log contradicts the configuration"
-    lines = [] if checked.is_wrong else [nothing]
-    for severity, title in _TITLES.items():
+    lines = [] if checked.is_wrong else [nothing_found(checked)]
+    for severity, title in TITLES.items():
         if severity not in severities:
             continue
         found = checked.of(severity)
         lines += [title, *(f"  {sentence(each)}" for each in found)] if found else []
     return "\n".join(lines)
+
+
+def nothing_found(checked: Checked) -> str:
+    """The line for a log that contradicts nothing."""
+    seconds = f"{checked.ticks * checked.T:.6g} s"
+    return f"checked: nothing in {seconds} of the log contradicts the configuration"
 
 
 def sentence(finding: Finding) -> str:

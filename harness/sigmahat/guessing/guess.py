@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from sigmahat.guessing.columns import Column, Columns, read_columns
 from sigmahat.guessing.joints import joints as joints_of
 from sigmahat.guessing.ports import PortGuess, guess_ports
-from sigmahat.guessing.roles import Roles
+from sigmahat.guessing.roles import Roles, chosen_roles
 from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Log
@@ -57,7 +57,11 @@ def guess(log: Log) -> dict[str, JointGuess]:
 
     A joint may lack ports: then nothing in the log looks like them.
     """
-    columns = read_columns(log)
+    return guess_of(read_columns(log), log)
+
+
+def guess_of(columns: Columns, log: Log) -> dict[str, JointGuess]:
+    """The same for the columns of a log that were looked at before."""
     found = joints_of(columns.signals, columns.window_T)
     return {name: _joint(name, roles, columns, log) for name, roles in found.items()}
 
@@ -71,6 +75,22 @@ def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGue
     if not named:
         raise LogError(f"{log.path}: its columns name no joints; leave --joint out")
     raise LogError(f"{log.path}: {unknown('joint', name, named)}")
+
+
+def guess_chosen(columns: Columns, names: Mapping[str, str | None]) -> dict[str, PortGuess]:
+    """Units, signs, zeros and gear of ports whose columns somebody has chosen.
+
+    names  of columns, by port; those that do not move are left out
+    """
+    by_name = {each.name: each for each in columns.signals}
+    chosen = {
+        port: by_name[name]
+        for port, name in names.items()
+        if name in by_name and len(by_name[name].window)
+    }
+    roles = chosen_roles(chosen, columns.window_T)
+    clocks = [column.clock for column in chosen.values()]
+    return guess_ports(roles, columns, next(iter(clocks), None))
 
 
 def _joint(name: str, roles: Roles, columns: Columns, log: Log) -> JointGuess:

@@ -63,6 +63,15 @@ def assign(columns: Sequence[Column], T: float) -> Roles:
     return Roles({port: ports[port] for port in order if port in ports}, found)
 
 
+def chosen_roles(columns: Mapping[str, Column], T: float) -> Roles:
+    """The roles that somebody gives to columns, by port.
+
+    T  time between the samples of the windows of the columns [s]
+    """
+    ports = {port: Role(column, "chosen") for port, column in columns.items()}
+    return Roles(ports, _drive(ports, T))
+
+
 def _swapped(ports: Mapping[str, Role]) -> dict[str, Role]:
     """Motor and link the other way round; empty if names tell them apart, or one is missing."""
     if not {"theta", "q", "tau"} <= ports.keys():

@@ -14,6 +14,7 @@ from sigmahat.guessing.ports import PortGuess
 from sigmahat.logs.configuration import (
     ANOTHER_ROBOT,
     ANY_COULOMB,
+    FILL_IN,
     NOT_YOURS,
     PORTS,
     WIDE_PRIOR,
@@ -43,7 +44,6 @@ optional: unit (rad, deg, turn, counts; N.m, mN.m, A; mm for theta_c), sign, zer
 gear_ratio (encoder or torque on the other side of the gear), counts_per_turn,
 torque_constant [N.m/A], mm_per_turn (of the motor, for theta_c in mm), scale (instead
 of a unit), wrap (period of a counter that starts again), time (a column of its own)."""
-_NO_COLUMN = "FILL IN"
 
 
 def write(log: Log, guess: JointGuess, fmu_defaults: Mapping[str, float]) -> str:
@@ -63,7 +63,7 @@ def write(log: Log, guess: JointGuess, fmu_defaults: Mapping[str, float]) -> str
     missing = []
     for name in PORTS:
         if name in guess.ports:
-            ports.add(name, _port(name, guess.ports[name]))
+            ports.add(name, port_table(name, guess.ports[name]))
         elif name in needed:
             ports.add(name, _empty_port(name))
         else:
@@ -102,7 +102,8 @@ def _time(guess: JointGuess) -> Table:
     return table
 
 
-def _port(name: str, port: PortGuess) -> Table:
+def port_table(name: str, port: PortGuess) -> Table:
+    """The section of a port that has a column, with what to check and to fill in as comments."""
     table = tomlkit.table()
     _comment(table, f"{_MEANING[name]}, {PORTS[name]}")
     span = "no number" if math.isnan(port.low) else f"{port.low:.6g} to {port.high:.6g}"
@@ -138,7 +139,7 @@ def _port(name: str, port: PortGuess) -> Table:
 def _empty_port(name: str) -> Table:
     table = tomlkit.table()
     _comment(table, f"{_MEANING[name]}, {PORTS[name]}")
-    _add(table, "column", _NO_COLUMN, "no column looks like it: name one of the list above")
+    _add(table, "column", FILL_IN, "no column looks like it: name one of the list above")
     _add(table, "unit", PORTS[name])
     table.add(tomlkit.nl())
     return table

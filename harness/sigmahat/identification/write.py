@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import tomlkit
-from tomlkit.items import InlineTable, Item
 
 from sigmahat.files.whole_file import write_whole
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
@@ -68,12 +67,12 @@ def write(found: Identified, path: Path) -> list[str]:
     priors = {name: _short(value) for name, value in _wide_priors(found, comments).items()}
     wide = {name: value for name, value in priors.items() if not given.get(name)}
     for name, value in values.items():
-        _set(parameters, name, tomlkit.item(value))
+        toml_file.set_dotted(parameters, name, tomlkit.item(value))
     for name, (value, comment) in unknown.items():
-        _set(parameters, name, tomlkit.item(_short(value)).comment(comment))
+        toml_file.set_dotted(parameters, name, tomlkit.item(_short(value)).comment(comment))
     for name, value in wide.items():
         item = tomlkit.item(value)
-        _set(parameters, name, item if name in given else item.comment(WIDE_PRIOR))
+        toml_file.set_dotted(parameters, name, item if name in given else item.comment(WIDE_PRIOR))
     written = [f"parameters.{name}" for name in (*values, *unknown, *wide)]
     constant = found.quantities.get("torque_constant")
     if constant is not None and constant.determined:
@@ -149,19 +148,6 @@ def _without_what_is_not_known(document: tomlkit.TOMLDocument) -> tomlkit.TOMLDo
 
 def _short(value: float) -> float:
     return value if isinstance(value, int) else float(f"{value:.6g}")
-
-
-def _set(table: MutableMapping[str, Any], name: str, item: Item) -> None:
-    """Sets motor.B in the form of the file: motor.B, "motor.B", or B in [parameters.motor]."""
-    group, _, last = name.partition(".")
-    if name in table:
-        table[name] = item
-    elif group in table:
-        if isinstance(table[group], InlineTable):
-            item.trivia.comment = ""  # it would end the line inside of the braces
-        table[group][last] = item
-    else:
-        table.append(tomlkit.key([group, last]), item)  # type: ignore[attr-defined]
 
 
 def _record(found: Identified) -> tomlkit.items.Table:

@@ -36,6 +36,8 @@ from sigmahat.user_input.unknown_name import unknown
 PORTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sensor": "N.m"}
 """Inputs of StiffnessEstimator and their units."""
 
+FILL_IN = "FILL IN"
+"""Instead of a column that nobody has named; and so begin comments on what is missing."""
 NOT_YOURS = "not known: of another robot, until identify finds it or you set it"
 """Comment of a motor parameter that nobody has set."""
 WIDE_PRIOR = "wide, because identify cannot tell; make it smaller if you know better"
@@ -158,9 +160,16 @@ class _File:
 
 def read_configuration(path: Path) -> Configuration:
     """Reads and checks a file. Raises LogError, which says where it is wrong."""
-    document = read_document(path).unwrap()
+    return checked_configuration(read_document(path), path)
+
+
+def checked_configuration(document: tomlkit.TOMLDocument, path: Path) -> Configuration:
+    """The configuration that a document is, which need not be in its file yet.
+
+    Raises LogError, which says where it is wrong.
+    """
     try:
-        file = TypeAdapter(_File).validate_python(document)
+        file = TypeAdapter(_File).validate_python(document.unwrap())
     except ValidationError as error:
         # A misspelt key is the reason why another one is missing.
         errors = sorted(error.errors(), key=lambda each: each["type"] != _MISSPELT)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, MutableMapping
 from pathlib import Path
 from typing import Any
 
 import tomlkit
+from tomlkit.items import InlineTable, Item
 
 
 def read(path: Path) -> tomlkit.TOMLDocument:
@@ -24,3 +25,16 @@ def dotted(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any
             yield from dotted(value, f"{above}{name}.")
         else:
             yield f"{above}{name}", value
+
+
+def set_dotted(table: MutableMapping[str, Any], name: str, item: Item) -> None:
+    """Sets motor.B in the form of the table: motor.B, "motor.B", or B in a table motor."""
+    group, _, last = name.partition(".")
+    if name in table or not last:
+        table[name] = item
+    elif group in table:
+        if isinstance(table[group], InlineTable):
+            item.trivia.comment = ""  # it would end the line inside of the braces
+        table[group][last] = item
+    else:
+        table.append(tomlkit.key([group, last]), item)  # type: ignore[attr-defined]

@@ -1,0 +1,123 @@
+"""Inputs of the page, each bound to a key of the configuration."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from bokeh.models import InlineStyleSheet, Select, TextInput
+
+from sigmahat.page.fields import NumberField
+from sigmahat.page.setup import Setup
+
+STYLE = """
+:host { --background-color: var(--box); --color: var(--ink); --border-color: var(--line);
+  --inverted-color: var(--ink); --placeholder-color: var(--soft);
+  --default: var(--box); --default-border: var(--line); --default-hover: var(--line);
+  --default-hover-border: var(--line); --bokeh-font-size: 14px; min-width: 0; }
+label { color: var(--soft); white-space: normal; }
+.bk-input, .bk-btn { color: var(--ink); }
+.bk-btn { white-space: normal; text-align: left; height: auto; }
+.bk-btn-primary { color: #ffffff; }
+select.bk-input { background-image: url('data:image/svg+xml;utf8,<svg version="1.1"\
+ viewBox="0 0 25 20" xmlns="http://www.w3.org/2000/svg"><path d="M 0,0 25,0 12.5,20 Z"\
+ fill="gray" /></svg>') !important; text-overflow: ellipsis; }
+:host(.open) .bk-input { border-color: #e06a1a; box-shadow: inset 0 0 0 1px #e06a1a; }
+"""
+"""In the colours of the page, whose variables reach into the widgets."""
+_OPEN = "open"
+"""Class of an input that has to be filled in."""
+
+
+def style() -> InlineStyleSheet:
+    """The style of a widget."""
+    return InlineStyleSheet(css=STYLE)
+
+
+class Number:
+    """A text field for a number; what is no number is refused with a message."""
+
+    def __init__(self, setup: Setup, key: str, field: NumberField) -> None:
+        self.field = field
+        self._setup, self._key = setup, key
+        self._shown = ""
+        self.widget = TextInput(
+            title=field.title, name=key, sizing_mode="stretch_width", stylesheets=[style()]
+        )
+        self.widget.on_change("value", self._typed)
+
+    def show(self) -> None:
+        """Shows the value of the configuration."""
+        value = self._setup.get(self._key)
+        is_open = self._key in self._setup.open_keys
+        self._shown = "" if value is None or is_open else _text(value)
+        self.widget.value = self._shown
+        self.widget.placeholder = "fill in" if is_open else self.field.default
+        self.widget.css_classes = [_OPEN] if is_open else []
+
+    def _typed(self, _attribute: str, _old: Any, new: str) -> None:
+        text = new.strip()
+        if text == self._shown:
+            return
+        if not text:
+            self._setup.set(self._key, None)
+            return
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if math.isfinite(value):
+            self._setup.set(self._key, value)
+        else:
+            self._setup.message = f"{self._key}: expected a number, got {text!r}"
+            self._setup.show()
+
+
+class Choice:
+    """A list to choose from."""
+
+    def __init__(
+        self,
+        title: str,
+        name: str,
+        options: Sequence[tuple[str, str]],
+        current: Callable[[], str],
+        chosen: Callable[[str], object],
+    ) -> None:
+        """current gives the item that is shown, chosen is told another one.
+
+        options  values and their texts; others are added when they are shown
+        """
+        self._options, self._current, self._chosen = list(options), current, chosen
+        self.widget = Select(
+            title=title,
+            name=name,
+            options=self._options,
+            sizing_mode="stretch_width",
+            stylesheets=[style()],
+        )
+        self.widget.on_change("value", self._picked)
+
+    def offer(self, items: Sequence[str]) -> None:
+        """Offers these items instead."""
+        self._options = [(each, each) for each in items]
+        self.widget.options = list(self._options)
+
+    def show(self) -> None:
+        """Shows the value of the configuration."""
+        value = self._current()
+        if value not in {each for each, _ in self._options}:
+            self._options.append((value, value))
+            self.widget.options = list(self._options)
+        self.widget.value = value
+
+    def _picked(self, _attribute: str, _old: Any, new: str) -> None:
+        if new != self._current():
+            self._chosen(new)
+
+
+def _text(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    return str(value)

@@ -1,0 +1,116 @@
+"""What takes time, in a thread of its own: guess, checks, curve. The page stays alive meanwhile."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from functools import partial
+
+import tomlkit
+
+from sigmahat.fmi.instance import FmuError
+from sigmahat.logs.errors import LogError
+from sigmahat.page.look import look
+from sigmahat.page.setup import Setup
+
+_REFUSED = (LogError, FmuError, OSError, ValueError)
+Later = Callable[[Callable[[], object]], object]
+"""Calls a function in the thread of the server."""
+
+
+class _OutdatedError(Exception):
+    """The configuration has changed meanwhile."""
+
+
+class Jobs:
+    """Looks at the log of a setup, then checks each new configuration and computes its curve.
+
+    Only the newest configuration counts; a curve that is computed for another one is given up.
+    """
+
+    def __init__(self, setup: Setup, later: Later) -> None:
+        self._setup, self._later = setup, later
+        self._news = threading.Condition()
+        self._version = 0
+        self._text: str | None = None
+        # It must not keep the program alive, whatever it is at.
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def start(self) -> None:
+        """Begins with the columns."""
+        self._setup.changed = self.wanted
+        self._thread.start()
+
+    def wanted(self) -> None:
+        """The configuration has changed: check it."""
+        setup = self._setup
+        setup.busy = "Checking ..."
+        with self._news:
+            self._version += 1
+            self._text = setup.text if setup.is_ready else None
+            self._news.notify()
+        setup.show()
+
+    def _run(self) -> None:
+        try:
+            self._look()
+            while True:
+                with self._news:
+                    self._news.wait_for(lambda: self._text is not None)
+                    version, text = self._version, self._text
+                    self._text = None
+                self._check(version, str(text))
+        except Exception as error:  # any: without a word the page would wait for ever
+            logging.getLogger("sigmahat").exception("the page cannot go on")
+            self._later(partial(self._refused, None, f"a fault of sigmahat: {error!r}"))
+
+    def _look(self) -> None:
+        from sigmahat.page.start import guessed
+
+        setup = self._setup
+        looks = {name: look(setup.log, name) for name in setup.log.columns}
+        self._later(partial(self._show, None, looks=looks, busy="Guessing ..."))
+        found = guessed(setup.log)
+        self._later(partial(setup.guessed, *found))
+
+    def _check(self, version: int, text: str) -> None:
+        from sigmahat.checks.check import check
+        from sigmahat.logs.answer import answer
+        from sigmahat.logs.configuration import checked_configuration
+
+        log, path = self._setup.log, self._setup.path
+        done = 0
+
+        def progress(thousandths: int) -> None:
+            nonlocal done
+            if version != self._version:
+                raise _OutdatedError
+            if (done + thousandths) // 100 > done // 100:
+                percent = (done + thousandths) // 10
+                self._later(partial(self._show, version, busy=f"The curve: {percent} % ..."))
+            done += thousandths
+
+        try:
+            configuration = checked_configuration(tomlkit.parse(text), path)
+            checked = check(log, configuration)
+            busy = "The curve ..."
+            self._later(partial(self._show, version, checked=checked, problem="", busy=busy))
+            found = answer(log, configuration, progress)
+        except _OutdatedError:
+            return
+        except _REFUSED as error:
+            self._later(partial(self._refused, version, str(error).removeprefix(f"{path}: ")))
+        else:
+            self._later(partial(self._show, version, answer=found, busy=""))
+
+    def _refused(self, version: int | None, problem: str) -> None:
+        self._show(version, problem=problem, checked=None, answer=None, busy="")
+
+    def _show(self, version: int | None, **found: object) -> None:
+        """Gives the setup what was found, if it is of its configuration as it is now."""
+        if version not in (None, self._version):
+            return
+        for name, value in found.items():
+            setattr(self._setup, name, value)
+        self._setup.show()

@@ -1,0 +1,50 @@
+"""What a column looks like: its range, and a line that is small."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import Array, Log
+
+_BUCKETS = 80
+WIDTH, HEIGHT = 160, 28
+"""Of the line."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """A column at a glance."""
+
+    span: str
+    """Least and greatest value, or why there are none."""
+    line: Sequence[tuple[float, float]]
+    """Points in a box of 160 x 28, from its upper left corner."""
+
+
+def look(log: Log, name: str) -> Look:
+    """Looks at a column of a log."""
+    try:
+        values = log.read(name)
+    except LogError:
+        return Look("text", ())
+    finite = np.flatnonzero(np.isfinite(values))
+    if not len(finite):
+        return Look("no number", ())
+    low, high = float(values[finite].min()), float(values[finite].max())
+    return Look(f"{low:.5g} to {high:.5g}", _line(values, finite, low, high))
+
+
+def _line(values: Array, finite: Array, low: float, high: float) -> Sequence[tuple[float, float]]:
+    """The least and the greatest value of each bucket, in the order in which they come."""
+    points = []
+    for part in np.array_split(finite, min(_BUCKETS, len(finite))):
+        own = values[part]
+        for i in sorted({int(own.argmin()), int(own.argmax())}):
+            x = WIDTH * part[i] / max(len(values) - 1, 1)
+            y = (HEIGHT - 2) * (high - own[i]) / ((high - low) or 1.0) + 1
+            points.append((round(float(x), 1), round(float(y), 1)))
+    return points

@@ -1,0 +1,102 @@
+"""Serves the page on this computer alone, until Ctrl-C."""
+
+from __future__ import annotations
+
+import logging
+import secrets
+import signal
+import threading
+import webbrowser
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import tomlkit
+from bokeh.application import Application
+from bokeh.application.handlers import FunctionHandler
+from bokeh.document import Document
+from bokeh.server.server import BaseServer
+from bokeh.server.tornado import BokehTornado
+from bokeh.server.util import bind_sockets
+from tornado.httpserver import HTTPServer
+from tornado.ioloop import IOLoop
+
+from sigmahat.logs.log import Log
+from sigmahat.page.jobs import Jobs
+from sigmahat.page.setup import Setup
+from sigmahat.page.window import Window
+
+_HOST = "127.0.0.1"
+_ENDS = ("SIGINT", "SIGTERM", "SIGHUP")
+"""Signals that end the page; Windows has no SIGHUP."""
+
+
+def serve(
+    log: Log,
+    path: Path,
+    document: tomlkit.TOMLDocument | None,
+    port: int,
+    say: Callable[[str], object],
+) -> list[Path]:
+    """Serves the page of a log, and opens it in the browser.
+
+    Who has the address can use it: it contains a token that nobody guesses. A page of another
+    origin cannot talk to it.
+
+    path      the file to write
+    document  its contents, to start from; None: the guess of `init`
+    port      0 for any that is free
+    say       is told the address, and what the browser does
+
+    Returns the files with edits that were not written, after Ctrl-C. Raises ValueError if the port
+    is in use.
+    """
+    # The addresses that browsers ask for besides the page are no news to the user.
+    logging.getLogger("tornado.access").setLevel(logging.ERROR)
+    setup = Setup(log, path)
+    token = secrets.token_urlsafe(16)
+
+    def window(document: Document) -> None:
+        Window(setup, document)
+
+    try:
+        sockets, port = bind_sockets(_HOST, port)
+    except OSError as error:
+        reason = error.strerror or error
+        raise ValueError(
+            f"port {port} cannot be used ({reason}); leave --port out for one that is free"
+        ) from error
+    tornado = BokehTornado(
+        {f"/{token}": Application(FunctionHandler(window))},
+        extra_websocket_origins=[f"{_HOST}:{port}"],
+        use_index=False,
+    )
+    http = HTTPServer(tornado)
+    http.add_sockets(sockets)
+    loop = IOLoop.current()
+    server = BaseServer(loop, tornado, http)
+    address = f"http://{_HOST}:{port}/{token}"
+    before = {
+        number: signal.signal(number, lambda *_: loop.add_callback_from_signal(loop.stop))
+        for name in _ENDS
+        if (number := getattr(signal, name, None)) is not None
+    }
+    try:
+        server.start()
+        jobs = Jobs(setup, loop.add_callback)
+        jobs.start()
+        if document is not None:
+            setup.start_from(document)
+        say(f"{log.path} is open until Ctrl-C, at\n{address}")
+        threading.Thread(target=partial(_open, address, say), daemon=True).start()
+        loop.start()
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    server.stop()
+    return setup.write_drafts()
+
+
+def _open(address: str, say: Callable[[str], object]) -> None:
+    if not webbrowser.open(address):
+        say("No browser was found: open the address in one on this computer.")

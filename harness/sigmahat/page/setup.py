@@ -1,0 +1,231 @@
+"""The state of the page: a configuration that is being edited, and what is known about it.
+
+There is one for all windows, so that they show the same, and a window that is closed loses
+nothing. It belongs to the thread of the server; the jobs tell it what they have found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import tomlkit
+
+from sigmahat.files.whole_file import write_whole
+from sigmahat.logs.configuration import PORTS
+from sigmahat.logs.log import Log
+from sigmahat.page import edits
+from sigmahat.page.fields import BY_SCALE, OF_PORT
+from sigmahat.page.look import Look
+
+if TYPE_CHECKING:
+    from sigmahat.checks.findings import Checked
+    from sigmahat.guessing.guess import JointGuess
+    from sigmahat.guessing.ports import PortGuess
+    from sigmahat.logs.answer import Answer
+
+Chosen = Callable[[Mapping[str, str | None]], "Mapping[str, PortGuess]"]
+"""Guesses units, signs and gear of columns by port."""
+
+
+class Setup:
+    """A log that is being set up."""
+
+    def __init__(self, log: Log, path: Path) -> None:
+        """Starts from the file, if there is one. Raises LogError if it is not TOML."""
+        self.log = log
+        self.path = path
+        """The file to write; each joint of a log of several has its own."""
+        self.document: tomlkit.TOMLDocument = tomlkit.document()
+        self.is_new = True
+        """Whether there was no file to start from."""
+        self.is_edited = False
+        """Whether somebody has changed something that is not written yet."""
+        self.looks: Mapping[str, Look] = {}
+        """What the columns look like, by name; empty until it is known."""
+        self.joints: Mapping[str, JointGuess] = {}
+        """By name; empty until they are known, and where there was a file to start from."""
+        self.joint = ""
+        self.busy = "Looking at the columns ..."
+        """What is being computed; empty if nothing is."""
+        self.problem = ""
+        """Why the configuration cannot be checked; empty if it can."""
+        self.checked: Checked | None = None
+        self.answer: Answer | None = None
+        self.message = ""
+        """What the last press of a button or the last value led to."""
+        self.changed: Callable[[], object] = lambda: None
+        """Is called after every change of the configuration."""
+        self.asks_to_overwrite = False
+        """Whether the file exists, and was not overwritten."""
+        self._shown: set[Callable[[], object]] = set()
+        self._chosen: Chosen = lambda names: {}
+        self._drafts: dict[str, tuple[tomlkit.TOMLDocument, bool]] = {}
+        self._templates: Mapping[str, str] = {}
+        self._first_path = path
+
+    # Windows
+
+    def subscribe(self, show: Callable[[], object]) -> None:
+        """Calls show after every change, until it is unsubscribed."""
+        self._shown.add(show)
+
+    def unsubscribe(self, show: Callable[[], object]) -> None:
+        """Does not call it any more."""
+        self._shown.discard(show)
+
+    def show(self) -> None:
+        """All windows show what there is."""
+        for each in list(self._shown):
+            each()
+
+    # The configuration
+
+    @property
+    def text(self) -> str:
+        """The configuration as it would be written."""
+        return tomlkit.dumps(self.document)
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether there is a configuration to edit."""
+        return bool(self.document)
+
+    def start_from(self, document: tomlkit.TOMLDocument) -> None:
+        """Takes the contents of the file."""
+        self.document, self.is_new = document, False
+        self.changed()
+
+    def get(self, key: str) -> Any:
+        """The value of a key; None if it is not there."""
+        return edits.value_of(self.document, key)
+
+    def set(self, key: str, value: edits.Value | None) -> None:
+        """Sets a key; None removes it."""
+        if value == self.get(key):
+            self.show()  # what was typed looks other than it is written
+            return
+        if key.startswith("ports.") and key.endswith(".unit") and value is not None:
+            self._set_unit(key.split(".")[1], str(value))
+        elif value is None:
+            edits.remove_value(self.document, key)
+        else:
+            edits.set_value(self.document, key, value)
+        self._edited()
+
+    def set_column(self, port: str, column: str | None) -> None:
+        """Gives a port another column, or none; unit, sign, zero and gear are guessed anew."""
+        if column == self.get(f"ports.{port}.column"):
+            return
+        if column is None:
+            edits.set_port(self.document, port, None)
+        else:
+            names = {each: self.get(f"ports.{each}.column") for each in PORTS}
+            guessed = self._chosen({**names, port: column}).get(port)
+            if guessed is not None:
+                from sigmahat.guessing.template import port_table
+
+                edits.set_port(self.document, port, port_table(port, guessed))
+            else:
+                edits.set_value(self.document, f"ports.{port}.column", column)
+        self._edited()
+
+    def _set_unit(self, port: str, unit: str) -> None:
+        """With a unit come the keys that it needs, and those of the unit before go."""
+        where = f"ports.{port}"
+        before = self.get(f"{where}.unit") or BY_SCALE
+        for field in OF_PORT:
+            key = f"{where}.{field.key}"
+            if unit in field.units and self.get(key) is None and field.key != "mm_per_turn":
+                edits.set_value(self.document, key, 0)
+            if before in field.units and unit not in field.units:
+                edits.remove_value(self.document, key)
+        if unit == BY_SCALE:
+            edits.remove_value(self.document, f"{where}.unit")
+        else:
+            edits.set_value(self.document, f"{where}.unit", unit)
+        # Counts of a port are those of its encoder; another unit hides them.
+        if unit == "counts":
+            edits.remove_value(self.document, f"encoder.{port}")
+        elif before == "counts" and port in ("theta", "q"):
+            edits.set_value(self.document, f"encoder.{port}", 0)
+
+    def _edited(self) -> None:
+        self.is_edited, self.message, self.asks_to_overwrite = True, "", False
+        self.changed()
+
+    # What the jobs have found
+
+    def guessed(
+        self, joints: Mapping[str, JointGuess], templates: Mapping[str, str], chosen: Chosen
+    ) -> None:
+        """Takes what was guessed; templates are the configurations that `init` writes, by joint."""
+        self._chosen = chosen
+        if self.is_new:
+            self.joints, self._templates = joints, templates
+            self.set_joint(next(iter(joints)))
+
+    def set_joint(self, name: str) -> None:
+        """Goes to another joint of the log; edits of the one before are kept."""
+        if self.is_ready:
+            self._drafts[self.joint] = self.document, self.is_edited
+        self.joint = name
+        fresh = tomlkit.parse(self._templates[name]), False
+        self.document, self.is_edited = self._drafts.pop(name, None) or fresh
+        if len(self.joints) > 1:
+            one = self._first_path
+            self.path = one.with_name(f"{one.stem}-{name}{one.suffix}")
+        self.changed()
+
+    # Files
+
+    @property
+    def open_keys(self) -> list[str]:
+        """Keys that have to be filled in."""
+        return edits.to_fill_in(self.document)
+
+    @property
+    def is_on_disk(self) -> bool:
+        """Whether the file exists, and is as the page shows it."""
+        try:
+            return self.path.read_text(encoding="utf-8") == self.text
+        except (OSError, ValueError):
+            return False
+
+    def write(self, overwrite: bool) -> None:
+        """Writes the file; one that exists only if it is to be overwritten."""
+        self.asks_to_overwrite = self.path.exists() and not (overwrite or self.is_on_disk)
+        if self.asks_to_overwrite:
+            self.message = f"{self.path} exists, and is other than what is shown here."
+        else:
+            try:
+                write_whole(self.text, self.path)
+            except OSError as error:
+                self.message = f"Cannot write {self.path}: {error.strerror}."
+            else:
+                self.message = f"Written: {self.path.resolve()}. {self._next()}"
+                self.is_edited = False
+        self.show()
+
+    def _next(self) -> str:
+        """What to do with a file that is written."""
+        log, default = self.log.path, Path(f"{self.log.path.stem}.toml")
+        option = "" if self.path == default else f" --config {self.path}"
+        return f"Next: sigmahat identify {log}{option}, then sigmahat estimate {log}{option}"
+
+    def write_drafts(self) -> list[Path]:
+        """Writes edits that are not written, each into a file of a new name. Returns the files."""
+        drafts = {self.path: self.document} if self.is_edited else {}
+        one = self._first_path
+        for name, (document, is_edited) in self._drafts.items():
+            if is_edited:
+                drafts[one.with_name(f"{one.stem}-{name}{one.suffix}")] = document
+        written = []
+        for path, document in drafts.items():
+            draft, count = path.with_suffix(".draft.toml"), 2
+            while draft.exists():
+                draft, count = path.with_suffix(f".draft-{count}.toml"), count + 1
+            write_whole(tomlkit.dumps(document), draft)
+            written.append(draft)
+        return written

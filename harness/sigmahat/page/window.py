@@ -1,0 +1,68 @@
+"""The document of one window: the panels, and how they follow the setup."""
+
+from __future__ import annotations
+
+from html import escape
+from pathlib import Path
+
+from bokeh.core.templates import get_env
+from bokeh.document import Document
+from bokeh.models import Div
+
+from sigmahat.page.columns import ColumnsPanel
+from sigmahat.page.fields import TITLES
+from sigmahat.page.findings import FindingsPanel
+from sigmahat.page.inputs import Choice, style
+from sigmahat.page.ports import ParameterPanel, PortPanel
+from sigmahat.page.result import ResultPanel
+from sigmahat.page.saving import SavingBar
+from sigmahat.page.setup import Setup
+
+
+class Window:
+    """Shows a setup in a document."""
+
+    def __init__(self, setup: Setup, document: Document) -> None:
+        self._setup, self._document = setup, document
+        self._is_due = False
+        self._joint = Choice("joint", "joint", [], lambda: setup.joint, setup.set_joint)
+        self._file = Div(
+            name="file", sizing_mode="stretch_width", stylesheets=[style()],
+            styles={"color": "var(--ink)", "overflow-x": "auto"},
+        )  # fmt: skip
+        self._panels = (
+            ColumnsPanel(setup),
+            *(PortPanel(setup, port) for port in TITLES),
+            ParameterPanel(setup),
+            FindingsPanel(setup),
+            ResultPanel(setup),
+            SavingBar(setup),
+        )
+        for panel in self._panels:
+            document.add_root(panel.root)
+        document.add_root(self._joint.widget)
+        document.add_root(self._file)
+        text = Path(__file__).with_name("page.html").read_text(encoding="utf-8")
+        document.template = get_env().from_string(text)
+        document.template_variables.update(log=setup.log.path.name, ports=TITLES)
+        document.title = f"sigmahat: {setup.log.path.name}"
+        self._show()
+        setup.subscribe(self._later)
+        document.on_session_destroyed(lambda _: setup.unsubscribe(self._later))
+
+    def _later(self) -> None:
+        """Shows the setup as soon as the document may be changed; once for many changes."""
+        if not self._is_due:
+            self._is_due = True
+            self._document.add_next_tick_callback(self._show)
+
+    def _show(self) -> None:
+        self._is_due = False
+        setup = self._setup
+        self._joint.widget.visible = len(setup.joints) > 1
+        if setup.joints:
+            self._joint.offer(list(setup.joints))
+            self._joint.show()
+        for panel in self._panels:
+            panel.show()
+        self._file.text = f"<pre>{escape(setup.text)}</pre>"
