@@ -43,19 +43,19 @@ class NumberField:
 
 OF_PORT = (
     NumberField("counts_per_turn", "counts per turn", units=("counts",)),
-    NumberField("torque_constant", "torque constant [N.m/A]", units=("A", "mA")),
-    NumberField("mm_per_turn", "mm per turn of the motor", "number of mm", units=("mm",)),
-    NumberField("scale", "port per unit of the column", units=(BY_SCALE,)),
     NumberField("gear_ratio", "gear ratio", "1", ports=("theta", "tau")),
+    NumberField("torque_constant", "torque constant [N.m/A]", units=("A", "mA")),
+    NumberField("scale", "port per unit of the column", units=(BY_SCALE,)),
+    NumberField("mm_per_turn", "mm per turn of the motor", "number of mm", units=("mm",)),
     NumberField("zero", "zero, in its unit", "0"),
     NumberField("wrap", "starts again after", "never", ports=("theta", "q", "theta_c")),
 )
 """Of each port."""
 PARAMETERS = (
     NumberField("samplePeriod", "sample period [s]", "0.001"),
-    NumberField("motor.gamma", "motor.gamma: gear ratio", "gear ratio of theta"),
-    NumberField("motor.B", "motor.B: inertia [kg.m²]"),
-    NumberField("motor.D_theta", "motor.D_theta: friction [N.m.s/rad]"),
+    NumberField("motor.gamma", "motor.gamma", "gear ratio of theta"),
+    NumberField("motor.B", "motor.B [kg.m²]"),
+    NumberField("motor.D_theta", "motor.D_theta [N.m.s/rad]"),
 )
 """Of the estimator."""
 CHOICES: Mapping[str, Sequence[str]] = {

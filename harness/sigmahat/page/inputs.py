@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from bokeh.models import InlineStyleSheet, Select, TextInput
+from bokeh.models import InlineStyleSheet, Row, Select, TextInput, UIElement
 
 from sigmahat.page.fields import NumberField
 from sigmahat.page.setup import Setup
@@ -33,6 +33,17 @@ _OPEN = "open"
 def style() -> InlineStyleSheet:
     """The style of a widget."""
     return InlineStyleSheet(css=STYLE)
+
+
+def in_grid(children: Sequence[UIElement], least: str, name: str | None = None) -> Row:
+    """Side by side, as many as there is room for; one that is hidden leaves no gap.
+
+    least  width of a child, in CSS
+    """
+    columns = f"repeat(auto-fit, minmax(min(100%, {least}), 1fr))"
+    css = f":host {{ display: grid; align-items: end; grid-template-columns: {columns}; }}"
+    sheets = [InlineStyleSheet(css=css)]
+    return Row(*children, name=name, sizing_mode="stretch_width", stylesheets=sheets)
 
 
 class Number:

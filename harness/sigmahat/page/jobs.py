@@ -35,12 +35,13 @@ class Jobs:
         self._version = 0
         self._text: str | None = None
         # It must not keep the program alive, whatever it is at.
+        setup.changed = self.wanted
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
-        """Begins with the columns."""
-        self._setup.changed = self.wanted
-        self._thread.start()
+        """Begins with the columns, if it has not begun."""
+        if self._thread.ident is None:
+            self._thread.start()
 
     def wanted(self) -> None:
         """The configuration has changed: check it."""

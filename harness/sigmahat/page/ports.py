@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from html import escape
 
-from bokeh.models import Column, Div, Row
+from bokeh.models import Column, Div
 
 from sigmahat.logs.configuration import FILL_IN
 from sigmahat.page import edits
 from sigmahat.page.fields import BY_SCALE, CHOICES, OF_PORT, PARAMETERS, UNITS
-from sigmahat.page.inputs import Choice, Number, style
+from sigmahat.page.inputs import Choice, Number, in_grid, style
 from sigmahat.page.setup import Setup
 
 _NONE = ""
@@ -46,11 +46,21 @@ class PortPanel:
             lambda name: setup.set(f"{self._where}.time", name or None),
         )
         self._numbers = [Number(setup, f"{self._where}.{f.key}", f) for f in OF_PORT]
-        self._notes = Div(sizing_mode="stretch_width", stylesheets=[style()])
+        self._notes = Div(
+            sizing_mode="stretch_width",
+            styles={"color": "var(--soft)"},
+            stylesheets=[style()],
+        )
         self._details = Column(
-            Row(self._unit.widget, self._sign.widget, sizing_mode="stretch_width"),
-            *(each.widget for each in self._numbers),
-            self._time.widget,
+            in_grid(
+                [
+                    self._unit.widget,
+                    self._sign.widget,
+                    *(each.widget for each in self._numbers),
+                    self._time.widget,
+                ],
+                "8rem",
+            ),
             self._notes,
             sizing_mode="stretch_width",
         )
@@ -99,7 +109,8 @@ class PortPanel:
         found = (
             (key, edits.comment_of(self._setup.document, f"{self._where}.{key}")) for key in keys
         )
-        return "".join(f"<p>{escape(key)}: {escape(said)}</p>" for key, said in found if said)
+        said = ((key, comment.removeprefix(f"{FILL_IN}: ")) for key, comment in found if comment)
+        return "".join(f"<small>{escape(key)}: {escape(words)}</small><br>" for key, words in said)
 
 
 class ParameterPanel:
@@ -128,7 +139,7 @@ class ParameterPanel:
         ]
         self._numbers = [Number(setup, field.key, field) for field in PARAMETERS]
         every = [each.widget for each in (*self._choices, *self._numbers)]
-        self.root = Column(*every, name="parameters", sizing_mode="stretch_width")
+        self.root = in_grid(every, "8rem", name="parameters")
 
     def _parameter(self, name: str) -> Choice:
         options = [(item, item) for item in CHOICES[name]]

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from html import escape
+from typing import TYPE_CHECKING
 
 from bokeh.models import Column, Div, UIElement
 
-from sigmahat.page.inputs import style
+from sigmahat.page.inputs import in_grid, style
 from sigmahat.page.setup import Setup
+
+if TYPE_CHECKING:
+    from sigmahat.report.plots import Plot
 
 
 class ResultPanel:
@@ -39,12 +44,25 @@ class ResultPanel:
         curve, points = self._setup.answer.curve, self._setup.answer.points
         if not curve.branches:
             nothing = "No curve: the estimator learned nothing from the log."
-            return [Div(text=nothing, styles={"color": "var(--ink)"}, stylesheets=[style()])]
+            return [_words(nothing)]
+        made = plots(list(curve_panels(curve, points)), None)
         text = "\n".join(curve_text(curve))
-        words = Div(
-            text=f"<pre>{escape(text)}</pre>",
-            sizing_mode="stretch_width",
-            styles={"color": "var(--ink)", "overflow-x": "auto"},
-            stylesheets=[style()],
-        )
-        return [*(plot.figure for plot in plots(list(curve_panels(curve, points)), None)), words]
+        return [
+            _words(_legend(made)),
+            in_grid([plot.figure for plot in made], "30rem"),
+            _words(f"<pre>{escape(text)}</pre>"),
+        ]
+
+
+def _legend(made: Sequence[Plot]) -> str:
+    """The colours, once for both plots, and what band and points are."""
+    labels = "".join(
+        f'<span style="color:{curve.color}">&#9632;</span> {escape(curve.label)} &nbsp; '
+        for curve in made[0].panel.curves
+    )
+    return f"{labels}<small>{escape(made[0].panel.caption)}</small>"
+
+
+def _words(html: str) -> Div:
+    styles: dict[str, str | None] = {"color": "var(--ink)", "overflow-x": "auto"}
+    return Div(text=html, sizing_mode="stretch_width", styles=styles, stylesheets=[style()])

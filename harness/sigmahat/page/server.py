@@ -14,6 +14,8 @@ from pathlib import Path
 import tomlkit
 from bokeh.application import Application
 from bokeh.application.handlers import FunctionHandler
+from bokeh.core.validation import silence
+from bokeh.core.validation.warnings import EMPTY_LAYOUT
 from bokeh.document import Document
 from bokeh.server.server import BaseServer
 from bokeh.server.tornado import BokehTornado
@@ -53,11 +55,12 @@ def serve(
     """
     # The addresses that browsers ask for besides the page are no news to the user.
     logging.getLogger("tornado.access").setLevel(logging.ERROR)
+    silence(EMPTY_LAYOUT)  # there are no checks yet, and no curve
     setup = Setup(log, path)
     token = secrets.token_urlsafe(16)
 
     def window(document: Document) -> None:
-        Window(setup, document)
+        Window(setup, document, jobs.start)
 
     try:
         sockets, port = bind_sockets(_HOST, port)
@@ -74,6 +77,7 @@ def serve(
     http = HTTPServer(tornado)
     http.add_sockets(sockets)
     loop = IOLoop.current()
+    jobs = Jobs(setup, loop.add_callback)
     server = BaseServer(loop, tornado, http)
     address = f"http://{_HOST}:{port}/{token}"
     before = {
@@ -83,8 +87,6 @@ def serve(
     }
     try:
         server.start()
-        jobs = Jobs(setup, loop.add_callback)
-        jobs.start()
         if document is not None:
             setup.start_from(document)
         say(f"{log.path} is open until Ctrl-C, at\n{address}")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from html import escape
 from pathlib import Path
 
 from bokeh.core.templates import get_env
 from bokeh.document import Document
+from bokeh.events import DocumentReady
 from bokeh.models import Div
 
 from sigmahat.page.columns import ColumnsPanel
@@ -22,7 +24,8 @@ from sigmahat.page.setup import Setup
 class Window:
     """Shows a setup in a document."""
 
-    def __init__(self, setup: Setup, document: Document) -> None:
+    def __init__(self, setup: Setup, document: Document, ready: Callable[[], object]) -> None:
+        """ready is called when the browser has drawn the page."""
         self._setup, self._document = setup, document
         self._is_due = False
         self._joint = Choice("joint", "joint", [], lambda: setup.joint, setup.set_joint)
@@ -47,6 +50,7 @@ class Window:
         document.template_variables.update(log=setup.log.path.name, ports=TITLES)
         document.title = f"sigmahat: {setup.log.path.name}"
         self._show()
+        document.on_event(DocumentReady, lambda _: ready())
         setup.subscribe(self._later)
         document.on_session_destroyed(lambda _: setup.unsubscribe(self._later))
 
