@@ -24,7 +24,7 @@ look();
 
 
 class Page:
-    """A file that is open in the browser."""
+    """A file or an address that is open in the browser."""
 
     def __init__(self, driver: Chrome) -> None:
         self.driver = driver
@@ -53,8 +53,8 @@ class Page:
 
 
 @contextmanager
-def opened(file: Path, width: int = 1400, dark: bool = False) -> Iterator[Page]:
-    """Opens a report and waits until its plots, if it has any, are drawn."""
+def opened(file: Path | str, width: int = 1400, dark: bool = False) -> Iterator[Page]:
+    """Opens a report, or an address, and waits until its plots, if it has any, are drawn."""
     chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
     if chromium is None or driver is None:
         missing("chromium", "apt-get install chromium chromium-driver")
@@ -71,7 +71,7 @@ def opened(file: Path, width: int = 1400, dark: bool = False) -> Iterator[Page]:
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         command("Emulation.setEmulatedMedia", {"features": [scheme]})
         chrome.set_script_timeout(60)
-        chrome.get(file.as_uri())
+        chrome.get(file if isinstance(file, str) else file.as_uri())
         chrome.execute_async_script(_IDLE)
         yield Page(chrome)
     finally:

@@ -1,0 +1,118 @@
+"""`sigmahat open` in a process of its own, and what a user does in a window of it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.remote.webelement import WebElement
+from selenium.webdriver.support.ui import Select
+
+from browser import Page
+
+_FIND = """
+const model = Bokeh.documents[0]?.get_model_by_name(arguments[0]);
+const view = model ? Bokeh.index.find_one(model) : null;
+return view?.shadow_el.querySelector("input,select,button") ?? null;
+"""
+_TEXT = """
+const texts = node => [...node.childNodes].map(child =>
+  child.nodeType === 3 ? child.data
+  : ["STYLE", "SCRIPT"].includes(child.tagName) ? ""
+  : child.shadowRoot ? texts(child.shadowRoot) : texts(child)).join(" ");
+return texts(document.body);
+"""
+_LONGEST = 90.0  # [s] for all that a page computes
+
+
+class Served:
+    """The command while it runs."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self.process = process
+        assert process.stdout is not None
+        self.said = [process.stdout.readline()]
+        self.address = process.stdout.readline().strip()
+
+    def interrupt(self) -> tuple[int, str, str]:
+        """Ctrl-C. Returns exit status, and what it said since it told its address."""
+        self.process.send_signal(signal.SIGINT)
+        out, err = self.process.communicate(timeout=_LONGEST)
+        return self.process.returncode, out, err
+
+
+@contextmanager
+def served(*arguments: str, folder: Path, browser: str = "true") -> Iterator[Served]:
+    """Runs `sigmahat open` until the end of the block.
+
+    browser  the program that it takes for a browser
+    """
+    command = [sys.executable, "-m", "sigmahat", "open", *arguments]
+    environment = {**os.environ, "BROWSER": browser, "PATH": "/bin", "PYTHONUNBUFFERED": "1"}
+    process = subprocess.Popen(
+        command,
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        yield Served(process)
+    finally:
+        process.kill()
+        process.communicate()
+
+
+class Hand:
+    """What a user does in a window, by the names of the inputs."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+
+    def find(self, name: str) -> WebElement:
+        """The input or button of a name, as soon as it is there."""
+        self.until(lambda: self.page.run(_FIND, name) is not None, name)
+        found = self.page.run(_FIND, name)
+        assert isinstance(found, WebElement)
+        return found
+
+    def value(self, name: str) -> str:
+        """What an input shows."""
+        return str(self.page.run("return arguments[0].value", self.find(name)))
+
+    def types(self, name: str, text: str) -> None:
+        """Types over what is there, and leaves the field."""
+        self.find(name).send_keys(Keys.CONTROL, "a", Keys.NULL, text, Keys.TAB)
+
+    def chooses(self, name: str, item: str) -> None:
+        """Chooses from a list, by what it shows."""
+        Select(self.find(name)).select_by_visible_text(item)
+
+    def presses(self, name: str) -> None:
+        """Presses a button."""
+        button = self.find(name)
+        self.page.run("arguments[0].scrollIntoView({block: 'center'})", button)
+        button.click()
+
+    def text(self) -> str:
+        """All that the page says."""
+        return " ".join(str(self.page.run(_TEXT)).split())
+
+    def sees(self, words: str) -> None:
+        """Waits until the page says something."""
+        self.until(lambda: words in self.text(), words)
+
+    def until(self, is_so: Callable[[], bool], what: str) -> None:
+        """Waits until something is so."""
+        end = time.monotonic() + _LONGEST
+        while not is_so():
+            assert time.monotonic() < end, f"{what!r} is not in: {self.text()}"
+            time.sleep(0.1)

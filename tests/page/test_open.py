@@ -1,0 +1,155 @@
+"""`sigmahat open`: a log set up in the browser, from an empty configuration to the written file."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import socket
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+import tomlkit
+
+from browser import opened
+from checked_logs import knee_log
+from recorded_logs import write_log
+from served_page import Hand, served
+from sigmahat.cli import main
+
+
+def by_hand(text: str) -> str:
+    """What an editor makes of the file of `init`, in the words of its user."""
+    for key, value in (("counts_per_turn", "4096"), ("torque_constant", "0.05")):
+        text = text.replace(f"{key} = 0 ", f"{key} = {value} ")
+    text = text.replace("gear_ratio = 0 ", "gear_ratio = 100 ")
+    return text.replace("motor.D_theta = 0.001 ", "motor.D_theta = 5e-4 ")
+
+
+def test_from_an_empty_configuration_to_the_written_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One window edits, on a desktop; another one, narrow and dark, follows it."""
+    monkeypatch.chdir(tmp_path)
+    write_log(knee_log(), Path("knee.csv"))
+    with served("knee.csv", folder=tmp_path) as page:
+        with opened(page.address) as first, opened(page.address, 400, dark=True) as second:
+            hand, other = Hand(first), Hand(second)
+            hand.sees("Fill in: ports.theta.counts_per_turn, ports.theta.gear_ratio")
+            assert hand.value("ports.theta.column") == "motor_counts"
+            hand.types("ports.theta.counts_per_turn", "4096")
+            hand.types("ports.theta.gear_ratio", "1OO")
+            hand.sees("ports.theta.gear_ratio: expected a number, got '1OO'")
+            hand.types("ports.theta.gear_ratio", "100")
+            hand.types("ports.tau.torque_constant", "0.05")
+            hand.chooses("ports.q.sign", "-1: turned round")
+            hand.sees("ports.q.sign: q moves against theta")
+            hand.presses("accept ports.q.sign")
+            other.until(lambda: other.value("ports.q.sign") == "+1", "the sign is right again")
+            hand.types("motor.D_theta", "5e-4")
+            hand.presses("accept motor.B")
+            other.sees("nothing in 20.001 s of the log contradicts the configuration")
+            other.sees("the answer as a curve")
+            shown = other.text()
+            other.presses("write")
+            hand.sees("Written:")
+            for each in (first, second):
+                assert each.complaints() == []
+                assert {urlsplit(url).netloc for url in each.requests()} == {
+                    urlsplit(page.address).netloc
+                }
+                wide, there = each.run("return [document.body.scrollWidth, innerWidth]")
+                assert wide <= there
+        assert page.interrupt() == (0, "", "")
+    assert main(["init", "knee.csv", "--config", "own.toml", "--quiet"]) == 0
+    own = tomlkit.parse(by_hand(Path("own.toml").read_text())).unwrap()
+    written = tomlkit.parse(Path("knee.toml").read_text()).unwrap()
+    assert written["parameters"]["motor"].pop("B") == pytest.approx(1e-4, rel=0.01)
+    del own["parameters"]["motor"]["B"]
+    assert written == own
+    capsys.readouterr()
+    assert main(["estimate", "knee.csv", "--json"]) == 0
+    middle = json.loads(capsys.readouterr().out)["curve"][1]
+    low, high = middle["interval [N.m/rad]"]
+    assert f"{middle['sigma [N.m/rad]']:.4g} {low:.4g} to {high:.4g}" in shown
+    assert low < 1000 < high
+
+
+def test_nothing_is_lost_when_the_log_vanishes_and_at_the_end(tmp_path: Path) -> None:
+    log = write_log(knee_log(), tmp_path / "knee.parquet")
+    kept = tmp_path / "knee.toml"
+    kept.write_text("[ports.q]\ncolumn = 'link_deg'   # mine\n[parameters]\nmotor.B = 1e-4\n")
+    before = kept.read_text()
+    with served("knee.parquet", folder=tmp_path, browser="false") as page:
+        with opened(page.address) as window:
+            hand = Hand(window)
+            hand.sees("Not checked: modality Residual needs [ports.theta]")
+            log.unlink()  # the page has it open
+            hand.chooses("modality", "Model")
+            hand.sees("no log can show; the answer rests on it")
+            hand.types("motor.B", "2e-4")
+            hand.presses("write")
+            hand.sees("exists, and is other than what is shown here")
+        with opened(page.address) as window:  # the page was closed and is opened again
+            assert Hand(window).value("motor.B") == "0.0002"
+        status, out, err = page.interrupt()
+    assert (status, err) == (0, "")
+    assert "No browser was found" in out
+    assert "sigmahat open knee.parquet --config knee.draft.toml" in out
+    assert kept.read_text() == before
+    draft = (tmp_path / "knee.draft.toml").read_text()
+    assert "# mine" in draft
+    assert tomlkit.parse(draft).unwrap()["parameters"] == {
+        "motor": {"B": 2e-4},
+        "modality": "Model",
+    }
+
+
+def test_only_who_has_the_address_is_served(tmp_path: Path) -> None:
+    write_log(knee_log(1.0), tmp_path / "knee.csv")
+    with served("knee.csv", folder=tmp_path) as page:
+        where = urlsplit(page.address)
+        assert where.hostname == "127.0.0.1"
+        assert len(where.path) > 20
+
+        def status(path: str, **headers: str) -> int:
+            connection = http.client.HTTPConnection(where.netloc)
+            connection.request("GET", path, headers=headers)
+            return connection.getresponse().status
+
+        assert status(where.path) == 200
+        assert [status("/"), status("/other"), status(f"{where.path}x")] == [404] * 3
+        upgrade = {
+            "Upgrade": "websocket",
+            "Connection": "Upgrade",
+            "Sec-WebSocket-Version": "13",
+            "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
+        }
+        assert status(f"{where.path}/ws", Origin="http://example.org", **upgrade) == 403
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ("absent.csv", "absent.csv: No such file or directory"),
+        ("knee.csv --config broken.toml", "broken.toml: not TOML"),
+        ("knee.csv --port {port}", "port {port} cannot be used (Address already in use)"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(
+    arguments: str,
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_log(knee_log(1.0), Path("knee.csv"))
+    Path("broken.toml").write_text("[ports")
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        assert main(["open", *arguments.format(port=port).split()]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("sigmahat: error: ") and said.format(port=port) in err
+    assert len(err.splitlines()) == 1
