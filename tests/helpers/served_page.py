@@ -44,8 +44,10 @@ class Served:
     def interrupt(self) -> tuple[int, str, str]:
         """Ctrl-C. Returns exit status, and what it said since it told its address."""
         self.process.send_signal(signal.SIGINT)
-        out, err = self.process.communicate(timeout=_LONGEST)
-        return self.process.returncode, out, err
+        status = self.process.wait(timeout=_LONGEST)
+        # Not by communicate, which does not know of lines that were read before.
+        assert self.process.stdout is not None and self.process.stderr is not None
+        return status, self.process.stdout.read(), self.process.stderr.read()
 
 
 @contextmanager

@@ -26,6 +26,7 @@ def by_hand(text: str) -> str:
     return text.replace("motor.D_theta = 0.001 ", "motor.D_theta = 5e-4 ")
 
 
+@pytest.mark.slow("two browsers, four checks and curves")
 def test_from_an_empty_configuration_to_the_written_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -75,6 +76,7 @@ def test_from_an_empty_configuration_to_the_written_file(
     assert low < 1000 < high
 
 
+@pytest.mark.slow("a browser")
 def test_nothing_is_lost_when_the_log_vanishes_and_at_the_end(tmp_path: Path) -> None:
     log = write_log(knee_log(), tmp_path / "knee.parquet")
     kept = tmp_path / "knee.toml"
@@ -90,8 +92,8 @@ def test_nothing_is_lost_when_the_log_vanishes_and_at_the_end(tmp_path: Path) ->
             hand.types("motor.B", "2e-4")
             hand.presses("write")
             hand.sees("exists, and is other than what is shown here")
-        with opened(page.address) as window:  # the page was closed and is opened again
-            assert Hand(window).value("motor.B") == "0.0002"
+            window.driver.get(page.address)  # the page is closed, and opened again
+            assert hand.value("motor.B") == "0.0002"
         status, out, err = page.interrupt()
     assert (status, err) == (0, "")
     assert "No browser was found" in out

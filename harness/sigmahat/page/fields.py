@@ -60,6 +60,6 @@ PARAMETERS = (
 """Of the estimator."""
 CHOICES: Mapping[str, Sequence[str]] = {
     "modality": ("Residual", "Sensor", "Model"),
-    "method": ("MatchedFilter", "Paper2011"),
+    "method": ("Paper2011", "MatchedFilter"),
 }
-"""Parameters with a few values."""
+"""Parameters with a few values; the first one is the start value of the FMU."""

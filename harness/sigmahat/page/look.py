@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Array, Log
@@ -38,7 +39,9 @@ def look(log: Log, name: str) -> Look:
     return Look(f"{low:.5g} to {high:.5g}", _line(values, finite, low, high))
 
 
-def _line(values: Array, finite: Array, low: float, high: float) -> Sequence[tuple[float, float]]:
+def _line(
+    values: Array, finite: NDArray[np.intp], low: float, high: float
+) -> Sequence[tuple[float, float]]:
     """The least and the greatest value of each bucket, in the order in which they come."""
     points = []
     for part in np.array_split(finite, min(_BUCKETS, len(finite))):

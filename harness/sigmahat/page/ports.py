@@ -138,22 +138,27 @@ class ParameterPanel:
             *(self._parameter(name) for name in CHOICES),
         ]
         self._numbers = [Number(setup, field.key, field) for field in PARAMETERS]
-        every = [each.widget for each in (*self._choices, *self._numbers)]
-        self.root = in_grid(every, "8rem", name="parameters")
+        self._widgets = [
+            *(each.widget for each in self._choices),
+            *(each.widget for each in self._numbers),
+        ]
+        self.root = in_grid(self._widgets, "8rem", name="parameters")
 
     def _parameter(self, name: str) -> Choice:
         options = [(item, item) for item in CHOICES[name]]
-        first = {"modality": "Residual", "method": "Paper2011"}[name]  # start values of the FMU
         return Choice(
             name,
             name,
             options,
-            lambda: str(self._setup.get(name) or first),
+            lambda: str(self._setup.get(name) or CHOICES[name][0]),
             lambda item: self._setup.set(name, item),
         )
 
     def show(self) -> None:
         """Shows the configuration as it is."""
-        for each in (*self._choices, *self._numbers):
-            each.widget.disabled = not self._setup.is_ready
-            each.show()
+        for widget in self._widgets:
+            widget.disabled = not self._setup.is_ready
+        for choice in self._choices:
+            choice.show()
+        for number in self._numbers:
+            number.show()

@@ -8,7 +8,8 @@ import signal
 import threading
 import warnings
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -36,7 +37,7 @@ _ENDS = ("SIGINT", "SIGTERM", "SIGHUP")
 """Signals that end the page; Windows has no SIGHUP."""
 
 
-class _Small(BokehTornado):
+class _Small(BokehTornado):  # type: ignore[misc] # its types are not looked at
     """Serves only the parts of BokehJS that the page uses: it is there in half of the time."""
 
     def resources(self, absolute_url: str | bool | None = None) -> Resources:
@@ -65,17 +66,29 @@ def serve(
     Returns the files with edits that were not written, after Ctrl-C. Raises ValueError if the port
     is in use.
     """
+    setup = Setup(log, path)
+    jobs = Jobs(setup, IOLoop.current().add_callback)
+    token = secrets.token_urlsafe(16)
+    server, port = _listen(token, port, lambda window: Window(setup, window, jobs.start))
+    address = f"http://{_HOST}:{port}/{token}"
+    with _until_a_signal(server.io_loop):
+        server.start()
+        if document is not None:
+            setup.start_from(document)
+        say(f"{log.path} is open until Ctrl-C, at\n{address}")
+        threading.Thread(target=partial(_open, address, say), daemon=True).start()
+        server.io_loop.start()
+    server.stop()
+    return setup.write_drafts()
+
+
+def _listen(token: str, port: int, window: Callable[[Document], object]) -> tuple[BaseServer, int]:
+    """A server that listens, and its port; window fills the document of each window."""
     # The addresses that browsers ask for besides the page are no news to the user.
     logging.getLogger("tornado.access").setLevel(logging.ERROR)
     silence(EMPTY_LAYOUT)  # there are no checks yet, and no curve
     # A browser may speak of a plot that was replaced meanwhile.
     warnings.filterwarnings("ignore", "reference already known", BokehUserWarning)
-    setup = Setup(log, path)
-    token = secrets.token_urlsafe(16)
-
-    def window(document: Document) -> None:
-        Window(setup, document, jobs.start)
-
     try:
         sockets, port = bind_sockets(_HOST, port)
     except OSError as error:
@@ -90,27 +103,22 @@ def serve(
     )
     http = HTTPServer(tornado)
     http.add_sockets(sockets)
-    loop = IOLoop.current()
-    jobs = Jobs(setup, loop.add_callback)
-    server = BaseServer(loop, tornado, http)
-    address = f"http://{_HOST}:{port}/{token}"
+    return BaseServer(IOLoop.current(), tornado, http), port
+
+
+@contextmanager
+def _until_a_signal(loop: IOLoop) -> Iterator[None]:
+    """Inside, Ctrl-C ends the loop, and so do the signals of a terminal that is closed."""
     before = {
         number: signal.signal(number, lambda *_: loop.add_callback_from_signal(loop.stop))
         for name in _ENDS
         if (number := getattr(signal, name, None)) is not None
     }
     try:
-        server.start()
-        if document is not None:
-            setup.start_from(document)
-        say(f"{log.path} is open until Ctrl-C, at\n{address}")
-        threading.Thread(target=partial(_open, address, say), daemon=True).start()
-        loop.start()
+        yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-    server.stop()
-    return setup.write_drafts()
 
 
 def _open(address: str, say: Callable[[str], object]) -> None:

@@ -171,8 +171,10 @@ class Setup:
         if self.is_ready:
             self._drafts[self.joint] = self.document, self.is_edited
         self.joint = name
-        fresh = tomlkit.parse(self._templates[name]), False
-        self.document, self.is_edited = self._drafts.pop(name, None) or fresh
+        if name in self._drafts:
+            self.document, self.is_edited = self._drafts.pop(name)
+        else:
+            self.document, self.is_edited = tomlkit.parse(self._templates[name]), False
         if len(self.joints) > 1:
             one = self._first_path
             self.path = one.with_name(f"{one.stem}-{name}{one.suffix}")

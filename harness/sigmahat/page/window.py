@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from html import escape
 from pathlib import Path
+from typing import Protocol
 
 from bokeh.core.templates import get_env
 from bokeh.document import Document
 from bokeh.events import DocumentReady
-from bokeh.models import Div
+from bokeh.models import Div, UIElement
 
 from sigmahat.page.columns import ColumnsPanel
 from sigmahat.page.fields import TITLES
@@ -19,6 +20,17 @@ from sigmahat.page.ports import ParameterPanel, PortPanel
 from sigmahat.page.result import ResultPanel
 from sigmahat.page.saving import SavingBar
 from sigmahat.page.setup import Setup
+
+
+class Panel(Protocol):
+    """A part of the page."""
+
+    @property
+    def root(self) -> UIElement:
+        """Its model."""
+
+    def show(self) -> None:
+        """Follows the setup."""
 
 
 class Window:
@@ -33,7 +45,7 @@ class Window:
             name="file", sizing_mode="stretch_width", stylesheets=[style()],
             styles={"color": "var(--ink)", "overflow-x": "auto"},
         )  # fmt: skip
-        self._panels = (
+        self._panels: Sequence[Panel] = (
             ColumnsPanel(setup),
             *(PortPanel(setup, port) for port in TITLES),
             ParameterPanel(setup),

@@ -1,0 +1,123 @@
+"""Edits of a configuration: as somebody with an editor would make them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import tomlkit
+
+from checked_logs import knee_log
+from recorded_logs import write_log
+from sigmahat.logs.readers.formats import open_log
+from sigmahat.page.edits import comment_of, remove_value, set_value, to_fill_in, value_of
+from sigmahat.page.setup import Setup
+from sigmahat.page.start import guessed
+
+FILE = """\
+# of mine
+[ports.theta]   # the motor
+column = "m"
+unit = "counts"
+counts_per_turn = 0   # FILL IN: of the encoder
+sign = 1   # measured on Monday
+[parameters]
+motor.B = 2.3e-05   # [kg.m2] not known: of another robot, until identify finds it or you set it
+"prior.B" = 1000
+"""
+
+
+def test_a_value_is_set_and_comments_stay_if_they_are_still_true() -> None:
+    document = tomlkit.parse(FILE)
+    assert to_fill_in(document) == ["ports.theta.counts_per_turn"]
+    assert comment_of(document, "ports.theta.counts_per_turn") == "FILL IN: of the encoder"
+    set_value(document, "ports.theta.counts_per_turn", 4096.0)
+    set_value(document, "ports.theta.sign", -1)
+    set_value(document, "motor.B", 1e-4)
+    set_value(document, "prior.B", 0.1)
+    set_value(document, "range.phi", 0.02)
+    set_value(document, "method", "Paper2011")
+    remove_value(document, "ports.theta.unit")
+    remove_value(document, "motor.gamma")
+    assert (
+        tomlkit.dumps(document)
+        == """\
+# of mine
+[ports.theta]   # the motor
+column = "m"
+counts_per_turn = 4096
+sign = -1   # measured on Monday
+[parameters]
+motor.B = 0.0001
+"prior.B" = 0.1
+range.phi = 0.02
+method = "Paper2011"
+"""
+    )
+    assert to_fill_in(document) == []
+
+
+def setup_of(columns: dict[str, object], folder: Path) -> Setup:
+    """A setup of a log that has been guessed."""
+    log = open_log(write_log(columns, folder / "leg.parquet"))  # type: ignore[arg-type]
+    setup = Setup(log, folder / "leg.toml")
+    setup.guessed(*guessed(log))
+    return setup
+
+
+def test_a_unit_brings_the_keys_that_it_needs(tmp_path: Path) -> None:
+    setup = setup_of(dict(knee_log()), tmp_path)
+    assert setup.get("encoder.q") == 262144
+    setup.set("ports.q.unit", "counts")
+    assert setup.get("ports.q.counts_per_turn") == 0
+    assert setup.get("encoder.q") is None
+    assert "ports.q.counts_per_turn" in setup.open_keys
+    setup.set("ports.q.unit", "deg")
+    assert setup.get("ports.q.counts_per_turn") is None
+    assert setup.get("encoder.q") == 0
+    setup.set("ports.tau.unit", "N.m")
+    assert setup.get("ports.tau.torque_constant") is None
+
+
+def test_another_column_is_guessed_anew(tmp_path: Path) -> None:
+    """The mark of what is not known goes with the column that it was about."""
+    setup = setup_of({**knee_log(), "motor_deg": 3.6e4 * knee_log()["t"] % 360}, tmp_path)
+    setup.set_column("theta", "motor_deg")
+    assert (setup.get("ports.theta.unit"), setup.get("ports.theta.wrap")) == ("deg", 360)
+    assert setup.get("ports.theta.counts_per_turn") is None
+    setup.set_column("theta", None)
+    assert value_of(setup.document, "ports.theta.column") is None
+    assert "theta" not in setup.get("ports.q.column")
+
+
+def test_joints_have_files_and_edits_of_their_own(tmp_path: Path) -> None:
+    knee = knee_log()
+    columns: dict[str, object] = {"t": knee["t"]}
+    for joint in ("hip", "knee"):
+        columns[f"{joint}_motor_counts"] = knee["motor_counts"]
+        columns[f"{joint}_link_deg"] = knee["link_deg"]
+        columns[f"{joint}_current_A"] = knee["current"]
+    setup = setup_of(columns, tmp_path)
+    setup.set("ports.tau.torque_constant", 0.07)
+    setup.set_joint("knee")
+    assert setup.get("ports.tau.torque_constant") == 0
+    setup.write(overwrite=False)
+    setup.set_joint("hip")
+    assert setup.get("ports.tau.torque_constant") == 0.07
+    assert setup.write_drafts() == [tmp_path / "leg-hip.draft.toml"]
+    assert setup.write_drafts() == [tmp_path / "leg-hip.draft-2.toml"]
+    assert {path.name for path in tmp_path.glob("*.toml")} == {
+        "leg-knee.toml",
+        "leg-hip.draft.toml",
+        "leg-hip.draft-2.toml",
+    }
+
+
+def test_a_file_that_exists_is_overwritten_on_demand_only(tmp_path: Path) -> None:
+    setup = setup_of(dict(knee_log()), tmp_path)
+    setup.path.write_text("# of somebody else\n")
+    setup.write(overwrite=False)
+    assert setup.asks_to_overwrite
+    assert setup.path.read_text() == "# of somebody else\n"
+    setup.write(overwrite=True)
+    assert not setup.asks_to_overwrite
+    assert setup.path.read_text() == setup.text
