@@ -20,7 +20,7 @@ class State:
 class PlantEquations:
     """Ordinary differential equations with inputs, parameters, noise and outputs.
 
-    A plant file creates one of these, declares its symbols, and adds equations:
+    A plant file creates one of these, declares its symbols, and adds equations::
 
         plant = PlantEquations("MassPlant")
         force = plant.input("force")
@@ -64,7 +64,7 @@ class PlantEquations:
         """State `name`. Its start value is an expression of the parameters alone.
 
         `scale` is a change of the state that matters, in its unit: the integrator keeps the error
-        of each of its steps far below scale + |state| (``fmu_src/radau.h``).
+        of each of its steps far below ``scale + |state|`` (``fmu_src/radau.h``).
         """
         if not 0 < scale < math.inf:
             raise ValueError(f"state {name}: scale = {scale}; expected a finite number above 0")
