@@ -1,4 +1,4 @@
-"""Chromium without a window, to test reports in a browser."""
+"""Chromium without a window, to test reports and the site in a browser."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ class Page:
 
 
 @contextmanager
-def opened(file: Path, width: int = 1400, dark: bool = False) -> Iterator[Page]:
-    """Opens a report and waits until its plots are drawn."""
+def opened(file: Path, width: int = 1400, dark: bool = False, plots: bool = True) -> Iterator[Page]:
+    """Opens a page and waits until its plots are drawn, if it has some."""
     chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
     if chromium is None or driver is None:
         missing("chromium", "apt-get install chromium chromium-driver")
@@ -71,7 +71,8 @@ def opened(file: Path, width: int = 1400, dark: bool = False) -> Iterator[Page]:
         command("Emulation.setEmulatedMedia", {"features": [scheme]})
         chrome.set_script_timeout(60)
         chrome.get(file.as_uri())
-        chrome.execute_async_script(_IDLE)
+        if plots:
+            chrome.execute_async_script(_IDLE)
         yield Page(chrome)
     finally:
         chrome.quit()
