@@ -19,7 +19,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from sigmahat.export import templates
-from sigmahat.export.documentation import _table as variables_of
+from sigmahat.export.documentation import table as variables_of
 
 COLUMNS = {"name": 20, "unit": 10, "start": 15, "range": 15, "description": 40}
 OBJECT = "fmu-variable"
