@@ -22,6 +22,20 @@ const look = () => !document.querySelector(".plots") || (typeof Bokeh !== "undef
 look();
 """
 
+DATA = """
+const model = [...Bokeh.documents[0]._all_models.values()]
+  .find(m => m.name === arguments[0] && m.data_source?.data[arguments[1]]);
+return Array.from(model.data_source.data[arguments[1]]);
+"""
+"""Values of a trace that is a line or points."""
+ROWS = """
+const section = [...document.querySelectorAll("section")]
+  .find(s => s.querySelector("h2")?.textContent === arguments[0]);
+return [...section.querySelectorAll("tbody tr")]
+  .map(row => [...row.cells].map(cell => cell.textContent).join(" "));
+"""
+"""Rows of a table, also where it is folded."""
+
 
 class Page:
     """A file that is open in the browser."""
