@@ -16,10 +16,25 @@ from gate import missing
 
 _IDLE = """
 const done = arguments[0];
-const look = () => typeof Bokeh !== "undefined" && Bokeh.documents.length
-  && Bokeh.documents.every(d => d.is_idle) ? done() : setTimeout(look, 20);
+const look = () => !document.querySelector(".plots") || (typeof Bokeh !== "undefined"
+  && Bokeh.documents.length && Bokeh.documents.every(d => d.is_idle))
+  ? done() : setTimeout(look, 20);
 look();
 """
+
+DATA = """
+const model = [...Bokeh.documents[0]._all_models.values()]
+  .find(m => m.name === arguments[0] && m.data_source?.data[arguments[1]]);
+return Array.from(model.data_source.data[arguments[1]]);
+"""
+"""Values of a trace that is a line or points."""
+ROWS = """
+const section = [...document.querySelectorAll("section")]
+  .find(s => s.querySelector("h2")?.textContent === arguments[0]);
+return [...section.querySelectorAll("tbody tr")]
+  .map(row => [...row.cells].map(cell => cell.textContent).join(" "));
+"""
+"""Rows of a table, also where it is folded."""
 
 
 class Page:
@@ -52,7 +67,7 @@ class Page:
 
 
 @contextmanager
-def opened(file: Path, width: int = 1400, dark: bool = False, plots: bool = True) -> Iterator[Page]:
+def opened(file: Path, width: int = 1400, dark: bool = False) -> Iterator[Page]:
     """Opens a page and waits until its plots are drawn, if it has some."""
     chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
     if chromium is None or driver is None:
@@ -71,8 +86,7 @@ def opened(file: Path, width: int = 1400, dark: bool = False, plots: bool = True
         command("Emulation.setEmulatedMedia", {"features": [scheme]})
         chrome.set_script_timeout(60)
         chrome.get(file.as_uri())
-        if plots:
-            chrome.execute_async_script(_IDLE)
+        chrome.execute_async_script(_IDLE)
         yield Page(chrome)
     finally:
         chrome.quit()

@@ -123,7 +123,7 @@ def test_every_variable_of_an_fmu_has_its_row(name: str, site: Path) -> None:
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 @pytest.mark.parametrize("width", [1400, 400])
 def test_pages_fit_the_window_without_a_complaint(width: int, dark: bool, site: Path) -> None:
-    with opened(site / "index.html", width, dark, plots=False) as page:
+    with opened(site / "index.html", width, dark) as page:
         for name in SEEN:
             page.driver.get((site / f"{name}.html").as_uri())
             shown = page.run("return getComputedStyle(document.body).backgroundColor")
@@ -137,7 +137,7 @@ def test_pages_fit_the_window_without_a_complaint(width: int, dark: bool, site: 
 
 def test_the_search_finds(site: Path) -> None:
     found = {}
-    with opened(site / "index.html", plots=False) as page:
+    with opened(site / "index.html") as page:
         for word in WORDS:
             page.driver.get(f"{(site / 'search.html').as_uri()}?q={word}")
             done = text_to_be_present_in_element(("id", "search-results"), "finished")

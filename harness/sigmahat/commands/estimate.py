@@ -32,7 +32,8 @@ def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path 
     """Replay LOG through the estimator, and add the stiffness to its table.
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag; `sigmahat init LOG` writes the
-    configuration. Writes a table (CSV for CSV, else Parquet), a figure, a data sheet of the joint
+    configuration. Writes a table (CSV for CSV, else Parquet), the stiffness over the deformation
+    (estimate.curve.csv), a figure, a data sheet of the joint
     (joint.json) for `sigmahat export`, and what was learned (state.json) for --start-from.
 
     \b
@@ -51,5 +52,5 @@ def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path 
         configuration = read_configuration(config or common.configuration_of(log))
         with output_folder(out) as folder, common.progress("Replaying", 1000) as bar:
             result = run(opened, configuration, folder, bar.update, start_from)
-    where = f"Table, figure (PNG, SVG), joint.json and state.json are in {out.resolve()}"
+    where = f"Table, curve, figure (PNG, SVG), joint.json and state.json are in {out.resolve()}"
     common.answer(f"{summary(result)}\n\n{where}", result.as_dict())

@@ -20,7 +20,8 @@ from sigmahat.commands import common
 def report(folder: Path, out: Path | None) -> None:
     """Make one HTML file of the results in FOLDER, with plots to zoom.
 
-    FOLDER is what `sigmahat reproduce`, `estimate` or `sweep` wrote. The file opens offline.
+    FOLDER is what `sigmahat reproduce`, `estimate`, `sweep` or `compare` wrote. The file opens
+    offline.
 
     \b
     Example: sigmahat report sigmahat-results/table1

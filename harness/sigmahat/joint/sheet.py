@@ -12,6 +12,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sigmahat.fmi.instance import Value
 from sigmahat.joint.records import NO_OTHER_KEYS, FmuId, LearnedLog, Range, Text
 from sigmahat.joint.stored import Format
@@ -66,6 +69,23 @@ class Polynomial:
     """Deformation of the data: outside, the polynomial is a guess [rad]."""
     set_point: Range | None
     """Set-point of the data [1]."""
+
+    def at(
+        self, phi: NDArray[np.float64], set_point: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Torque [N.m] and stiffness [N.m/rad] at deformations [rad] and a set-point [1]."""
+        rows = np.array(self.eta) @ np.power(float(set_point), self.powers_of_set_point)
+        torque, stiffness = np.zeros_like(phi), np.zeros_like(phi)
+        for coefficient, power in zip(rows, self.powers_of_phi, strict=True):
+            torque += coefficient * phi**power
+            if power:
+                stiffness += coefficient * power * phi ** (power - 1)
+        return torque, stiffness
+
+    @property
+    def is_of_set_point(self) -> bool:
+        """Whether the torque depends on the set-point."""
+        return any(any(row[1:]) for row in self.eta)
 
 
 @dataclass(frozen=True)

@@ -8,25 +8,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from sigmahat.files.digest import sha256
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.instance import Fmu, Recorder, Slave, Value
-from sigmahat.fmi.saved_state import restore, save
 from sigmahat.joint import sheet
+from sigmahat.joint.curve import NORMAL_95, Curve
 from sigmahat.joint.records import FmuId, LearnedLog, Range
 from sigmahat.joint.start_values import start_values
 from sigmahat.logs import assumptions
-from sigmahat.logs.frozen import stiffness_at
 from sigmahat.user_input import toml_file
 
-NORMAL_95 = 1.96
-"""Half the width of an interval of 95 % over the standard deviation."""
 _AMPLITUDE_95 = 2.4477
 """95 % of the distances of two such coordinates from 0 are smaller (Rayleigh)."""
-_POINTS, _SETTINGS = 21, 5
-"""Of the curve: deformations, and set-points if there are several."""
 
 
 def data_sheet(
@@ -36,6 +29,7 @@ def data_sheet(
     configuration: Path,
     last: Mapping[str, float],
     doubt: str,
+    curve: Curve,
 ) -> sheet.Sheet:
     """The sheet of what a slave has learned.
 
@@ -44,9 +38,9 @@ def data_sheet(
     configuration  the file of the parameters
     last           Real outputs of the last tick
     doubt          the output of that name at the last tick
+    curve          that it has learned
     """
     start = start_values(slave, every)
-    covered = _union([log.phi for log in logs]), _union([log.set_point for log in logs])
     claims = every["method"] == "MatchedFilter"
     return sheet.Sheet(
         format=sheet.FORMAT.name,
@@ -62,8 +56,8 @@ def data_sheet(
         confident=doubt == "None",
         doubt=doubt,
         misfit=last["misfit"],
-        polynomial=sheet.polynomial(start, *covered),
-        curve=_curve(slave, every, *covered) if claims else None,
+        polynomial=curve.polynomial,
+        curve=_points(curve) if claims else None,
         parameters=_parameters(every, last, configuration),
         rests_on=sheet.RestsOn(
             torque_gain=float(every["prior.torque_gain"]),
@@ -76,11 +70,6 @@ def data_sheet(
     )
 
 
-def _union(ranges: Sequence[Range | None]) -> Range | None:
-    found = [each for each in ranges if each is not None]
-    return (min(low for low, _ in found), max(high for _, high in found)) if found else None
-
-
 def _source(path: Path) -> sheet.Source:
     return sheet.Source(str(path), sha256(path) if path.is_file() else None)
 
@@ -91,25 +80,18 @@ def _point(outputs: Mapping[str, float], claims: bool) -> sheet.Stiffness:
     return sheet.Stiffness(outputs["phi"], outputs["setPoint"], sigma, interval)
 
 
-def _curve(
-    slave: Slave, every: Mapping[str, Value], phi: Range | None, set_point: Range | None
-) -> list[sheet.Stiffness]:
-    """Stiffness with its interval over the range of the data; none without data."""
-    if phi is None or set_point is None:
-        return []
-    scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
-    settings = np.linspace(*set_point, _SETTINGS) if np.ptp(set_point) else set_point[:1]
-    points = [
-        (0.0, x, (s - offset) / scale if scale else 0.0)
-        for s in settings
-        for x in np.linspace(*phi, _POINTS)
-    ]
-    with Slave(slave.fmu, "curve") as other:
-        other.initialize(every)
-        t_0, T = restore(other, save(slave)), float(every["samplePeriod"])
-        found = stiffness_at(other, ("theta", "q", "theta_c"), np.array(points), t_0, T)
-    rows = zip(*found.values(), strict=True)
-    return [_point(dict(zip(found, map(float, row), strict=True)), True) for row in rows]
+def _points(curve: Curve) -> list[sheet.Stiffness]:
+    """The stiffness with its interval where the data reach."""
+    found = []
+    for branch in curve.branches:
+        low, high = branch.stiffness_interval() or (branch.sigma, branch.sigma)
+        rows = zip(branch.phi, branch.sigma, low, high, strict=True)
+        for (phi, sigma, least, most), shown in zip(rows, branch.within, strict=True):
+            if shown:
+                interval = float(least), float(most)
+                point = sheet.Stiffness(float(phi), branch.set_point, float(sigma), interval)
+                found.append(point)
+    return found
 
 
 def _check(fmu: Fmu, start: Mapping[str, Value]) -> sheet.Check:

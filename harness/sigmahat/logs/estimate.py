@@ -11,12 +11,19 @@ from sigmahat.files.digest import sha256
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu, Slave, Value
 from sigmahat.joint import sheet
+from sigmahat.joint.curve import Curve
+from sigmahat.joint.curve_file import CURVE, write_curve
+from sigmahat.joint.curve_text import stiffness_points
 from sigmahat.joint.records import LearnedLog
 from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.curve import curve
 from sigmahat.logs.data_sheet import data_sheet
 from sigmahat.logs.learned import LEARNED, Learned, go_on, read_learned, write_learned
 from sigmahat.logs.log import Log
+from sigmahat.logs.measured import MeasuredPoints, with_what_was_learned
+from sigmahat.logs.notes_file import REPLAYED, write_replayed
 from sigmahat.logs.output import EstimateWriter
+from sigmahat.logs.points_file import POINTS, write_points
 from sigmahat.logs.replay import OUTPUTS, coefficients, parameters, play
 from sigmahat.logs.sampling import Samples, sample
 from sigmahat.logs.statistics import ReplayStatistics
@@ -65,6 +72,8 @@ class Estimate:
     """What else it estimated, at the end, by output of the FMU: bias_hat, damping_hat and so on."""
     sigma_per_gain: float
     """Relative change of the stiffness with a relative change of the gain of the torque [1]."""
+    curve: Curve
+    """Torque and stiffness over the deformation."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""
     learned_from: Sequence[str] = ()
@@ -87,6 +96,7 @@ class Estimate:
             "phi range [rad]": self.phi_range,
             "epsilon rms [N.m]": self.epsilon_rms,
             "eta": self.eta,
+            "curve": stiffness_points(self.curve),
             "motor": self.motor,
             "joint": self.joint,
             "sigma_per_gain": self.sigma_per_gain,
@@ -103,8 +113,10 @@ def estimate(
     progress: Callable[[int], object] = lambda thousandths: None,
     start_from: Path | None = None,
 ) -> Estimate:
-    """Replays the log and writes estimate.csv or .parquet, estimate.png and .svg, the data sheet of
-    the joint (joint.json) and what was learned (state.json) into folder.
+    """Replays the log and writes into folder: the table (estimate.csv or .parquet), the curve
+    (estimate.curve.csv) and the measured points behind it (estimate.points.csv), the figure
+    (estimate.png and .svg), the data sheet of the joint (joint.json), what was learned
+    (state.json), and notes for the report (estimate.json).
 
     Now and then progress is called with the thousandths of the log done since the last call.
     With start_from, a folder of results or its state.json, the estimator goes on from there.
@@ -127,10 +139,20 @@ def estimate(
         logs = [*(learned.logs if learned else []), learned_log(log, statistics)]
         write_learned(slave, every, logs, folder / LEARNED.file)
         path, last = configuration.path, statistics.last
-        found = data_sheet(slave, every, logs, path, last, statistics.last_doubt)
+        points = statistics.points(str(every["method"]))
+        learned_curve = curve(slave, every, logs, points)
+        if every["method"] == "MatchedFilter":
+            points = with_what_was_learned(slave, every, samples)
+        write_curve(learned_curve, folder / CURVE)
+        write_points(points, folder / POINTS)
+        found = data_sheet(slave, every, logs, path, last, statistics.last_doubt, learned_curve)
         sheet.write(found, folder / sheet.FORMAT.file)
-    _save_figure(samples, statistics, every, folder)
-    return _estimate(log, samples, statistics, every, eta, logs[:-1])
+    result = _estimate(log, samples, statistics, every, eta, logs[:-1], learned_curve)
+    write_replayed(
+        log.path, result.ticks, result.skipped, result.T, result.notes, folder / REPLAYED.file
+    )
+    _save_figure(samples, statistics, every, learned_curve, points, folder)
+    return result
 
 
 def begin(slave: Slave, configuration: Configuration, learned: Learned | None) -> float:
@@ -183,6 +205,7 @@ def _estimate(
     every: Mapping[str, Value],
     eta: Sequence[Sequence[float]],
     before: Sequence[LearnedLog],
+    learned_curve: Curve,
 ) -> Estimate:
     last, doubts = statistics.last, statistics.doubts
     notes = list(samples.notes)
@@ -207,16 +230,24 @@ def _estimate(
         motor={name: last[name] for name in _MOTOR},
         joint={name: last[name] for name in last if name.endswith("_hat") and name not in _MOTOR},
         sigma_per_gain=last["sigma_per_gain"],
+        curve=learned_curve,
         notes=notes,
         learned_from=[each.file for each in before],
     )
 
 
 def _save_figure(
-    samples: Samples, statistics: ReplayStatistics, every: Mapping[str, Value], folder: Path
+    samples: Samples,
+    statistics: ReplayStatistics,
+    every: Mapping[str, Value],
+    learned_curve: Curve,
+    points: MeasuredPoints,
+    folder: Path,
 ) -> None:
     from sigmahat.logs.figure import Replay, draw
     from sigmahat.plotting.save import save
 
-    replayed = Replay(samples, statistics, str(every["modality"]), str(every["method"]))
+    replayed = Replay(
+        samples, statistics, str(every["modality"]), str(every["method"]), learned_curve, points
+    )
     save(draw, replayed, folder / "estimate")

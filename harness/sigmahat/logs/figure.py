@@ -1,19 +1,25 @@
-"""The figure of a replay: stiffness, torque, deformation and set-point over time."""
+"""The figure of a replay: the curve, and stiffness, torque, deformation, set-point over time."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from sigmahat.joint.curve import NORMAL_95, Curve
+from sigmahat.logs.curve_figure import draw_curve
 from sigmahat.logs.log import Array
+from sigmahat.logs.measured import MeasuredPoints
 from sigmahat.logs.resampling import stretches
 from sigmahat.logs.sampling import Samples
 from sigmahat.logs.statistics import ReplayStatistics
+from sigmahat.plotting import scale
 from sigmahat.plotting.colors import BLUE, SKY, VERMILION
+from sigmahat.plotting.symbols import math_axis
 
 _SETTLED = 0.05  # part of the log that is left out when the scale is chosen: the estimate learns
 _OUTER = 1.0  # percent of the stiffness left out at either end of its range, for the same reason
@@ -30,6 +36,10 @@ class Replay:
     """Modality of the estimator: the source of its torque."""
     method: str
     """Method of the estimator."""
+    curve: Curve
+    """That was learned."""
+    points: MeasuredPoints
+    """Behind the curve."""
 
 
 class _Line(NamedTuple):
@@ -40,16 +50,20 @@ class _Line(NamedTuple):
     ends: Array
     """Minimum and maximum in each interval, [size: intervals x 2]."""
     outer: float = 0.0
-    """Percent at either end of its range that the scale does not show."""
+    """Percent at either end that the scale does not show; 0: only what is far away."""
 
 
 def draw(replay: Replay) -> Figure:
-    """Panels above each other, over the time since the start of the log."""
+    """The curve, and below it panels over the time since the start of the log."""
     panels = _panels(replay)
-    figure = Figure(figsize=(7.2, 1.2 + 2.1 * len(panels)), layout="constrained")
-    every = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
+    figure = Figure(figsize=(8.4, 3.6 + 2.0 * len(panels)), layout="constrained")
+    parts: Any = figure.subfigures(2, height_ratios=[3.4, 2.0 * len(panels) + 0.2])
+    top, below = parts
+    torque, stiffness = top.subplots(1, 2)
+    draw_curve(torque, stiffness, replay.curve, replay.points)
+    every = below.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
     for axes, (label, lines) in zip(every, panels.items(), strict=True):
-        limits = []
+        limits: list[float] = []
         for line in lines:
             axes.plot(
                 np.repeat(_times(replay, line.ends), 2),
@@ -58,7 +72,7 @@ def draw(replay: Replay) -> Figure:
                 label=line.label,
             )
             settled = line.ends[int(_SETTLED * len(line.ends)) :]
-            limits += np.nanpercentile(settled, [line.outer, 100 - line.outer]).tolist()
+            limits += _limits(settled, line.outer)
         if axes is every[0] and replay.method == "MatchedFilter":
             limits += _interval(axes, replay)
         _scale(axes, min(limits), max(limits))
@@ -70,6 +84,13 @@ def draw(replay: Replay) -> Figure:
     return figure
 
 
+def _limits(values: Array, outer: float) -> Sequence[float]:
+    if not outer:
+        return scale.limits(values)
+    ends: list[float] = np.nanpercentile(values, [outer, 100 - outer]).tolist()
+    return ends
+
+
 def _panels(replay: Replay) -> dict[str, list[_Line]]:
     """Lines by the label of their axis; the stiffness is first."""
     ends = replay.statistics.ends
@@ -79,17 +100,15 @@ def _panels(replay: Replay) -> dict[str, list[_Line]]:
     elif replay.method == "MatchedFilter":
         torque = torque._replace(label="by the motor data, with friction")
     panels = {
-        r"stiffness $\sigma$ [N$\cdot$m/rad]": [
-            _Line(r"estimate $\hat\sigma$", BLUE, ends("sigma"), _OUTER)
-        ],
-        r"flexibility torque $\tau_e$ [N$\cdot$m]": [
+        math_axis("sigma"): [_Line(r"estimate $\hat\sigma$", BLUE, ends("sigma"), _OUTER)],
+        math_axis("tau_e"): [
             torque,
             _Line(r"fitted, $f(\theta_c, \phi)$", VERMILION, ends("tau_e")),
         ],
-        r"deformation $\phi$ [rad]": [_Line(r"deformation $\phi = q - \theta$", BLUE, ends("phi"))],
+        math_axis("phi"): [_Line(r"deformation $\phi = q - \theta$", BLUE, ends("phi"))],
     }
     if "theta_c" in replay.samples.names:
-        panels["set-point [1]"] = [_Line("set-point", BLUE, ends("setPoint"))]
+        panels[math_axis("setPoint")] = [_Line("set-point $s$", BLUE, ends("setPoint"))]
     return panels
 
 
@@ -110,12 +129,12 @@ def _sensor(replay: Replay) -> Array:
 
 
 def _interval(axes: Axes, replay: Replay) -> tuple[float, float]:
-    """A band of 1.96 standard deviations on both sides of the estimate.
+    """The 95 % band of the estimate.
 
     Returns its limits at the end, which the scale is to show.
     """
     sigma, std = replay.statistics.ends("sigma"), replay.statistics.ends("sigma_std")[:, 1]
-    low, high = sigma[:, 0] - 1.96 * std, sigma[:, 1] + 1.96 * std
+    low, high = sigma[:, 0] - NORMAL_95 * std, sigma[:, 1] + NORMAL_95 * std
     axes.fill_between(
         _times(replay, sigma),
         low,
@@ -123,7 +142,7 @@ def _interval(axes: Axes, replay: Replay) -> tuple[float, float]:
         color=SKY,
         alpha=0.4,
         linewidth=0,
-        label=r"$\pm$ 1.96 standard deviations",
+        label="95 % band",
     )
     return float(low[-1]), float(high[-1])
 

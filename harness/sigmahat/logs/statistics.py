@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from sigmahat.logs.log import Array
+from sigmahat.logs.measured import NEEDED, MeasuredPoints, points_of, spread
 from sigmahat.logs.replay import OUTPUTS
 
 _BUCKETS = 4000
 _OPERATION = ("phi", "setPoint")
+_POINTS = 20_000
 DRAWN = ("sigma", "sigma_std", "tau_e", "tau_e_residual", "phi", "setPoint")
 
 
@@ -33,6 +35,8 @@ class ReplayStatistics:
         self._squares = 0.0
         self._low = {name: np.inf for name in DRAWN}
         self._high = {name: -np.inf for name in DRAWN}
+        self._stride = -(-ticks // _POINTS)
+        self._points: dict[str, list[np.ndarray[Any, Any]]] = {name: [] for name in NEEDED}
         self._used: dict[str, tuple[float, float]] = {}
         self.last: dict[str, float] = {}
         """Real outputs of the last tick."""
@@ -57,6 +61,9 @@ class ReplayStatistics:
             for name in DRAWN:
                 self._low[name] = min(self._low[name], float(outputs[name][first:].min()))
                 self._high[name] = max(self._high[name], float(outputs[name][first:].max()))
+        shown = spread(self.ticks, count, self._stride)
+        for name in NEEDED:
+            self._points[name].append(outputs[name][shown])
         self.skipped += int(np.count_nonzero(~outputs["valid"]))
         self.ticks += count
         self.last = {name: float(outputs[name][-1]) for name in OUTPUTS}
@@ -78,6 +85,11 @@ class ReplayStatistics:
     def used(self, name: str) -> tuple[float, float] | None:
         """Least and largest phi or setPoint at the samples that the regression used, if any."""
         return self._used.get(name)
+
+    def points(self, method: str) -> MeasuredPoints:
+        """Up to 20000 points, evenly over the log, each as the estimator saw it then."""
+        columns = {name: np.concatenate(parts) for name, parts in self._points.items()}
+        return points_of(columns, method)
 
     @property
     def doubts(self) -> dict[str, float]:

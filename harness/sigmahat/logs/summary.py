@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from sigmahat.joint.curve_text import curve_text
 from sigmahat.logs.assumptions import MOTOR, UNITS, absent, exact, priors
 from sigmahat.logs.estimate import Estimate
 
@@ -31,6 +32,7 @@ def summary(result: Estimate) -> str:
         f"at the end: sigma = {result.sigma:.6g} N.m/rad, {_uncertainty(result)}; "
         f"{result.skipped} of {result.ticks} ticks skipped",
     ]
+    lines += curve_text(result.curve)
     if p["method"] == "MatchedFilter":
         lines += [*_found(result), "this answer rests on:"]
         lines += [f"  {each}" for each in _rests_on(result)]

@@ -48,7 +48,7 @@ def single(k_3: float, frequency: float) -> Scenario:
             for modality, values in estimators.items()
         },
         comparisons=against_the_plant(estimators),
-        figures=("summary",),
+        figures=("transmission",),
     )
 
 

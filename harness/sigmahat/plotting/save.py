@@ -35,5 +35,5 @@ def save(draw: Callable[[Source], Figure], source: Source, path: Path) -> None:
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
         pixels = BytesIO()
         figure.savefig(pixels, format="png")
-    with Image.open(pixels) as image:  # 64 colours look the same in a third of the bytes
-        image.convert("RGB").quantize(64).save(path.with_suffix(".png"), optimize=True)
+    with Image.open(pixels) as image:  # 256 colours look the same in a third of the bytes
+        image.convert("RGB").quantize(256).save(path.with_suffix(".png"), optimize=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,8 @@ class TextTable:
     """Of each column, whether its cells are words, which stand at the left, and not numbers."""
     note: str = ""
     """Below the table."""
+    folded: bool = False
+    """Whether only its title is shown at first."""
 
 
 class Kind(Enum):
@@ -51,6 +54,12 @@ class Curve:
     kind: Kind = Kind.LINE
     half: NDArray[Any] | None = None
     """Half widths of the intervals of means."""
+    band: tuple[NDArray[Any], NDArray[Any]] | None = None
+    """Lower and upper end of the intervals of a line."""
+    within: NDArray[np.bool_] | None = None
+    """Where a line is not faded, because the data reach it; None: everywhere."""
+    behind: tuple[NDArray[Any], NDArray[Any]] | None = None
+    """x and y of points that a line was fitted to."""
     width: float = 1.4
 
     @property
@@ -80,6 +89,8 @@ class Panel:
     y_log: bool = False
     linked: bool = True
     """Its x axis moves with those of the other panels that are linked."""
+    caption: str = ""
+    """Below its title."""
     y_range: tuple[float, float] | None = None
     """What is shown at first, where an estimate jumps before it converges."""
 
@@ -93,6 +104,12 @@ class Contents:
     """Below the title."""
     tables: Sequence[TextTable]
     panels: Sequence[Panel]
+    answer: Sequence[Panel] = ()
+    """Panels that stand above all others, and above the tables."""
+    notes: Sequence[str] = ()
+    """What had to be done to the samples, in sentences."""
+    pictures: Sequence[Path] = ()
+    """PNG files."""
     every: tuple[float, float] | None = None
     """Times between which every sample is drawn [s]; None: everywhere."""
 

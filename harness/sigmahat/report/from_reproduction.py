@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pyarrow as pa
 
+from sigmahat.files.columns import name_and_unit
 from sigmahat.paper.file_format import SEEDS, TIME
 from sigmahat.paper.read_result_files import read_result_files
+from sigmahat.plotting.symbols import plain_title
 from sigmahat.report.contents import Contents, TextTable, number
+from sigmahat.report.over_deformation import over_deformation
 from sigmahat.report.reduction import reduce
 from sigmahat.report.time_panels import Estimate, quantity_panels, sampling, stiffness_panels
 
@@ -39,13 +42,15 @@ def from_reproduction(folder: Path) -> Contents:
     of_seeds = f" of {seeds} seeds; the plots show the first" if seeds > 1 else ""
     return Contents(
         f"Reproduction: {folder.resolve().name}",
-        [f"{len(t)} samples{of_seeds}", *sampling(reduced)],
+        [f"{len(t)} samples{of_seeds}"],
         [_indices(files.table)],
         [
             *stiffness_panels(reduced, estimates),
             *quantity_panels(reduced, main if len(files.series) > 1 else ""),
         ],
-        reduced.every if reduced.bucket > 1 else None,
+        answer=list(over_deformation(files.series[main], main)),
+        notes=sampling(reduced),
+        every=reduced.every if reduced.bucket > 1 else None,
     )
 
 
@@ -55,7 +60,7 @@ def _indices(table: pa.Table) -> TextTable:
     columns = [[number(cell) for cell in table[field.name].to_pylist()] for field in shown]
     return TextTable(
         "Performance indices",
-        [field.name for field in shown],
+        [plain_title(*name_and_unit(field.name)) for field in shown],
         list(zip(*columns, strict=True)),
         [pa.types.is_string(field.type) for field in shown],
     )

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from bokeh.embed import components
@@ -10,6 +13,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from sigmahat.paper.file_format import TABLE
 from sigmahat.report.contents import Contents
+from sigmahat.report.from_comparison import METHODS, MISFITS, from_comparison
 from sigmahat.report.from_log import from_log
 from sigmahat.report.from_reproduction import from_reproduction
 from sigmahat.report.from_sweep import from_sweep
@@ -17,21 +21,23 @@ from sigmahat.report.plots import plots
 
 
 def report(folder: Path) -> str:
-    """HTML with the tables and plots of a reproduction, a log or a sweep.
+    """HTML with the tables and plots of a reproduction, a log, a sweep or a comparison.
 
-    folder  where `sigmahat reproduce`, `estimate` or `sweep` wrote its results
+    folder  where one of these commands wrote its results
 
     Raises ValueError, which says what to do, if the folder holds nothing of that or damaged files.
     """
     if not folder.is_dir():
         raise ValueError(
-            f"{folder}: expected a folder of `sigmahat reproduce`, `estimate` or `sweep`"
+            f"{folder}: expected a folder of `sigmahat reproduce`, `estimate`, `sweep` or `compare`"
         )
-    kinds = {
+    kinds: dict[str, Callable[[Path], Contents]] = {
         "sweep.parquet": from_sweep,
         TABLE: from_reproduction,
         "estimate.parquet": from_log,
         "estimate.csv": from_log,
+        METHODS: partial(from_comparison, METHODS),
+        MISFITS: partial(from_comparison, MISFITS),
     }
     for name, read in kinds.items():
         if (folder / name).is_file():
@@ -39,20 +45,22 @@ def report(folder: Path) -> str:
     if (folder / "runs.jsonl").is_file():
         raise ValueError(f"{folder}: a sweep that is not complete; run its command again first")
     raise ValueError(
-        f"{folder}: no result of `sigmahat reproduce`, `estimate` or `sweep` "
+        f"{folder}: no result of `sigmahat reproduce`, `estimate`, `sweep` or `compare` "
         f"(expected one of {', '.join(kinds)})"
     )
 
 
 def _page(contents: Contents) -> str:
     """The report as HTML."""
-    made = plots(contents.panels, contents.every)
+    made = plots([*contents.answer, *contents.panels], contents.every)
     script, divs = components([plot.figure for plot in made]) if made else ("", [])
     loader = FileSystemLoader(Path(__file__).parent)
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
     return environment.get_template("page.html").render(
         contents=contents,
-        plots=list(zip(made, divs, strict=True)),
-        library=Resources(mode="inline", components=["bokeh"]).render(),
+        answer=list(zip(made, divs, strict=True))[: len(contents.answer)],
+        plots=list(zip(made, divs, strict=True))[len(contents.answer) :],
+        pictures=[b64encode(path.read_bytes()).decode() for path in contents.pictures],
+        library=Resources(mode="inline", components=["bokeh"]).render() if made else "",
         script=script,
     )

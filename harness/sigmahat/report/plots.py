@@ -131,11 +131,37 @@ def _draw(plot: figure, curve: Curve, name: str, sources: dict[int, ColumnDataSo
     source = sources.setdefault(id(curve.x), ColumnDataSource({"x": curve.x}))
     source.data[name] = curve.y
     if curve.kind is Kind.LINE:
-        plot.line("x", name, source=source, color=curve.color, line_width=curve.width, name=name)
+        _draw_line(plot, curve, name, source)
     elif curve.kind is Kind.POINTS:
-        plot.scatter("x", name, source=source, color=curve.color, alpha=0.6, name=name)
+        plot.scatter(
+            "x", name, source=source, color=curve.color, alpha=0.6, size=3 * curve.width, name=name
+        )
     else:
         _draw_means(plot, curve, name, source)
+
+
+def _draw_line(plot: figure, curve: Curve, name: str, source: ColumnDataSource) -> None:
+    """A line, in front of its band and of the points it was fitted to; all of one name."""
+    if curve.behind is not None:
+        x, y = curve.behind
+        style = {"color": curve.color, "alpha": 0.12, "line_color": None, "size": 3}
+        plot.scatter(np.float32(x), np.float32(y), name=name, **style)
+    parts = [(np.ones(len(curve.x), np.bool_), 0.22, 1.0, "solid")]
+    if curve.within is not None:
+        parts = [(parts[0][0], 0.08, 0.4, "dashed"), (curve.within, 0.18, 1.0, "solid")]
+    for shown, of_band, of_line, dash in parts:
+        own = source if shown.all() else ColumnDataSource({"x": curve.x[shown]})
+        own.data[name] = curve.y[shown]
+        if curve.band is not None:
+            own.data[f"{name}-low"], own.data[f"{name}-high"] = (end[shown] for end in curve.band)
+            plot.varea(
+                "x", f"{name}-low", f"{name}-high", source=own,
+                fill_color=curve.color, fill_alpha=of_band, name=name,
+            )  # fmt: skip
+        plot.line(
+            "x", name, source=own, color=curve.color, line_width=curve.width, line_alpha=of_line,
+            line_dash=dash, name=name,
+        )  # fmt: skip
 
 
 def _draw_means(plot: figure, curve: Curve, name: str, source: ColumnDataSource) -> None:

@@ -9,12 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.joint.curve import NORMAL_95
+from sigmahat.plotting.scale import limits
+from sigmahat.plotting.symbols import plain_axis
 from sigmahat.report.contents import COLORS, TRUE, Curve, Panel
 from sigmahat.report.reduction import Reduced
 
-_TIME = "time t [s]"
+Band = tuple[NDArray[Any], NDArray[Any]]
+_TIME = plain_axis("t")
 _WIDE = 3.5  # of the truth, so that an estimate on top of it still shows it
-_SIDES = ("", "_1", "_2")
+SIDES = ("", "_1", "_2")
 """What variables end with: of the joint, or of the sides of an antagonistic pair."""
 _OUTER = 1.0  # percent of a stiffness at either end that do not set the scale
 
@@ -52,17 +56,17 @@ class _Quantity:
 _QUANTITIES = (
     _Quantity(
         "Flexibility torque",
-        "tau_e [N.m]",
+        plain_axis("tau_e"),
         [
             _Signal("tau_e_residual{}", "by the motor data"),
             _Signal("plant.tau_e_measured{}", "sensor"),
             _Signal("plant.tau_e{}", "true", true=True),
-            _Signal("tau_e{}", "fitted, f(theta_c, phi)"),
+            _Signal("tau_e{}", "fitted, f(θ_c, φ)"),
         ],
     ),
     _Quantity(
         "Deformation",
-        "phi [rad]",
+        plain_axis("phi"),
         [
             _Signal("plant.phi{}", "true", true=True),
             _Signal("phi{}", "as the estimator sees it"),
@@ -70,7 +74,7 @@ _QUANTITIES = (
     ),
     _Quantity(
         "Motor velocity",
-        "theta_dot [rad/s]",
+        plain_axis("theta_dot"),
         [
             _Signal("plant.theta_dot{}", "true", true=True),
             _Signal("theta_dot{}", "filtered"),
@@ -80,7 +84,7 @@ _QUANTITIES = (
         "Positions as measured",
         "position [rad]",
         [
-            _Signal("plant.theta_measured{}", "motor, theta"),
+            _Signal("plant.theta_measured{}", "motor, θ"),
             _Signal("plant.q_measured", "link, q"),
         ],
         of_an_estimator=False,
@@ -88,13 +92,15 @@ _QUANTITIES = (
     _Quantity(
         "Misfit of the model", "misfit [1]", [_Signal("misfit{}", "1 where the model holds")]
     ),
-    _Quantity("Set-point", "set-point [1]", [_Signal("setPoint{}", "set-point of the regression")]),
+    _Quantity(
+        "Set-point", plain_axis("setPoint"), [_Signal("setPoint{}", "set-point of the regression")]
+    ),
 )
 
 
 def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterator[Panel]:
     """Stiffness, and its relative error where the truth was recorded; for each side of a pair."""
-    for side in _SIDES:
+    for side in SIDES:
         signals = {
             each.label: reduced.signals[each.signals[f"sigma{side}"]]
             for each in estimates
@@ -103,22 +109,23 @@ def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterato
         if not signals:
             continue
         lines = [
-            Curve(label, color, reduced.t, values)
+            Curve(label, color, reduced.t, values, band=_band(values, reduced, side))
             for (label, values), color in zip(signals.items(), COLORS, strict=False)
         ]
         true = reduced.signals.get(f"plant.sigma{side}")
         truth = [] if true is None else [Curve("true", TRUE, reduced.t, true, width=_WIDE)]
         scale = lines[0].y[len(lines[0].y) // 20 :] if true is None else true
         yield Panel(
-            f"Stiffness{_of(side)}",
+            f"Stiffness{of_side(side)}",
             _TIME,
-            "sigma [N.m/rad]",
+            plain_axis("sigma"),
             [*truth, *lines],
-            y_range=_range(scale),
+            y_range=_with_band(_range(scale), lines),
+            caption="band: 95 %" if any(line.band for line in lines) else "",
         )
         if true is not None:
             yield Panel(
-                f"Relative error of the stiffness{_of(side)}",
+                f"Relative error of the stiffness{of_side(side)}",
                 _TIME,
                 "|error| [%]",
                 [
@@ -130,6 +137,20 @@ def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterato
             )
 
 
+def _band(sigma: NDArray[Any], reduced: Reduced, side: str) -> Band | None:
+    """The 95 % interval over time, of a log whose method claims one."""
+    std = reduced.signals.get(f"sigma_std{side}")
+    if std is None or not np.nanmax(std) > 0:
+        return None
+    return sigma - NORMAL_95 * std, sigma + NORMAL_95 * std
+
+
+def _with_band(shown: tuple[float, float], lines: Sequence[Curve]) -> tuple[float, float]:
+    """Limits that show the band at the end as well."""
+    ends = [float(end[-1]) for line in lines for end in line.band or () if np.isfinite(end[-1])]
+    return min([shown[0], *ends]), max([shown[1], *ends])
+
+
 def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
     """All other quantities; estimator: whose they are, "" if that is clear."""
     for quantity in _QUANTITIES:
@@ -137,8 +158,8 @@ def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
         for side in _sides(quantity, reduced):
             curves = _curves(quantity, side, reduced)
             if curves:
-                title = f"{quantity.title}{_of(side)}{whose}"
-                yield Panel(title, _TIME, quantity.axis, curves)
+                title = f"{quantity.title}{of_side(side)}{whose}"
+                yield Panel(title, _TIME, quantity.axis, curves, y_range=_every(curves))
 
 
 def sampling(reduced: Reduced) -> list[str]:
@@ -153,7 +174,7 @@ def sampling(reduced: Reduced) -> list[str]:
     ]
 
 
-def _of(side: str) -> str:
+def of_side(side: str) -> str:
     return f" of side {side[1:]}" if side else ""
 
 
@@ -164,7 +185,7 @@ def _sides(quantity: _Quantity, reduced: Reduced) -> list[str]:
             side
             for signal in quantity.signals
             if "{}" in signal.variable
-            for side in _SIDES
+            for side in SIDES
             if signal.variable.format(side) in reduced.signals
         )
     )
@@ -191,6 +212,14 @@ def _error(estimate: NDArray[Any], true: NDArray[Any]) -> NDArray[np.float32]:
         error: NDArray[np.float32] = (100 * np.abs(estimate / true - 1)).astype(np.float32)
     error[~(error > 0) | ~np.isfinite(error)] = np.nan
     return error
+
+
+def _every(curves: Sequence[Curve]) -> tuple[float, float]:
+    """Limits of an axis that a spike, for example after a gap, does not set."""
+    ends = [limits(curve.y) for curve in curves]
+    low, high = min(end[0] for end in ends), max(end[1] for end in ends)
+    margin = 0.06 * ((high - low) or abs(high) or 1.0)
+    return low - margin, high + margin
 
 
 def _range(values: NDArray[Any]) -> tuple[float, float]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sigmahat.logs.data_sheet import NORMAL_95
+from sigmahat.joint.curve import NORMAL_95
 from sigmahat.logs.log import Array
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from matplotlib.figure import Figure
 
 from sigmahat.fmi.master import Recording
-from sigmahat.paper.figures import experiment, overview, simulation
+from sigmahat.paper.figures import curves, experiment, overview, simulation
 
 FIGURES: dict[str, Callable[[Recording], Figure]] = {
     "fig3-deformation": simulation.deformation,
@@ -20,8 +20,9 @@ FIGURES: dict[str, Callable[[Recording], Figure]] = {
     "fig10-lever-arm": experiment.lever_arm,
     "fig11-flexibility-torque": experiment.nominal_torque,
     "fig12-stiffness": experiment.stiffness,
+    "transmission": curves.transmission,
     "summary": overview.summary,
     "experiment": experiment.experiment,
-    "antagonistic": overview.antagonistic,
+    "antagonistic": curves.antagonistic,
 }
 """Each takes the recording of a scenario, and returns a figure that no window manager holds."""

@@ -12,13 +12,16 @@ from numpy.typing import NDArray
 
 from sigmahat.fmi.master import Recording
 from sigmahat.plotting.colors import BLUE, GREEN, VERMILION
+from sigmahat.plotting.symbols import math_axis
 
 Array = NDArray[np.float64]
 
 # Wide and light, so that an estimate on top of the truth still shows it.
 TRUE: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 3.0, "label": "true"}
-STIFFNESS = r"stiffness $\sigma$ [N$\cdot$m/rad]"
-TORQUE = r"flexibility torque $\tau_e$ [N$\cdot$m]"
+STIFFNESS = math_axis("sigma")
+TORQUE = math_axis("tau_e")
+
+_THIN: dict[str, Any] = {"color": "#888888", "linewidth": 1.2}
 
 _ESTIMATORS: dict[str, dict[str, Any]] = {
     "RESIDUAL": {"color": BLUE},
@@ -46,11 +49,14 @@ def line(axes: Axes, t: Array, values: Array, **style: Any) -> None:
     axes.margins(x=0.01)
 
 
-def stiffness_lines(axes: Axes, recording: Recording, window: slice) -> None:
-    """True stiffness, and the estimate of each modality."""
+def stiffness_lines(axes: Axes, recording: Recording, window: slice, thin: bool = False) -> None:
+    """True stiffness, and the estimate of each modality.
+
+    thin  where the true stiffness oscillates so fast that a wide line of it would be an area
+    """
     t, true = recording.t[window], recording.plant["sigma"][window]
-    line(axes, t, true, **TRUE)
-    for name, style in _estimators(recording):
+    line(axes, t, true, **({**TRUE, **_THIN} if thin else TRUE))
+    for name, style in estimator_styles(recording):
         line(axes, t, recording.estimators[name]["sigma"][window], **style)
     limit(axes, true)
     axes.set_ylabel(STIFFNESS)
@@ -58,13 +64,13 @@ def stiffness_lines(axes: Axes, recording: Recording, window: slice) -> None:
 
 def error_lines(axes: Axes, recording: Recording) -> None:
     """Relative error of the stiffness of each modality."""
-    for name, style in _estimators(recording):
+    for name, style in estimator_styles(recording):
         estimate = recording.estimators[name]["sigma"]
         error_line(axes, recording.t, recording.plant["sigma"], estimate, **style)
     error_axes(axes)
 
 
-def _estimators(recording: Recording) -> Iterator[tuple[str, dict[str, Any]]]:
+def estimator_styles(recording: Recording) -> Iterator[tuple[str, dict[str, Any]]]:
     """Estimators of the recording that have a style, and their style with a label."""
     for name, style in _ESTIMATORS.items():
         if name in recording.estimators:

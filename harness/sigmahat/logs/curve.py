@@ -1,0 +1,109 @@
+"""Computes the answer as a curve from the state of an estimator."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from sigmahat.fmi.instance import Slave, Value
+from sigmahat.fmi.saved_state import restore, save
+from sigmahat.joint import sheet
+from sigmahat.joint.curve import Branch, Curve, characteristic
+from sigmahat.joint.records import LearnedLog, Range
+from sigmahat.joint.sheet import Polynomial
+from sigmahat.joint.start_values import start_values
+from sigmahat.logs.frozen import stiffness_at
+from sigmahat.logs.log import Array
+from sigmahat.logs.measured import MeasuredPoints
+from sigmahat.logs.reach import Reach, reaches
+
+_WITHIN = 41
+"""Points of a branch in the reach of the data."""
+_BEYOND, _BEYOND_POINTS = 0.2, 8
+"""What is shown beyond either end, over the reach, and its points."""
+
+
+def curve(
+    slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], points: MeasuredPoints
+) -> Curve:
+    """Torque and stiffness over the deformation, at each set-point that the data reach.
+
+    The slave does not change. Of the method MatchedFilter it says how certain the stiffness is at
+    each point, sigma_std. The torque of a spring is the integral of its stiffness, so its standard
+    deviation is at most the integral of sigma_std, from where the torque is known: at 0 for an odd
+    polynomial. A general one has a constant. No motor torque tells it from a bias, so the interval
+    is that of the torque relative to the one at 0, or at the end of the reach next to it.
+
+    every   parameters of the slave
+    logs    that it has learned from, the last of them now
+    points  of the last log
+    """
+    covered = _union([log.phi for log in logs]), _union([log.set_point for log in logs])
+    polynomial = sheet.polynomial(start_values(slave, every), *covered)
+    reach = reaches(points, logs[:-1], not polynomial.is_of_set_point)
+    grids = [_grid(each, polynomial) for each in reach]
+    stds: list[Array | None] = [None] * len(grids)
+    if every["method"] == "MatchedFilter" and grids:
+        stds = list(_sigma_std(slave, every, reach, grids))
+    branches = []
+    for each, phi, std in zip(reach, grids, stds, strict=True):
+        tau_e, sigma = polynomial.at(phi, each.set_point)
+        known = _known(each, polynomial)
+        tau_e_std = None if std is None else _integral(std, phi, known)
+        branches.append(Branch(each.set_point, each.phi, phi, tau_e, tau_e_std, sigma, std))
+    return Curve(polynomial, branches)
+
+
+def _union(ranges: Sequence[Range | None]) -> Range | None:
+    found = [each for each in ranges if each is not None]
+    return (min(low for low, _ in found), max(high for _, high in found)) if found else None
+
+
+def _grid(reach: Reach, polynomial: Polynomial) -> Array:
+    """Deformations of a branch: in the reach, beyond it, and those at which something is told."""
+    low, high = reach.phi
+    further = _BEYOND * (high - low)
+    known = _known(reach, polynomial)
+    return np.unique(
+        np.concatenate(
+            [
+                np.linspace(low, high, _WITHIN),
+                np.linspace(min(low - further, known), low, _BEYOND_POINTS),
+                np.linspace(high, max(high + further, known), _BEYOND_POINTS),
+                [known, *characteristic(reach.phi)],
+            ]
+        )
+    )
+
+
+def _known(reach: Reach, polynomial: Polynomial) -> float:
+    """The deformation from which the torque is counted."""
+    if 0 not in polynomial.powers_of_phi:
+        return 0.0
+    return float(np.clip(0.0, *reach.phi))
+
+
+def _integral(std: Array, phi: Array, start: float) -> Array:
+    """Integral of std over phi from a start, which is one of phi, without its sign."""
+    steps = np.diff(phi) * (std[1:] + std[:-1]) / 2
+    total = np.concatenate([[0.0], np.cumsum(steps)])
+    integral: Array = np.abs(total - total[np.searchsorted(phi, start)])
+    return integral
+
+
+def _sigma_std(
+    slave: Slave, every: Mapping[str, Value], reach: Sequence[Reach], grids: Sequence[Array]
+) -> list[Array]:
+    """What the estimator says at each point, by a copy of it."""
+    scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
+    points = [
+        (0.0, phi, (each.set_point - offset) / scale if scale else 0.0)
+        for each, grid in zip(reach, grids, strict=True)
+        for phi in grid
+    ]
+    with Slave(slave.fmu, "curve") as other:
+        other.initialize(every)
+        t_0, T = restore(other, save(slave)), float(every["samplePeriod"])
+        found = stiffness_at(other, ("theta", "q", "theta_c"), np.array(points), t_0, T)
+    return np.split(found["sigma_std"], np.cumsum([len(grid) for grid in grids])[:-1])

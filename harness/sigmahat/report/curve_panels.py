@@ -1,0 +1,86 @@
+"""The panels and the table of a curve: torque and stiffness over the deformation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from sigmahat.joint import curve as joint
+from sigmahat.joint.curve_text import (
+    FAMILY_HEAD,
+    STIFFNESS_HEAD,
+    family_rows,
+    polynomial_in_words,
+    reach_in_words,
+    stiffness_rows,
+)
+from sigmahat.logs.measured import MeasuredPoints
+from sigmahat.plotting.scale import limits
+from sigmahat.plotting.symbols import QUANTITIES, plain_axis, plain_text
+from sigmahat.report.contents import COLORS, Curve, Panel, TextTable
+
+
+def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
+    """The torque with the measured points behind it, and the stiffness; none without data."""
+    if not curve.branches:
+        return
+    settings = [branch.set_point for branch in curve.branches]
+    of_branch = joint.nearest(settings, points.set_point)
+    torques, stiffnesses = [], []
+    for i, branch in enumerate(curve.branches):
+        own = of_branch == i
+        label = f"set-point {branch.set_point:.3g}" if len(settings) > 1 else "estimate"
+        color = COLORS[i % len(COLORS)]
+        behind = points.phi[own], points.tau_e[own]
+        line = Curve(label, color, branch.phi, branch.sigma, within=branch.within, width=2.0)
+        stiffnesses.append(replace(line, band=branch.stiffness_interval()))
+        band = branch.torque_interval()
+        torques.append(replace(line, y=branch.tau_e, band=band, behind=behind))
+    for name, curves in (("tau_e", torques), ("sigma", stiffnesses)):
+        words = QUANTITIES[name].words.capitalize()
+        yield Panel(
+            f"{words} over the deformation",
+            plain_axis("phi"),
+            plain_axis(name),
+            curves,
+            linked=False,
+            caption=_caption(name, curve.claims),
+            y_range=_scale(curves),
+        )
+
+
+def _caption(name: str, claims: bool) -> str:
+    parts = ["points: measured"] if name == "tau_e" else []
+    parts += ["band: 95 %"] if claims else []
+    return "; ".join([*parts, "faded: beyond the data"])
+
+
+def _scale(curves: list[Curve]) -> tuple[float, float] | None:
+    """Where the data reach; single points that are far off do not count."""
+    shown = []
+    for each in curves:
+        shown += [values[each.within] for values in (each.y, *(each.band or ()))]
+        if each.behind is not None and len(each.behind[1]):
+            shown.append(np.array(limits(each.behind[1])))
+    values = np.concatenate(shown)
+    values = values[np.isfinite(values)]
+    if not len(values):
+        return None
+    low, high = float(values.min()), float(values.max())
+    margin = 0.1 * ((high - low) or abs(high) or 1.0)
+    return low - margin, high + margin
+
+
+def curve_table(curve: joint.Curve) -> TextTable:
+    """The stiffness with its interval, over which range it holds, and the polynomial."""
+    several = len(curve.branches) > 1
+    head = [plain_text(cell) for cell in (FAMILY_HEAD if several else STIFFNESS_HEAD)]
+    rows = list(family_rows(curve) if several else stiffness_rows(curve))
+    words = plain_text(polynomial_in_words(curve.polynomial))
+    reach = plain_text(reach_in_words(curve))
+    note = f"It holds {reach}; beyond, where the plots are faded, it is a guess. {words}."
+    if not curve.claims:
+        note += " The method claims no interval."
+    return TextTable("Stiffness", head, rows, [False] * len(rows[0]), note=note)

@@ -1,0 +1,336 @@
+"""The answer as a curve: it holds the truth as often as it says, and only where the data reach."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from closed_form_joint import CUBIC, LINEAR, OF_THETA_C, closed_form_log
+from recorded_logs import CONFIGURATION, Array, awas_log, write_log
+from sigmahat.cli import main
+from sigmahat.fmi.installed import fmu
+from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.joint import sheet
+from sigmahat.joint.curve import Branch, Curve, characteristic, nearest
+from sigmahat.joint.curve_file import CURVE, read_curve, write_curve
+from sigmahat.joint.curve_text import curve_text, polynomial_in_words
+from sigmahat.joint.records import LearnedLog
+from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.estimate import Estimate, estimate
+from sigmahat.logs.learned import go_on, read_learned
+from sigmahat.logs.measured import MeasuredPoints, spread
+from sigmahat.logs.points_file import POINTS, read_points
+from sigmahat.logs.reach import reaches
+from sigmahat.logs.readers.formats import open_log
+from sigmahat.logs.replay import parameters
+
+GAIN = 0.02
+"""Standard deviation of the gain of the torque: start value of prior.torque_gain."""
+Columns = dict[str, NDArray[Any]]
+CLOSED_FORM = """\
+[time]
+column = "t"
+[ports]
+theta = {column = "theta"}
+q = {column = "q"}
+theta_c = {column = "theta_c"}
+tau = {column = "tau"}
+[parameters]
+samplePeriod = 0.001
+method = "MatchedFilter"
+motor.B = 2.3e-5
+motor.D_theta = 1e-3
+motor.gamma = 50
+prior.B = 0.05
+prior.tau_coulomb = 0.02
+noise.tau = 1e-3
+encoder.theta = 262144
+encoder.q = 262144
+range.phi = 0.1
+prior.tau_e = 20
+setPoint.offset = 0
+setPoint.scale = 1
+range.setPoint = 1.2
+rls.n = 2
+rls.m = 2
+"""
+
+
+@pytest.fixture(autouse=True)
+def no_figure(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
+
+
+def estimated(columns: Columns, configuration: str, folder: Path) -> Estimate:
+    folder.mkdir(exist_ok=True)
+    (folder / "log.toml").write_text(configuration)
+    log = open_log(write_log(columns, folder / "log.parquet"))
+    return estimate(log, read_configuration(folder / "log.toml"), folder)
+
+
+def closed_form(seed: int, gain: float) -> Columns:
+    log = closed_form_log("variable_stiffness", seed=seed)
+    t = log.sample_period * np.arange(float(len(log.theta)))
+    return {"t": t, "theta": log.theta, "q": log.q, "theta_c": log.theta_c, "tau": gain * log.tau}
+
+
+def truth(branch: Branch) -> tuple[Array, Array]:
+    """Torque and stiffness of the joint of closed_form_joint.py."""
+    share, phi = 1 + OF_THETA_C * branch.set_point, branch.phi
+    return share * (LINEAR * phi + CUBIC * phi**3), share * (LINEAR + 3 * CUBIC * phi**2)
+
+
+@pytest.mark.slow("twenty logs are estimated")
+def test_the_bands_hold_the_truth_as_often_as_they_say(tmp_path: Path) -> None:
+    """Each log has its own noise, and a gain of the torque as likely as the configuration says."""
+    gains = 1 + GAIN * np.random.default_rng(2).normal(size=20)
+    inside: dict[str, list[float]] = {"tau_e": [], "sigma": []}
+    scores = []
+    for seed, gain in enumerate(gains):
+        found = estimated(closed_form(seed, float(gain)), CLOSED_FORM, tmp_path / str(seed)).curve
+        assert len(found.branches) == 5
+        for branch in found.branches:
+            torque, stiffness = truth(branch)
+            bands = {"tau_e": branch.torque_interval(), "sigma": branch.stiffness_interval()}
+            for (name, band), true in zip(bands.items(), (torque, stiffness), strict=True):
+                assert band is not None
+                holds = (band[0] <= true) & (true <= band[1])
+                inside[name].append(float(np.mean(holds[branch.within])))
+            assert branch.sigma_std is not None
+            z = (branch.sigma - stiffness) / branch.sigma_std
+            scores.append(float(np.mean(z[branch.within] ** 2)))
+    # The gain is one number of a log: of 20 such numbers 19 are to be expected within 1.96, and
+    # fewer than 16 with a probability of 0.3 %. The band of the torque may be wider, not narrower.
+    assert np.mean(inside["sigma"]) >= 0.8
+    assert np.mean(inside["tau_e"]) >= 0.8
+    # Errors, over what the band says, are as large as the gains that were drawn, and little larger.
+    assert 0.8 < np.mean(scores) / np.mean(((gains - 1) / GAIN) ** 2) < 1.5
+
+
+@pytest.fixture(scope="module")
+def awas(tmp_path_factory: pytest.TempPathFactory) -> tuple[Estimate, Columns, Path]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
+        folder = tmp_path_factory.mktemp("awas")
+        log = awas_log(1.0, 0.3, 10.0)
+        configuration = CONFIGURATION + 'method = "MatchedFilter"\nprior.B = 0.2\nrls.n = 3\n'
+        return estimated(log, configuration, folder), log, folder
+
+
+def test_the_band_is_what_the_estimator_said_at_its_last_sample(
+    awas: tuple[Estimate, Columns, Path],
+) -> None:
+    """The set-point of the last sample is that of a branch: there both are the same."""
+    result, _, folder = awas
+    end = json.loads((folder / "joint.json").read_text())["at_the_end"]
+    branch = min(result.curve.branches, key=lambda b: abs(b.set_point - end["set_point"]))
+    assert branch.set_point == pytest.approx(end["set_point"], rel=1e-3)
+    assert branch.sigma_std is not None
+    assert np.interp(end["phi"], branch.phi, branch.sigma) == pytest.approx(end["sigma"], rel=5e-3)
+    std = (end["interval"][1] - end["sigma"]) / 1.96
+    assert np.interp(end["phi"], branch.phi, branch.sigma_std) == pytest.approx(std, rel=5e-3)
+
+
+def test_each_branch_ends_where_its_data_end(
+    awas: tuple[Estimate, Columns, Path],
+) -> None:
+    result, log, _ = awas
+    set_point = 100.0 - 1e3 * 0.0025 / (2 * np.pi) * log["theta_c"]
+    phi, step = log["q"] - log["theta"], np.ptp(set_point) / 4
+    for branch in result.curve.branches:
+        own = phi[np.abs(set_point - branch.set_point) <= step / 4]
+        assert own.min() <= branch.reach[0] < branch.reach[1] <= own.max()
+        assert branch.reach[0] - own.min() < 0.1 * np.ptp(own)
+        assert own.max() - branch.reach[1] < 0.1 * np.ptp(own)
+        assert branch.phi[0] < branch.reach[0] and branch.phi[-1] > branch.reach[1]
+
+
+def test_torque_is_the_integral_of_the_stiffness(
+    awas: tuple[Estimate, Columns, Path],
+) -> None:
+    for branch in awas[0].curve.branches:
+        steps = np.diff(branch.phi) * (branch.sigma[1:] + branch.sigma[:-1]) / 2
+        np.testing.assert_allclose(np.diff(branch.tau_e), steps, atol=1e-3 * np.ptp(branch.tau_e))
+        (zero,) = np.flatnonzero(branch.phi == 0)
+        assert branch.tau_e_std is not None
+        assert branch.tau_e[zero] == branch.tau_e_std[zero] == 0
+
+
+def test_measured_points_lie_about_the_curve(
+    awas: tuple[Estimate, Columns, Path],
+) -> None:
+    """(29): tau_e = k_s r^2 sin(2 phi) is what a perfect sensor would have measured."""
+    _, _, folder = awas
+    points = read_points(folder / POINTS)
+    assert 1000 < len(points.phi) <= 3001
+    true = 14220.0 * (points.set_point / 1e3) ** 2 * np.sin(2 * points.phi)
+    assert np.sqrt(np.mean((points.tau_e - true) ** 2)) < 0.1 * np.sqrt(np.mean(true**2))
+
+
+def test_the_file_has_all_digits(awas: tuple[Estimate, Columns, Path], tmp_path: Path) -> None:
+    result, _, folder = awas
+    read = read_curve(folder / CURVE, result.curve.polynomial)
+    for a, b in zip(read.branches, result.curve.branches, strict=True):
+        assert (a.set_point, a.reach) == (b.set_point, b.reach)
+        for name in ("phi", "tau_e", "tau_e_std", "sigma", "sigma_std"):
+            assert np.array_equal(getattr(a, name), getattr(b, name))
+    with (folder / CURVE).open() as file:
+        row = next(csv.DictReader(file))
+    low, std = float(row["sigma low [N.m/rad]"]), float(row["sigma_std [N.m/rad]"])
+    assert low == pytest.approx(float(row["sigma [N.m/rad]"]) - 1.96 * std)
+    assert row["in the data"] == "false"
+
+
+def test_the_words_say_the_same(awas: tuple[Estimate, Columns, Path]) -> None:
+    curve = awas[0].curve
+    formula = re.search(r"= (.*); phi in rad, s = setPoint", polynomial_in_words(curve.polynomial))
+    assert formula
+    program = re.sub(r"(?<=[\d)]) (?=[a-z(])", " * ", formula[1]).replace("^", "**")
+    for branch in curve.branches:
+        value = eval(program, {"phi": branch.phi, "s": branch.set_point})  # our own words
+        np.testing.assert_allclose(value, branch.tau_e, rtol=1e-3, atol=1e-3)
+    lines = curve_text(curve)
+    assert "for phi from" in lines[0]
+    assert len(lines) == 3 + 3
+    for line, branch in zip(lines[3:], curve.branches[::2], strict=True):
+        cells = line.split()
+        assert float(cells[0]) == pytest.approx(branch.set_point, rel=1e-3)
+        assert float(cells[3]) == pytest.approx(branch.sigma[0], rel=0.1)
+
+
+def test_a_fixed_spring_with_an_offset_has_one_curve(tmp_path: Path) -> None:
+    """A general polynomial: its torque is told relative to that at 0."""
+    log = closed_form_log("stiff", seed=1)
+    t = log.sample_period * np.arange(float(len(log.theta)))
+    columns = {"t": t, "theta": log.theta, "q": log.q, "theta_c": log.theta_c, "tau": log.tau}
+    general = CLOSED_FORM.replace("rls.m = 2", "rls.m = 1\nrls.symmetric = false")
+    result = estimated(columns, general.replace("rls.n = 2", "rls.n = 3"), tmp_path)
+    (branch,) = result.curve.branches
+    assert branch.tau_e_std is not None and branch.sigma_std is not None
+    (zero,) = np.flatnonzero(branch.phi == 0)
+    assert branch.tau_e_std[zero] == 0
+    assert np.all(np.diff(branch.tau_e_std[zero:]) > 0)
+    lines = curve_text(result.curve)
+    assert "setPoint" not in lines[0]
+    middle = lines[4].split()
+    assert float(middle[0]) == 0.0
+    assert float(middle[2]) < LINEAR < float(middle[4])
+
+
+def test_paper2011_has_a_curve_without_a_band(tmp_path: Path) -> None:
+    result = estimated(awas_log(1.0, 0.3, 4.0), CONFIGURATION, tmp_path)
+    assert result.curve.branches and not result.curve.claims
+    read = read_curve(tmp_path / CURVE, result.curve.polynomial)
+    assert [b.sigma_std for b in read.branches] == [None] * len(read.branches)
+    assert "not claimed" in "".join(curve_text(result.curve))
+    assert len(read_points(tmp_path / POINTS).phi) > 1000
+
+
+def test_a_joint_that_does_not_move_has_a_point(tmp_path: Path) -> None:
+    t = np.arange(0, 2, 1e-3)
+    columns = {"t": t, "theta": 0 * t, "q": 0 * t, "theta_c": 0 * t, "tau": 0 * t}
+    result = estimated(columns, CLOSED_FORM, tmp_path)
+    (branch,) = result.curve.branches
+    assert (branch.phi.tolist(), branch.reach) == ([0.0], (0.0, 0.0))
+    assert "for phi from 0 to 0 rad" in "".join(curve_text(result.curve))
+    assert main(["report", str(tmp_path)]) == 0
+
+
+def test_a_curve_of_no_data(tmp_path: Path) -> None:
+    polynomial = sheet.Polynomial([1], [0], [[1.0]], [["N.m/rad"]], None, None)
+    nothing = MeasuredPoints(np.empty(0), np.empty(0), np.empty(0))
+    assert reaches(nothing, [], one_curve=False) == []
+    empty = Curve(polynomial, ())
+    assert curve_text(empty) == []
+    write_curve(empty, tmp_path / CURVE)
+    assert read_curve(tmp_path / CURVE, polynomial) == empty
+
+
+def test_going_on_adds_to_the_reach() -> None:
+    before = LearnedLog("a", "b", 10, 0, (-1.0, 0.5), (0.0, 3.0))
+    points = MeasuredPoints(np.linspace(-0.1, 0.9, 100), np.full(100, 2.0), np.zeros(100))
+    assert [r.phi for r in reaches(points, [], one_curve=False)] == [
+        pytest.approx((-0.1, 0.9), abs=2e-3)
+    ]
+    both = reaches(points, [before], one_curve=False)
+    assert [r.set_point for r in both] == [0.0, 0.75, 1.5, 2.25, 3.0]
+    assert both[0].phi == (-1.0, 0.5)
+    assert both[3].phi == pytest.approx((-1.0, 0.5))
+    assert both[2].phi == (-1.0, 0.5)
+    own = MeasuredPoints(np.linspace(-0.1, 0.9, 100), np.full(100, 1.5), np.zeros(100))
+    assert reaches(own, [before], one_curve=False)[2].phi == pytest.approx((-0.1, 0.9), abs=2e-3)
+    fixed = LearnedLog("a", "b", 10, 0, (-1.0, 0.5), (2.0, 2.0))
+    (single,) = reaches(points, [fixed], one_curve=False)
+    assert single.phi == pytest.approx((-1.0, 0.9), abs=2e-3)
+    (single,) = reaches(points, [before], one_curve=True)
+    assert single.phi == pytest.approx((-1.0, 0.9), abs=2e-3)
+
+
+def test_levels_of_the_set_point_are_found() -> None:
+    rng = np.random.default_rng(1)
+    levels = np.repeat([1.0, 2.0, 5.0], 1000)
+    points = MeasuredPoints(rng.uniform(-1, 1, 3000), levels + 1e-3 * rng.normal(size=3000), levels)
+    found = [r.set_point for r in reaches(points, [], one_curve=False)]
+    assert found == pytest.approx([1.0, 2.0, 5.0], abs=1e-3)
+    assert np.array_equal(nearest(found, np.array([1.1, 1.5, 2.2, 9.0])), [0, -1, 1, -1])
+
+
+def test_what_is_told_lies_in_the_reach() -> None:
+    assert characteristic((-0.2, 0.4)) == (-0.1, 0.0, 0.2)
+    assert characteristic((0.2, 0.6)) == pytest.approx((0.3, 0.4, 0.5))
+
+
+@pytest.mark.parametrize("stride", [1, 7, 300])
+def test_points_do_not_depend_on_the_chunks(stride: int) -> None:
+    whole = spread(0, 10_000, stride)
+    parts = [first + spread(first, 1234, stride) for first in range(0, 10_000, 1234)]
+    joined = np.concatenate(parts)
+    assert np.array_equal(joined[joined < 10_000], whole)
+    assert np.all(np.diff(whole) > 0) and len(whole) == pytest.approx(10_000 / stride, abs=1)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "not readable as CSV"),
+        ("a,b\n1,2\n", "expected the curve that"),
+        (None, "No such file"),
+    ],
+)
+def test_a_file_that_is_no_curve(text: str | None, words: str, tmp_path: Path) -> None:
+    if text is not None:
+        (tmp_path / CURVE).write_text(text)
+    polynomial = sheet.Polynomial([1], [0], [[1.0]], [["N.m/rad"]], None, None)
+    with pytest.raises(ValueError, match=words):
+        read_curve(tmp_path / CURVE, polynomial)
+
+
+def test_the_state_gives_the_same_curve_again(
+    awas: tuple[Estimate, Columns, Path],
+) -> None:
+    """A program that has a state has the curve: sigma of the FMU itself is its slope."""
+    from sigmahat.logs.frozen import stiffness_at
+
+    result, _, folder = awas
+    learned = read_learned(folder)
+    configuration = read_configuration(folder / "log.toml")
+    with Fmu(fmu("StiffnessEstimator")) as estimator, Slave(estimator, "again") as slave:
+        start = parameters(estimator, configuration)
+        slave.initialize(start)
+        every = estimator.parameters(start)
+        t_0 = go_on(slave, learned, every, configuration.path)
+        branch = result.curve.branches[2]
+        theta_c = (branch.set_point - float(every["setPoint.offset"])) / float(
+            every["setPoint.scale"]
+        )
+        points = np.array([(0.0, phi, theta_c) for phi in branch.phi])
+        found = stiffness_at(slave, ("theta", "q", "theta_c"), points, t_0, 1e-3)
+    assert found["sigma"] == pytest.approx(branch.sigma, rel=1e-9)
+    assert found["sigma_std"] == pytest.approx(branch.sigma_std, rel=1e-9)
