@@ -58,7 +58,8 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
     if before == after:
         return checked
     of_inertia = [each for each in check(log, before).findings if each.kind in _INERTIA]
-    return replace(checked, findings=[*of_inertia, *checked.findings])
+    others = [each for each in checked.findings if each.kind not in _INERTIA]
+    return replace(checked, findings=[*of_inertia, *others])
 
 
 @cache
