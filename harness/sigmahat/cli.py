@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import click
 
+from sigmahat.commands.check import check
 from sigmahat.commands.compare import compare
 from sigmahat.commands.estimate import estimate
 from sigmahat.commands.export import export
@@ -29,13 +30,26 @@ def cli() -> None:
     \b
     Example: sigmahat reproduce
 
-    Exit status: 0 done; 1 validate: the logs do not agree; 2 error, one line on stderr says
+    Exit status: 0 done; 1 validate: the logs do not agree,
+    check: something is wrong; 2 error, one line on stderr says
     which; 130 interrupted.
     """
 
 
 for command in (
-    *(reproduce, compare, scenarios, init, estimate, identify, validate, export, sweep, report),
+    *(
+        reproduce,
+        compare,
+        scenarios,
+        init,
+        check,
+        identify,
+        estimate,
+        validate,
+        export,
+        sweep,
+        report,
+    ),
 ):
     cli.add_command(command)
 

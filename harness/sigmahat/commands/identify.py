@@ -32,6 +32,10 @@ def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: boo
     \b
     Example: sigmahat identify knee.csv --config knee.toml
     """
+    from sigmahat.checks.check import check_identified
+    from sigmahat.checks.findings import as_dict as checks_as_dict
+    from sigmahat.checks.text import IN_LOG
+    from sigmahat.checks.text import summary as of_checks
     from sigmahat.identification.identify import identify as run
     from sigmahat.identification.summary import as_dict, summary
     from sigmahat.identification.write import write
@@ -42,11 +46,15 @@ def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: boo
     config = config or common.configuration_of(log)
     with common.errors_in_one_line(config, "--config"):
         opened = open_log(log)
-        found = run(opened, read_configuration(config), torque_constant)
+        before = read_configuration(config)
+        found = run(opened, before, torque_constant)
         written: list[str] = []
         if not dry_run:
             written = write(found, config)
+        checked = check_identified(opened, before, read_configuration(config))
     text = f"{log}\n{summary(found)}"
     if written:
         text += f"\n\nWritten into {config}: {', '.join(written)}"
-    common.answer(text, {**as_dict(found), "written": written})
+    text += f"\n\n{of_checks(checked, IN_LOG)}"
+    values = {**as_dict(found), "written": written, "checks": checks_as_dict(checked)}
+    common.answer(text, values)

@@ -21,6 +21,7 @@ from sigmahat.identification.regression import (
     Signals,
     equations,
     fit,
+    is_worse,
 )
 from sigmahat.identification.spring import Spring
 
@@ -88,7 +89,7 @@ def fit_motor(
     """
     longest = max(pieces, key=lambda piece: len(piece.theta))
     m_most = _M if np.ptp(longest.set_point) > 0 else 1
-    form = Form(f_0, min(2.5 * f_0, _WIDEST / T), _N, m_most, symmetric)
+    form = replace(motor_form(f_0, T, symmetric), n=_N, m=m_most)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     (n, m), smallest = choose(equations(without_sensor, T, gamma, form), _N, m_most)
     form = replace(form, n=n, m=m)
@@ -104,6 +105,11 @@ def fit_motor(
         quantities["zero"] = _zero(spring, fits, pieces, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
     return MotorFit(quantities, gain, smallest, spring.largest(fits.first, pieces, abs(gamma)))
+
+
+def motor_form(f_0: float, T: float, symmetric: bool) -> Form:
+    """The equation with a linear spring, and filters for a low pass of f_0 [Hz]."""
+    return Form(f_0, min(2.5 * f_0, _WIDEST / T), symmetric=symmetric)
 
 
 @dataclass(frozen=True)
@@ -147,7 +153,7 @@ def _systems(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> V
     fits = {each: fit(system) for each, system in every.items()}
     plain = next(iter(every))
     best = min(fits, key=lambda each: float(np.nan_to_num(np.sum(fits[each].squares), nan=np.inf)))
-    chosen = best if _is_worse(fits[plain], fits[best]) else plain
+    chosen = best if is_worse(fits[plain], fits[best]) else plain
     filters = (
         replace(chosen, wide=min(2 * form.wide, 2 * _WIDEST / T)),
         replace(chosen, f_0=0.6 * form.f_0),
@@ -184,16 +190,10 @@ def _half_width(name: str, fits: Variants[Fit]) -> float:
     distances = [abs(other.value[name] - first.value[name]) for other in fits.others]
     for friction in fits.frictions:
         distance = abs(friction.value[name] - first.value[name]) - friction.half_width[name]
-        if not _is_worse(friction, first):
+        if not is_worse(friction, first):
             distances.append(max(distance, 0.0))
     distance = max(distances)
     return first.half_width[name] + (distance if math.isfinite(distance) else math.inf)
-
-
-def _is_worse(one: Fit, other: Fit) -> bool:
-    """Whether the squared errors of one fit are significantly larger."""
-    more = one.squares - other.squares
-    return bool(np.mean(more) > 2 * np.std(more, ddof=1) / math.sqrt(len(more)))
 
 
 def _motor_quantity(name: str, fits: Variants[Fit], torque: float) -> Quantity:

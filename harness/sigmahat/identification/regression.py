@@ -17,6 +17,7 @@ squared noise.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -261,6 +262,12 @@ def fit(e: Equations) -> Fit:
         float(stdtrit(freedom, 0.975)),
         np.bincount(e.block, error**2, blocks).astype(np.float64),
     )
+
+
+def is_worse(one: Fit, other: Fit) -> bool:
+    """Whether the squared errors of one fit are significantly larger than those of the other."""
+    more = one.squares - other.squares
+    return bool(np.mean(more) > 2 * np.std(more, ddof=1) / math.sqrt(len(more)))
 
 
 def _nothing(e: Equations) -> Fit:

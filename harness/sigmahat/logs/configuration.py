@@ -87,6 +87,8 @@ class Port:
     """Instead of a unit: what 1 in the column is at the port, in its unit."""
     wrap: NotZero | None = None
     """Period after which the column starts again, in its unit."""
+    delay: Number = 0.0
+    """How much later than the others the column is recorded [s]: it is moved back by this."""
 
 
 @dataclass(frozen=True)

@@ -63,6 +63,9 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
             t = _times(log, configuration, port.time, T, notes)
             t -= start
         column = _column(log, name, port, len(t), notes)
+        if port.delay:
+            t = t - port.delay
+            notes.append(f"{name}: moved back by {port.delay:g} s")
         resampled = at_ticks(t, column, T, ticks, configuration.time.longest_gap)
         if resampled is None:
             raise LogError(f"port {name}: its column holds no number; remove it or name another")

@@ -1,0 +1,1 @@
+"""What in a configuration is likely wrong, by what the log itself shows."""

@@ -1,0 +1,90 @@
+"""Checks a configuration against its log: the job of `sigmahat check`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+
+from sigmahat.checks.columns import columns
+from sigmahat.checks.dynamics import dynamics
+from sigmahat.checks.findings import Checked, Finding, Kind, Severity
+from sigmahat.checks.keys import gears, rests_on
+from sigmahat.checks.relation import relation
+from sigmahat.checks.replayed import Outputs, play, replayed
+from sigmahat.checks.view import View, view
+from sigmahat.fmi.installed import fmu as installed_fmu
+from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.log import Log
+from sigmahat.logs.replay import parameters
+
+_INERTIA = (Kind.INERTIA, Kind.TORQUE_SCALE)
+
+
+def check(log: Log, configuration: Configuration) -> Checked:
+    """What in the configuration is likely wrong, by what the log shows.
+
+    At most 60000 ticks are looked at, those in which the joint moves most. The configuration need
+    not be in a file.
+
+    Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
+    """
+    fmu = _fmu()
+    every = fmu.parameters(parameters(fmu, configuration))
+    seen = view(log, configuration, every)
+    findings = list(_contradictions(seen))
+    with Slave(fmu, "check") as slave:
+        outputs = play(slave, seen)
+    if not any(each.severity is Severity.WRONG for each in findings):
+        # Else these are its symptoms.
+        findings += replayed(seen, outputs)
+    findings += rests_on(
+        configuration, every, fmu.parameters({}), _per_gain(outputs, every["method"])
+    )
+    order = list(Severity)
+    findings.sort(key=lambda each: order.index(each.severity))
+    return Checked(findings, len(seen.samples.values), seen.T)
+
+
+def check_identified(log: Log, before: Configuration, after: Configuration) -> Checked:
+    """Checks a configuration that identify has completed.
+
+    The inertia is compared with the one that was there before: it came from elsewhere.
+
+    Raises LogError, FmuError as `check`.
+    """
+    checked = check(log, after)
+    if before == after:
+        return checked
+    of_inertia = [each for each in check(log, before).findings if each.kind in _INERTIA]
+    others = [each for each in checked.findings if each.kind not in _INERTIA]
+    return replace(checked, findings=[*of_inertia, *others])
+
+
+@cache
+def _fmu() -> Fmu:
+    """The estimator, unpacked once: a page checks again and again. Python removes it at exit."""
+    return Fmu(installed_fmu("StiffnessEstimator"))
+
+
+def _per_gain(outputs: Outputs, method: object) -> float:
+    """Relative change of the stiffness with a relative change of the gain of the torque."""
+    return float(outputs["sigma_per_gain"][-1]) if method == "MatchedFilter" else 1.0
+
+
+def _contradictions(seen: View) -> Iterator[Finding]:
+    """What the log contradicts. What would only be a consequence of another is left out."""
+    recorded = list(columns(seen))
+    if any(each.kind is Kind.JUMP for each in recorded):
+        yield from recorded
+        return
+    here = relation(seen)
+    yield from here.findings
+    keys = {each.key for each in here.findings}
+    for each in recorded:
+        if not any(key.startswith(f"ports.{each.about}.") for key in keys):
+            yield each
+    if not any(key.endswith("gear_ratio") for key in keys):
+        yield from gears(seen.configuration, seen.every)
+    yield from dynamics(seen, here)

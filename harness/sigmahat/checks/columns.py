@@ -1,0 +1,93 @@
+"""What the columns show as they were recorded: steps, jumps, a torque that saturates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from sigmahat.checks.findings import Finding, Kind, Proposal, Severity
+from sigmahat.checks.view import View
+from sigmahat.logs.configuration import Port
+from sigmahat.logs.log import Array
+from sigmahat.logs.units import factor
+
+_LOOKED_AT = 20_000
+"""Values among which the step of an encoder is looked for."""
+_FINER = 1.5  # a step that is told is wrong by more than this factor
+_FLAT = 3  # samples in a row at an end of the range
+_OFTEN = 0.01  # of all samples
+_FEW = 50  # values: the torque is a series of steps
+_PERIODS = (360.0, 2 * math.pi, *(2.0**k for k in range(8, 33)))
+
+
+def columns(seen: View) -> Iterator[Finding]:
+    """All of it, for every port."""
+    for name, port in seen.configuration.ports.items():
+        values = seen.log.read(port.column)
+        values = values[np.isfinite(values)]
+        if name in ("theta", "q"):
+            yield from _jumps(name, port, values)
+            yield from _step(seen, name, port, values)
+        if name == "tau":
+            yield from _saturation(values)
+
+
+def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
+    """A counter that starts again, without a wrap."""
+    if port.wrap is not None or len(values) < 2:
+        return
+    steps, span = np.abs(np.diff(values)), float(np.ptp(values))
+    jump = float(steps.max())
+    if span == 0 or jump < 0.9 * span or float(np.quantile(steps, 0.9)) > 0.2 * jump:
+        return
+    period = min(_PERIODS, key=lambda each: abs(each - span))
+    known = period if abs(period / span - 1) < 0.02 else None
+    key, unit = f"ports.{name}.wrap", port.unit or "rad"
+    yield Finding(Kind.JUMP, Severity.WRONG, key, jump, unit, None, known, about=name)
+
+
+def _step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]:
+    """The step of the values beside the one that the estimator is told."""
+    told = float(seen.every[f"encoder.{name}"])
+    step = smallest_step(values[:: max(1, len(values) // _LOOKED_AT)])
+    if not told or step is None:
+        return
+    angle = abs(step * factor(name, port) / port.gear_ratio)
+    expected = 2 * math.pi / told
+    if 1 / _FINER < angle / expected < _FINER:
+        return
+    proposed: Proposal = float(round(2 * math.pi / angle))
+    others = [(f"ports.{name}.counts_per_turn", None)] if port.unit == "counts" else []
+    key = f"encoder.{name}"
+    severity = Severity.WRONG if angle > expected else Severity.NOTE
+    yield Finding(Kind.STEP, severity, key, angle, "rad", expected, proposed, others, name)
+
+
+def smallest_step(values: Array) -> float | None:
+    """Step of which all differences are multiples; None if there is none."""
+    distinct = np.unique(values)
+    if len(distinct) < 2:
+        return None
+    steps = np.diff(distinct)
+    steps = steps[steps > 1e-9 * np.ptp(distinct)]
+    if len(steps) < 20:
+        return None
+    step = float(np.median(steps[steps < 1.5 * steps.min()]))
+    ratio = steps / step
+    ratio = ratio[ratio < 10]  # of larger ones the rounding of text hides the rest
+    is_multiple = np.abs(ratio - np.round(ratio)) < 0.05
+    return step if np.mean(is_multiple) > 0.95 else None
+
+
+def _saturation(values: Array) -> Iterator[Finding]:
+    """Flat tops: the drive gave less than what was asked for, or the sensor did not show more."""
+    if len(np.unique(values[:_LOOKED_AT])) < _FEW:
+        return
+    tolerance = 1e-6 * float(np.ptp(values))
+    at_end = (values >= values.max() - tolerance) | (values <= values.min() + tolerance)
+    row = np.convolve(at_end, np.ones(_FLAT), "same") >= _FLAT
+    share = float(np.mean(row))
+    if share > _OFTEN:
+        yield Finding(Kind.SATURATION, Severity.NOTE, "ports.tau.column", share, "", 0.0)

@@ -1,0 +1,126 @@
+"""What the motor equation shows: signs, zero of the deformation, delays, inertia."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from sigmahat.checks.findings import Finding, Kind, Severity
+from sigmahat.checks.inertia import inertia
+from sigmahat.checks.motor import LINEAR, Fitted, delay, explains
+from sigmahat.checks.relation import Relation
+from sigmahat.checks.view import View
+from sigmahat.identification.regression import MOTOR, Signals
+from sigmahat.logs.configuration import Port
+from sigmahat.logs.units import factor
+
+_MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
+_STD = 3.0
+"""Standard deviations of a prior, beyond which it contradicts the log."""
+
+
+def dynamics(seen: View, here: Relation) -> Iterator[Finding]:
+    """All of it; nothing where the motion does not show it."""
+    found = here.fitted
+    if found is None or not math.isfinite(found.linear.value.get(LINEAR, math.nan)):
+        return
+    sign = _sign(seen, found)
+    if sign is not None:
+        yield sign
+        return  # with a wrong sign the rest means nothing
+    zero = _zero(seen, found, here.pieces)
+    if zero is not None:
+        yield zero
+    if not seen.has_sensor:
+        yield from _late(seen, here, found)
+        yield from _encoder_lag(seen, found)
+        yield from inertia(seen, here.pieces, found)
+
+
+def _sign(seen: View, found: Fitted) -> Finding | None:
+    """The torque, if it has the wrong sign; the deformation, if only the stiffness is negative."""
+    value, half = found.linear.value, found.linear.half_width
+    score = {name: value[name] / half[name] for name in value if half[name] > 0}
+    stiffness = -np.sign(seen.gamma) * score[LINEAR]
+    if not stiffness < -1:
+        return None
+    port = "tau_e_sensor" if seen.has_sensor else "tau"
+    motor = [np.sign(score[name]) for name in MOTOR if abs(score.get(name, 0.0)) > 1]
+    sigma = -seen.gamma * value[LINEAR] / found.spring.units[0]
+    if seen.has_sensor or (motor and sum(motor) < 0):
+        key, kind = f"ports.{port}.sign", Kind.SIGN
+        proposed = -seen.configuration.ports[port].sign
+        return Finding(kind, Severity.WRONG, key, sigma, "N.m/rad", None, proposed, about=port)
+    others = [("ports.q.gear_ratio", None), (f"ports.{port}.sign", None)]
+    key = "ports.theta.gear_ratio"
+    kind = Kind.STIFFNESS_SIGN
+    return Finding(kind, Severity.WRONG, key, sigma, "N.m/rad", None, None, others)
+
+
+def _zero(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | None:
+    """The zero of the deformation, where it matters: for an odd polynomial."""
+    if not found.form.symmetric:
+        return None
+    zero = found.spring.zero(found.fit, pieces)
+    if not math.isfinite(zero):
+        return None
+    covered = max(float(np.max(p.phi)) for p in pieces) - min(float(np.min(p.phi)) for p in pieces)
+    half_width = found.spring.half_width(found.fit, zero, pieces)
+    if not (half_width < _MATTERS * covered and abs(zero) > max(half_width, _MATTERS * covered)):
+        return None
+    ports = seen.configuration.ports
+    keys = [("ports.q.zero", _moved(ports["q"], "q", zero))]
+    if "theta" in ports:
+        keys.append(("ports.theta.zero", _moved(ports["theta"], "theta", -zero)))
+    severity = Severity.WRONG if _is_more_than_bias(seen, found, zero) else Severity.NOTE
+    (key, proposed), *others = keys
+    return Finding(Kind.ZERO, severity, key, zero, "rad", 0.0, proposed, others)
+
+
+def _is_more_than_bias(seen: View, found: Fitted, zero: float) -> bool:
+    """Whether the torque of the spring at the zero is more than MatchedFilter takes for a bias."""
+    if seen.every["method"] != "MatchedFilter":
+        return True
+    torque = abs(seen.gamma * found.linear.value[LINEAR] * zero / found.spring.units[0])
+    return torque > _STD * float(seen.every["prior.bias"]) * float(seen.every["prior.tau_e"])
+
+
+def _moved(port: Port, name: str, angle: float) -> float:
+    """The zero of a port, so that its values become smaller by an angle [rad]."""
+    per_unit = port.sign * factor(name, port) / port.gear_ratio
+    return float(f"{port.zero + angle / per_unit:.6g}")
+
+
+def _late(seen: View, here: Relation, found: Fitted) -> Iterator[Finding]:
+    """The torque against the motion."""
+    late = delay(seen, here.pieces, found.form)
+    if late is None:
+        return
+    least = abs(late.value) - late.half_width
+    if least < seen.T or not explains(found.fit, late.fit):
+        return
+    is_expected = least < _STD * float(seen.every["prior.delay"])
+    severity = Severity.NOTE if is_expected else Severity.WRONG
+    port = seen.configuration.ports["tau"]
+    # Expected ones are left to the estimator: damping of the spring looks like an early torque.
+    proposed = None if is_expected else float(f"{port.delay + late.value:.3g}")
+    yield Finding(Kind.TORQUE_LAG, severity, "ports.tau.delay", late.value, "s", 0.0, proposed)
+
+
+def _encoder_lag(seen: View, found: Fitted) -> Iterator[Finding]:
+    """A friction below 0: encoders that are read at different times look like it."""
+    value, half = found.linear.value, found.linear.half_width
+    if not value["D_theta"] + half["D_theta"] < 0:
+        return
+    slope = value[LINEAR] / found.spring.units[0]
+    D_theta = float(seen.every["motor.D_theta"])
+    lag = seen.gamma * (value["D_theta"] - D_theta) / slope
+    least = seen.gamma * (value["D_theta"] + half["D_theta"]) / slope
+    severity = Severity.WRONG if least > seen.T else Severity.NOTE
+    port = seen.configuration.ports["q"]
+    proposed = float(f"{port.delay + lag:.3g}")
+    others = [("ports.theta.delay", float(f"{seen.configuration.ports['theta'].delay - lag:.3g}"))]
+    key = "ports.q.delay"
+    yield Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others)

@@ -1,0 +1,116 @@
+"""What a check of a log and its configuration found, as data. Sentences are made in text.py."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from enum import Enum
+from typing import Any
+
+Proposal = float | bool | str
+"""A value of a key, as it stands in the configuration."""
+
+
+class Severity(Enum):
+    """How much a finding matters."""
+
+    WRONG = "wrong"
+    """The configuration contradicts the log."""
+    RESTS_ON = "rests on"
+    """The answer rests on it: no log can show whether it is right."""
+    NOTE = "note"
+    """Worth knowing; the configuration may be right."""
+
+
+class Kind(Enum):
+    """What was checked."""
+
+    SLOPE = "slope of q on theta"
+    GEAR = "motor.gamma and the gear ratio"
+    SIGN = "sign of the torque"
+    STIFFNESS_SIGN = "sign of the stiffness"
+    ZERO = "zero of the deformation"
+    TORQUE_LAG = "lag of the torque"
+    ENCODER_LAG = "lag between the encoders"
+    INERTIA = "inertia of the motor"
+    TORQUE_SCALE = "scale of the torque"
+    OTHER_ROBOT = "motor data of the AwAS"
+    STEP = "step of the encoder"
+    JUMP = "jumps of the encoder"
+    SATURATION = "saturation of the torque"
+    NOISE = "prediction error and noise"
+    MISFIT = "misfit of the model"
+    DOUBT = "reasons of doubt"
+    RANGE = "range of the deformation"
+    LEARNED = "share of ticks that learned"
+    TORQUE_GAIN = "gain of the torque"
+    EXACT = "motor data taken as exact"
+    ABSENT = "effects taken as absent"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was found."""
+
+    kind: Kind
+    """What was checked."""
+    severity: Severity
+    """How much it matters."""
+    key: str
+    """The key of the configuration to look at first, as "ports.tau.sign" or "motor.gamma"."""
+    measured: float
+    """What the log shows, in `unit`."""
+    unit: str
+    """Unit of `measured` and `expected`; "" for a number without one."""
+    expected: float | None = None
+    """What the configuration says or what is usual, in `unit`; None if there is no such value."""
+    proposed: Proposal | None = None
+    """A value of the key that agrees with the log; None if the log does not show one."""
+    others: Sequence[tuple[str, Proposal | None]] = ()
+    """Other keys that would explain the same, each with the value that it would need."""
+    about: str = ""
+    """What the kind leaves open: a port, a parameter of the FMU, or an item of its output doubt."""
+
+    @property
+    def keys(self) -> Sequence[str]:
+        """All keys that explain the finding, the most likely one first."""
+        return (self.key, *(key for key, _ in self.others))
+
+
+@dataclass(frozen=True)
+class Checked:
+    """The result of all checks."""
+
+    findings: Sequence[Finding]
+    """What is wrong first, then what the answer rests on, then notes."""
+    ticks: int
+    """Number of ticks of the estimator that were looked at."""
+    T: float
+    """Time between ticks [s]."""
+
+    def of(self, severity: Severity) -> Sequence[Finding]:
+        """Findings of one severity."""
+        return [each for each in self.findings if each.severity is severity]
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether the configuration contradicts the log."""
+        return bool(self.of(Severity.WRONG))
+
+
+def as_dict(checked: Checked) -> dict[str, Any]:
+    """For JSON."""
+    return {
+        "wrong": checked.is_wrong,
+        "ticks": checked.ticks,
+        "samplePeriod [s]": checked.T,
+        "findings": [
+            {
+                **asdict(each),
+                "kind": each.kind.value,
+                "severity": each.severity.value,
+                "others": dict(each.others),
+            }
+            for each in checked.findings
+        ],
+    }

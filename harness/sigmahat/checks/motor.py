@@ -1,0 +1,170 @@
+"""The motor equation of a log, fitted quickly: signs, zero, delay and errors for the checks.
+
+It is the equation of `identify` with one form of friction and one filter, so its intervals are
+narrower than those of `identify`. A torque that is late by delta is the column of its slope:
+tau(t - delta) = tau(t) - delta tau'(t).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sigmahat.checks.view import View
+from sigmahat.identification.coherence import TorqueNoise, coherent_range
+from sigmahat.identification.noise import bandwidth, variance
+from sigmahat.identification.orders import choose
+from sigmahat.identification.regression import (
+    MOTOR,
+    Equations,
+    Fit,
+    Form,
+    Signals,
+    equations,
+    fit,
+    is_worse,
+)
+from sigmahat.identification.spring import Spring
+from sigmahat.logs.log import Array
+
+LINEAR = "eta[0,0]"
+"""The column of a linear spring."""
+_DELAY = "delay"
+_HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Coulomb friction
+_ORDERS = 3
+_STEPS = 4  # of Newton's method for the delay
+_LONGEST = 0.1  # [s] of a delay
+_BETTER = 0.7
+"""Squared errors over those before, if something explains the log: friction of another form than
+that of the equation makes nearly everything significant."""
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """What a fit to the pieces of a log shows."""
+
+    form: Form
+    """Orders and filters."""
+    fit: Fit
+    """With a polynomial of these orders."""
+    linear: Fit
+    """With a linear spring."""
+    spring: Spring
+    """The polynomial."""
+
+    @property
+    def error(self) -> float:
+        """Sum of the squared errors; nan if nothing is determined."""
+        return float(np.sum(self.fit.squares))
+
+
+def fitted(seen: View, pieces: Sequence[Signals]) -> Fitted | None:
+    """Fits the motor equation, or with a torque sensor the spring alone; None without data."""
+    if not pieces:
+        return None
+    f_0 = _band(seen, pieces)
+    m_most = _ORDERS if np.ptp(pieces[0].set_point) > 0 else 1
+    form = Form(f_0, min(2.5 * f_0, _HIGHEST / seen.T), _ORDERS, m_most, _is_symmetric(seen))
+    (n, m), _ = choose(_equations(seen, pieces, form), form.n, form.m)
+    form = replace(form, n=n, m=m)
+    system = _equations(seen, pieces, form)
+    line = _equations(seen, pieces, replace(form, n=1, m=1, symmetric=True))
+    return Fitted(form, fit(system), fit(line), Spring(form, system.units))
+
+
+@dataclass(frozen=True)
+class Delay:
+    """How late the torque is."""
+
+    value: float
+    """[s]"""
+    half_width: float
+    """Half of the 95 % interval [s]."""
+    fit: Fit
+    """The motor equation with the torque moved."""
+
+
+def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Delay | None:
+    """How late the torque is; None if no value is found.
+
+    Newton's method: the torque is moved by what was found, until the column of its slope has no
+    share left. So neither the noise of the slope nor the curvature of the torque bias the result.
+    """
+    late = 0.0
+    for _ in range(_STEPS):
+        moved = [replace(piece, tau=_moved(piece.tau, late / seen.T)) for piece in pieces]
+        found = fit(_with_delay(seen, moved, form))
+        step, half_width = found.value[_DELAY], found.half_width[_DELAY]
+        late += step
+        if not math.isfinite(late) or abs(late) > _LONGEST:
+            return None
+    return Delay(late, half_width + abs(step), found) if math.isfinite(half_width) else None
+
+
+def variants(form: Form) -> list[Form]:
+    """Forms that differ in what nobody knows: the low pass, and the form of friction."""
+    return [
+        replace(form, f_0=0.6 * form.f_0),
+        replace(form, load_friction=True),
+        replace(form, stribeck_velocity=0.1),
+    ]
+
+
+def with_form(seen: View, pieces: Sequence[Signals], form: Form) -> Fit:
+    """The fit with another form."""
+    return fit(_equations(seen, pieces, form))
+
+
+def with_inertia(seen: View, pieces: Sequence[Signals], form: Form, B: float) -> Fit:
+    """The fit with a known inertia [kg.m2]."""
+    return fit(_equations(seen, pieces, form).known("B", B))
+
+
+def explains(before: Fit, after: Fit) -> bool:
+    """Whether a change explains much of what was not explained before."""
+    less = float(np.sum(after.squares)) < _BETTER * float(np.sum(before.squares))
+    return less and is_worse(before, after)
+
+
+def _band(seen: View, pieces: Sequence[Signals]) -> float:
+    """Low pass of the equations, as identify chooses it [Hz]."""
+    longest, T = max(pieces, key=lambda piece: len(piece.theta)), seen.T
+    counts, inertia = float(seen.every["encoder.theta"]), float(seen.every["motor.B"])
+    tau = variance(longest.tau)
+    theta = variance(longest.theta, 2 * math.pi / counts if counts else 0.0)
+    inertia *= abs(seen.gamma)
+    f_0 = bandwidth(tau, theta, inertia, T)
+    if seen.has_sensor:
+        return f_0
+    noise = TorqueNoise(tau, theta, inertia, T)
+    return min(f_0, coherent_range(longest, seen.gamma, _is_symmetric(seen), f_0, noise))
+
+
+def _is_symmetric(seen: View) -> bool:
+    return bool(seen.every["rls.symmetric"])
+
+
+def _equations(seen: View, pieces: Sequence[Signals], form: Form) -> Equations:
+    every = equations(pieces, seen.T, seen.gamma, form)
+    if not seen.has_sensor:
+        return every
+    return every.only([name for name in every.names if name not in MOTOR])
+
+
+def _with_delay(seen: View, pieces: Sequence[Signals], form: Form) -> Equations:
+    system = _equations(seen, pieces, form)
+    slopes = [replace(piece, tau=np.gradient(piece.tau, seen.T)) for piece in pieces]
+    small = replace(form, n=1, m=1)
+    column = -equations(slopes, seen.T, seen.gamma, small).y[:, None]
+    X, Z = np.hstack([system.X, column]), np.hstack([system.Z, column])
+    return replace(system, X=X, Z=Z, names=[*system.names, _DELAY])
+
+
+def _moved(tau: Array, ticks: float) -> Array:
+    """A torque, earlier by a number of ticks."""
+    at = np.arange(len(tau), dtype=np.float64)
+    moved: Array = np.interp(at + ticks, at, tau)
+    return moved

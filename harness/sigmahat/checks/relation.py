@@ -1,0 +1,171 @@
+"""How q follows theta: their slope is 1, unless a sign, a unit, a gear or an encoder is wrong.
+
+In slow motion the link follows its motor. Near the resonance it does not, and a link that is held
+does not either. So a slope alone is no proof: with the scale that it proposes, the motor
+equation must fit the torque as well as before, or better.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sigmahat.checks.findings import Finding, Kind, Severity
+from sigmahat.checks.motor import LINEAR, Fitted, fitted
+from sigmahat.checks.scales import Change, changes, distance, like
+from sigmahat.checks.view import View
+from sigmahat.identification.noise import low_pass
+from sigmahat.identification.regression import Signals, is_worse
+from sigmahat.logs.log import Array
+
+_SLOW = 1.0  # [Hz]
+_ENOUGH = 0.1  # of the motion must be slow, else all of it is taken
+_CORRELATED = 0.9
+_FAR = 5.0  # a spring may make the motion of the link so much larger, below its resonance
+_DIFFERENT = 1.5  # a slope so near to 1 is that of a soft spring
+_BETTER = 0.8  # squared errors over those before
+_AS_WELL = 0.25  # of the logarithm of a factor: another one explains the same
+PORTS = ("theta", "q")
+
+
+@dataclass(frozen=True)
+class Relation:
+    """The motion of q and theta after what was found wrong is put right."""
+
+    findings: Sequence[Finding]
+    pieces: Sequence[Signals]
+    """As View.pieces, with the scales that were proposed."""
+    fitted: Fitted | None
+    """The motor equation of these pieces."""
+
+
+def relation(seen: View) -> Relation:
+    """Compares the motion of q with that of theta, and puts scale and sign right."""
+    here = Relation((), seen.pieces, fitted(seen, seen.pieces))
+    if not {"theta", "q"} <= set(seen.samples.names):
+        return here
+    found = _slope(seen.pieces, seen.T)
+    if found is None:
+        return here
+    here = _scale(seen, here, found)
+    return _sign(seen, here, found)
+
+
+def _scale(seen: View, here: Relation, slope: float) -> Relation:
+    if not abs(np.log(abs(slope))) > np.log(_DIFFERENT):
+        return here
+    every = [
+        (name, change)
+        for name in PORTS
+        for change in changes(name, seen.configuration.ports[name], seen.gamma)
+        if like(_on_theta(name, change), abs(slope))
+    ]
+    every.sort(key=lambda each: round(distance(_on_theta(*each), abs(slope)), 1))
+    best: tuple[str, Change] | None = None
+    found = here
+    for name, change in every:
+        repaired = [_scaled(piece, name, change.factor) for piece in here.pieces]
+        after = fitted(seen, repaired)
+        if best is None:
+            is_next = _is_plausible(here.fitted, after, abs(slope))
+        else:
+            is_next = _is_better(found.fitted, after)
+        if is_next:
+            best, found = (name, change), Relation((), repaired, after)
+    if best is None:
+        return here
+    first, factor = best[1], _on_theta(*best)
+    others = [
+        (change.key, change.value)
+        for name, change in every
+        if (name, change) != best and distance(_on_theta(name, change), factor) < _AS_WELL
+    ]
+    key, proposed = first.key, first.value
+    finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, proposed, others)
+    return replace(found, findings=[finding])
+
+
+def _sign(seen: View, here: Relation, slope: float) -> Relation:
+    if slope > 0:
+        return here
+    flipped = [_scaled(piece, "q", -1.0) for piece in here.pieces]
+    after = fitted(seen, flipped)
+    before = here.fitted
+    if before is not None and after is not None:
+        is_stiff = before.linear.value[LINEAR] * seen.gamma < 0
+        if is_worse(after.fit, before.fit) or (is_stiff and not _is_better(before, after)):
+            return here
+    # With the sign of theta instead, all that moves the motor has the other sign.
+    motor = _sign_of_motor(after)
+    name = "theta" if motor < 0 else "q"
+    other = "q" if motor < 0 else "theta"
+    ports = seen.configuration.ports
+    keys = [(f"ports.{each}.sign", -ports[each].sign) for each in (name, other)]
+    finding = Finding(
+        Kind.SLOPE, Severity.WRONG, keys[0][0], slope, "", 1.0, keys[0][1], keys[1:], "sign"
+    )
+    if name == "theta":
+        flipped = [_scaled(piece, "theta", -1.0) for piece in here.pieces]
+        after = fitted(seen, flipped)
+    return Relation([*here.findings, finding], flipped, after)
+
+
+def _sign_of_motor(found: Fitted | None) -> float:
+    """Sign of inertia and friction together; 0 if they do not show it."""
+    if found is None:
+        return 0.0
+    scores = [
+        found.linear.value[name] / found.linear.half_width[name]
+        for name in ("B", "D_theta", "tau_coulomb")
+        if found.linear.half_width.get(name, np.inf) < np.inf
+    ]
+    return float(np.sign(sum(score for score in scores if abs(score) > 1)))
+
+
+def _on_theta(name: str, change: Change) -> float:
+    """What theta would have to be multiplied by, instead of the port."""
+    return change.factor if name == "theta" else 1 / change.factor
+
+
+def _scaled(piece: Signals, name: str, factor: float) -> Signals:
+    theta, q = piece.theta, piece.theta + piece.phi
+    theta, q = (factor * theta, q) if name == "theta" else (theta, factor * q)
+    return replace(piece, theta=theta, phi=q - theta)
+
+
+def _is_plausible(before: Fitted | None, after: Fitted | None, slope: float) -> bool:
+    if before is None or after is None:
+        return True
+    if max(slope, 1 / slope) > _FAR:
+        return not is_worse(after.fit, before.fit)
+    return _is_better(before, after)
+
+
+def _is_better(before: Fitted | None, after: Fitted | None) -> bool:
+    if before is None or after is None:
+        return False
+    return is_worse(before.fit, after.fit) and after.error < _BETTER * before.error
+
+
+def _slope(pieces: Sequence[Signals], T: float) -> float | None:
+    """Slope of q on theta by total least squares, in slow motion if there is any."""
+    if not pieces:
+        return None
+    both = np.concatenate([_slow(np.column_stack([p.theta, p.theta + p.phi]), T) for p in pieces])
+    variances = np.var(both, axis=0)
+    if not np.all(variances > 0):
+        return None
+    # Scaled to one variance: their axis is then the diagonal, whatever the units are.
+    if abs(np.corrcoef(both.T)[0, 1]) < _CORRELATED:
+        return None
+    sign = np.sign(np.corrcoef(both.T)[0, 1])
+    return float(sign * np.sqrt(variances[1] / variances[0]))
+
+
+def _slow(motion: Array, T: float) -> Array:
+    """Without its mean; only what is slow, if that is enough of the motion."""
+    motion = motion - motion.mean(axis=0)
+    slow = low_pass(motion, min(_SLOW, 0.1 / T), T)
+    return slow if np.all(np.std(slow, axis=0) > _ENOUGH * np.std(motion, axis=0)) else motion

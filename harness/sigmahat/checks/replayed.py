@@ -1,0 +1,94 @@
+"""What the estimator itself reports when the log is replayed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from fmpy import fmi2
+
+from sigmahat.checks.findings import Finding, Kind, Severity
+from sigmahat.checks.view import View
+from sigmahat.fmi.instance import Slave
+from sigmahat.identification.noise import variance
+from sigmahat.logs.replay import parameters, replay
+
+_MISFIT = 3.0  # of the model; what real joints have besides it gives up to about 2
+_NOISE = 3.0  # standard deviation over the one that is told
+_LEARNED = 0.5
+_DOUBTED = 0.5  # share of the second half
+_ROOM = 1.2  # of a range over the largest value
+_WIDE = 10.0  # a range over the largest value
+_TORQUE = 3.0  # torque over the one that is told
+
+Outputs = Mapping[str, np.ndarray[Any, Any]]
+_KEYS = {
+    "NotExcited": "ports.q.column",
+    "Misfit": "rls.n",
+    "OutOfRange": "range.phi",
+    "FrictionOutsidePrior": "motor.D_theta",
+    "InertiaOutsidePrior": "motor.B",
+    "NegativeStiffness": "ports.q.sign",
+}
+
+
+def play(slave: Slave, seen: View) -> Outputs:
+    """Outputs of the estimator at the ticks of the view. Raises FmuError if the FMU refuses."""
+    only_errors = (fmi2.fmi2String * 1)(b"logStatusError")  # its warnings are findings here
+    slave.call(slave.functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, only_errors)
+    start = parameters(slave.fmu, seen.configuration)
+    (outputs,) = replay(slave, seen.samples, start, len(seen.samples.values))
+    return outputs
+
+
+def replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
+    """All of it."""
+    yield from _range(seen, outputs)
+    yield from _noise(seen)
+    valid = outputs["valid"]
+    learned = float(np.mean(valid & (outputs["a"] > 0)))
+    if learned < _LEARNED:
+        yield Finding(Kind.LEARNED, Severity.NOTE, "time.longest_gap", learned, "", 1.0)
+    if seen.every["method"] == "MatchedFilter":
+        yield from _claims(outputs)
+
+
+def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:
+    every, is_matched = seen.every, seen.every["method"] == "MatchedFilter"
+    phi, told = float(np.max(np.abs(outputs["phi"]))), float(every["range.phi"])
+    if is_matched and not told / _WIDE < phi < told:
+        severity = Severity.WRONG if phi > _ROOM * told else Severity.NOTE
+        proposed = float(f"{_ROOM * phi:.3g}")
+        yield Finding(Kind.RANGE, severity, "range.phi", phi, "rad", told, proposed)
+    torque = max((float(np.max(np.abs(p.tau))) for p in seen.pieces), default=0.0)
+    torque, told = abs(seen.gamma) * torque, float(every["prior.tau_e"])
+    if is_matched and torque > _TORQUE * told > 0:
+        proposed = float(f"{_ROOM * torque:.3g}")
+        key = "prior.tau_e"
+        yield Finding(Kind.RANGE, Severity.WRONG, key, torque, "N.m", told, proposed)
+
+
+def _noise(seen: View) -> Iterator[Finding]:
+    """Noise of the torque, which the prediction error cannot be below."""
+    key = "noise.tau_e" if seen.has_sensor else "noise.tau"
+    if not seen.pieces or (seen.every["modality"] == "Model"):
+        return
+    times = abs(seen.gamma) if seen.has_sensor else 1.0
+    longest = max(seen.pieces, key=lambda piece: len(piece.tau))
+    noise, told = times * variance(longest.tau) ** 0.5, float(seen.every[key])
+    if told > 0 and noise > 0 and not 1 / _NOISE < noise / told < _NOISE:
+        proposed = float(f"{noise:.3g}")
+        yield Finding(Kind.NOISE, Severity.NOTE, key, noise, "N.m", told, proposed)
+
+
+def _claims(outputs: Outputs) -> Iterator[Finding]:
+    """How certain the estimator is."""
+    misfit = float(outputs["misfit"][-1])
+    if misfit > _MISFIT:
+        yield Finding(Kind.MISFIT, Severity.NOTE, "rls.n", misfit, "", 1.0)
+    doubts = outputs["doubt"][len(outputs["doubt"]) // 2 :]
+    for item, key in _KEYS.items():
+        share = float(np.mean(doubts == item))
+        if share > _DOUBTED and not (item == "Misfit" and misfit > _MISFIT):
+            yield Finding(Kind.DOUBT, Severity.NOTE, key, share, "", 0.0, about=item)

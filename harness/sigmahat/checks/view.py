@@ -1,0 +1,95 @@
+"""The part of a log that is looked at: a bounded number of ticks, at the units of the ports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sigmahat.fmi.instance import Value
+from sigmahat.identification.regression import Signals, shortest
+from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.log import Array, Log
+from sigmahat.logs.resampling import stretches
+from sigmahat.logs.sampling import Samples, sample
+
+_MOST = 60_000
+"""Ticks that are looked at: of a longer log, those in which the joint moves most."""
+
+
+@dataclass(frozen=True)
+class View:
+    """A log under a configuration, as the checks see it."""
+
+    log: Log
+    """The log, for what conversion and sampling would hide."""
+    configuration: Configuration
+    """The configuration, as it is given."""
+    every: Mapping[str, Value]
+    """All parameters of the estimator."""
+    samples: Samples
+    """At most 60000 ticks."""
+    pieces: Sequence[Signals]
+    """Stretches without a gap in which theta, q and the torque of the modality are known. tau is
+    that of the motor, or the one of the sensor over the gear ratio, with the sign of tau."""
+
+    @property
+    def T(self) -> float:
+        """Time between ticks [s]."""
+        return self.samples.T
+
+    @property
+    def gamma(self) -> float:
+        """Gear ratio."""
+        return float(self.every["motor.gamma"])
+
+    @property
+    def has_sensor(self) -> bool:
+        """Whether the torque is that of a sensor."""
+        return self.every["modality"] == "Sensor"
+
+
+def view(log: Log, configuration: Configuration, every: Mapping[str, Value]) -> View:
+    """Looks at a log. Raises LogError if log and configuration do not fit.
+
+    every  all parameters of the estimator
+    """
+    configuration.need_ports(str(every["modality"]))
+    samples = _liveliest(sample(log, configuration, float(every["samplePeriod"])))
+    seen = View(log, configuration, every, samples, ())
+    return replace(seen, pieces=_pieces(seen))
+
+
+def _liveliest(samples: Samples) -> Samples:
+    """The ticks between which theta, or else q, moves most."""
+    ticks = len(samples.values)
+    if ticks <= _MOST:
+        return samples
+    angle = "theta" if "theta" in samples.names else "q"
+    motion = np.abs(np.diff(samples.values[:, list(samples.names).index(angle)], prepend=np.nan))
+    way = np.concatenate([[0.0], np.cumsum(np.nan_to_num(motion))])
+    starts = np.linspace(0, ticks - _MOST, 50).astype(int)
+    first = int(starts[np.argmax(way[starts + _MOST] - way[starts])])
+    return replace(samples, values=samples.values[first : first + _MOST])
+
+
+def _pieces(seen: View) -> list[Signals]:
+    samples, every = seen.samples, seen.every
+    columns = dict(zip(samples.names, samples.values.T, strict=True))
+    torque = "tau_e_sensor" if seen.has_sensor else "tau"
+    if not {"q", torque} <= columns.keys():
+        return []
+    scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
+    good = np.isfinite(samples.values).all(axis=1)
+    pieces = []
+    for first, last in zip(*stretches(good), strict=True):
+        if last - first < shortest(samples.T):
+            continue
+        part = {name: np.ascontiguousarray(each[first:last]) for name, each in columns.items()}
+        nothing: Array = np.zeros(last - first)
+        theta = part.get("theta", nothing)
+        tau = -part[torque] / seen.gamma if seen.has_sensor else part[torque]
+        set_point = offset + scale * part.get("theta_c", nothing)
+        pieces.append(Signals(theta, part["q"] - theta, set_point, tau, None))
+    return pieces

@@ -1,0 +1,108 @@
+"""A log of a series elastic knee in counts, degrees and amperes, and wrong configurations of it.
+
+The twelve wrong ones are those of the issue that asked for `sigmahat check`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_runs import run_plant, times
+
+Array = NDArray[np.float64]
+
+GEAR, COUNTS, ZERO, CONSTANT = 100.0, 4096.0, 1500.0, 0.05
+KNEE = {
+    "motor.B": 1e-4,
+    "motor.D_theta": 5e-4,
+    "motor.gamma": GEAR,
+    "motor.tau_coulomb": 0.03,
+    "link.M": 0.5,
+    "link.D_q": 0.1,
+    "spring.k_1": 1000.0,
+    "encoder.theta": COUNTS * GEAR,
+    "encoder.q": 262144.0,
+}
+SINES = ((0.15, 0.31, 0.0), (0.12, 1.3, 0.4), (0.08, 4.1, 1.0))
+"""Amplitude [N.m], frequency [Hz] and phase of the torque of the motor."""
+
+RIGHT = """\
+[time]
+column = "t"
+[ports.theta]
+column = "motor_counts"
+unit = "counts"
+counts_per_turn = 4096
+gear_ratio = 100
+zero = 1500
+[ports.q]
+column = "link_deg"
+unit = "deg"
+[ports.tau]
+column = "current"
+unit = "A"
+torque_constant = 0.05
+[parameters]
+samplePeriod = 0.001
+method = "MatchedFilter"
+motor.B = 1.05e-4
+motor.D_theta = 5.5e-4
+motor.gamma = 100
+prior.B = 0.1
+encoder.q = 262144
+range.phi = 0.03
+prior.tau_e = 20
+rls.n = 1
+rls.m = 1
+"""
+WRONG: Mapping[str, tuple[str, str, tuple[str, ...]]] = {
+    "torque sign": ("torque_constant", "sign = -1\ntorque_constant", ("ports.tau.sign",)),
+    "link sign": ('unit = "deg"', 'unit = "deg"\nsign = -1', ("ports.q.sign",)),
+    "link offset 1 degree": (
+        'unit = "deg"',
+        'unit = "deg"\nzero = 1.0',
+        ("ports.q.zero", "ports.theta.zero"),
+    ),
+    "encoder zero 0": ("zero = 1500\n", "", ("ports.q.zero", "ports.theta.zero")),
+    "degrees as rad": ('unit = "deg"', 'unit = "rad"', ("ports.q.unit",)),
+    "counts per turn x 4": ("4096", "16384", ("ports.theta.counts_per_turn",)),
+    "theta without its gear": ("gear_ratio = 100\n", "", ("ports.theta.gear_ratio",)),
+    "gamma 50 instead of 100": ("gamma = 100", "gamma = 50", ("motor.gamma",)),
+    "gamma 80": ("gamma = 100", "gamma = 80", ("motor.gamma",)),
+    "torque 10 ms late": ('"current"', '"late_current"', ("ports.tau.delay",)),
+    "torque geared twice": (
+        "torque_constant",
+        "gear_ratio = 100\ntorque_constant",
+        ("ports.tau.gear_ratio",),
+    ),
+    "torque constant + 10 %": ("= 0.05\n", "= 0.055\n", ("ports.tau.torque_constant",)),
+}
+"""By name: what is replaced in RIGHT, by what, and the keys of which one has to be named."""
+
+
+def joint_log(plant: Mapping[str, float], T: float, load: float = 0.0) -> dict[str, Array]:
+    """20 s of RealJointPlant: t, theta, q, tau in rad and N.m, under a torque on the link [N.m]."""
+    t = times(T, 20.0)
+    tau = sum(A * np.sin(2 * np.pi * f * t + phase) for A, f, phase in SINES)
+    torques = np.column_stack([tau, np.full_like(t, load)])
+    record = ("theta_measured", "q_measured", "tau_measured")
+    run = run_plant("RealJointPlant", ("tau", "tau_ext"), T, torques, plant, record)
+    return {"t": t, **{name.removesuffix("_measured"): run[name] for name in record}}
+
+
+@cache
+def knee_log() -> Mapping[str, Array]:
+    """The columns of the log."""
+    log = joint_log(KNEE, 1e-3)
+    current = log["tau"] / CONSTANT
+    return {
+        "t": log["t"],
+        "motor_counts": np.round(log["theta"] / (2 * np.pi) * COUNTS * GEAR) + ZERO,
+        "link_deg": np.degrees(log["q"]),
+        "current": current,
+        "late_current": np.concatenate([np.full(10, current[0]), current[:-10]]),
+    }
