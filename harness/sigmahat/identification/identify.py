@@ -18,8 +18,8 @@ from sigmahat.identification.coherence import TorqueNoise, coherent_range
 from sigmahat.identification.motor import KnownInertia, fit_motor, motor_form
 from sigmahat.identification.next_motion import advice
 from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
-from sigmahat.identification.quantities import Identified, Quantity
-from sigmahat.identification.regression import Signals, shortest
+from sigmahat.identification.quantities import Advice, Identified, Quantity
+from sigmahat.identification.regression import Form, Signals, shortest
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Array, Log
@@ -67,8 +67,6 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         V_a = _best_V_a(fmu, samples, start, longest, f_0)
     quantities = dict(motor.quantities)
     form = motor_form(min(f_0, coherent), T, symmetric)
-    steps = _step(every["encoder.theta"]), _step(every["encoder.q"])
-    weak = advice(pieces, T, gamma, form, quantities, B, steps)
     if quantities["B"].determined:  # until here it was that of the configuration
         f_0 = bandwidth(tau_variance, theta_variance, quantities["B"].value * abs(gamma), T)
     nominal = configuration.ports["tau"].torque_constant
@@ -94,8 +92,21 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         torque=max(abs(gamma) * tau, _finite(motor.spring)),
         D_theta=float(every["motor.D_theta"]),
         notes=samples.notes,
-        advice=weak,
+        advice=_advice(pieces, T, form, quantities, every),
     )
+
+
+def _advice(
+    pieces: Sequence[Signals],
+    T: float,
+    form: Form,
+    quantities: Mapping[str, Quantity],
+    every: Mapping[str, Value],
+) -> Sequence[Advice]:
+    """What to record next."""
+    steps = _step(every["encoder.theta"]), _step(every["encoder.q"])
+    gamma, B = float(every["motor.gamma"]), float(every["motor.B"])
+    return advice(pieces, T, gamma, form, quantities, B, steps)
 
 
 def _step(counts: Value) -> float:
