@@ -68,6 +68,7 @@ def test_steps_and_turns_of_encoders() -> None:
     found = tomlkit.parse(Path("log.toml").read_text()).unwrap()
     assert found["ports"]["theta"]["wrap"] == 360
     assert found["ports"]["theta"]["unit"] == "deg"
+    assert found["ports"]["theta"]["gear_ratio"] == 2000
     assert found["parameters"]["encoder"] == {"theta": 4096 * 2000, "q": 0}
     assert found["parameters"]["rls"]["m"] == 1
 

@@ -322,3 +322,17 @@ def test_from_counts_and_amperes_to_the_stiffness(
     sigma = read_estimate(out)[SIGMA].to_numpy()
     # Coulomb friction is in the plant and not in the residual: a tenth is what is left of it
     assert np.mean(np.abs(sigma / truth - 1)[5000:]) < 0.1
+
+
+def test_without_a_torque_no_percentage_of_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # GIVEN a joint that does not deform THEN its error is not said to be 1e+10 % of no torque
+    monkeypatch.chdir(tmp_path)
+    t = 1e-3 * np.arange(2000)
+    motion = np.sin(5 * t)
+    log = {"t": t, "theta": motion, "q": motion, "theta_c": 75 + t, "tau": 0.1 * motion}
+    write_log(log, Path("log.parquet"))
+    Path("log.toml").write_text(CONFIGURATION)
+    assert main(["estimate", "log.parquet"]) == 0
+    assert "(100 % or more of the torque)" in capsys.readouterr().out

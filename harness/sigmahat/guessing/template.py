@@ -207,9 +207,9 @@ def _encoder(port: PortGuess) -> tuple[int, str]:
     """Counts in a turn of the joint, and why."""
     if not port.steps:
         return 0, "counts per turn; not quantised"
-    counts = round(port.steps * (port.gear_ratio or 1.0))
-    gear = "" if port.gear_ratio in (1, None) else f", behind a gear of {port.gear_ratio:g}"
-    return counts, f"counts per turn; its step is 1/{port.steps} turn{gear}"
+    gear = port.gear_ratio or port.moves or 1.0
+    where = "" if gear == 1 else f", times a gear of {gear:.4g}"
+    return round(port.steps * gear), f"counts per turn; its step is 1/{port.steps} turn{where}"
 
 
 def _set_point(port: PortGuess | None) -> Iterator[tuple[str, float, str]]:
