@@ -311,6 +311,10 @@ def test_from_counts_and_amperes_to_the_stiffness(
     text = Path("knee.toml").read_text()
     for value in ("counts_per_turn = 40000", "counts_per_turn = 1024", "torque_constant = 0.05"):
         text = text.replace(f"{value.split()[0]} = 0 ", f"{value} ", 1)
+    text = text.replace("gear_ratio = 0 ", "gear_ratio = 1 ")  # the encoder sits behind the gear
+    Path("knee.toml").write_text(text)
+    assert main(["identify", "knee.csv"]) == 2  # it asks for the gear ratio of the motor
+    text = text.replace("motor.gamma = 0 ", "motor.gamma = 50 ")
     Path("knee.toml").write_text(text)
     assert main(["identify", "knee.csv"]) == 0
     assert main(["estimate", "knee.csv"]) == 0

@@ -15,6 +15,7 @@ from sigmahat.guessing.roles import Role, Roles
 from sigmahat.logs.log import Array
 
 _AFTER_GEAR = 1.4  # motor over link, in the same unit: below, the motor is measured after its gear
+_AS_FAR = 0.15  # two positions behind the gear move as far as each other, relative
 _WHOLE = 0.002  # a gear ratio this near to a whole number is taken for it, relative
 _STIFF = 0.005  # deformation over motion: above, the motion of the link is no measure of the gear
 _APART = 4.0  # deformations, in their standard deviation: a larger one is a zero
@@ -199,7 +200,7 @@ def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess
     """
     if other.unit not in TURN:
         return port
-    same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < 0.3]
+    same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
     unit = same[0] if same else other.unit
     how = "CHECK: by the other position, with which it moves"
     return replace(port, unit=unit, notes={**port.notes, "unit": how})

@@ -169,7 +169,7 @@ def _add_motor(table: Table, theta: PortGuess | None, defaults: Mapping[str, flo
     if theta is None or theta.gear_ratio == 1:
         _add(table, "motor.gamma", 0, "FILL IN: gear ratio, between motor and flexibility")
     else:
-        table.add(tomlkit.comment("motor.gamma is the gear_ratio of theta, unless it is set here"))
+        _add(table, "motor.gamma", 0, "0: the gear_ratio of theta, which must then not be 1")
     for name, value in defaults.items():
         _add(table, name, value, f"[{_MOTOR_UNITS[name]}] {NOT_YOURS}")
         _add(table, name.replace("motor.", "prior."), ANOTHER_ROBOT, WIDE_PRIOR)
