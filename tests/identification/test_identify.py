@@ -187,10 +187,17 @@ def test_what_is_not_determined_is_never_exact(
     for _ in range(2):  # a second run finds what the first one wrote
         written = write(cannot_tell(found[1.0]), path)
         read = read_configuration(path).parameters
-        wide = {"prior.B": 1.0, "prior.D_theta": 1.0, "prior.tau_coulomb": 0.06, **kept}
+        wide = {"prior.B": 1000.0, "prior.D_theta": 1.0, "prior.tau_coulomb": 0.06, **kept}
         assert {name: read[name] for name in wide} == wide
         assert not any(f"parameters.{name}" in written for name in kept)
-        assert not any(name.startswith("motor.") for name in read)
+        # No value of another robot stays without a word: B has no interval, D_theta has one.
+        B, friction = found[1.0].B, found[1.0].quantities["D_theta"]
+        assert read["motor.B"] == pytest.approx(B)
+        assert read["motor.D_theta"] == pytest.approx(friction.value, rel=1e-5)
+        assert {"parameters.motor.B", "parameters.motor.D_theta"} <= set(written)
+        if "{" not in parameters:
+            lines = [x for x in path.read_text().splitlines() if "# not known: " in x]
+            assert len(lines) == 2
         assert ("# mine" in path.read_text()) == ("# mine" in parameters)
     # WHEN another log determines them THEN nothing of this is left
     write(found[1.0], path)
@@ -201,6 +208,7 @@ def test_what_is_not_determined_is_never_exact(
     if "{" not in parameters:  # there is no place for a comment inside of braces
         assert read.get("prior.D_theta") == kept.get("prior.D_theta")
         assert "cannot tell" not in path.read_text()
+        assert "not known" not in path.read_text()
 
 
 def test_the_bandwidth_is_that_of_the_inertia_found(found: dict[float, Identified]) -> None:

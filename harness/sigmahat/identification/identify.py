@@ -18,7 +18,7 @@ from sigmahat.identification.coherence import TorqueNoise, coherent_range
 from sigmahat.identification.motor import KnownInertia, fit_motor, motor_form
 from sigmahat.identification.next_motion import advice
 from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
-from sigmahat.identification.quantities import Advice, Identified, Quantity
+from sigmahat.identification.quantities import WIDE, Advice, Identified, Quantity
 from sigmahat.identification.regression import Form, Signals, shortest
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.errors import LogError
@@ -90,6 +90,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         zero=zero,
         set_point=set_point,
         torque=max(abs(gamma) * tau, _finite(motor.spring)),
+        B=B,
         D_theta=float(every["motor.D_theta"]),
         notes=samples.notes,
         advice=_advice(pieces, T, form, quantities, every),
@@ -115,10 +116,13 @@ def _step(counts: Value) -> float:
 
 
 def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> KnownInertia | None:
-    """B of the configuration, if somebody has said how certain it is."""
+    """B of the configuration, if somebody has said how certain it is.
+
+    A wide prior says that nobody knows: it is of `init`, or of an earlier run.
+    """
     std = float(every["prior.B"])
     given = "motor.B" in configuration.parameters
-    return KnownInertia(float(every["motor.B"]), std) if given and std > 0 else None
+    return KnownInertia(float(every["motor.B"]), std) if given and 0 < std < WIDE else None
 
 
 def _is_wrong(zero: Quantity | None, pieces: Sequence[Signals]) -> bool:

@@ -6,6 +6,10 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+WIDE = 1.0
+"""Relative prior of motor data that the log does not determine. MatchedFilter would take a prior of
+0, the start value of prior.B, as exact; with 1 it accepts up to 4 times the value."""
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -92,6 +96,8 @@ class Identified:
     """Largest magnitude of the set-point [1]."""
     torque: float
     """Largest magnitude of the torque of the motor after its gear, or of the spring [N.m]."""
+    B: float
+    """That of the configuration [kg.m2]."""
     D_theta: float
     """That of the configuration [N.m.s/rad]."""
     notes: Sequence[str]

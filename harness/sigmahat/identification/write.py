@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import MutableMapping
+from collections.abc import Mapping, MutableMapping
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +11,16 @@ import tomlkit
 from tomlkit.items import InlineTable, Item
 
 from sigmahat.files.whole_file import write_whole
-from sigmahat.identification.quantities import Identified
+from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import MOTOR
-from sigmahat.logs.configuration import Port, read_document
+from sigmahat.logs.configuration import (
+    ANOTHER_ROBOT,
+    ANY_COULOMB,
+    NOT_YOURS,
+    WIDE_PRIOR,
+    Port,
+    read_document,
+)
 from sigmahat.logs.units import factor
 from sigmahat.user_input import toml_file
 
@@ -21,20 +28,20 @@ _ABOVE = 1.4
 """matched.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
 _ROOM = 1.2
 """Ranges over the largest values of the log: another motion may go further."""
-_WIDE = 1.0
-"""Relative prior of motor data that the log does not determine. MatchedFilter would take a prior of
-0, the start value of prior.B, as exact; with 1 it accepts up to 4 times the value."""
-_CANNOT_TELL = "wide, because identify cannot tell; make it smaller if you know better"
+_MIDDLE = "not known: the middle of what identify holds possible"
+_NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE)
+"""Comments of values that the next log may tell."""
 
 
 def write(found: Identified, path: Path) -> list[str]:
     """Writes what is determined into [parameters] and [ports.tau], everything into [identified].
 
-    What is not determined gets a wide prior, unless the file has one above 0.
+    What is not determined gets a wide prior, unless the file has one above 0. If nobody has set its
+    value either, a comment says so: no value of another robot stays unnoticed.
 
     Returns the keys that were written. The file is replaced at once, or not changed.
     """
-    document = _without_wide_priors(read_document(path))
+    document = _without_what_is_not_known(read_document(path))
     values: dict[str, Any] = {
         "filter.V_a": found.V_a,
         "rls.n": found.n,
@@ -56,13 +63,18 @@ def write(found: Identified, path: Path) -> list[str]:
     values = {name: _short(value) for name, value in values.items() if value != 0}
     parameters = document.setdefault("parameters", tomlkit.table())
     given = dict(toml_file.dotted(parameters.unwrap()))
-    wide = {n: _short(value) for n, value in _wide_priors(found).items() if not given.get(n)}
+    unknown = {name: each for name, each in _unknown(found).items() if name not in given}
+    comments = {name: comment for name, (_, comment) in unknown.items()}
+    priors = {name: _short(value) for name, value in _wide_priors(found, comments).items()}
+    wide = {name: value for name, value in priors.items() if not given.get(name)}
     for name, value in values.items():
         _set(parameters, name, tomlkit.item(value))
+    for name, (value, comment) in unknown.items():
+        _set(parameters, name, tomlkit.item(_short(value)).comment(comment))
     for name, value in wide.items():
         item = tomlkit.item(value)
-        _set(parameters, name, item if name in given else item.comment(_CANNOT_TELL))
-    written = [f"parameters.{name}" for name in (*values, *wide)]
+        _set(parameters, name, item if name in given else item.comment(WIDE_PRIOR))
+    written = [f"parameters.{name}" for name in (*values, *unknown, *wide)]
     constant = found.quantities.get("torque_constant")
     if constant is not None and constant.determined:
         document["ports"]["tau"]["torque_constant"] = _short(constant.value)
@@ -75,18 +87,47 @@ def write(found: Identified, path: Path) -> list[str]:
     return written
 
 
-def _wide_priors(found: Identified) -> dict[str, float]:
-    """Priors of the motor data that are not determined, by parameter."""
+def _unknown(found: Identified) -> dict[str, tuple[float, str]]:
+    """Values of the motor data that are not determined, with a comment, by parameter."""
+    values = {}
+    for name, own in (("B", found.B), ("D_theta", found.D_theta)):
+        quantity = found.quantities.get(name)
+        if quantity is not None and not quantity.determined:
+            middle = _middle(quantity)
+            comment = NOT_YOURS if middle is None else _MIDDLE
+            values[f"motor.{name}"] = (own if middle is None else middle, comment)
+    return values
+
+
+def _middle(quantity: Quantity) -> float | None:
+    """Middle of the positive part of an interval; None if there is none."""
+    low, high = quantity.interval
+    return 0.5 * (max(low, 0.0) + high) if math.isfinite(high) and high > 0 else None
+
+
+def _wide_priors(found: Identified, comments: Mapping[str, str]) -> dict[str, float]:
+    """Priors of the motor data that are not determined, by parameter.
+
+    comments  of the parameters that nobody has set; around the middle of an interval, WIDE holds
+              all of it
+    """
     undetermined = {name: q for name, q in found.quantities.items() if not q.determined}
-    priors = {f"prior.{name}": _WIDE for name in ("B", "D_theta") if name in undetermined}
+    priors = {}
+    for name in ("B", "D_theta"):
+        if name in undetermined:
+            not_yours = comments.get(f"motor.{name}") == NOT_YOURS
+            priors[f"prior.{name}"] = ANOTHER_ROBOT if not_yours else WIDE
     D_theta = undetermined.get("D_theta")
+    if comments.get("motor.D_theta") == _MIDDLE:
+        D_theta = None
     if D_theta is not None and math.isfinite(D_theta.half_width) and found.D_theta > 0:
         # Encoders that are read at different times look like friction, of any sign and size.
         largest = max(abs(end / found.D_theta - 1) for end in D_theta.interval)
-        priors["prior.D_theta"] = max(_WIDE, largest)
+        priors["prior.D_theta"] = max(priors["prior.D_theta"], largest)
     tau_coulomb = undetermined.get("tau_coulomb")
-    if tau_coulomb is not None and math.isfinite(tau_coulomb.half_width):
-        priors["prior.tau_coulomb"] = max(abs(end) for end in tau_coulomb.interval)
+    if tau_coulomb is not None:
+        largest = max(abs(end) for end in tau_coulomb.interval)
+        priors["prior.tau_coulomb"] = largest if math.isfinite(largest) else ANY_COULOMB
     return priors
 
 
@@ -97,10 +138,12 @@ def _move_zero(port: MutableMapping[str, Any], zero: float) -> None:
     port["zero"] = float(f"{read.zero + zero / angle:.9g}")
 
 
-def _without_wide_priors(document: tomlkit.TOMLDocument) -> tomlkit.TOMLDocument:
-    """Without what an earlier run wrote because it could not tell: this one may be able to."""
+def _without_what_is_not_known(document: tomlkit.TOMLDocument) -> tomlkit.TOMLDocument:
+    """Without what `init` or an earlier run wrote because they could not tell: this one may be
+    able to.
+    """
     lines = tomlkit.dumps(document).splitlines(keepends=True)
-    kept = [line for line in lines if not line.rstrip().endswith(f"# {_CANNOT_TELL}")]
+    kept = [line for line in lines if not line.rstrip().endswith(_NOT_KNOWN)]
     return tomlkit.parse("".join(kept))
 
 

@@ -36,6 +36,15 @@ from sigmahat.user_input.unknown_name import unknown
 PORTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sensor": "N.m"}
 """Inputs of StiffnessEstimator and their units."""
 
+NOT_YOURS = "not known: of another robot, until identify finds it or you set it"
+"""Comment of a motor parameter that nobody has set."""
+WIDE_PRIOR = "wide, because identify cannot tell; make it smaller if you know better"
+"""Comment of a prior of such a parameter."""
+ANOTHER_ROBOT = 1000.0
+"""Its value: small motors and large ones differ by so much. It costs hardly any accuracy."""
+ANY_COULOMB = 1.0
+"""prior.tau_coulomb where nothing is known of friction [N.m]: too large costs little as well."""
+
 _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("q", "tau_e_sensor"), "Model": ("q",)}
 """Ports that a modality cannot do without."""
 

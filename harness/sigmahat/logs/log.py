@@ -8,12 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute
 from numpy.typing import NDArray
 
 from sigmahat.logs.errors import LogError
 from sigmahat.user_input.unknown_name import unknown
 
 Array = NDArray[np.float64]
+_EXACT = 2**53  # largest magnitude up to which a float64 holds every integer
 
 
 class Log(ABC):
@@ -28,7 +30,8 @@ class Log(ABC):
     def read(self, name: str) -> Array:
         """One column, [size: samples]; nan where a sample is missing.
 
-        Dates and times become seconds since the first row. Raises LogError if there is no such
+        Dates and times become seconds since the first row; integers beyond 2^53, such as
+        nanoseconds since 1970, are counted from the first one. Raises LogError if there is no such
         column, or if it holds something other than numbers.
         """
         self.samples(name)
@@ -57,7 +60,10 @@ class LogInMemory(Log):
         self._arrays = arrays
 
     def _read(self, name: str) -> Array:
-        return self._arrays[name].astype(np.float64)
+        array = self._arrays[name]
+        if array.dtype.kind in "iu" and len(array) and np.abs(array).max() > _EXACT:
+            array = array.astype(np.int64) - array.astype(np.int64)[0]
+        return array.astype(np.float64)
 
     def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
         for first in range(0, max(self.columns[name] for name in names), rows):
@@ -75,14 +81,32 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
         shifted = pa.compute.subtract(nanoseconds, first)
         return numbers(path, name, shifted) / 1e9
     if pa.types.is_string(kind) or pa.types.is_large_string(kind):
-        text = next((x.as_py() for x in column if x.is_valid and not is_number(x.as_py())), "")
-        raise LogError(f"{path}: column {name!r} holds text ({text!r}), expected numbers")
+        row, text = next(
+            (
+                (row, x.as_py())
+                for row, x in enumerate(column, 1)
+                if x.is_valid and x.as_py().strip() and not is_number(x.as_py())
+            ),
+            (1, ""),
+        )
+        raise LogError(
+            f"{path}: column {name!r} holds text ({text!r} in row {row}), expected numbers"
+        )
     if pa.types.is_null(kind):
         return np.full(len(column), np.nan)
     if not (pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)):
         raise LogError(f"{path}: column {name!r} holds {kind}, expected numbers")
+    if pa.types.is_integer(kind) and not fits_float64(column):
+        first = next(x.as_py() for x in column if x.is_valid)
+        column = pa.compute.subtract(column.cast(pa.int64()), first)
     values: Array = column.cast(pa.float64(), safe=False).to_numpy()
     return values
+
+
+def fits_float64(column: pa.ChunkedArray) -> bool:
+    """Whether a float64 holds every integer of a column: nanoseconds since 1970 do not fit."""
+    ends = pa.compute.min_max(column).as_py()
+    return ends["min"] is None or max(abs(ends["min"]), abs(ends["max"])) <= _EXACT
 
 
 def is_number(text: str) -> bool:

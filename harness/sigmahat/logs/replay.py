@@ -49,7 +49,8 @@ _REASON = "doubt"
 
 
 def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
-    """Start values of the FMU: those of the configuration, and encoders of columns in counts.
+    """Start values of the FMU: those of the configuration, encoders of columns in counts, and the
+    gear ratio of theta as motor.gamma, if that is 0 or not given.
 
     encoder.theta_c is set as well, though it has no effect: the contract of the FMU names it.
 
@@ -60,10 +61,17 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
         counts = counts_per_turn(port)
         if counts is not None and f"encoder.{name}" in fmu.variables:
             start.setdefault(f"encoder.{name}", counts)
+    theta = configuration.ports.get("theta")
+    if theta is not None and theta.gear_ratio != 1 and not start.get("motor.gamma"):
+        start["motor.gamma"] = abs(theta.gear_ratio)
     try:
         for name, value in start.items():
             fmu.variable(name, "parameter")
             fmu.number(name, value)
+            if isinstance(value, float) and not math.isfinite(value):
+                raise ValueError(f"parameters.{name}: expected a finite number, got {value}")
+        if start.get("motor.gamma") == 0:
+            raise ValueError("parameters.motor.gamma is 0; fill in the gear ratio of your joint")
         return start
     except (ValueError, TypeError) as error:
         raise LogError(f"{configuration.path}: {error}") from error

@@ -19,6 +19,7 @@ from sigmahat.logs.resampling import AT_TICK, Resampled, at_ticks, stretches
 from sigmahat.logs.units import convert, seconds, unwrap
 
 _MOST_TICKS = 200_000_000
+_LONG_AGO = 1e6  # [s] A time that is larger counts from 1970, or from the start of a machine.
 
 
 @dataclass(frozen=True)
@@ -103,13 +104,20 @@ def _times(
         i = int(np.argmax(steps <= 0))
         row = np.flatnonzero(finite)[i + 1] + 1
         raise LogError(
-            f"{log.path}: time column {name!r} does not increase: {given[i + 1]:.9g} s in "
-            f"row {row} after {given[i]:.9g} s; sort or split the log"
+            f"{log.path}: time column {name!r} does not increase: {_shown(given, i + 1)} in "
+            f"row {row} after {_shown(given, i)}; sort or split the log"
         )
     if len(given) < len(times):
         times[~finite] = np.nan
         notes.append(f"{name}: {len(times) - len(given)} rows without a time left out")
     return times
+
+
+def _shown(times: Array, i: int) -> str:
+    """A time as it is, or from the first one on if the digits of that would hide it."""
+    if abs(times[0]) < _LONG_AGO:
+        return f"{times[i]:.9g} s"
+    return f"{times[i] - times[0]:.9g} s from the first row"
 
 
 def _column(log: Log, name: str, port: Port, rows: int, notes: list[str]) -> Array:

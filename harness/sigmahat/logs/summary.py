@@ -41,12 +41,13 @@ def summary(result: Estimate) -> str:
 
 def _second_half(result: Estimate) -> Iterator[str]:
     (low, high), (least, most) = result.sigma_range, result.tau_e_range
-    relative = 100 * result.epsilon_rms / (most - least) if most > least else float("nan")
+    error = result.epsilon_rms
+    relative = f"{100 * error / (most - least):.2g} %" if most - least > error else "100 % or more"
     yield "in the second half of the log:"
     yield f"  stiffness sigma       {low:10.4g} to {high:10.4g} N.m/rad"
     yield f"  torque tau_e, fitted  {least:10.4g} to {most:10.4g} N.m"
     yield f"  deformation phi       {result.phi_range[0]:10.4g} to {result.phi_range[1]:10.4g} rad"
-    yield f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative:.2g} % of the torque)"
+    yield f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative} of the torque)"
     if result.parameters["method"] == "MatchedFilter":
         reasons = ", ".join(f"{item} {100 * share:.3g} %" for item, share in result.doubt.items())
         why = f" ({reasons})" if reasons else ""

@@ -13,7 +13,7 @@ import pyarrow.csv
 import pyarrow.parquet
 
 from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Array, Log, is_number, numbers
+from sigmahat.logs.log import Array, Log, fits_float64, is_number, numbers
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 
@@ -66,7 +66,7 @@ class CsvLog(Log):
         self.columns = dict.fromkeys(names, self._copy.metadata.num_rows)
 
     def _read(self, name: str) -> Array:
-        if self._copy.schema_arrow.field(name).type == pa.float64():
+        if _numeric(self._copy.schema_arrow.field(name).type):
             column = self._copy.read([name], use_threads=False).column(0)
         else:
             column = self._parsed(name)
@@ -76,11 +76,17 @@ class CsvLog(Log):
         yield from self._copy.iter_batches(rows, columns=list(names), use_threads=False)
 
     def _copied(self, file: IO[bytes]) -> pa.parquet.ParquetFile:
-        """All columns in Parquet, numbers as float64, everything else as its text."""
+        """All columns in Parquet, numbers as such, everything else as its text."""
         try:
-            with self._stream({}) as first:
-                kinds = {field.name: field.type for field in first.schema}
-            self._write(file, kinds)
+            with self._stream({}) as stream:
+                kinds = {field.name: field.type for field in stream.schema}
+                first = pa.table(stream.read_next_batch())
+            try:
+                self._write(file, kinds)
+            except pa.ArrowInvalid:  # such as 0, 0, 0.5: whole numbers only at the beginning
+                integers = [name for name, kind in kinds.items() if pa.types.is_integer(kind)]
+                small = [name for name in integers if fits_float64(first[name])]
+                self._write(file, {**kinds, **dict.fromkeys(small, pa.float64())})
         except pa.ArrowInvalid:
             # A column that has text behind its first numbers, or damage, which appears again here.
             self._write(file, {name: self._parsed(name).type for name in self._names})
@@ -88,9 +94,7 @@ class CsvLog(Log):
         return pa.parquet.ParquetFile(file, pre_buffer=False)
 
     def _write(self, file: IO[bytes], kinds: Mapping[str, pa.DataType]) -> None:
-        types = {
-            name: pa.float64() if _numeric(kind) else pa.string() for name, kind in kinds.items()
-        }
+        types = {name: kind if _numeric(kind) else pa.string() for name, kind in kinds.items()}
         file.seek(0)
         file.truncate()
         with (

@@ -1,0 +1,148 @@
+"""The columns of a log as the guess sees them: name, values, clock."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from sigmahat.guessing import clock
+from sigmahat.guessing.facts import Facts, look_at
+from sigmahat.guessing.words import Meaning, meaning
+from sigmahat.logs.log import Array, Log
+from sigmahat.logs.units import seconds
+
+_WINDOW = 20_000  # samples in which columns are compared
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column that is not a clock."""
+
+    name: str
+    meaning: Meaning
+    facts: Facts
+    clock: str | None
+    """The column of its times."""
+    window: Array
+    """Its values, unwrapped, where the log moves most: the same times for all columns [size: n];
+    empty if it holds no numbers."""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """All columns of a log."""
+
+    signals: Sequence[Column]
+    clocks: Mapping[str, str]
+    """Units of the columns of times, by name."""
+    spans: Mapping[str, tuple[float, float]]
+    """Their smallest and largest values, by name."""
+    intervals: Mapping[str | None, float]
+    """Usual time between rows [s], by clock; by None where there is none."""
+    window_T: float
+    """Time between the samples of the windows [s]."""
+
+
+def read_columns(log: Log) -> Columns:
+    """Looks at every column of a log, once."""
+    facts: dict[str, Facts] = {}
+    values: dict[str, Array] = {}
+    for name in log.columns:
+        facts[name], values[name] = look_at(log, name)
+    meanings = {name: meaning(name) for name in log.columns}
+    units = {
+        name: clock.unit_of(meanings[name], facts[name], values[name])
+        for name in log.columns
+        if clock.is_clock(meanings[name], facts[name], values[name])
+    }
+    units = _named(units, meanings)
+    times = {name: values[name] * seconds(unit) for name, unit in units.items()}
+    intervals: dict[str | None, float] = {name: clock.interval(t) for name, t in times.items()}
+    intervals[None] = 1e-3
+    clocks = {name: _clock_of(name, log, list(units)) for name in log.columns}
+    signals = [name for name in log.columns if name not in units]
+    moving = [name for name in signals if facts[name].varies]
+    T = min((intervals[clocks[name]] for name in moving), default=1e-3)
+    windows = _windows(moving, values, clocks, times, T)
+    return Columns(
+        [
+            Column(name, meanings[name], facts[name], clocks[name], windows.get(name, np.empty(0)))
+            for name in signals
+        ],
+        units,
+        {name: (facts[name].low, facts[name].high) for name in units},
+        intervals,
+        T,
+    )
+
+
+def _named(units: dict[str, str], meanings: Mapping[str, Meaning]) -> dict[str, str]:
+    """Without the clocks that only their values suggest, if others have a name."""
+    named = {name: unit for name, unit in units.items() if meanings[name].quantity == "time"}
+    return named or units
+
+
+def _clock_of(column: str, log: Log, clocks: Sequence[str]) -> str | None:
+    """The times of a column: those of its group or topic, else any of the same length."""
+    same = [name for name in clocks if log.columns[name] == log.columns[column]]
+    return max(same, key=lambda name: _common(name, column), default=None)
+
+
+def _common(one: str, other: str) -> int:
+    """Letters with which both names begin, up to the last that ends a part of them."""
+    n = 0
+    for i, (a, b) in enumerate(zip(one, other, strict=False)):
+        if a != b:
+            break
+        if a in "/.":
+            n = i + 1
+    return n
+
+
+def _windows(
+    names: Sequence[str],
+    values: Mapping[str, Array],
+    clocks: Mapping[str, str | None],
+    times: Mapping[str, Array],
+    T: float,
+) -> dict[str, Array]:
+    """Where the log moves most, the values of columns at the same times, T apart."""
+    samples: dict[str, tuple[Array, Array]] = {}
+    for name in names:
+        column = clocks[name]
+        t = times[column] if column else np.arange(len(values[name]), dtype=np.float64) * T
+        good = np.isfinite(t) & np.isfinite(values[name])
+        t, x = t[good], values[name][good]
+        if len(t) and not np.all(np.diff(t) > 0):
+            order = np.argsort(t, kind="stable")
+            t, x = t[order], x[order]
+        samples[name] = (t, x)
+    if not samples:
+        return {}
+    start = max(float(t[0]) for t, _ in samples.values())
+    end = min(float(t[-1]) for t, _ in samples.values())
+    if end <= start:  # signals that were never recorded together
+        return {}
+    first = _liveliest(list(samples.values()), start, end, _WINDOW * T)
+    last = min(end, first + _WINDOW * T)
+    grid = np.arange(first, last, T)
+    return {name: np.interp(grid, t, x) for name, (t, x) in samples.items()}
+
+
+def _liveliest(
+    samples: Sequence[tuple[Array, Array]], start: float, end: float, length: float
+) -> float:
+    """Begin of the stretch of a length in which the columns together vary most."""
+    parts = int((end - start) / length)
+    if parts < 2:
+        return start
+    edges = start + length * np.arange(parts + 1)
+    motion = np.zeros(parts)
+    for t, x in samples:
+        at = np.searchsorted(t, edges)
+        spread = [float(np.std(x[a:b])) if b > a else 0.0 for a, b in pairwise(at)]
+        motion += np.array(spread) / (max(spread) or 1.0)
+    return float(edges[int(np.argmax(motion))])

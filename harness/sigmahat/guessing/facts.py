@@ -1,0 +1,132 @@
+"""What the values of one column say: range, counts, steps, and where a counter starts again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import Array, Log
+from sigmahat.logs.units import unwrap
+
+TURN = {"rad": 2 * np.pi, "mrad": 2000 * np.pi, "deg": 360.0, "turn": 1.0}
+"""A turn in units of angle."""
+_DISTINCT = 20000  # values among which the step of an encoder is looked for
+_STATES = 8  # a column with fewer whole numbers is a state or a flag
+_FEWEST_COUNTS = 100  # of an encoder in a turn
+_JUMP = 0.5  # of the range: a larger step may be a counter that starts again
+_SEEN = 0.02  # largest distance of a jump from the period it is taken for, relative
+
+
+@dataclass(frozen=True)
+class Facts:
+    """A column, by its values."""
+
+    samples: int
+    low: float
+    """Smallest value; nan if there is no number."""
+    high: float
+    """Largest value; nan if there is no number."""
+    integer: bool
+    """Whether all values are whole numbers, and more than a few of them."""
+    varies: bool
+    """Whether it takes more than a few values."""
+    increasing: float
+    """Share of the steps that go up [1]."""
+    step: float
+    """Distance between neighbouring values of a quantised column; inf if it is not quantised."""
+    wrap: float | None
+    """Period after which it starts again; None if it does not."""
+    text: bool = False
+    """Whether it holds something other than numbers."""
+
+
+def look_at(log: Log, name: str) -> tuple[Facts, Array]:
+    """Facts of a column and its values, unwrapped; no value if it holds no numbers."""
+    try:
+        values = log.read(name)
+    except LogError:
+        nothing = np.empty(0)
+        return Facts(
+            log.samples(name), np.nan, np.nan, False, False, 0.0, np.inf, None, True
+        ), nothing
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return Facts(len(values), np.nan, np.nan, False, False, 0.0, np.inf, None), values
+    steps = np.diff(finite)
+    few = len(np.unique(finite[:_DISTINCT])) < min(_STATES, len(finite))
+    whole = bool(np.all(finite == np.round(finite)))
+    wrap = None if few else _wrap(steps, float(np.ptp(finite)))
+    facts = Facts(
+        samples=len(values),
+        low=float(finite.min()),
+        high=float(finite.max()),
+        integer=whole and not few,
+        varies=not few,
+        increasing=float(np.mean(steps > 0)) if len(steps) else 0.0,
+        step=1.0 if whole and not few else _step(finite),
+        wrap=wrap,
+    )
+    return facts, values if wrap is None else unwrap(values, wrap)[0]
+
+
+def counts_per_turn(facts: Facts, unit: str) -> int:
+    """Of the encoder, by the steps of a column; 0 if it has none, or too few for an encoder."""
+    counts = TURN[unit] / facts.step if unit in TURN else 0.0
+    return round(counts) if counts >= _FEWEST_COUNTS else 0
+
+
+def unit_of_steps(facts: Facts) -> str | None:
+    """Unit of an angle in which its steps are a usual part of a turn: 1/4096, 1/2000."""
+    for unit in ("deg", "rad", "turn"):
+        counts = TURN[unit] / facts.step
+        n = round(counts)
+        usual = n and (n & (n - 1) == 0 or n % 100 == 0)
+        if usual and n >= _FEWEST_COUNTS and abs(counts / n - 1) < 1e-5:
+            return unit
+    return None
+
+
+def _step(finite: Array) -> float:
+    """Step of a quantised column; inf if it has none."""
+    distinct = np.unique(finite[:_DISTINCT])
+    steps = np.diff(distinct)
+    steps = steps[steps > 1e-9 * max(np.ptp(distinct), 1e-300)] if len(steps) else steps
+    if len(steps) < 5:
+        return np.inf
+    step = float(np.median(steps[steps < 1.5 * steps.min()]))
+    ratio = steps / step
+    even = np.abs(ratio - np.round(ratio)) < 0.05
+    if np.mean(even) <= 0.95:
+        return np.inf
+    # Over many steps the last digits of the values matter less.
+    return float(np.sum(steps[even]) / np.sum(np.round(ratio[even])))
+
+
+def _wrap(steps: Array, span: float) -> float | None:
+    """Period of a counter that starts again: a power of two, a full turn, or a round number."""
+    size = np.abs(steps)
+    jumps = np.flatnonzero(size > _JUMP * span)
+    if span == 0 or not len(jumps):
+        return None
+    usual = (
+        float(np.quantile(size, 0.99)) if len(jumps) < 0.01 * len(size) else float(np.median(size))
+    )
+    if usual > 0.2 * size[jumps].min():
+        return None
+    inner = jumps[(jumps > 0) & (jumps < len(size) - 1)]
+    if not len(inner):
+        return None
+    # A counter goes on as it did: the jump and the step that was to come make up a period.
+    coming = 0.5 * (steps[inner - 1] + steps[inner + 1])
+    coming[np.abs(coming) > 0.2 * span] = 0.0
+    period = float(np.median(np.abs(steps[inner] - coming)))
+    exact = [360.0, 2 * np.pi, 1.0, *(2.0**k for k in range(8, 33))]
+    best = min(exact, key=lambda each: abs(each / period - 1))
+    if abs(best / period - 1) < _SEEN:
+        return best
+    # Any other period only if the column moves on over each of the jumps.
+    noise = float(np.median(np.abs(np.diff(steps))))
+    on = -np.sign(steps[inner]) * coming > 3 * noise
+    return float(f"{period:.3g}") if len(inner) > 1 and on.all() else None

@@ -1,0 +1,118 @@
+"""What a log is about: its joints, and for each of them the column of every port.
+
+    joints = guess(open_log(path))
+    joints["knee"].ports["theta"].column
+
+A guess is data: `template.py` writes it as a configuration.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from sigmahat.guessing.columns import Column, Columns, read_columns
+from sigmahat.guessing.joints import joints as joints_of
+from sigmahat.guessing.ports import PortGuess, guess_ports
+from sigmahat.guessing.roles import Roles
+from sigmahat.logs.configuration import PORTS
+from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import Log
+from sigmahat.user_input.unknown_name import unknown
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A column of the log, and what it looks like."""
+
+    name: str
+    samples: int
+    low: float
+    """Smallest value; nan if it holds no number."""
+    high: float
+    """Largest value; nan if it holds no number."""
+    what: str
+    """In a few words: the port, or why it is none."""
+
+
+@dataclass(frozen=True)
+class JointGuess:
+    """All that was guessed of one joint of a log."""
+
+    name: str
+    """As the columns name it; empty if the log has only one."""
+    time: str | None
+    """The time column of the ports that name no other; None if rows are T apart."""
+    time_unit: str
+    T: float
+    """Usual time between rows [s]."""
+    ports: Mapping[str, PortGuess]
+    """By port, in the order of PORTS; only those that have a column."""
+    columns: Sequence[Seen]
+    """All columns of the log, also those of other joints."""
+
+
+def guess(log: Log) -> dict[str, JointGuess]:
+    """The joints of a log by their names, in the order of the columns; at least one.
+
+    A joint may lack ports: then nothing in the log looks like them.
+    """
+    columns = read_columns(log)
+    found = joints_of(columns.signals, columns.window_T)
+    return {name: _joint(name, roles, columns, log) for name, roles in found.items()}
+
+
+def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGuess:
+    """The joint of a name. Raises LogError, which names the joints of the log, if it has none."""
+    short = re.sub(r"^(joint|axis|j)_?(?=\d)", "", name.lower())
+    for each, joint in joints.items():
+        if each.lower() in (name.lower(), short):
+            return joint
+    named = [each for each in joints if each]
+    if not named:
+        raise LogError(f"{log.path}: its columns name no joints; leave --joint out")
+    raise LogError(f"{log.path}: {unknown('joint', name, named)}")
+
+
+def _joint(name: str, roles: Roles, columns: Columns, log: Log) -> JointGuess:
+    clocks = {port: role.column.clock for port, role in roles.ports.items()}
+    main = next(
+        (clocks[port] for port in PORTS if port in clocks), next(iter(columns.clocks), None)
+    )
+    ports = guess_ports(roles, columns, main)
+    uses = {port.column: f"ports.{each}" for each, port in ports.items()}
+    times = {main, *(port.time for port in ports.values())}
+    seen = []
+    by_name = {each.name: each for each in columns.signals}
+    for column, samples in log.columns.items():
+        if column in by_name:
+            what = uses.get(column) or _what(by_name[column])
+            facts = by_name[column].facts
+            seen.append(Seen(column, samples, facts.low, facts.high, what))
+        else:
+            what = "time" if column in times else "another time"
+            low, high = columns.spans[column]
+            seen.append(Seen(column, samples, low, high, what))
+    return JointGuess(
+        name, main, columns.clocks.get(main or "", "s"), columns.intervals[main], ports, seen
+    )
+
+
+def _what(column: Column) -> str:
+    """What a column without a port looks like."""
+    meaning, facts = column.meaning, column.facts
+    if facts.text:
+        return "text"
+    if facts.low != facts.low:
+        return "no number"
+    if not facts.varies:
+        return "constant" if facts.low == facts.high else "a few values only"
+    words = [
+        "reference" if meaning.reference else "",
+        "computed" if meaning.computed else "",
+        "" if meaning.quantity in (None, "other") else meaning.quantity,
+        f"of {' '.join(meaning.joints)}" if meaning.joints and meaning.quantity else "",
+    ]
+    said = " ".join(word for word in words if word)
+    return f"{said}, not used" if said else "not placed"

@@ -1,0 +1,300 @@
+"""Units, signs, zeros and gear of the columns that feed the ports of one joint."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from sigmahat.guessing.columns import Column, Columns
+from sigmahat.guessing.facts import TURN, counts_per_turn, unit_of_steps
+from sigmahat.guessing.relations import line, scale_of_derivative
+from sigmahat.guessing.roles import Role, Roles
+from sigmahat.logs.log import Array
+
+_AFTER_GEAR = 1.4  # motor over link, in the same unit: below, the motor is measured after its gear
+_AS_FAR = 0.15  # two positions behind the gear move as far as each other, relative
+_WHOLE = 0.002  # a gear ratio this near to a whole number is taken for it, relative
+_STIFF = 0.005  # deformation over motion: above, the motion of the link is no measure of the gear
+_APART = 4.0  # deformations, in their standard deviation: a larger one is a zero
+_RADIANS = 6.6  # a joint that turns by more is in degrees
+_MILLI = 100.0  # amperes: a larger current is in mA
+_SINGLE_TURN = (2.0**10, 2.0**15)  # wraps of absolute encoders; 16 and 32 bits are counters
+_SURE = 0.8  # correlation of a torque sensor with the deformation, from which on its sign is sure
+
+
+@dataclass(frozen=True)
+class PortGuess:
+    """The column of a port, as the keys of a configuration describe it."""
+
+    column: str
+    why: str
+    """Why this column."""
+    unit: str | None
+    """None if there is no way to tell: then `scale` has to be filled in."""
+    sign: int
+    """1 or -1."""
+    zero: float
+    """In the unit of the column."""
+    gear_ratio: float | None
+    """None if it has to be filled in."""
+    moves: float | None
+    """Of theta: how far it moves over how far the link moves, about; None if that is not known."""
+    counts_per_turn: float | None
+    """For the unit counts; None if it has to be filled in."""
+    wrap: float | None
+    """Period after which it starts again, in its unit; None if it does not."""
+    steps: int
+    """Steps of its values in a turn, where the unit is not counts; 0 if they have none."""
+    time: str | None
+    """The column of its times, if that is not the one of the joint."""
+    low: float
+    high: float
+    """Range of its values."""
+    notes: Mapping[str, str] = field(default_factory=dict)
+    """What to know or to check, by key."""
+
+
+def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, PortGuess]:
+    """The guess for every port that has a column.
+
+    main  the time column of the joint
+    """
+    ports = {
+        port: _plain(port, role, role.column.clock if role.column.clock != main else None)
+        for port, role in roles.ports.items()
+    }
+    theta, q = roles.ports.get("theta"), roles.ports.get("q")
+    for port in ("theta", "q"):
+        if port in ports:
+            unit = _angle(roles.ports[port].column, columns, port == "q")
+            ports[port] = _with_unit(ports[port], roles.ports[port].column, unit, port)
+    if theta and q:
+        ports |= _together(ports, theta.column, q.column)
+    if "tau" in ports:
+        ports["tau"] = _torque(ports["tau"], roles)
+    if "tau_e_sensor" in ports:
+        ports["tau_e_sensor"] = _sensor(ports, roles)
+    return ports
+
+
+def _plain(port: str, role: Role, time: str | None) -> PortGuess:
+    """A port before its unit is known better than by its name."""
+    column = role.column
+    facts, unit = column.facts, column.meaning.unit
+    notes: dict[str, str] = {}
+    if port == "theta_c" and unit is None:
+        unit = "counts" if facts.integer else "rad"
+        notes["unit"] = "CHECK: its name says none"
+    wrap = facts.wrap if unit not in ("A", "mA", "N.m", "mN.m") else None
+    if wrap is not None:
+        notes["wrap"] = "CHECK: it jumps by this"
+    return PortGuess(
+        column.name,
+        role.why,
+        unit,
+        1,
+        0.0,
+        1.0,
+        None,
+        None,
+        wrap,
+        0,
+        time,
+        facts.low,
+        facts.high,
+        notes,
+    )
+
+
+def _angle(column: Column, columns: Columns, is_link: bool) -> tuple[str, str]:
+    """Unit of a position, and how it was found; "" if its name says so or its values do not."""
+    if column.meaning.unit is not None:
+        return column.meaning.unit, ""
+    if column.facts.integer:
+        return "counts", "whole numbers"
+    unit = unit_of_steps(column.facts)
+    if unit:
+        return unit, f"by its steps, 1/{counts_per_turn(column.facts, unit)} turn"
+    unit = _unit_by_velocity(column, columns.signals, columns.window_T)
+    if unit:
+        return unit, "by its velocity"
+    farthest = max(abs(column.facts.low), abs(column.facts.high))
+    for unit, turn in TURN.items():
+        if column.facts.wrap == turn:
+            return unit, "by its wrap"
+    if is_link and farthest > _RADIANS:
+        return "deg", "CHECK: too far for rad"
+    return "rad", "CHECK: its name says none"
+
+
+def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> str | None:
+    """Unit of a position whose derivative is in the log, in a unit that its name says."""
+    for other in signals:
+        speed = other.meaning.speed
+        unit, _, minute = (speed or "").partition("/")
+        if unit not in TURN or not len(other.window):
+            continue
+        scale = scale_of_derivative(column.window, other.window, T)
+        if scale is None:
+            continue
+        turn = TURN[unit] * (60 if minute else 1) / abs(scale)  # of the position, in its unit
+        best = min(TURN, key=lambda each: abs(math.log(turn / TURN[each])))
+        if abs(math.log(turn / TURN[best])) < 0.05:
+            return best
+    return None
+
+
+def _with_unit(port: PortGuess, column: Column, found: tuple[str, str], name: str) -> PortGuess:
+    unit, how = found
+    notes = {**port.notes, **({"unit": how} if how else {})}
+    turn, facts = None, column.facts
+    if unit == "counts" and name == "q" and facts.wrap is not None:
+        least, most = _SINGLE_TURN
+        if least <= facts.wrap <= most:
+            turn = facts.wrap
+            notes["counts_per_turn"] = "CHECK: it starts again after as many"
+    return replace(
+        port,
+        unit=unit,
+        counts_per_turn=turn,
+        steps=counts_per_turn(facts, unit),
+        notes=notes,
+    )
+
+
+def _together(ports: Mapping[str, PortGuess], motor: Column, link: Column) -> dict[str, PortGuess]:
+    """Gear, sign and zeros of both positions, by how the link follows the motor."""
+    theta, q = ports["theta"], ports["q"]
+    fitted = line(motor.window, link.window)
+    if fitted.slope == 0:
+        return {}
+    if _is_vague(theta):
+        theta = _unit_by_other(theta, q, 1 / abs(fitted.slope))
+    elif _is_vague(q):
+        q = _unit_by_other(q, theta, abs(fitted.slope))
+    theta = _gear(theta, q, 1 / abs(fitted.slope), fitted.rest)
+    ratio = _ratio(theta, q)
+    if fitted.slope < 0:
+        q = replace(q, sign=-1, notes={**q.notes, "sign": "it moves against the motor"})
+    slope = math.copysign(ratio or abs(fitted.slope), fitted.slope)
+    zeros = _zeros(motor.window, link.window, slope, fitted.rest * float(np.std(link.window)))
+    if zeros is not None:
+        note = "CHECK: mean of the column, as the zeros of both do not agree"
+        theta = replace(theta, zero=_short(zeros[0], motor), notes={**theta.notes, "zero": note})
+        q = replace(q, zero=_short(zeros[1], link), notes={**q.notes, "zero": note})
+    return {"theta": theta, "q": q}
+
+
+def _is_vague(port: PortGuess) -> bool:
+    """Whether only a guess told its unit."""
+    return port.notes.get("unit", "").startswith("CHECK")
+
+
+def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess:
+    """The unit of a vague position by the other one, with which it moves.
+
+    slope  its values over those of the other one
+    """
+    if other.unit not in TURN:
+        return port
+    same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
+    unit = same[0] if same else other.unit
+    how = "CHECK: by the other position, with which it moves"
+    return replace(port, unit=unit, notes={**port.notes, "unit": how})
+
+
+def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGuess:
+    """The gear ratio where both units are known and the joint is stiff; else about what it is.
+
+    slope  values of theta over those of q
+    rest   standard deviation of what this slope does not explain, over that of q
+    """
+    if theta.unit in TURN and q.unit in TURN:
+        gear = slope * TURN[q.unit] / TURN[theta.unit]
+        if 1 / _AFTER_GEAR < gear < _AFTER_GEAR:
+            note = "it moves as far as the link, so it is measured after the gear"
+            return replace(theta, gear_ratio=1.0, notes={**theta.notes, "gear_ratio": note})
+        whole = max(round(gear), 1)
+        sure = rest < _STIFF and abs(gear / whole - 1) < _WHOLE
+        moves = f"the motor moves {gear:.4g} times as far as the link"
+        notes = {**theta.notes, "gear_ratio": f"{'CHECK' if sure else 'FILL IN'}: {moves}"}
+        return replace(theta, gear_ratio=float(whole) if sure else None, moves=gear, notes=notes)
+    if q.unit in TURN:
+        product = slope * TURN[q.unit]
+        note = f"FILL IN: times counts_per_turn it is about {product:.4g}"
+    elif theta.unit == "counts" and q.unit == "counts" and q.counts_per_turn:
+        product = slope * q.counts_per_turn
+        note = f"FILL IN: times counts_per_turn it is about {product:.4g}"
+    else:
+        note = "FILL IN: 1 if it is measured after the gear"
+    return replace(theta, gear_ratio=None, notes={**theta.notes, "gear_ratio": note})
+
+
+def _ratio(theta: PortGuess, q: PortGuess) -> float | None:
+    """Values of q over those of theta if there were no deformation; None if not known."""
+    if theta.unit not in TURN or q.unit not in TURN or not theta.gear_ratio:
+        return None
+    return TURN[q.unit] / TURN[theta.unit] / theta.gear_ratio
+
+
+def _zeros(theta: Array, q: Array, slope: float, spread: float) -> tuple[float, float] | None:
+    """Means of both columns, if their zeros do not agree; None if they do.
+
+    spread  standard deviation of what the motion of the motor does not explain of q
+    """
+    deformation = q - slope * theta
+    if abs(float(np.mean(deformation))) <= _APART * max(spread, float(np.std(deformation))):
+        return None
+    return float(np.mean(theta)), float(np.mean(q))
+
+
+def _short(zero: float, column: Column) -> float:
+    return float(round(zero)) if column.facts.integer else float(f"{zero:.6g}")
+
+
+def _torque(port: PortGuess, roles: Roles) -> PortGuess:
+    column = roles.ports["tau"].column
+    meaning, facts, notes = column.meaning, column.facts, dict(port.notes)
+    unit = port.unit if port.unit != "counts" else None
+    farthest = max(abs(facts.low), abs(facts.high))
+    if unit is None and meaning.quantity == "current":
+        unit = "mA" if facts.integer or farthest > _MILLI else "A"
+        notes["unit"] = "CHECK: its name says none"
+    elif unit is None and not facts.integer:
+        unit = "N.m"
+        said = meaning.quantity == "torque"
+        notes["unit"] = f"CHECK: its name says none{'' if said else '; or is it a current, in A?'}"
+    if roles.drive.sign < 0:
+        notes["sign"] = "CHECK: else the motor would gain power from friction"
+    sign = -1 if roles.drive.sign < 0 else 1
+    notes["gear_ratio"] = "CHECK: that of the gear if the torque is measured after it"
+    return replace(port, unit=unit, sign=sign, wrap=None, notes=notes)
+
+
+def _sensor(ports: Mapping[str, PortGuess], roles: Roles) -> PortGuess:
+    """The torque sensor: its unit, and its sign by the deformation."""
+    port, column = ports["tau_e_sensor"], roles.ports["tau_e_sensor"].column
+    notes = dict(port.notes)
+    unit = port.unit if port.unit not in ("counts", "A", "mA") else None
+    if unit is None and not column.facts.integer:
+        unit, notes["unit"] = "N.m", "CHECK: its name says none"
+    port = replace(port, unit=unit, wrap=None, notes=notes)
+    deformation = _deformation(ports, roles)
+    together = 0.0 if deformation is None else line(deformation, column.window).correlation
+    if together > -_SURE:
+        return port
+    return replace(port, sign=-1, notes={**notes, "sign": "it grows against the deformation"})
+
+
+def _deformation(ports: Mapping[str, PortGuess], roles: Roles) -> Array | None:
+    """q - theta in the unit of q, or q alone; None if the ratio of both is not known."""
+    if "q" not in ports:
+        return None
+    q: Array = ports["q"].sign * roles.ports["q"].column.window
+    if "theta" not in ports:
+        return q
+    ratio = _ratio(ports["theta"], ports["q"])
+    return None if ratio is None else q - ratio * roles.ports["theta"].column.window

@@ -1,0 +1,109 @@
+"""What columns say about each other: copies, derivatives, the equation of the motor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import savgol_filter
+
+from sigmahat.logs.log import Array
+
+_SMOOTH = 15  # samples of the polynomial with which columns are differentiated
+_DERIVATIVE = 0.97  # correlation from which on a column is the derivative of another one
+_COPY = 1e-4  # rest of a fit over the column, up to which it is a copy in another unit
+_BLOCKS = 8
+
+
+@dataclass(frozen=True)
+class Line:
+    """y = offset + slope x, fitted."""
+
+    slope: float
+    offset: float
+    correlation: float
+    rest: float
+    """Standard deviation of what is left, over that of y."""
+
+
+def line(x: Array, y: Array) -> Line:
+    """The line through two columns of one size; correlation 0 if one of them does not vary."""
+    x_0, y_0 = x - x.mean(), y - y.mean()
+    xx, yy, xy = float(x_0 @ x_0), float(y_0 @ y_0), float(x_0 @ y_0)
+    if xx == 0 or yy == 0:
+        return Line(0.0, float(y.mean()), 0.0, 1.0)
+    slope, correlation = xy / xx, xy / np.sqrt(xx * yy)
+    return Line(
+        slope,
+        float(y.mean() - slope * x.mean()),
+        correlation,
+        float(np.sqrt(max(1 - correlation**2, 0.0))),
+    )
+
+
+def is_copy(x: Array, y: Array) -> bool:
+    """Whether one column is the other one in another unit."""
+    return line(x, y).rest < _COPY
+
+
+def derivative(x: Array, T: float, order: int = 1) -> Array:
+    """Smoothed derivative of samples T apart."""
+    values: Array = savgol_filter(x, _SMOOTH, 3, deriv=order, delta=T)
+    return values
+
+
+def scale_of_derivative(x: Array, v: Array, T: float) -> float | None:
+    """v over the derivative of x; None if v is not the derivative of x."""
+    if len(x) < 4 * _SMOOTH:
+        return None
+    fitted = line(derivative(x, T), savgol_filter(v, _SMOOTH, 3))
+    return fitted.slope if fitted.correlation**2 > _DERIVATIVE**2 else None
+
+
+@dataclass(frozen=True)
+class Drive:
+    """How a torque goes with the motion of two positions, by the motor equation (3)."""
+
+    explained: float
+    """Share of the variance of the torque [1]."""
+    sign: int
+    """1 if the torque drives the motion, -1 if it is counted the other way round, 0: not sure."""
+
+
+def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
+    """Relates a torque to two positions, whatever their units are; all [size: samples].
+
+    tau = B x'' + D x' + C sign(x') + K (x - y) for a linear spring, where only the part of y that
+    does not go as x does counts. The equation has the acceleration of the motor, not of the link:
+    it explains the torque better if x is the motor. Friction takes power from the motor, on the
+    average, and that gives the torque its sign.
+    """
+    if len(x) < 8 * _SMOOTH or not np.ptp(x) or not np.ptp(tau):
+        return Drive(0.0, 0)
+    fitted = line(x, y)
+    behind = x - (y - fitted.offset) / fitted.slope if fitted.slope else np.zeros_like(x)
+    velocity = derivative(x, T)
+    parts = np.column_stack(
+        [
+            derivative(x, T, 2),
+            velocity,
+            np.tanh(velocity / (0.05 * np.abs(velocity).max() + 1e-300)),
+            x - x.mean(),
+            savgol_filter(behind, _SMOOTH, 3),
+            np.ones_like(x),
+        ]
+    )
+    parts /= np.linalg.norm(parts, axis=0) + 1e-300
+    torque = savgol_filter(tau, _SMOOTH, 3)
+    factors = np.linalg.lstsq(parts, torque, rcond=1e-10)[0]
+    spread = float(np.var(torque))
+    explained = 1 - float(np.var(torque - parts @ factors)) / spread if spread else 0.0
+    sign = _sign(np.array_split((torque - torque.mean()) * velocity, _BLOCKS))
+    return Drive(explained, sign)
+
+
+def _sign(blocks: list[Array]) -> int:
+    """Sign of a mean that is significant over blocks; 0 if it is not."""
+    means = np.array([block.mean() for block in blocks])
+    error = float(means.std(ddof=1)) / np.sqrt(len(means))
+    return int(np.sign(means.mean())) if abs(means.mean()) > 3 * error else 0

@@ -1,0 +1,260 @@
+"""Which column of one joint feeds which port, by the names and by how the columns move together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import permutations
+
+import numpy as np
+
+from sigmahat.guessing.columns import Column
+from sigmahat.guessing.relations import Drive, drive, is_copy, line, scale_of_derivative
+
+# Points of a column for being the one that a port needs.
+_SAID, _SUGGESTED, _QUANTITY = 4.0, 2.0, 1.0
+_REFERENCE, _COMPUTED, _COPY, _APART = -6.0, -3.0, -5.0, -2.0
+_CLOSE, _ALIKE, _UNLIKE = 0.98, 0.9, 0.7
+"""Correlations of two positions of one joint: surely, likely, and not likely so."""
+_SAME = 0.995  # correlation with a position from which on a column is no torque
+_BETTER = 0.7  # of what motor and link leave unexplained of the torque, to be swapped
+_EXPLAINED = 0.5  # of a torque without a name by the motion
+
+
+@dataclass(frozen=True)
+class Role:
+    """A column as a port."""
+
+    column: Column
+    why: str
+
+
+@dataclass(frozen=True)
+class Roles:
+    """The columns of a joint."""
+
+    ports: Mapping[str, Role]
+    drive: Drive
+    """How the torque goes with the motion."""
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether there are both positions and a torque."""
+        torque = "tau" in self.ports or "tau_e_sensor" in self.ports
+        return torque and "theta" in self.ports and "q" in self.ports
+
+
+def assign(columns: Sequence[Column], T: float) -> Roles:
+    """Ports of the columns of one joint, whose windows have samples T apart [s]."""
+    moving = [each for each in columns if each.facts.varies and len(each.window)]
+    positions = _positions(moving, T)
+    ports: dict[str, Role] = dict(_pair(positions))
+    taken = {role.column.name for role in ports.values()}
+    rest = [each for each in moving if each.name not in taken]
+    ports |= _setting(rest, ports)
+    taken |= {role.column.name for role in ports.values()}
+    ports |= _torques([each for each in rest if each.name not in taken], ports, T)
+    found = _drive(ports, T)
+    swapped = _swapped(ports)
+    if swapped and 1 - _drive(swapped, T).explained < _BETTER * (1 - found.explained):
+        ports = swapped
+        found = _drive(ports, T)
+    order = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
+    return Roles({port: ports[port] for port in order if port in ports}, found)
+
+
+def _swapped(ports: Mapping[str, Role]) -> dict[str, Role]:
+    """Motor and link the other way round; empty if names tell them apart, or one is missing."""
+    if not {"theta", "q", "tau"} <= ports.keys():
+        return {}
+    theta, q = ports["theta"].column, ports["q"].column
+    if _points(theta, "motor") + _points(q, "link") > _points(q, "motor") + _points(theta, "link"):
+        return {}
+    why = "explains the torque better as {}"
+    return {
+        **ports,
+        "theta": Role(q, why.format("the motor")),
+        "q": Role(theta, why.format("the link")),
+    }
+
+
+def _drive(ports: Mapping[str, Role], T: float) -> Drive:
+    if not {"theta", "q", "tau"} <= ports.keys():
+        return Drive(0.0, 0)
+    theta, q, tau = (ports[port].column.window for port in ("theta", "q", "tau"))
+    return drive(theta, q, tau, T)
+
+
+def _positions(columns: Sequence[Column], T: float) -> list[Column]:
+    """Columns that may be positions of motor or link."""
+    named = [each for each in columns if each.meaning.quantity == "position"]
+    silent = [each for each in columns if each.meaning.quantity is None]
+    silent = [
+        each
+        for each in silent
+        if not any(_is_derivative(each, other, T) for other in columns if other is not each)
+    ]
+    every = [each for each in (*named, *silent) if each.meaning.unit != "mm"]
+    return [each for each in every if each.meaning.side not in ("setting", "sensor")]
+
+
+def _is_derivative(one: Column, other: Column, T: float) -> bool:
+    return scale_of_derivative(other.window, one.window, T) is not None
+
+
+def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
+    """The motor and the link."""
+    if not columns:
+        return {}
+    if len(columns) == 1:
+        (only,) = columns
+        port = "theta" if _side(only, "motor") > 0 else "q"
+        return {port: Role(only, "by its name" if _side(only, "motor") else "the only position")}
+    correlation = np.abs(np.corrcoef([each.window for each in columns]))
+    best: tuple[float, int, int] = (-np.inf, 0, 1)
+    for i, j in permutations(range(len(columns)), 2):
+        points = _points(columns[i], "motor") + _points(columns[j], "link")
+        together = float(correlation[i, j])
+        points += (together > _ALIKE) + (together > _CLOSE)
+        points += _APART if together < _UNLIKE else 0.0
+        points += _COPY if is_copy(columns[i].window, columns[j].window) else 0.0
+        points += 0.5 * _is_larger(columns[i], columns[j])
+        best = max(best, (points, -i, -j))
+    points, theta, q = columns_of(best, columns)
+    if points <= 0:
+        named = max(columns, key=lambda each: _points(each, "link"))
+        return {"q": Role(named, "the only position that stands out")}
+    how = f"moves as the other one does ({correlation[-best[1], -best[2]]:.3g})"
+    return {"theta": Role(theta, _why(theta, how)), "q": Role(q, _why(q, how))}
+
+
+def columns_of(
+    best: tuple[float, int, int], columns: Sequence[Column]
+) -> tuple[float, Column, Column]:
+    """Points and columns of a pair."""
+    points, i, j = best
+    return points, columns[-i], columns[-j]
+
+
+def _is_larger(theta: Column, q: Column) -> bool:
+    """Whether one moves by larger numbers, as a motor before its gear does."""
+    return bool(abs(line(q.window, theta.window).slope) > 1.5)
+
+
+def _why(column: Column, how: str) -> str:
+    said = column.meaning.side or column.meaning.suggested
+    return f"by its name; {how}" if said else how
+
+
+def _side(column: Column, side: str) -> float:
+    """Points of a name for a side of the joint: motor or link."""
+    meaning = column.meaning
+    if meaning.side is not None:
+        return _SAID if meaning.side == side else -_SAID
+    if meaning.suggested is not None:
+        return _SUGGESTED if meaning.suggested == side else -_SUGGESTED
+    return 0.0
+
+
+def _points(column: Column, side: str) -> float:
+    """Points of a column for being the measured position of a side."""
+    meaning = column.meaning
+    points = _side(column, side) + _QUANTITY * (meaning.quantity == "position")
+    return points + _REFERENCE * meaning.reference + _COMPUTED * meaning.computed
+
+
+def _torques(columns: Sequence[Column], ports: Mapping[str, Role], T: float) -> dict[str, Role]:
+    """The torque of the motor, and the measured one of the link."""
+    torques = [each for each in columns if each.meaning.quantity == "torque"]
+    currents = [each for each in columns if each.meaning.quantity == "current"]
+    possible = [each for each in (*torques, *currents) if each.meaning.side != "setting"]
+    sensors = [each for each in torques if _is_sensor(each, [*torques, *currents], ports)]
+    named = [each for each in possible if each not in sensors]
+    found = {}
+    if named:
+        found["tau"] = Role(max(named, key=_torque_points), "by its name")
+    elif ports.keys() >= {"theta", "q"}:
+        found |= _silent_torque([each for each in columns if each not in sensors], ports, T)
+    if sensors:
+        why = "by its name" if sensors[0].meaning.side else "the motor has another one, or none"
+        found["tau_e_sensor"] = Role(max(sensors, key=_torque_points), why)
+    return found
+
+
+def _is_sensor(column: Column, others: Sequence[Column], ports: Mapping[str, Role]) -> bool:
+    """Whether a torque is measured behind the motor, as its name or the other columns say."""
+    meaning = column.meaning
+    if meaning.side is not None or _is_motor(column):
+        return meaning.side in ("sensor", "link")
+    motors = [each for each in others if each.meaning.quantity == "current" or _is_motor(each)]
+    if not motors:
+        return "theta" not in ports  # an angle and a torque: a test bench
+    return not any(is_copy(column.window, each.window) for each in motors)
+
+
+def _is_motor(column: Column) -> bool:
+    return column.meaning.side == "motor" or column.meaning.suggested == "motor"
+
+
+def _torque_points(column: Column) -> float:
+    meaning = column.meaning
+    points = _SAID * (meaning.side is not None) + _SUGGESTED * (meaning.suggested is not None)
+    points += _QUANTITY * (meaning.quantity == "torque")  # of a current, a constant is needed too
+    return points + 0.5 * _REFERENCE * meaning.reference + _COMPUTED * meaning.computed
+
+
+def _silent_torque(
+    columns: Sequence[Column], ports: Mapping[str, Role], T: float
+) -> dict[str, Role]:
+    """The column without a name that the motion explains best."""
+    theta, q = (ports[port].column.window for port in ("theta", "q"))
+    explained = {
+        each.name: drive(theta, q, each.window, T).explained
+        for each in columns
+        if each.meaning.quantity is None
+        and abs(line(theta, each.window).correlation) < _SAME
+        and not any(_is_derivative(each, ports[port].column, T) for port in ("theta", "q"))
+    }
+    best = max(explained, key=lambda name: explained[name], default=None)
+    if best is None or explained[best] < _EXPLAINED:
+        return {}
+    (column,) = (each for each in columns if each.name == best)
+    return {"tau": Role(column, f"the motion explains {100 * explained[best]:.3g} % of it")}
+
+
+def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, Role]:
+    """The motor that sets the stiffness: by its name, or a second motor that goes its own way."""
+    possible = [
+        each
+        for each in columns
+        if each.meaning.quantity in ("position", None)
+        and (_says_setting(each) or not _follows(each, ports))
+    ]
+    named = [each for each in possible if each.meaning.side == "setting"]
+    if named:
+        measured = [each for each in named if not each.meaning.reference]
+        return {"theta_c": Role((measured or named)[0], "by its name")}
+    lengths = [each for each in possible if each.meaning.unit == "mm"]
+    if lengths:
+        return {"theta_c": Role(lengths[0], "the only length, which sets the stiffness of a joint")}
+    second = [
+        each
+        for each in possible
+        if each.meaning.side == "motor"
+        and each.meaning.quantity == "position"
+        and not each.meaning.reference
+    ]
+    if len(second) == 1 and "theta" in ports:
+        return {"theta_c": Role(second[0], "a second motor, which the link does not follow")}
+    return {}
+
+
+def _says_setting(column: Column) -> bool:
+    """Whether its name leaves no doubt; a set-point may as well be that of a position."""
+    return column.meaning.side == "setting" and not column.meaning.reference
+
+
+def _follows(column: Column, ports: Mapping[str, Role]) -> bool:
+    """Whether it moves as motor or link do."""
+    windows = [role.column.window for role in ports.values()]
+    return any(abs(line(column.window, each).correlation) > _CLOSE for each in windows)

@@ -1,0 +1,243 @@
+"""The configuration that `sigmahat init` writes: the guess, and comments on what to check."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+import tomlkit
+from tomlkit.items import Item, Table
+
+from sigmahat.guessing.facts import TURN
+from sigmahat.guessing.guess import JointGuess, Seen
+from sigmahat.guessing.ports import PortGuess
+from sigmahat.logs.configuration import (
+    ANOTHER_ROBOT,
+    ANY_COULOMB,
+    NOT_YOURS,
+    PORTS,
+    WIDE_PRIOR,
+)
+from sigmahat.logs.log import Log
+
+_MEANING = {
+    "theta": "principal motor, after its gear",
+    "q": "link",
+    "theta_c": "motor that sets the stiffness",
+    "tau": "torque of the principal motor, on its axis before the gear",
+    "tau_e_sensor": "measured flexibility torque, for modality Sensor",
+}
+_MOTOR_UNITS = {"motor.B": "kg.m2", "motor.D_theta": "N.m.s/rad"}
+_TORQUES = {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3, "N.cm": 1e-2}
+_RANGE = (1.0, 100.0)  # of the set-point
+_HEAD = """\
+Configuration for {log}{joint}, guessed from names and values of its columns.
+Lines with FILL IN need a value of your data sheet; lines with CHECK are less sure than others.
+Then: sigmahat identify (B, D_theta, friction, ranges), sigmahat estimate (stiffness).
+
+Columns of the log:
+{columns}
+
+A port is sign (x - zero) in its unit, over gear_ratio. Keys of a port, all but column
+optional: unit (rad, deg, turn, counts; N.m, mN.m, A; mm for theta_c), sign, zero,
+gear_ratio (encoder or torque on the other side of the gear), counts_per_turn,
+torque_constant [N.m/A], mm_per_turn (of the motor, for theta_c in mm), scale (instead
+of a unit), wrap (period of a counter that starts again), time (a column of its own)."""
+_NO_COLUMN = "FILL IN"
+
+
+def write(log: Log, guess: JointGuess, fmu_defaults: Mapping[str, float]) -> str:
+    """The text of a configuration. Where nothing in the log looks like a port, it asks for it.
+
+    fmu_defaults  start values of motor.B and motor.D_theta of the estimator
+    """
+    columns = "\n".join(f"  {_seen(each)}" for each in guess.columns)
+    joint = f", joint {guess.name}" if guess.name else ""
+    document = tomlkit.document()
+    for line in _HEAD.format(log=log.path.name, joint=joint, columns=columns).splitlines():
+        document.add(tomlkit.comment(line))
+    document.add(tomlkit.nl())
+    document.add("time", _time(guess))
+    ports = tomlkit.table(is_super_table=True)
+    needed = ("q", "tau_e_sensor") if _is_sensor(guess) else ("theta", "q", "tau")
+    missing = []
+    for name in PORTS:
+        if name in guess.ports:
+            ports.add(name, _port(name, guess.ports[name]))
+        elif name in needed:
+            ports.add(name, _empty_port(name))
+        else:
+            missing.append(name)
+    last = list(ports)[-1]
+    for name in missing:
+        text = f"[ports.{name}]   # {_MEANING[name]}, {PORTS[name]}; no column looks like it"
+        ports[last].add(tomlkit.comment(text))
+        ports[last].add(tomlkit.nl())
+    document.add("ports", ports)
+    document.add("parameters", _parameters(guess, fmu_defaults))
+    return tomlkit.dumps(document)
+
+
+def _seen(column: Seen) -> str:
+    span = "" if math.isnan(column.low) else f", {column.low:.6g} to {column.high:.6g}"
+    return f"{column.name}: {column.samples} samples{span}; {column.what}"
+
+
+def _is_sensor(guess: JointGuess) -> bool:
+    return "tau" not in guess.ports and "tau_e_sensor" in guess.ports
+
+
+def _time(guess: JointGuess) -> Table:
+    table = tomlkit.table()
+    if guess.time is None:
+        table.add(
+            tomlkit.comment("no column looks like a time: rows are taken as samplePeriod apart")
+        )
+    else:
+        table.add("column", guess.time)
+        table.add("unit", guess.time_unit)
+    gap = "longest_gap = 0.01   # [s] interpolate over shorter gaps; else ticks are skipped"
+    table.add(tomlkit.comment(gap))
+    table.add(tomlkit.nl())
+    return table
+
+
+def _port(name: str, port: PortGuess) -> Table:
+    table = tomlkit.table()
+    _comment(table, f"{_MEANING[name]}, {PORTS[name]}")
+    span = "no number" if math.isnan(port.low) else f"{port.low:.6g} to {port.high:.6g}"
+    _add(table, "column", port.column, f"{span}; {port.why}")
+    if port.unit is None:
+        _add(table, "scale", 0, f"FILL IN: {PORTS[name]} per unit of the column")
+    else:
+        _add(table, "unit", port.unit, port.notes.get("unit", ""))
+    if port.time is not None:
+        _add(table, "time", port.time)
+    if port.unit == "counts":
+        fill_in = "FILL IN: of the encoder, after its four-fold evaluation"
+        comment = port.notes.get("counts_per_turn", fill_in)
+        _add(table, "counts_per_turn", port.counts_per_turn or 0, comment)
+    if name == "theta":
+        check = "CHECK: that of the gear if the encoder sits on the motor's shaft"
+        _add(table, "gear_ratio", port.gear_ratio or 0, port.notes.get("gear_ratio", check))
+    if name == "tau":
+        table.add(tomlkit.comment(f"gear_ratio = 1   # {port.notes['gear_ratio']}"))
+    if port.unit in ("A", "mA"):
+        _add(table, "torque_constant", 0, "FILL IN: N.m/A, from the data sheet of the motor")
+    if port.unit == "mm":
+        without = "mm_per_turn = 2.5   # not given: the set-point is the number of mm"
+        table.add(tomlkit.comment(without))
+    if port.wrap is not None:
+        _add(table, "wrap", port.wrap, port.notes.get("wrap", ""))
+    _add(table, "sign", port.sign, port.notes.get("sign", ""))
+    _add(table, "zero", port.zero, port.notes.get("zero", "what the column shows at the zero"))
+    table.add(tomlkit.nl())
+    return table
+
+
+def _empty_port(name: str) -> Table:
+    table = tomlkit.table()
+    _comment(table, f"{_MEANING[name]}, {PORTS[name]}")
+    _add(table, "column", _NO_COLUMN, "no column looks like it: name one of the list above")
+    _add(table, "unit", PORTS[name])
+    table.add(tomlkit.nl())
+    return table
+
+
+def _parameters(guess: JointGuess, defaults: Mapping[str, float]) -> Table:
+    table, ports = tomlkit.table(), guess.ports
+    _comment(table, "of StiffnessEstimator.fmu, by their names; others keep their start values")
+    period = "[s]" if guess.time is not None else "[s] FILL IN: no column says it"
+    _add(table, "samplePeriod", guess.T, period)
+    _add(table, "method", "MatchedFilter", "or Paper2011, which needs exact motor data")
+    sensor = _is_sensor(guess)
+    _add(table, "modality", "Sensor" if sensor else "Residual", "Residual, Sensor or Model")
+    if sensor:
+        _add_ranges(table, guess)
+    else:
+        _add_motor(table, ports.get("theta"), defaults)
+    for name in ("theta", "q"):
+        if name in ports and ports[name].unit != "counts":
+            _add(table, f"encoder.{name}", *_encoder(ports[name]))
+    for name, value, comment in _set_point(ports.get("theta_c")):
+        _add(table, name, value, comment)
+    return table
+
+
+def _add_motor(table: Table, theta: PortGuess | None, defaults: Mapping[str, float]) -> None:
+    """The gear ratio where theta does not say it, motor data that nobody knows yet, and priors."""
+    if theta is None or theta.gear_ratio == 1:
+        _add(table, "motor.gamma", 0, "FILL IN: gear ratio, between motor and flexibility")
+    else:
+        _add(table, "motor.gamma", 0, "0: the gear_ratio of theta, which must then not be 1")
+    for name, value in defaults.items():
+        _add(table, name, value, f"[{_MOTOR_UNITS[name]}] {NOT_YOURS}")
+        _add(table, name.replace("motor.", "prior."), ANOTHER_ROBOT, WIDE_PRIOR)
+    _add(table, "prior.tau_coulomb", ANY_COULOMB, WIDE_PRIOR)
+    for line in (
+        "torque.held = true   # if a drive holds each value of tau until the next one",
+        "prior.torque_gain = 0.02   # how wrong the gain of tau may be: no data show it",
+    ):
+        table.add(tomlkit.comment(line))
+
+
+def _add_ranges(table: Table, guess: JointGuess) -> None:
+    """What `identify` writes where there is a motor: it finds nothing to do without one."""
+    q, sensor = guess.ports.get("q"), guess.ports["tau_e_sensor"]
+    if q is not None and q.unit in TURN and "theta" not in guess.ports:
+        in_rad = 2 * math.pi / TURN[q.unit]
+        _add(table, "range.phi", _largest(q) * in_rad, "[rad] largest deformation, with some room")
+    else:
+        table.add(tomlkit.comment("range.phi = 0.3   # [rad] CHECK: the largest deformation"))
+    if sensor.unit in _TORQUES:
+        largest = _largest(sensor) * _TORQUES[sensor.unit]
+        _add(table, "prior.tau_e", largest, "[N.m] largest torque, with some room")
+    else:
+        table.add(tomlkit.comment("prior.tau_e = 45   # [N.m] CHECK: the largest torque"))
+    noise = "noise.tau_e = 0.032   # [N.m] CHECK: standard deviation of the noise of the torque"
+    table.add(tomlkit.comment(noise))
+
+
+def _largest(port: PortGuess) -> float:
+    """Largest magnitude of a port in the unit of its column, and a fifth more."""
+    return float(f"{1.2 * max(abs(port.low - port.zero), abs(port.high - port.zero)):.3g}")
+
+
+def _encoder(port: PortGuess) -> tuple[int, str]:
+    """Counts in a turn of the joint, and why."""
+    if not port.steps:
+        return 0, "counts per turn; not quantised"
+    gear = port.gear_ratio or port.moves or 1.0
+    where = "" if gear == 1 else f", times a gear of {gear:.4g}"
+    return round(port.steps * gear), f"counts per turn; its step is 1/{port.steps} turn{where}"
+
+
+def _set_point(port: PortGuess | None) -> Iterator[tuple[str, float, str]]:
+    """Parameters of the set-point, whose values should be about 1 to 100."""
+    if port is None:
+        yield "rls.m", 1, "no set-point"
+        return
+    in_port = 2 * math.pi / TURN[port.unit] if port.unit in TURN else 1.0
+    largest = in_port * max(abs(port.low - port.zero), abs(port.high - port.zero))
+    scale = 1.0
+    if port.unit != "counts" and largest > 0 and math.isfinite(largest):
+        least, most = _RANGE
+        if not least <= largest <= most:
+            scale = 10.0 ** (1 - math.floor(math.log10(largest)))
+    yield "setPoint.offset", 0, "set-point = offset + scale theta_c, about 1 to 100"
+    yield "setPoint.scale", scale, "" if port.unit == "mm" else "per rad"
+
+
+def _add(table: Table, name: str, value: str | float, comment: str = "") -> None:
+    """Adds a key, motor.B with its dot; a whole number is written as one."""
+    whole = isinstance(value, float) and value.is_integer() and abs(value) < 2**53
+    item = tomlkit.item(int(value) if whole else value)
+    if comment:
+        _comment(item, comment)
+    table.append(tomlkit.key(name.split(".")), item)
+
+
+def _comment(item: Item, text: str) -> None:
+    """Adds a comment to the line of an item, at some distance."""
+    item.comment(text)
+    item.trivia.comment_ws = "   "

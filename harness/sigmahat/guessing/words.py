@@ -1,0 +1,255 @@
+"""What the name of a column says: quantity, side of the joint, unit, and whose joint it is."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+_ORDER = (*("other", "acceleration", "velocity", "position", "current", "torque", "time", "index"),)
+"""Quantities; of several in a name the first one counts: "current position", "torque current"."""
+_UNIT_OF = {
+    **dict.fromkeys(("rad", "mrad", "deg", "turn"), "position"),
+    **dict.fromkeys(("N.m", "mN.m", "kN.m", "N.cm"), "torque"),
+    **dict.fromkeys(("A", "mA"), "current"),
+    **dict.fromkeys(("s", "ms", "us", "ns"), "time"),
+}
+_INSIDE, _AT_AN_END, _PART = 5, 4, 3  # letters of a word that is found inside of a longer one
+_LETTERS = str.maketrans({"ß": "ss", "°": "deg", "µ": "u", "μ": "u", "θ": "theta", "τ": "tau"})
+_BRACKET = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]\s*$")
+_TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a name says. None where it says nothing."""
+
+    quantity: str | None
+    """time, index, position, velocity, acceleration, torque, current, or other."""
+    side: str | None
+    """motor, link, setting (what sets the stiffness), or sensor (of the torque)."""
+    suggested: str | None
+    """motor or link, from a word that only suggests it."""
+    unit: str | None
+    """As configurations write it."""
+    speed: str | None
+    """Of a velocity: rad for rad/s, or turn/min."""
+    reference: bool
+    """Whether it was asked for, not measured."""
+    computed: bool
+    """Whether it is an estimate, or the truth of a simulation."""
+    joints: tuple[str, ...]
+    """Words that are names of joints."""
+    rest: tuple[str, ...]
+    """Words and numbers that are not known, those of joints too."""
+
+
+@dataclass(frozen=True)
+class _Word:
+    """What one entry of the vocabulary says."""
+
+    quantity: str | None = None
+    symbol: bool = False
+    side: str | None = None
+    suggested: str | None = None
+    role: str | None = None
+    joint: bool = False
+
+
+def meaning(name: str) -> Meaning:
+    """What the name of a column says."""
+    unit, tokens = _without_unit(name)
+    entries: list[_Word] = []
+    rest: list[str] = []
+    joints: list[str] = []
+    before = ""
+    for text, entry in _entries(tokens):
+        if entry is None or entry.joint:
+            letter = text.isdigit() and bool(rest) and rest[-1] == before and len(before) == 1
+            if letter:  # a1, of a1_motor
+                rest[-1] += text
+            else:
+                rest.append(text)
+            joints += [text] if entry else []
+        before = text
+        if entry is not None:
+            entries.append(entry)
+    quantity = _quantity(entries)
+    if _is_time(re.split(r"[./]", name)[-1]):
+        quantity = "time"
+    if unit.foreign is not None:
+        quantity = unit.foreign
+    elif quantity not in ("other", "velocity", "acceleration"):
+        quantity = _UNIT_OF.get(unit.name or "", quantity)
+    roles = {entry.role for entry in entries}
+    return Meaning(
+        quantity=quantity,
+        side=_first("side", ("sensor", "setting", "motor", "link"), entries),
+        suggested=_first("suggested", ("motor", "link"), entries),
+        unit=unit.name,
+        speed=unit.speed,
+        reference="reference" in roles,
+        computed="computed" in roles,
+        joints=tuple(joints),
+        rest=tuple(rest),
+    )
+
+
+def _is_time(part: str) -> bool:
+    """Whether the last part of a path names a time: the times of a topic, /current.time"""
+    entry = _vocabulary().entries.get(_plain(part).lower())
+    return entry is not None and entry.quantity == "time" and not entry.symbol
+
+
+def _quantity(entries: Sequence[_Word]) -> str | None:
+    """The quantity that a word says, else that of a symbol."""
+    words = {entry.quantity for entry in entries if not entry.symbol}
+    symbols = {entry.quantity for entry in entries if entry.symbol}
+    found = words & set(_ORDER) or symbols & set(_ORDER)
+    return next((quantity for quantity in _ORDER if quantity in found), None)
+
+
+def _first(field: str, order: Sequence[str], entries: Sequence[_Word]) -> str | None:
+    found = {getattr(entry, field) for entry in entries}
+    return next((each for each in order if each in found), None)
+
+
+def _plain(text: str) -> str:
+    """Without accents, and with letters for symbols; upper case stays."""
+    decomposed = unicodedata.normalize("NFKD", text.translate(_LETTERS))
+    return "".join(each for each in decomposed if not unicodedata.combining(each))
+
+
+@dataclass(frozen=True)
+class _Unit:
+    """The unit in a name; None and None if it has none."""
+
+    name: str | None = None
+    """One of a port."""
+    foreign: str | None = None
+    """The quantity, for a unit that no port has."""
+    speed: str | None = None
+
+
+def _without_unit(name: str) -> tuple[_Unit, list[str]]:
+    """The unit at the end of a name, and the other words."""
+    text = _plain(name)
+    bracket = _BRACKET.search(text)
+    if bracket:
+        unit = _unit(re.sub(r"[\s.*·⋅]|\bin\b", "", bracket[1]).lower())
+        if unit != _Unit():
+            return unit, _TOKEN.findall(text[: bracket.start()])
+    tokens = _TOKEN.findall(text)
+    for count in (3, 2, 1):
+        last = [token.lower() for token in tokens[-count:]]
+        if len(last) < count:
+            continue
+        unit = _unit("/".join(each for each in last if each != "per"))
+        if unit == _Unit() and count > 1:
+            unit = _unit("".join(last))
+        if unit != _Unit() and _is_unit(tokens, count, unit):
+            return unit, tokens[:-count]
+    return _Unit(), tokens
+
+
+def _is_unit(tokens: Sequence[str], count: int, unit: _Unit) -> bool:
+    """Whether the last words are a unit: a single letter is one where it fits the rest."""
+    if count > 1 or len(tokens[-1]) > 1:
+        return len(tokens) > count or len(tokens[-1]) > 2
+    before = _quantity([entry for _, entry in _entries(tokens[:-1]) if entry is not None])
+    of = _UNIT_OF.get(unit.name or "")
+    fits = of == before or (of, before) == ("current", "torque")
+    return of is not None and (fits or (before is None and tokens[-1] == "A" and len(tokens) > 1))
+
+
+def _unit(text: str) -> _Unit:
+    vocabulary = _vocabulary()
+    if text in vocabulary.speeds:
+        return _Unit(foreign="velocity", speed=vocabulary.speeds[text])
+    return _Unit(vocabulary.units.get(text), vocabulary.foreign.get(text))
+
+
+def _entries(tokens: Sequence[str]) -> Iterator[tuple[str, _Word | None]]:
+    """Words with what the vocabulary says about them, None for unknown ones."""
+    entries = _vocabulary().entries
+    words = [token.lower() for token in tokens]
+    i = 0
+    while i < len(words):
+        for count in (3, 2, 1):
+            text = " ".join(words[i : i + count])
+            if i + count <= len(words) and text in entries:
+                yield text, entries[text]
+                i += count
+                break
+        else:
+            for part in _parts(words[i]):
+                yield part, entries.get(part)
+            i += 1
+
+
+@cache
+def _parts(word: str) -> tuple[str, ...]:
+    """Known words that a longer one is made of, and what is left of it."""
+    entries = _vocabulary().entries
+    if word in entries or word.isdigit():
+        return (word,)
+    for cut in range(_PART, len(word) - _PART + 1):
+        if word[:cut] in entries and word[cut:] in entries:
+            return word[:cut], word[cut:]
+    for known in _vocabulary().longest_first:
+        at = word.find(known)
+        ends = at == 0 or (at > 0 and word.endswith(known))
+        if at >= 0 and (len(known) >= _INSIDE or ends):
+            at = at if len(known) >= _INSIDE or at == 0 else len(word) - len(known)
+            sides = (word[:at], word[at + len(known) :])
+            left, right = (_parts(side) if len(side) >= _PART else () for side in sides)
+            return (*left, known, *right)
+    return (word,)
+
+
+@dataclass(frozen=True)
+class _Vocabulary:
+    """The file vocabulary.toml by words."""
+
+    entries: Mapping[str, _Word]
+    units: Mapping[str, str]
+    speeds: Mapping[str, str]
+    foreign: Mapping[str, str]
+    longest_first: Sequence[str]
+
+
+@cache
+def _vocabulary() -> _Vocabulary:
+    text = Path(__file__).with_name("vocabulary.toml").read_text(encoding="utf-8")
+    table: dict[str, Any] = tomlkit.parse(text).unwrap()
+    fields: dict[str, dict[str, Any]] = {}
+    for section in ("quantity", "side", "suggests", "role"):
+        field = {"suggests": "suggested"}.get(section, section)
+        for kind, words in table[section].items():
+            for word in words:
+                fields.setdefault(word, {}).setdefault(field, kind)
+    for word in table["symbol"]["words"]:
+        fields.setdefault(word, {})["symbol"] = True
+    for word in table["joint"]["words"]:
+        fields.setdefault(word, {})["joint"] = True
+    for word in table["neutral"]["words"]:
+        fields.setdefault(word, {})
+    return _Vocabulary(
+        entries={word: _Word(**values) for word, values in fields.items()},
+        units=_by_word(table["unit"]),
+        speeds=_by_word(table["speed"]),
+        foreign=_by_word(table["foreign"]),
+        longest_first=sorted((w for w in fields if len(w) >= _AT_AN_END and " " not in w), key=len)[
+            ::-1
+        ],
+    )
+
+
+def _by_word(table: Mapping[str, Sequence[str]]) -> dict[str, str]:
+    return {word: kind for kind, words in table.items() for word in words}
