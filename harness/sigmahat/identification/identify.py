@@ -72,10 +72,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     nominal = configuration.ports["tau"].torque_constant
     if torque_constant and nominal is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
-    set_point, tau = (
-        max(float(np.max(np.abs(getattr(piece, name)))) for piece in pieces)
-        for name in ("set_point", "tau")
-    )
+    set_point, tau = (_largest(pieces, name) for name in ("set_point", "tau"))
     zero = quantities["zero"].value if _is_wrong(quantities.get("zero"), pieces) else 0.0
     return Identified(
         quantities=quantities,
@@ -95,6 +92,11 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         notes=samples.notes,
         advice=_advice(pieces, T, form, quantities, every),
     )
+
+
+def _largest(pieces: Sequence[Signals], name: str) -> float:
+    """Largest magnitude of a signal."""
+    return max(float(np.max(np.abs(getattr(piece, name)))) for piece in pieces)
 
 
 def _advice(
