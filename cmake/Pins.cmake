@@ -15,6 +15,7 @@ add_custom_target(
   COMMAND ${consistent} --group release -o requirements/release.txt
   COMMAND ${consistent} --group bench -o requirements/bench.txt
   COMMAND ${consistent} --group coverage -o requirements/coverage.txt
+  COMMAND ${consistent} pyproject.toml --group docs -o requirements/docs.txt
   COMMAND ${consistent} --group rivals -o requirements/rivals.txt
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   COMMENT "Writing requirements/*.txt" VERBATIM)

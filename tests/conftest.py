@@ -54,6 +54,15 @@ def released(build: Path) -> Path:
     return folder
 
 
+@pytest.fixture(scope="session")
+def site(build: Path) -> Path:
+    """Folder of the documentation as ``cmake --workflow --preset docs`` makes it."""
+    folder = build / "site"
+    if not (folder / "index.html").is_file():
+        pytest.fail("there is no site to test; make it: cmake --workflow --preset docs")
+    return folder
+
+
 _LONG = 10.0  # [s] A test that takes longer says why: @pytest.mark.slow("reason")
 
 

@@ -12,6 +12,9 @@ from .fmi.master import simulate as simulate
 from .identification.identify import identify as identify
 from .identification.quantities import Identified as Identified
 from .identification.quantities import Quantity as Quantity
+from .joint.curve import Branch as Branch
+from .joint.curve import Curve as Curve
+from .joint.sheet import Polynomial as Polynomial
 from .logs.configuration import Configuration as Configuration
 from .logs.configuration import Port as Port
 from .logs.configuration import Time as Time

@@ -42,8 +42,8 @@ def test_the_largest_basis_has_all_columns(c: Library) -> None:
     values = {**VALUES, "rls.n": 8, "rls.m": 5, "rls.eta_0": eta_0.tolist()}
     estimator = Estimator(c, {**values, "matched.drift": 1e-3, "prior.nominal": 0.1})
     estimator.run(Joint(duration=0.05).measurements())
-    # 40 of the basis, 1 of the nominal curve, 10 always, 8 if the data ask for them, 3 of the motor,
-    # but no more powers
+    # 40 of the basis, 1 of the nominal curve, 10 always, 8 if the data ask for them, 3 of the
+    # motor, but no more powers
     assert estimator.state.method.matched.size == 40 + 1 + 10 + 8 + 3 - 1
     assert np.all(np.isfinite(covariance(estimator)))
 

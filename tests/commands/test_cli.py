@@ -166,12 +166,12 @@ def test_json_of_scenarios(tmp_path: Path) -> None:
     ],
 )
 def test_bash_completes(words: str, expected: set[str], tmp_path: Path) -> None:
-    """With the line that the README says belongs into .bashrc."""
+    """With the line that the page says belongs into .bashrc."""
     bash = shutil.which("bash")
     if bash is None:
         missing("bash", "apt-get install bash")
-    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-    (line,) = re.findall(r"`(eval [^`]*bash_source[^`]*)`", readme)
+    page = (Path(__file__).parents[2] / "docs" / "start.md").read_text(encoding="utf-8")
+    (line,) = re.findall(r"`(eval [^`]*bash_source[^`]*)`", page)
     script = f"{line}\nCOMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n"
     script += '_sigmahat_completion sigmahat; printf "%s\\n" "${COMPREPLY[@]}"'
     programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"

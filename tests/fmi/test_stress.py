@@ -59,7 +59,8 @@ def test_sanitizers_find_no_leak_and_no_undefined_behaviour(
     fmu: str, build: Path, folder: Path
 ) -> None:
     compiler = compiler_with(ADDRESS, folder)
-    run(compile_driver("cycles", fmu, build, folder, compiler, ADDRESS), str(CYCLES))
+    # They find what one cycle leaves behind.
+    run(compile_driver("cycles", fmu, build, folder, compiler, ADDRESS), "1000")
 
 
 @pytest.mark.slow("valgrind executes a thousand life cycles of an instance, tens of times slower")

@@ -68,6 +68,7 @@ def test_steps_and_turns_of_encoders() -> None:
     found = tomlkit.parse(Path("log.toml").read_text()).unwrap()
     assert found["ports"]["theta"]["wrap"] == 360
     assert found["ports"]["theta"]["unit"] == "deg"
+    assert found["ports"]["theta"]["gear_ratio"] == 2000
     assert found["parameters"]["encoder"] == {"theta": 4096 * 2000, "q": 0}
     assert found["parameters"]["rls"]["m"] == 1
 
@@ -178,6 +179,6 @@ def test_a_motor_never_goes_with_the_link_of_another_joint() -> None:
 def test_the_gear_ratio_of_theta_is_that_of_the_motor(estimator_fmu: Path) -> None:
     text = '[ports.theta]\ncolumn = "a"\ngear_ratio = -70\n[ports.q]\ncolumn = "b"\n'
     with Fmu(estimator_fmu) as fmu:
-        for given, gamma in (("", 70), ("[parameters]\nmotor.gamma = 35\n", 35)):
-            Path("log.toml").write_text(text + given)
+        for given, gamma in (("", 70), ("motor.gamma = 0", 70), ("motor.gamma = 35", 35)):
+            Path("log.toml").write_text(f"{text}[parameters]\n{given}\n")
             assert parameters(fmu, read_configuration(Path("log.toml")))["motor.gamma"] == gamma

@@ -1,4 +1,4 @@
-"""Chromium without a window, to test reports in a browser."""
+"""Chromium without a window, to test reports and the site in a browser."""
 
 from __future__ import annotations
 
@@ -21,6 +21,20 @@ const look = () => !document.querySelector(".plots") || (typeof Bokeh !== "undef
   ? done() : setTimeout(look, 20);
 look();
 """
+
+DATA = """
+const model = [...Bokeh.documents[0]._all_models.values()]
+  .find(m => m.name === arguments[0] && m.data_source?.data[arguments[1]]);
+return Array.from(model.data_source.data[arguments[1]]);
+"""
+"""Values of a trace that is a line or points."""
+ROWS = """
+const section = [...document.querySelectorAll("section")]
+  .find(s => s.querySelector("h2")?.textContent === arguments[0]);
+return [...section.querySelectorAll("tbody tr")]
+  .map(row => [...row.cells].map(cell => cell.textContent).join(" "));
+"""
+"""Rows of a table, also where it is folded."""
 
 
 class Page:
@@ -54,7 +68,7 @@ class Page:
 
 @contextmanager
 def opened(file: Path | str, width: int = 1400, dark: bool = False) -> Iterator[Page]:
-    """Opens a report, or an address, and waits until its plots, if it has any, are drawn."""
+    """Opens a file or an address, and waits until its plots are drawn, if it has some."""
     chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
     if chromium is None or driver is None:
         missing("chromium", "apt-get install chromium chromium-driver")

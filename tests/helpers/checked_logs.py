@@ -84,20 +84,25 @@ WRONG: Mapping[str, tuple[str, str, tuple[str, ...]]] = {
 """By name: what is replaced in RIGHT, by what, and the keys of which one has to be named."""
 
 
-@cache
-def knee_log(duration: float = 20.0) -> Mapping[str, Array]:
-    """The columns of the log."""
-    t = times(1e-3, duration)
+def joint_log(plant: Mapping[str, float], T: float, load: float = 0.0) -> dict[str, Array]:
+    """20 s of RealJointPlant: t, theta, q, tau in rad and N.m, under a torque on the link [N.m]."""
+    t = times(T, 20.0)
     tau = sum(A * np.sin(2 * np.pi * f * t + phase) for A, f, phase in SINES)
-    torques = np.column_stack([tau, np.zeros_like(t)])
+    torques = np.column_stack([tau, np.full_like(t, load)])
     record = ("theta_measured", "q_measured", "tau_measured")
-    run = run_plant("RealJointPlant", ("tau", "tau_ext"), 1e-3, torques, KNEE, record)
-    current = run["tau_measured"] / CONSTANT
-    turns = run["theta_measured"] / (2 * np.pi)
+    run = run_plant("RealJointPlant", ("tau", "tau_ext"), T, torques, plant, record)
+    return {"t": t, **{name.removesuffix("_measured"): run[name] for name in record}}
+
+
+@cache
+def knee_log() -> Mapping[str, Array]:
+    """The columns of the log."""
+    log = joint_log(KNEE, 1e-3)
+    current = log["tau"] / CONSTANT
     return {
-        "t": t,
-        "motor_counts": np.round(turns * COUNTS * GEAR) + ZERO,
-        "link_deg": np.degrees(run["q_measured"]),
+        "t": log["t"],
+        "motor_counts": np.round(log["theta"] / (2 * np.pi) * COUNTS * GEAR) + ZERO,
+        "link_deg": np.degrees(log["q"]),
         "current": current,
         "late_current": np.concatenate([np.full(10, current[0]), current[:-10]]),
     }

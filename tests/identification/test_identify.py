@@ -191,8 +191,8 @@ def test_what_is_not_determined_is_never_exact(
         assert {name: read[name] for name in wide} == wide
         assert not any(f"parameters.{name}" in written for name in kept)
         # No value of another robot stays without a word: B has no interval, D_theta has one.
-        inertia, friction = found[1.0].B, found[1.0].quantities["D_theta"]
-        assert read["motor.B"] == pytest.approx(inertia)
+        B, friction = found[1.0].B, found[1.0].quantities["D_theta"]
+        assert read["motor.B"] == pytest.approx(B)
         assert read["motor.D_theta"] == pytest.approx(friction.value, rel=1e-5)
         assert {"parameters.motor.B", "parameters.motor.D_theta"} <= set(written)
         if "{" not in parameters:

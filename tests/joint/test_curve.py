@@ -253,7 +253,7 @@ def test_a_curve_of_no_data(tmp_path: Path) -> None:
     assert read_curve(tmp_path / CURVE, polynomial) == empty
 
 
-def test_going_on_adds_to_the_reach(awas: tuple[Estimate, Columns, Path]) -> None:
+def test_going_on_adds_to_the_reach() -> None:
     before = LearnedLog("a", "b", 10, 0, (-1.0, 0.5), (0.0, 3.0))
     points = MeasuredPoints(np.linspace(-0.1, 0.9, 100), np.full(100, 2.0), np.zeros(100))
     assert [r.phi for r in reaches(points, [], one_curve=False)] == [
@@ -263,7 +263,14 @@ def test_going_on_adds_to_the_reach(awas: tuple[Estimate, Columns, Path]) -> Non
     assert [r.set_point for r in both] == [0.0, 0.75, 1.5, 2.25, 3.0]
     assert both[0].phi == (-1.0, 0.5)
     assert both[3].phi == pytest.approx((-1.0, 0.5))
-    assert len(reaches(points, [before], one_curve=True)) == 1
+    assert both[2].phi == (-1.0, 0.5)
+    own = MeasuredPoints(np.linspace(-0.1, 0.9, 100), np.full(100, 1.5), np.zeros(100))
+    assert reaches(own, [before], one_curve=False)[2].phi == pytest.approx((-0.1, 0.9), abs=2e-3)
+    fixed = LearnedLog("a", "b", 10, 0, (-1.0, 0.5), (2.0, 2.0))
+    (single,) = reaches(points, [fixed], one_curve=False)
+    assert single.phi == pytest.approx((-1.0, 0.9), abs=2e-3)
+    (single,) = reaches(points, [before], one_curve=True)
+    assert single.phi == pytest.approx((-1.0, 0.9), abs=2e-3)
 
 
 def test_levels_of_the_set_point_are_found() -> None:

@@ -95,9 +95,23 @@ def nothing(log: dict[str, Array]) -> dict[str, Array]:
     return {**log, "q": np.full(2000, np.nan)}
 
 
+def one_word(log: dict[str, Array]) -> dict[str, np.ndarray]:
+    """A word among numbers, and an empty cell before it."""
+    q = log["q"].astype(str)
+    q[700], q[300] = "abc", ""
+    return {**log, "q": q}
+
+
+def nanoseconds_back(log: dict[str, Array]) -> dict[str, np.ndarray]:
+    t = 1_700_000_000_000_000_000 + np.round(1e9 * log["t"]).astype(np.int64)
+    t[1500] = t[1400]
+    return {**log, "t": t}
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
+        (one_word, "column 'q' holds text ('abc' in row 701)"),
         (text, "column 'q' holds text ('fast' in row 2)"),
         (back, "does not increase: 1.4 s in row 1501 after 1.499 s"),
         (nothing, "no number"),
@@ -140,6 +154,8 @@ def test_values_that_do_not_fit(
         ("samplePeriod = 0.001", "samplePeriod = 0", "samplePeriod"),
         ("samplePeriod = 0.001", "samplePeriod = 1e-12", "samplePeriod"),
         ("motor.gamma = 50", "modality = 'Sensr'", "did you mean 'Sensor'"),
+        ("motor.gamma = 50", "model.r_0 = nan", "model.r_0: expected a finite number, got nan"),
+        ("motor.gamma = 50", "motor.gamma = 0", "motor.gamma is 0; fill in the gear ratio"),
     ],
 )
 def test_configuration_that_does_not_fit(
@@ -150,6 +166,16 @@ def test_configuration_that_does_not_fit(
     Path("log.toml").write_text(CONFIGURATION.replace(old, new))
     assert words in refused(["log.parquet"], capsys)
     assert sorted(p.name for p in folder.iterdir()) == ["log.parquet", "log.toml"]
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet", ".mat", ".h5"])
+def test_times_since_1970_are_told_from_the_first_row(
+    suffix: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("log.toml").write_text(CONFIGURATION.replace('"t"', '"t"\nunit = "ns"'))
+    path = write_log(nanoseconds_back(columns()), folder / f"log{suffix}")
+    line = refused([path.name], capsys)
+    assert "does not increase: 1.4 s in row 1501 after 1.499 s" in line
 
 
 def test_no_configuration(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -312,6 +312,10 @@ def test_from_counts_and_amperes_to_the_stiffness(
     text = Path("knee.toml").read_text()
     for value in ("counts_per_turn = 40000", "counts_per_turn = 1024", "torque_constant = 0.05"):
         text = text.replace(f"{value.split()[0]} = 0 ", f"{value} ", 1)
+    text = text.replace("gear_ratio = 0 ", "gear_ratio = 1 ")  # the encoder sits behind the gear
+    Path("knee.toml").write_text(text)
+    assert main(["identify", "knee.csv"]) == 2  # it asks for the gear ratio of the motor
+    text = text.replace("motor.gamma = 0 ", "motor.gamma = 50 ")
     Path("knee.toml").write_text(text)
     assert main(["identify", "knee.csv"]) == 0
     assert main(["estimate", "knee.csv"]) == 0
@@ -323,3 +327,17 @@ def test_from_counts_and_amperes_to_the_stiffness(
     sigma = read_estimate(out)[SIGMA].to_numpy()
     # Coulomb friction is in the plant and not in the residual: a tenth is what is left of it
     assert np.mean(np.abs(sigma / truth - 1)[5000:]) < 0.1
+
+
+def test_without_a_torque_no_percentage_of_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # GIVEN a joint that does not deform THEN its error is not said to be 1e+10 % of no torque
+    monkeypatch.chdir(tmp_path)
+    t = 1e-3 * np.arange(2000)
+    motion = np.sin(5 * t)
+    log = {"t": t, "theta": motion, "q": motion, "theta_c": 75 + t, "tau": 0.1 * motion}
+    write_log(log, Path("log.parquet"))
+    Path("log.toml").write_text(CONFIGURATION)
+    assert main(["estimate", "log.parquet"]) == 0
+    assert "(100 % or more of the torque)" in capsys.readouterr().out

@@ -51,6 +51,26 @@ def test_a_column_that_begins_with_numbers_may_go_on_with_text(tmp_path: Path) -
     ] == ["39998", "end"]
 
 
+@pytest.mark.parametrize("begin", [0, 500], ids=["whole numbers", "fractions later"])
+def test_whole_numbers_stay_whole_numbers(
+    begin: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # GIVEN nanoseconds since 1970, which a float64 does not hold, and a column that is whole
+    # at rest and has fractions behind the part of the file that decides on the types
+    monkeypatch.chdir(tmp_path)
+    rows = ROWS if not begin else 60_000
+    stamps = 1_700_000_000_123_456_789 + 1_000_000 * np.arange(rows, dtype=np.int64)
+    note = np.array(["0"] * (rows - begin) + ["0.5"] * begin)
+    write_log({**columns(rows), "t": stamps, "note": note}, Path("log.csv"))
+    text = Path("log.csv").read_text().replace('"', "")
+    Path("log.csv").write_text(text)
+    log = open_log(Path("log.csv"))
+    (first,) = log.batches(["t"], rows)
+    assert first["t"].to_pylist() == stamps.tolist()
+    assert np.array_equal(log.read("t"), 1e6 * np.arange(rows))
+    assert log.read("note").sum() == 0.5 * begin
+
+
 def test_dates_are_times_and_stay_as_they_are(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -33,7 +33,7 @@ def line(
     name: str, label: str, panel: int = 0, scenario: str = "table1"
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     axes = draw(scenario, name).axes[panel]
-    (found,) = (each for each in axes.get_lines() if label in str(each.get_label()))
+    (found, *_) = (each for each in axes.get_lines() if label in str(each.get_label()))
     return np.asarray(found.get_xdata()), np.asarray(found.get_ydata())
 
 
@@ -47,7 +47,7 @@ def test_every_figure_belongs_to_a_scenario_and_every_scenario_has_one() -> None
 def test_axes_have_labels_with_units_and_the_figure_a_legend(scenario: str, name: str) -> None:
     figure = draw(scenario, name)
     for axes in figure.axes:
-        assert axes.get_xlabel() == "time $t$ [s]"
+        assert axes.get_xlabel() in ("time $t$ [s]", r"deformation $\phi$ [rad]")
         assert re.search(r"\[.+\]", axes.get_ylabel())
     legend = figure.axes[0].get_legend()
     assert legend is not None
@@ -80,8 +80,8 @@ def test_lines_cover_the_whole_run(scenario: str, name: str) -> None:
         ("experiment", "fig11-flexibility-torque", [3, 3]),
         ("experiment", "fig12-stiffness", [5, 5]),
         ("experiment", "experiment", [1, 2, 3, 5, 3]),
-        ("single-hardening", "summary", [3, 2]),
-        ("antagonistic", "antagonistic", [3, 4, 3]),
+        ("single-hardening", "transmission", [3, 3, 3, 2]),
+        ("antagonistic", "antagonistic", [3, 2, 2, 2, 2, 2, 2, 2, 3]),
     ],
 )
 def test_every_trace_is_there(scenario: str, name: str, lines: list[int]) -> None:
@@ -130,17 +130,33 @@ def test_drawn_values_of_the_experiment() -> None:
 
 
 @pytest.mark.parametrize(
-    ("label", "signal"), [("device", "sigma"), ("side 1", "sigma_1"), ("side 2", "sigma_2")]
+    ("label", "signal", "panel"),
+    [("device", "sigma", 1), ("side 1", "sigma_1", 2), ("side 2", "sigma_2", 3)],
 )
-def test_drawn_values_of_the_antagonistic_pair(label: str, signal: str) -> None:
+def test_drawn_values_of_the_antagonistic_pair(label: str, signal: str, panel: int) -> None:
     recording = one_seed("antagonistic").recording
-    t, drawn = line("antagonistic", label, panel=1, scenario="antagonistic")
+    t, drawn = line("antagonistic", label, panel=panel, scenario="antagonistic")
     estimate = recording.estimators["RESIDUAL"][signal]
     np.testing.assert_array_equal(drawn, estimate[np.searchsorted(recording.t, t)])
-    t, worst = line("antagonistic", label, panel=2, scenario="antagonistic")
+    t, worst = line("antagonistic", label, panel=8, scenario="antagonistic")
     error = np.abs(estimate - recording.plant[signal]) / recording.plant[signal] * 100
     for k, start in enumerate(np.searchsorted(recording.t, t)):
         assert worst[k] == pytest.approx(error[start : start + 100].max(), rel=1e-9)
+
+
+def test_the_curves_of_a_transmission_are_the_spring_and_its_estimate() -> None:
+    """tau_e = 150 phi + 3000 phi^3 N.m is the spring of the scenario."""
+    recording = one_seed("single-hardening").recording
+    estimate = recording.estimators["RESIDUAL"]
+    for panel, signal in ((1, "tau_e"), (2, "sigma")):
+        phi, true = line("transmission", "true", panel, "single-hardening")
+        spring = 150 * phi + 3000 * phi**3 if panel == 1 else 150 + 9000 * phi**2
+        np.testing.assert_allclose(true, spring, rtol=1e-6, atol=1e-9)
+        phi, drawn = line("transmission", "RESIDUAL", panel, "single-hardening")
+        assert len(phi) > 50
+        last = recording.t >= 10.0
+        pairs = set(zip(estimate["phi"][last], estimate[signal][last], strict=True))
+        assert set(zip(phi, drawn, strict=True)) <= pairs
 
 
 def test_zoom_shows_the_quantisation() -> None:

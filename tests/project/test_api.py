@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import inspect
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -16,21 +14,14 @@ REPOSITORY = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The page that `cmake --build build --target api` writes."""
-    path = tmp_path_factory.mktemp("api") / "api.html"
-    subprocess.run([sys.executable, REPOSITORY / "docs" / "api.py", path], check=True)
-    return path.read_text(encoding="utf-8")
+def page(site: Path) -> str:
+    """The page of the Python API."""
+    return (site / "api.html").read_text(encoding="utf-8")
 
 
-def test_the_page_loads_nothing_from_the_network(page: str) -> None:
-    assert not re.search(r"""(?:src|href)=["']?(?:https?:)?//(?!pdoc\.dev)""", page)
-    assert "<title>sigmahat API documentation</title>" in page
-
-
-@pytest.mark.parametrize("name", sorted(sigmahat.__all__))
+@pytest.mark.parametrize("name", sorted({*sigmahat.__all__} - {"__version__"}))
 def test_a_public_name_is_on_the_page(name: str, page: str) -> None:
-    assert f'<section id="{name}">' in page
+    assert f'id="sigmahat.{name}"' in page
 
 
 def members() -> list[tuple[str, object]]:

@@ -49,8 +49,8 @@ def test_fmpy_ten_lines(tmp_path: Path) -> None:
     assert float(value) == pytest.approx(
         1000.0, abs=1.0
     )  # stiffness of the joint from which its log was computed
-    readme = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
-    assert f"It prints {float(value):.1f}:" in readme
+    page = (EXAMPLES.parent / "docs" / "fmu.md").read_text(encoding="utf-8")
+    assert f"It prints {float(value):.1f}:" in page
 
 
 def test_own_log(tmp_path: Path) -> None:

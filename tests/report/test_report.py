@@ -17,16 +17,10 @@ import pytest
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.by import By
 
-from browser import opened
+from browser import DATA, ROWS, opened
 from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
 from sigmahat.report.reduction import reduce
 
-DATA = """
-const model = [...Bokeh.documents[0]._all_models.values()]
-  .find(m => m.name === arguments[0] && m.data_source);
-return Array.from(model.data_source.data[arguments[1]]);
-"""
-"""Values of a trace that is a line or points."""
 PICTURE = """
 const view = [...Object.values(Bokeh.index.roots ?? Bokeh.index)][arguments[0]];
 const {canvas, ctx} = view.canvas_view.primary;
@@ -94,7 +88,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 
 @pytest.mark.parametrize(
-    ("kind", "plots"), [("reproduction", 7), ("pair", 14), ("log", 5), ("sweep", 4)]
+    ("kind", "plots"), [("reproduction", 7), ("pair", 18), ("log", 7), ("sweep", 4)]
 )
 @pytest.mark.slow("a browser draws the report")
 def test_the_file_alone_shows_every_plot(
@@ -164,10 +158,10 @@ def test_a_log_has_the_numbers_of_its_table(results: Callable[[str], Path]) -> N
     rms = np.sqrt(np.mean(later**2))
     cells = [f"{x:.4g}" for x in (sigma[-1], later.min(), later.max(), rms)]
     with opened(folder / "report.html") as page:
-        rows = page.driver.find_elements(By.CSS_SELECTOR, "tbody tr")
-        assert rows[0].text.split() == ["sigma", "[N.m/rad]", *cells]
-        assert rows[-1].text.split() == ["NoClaim", "100"]
-        drawn = np.array(page.run(DATA, "trace-0-0", "trace-0-0"))
+        rows = page.run(ROWS, "Outputs of the estimator")
+        assert rows[0].split() == ["\u03c3", "[N·m/rad]", *cells]
+        assert page.run(ROWS, "Doubt")[-1].split() == ["NoClaim", "100"]
+        drawn = np.array(page.run(DATA, "trace-2-0", "trace-2-0"))
     assert np.array_equal(drawn, sigma.astype(np.float32))
 
 
@@ -246,7 +240,7 @@ def test_an_hour_is_a_file_of_the_same_size(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("files", "words"),
     [
-        (None, "expected a folder of `sigmahat reproduce`, `estimate` or `sweep`"),
+        (None, "expected a folder of `sigmahat reproduce`, `estimate`, `sweep` or `compare`"),
         ({}, "no result of"),
         ({"runs.jsonl": b""}, "a sweep that is not complete; run its command again"),
         ({"sweep.parquet": b"PAR1 cut off"}, "not the table of a sweep; run the sweep again"),
@@ -255,6 +249,8 @@ def test_an_hour_is_a_file_of_the_same_size(tmp_path: Path) -> None:
         ({"estimate.csv": b"t,x\n1,2\n"}, "no table of `sigmahat estimate`"),
         ({"table.csv": b"estimation,seeds\nRESIDUAL,1\n"}, "no result of `sigmahat reproduce`"),
         ({"table.csv": b"a,b\n1\n"}, "not readable as CSV"),
+        ({"compare.csv": b"a,b\n1,2\n"}, "no table of `sigmahat compare`; run it again"),
+        ({"misfits.csv": b"group,seeds\nx,2\n"}, "no table of `sigmahat compare`; run it again"),
     ],
 )
 def test_bad_input(files: dict[str, bytes] | None, words: str, tmp_path: Path) -> None:

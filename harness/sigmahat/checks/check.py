@@ -15,6 +15,7 @@ from sigmahat.checks.replayed import Outputs, play, replayed
 from sigmahat.checks.view import View, view
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Log
 from sigmahat.logs.replay import parameters
@@ -50,15 +51,22 @@ def check(log: Log, configuration: Configuration) -> Checked:
 def check_identified(log: Log, before: Configuration, after: Configuration) -> Checked:
     """Checks a configuration that identify has completed.
 
-    The inertia is compared with the one that was there before: it came from elsewhere.
+    The inertia is compared with the one that was there before, if that came from elsewhere.
 
     Raises LogError, FmuError as `check`.
     """
     checked = check(log, after)
-    if before == after:
+    if before == after or not _is_given(before):
         return checked
     of_inertia = [each for each in check(log, before).findings if each.kind in _INERTIA]
-    return replace(checked, findings=[*of_inertia, *checked.findings])
+    others = [each for each in checked.findings if each.kind not in _INERTIA]
+    return replace(checked, findings=[*of_inertia, *others])
+
+
+def _is_given(configuration: Configuration) -> bool:
+    """Whether somebody has said what the inertia is."""
+    prior = float(_fmu().parameters(parameters(_fmu(), configuration))["prior.B"])
+    return "motor.B" in configuration.parameters and prior < WIDE
 
 
 @cache

@@ -40,7 +40,7 @@ def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
         return
     steps, span = np.abs(np.diff(values)), float(np.ptp(values))
     jump = float(steps.max())
-    if span == 0 or jump < 0.9 * span or float(np.quantile(steps, 0.99)) > 0.1 * jump:
+    if span == 0 or jump < 0.9 * span or float(np.quantile(steps, 0.9)) > 0.2 * jump:
         return
     period = min(_PERIODS, key=lambda each: abs(each - span))
     known = period if abs(period / span - 1) < 0.02 else None

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.checks.motor import Fitted, explains, variants, with_form, with_inertia
 from sigmahat.checks.view import View
+from sigmahat.identification.quantities import WIDE
 from sigmahat.identification.regression import Signals
 
 _AWAS = 2.3e-5  # [kg.m2] of motor.B, the start value
@@ -27,16 +28,18 @@ def inertia(seen: View, pieces: Sequence[Signals], found: Fitted) -> Iterator[Fi
         return
     B = found.linear.value["B"]
     unit, rounded = "kg.m2", float(f"{B:.3g}")
+    is_known = float(seen.every["prior.B"]) < WIDE  # else nobody has said that B is right
     gamma = abs(seen.gamma)
     geared = [each for each in (gamma, 1 / gamma) if not _differs(B, each * told, _LIKE)]
-    if "motor.B" in seen.configuration.parameters and geared and gamma > _LIKE**2:
+    is_given = "motor.B" in seen.configuration.parameters and is_known
+    if is_given and geared and gamma > _LIKE**2:
         port = seen.configuration.ports["tau"]
         proposed = float(f"{port.gear_ratio * geared[0]:.6g}")
         kind, key = Kind.TORQUE_SCALE, "ports.tau.gear_ratio"
         others = [("motor.B", rounded)]
         yield Finding(kind, Severity.WRONG, key, B, unit, told, proposed, others)
         return
-    is_wrong = told == _AWAS or _differs(B, told, _LARGE)
+    is_wrong = is_known and (told == _AWAS or _differs(B, told, _LARGE))
     severity = Severity.WRONG if is_wrong else Severity.NOTE
     constant = [("ports.tau.torque_constant", None)]
     yield Finding(Kind.INERTIA, severity, "motor.B", B, unit, told, rounded, constant)

@@ -11,7 +11,8 @@ from sigmahat.logs.configuration import Port
 from sigmahat.logs.units import factor
 
 _ANGLES = ("rad", "deg", "turn")
-_COUNTS = (4.0, 0.25, 2.0, 0.5)
+_COUNTS = tuple(2.0**k for i in (2, 1, 3, 4, 5, 6) for k in (i, -i))
+"""Other numbers of counts: the evaluation of lines is two- or four-fold, and wraps are no turns."""
 _LIKE = math.log(2.0)
 """A spring deforms, so q and theta do not move alike: a factor is recognised up to this."""
 

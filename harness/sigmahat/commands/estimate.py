@@ -32,7 +32,8 @@ def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path 
     """Replay LOG through the estimator, and add the stiffness to its table.
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag; `sigmahat init LOG` writes the
-    configuration. Writes a table (CSV for CSV, else Parquet), a figure, a data sheet of the joint
+    configuration. Writes a table (CSV for CSV, else Parquet), the stiffness over the deformation
+    (estimate.curve.csv), a figure, a data sheet of the joint
     (joint.json) for `sigmahat export`, and what was learned (state.json) for --start-from.
 
     \b
@@ -40,13 +41,14 @@ def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path 
     """
     from sigmahat.checks.check import check
     from sigmahat.checks.findings import as_dict
-    from sigmahat.checks.text import IN_LOG
+    from sigmahat.checks.text import IN_LOG, sentence
     from sigmahat.checks.text import summary as of_checks
     from sigmahat.files.output_folder import output_folder
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.estimate import estimate as run
     from sigmahat.logs.readers.formats import open_log
     from sigmahat.logs.summary import summary
+    from sigmahat.report.findings import ShownFinding, write_findings
 
     common.need_fmu("StiffnessEstimator")
     out = out or Path("sigmahat-results", log.stem)
@@ -55,7 +57,9 @@ def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path 
         configuration = read_configuration(config or common.configuration_of(log))
         with output_folder(out) as folder, common.progress("Replaying", 1000) as bar:
             result = run(opened, configuration, folder, bar.update, start_from)
-        checked = check(opened, configuration)
-    where = f"Table, figure (PNG, SVG), joint.json and state.json are in {out.resolve()}"
+            checked = check(opened, configuration)
+            shown = [ShownFinding(f.severity.value, sentence(f)) for f in checked.findings]
+            write_findings(shown, folder)
+    where = f"Table, curve, figure (PNG, SVG), joint.json and state.json are in {out.resolve()}"
     text = f"{summary(result)}\n\n{of_checks(checked, IN_LOG)}\n\n{where}"
     common.answer(text, {**result.as_dict(), "checks": as_dict(checked)})

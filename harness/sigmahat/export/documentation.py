@@ -35,13 +35,13 @@ def write(template: Path, out: Path, version: str) -> None:
         identifier=template.stem,
         kind="plant" if template.stem.endswith("Plant") else "estimator",
         experiment=experiment.attrib,
-        variables={c: _table(root, c) for c in ("input", "output", "parameter")},
+        variables={c: table(root, c) for c in ("input", "output", "parameter")},
         **{key: root.attrib[key] for key in ("description", "version", "copyright", "license")},
     )
     (folder / "index.html").write_text(page, encoding="utf-8")
 
 
-def _table(root: Element, causality: str) -> dict[str, Any]:
+def table(root: Element, causality: str) -> dict[str, Any]:
     """Rows of the variables of one causality; those of an array by the array's name."""
     single: list[dict[str, Any]] = []
     arrays: dict[str, list[dict[str, Any]]] = {}

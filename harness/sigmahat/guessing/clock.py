@@ -11,6 +11,7 @@ from sigmahat.logs.units import seconds
 
 _MOSTLY = 0.99  # share of the steps of a clock that go up
 _EVEN = 0.05  # largest distance of a step from the usual one, relative
+_MISSING = 1.8  # usual steps: a longer one holds rows that are lost
 _GAP = 3.0  # usual steps: a longer one is a gap
 _EPOCH = {"ns": 1e17, "us": 1e14, "ms": 1e11, "s": 1e8}  # from about 1973 on
 _FASTEST, _SLOWEST = 2e-5, 0.2  # usual time between rows of a log [s]
@@ -56,12 +57,27 @@ def interval(times: Array) -> float:
     near = steps[np.abs(steps / usual - 1) < _EVEN]
     if len(near) > 0.9 * len(steps):
         return float(f"{near.mean():.6g}")
+    if _is_coarse(steps, usual):
+        return float(f"{steps[steps < _GAP * usual].mean():.4g}")
     steps = steps[steps < _GAP * usual]
-    kinds = np.unique(np.round(steps / usual, 3))
-    if len(kinds) < 8:  # a coarse clock: 1, 2, 1, 2 ms for 1.5 ms
-        return float(f"{steps.mean():.4g}")
-    rows = np.maximum(np.round(steps / usual), 1)  # where a row is missing, two intervals
+    rows = np.where(steps > _MISSING * usual, np.round(steps / usual), 1)
     return _round(float(steps.sum() / rows.sum()))
+
+
+def _is_coarse(steps: Array, usual: float) -> bool:
+    """Whether the times are those of an even clock, rounded: 1, 2, 1, 2 ms for 1.5 ms.
+
+    Then they never are off by more than their resolution, while every row that is lost adds up.
+    """
+    gaps = np.flatnonzero(steps >= _GAP * usual)
+    edges = np.r_[-1, gaps, len(steps)]
+    longest = int(np.argmax(np.diff(edges)))
+    whole = steps[edges[longest] + 1 : edges[longest + 1]]
+    if len(whole) < 8 or len(np.unique(np.round(whole / usual, 3))) > 3:
+        return False
+    times = np.cumsum(whole)
+    off = times - np.polyval(np.polyfit(np.arange(len(times)), times, 1), np.arange(len(times)))
+    return bool(np.abs(off).max() < whole.min())
 
 
 def _round(T: float) -> float:

@@ -55,7 +55,7 @@ def look_at(log: Log, name: str) -> tuple[Facts, Array]:
     if not len(finite):
         return Facts(len(values), np.nan, np.nan, False, False, 0.0, np.inf, None), values
     steps = np.diff(finite)
-    few = len(np.unique(finite[:_DISTINCT])) < _STATES
+    few = len(np.unique(finite[:_DISTINCT])) < min(_STATES, len(finite))
     whole = bool(np.all(finite == np.round(finite)))
     wrap = None if few else _wrap(steps, float(np.ptp(finite)))
     facts = Facts(
@@ -126,4 +126,7 @@ def _wrap(steps: Array, span: float) -> float | None:
     best = min(exact, key=lambda each: abs(each / period - 1))
     if abs(best / period - 1) < _SEEN:
         return best
-    return float(f"{period:.3g}") if len(inner) > 1 else None
+    # Any other period only if the column moves on over each of the jumps.
+    noise = float(np.median(np.abs(np.diff(steps))))
+    on = -np.sign(steps[inner]) * coming > 3 * noise
+    return float(f"{period:.3g}") if len(inner) > 1 and on.all() else None

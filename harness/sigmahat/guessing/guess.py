@@ -8,6 +8,7 @@ A guess is data: `template.py` writes it as a configuration.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -68,8 +69,9 @@ def guess_of(columns: Columns, log: Log) -> dict[str, JointGuess]:
 
 def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGuess:
     """The joint of a name. Raises LogError, which names the joints of the log, if it has none."""
+    short = re.sub(r"^(joint|axis|j)_?(?=\d)", "", name.lower())
     for each, joint in joints.items():
-        if each.lower() == name.lower():
+        if each.lower() in (name.lower(), short):
             return joint
     named = [each for each in joints if each]
     if not named:

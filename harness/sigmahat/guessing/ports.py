@@ -15,7 +15,9 @@ from sigmahat.guessing.roles import Role, Roles
 from sigmahat.logs.log import Array
 
 _AFTER_GEAR = 1.4  # motor over link, in the same unit: below, the motor is measured after its gear
-_WHOLE = 0.007  # a gear ratio this near to a whole number is taken for it, relative
+_AS_FAR = 0.15  # two positions behind the gear move as far as each other, relative
+_WHOLE = 0.002  # a gear ratio this near to a whole number is taken for it, relative
+_STIFF = 0.005  # deformation over motion: above, the motion of the link is no measure of the gear
 _APART = 4.0  # deformations, in their standard deviation: a larger one is a zero
 _RADIANS = 6.6  # a joint that turns by more is in degrees
 _MILLI = 100.0  # amperes: a larger current is in mA
@@ -38,6 +40,8 @@ class PortGuess:
     """In the unit of the column."""
     gear_ratio: float | None
     """None if it has to be filled in."""
+    moves: float | None
+    """Of theta: how far it moves over how far the link moves, about; None if that is not known."""
     counts_per_turn: float | None
     """For the unit counts; None if it has to be filled in."""
     wrap: float | None
@@ -88,7 +92,20 @@ def _plain(port: str, role: Role, time: str | None) -> PortGuess:
     if wrap is not None:
         notes["wrap"] = "CHECK: it jumps by this"
     return PortGuess(
-        column.name, role.why, unit, 1, 0.0, 1.0, None, wrap, 0, time, facts.low, facts.high, notes
+        column.name,
+        role.why,
+        unit,
+        1,
+        0.0,
+        1.0,
+        None,
+        None,
+        wrap,
+        0,
+        time,
+        facts.low,
+        facts.high,
+        notes,
     )
 
 
@@ -123,7 +140,7 @@ def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> st
         scale = scale_of_derivative(column.window, other.window, T)
         if scale is None:
             continue
-        turn = TURN[unit] / abs(scale) / (60 if minute else 1)  # of the position, in its unit
+        turn = TURN[unit] * (60 if minute else 1) / abs(scale)  # of the position, in its unit
         best = min(TURN, key=lambda each: abs(math.log(turn / TURN[each])))
         if abs(math.log(turn / TURN[best])) < 0.05:
             return best
@@ -158,7 +175,7 @@ def _together(ports: Mapping[str, PortGuess], motor: Column, link: Column) -> di
         theta = _unit_by_other(theta, q, 1 / abs(fitted.slope))
     elif _is_vague(q):
         q = _unit_by_other(q, theta, abs(fitted.slope))
-    theta = _gear(theta, q, 1 / abs(fitted.slope))
+    theta = _gear(theta, q, 1 / abs(fitted.slope), fitted.rest)
     ratio = _ratio(theta, q)
     if fitted.slope < 0:
         q = replace(q, sign=-1, notes={**q.notes, "sign": "it moves against the motor"})
@@ -183,16 +200,17 @@ def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess
     """
     if other.unit not in TURN:
         return port
-    same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < 0.3]
+    same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
     unit = same[0] if same else other.unit
     how = "CHECK: by the other position, with which it moves"
     return replace(port, unit=unit, notes={**port.notes, "unit": how})
 
 
-def _gear(theta: PortGuess, q: PortGuess, slope: float) -> PortGuess:
-    """The gear ratio, where both units are known; else what the log says about it.
+def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGuess:
+    """The gear ratio where both units are known and the joint is stiff; else about what it is.
 
     slope  values of theta over those of q
+    rest   standard deviation of what this slope does not explain, over that of q
     """
     if theta.unit in TURN and q.unit in TURN:
         gear = slope * TURN[q.unit] / TURN[theta.unit]
@@ -200,15 +218,16 @@ def _gear(theta: PortGuess, q: PortGuess, slope: float) -> PortGuess:
             note = "it moves as far as the link, so it is measured after the gear"
             return replace(theta, gear_ratio=1.0, notes={**theta.notes, "gear_ratio": note})
         whole = max(round(gear), 1)
-        ratio = float(whole) if abs(gear / whole - 1) < _WHOLE else float(f"{gear:.4g}")
-        note = f"CHECK: the motor moves {gear:.5g} times as far as the link"
-        return replace(theta, gear_ratio=ratio, notes={**theta.notes, "gear_ratio": note})
+        sure = rest < _STIFF and abs(gear / whole - 1) < _WHOLE
+        moves = f"the motor moves {gear:.4g} times as far as the link"
+        notes = {**theta.notes, "gear_ratio": f"{'CHECK' if sure else 'FILL IN'}: {moves}"}
+        return replace(theta, gear_ratio=float(whole) if sure else None, moves=gear, notes=notes)
     if q.unit in TURN:
         product = slope * TURN[q.unit]
-        note = f"FILL IN: times counts_per_turn it is about {product:.5g}"
+        note = f"FILL IN: times counts_per_turn it is about {product:.4g}"
     elif theta.unit == "counts" and q.unit == "counts" and q.counts_per_turn:
         product = slope * q.counts_per_turn
-        note = f"FILL IN: times counts_per_turn it is about {product:.5g}"
+        note = f"FILL IN: times counts_per_turn it is about {product:.4g}"
     else:
         note = "FILL IN: 1 if it is measured after the gear"
     return replace(theta, gear_ratio=None, notes={**theta.notes, "gear_ratio": note})

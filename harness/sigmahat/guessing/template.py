@@ -170,7 +170,7 @@ def _add_motor(table: Table, theta: PortGuess | None, defaults: Mapping[str, flo
     if theta is None or theta.gear_ratio == 1:
         _add(table, "motor.gamma", 0, "FILL IN: gear ratio, between motor and flexibility")
     else:
-        table.add(tomlkit.comment("motor.gamma is the gear_ratio of theta, unless it is set here"))
+        _add(table, "motor.gamma", 0, "0: the gear_ratio of theta, which must then not be 1")
     for name, value in defaults.items():
         _add(table, name, value, f"[{_MOTOR_UNITS[name]}] {NOT_YOURS}")
         _add(table, name.replace("motor.", "prior."), ANOTHER_ROBOT, WIDE_PRIOR)
@@ -208,9 +208,9 @@ def _encoder(port: PortGuess) -> tuple[int, str]:
     """Counts in a turn of the joint, and why."""
     if not port.steps:
         return 0, "counts per turn; not quantised"
-    counts = round(port.steps * (port.gear_ratio or 1.0))
-    gear = "" if port.gear_ratio in (1, None) else f", behind a gear of {port.gear_ratio:g}"
-    return counts, f"counts per turn; its step is 1/{port.steps} turn{gear}"
+    gear = port.gear_ratio or port.moves or 1.0
+    where = "" if gear == 1 else f", times a gear of {gear:.4g}"
+    return round(port.steps * gear), f"counts per turn; its step is 1/{port.steps} turn{where}"
 
 
 def _set_point(port: PortGuess | None) -> Iterator[tuple[str, float, str]]:

@@ -15,10 +15,11 @@ import numpy as np
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu, Slave, Value
 from sigmahat.identification.coherence import TorqueNoise, coherent_range
-from sigmahat.identification.motor import KnownInertia, fit_motor
+from sigmahat.identification.motor import KnownInertia, fit_motor, motor_form
+from sigmahat.identification.next_motion import advice
 from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
-from sigmahat.identification.quantities import WIDE, Identified, Quantity
-from sigmahat.identification.regression import Signals, shortest
+from sigmahat.identification.quantities import WIDE, Advice, Identified, Quantity
+from sigmahat.identification.regression import Form, Signals, shortest
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Array, Log
@@ -52,9 +53,8 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         if not pieces:
             raise LogError(f"{log.path}: no stretch of {shortest(T) * T:g} s without a gap")
         longest = max(pieces, key=lambda piece: len(piece.theta))
-        counts = float(every["encoder.theta"])
         tau_variance = variance(longest.tau)
-        theta_variance = variance(longest.theta, 2 * math.pi / counts if counts else 0.0)
+        theta_variance = variance(longest.theta, _step(every["encoder.theta"]))
         B, symmetric = float(every["motor.B"]), bool(every["rls.symmetric"])
         f_0 = bandwidth(tau_variance, theta_variance, B * abs(gamma), T)
         coherent = math.inf
@@ -66,15 +66,13 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         )
         V_a = _best_V_a(fmu, samples, start, longest, f_0)
     quantities = dict(motor.quantities)
+    form = motor_form(min(f_0, coherent), T, symmetric)
     if quantities["B"].determined:  # until here it was that of the configuration
         f_0 = bandwidth(tau_variance, theta_variance, quantities["B"].value * abs(gamma), T)
     nominal = configuration.ports["tau"].torque_constant
     if torque_constant and nominal is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
-    set_point, tau = (
-        max(float(np.max(np.abs(getattr(piece, name)))) for piece in pieces)
-        for name in ("set_point", "tau")
-    )
+    set_point, tau = (_largest(pieces, name) for name in ("set_point", "tau"))
     zero = quantities["zero"].value if _is_wrong(quantities.get("zero"), pieces) else 0.0
     return Identified(
         quantities=quantities,
@@ -92,7 +90,31 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         B=B,
         D_theta=float(every["motor.D_theta"]),
         notes=samples.notes,
+        advice=_advice(pieces, T, form, quantities, every),
     )
+
+
+def _largest(pieces: Sequence[Signals], name: str) -> float:
+    """Largest magnitude of a signal."""
+    return max(float(np.max(np.abs(getattr(piece, name)))) for piece in pieces)
+
+
+def _advice(
+    pieces: Sequence[Signals],
+    T: float,
+    form: Form,
+    quantities: Mapping[str, Quantity],
+    every: Mapping[str, Value],
+) -> Sequence[Advice]:
+    """What to record next."""
+    steps = _step(every["encoder.theta"]), _step(every["encoder.q"])
+    gamma, B = float(every["motor.gamma"]), float(every["motor.B"])
+    return advice(pieces, T, gamma, form, quantities, B, steps)
+
+
+def _step(counts: Value) -> float:
+    """Angle of a count of an encoder [rad]; 0 if there is none."""
+    return 2 * math.pi / float(counts) if counts else 0.0
 
 
 def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> KnownInertia | None:

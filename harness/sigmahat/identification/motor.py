@@ -89,7 +89,7 @@ def fit_motor(
     """
     longest = max(pieces, key=lambda piece: len(piece.theta))
     m_most = _M if np.ptp(longest.set_point) > 0 else 1
-    form = Form(f_0, min(2.5 * f_0, _WIDEST / T), _N, m_most, symmetric)
+    form = replace(motor_form(f_0, T, symmetric), n=_N, m=m_most)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     (n, m), smallest = choose(equations(without_sensor, T, gamma, form), _N, m_most)
     form = replace(form, n=n, m=m)
@@ -105,6 +105,11 @@ def fit_motor(
         quantities["zero"] = _zero(spring, fits, pieces, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
     return MotorFit(quantities, gain, smallest, spring.largest(fits.first, pieces, abs(gamma)))
+
+
+def motor_form(f_0: float, T: float, symmetric: bool) -> Form:
+    """The equation with a linear spring, and filters for a low pass of f_0 [Hz]."""
+    return Form(f_0, min(2.5 * f_0, _WIDEST / T), symmetric=symmetric)
 
 
 @dataclass(frozen=True)

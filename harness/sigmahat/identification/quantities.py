@@ -39,6 +39,34 @@ class Quantity:
 
 
 @dataclass(frozen=True)
+class Motion:
+    """Sines of the motor, after its gear, that are added."""
+
+    sines: Sequence[tuple[float, float]]
+    """Amplitude [rad] and frequency [Hz] of each."""
+    duration: float
+    """[s]"""
+    torque: float
+    """Peak of the torque on the axis of the motor [N.m]."""
+    reversals: int
+    """Number of reversals of the motor."""
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to record for a quantity that is not well known."""
+
+    name: str
+    """B, D_theta, tau_coulomb or stiffness."""
+    known_to: float
+    """Half of the 95 % interval over the value [1]; inf or nan if the log does not show it."""
+    motion: Motion | None
+    """None: no candidate makes it known, or the log does not show the spring at all."""
+    would_be: float
+    """The same as known_to after the motion, alone [1]."""
+
+
+@dataclass(frozen=True)
 class Identified:
     """Motor data, polynomial orders and noise, identified from a log."""
 
@@ -74,3 +102,5 @@ class Identified:
     """That of the configuration [N.m.s/rad]."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""
+    advice: Sequence[Advice] = ()
+    """What to record next, for each quantity that the log does not determine."""

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import Any
 
-from sigmahat.identification.quantities import Identified, Quantity
-from sigmahat.identification.regression import COULOMB_VELOCITY, MOTOR
+from sigmahat.identification.quantities import Advice, Identified, Quantity
+from sigmahat.identification.regression import COULOMB_VELOCITY
 
 
 def as_dict(identified: Identified) -> dict[str, Any]:
@@ -31,6 +32,7 @@ def as_dict(identified: Identified) -> dict[str, Any]:
         "largest phi [rad]": identified.phi,
         "largest setPoint [1]": identified.set_point,
         "largest gamma tau [N.m]": identified.torque,
+        "next motion": [asdict(each) for each in identified.advice],
         "notes": list(identified.notes),
     }
 
@@ -40,8 +42,7 @@ def summary(identified: Identified) -> str:
     lines = [f"  {note}" for note in identified.notes]
     lines.append("")
     lines += [f"{name:16}{_text(each)}" for name, each in identified.quantities.items()]
-    if not all(identified.quantities[name].determined for name in MOTOR):
-        lines.append("  Record faster motion for B, and many reversals for tau_coulomb.")
+    lines += [f"  {_advice(each)}" for each in identified.advice]
     lines += [
         "",
         f"orders          rls.n = {identified.n}, rls.m = {identified.m} (cross-validation)",
@@ -72,3 +73,25 @@ def _text(quantity: Quantity) -> str:
     if math.isfinite(quantity.half_width):
         return f"cannot tell: somewhere from {low:.2g} to {high:.2g} {quantity.unit}"
     return "cannot tell: the motion does not show it"
+
+
+def _advice(advice: Advice) -> str:
+    """What to record next, in a sentence."""
+    known = f"known to {_percent(advice.known_to)}" if math.isfinite(advice.known_to) else "unknown"
+    start = f"{advice.name} is {known}:"
+    motion = advice.motion
+    if motion is None:
+        return (
+            f"{start} no motion with up to twice the torque of this log would show it well; "
+            "record one with more load on the link"
+        )
+    sines = " and ".join(f"{f:g} Hz with +- {A:.2g} rad" for A, f in motion.sines)
+    return (
+        f"{start} record {motion.duration:g} s of theta = sines of {sines} (about "
+        f"{motion.torque:.2g} N.m of the motor, {motion.reversals} reversals), which would give "
+        f"{_percent(advice.would_be)}"
+    )
+
+
+def _percent(share: float) -> str:
+    return f"+- {100 * share:.2g} %"

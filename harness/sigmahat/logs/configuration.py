@@ -40,7 +40,7 @@ FILL_IN = "FILL IN"
 """Instead of a column that nobody has named; and so begin comments on what is missing."""
 NOT_YOURS = "not known: of another robot, until identify finds it or you set it"
 """Comment of a motor parameter that nobody has set."""
-WIDE_PRIOR = "wide, because identify cannot tell; make it smaller if you know better"
+WIDE_PRIOR = "wide, because it is not known; make it smaller if you know better"
 """Comment of a prior of such a parameter."""
 ANOTHER_ROBOT = 1000.0
 """Its value: small motors and large ones differ by so much. It costs hardly any accuracy."""

@@ -82,7 +82,7 @@ def _points(axes: Axes, curve: Curve, branch: int, points: MeasuredPoints, color
         points.phi[own],
         points.tau_e[own],
         markersize=2,
-        alpha=0.15,
+        alpha=0.1,
         zorder=0.5,
         rasterized=True,
         **style,

@@ -96,22 +96,17 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
         return np.full(len(column), np.nan)
     if not (pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)):
         raise LogError(f"{path}: column {name!r} holds {kind}, expected numbers")
-    values: Array = small(column).cast(pa.float64(), safe=False).to_numpy()
+    if pa.types.is_integer(kind) and not fits_float64(column):
+        first = next(x.as_py() for x in column if x.is_valid)
+        column = pa.compute.subtract(column.cast(pa.int64()), first)
+    values: Array = column.cast(pa.float64(), safe=False).to_numpy()
     return values
 
 
-def small(column: pa.ChunkedArray) -> pa.ChunkedArray:
-    """Integers as they are, or from the first one on if a float64 could not hold them: they are
-    nanoseconds since 1970.
-    """
-    if not pa.types.is_integer(column.type) or not column.length():
-        return column
-    ends = pa.compute.min_max(column)
-    low, high = ends["min"].as_py(), ends["max"].as_py()
-    if low is None or max(abs(low), abs(high)) <= _EXACT:
-        return column
-    first = next(x.as_py() for x in column if x.is_valid)
-    return pa.compute.subtract(column.cast(pa.int64()), first)
+def fits_float64(column: pa.ChunkedArray) -> bool:
+    """Whether a float64 holds every integer of a column: nanoseconds since 1970 do not fit."""
+    ends = pa.compute.min_max(column).as_py()
+    return ends["min"] is None or max(abs(ends["min"]), abs(ends["max"])) <= _EXACT
 
 
 def is_number(text: str) -> bool:

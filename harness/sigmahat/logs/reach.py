@@ -35,7 +35,8 @@ class Reach:
 def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: bool) -> list[Reach]:
     """Where the points of a log reach, and the logs that were learned from before it.
 
-    Of those only the ranges are known. They count at a set-point in their range.
+    Of those only the ranges are known, and not over which deformations at which set-point. So where
+    their set-point moved they count only at set-points in their range that this log has not.
 
     one_curve  whether it is the same at all set-points
     """
@@ -53,7 +54,10 @@ def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: boo
         ranges += [
             each.phi
             for each in before
-            if each.phi and each.set_point and each.set_point[0] <= setting <= each.set_point[1]
+            if each.phi
+            and each.set_point
+            and (one_curve or each.set_point[0] <= setting <= each.set_point[1])
+            and (one_curve or not len(own) or each.set_point[0] == each.set_point[1])
         ]
         if ranges:
             phi = min(r[0] for r in ranges), max(r[1] for r in ranges)

@@ -50,7 +50,7 @@ _REASON = "doubt"
 
 def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
     """Start values of the FMU: those of the configuration, encoders of columns in counts, and the
-    gear ratio of theta as motor.gamma.
+    gear ratio of theta as motor.gamma, if that is 0 or not given.
 
     encoder.theta_c is set as well, though it has no effect: the contract of the FMU names it.
 
@@ -62,8 +62,8 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
         if counts is not None and f"encoder.{name}" in fmu.variables:
             start.setdefault(f"encoder.{name}", counts)
     theta = configuration.ports.get("theta")
-    if theta is not None and theta.gear_ratio != 1:
-        start.setdefault("motor.gamma", abs(theta.gear_ratio))
+    if theta is not None and theta.gear_ratio != 1 and not start.get("motor.gamma"):
+        start["motor.gamma"] = abs(theta.gear_ratio)
     try:
         for name, value in start.items():
             fmu.variable(name, "parameter")

@@ -20,7 +20,7 @@ class State:
 class PlantEquations:
     """Ordinary differential equations with inputs, parameters, noise and outputs.
 
-    A plant file creates one of these, declares its symbols, and adds equations:
+    A plant file creates one of these, declares its symbols, and adds equations::
 
         plant = PlantEquations("MassPlant")
         force = plant.input("force")
@@ -53,18 +53,18 @@ class PlantEquations:
         """Noises of variance 1."""
 
     def input(self, name: str) -> ca.SX:
-        """Input `name`; held, or linear in time, over a communication step."""
+        """Input ``name``; held, or linear in time, over a communication step."""
         return self._declare(self.inputs, name)
 
     def parameter(self, name: str) -> ca.SX:
-        """Parameter `name`."""
+        """Parameter ``name``."""
         return self._declare(self.parameters, name)
 
     def state(self, name: str, start: ca.SX | float, scale: float) -> ca.SX:
-        """State `name`. Its start value is an expression of the parameters alone.
+        """State ``name``. Its start value is an expression of the parameters alone.
 
-        `scale` is a change of the state that matters, in its unit: the integrator keeps the error
-        of each of its steps far below scale + |state| (``fmu_src/radau.h``).
+        ``scale`` is a change of the state that matters, in its unit: the integrator keeps the error
+        of each of its steps far below ``scale + |state|`` (``fmu_src/radau.h``).
         """
         if not 0 < scale < math.inf:
             raise ValueError(f"state {name}: scale = {scale}; expected a finite number above 0")
@@ -84,7 +84,7 @@ class PlantEquations:
         self.derivatives[name] = ca.SX(expression)
 
     def output(self, name: str, expression: ca.SX) -> None:
-        """Output `name`, of states, inputs, parameters and noise at the end of a step."""
+        """Output ``name``, of states, inputs, parameters and noise at the end of a step."""
         if name in self.outputs:
             raise ValueError(f"{self.name}: output {name} is given twice")
         self.outputs[name] = ca.SX(expression)

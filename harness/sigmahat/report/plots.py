@@ -144,7 +144,7 @@ def _draw_line(plot: figure, curve: Curve, name: str, source: ColumnDataSource) 
     """A line, in front of its band and of the points it was fitted to; all of one name."""
     if curve.behind is not None:
         x, y = curve.behind
-        style = {"color": curve.color, "alpha": 0.25, "line_color": None, "size": 3}
+        style = {"color": curve.color, "alpha": 0.12, "line_color": None, "size": 3}
         plot.scatter(np.float32(x), np.float32(y), name=name, **style)
     parts = [(np.ones(len(curve.x), np.bool_), 0.22, 1.0, "solid")]
     if curve.within is not None:

@@ -13,7 +13,7 @@ import pyarrow.csv
 import pyarrow.parquet
 
 from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Array, Log, is_number, numbers
+from sigmahat.logs.log import Array, Log, fits_float64, is_number, numbers
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 
@@ -78,13 +78,15 @@ class CsvLog(Log):
     def _copied(self, file: IO[bytes]) -> pa.parquet.ParquetFile:
         """All columns in Parquet, numbers as such, everything else as its text."""
         try:
-            with self._stream({}) as first:
-                kinds = {field.name: field.type for field in first.schema}
+            with self._stream({}) as stream:
+                kinds = {field.name: field.type for field in stream.schema}
+                first = pa.table(stream.read_next_batch())
             try:
                 self._write(file, kinds)
             except pa.ArrowInvalid:  # such as 0, 0, 0.5: whole numbers only at the beginning
-                whole = {n: pa.float64() for n, k in kinds.items() if pa.types.is_integer(k)}
-                self._write(file, {**kinds, **whole})
+                integers = [name for name, kind in kinds.items() if pa.types.is_integer(kind)]
+                small = [name for name in integers if fits_float64(first[name])]
+                self._write(file, {**kinds, **dict.fromkeys(small, pa.float64())})
         except pa.ArrowInvalid:
             # A column that has text behind its first numbers, or damage, which appears again here.
             self._write(file, {name: self._parsed(name).type for name in self._names})

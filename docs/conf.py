@@ -1,0 +1,78 @@
+"""Configuration of the site: `cmake --workflow --preset docs` builds it with Sphinx."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from sphinx.application import Sphinx
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(Path(__file__).parent / "extensions"))
+
+_about = tomlkit.parse((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8")).unwrap()
+project = "sigmahat"
+release = version = _about["project"]["version"]
+html_title = f"sigmahat {version}"
+html_short_title = "sigmahat"
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx_copybutton",
+    "sphinx_design",
+    "fmu_variables",
+    "mathml",
+    "repository_links",
+]
+
+# Pages are read on GitHub, too: there and here, headings have the same anchors.
+myst_heading_anchors = 4
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+highlight_language = "none"  # of indented blocks: commands with their comments
+copybutton_exclude = ".linenos, .gp, .c"  # comments behind commands are not for the shell
+
+smartquotes = False  # theta'' is a derivative
+
+# Docstrings are prose; `name` in them is a name of the package, if there is one.
+default_role = "py:obj"
+autodoc_default_options = {"members": True, "member-order": "bysource"}
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+autodoc_type_aliases = {name: name for name in ("NDArray", "Signal")}
+python_use_unqualified_type_names = True
+python_display_short_literal_types = True
+autosummary_generate = False  # the tables link to entries of the same page
+
+html_theme = "pydata_sphinx_theme"
+html_theme_options = {
+    "logo": {"text": "sigmahat"},
+    "show_toc_level": 2,
+    "header_links_before_dropdown": 7,  # all
+    "navbar_align": "left",
+    "footer_start": ["copyright"],
+    "footer_end": [],
+}
+html_context = {"default_mode": "auto"}  # light or dark, as the system is
+html_sidebars: dict[str, list[str]] = {"index": []}
+copyright = "sigmahat, BSD-2-Clause"
+html_static_path = ["static"]
+html_css_files = ["site.css"]
+html_js_files = ["site.js"]
+html_show_sourcelink = False
+html_copy_source = False
+
+
+def _names_of_aliases(*event: Any) -> tuple[str | None, ...]:
+    """Signature and return type; Sphinx shows an alias inside of a generic type as it holds it."""
+    held = r"TypeAliasForwardRef\('(\w+)'\)"
+    return tuple(text and re.sub(held, r"\1", text) for text in event[-2:])
+
+
+def setup(app: Sphinx) -> None:
+    """Called by Sphinx."""
+    app.connect("autodoc-process-signature", _names_of_aliases)

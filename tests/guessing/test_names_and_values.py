@@ -1,0 +1,146 @@
+"""What names say, and what values say where names are silent."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from foreign_joint import GEAR, T, joint
+from sigmahat.guessing.clock import interval
+from sigmahat.guessing.facts import Facts, look_at
+from sigmahat.guessing.guess import JointGuess, guess
+from sigmahat.guessing.words import meaning
+from sigmahat.logs.log import LogInMemory
+
+N = 7000
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity", "side", "unit"),
+    [
+        ("/joint_states/knee_motor/position", "position", "motor", None),
+        ("/joint_states.position[knee_link]", "position", "link", None),
+        ("/right_knee_drive/current.data", "current", "motor", None),
+        ("/right_knee_drive/current.time", "time", "motor", None),
+        ("i_q", "current", None, None),
+        ("iq_A", "current", None, "A"),
+        ("Motorstrom in mA", "current", "motor", "mA"),
+        ("Abtriebswinkel [Grad]", "position", "link", "deg"),
+        ("angle_moteur_deg", "position", "motor", "deg"),
+        ("coppia_motore_Nm", "torque", "motor", "N.m"),
+        ("angulo_eslabon_grados", "position", "link", "deg"),
+        ("kansetsu_kakudo", "position", None, None),
+        ("mota_denryu_A", "current", "motor", "A"),
+        ("thetaM", "position", "motor", None),
+        ("theta_l", "position", "link", None),
+        ("q_dot", "velocity", None, None),
+        ("speed [U/min]", "velocity", None, None),
+        ("current_position", "position", None, None),
+        ("series_elastic_torque", "torque", None, None),
+        ("calibrated", None, None, None),
+        ("Motortemperatur [°C]", "other", "motor", None),
+    ],
+)
+def test_names(name: str, quantity: str | None, side: str | None, unit: str | None) -> None:
+    said = meaning(name)
+    assert (said.quantity, said.side, said.unit) == (quantity, side, unit)
+
+
+def facts(values: np.ndarray) -> Facts:
+    return look_at(LogInMemory(Path("log"), {"x": values}), "x")[0]
+
+
+@pytest.mark.parametrize("period", [4096, 65536, 2**32, 20_000, 360.0, 2 * np.pi])
+def test_a_counter_that_starts_again(period: float) -> None:
+    whole = isinstance(period, int)
+    x = 0.9 * period * np.sin(4 * T * np.arange(N)) + 0.3 * period
+    x = np.mod(np.round(x).astype(np.int64) if whole else x, period)
+    assert facts(x).wrap == pytest.approx(period)
+    assert facts(x).integer == whole
+
+
+def test_what_only_jumps_does_not_start_again() -> None:
+    steps = np.repeat([0.0, 400.0, 0.0, 400.0], N // 4)
+    assert facts(steps + np.random.default_rng(1).normal(0, 1, N // 4 * 4)).wrap is None
+    assert facts(np.sin(T * np.arange(N))).wrap is None
+
+
+def even(rows: int = N) -> np.ndarray:
+    return T * np.arange(rows)
+
+
+def jitter() -> np.ndarray:
+    return even() + np.random.default_rng(2).uniform(-0.3 * T, 0.3 * T, N)
+
+
+@pytest.mark.parametrize(
+    ("times", "period"),
+    [
+        (even()[np.r_[0:3000, 4500:N]], T),
+        (jitter()[np.r_[0:3000, 4500:N]], T),
+        (even()[np.random.default_rng(3).uniform(size=N) > 0.15], T),
+        (np.floor(1500 * even()) / 1000, 1.5 * T),  # a clock of 1 ms, rows 1.5 ms apart
+        (1.7e9 + even(), T),
+    ],
+    ids=["gap", "gap and jitter", "lost rows", "coarse clock", "since 1970"],
+)
+def test_the_sampling_period(times: np.ndarray, period: float) -> None:
+    assert interval(times) == pytest.approx(period, rel=2e-4)
+
+
+def only(columns: dict[str, np.ndarray]) -> JointGuess:
+    (found,) = guess(LogInMemory(Path("log"), columns)).values()
+    return found
+
+
+@pytest.mark.parametrize(
+    ("step", "unit"), [(1_000_000, "ns"), (1000, "us"), (1, "ms"), (0.001, "s"), (5, "ms")]
+)
+def test_the_unit_of_times_by_their_steps(step: float, unit: str) -> None:
+    m = joint(False)
+    found = only({"t": step * np.arange(N), "theta": m.theta, "q": m.q, "tau": m.tau})
+    assert (found.time, found.time_unit) == ("t", unit)
+
+
+def test_a_velocity_tells_the_unit_of_its_position() -> None:
+    m = joint(False)
+    columns = {
+        "t": m.t,
+        "motor_pos": m.theta * GEAR / (2 * np.pi),
+        "motor_speed_rpm": m.velocity * GEAR * 60 / (2 * np.pi),
+        "link_pos": m.q / (2 * np.pi),
+        "motor_torque": -m.tau,
+    }
+    ports = only(columns).ports
+    assert [ports[name].unit for name in ("theta", "q")] == ["turn", "turn"]
+    # The joint is soft: its motion gives the gear ratio only about, so it is asked for.
+    assert ports["theta"].gear_ratio is None
+    assert ports["theta"].moves == pytest.approx(GEAR, rel=0.05)
+    assert ports["tau"].sign == -1
+
+
+def test_signs_and_zeros() -> None:
+    m = joint(False)
+    columns = {"t": m.t, "motor_rad": m.theta, "link_deg": 200 - np.degrees(m.q), "tau": m.tau}
+    q = only({**columns, "load_cell_Nm": -m.tau_e}).ports["q"]
+    assert q.sign == -1
+    assert q.zero == pytest.approx(200 - np.degrees(m.q).mean(), rel=1e-4)
+    assert only({**columns, "load_cell_Nm": -m.tau_e}).ports["tau_e_sensor"].sign == -1
+
+
+def test_a_torque_beside_an_angle_is_measured() -> None:
+    m = joint(False)
+    found = only({"t": m.t, "angle_rad": m.q, "torque_Nm": 40 * m.q})
+    assert set(found.ports) == {"q", "tau_e_sensor"}
+
+
+@pytest.mark.parametrize("suffix", ["", "_setpoint", "_ref"])
+def test_what_was_asked_for_is_not_what_was_measured(suffix: str) -> None:
+    m = joint(False)
+    columns = {"t": m.t, f"motor_pos{suffix}": m.target, "motor_position": m.theta, "q": m.q}
+    ports = only({**columns, "tau": m.tau}).ports
+    assert ports["q"].column == "q"
+    assert suffix == "" or ports["theta"].column == "motor_position"
+    assert "theta_c" not in ports or suffix == ""

@@ -1,0 +1,152 @@
+"""The documentation as a site: links, search, and how it looks in a browser.
+
+That every page is in the navigation, and that Sphinx has nothing to warn of, the build has checked.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from functools import cache
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote, urlsplit
+
+import fmpy
+import pytest
+from lxml import html
+from selenium.webdriver.support.expected_conditions import text_to_be_present_in_element
+from selenium.webdriver.support.ui import WebDriverWait
+
+import sigmahat
+from browser import opened
+
+DOCS = Path(__file__).parents[2] / "docs"
+SEEN = [
+    "index",
+    "start",
+    "parameters",
+    "api",
+    "matched-filter",
+    "gallery",
+    "how-to-log",
+    "genindex",
+]
+"""Pages to look at: tables, formulas, pictures, code, signatures."""
+FMUS = sorted(path.stem for path in (DOCS.parent / "modelDescription").glob("[A-Z]*.xml"))
+WORDS = ["motor.gamma", "MSREP", "wrap"]
+
+
+def pages(site: Path) -> list[Path]:
+    """Every page; among the files of the theme there is a template, which is none."""
+    found = [page for page in site.rglob("*.html") if "_static" not in page.parts]
+    assert len(found) > 20
+    return found
+
+
+@cache
+def read(page: Path) -> Any:
+    """A page of the site."""
+    return html.parse(str(page)).getroot()
+
+
+@cache
+def anchors(page: Path) -> set[str]:
+    """Where links into a page may lead."""
+    return set(read(page).xpath("//@id | //a/@name"))
+
+
+def test_every_page_of_docs_is_on_the_site(site: Path) -> None:
+    sources = [page.relative_to(DOCS).with_suffix(".html") for page in DOCS.rglob("*.md")]
+    assert {site / page for page in sources} <= set(pages(site))
+
+
+def test_no_link_of_the_site_is_broken(site: Path) -> None:
+    broken, checked = [], 0
+    for page in pages(site):
+        for link in read(page).xpath("//a/@href | //img/@src | //script/@src | //link/@href"):
+            parts = urlsplit(link)
+            if parts.scheme or parts.netloc:
+                continue
+            target = (page.parent / unquote(parts.path)).resolve() if parts.path else page
+            known = target.is_file() and (not parts.fragment or target.suffix != ".html")
+            if not known and not (target.is_file() and unquote(parts.fragment) in anchors(target)):
+                broken.append((page.name, link))
+            checked += 1
+    assert broken == []
+    assert checked > 1000
+
+
+def test_the_site_loads_nothing_from_the_network(site: Path) -> None:
+    for page in pages(site):
+        loaded = read(page).xpath("//*[not(self::a)]/@src | //link[@rel='stylesheet']/@href")
+        assert [link for link in loaded if urlsplit(link).netloc] == [], page.name
+    for style in site.rglob("*.css"):
+        text = style.read_text(encoding="utf-8")
+        assert not re.search(r"""(?:@import\s+|url\()["']?(?:https?:)?//""", text), style.name
+
+
+@pytest.fixture(scope="module")
+def index(site: Path) -> Any:
+    """What the search of the site looks into."""
+    text = (site / "searchindex.js").read_text(encoding="utf-8")
+    return json.loads(text.removeprefix("Search.setIndex(").removesuffix(")"))
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_the_index_of_the_search_has_the_word(word: str, index: Any) -> None:
+    for part in word.lower().split("."):
+        found = index["terms"][part]
+        assert found or found == 0  # a number of a page, or a list of them
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_every_variable_of_an_fmu_has_its_row(name: str, site: Path) -> None:
+    """As the FMU that was built has it; elements of an array share one."""
+    model = fmpy.read_model_description(str(sigmahat.fmu(name)))
+    wanted = {v.name.split("[")[0]: v for v in reversed(model.modelVariables)}
+    rows = {}
+    for row in read(site / "parameters.html").xpath(
+        "//table[contains(@class, 'fmu-variables')]//tr"
+    ):
+        cells = [" ".join(cell.text_content().split()) for cell in row.xpath("td")]
+        if cells and row.xpath(".//p/@id")[0].startswith(f"{name.lower()}-"):
+            rows[cells[0]] = cells[1:]
+    assert set(rows) == set(wanted)
+    for key, (unit, _, _, description) in rows.items():
+        variable = wanted[key]
+        assert unit == (variable.unit or "")
+        assert variable.description in description
+
+
+@pytest.mark.slow("eight pages in a browser, each loaded and drawn")
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+@pytest.mark.parametrize("width", [1400, 400])
+def test_pages_fit_the_window_without_a_complaint(width: int, dark: bool, site: Path) -> None:
+    with opened(site / "index.html", width, dark) as page:
+        for name in SEEN:
+            page.driver.get((site / f"{name}.html").as_uri())
+            shown = page.run("return getComputedStyle(document.body).backgroundColor")
+            brightness = sum(map(int, re.findall(r"\d+", shown)[:3])) / 3
+            assert brightness < 64 if dark else brightness > 192, name
+            assert page.run("return document.documentElement.scrollWidth") <= width, name
+            assert page.run("return [...document.images].every(i => i.naturalWidth)"), name
+        assert page.complaints() == []
+        assert all(url.startswith("file:") for url in page.requests())
+
+
+def test_the_search_finds(site: Path) -> None:
+    found = {}
+    with opened(site / "index.html") as page:
+        for word in WORDS:
+            page.driver.get(f"{(site / 'search.html').as_uri()}?q={word}")
+            done = text_to_be_present_in_element(("id", "search-results"), "finished")
+            WebDriverWait(page.driver, 10).until(done)
+            found[word] = page.run(
+                "return [...document.querySelectorAll('#search-results li a')].map(a => a.href)"
+            )
+        assert page.complaints() == []
+    rows = [link for link in found["motor.gamma"] if "parameters.html#stiffnessestimator" in link]
+    assert [link.endswith("#stiffnessestimator-motor-gamma") for link in rows] == [True]
+    assert any("paper.html" in link for link in found["MSREP"])
+    assert any("how-to-log.html" in link for link in found["wrap"])

@@ -1,0 +1,96 @@
+"""The tutorial: its log can be made again, its commands work, and it tells what comes out."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+REPOSITORY = Path(__file__).parents[2]
+FILES = REPOSITORY / "examples" / "tutorial"
+PAGE = (REPOSITORY / "docs" / "tutorial.md").read_text(encoding="utf-8")
+pytestmark = pytest.mark.slow("the commands of the page run on a log of 20 s")
+
+
+def sigmahat(command: list[str], folder: Path) -> str:
+    """Runs a command. Returns what it prints."""
+    done = subprocess.run(
+        [sys.executable, "-m", "sigmahat", *command], cwd=folder, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Results of the commands of the page, by name, in a new folder."""
+    folder = tmp_path_factory.mktemp("tutorial")
+    shutil.copy(FILES / "knee.csv", folder)
+    commands = [line.split() for line in re.findall(r"^sigmahat (.*)$", PAGE, re.MULTILINE)]
+    init, identify, estimate, report = commands
+    sigmahat(init, folder)
+    results = {"guess": (folder / "knee.toml").read_text(encoding="utf-8")}
+    shutil.copy(FILES / "knee.toml", folder)
+    results["identify"] = json.loads(sigmahat([*identify, "--json"], folder))
+    results["estimate"] = json.loads(sigmahat([*estimate, "--json"], folder))
+    sigmahat(report, folder)
+    assert (folder / "sigmahat-results" / "knee" / "report.html").is_file()
+    return results
+
+
+def recording(path: Path) -> Any:
+    """Runs the program that made the log."""
+    spec = importlib.util.spec_from_file_location("record", FILES / "record.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.JOINT, module.record(path)
+
+
+def test_the_log_can_be_made_again_to_the_byte(tmp_path: Path) -> None:
+    recording(tmp_path / "knee.csv")
+    assert (tmp_path / "knee.csv").read_bytes() == (FILES / "knee.csv").read_bytes()
+
+
+def test_the_configuration_of_the_page_is_the_one_that_comes_with_the_log() -> None:
+    (shown,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    assert shown == (FILES / "knee.toml").read_text(encoding="utf-8")
+
+
+def test_init_finds_the_columns(printed: dict[str, Any]) -> None:
+    for column in ("time_s", "motor_counts", "link_deg", "current_A"):
+        assert f'column = "{column}"' in printed["guess"]
+    assert "wrap = 65536" in printed["guess"]
+
+
+@pytest.mark.parametrize("name", ["B", "D_theta", "tau_coulomb"])
+def test_the_motor_is_identified_as_the_page_says(name: str, printed: dict[str, Any]) -> None:
+    row = re.search(rf"^\| `{name}` \[.*?\] \| (\S+) ± (\S+) \| (\S+) \|$", PAGE, re.MULTILINE)
+    assert row
+    shown, half_width, true = map(float, row.groups())
+    found = printed["identify"][name]
+    low, high = found["interval"]
+    assert low < true < high
+    assert shown == float(f"{found['value']:.4g}")
+    assert half_width == float(f"{(high - low) / 2:.2g}")
+
+
+def test_the_true_values_are_those_of_the_joint(printed: dict[str, Any], tmp_path: Path) -> None:
+    joint, made = recording(tmp_path / "knee.csv")
+    for name in ("B", "D_theta", "tau_coulomb"):
+        assert f"| {joint[f'motor.{name}']:g} |" in PAGE
+    sigma = made.plant["sigma"][len(made.t) // 2 :]
+    assert f"true ones, {sigma.min():.0f} and {sigma.max():.0f} N.m/rad" in PAGE
+    low, high = printed["estimate"]["sigma range [N.m/rad]"]
+    error = max(abs(low / sigma.min() - 1), abs(high / sigma.max() - 1))
+    last = printed["estimate"]["sigma [N.m/rad]"]
+    claimed = printed["estimate"]["sigma_std [N.m/rad]"] / last
+    assert max(error, abs(last / sigma[-1] - 1)) < 0.01 < claimed
+    assert f"{claimed:.0%}" == "2%"

@@ -1,0 +1,154 @@
+"""The report of a log: the answer first, and the same numbers as the command."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from browser import DATA, ROWS, opened
+from recorded_logs import CONFIGURATION, awas_log, write_log
+from sigmahat.cli import main
+from sigmahat.joint.curve_file import CURVE
+from sigmahat.plotting.scale import limits
+from sigmahat.report.findings import FINDINGS, ShownFinding, write_findings
+
+MATCHED = CONFIGURATION + 'method = "MatchedFilter"\nprior.B = 0.2\nrls.n = 3\n'
+GAP = slice(20_000, 20_200)
+SPIKE = 5.0
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Results of a log of 60 s with a gap of 200 rows, a row without a number and a wrong one."""
+    folder = tmp_path_factory.mktemp("log")
+    log = awas_log(1.0, 0.3, 60.0)
+    log["q"][GAP.stop] += SPIKE
+    log["tau"][40_000] = np.nan
+    columns = {name: np.delete(values, GAP) for name, values in log.items()}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
+        answers: list[Any] = []
+        patch.setattr("sigmahat.commands.common.print_json", answers.append)
+        write_log(columns, Path("knee.parquet"))
+        Path("knee.toml").write_text(MATCHED)
+        assert main(["estimate", "knee.parquet", "--out", "out", "--json"]) == 0
+        Path("answer.json").write_text(json.dumps(answers[0]))
+        write_findings([ShownFinding("wrong", "motor.gamma: 50, expected <100>")], Path("out"))
+        assert main(["report", "out", "--quiet"]) == 0
+    return folder
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_the_curve_is_seen_without_scrolling(dark: bool, folder: Path) -> None:
+    file = folder / "out" / "report.html"
+    assert file.stat().st_size <= 3_000_000
+    with opened(file, dark=dark) as page:
+        bottoms = page.run("""
+            return [...document.querySelectorAll(".plots section")].slice(0, 2)
+              .map(s => s.getBoundingClientRect().bottom);""")
+        titles = page.run("return [...document.querySelectorAll('h2')].map(h => h.textContent)")
+        assert page.complaints() == []
+    assert max(bottoms) < 700  # of a window of 1400 x 1000
+    assert titles[:3] == [
+        "Flexibility torque over the deformation",
+        "Stiffness over the deformation",
+        "Stiffness",
+    ]
+
+
+def test_nothing_is_wider_than_a_telephone(folder: Path) -> None:
+    with opened(folder / "out" / "report.html", width=400) as page:
+        assert page.run("return document.documentElement.scrollWidth") <= 400
+        assert page.complaints() == []
+
+
+def test_the_band_is_that_of_the_file(folder: Path) -> None:
+    table = pa.csv.read_csv(folder / "out" / CURVE)
+    first = table["setPoint [1]"].to_numpy() == table["setPoint [1]"].to_numpy()[0]
+    with opened(folder / "out" / "report.html") as page:
+        for plot, name in enumerate(("tau_e [N.m]", "sigma [N.m/rad]")):
+            quantity, unit = name.split(" ")
+            trace = f"trace-{plot}-0"
+            for key, column in (
+                (trace, name),
+                (f"{trace}-low", f"{quantity} low {unit}"),
+                (f"{trace}-high", f"{quantity} high {unit}"),
+            ):
+                drawn = np.array(page.run(DATA, trace, key))
+                assert np.array_equal(drawn, table[column].to_numpy()[first])
+
+
+def test_ticks_notes_parameters_and_findings(folder: Path) -> None:
+    answer = json.loads((folder / "answer.json").read_text())
+    sheet = json.loads((folder / "out" / "joint.json").read_text())
+    assert answer["skipped"] == 201
+    with opened(folder / "out" / "report.html") as page:
+        text = page.run("return document.body.textContent")
+        parameters = page.run(ROWS, "Joint and motor")
+        findings = page.run(ROWS, "Checks")
+        every = page.run(ROWS, "Parameters of the estimator")
+    assert f"201 of {answer['ticks']} ticks of 0.001 s skipped" in text
+    for note in answer["notes"]:
+        assert note in text
+    assert findings == ["wrong motor.gamma: 50, expected <100>"]
+    inertia = sheet["parameters"]["B"]
+    low, high = inertia["interval"]
+    (row,) = (row for row in parameters if " B " in row)
+    assert f"{inertia['value']:.4g} kg·m² {low:.4g} to {high:.4g}" in row
+    assert "method MatchedFilter" in every
+    assert not any("eta_0" in row for row in every)
+
+
+def test_a_spike_after_a_gap_does_not_set_a_scale(folder: Path) -> None:
+    with opened(folder / "out" / "report.html") as page:
+        ranges = page.run("""
+            return Bokeh.documents[0].roots().map(p =>
+              [p.below[0].axis_label, p.left[0].axis_label,
+               p.x_range.start, p.x_range.end, p.y_range.start, p.y_range.end]);""")
+    deformation = [r for r in ranges if r[1].startswith("deformation")]
+    assert len(deformation) == 1
+    assert max(map(abs, deformation[0][4:])) < 0.3 < SPIKE
+    assert all(max(map(abs, r[2:4])) < 0.3 for r in ranges if r[0].startswith("deformation"))
+
+
+def test_limits_keep_what_belongs_to_the_signal() -> None:
+    x = np.sin(np.linspace(0, 20, 10_001))
+    assert limits(x) == (x.min(), x.max())
+    spiked = np.append(x, [1e6, np.nan])
+    low, high = limits(spiked)
+    assert low == x.min() and x.max() < high < 3
+    assert limits(np.array([np.nan])) == (0.0, 1.0)
+    step = np.append(np.zeros(10_000), 1.0)  # all but one are equal: it is the signal
+    assert limits(step) == (0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("estimate.json", "{", "cut off|no JSON|something else"),
+        ("joint.json", None, "name the folder or the joint.json"),
+        (CURVE, "a,b\n1,2\n", "expected the curve that"),
+        ("estimate.points.csv", "a,b\n1,2\n", "no numbers in column"),
+        (FINDINGS.file, '{"format": "x"}', "expected a findings.json"),
+    ],
+)
+def test_a_damaged_file_is_named(
+    name: str, text: str | None, words: str, folder: Path, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    for path in (folder / "out").iterdir():
+        if path.suffix != ".html":
+            (tmp_path / path.name).symlink_to(path)
+    (tmp_path / name).unlink()
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    assert main(["report", str(tmp_path)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert name in line and re.search(words, line)
