@@ -12,9 +12,10 @@ from sigmahat.logs.configuration import FILL_IN, NOT_YOURS, WIDE_PRIOR
 from sigmahat.user_input import toml_file
 
 Value = str | float | bool
+GAMMA = "motor.gamma"
 SECTIONS = ("ports", "time")
 """Keys that start so are of sections of their own; all others are of [parameters]."""
-_NOT_ZERO = ("counts_per_turn", "gear_ratio", "torque_constant", "scale", "motor.gamma")
+_NOT_ZERO = ("counts_per_turn", "gear_ratio", "torque_constant", "scale")
 _OF_A_GUESS = (FILL_IN, "CHECK", NOT_YOURS, WIDE_PRIOR)
 """Begin of comments that are no longer true when somebody has set the value."""
 
@@ -67,12 +68,16 @@ def comment_of(document: tomlkit.TOMLDocument, key: str) -> str:
 
 def to_fill_in(document: tomlkit.TOMLDocument) -> list[str]:
     """Keys that need a value of somebody who knows the joint."""
-    return [
+    found = [
         key
         for key, value in _values(document)
         if (key.endswith(_NOT_ZERO) and value == 0)
         or (key.endswith(".column") and value == FILL_IN)
     ]
+    # 0 stands for the gear ratio of theta, if that is one.
+    if value_of(document, GAMMA) == 0 and value_of(document, "ports.theta.gear_ratio") in (None, 1):
+        found.append(GAMMA)
+    return found
 
 
 def _values(document: tomlkit.TOMLDocument) -> Iterator[tuple[str, Any]]:

@@ -49,6 +49,7 @@ OF_PORT = (
     NumberField("mm_per_turn", "mm per turn of the motor", "number of mm", units=("mm",)),
     NumberField("zero", "zero, in its unit", "0"),
     NumberField("wrap", "starts again after", "never", ports=("theta", "q", "theta_c")),
+    NumberField("delay", "recorded later by [s]", "0", ports=("tau",)),
 )
 """Of each port."""
 PARAMETERS = (

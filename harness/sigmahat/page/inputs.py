@@ -8,6 +8,7 @@ from typing import Any
 
 from bokeh.models import InlineStyleSheet, Row, Select, TextInput, UIElement
 
+from sigmahat.page.edits import GAMMA
 from sigmahat.page.fields import NumberField
 from sigmahat.page.setup import Setup
 
@@ -62,7 +63,8 @@ class Number:
         """Shows the value of the configuration."""
         value = self._setup.get(self._key)
         is_open = self._key in self._setup.open_keys
-        self._shown = "" if value is None or is_open else _text(value)
+        is_default = value is None or (value == 0 and self._key == GAMMA)
+        self._shown = "" if is_default or is_open else _text(value)
         self.widget.value = self._shown
         self.widget.placeholder = "fill in" if is_open else self.field.default
         self.widget.css_classes = [_OPEN] if is_open else []
