@@ -84,8 +84,9 @@ def serve(
 
 def _listen(token: str, port: int, window: Callable[[Document], object]) -> tuple[BaseServer, int]:
     """A server that listens, and its port; window fills the document of each window."""
-    # The addresses that browsers ask for besides the page are no news to the user.
-    logging.getLogger("tornado.access").setLevel(logging.ERROR)
+    # What browsers ask for besides the page, and windows that close, are no news to the user.
+    for name in ("tornado.access", "bokeh.server.views"):
+        logging.getLogger(name).setLevel(logging.ERROR)
     silence(EMPTY_LAYOUT)  # there are no checks yet, and no curve
     # A browser may speak of a plot that was replaced meanwhile.
     warnings.filterwarnings("ignore", "reference already known", BokehUserWarning)

@@ -196,7 +196,8 @@ class Setup:
             return False
 
     def write(self, overwrite: bool) -> None:
-        """Writes the file; one that exists only if it is to be overwritten."""
+        """Writes the file; one that exists only if it is to be overwritten, after the question."""
+        overwrite = overwrite and self.asks_to_overwrite
         self.asks_to_overwrite = self.path.exists() and not (overwrite or self.is_on_disk)
         if self.asks_to_overwrite:
             self.message = f"{self.path} exists, and is other than what is shown here."
