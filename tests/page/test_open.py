@@ -108,7 +108,7 @@ def test_nothing_is_lost_when_the_log_vanishes_and_at_the_end(tmp_path: Path) ->
 
 
 def test_only_who_has_the_address_is_served(tmp_path: Path) -> None:
-    write_log(knee_log(1.0), tmp_path / "knee.csv")
+    write_log(knee_log(), tmp_path / "knee.csv")
     with served("knee.csv", folder=tmp_path) as page:
         where = urlsplit(page.address)
         assert where.hostname == "127.0.0.1"
@@ -146,7 +146,7 @@ def test_bad_input_is_refused_in_one_line(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    write_log(knee_log(1.0), Path("knee.csv"))
+    write_log(knee_log(), Path("knee.csv"))
     Path("broken.toml").write_text("[ports")
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
