@@ -89,6 +89,7 @@ class PortPanel:
             number.show()
         self._time.widget.visible = len(set(setup.log.columns.values())) > 1
         self._notes.text = self._comments()
+        self._notes.visible = bool(self._notes.text)
 
     def _name(self) -> str:
         """The column that is chosen."""

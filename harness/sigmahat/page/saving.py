@@ -15,8 +15,7 @@ class SavingBar:
 
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
-        self._asked = False
-        self._write = Button(button_type="primary", name="write", width=160, stylesheets=[style()])
+        self._write = Button(button_type="primary", name="write", width=220, stylesheets=[style()])
         self._overwrite = Button(
             label="Overwrite it", name="overwrite", width=130, stylesheets=[style()]
         )
@@ -25,11 +24,18 @@ class SavingBar:
         self._words = Div(
             name="message",
             sizing_mode="stretch_width",
-            styles={"color": "var(--ink)", "overflow-wrap": "anywhere"},
+            styles={"color": "var(--ink)", "overflow-wrap": "anywhere", "min-width": "14rem"},
             stylesheets=[style()],
         )
+        # Write stays where it is when the others come.
+        flow: dict[str, str | None] = {"flex-wrap": "wrap-reverse"}
         self.root = Row(
-            self._write, self._overwrite, self._words, name="bar", sizing_mode="stretch_width"
+            self._write,
+            self._overwrite,
+            self._words,
+            name="bar",
+            sizing_mode="stretch_width",
+            styles=flow,
         )
 
     def show(self) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import tomlkit
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 Chosen = Callable[[Mapping[str, str | None]], "Mapping[str, PortGuess]"]
 """Guesses units, signs and gear of columns by port."""
+
+_DOUBLE_CLICK = 0.5  # [s] the second click of one is no answer to a question
 
 
 class Setup:
@@ -59,6 +62,7 @@ class Setup:
         """Is called after every change of the configuration."""
         self.asks_to_overwrite = False
         """Whether the file exists, and was not overwritten."""
+        self._asked = 0.0
         self._shown: set[Callable[[], object]] = set()
         self._chosen: Chosen = lambda names: {}
         self._drafts: dict[str, tuple[tomlkit.TOMLDocument, bool]] = {}
@@ -197,9 +201,11 @@ class Setup:
 
     def write(self, overwrite: bool) -> None:
         """Writes the file; one that exists only if it is to be overwritten, after the question."""
-        overwrite = overwrite and self.asks_to_overwrite
+        if overwrite and not (self.asks_to_overwrite and monotonic() > self._asked + _DOUBLE_CLICK):
+            return
         self.asks_to_overwrite = self.path.exists() and not (overwrite or self.is_on_disk)
         if self.asks_to_overwrite:
+            self._asked = monotonic()
             self.message = f"{self.path} exists, and is other than what is shown here."
         else:
             try:
