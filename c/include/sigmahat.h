@@ -146,7 +146,8 @@ typedef struct {
                               uneven friction; share of prior.tau_e [1] */
     sh_real damping;       /* of the damping of the spring over K_0; also of encoders that are read
                               at different times [s] */
-    sh_real load_friction; /* of the friction per flexibility torque, and per motor torque [1] */
+    sh_real load_friction; /* of the friction per flexibility torque, and, where tau_coulomb is not
+                              0, per motor torque [1] */
     sh_real eccentric;     /* of the once-per-turn error of the link encoder [rad] */
     sh_real delay;         /* of the delay of the torque against the positions [s] */
     sh_real reversal;      /* of a delay of the reversals of friction [s] */

@@ -119,7 +119,8 @@ static void list_columns(const sh_parameters *p, column_list *list)
     add(list, SH_COLUMN_SIN_Q, 0, prior->eccentric * K_0, 0);
     add(list, SH_COLUMN_COS_Q, 0, prior->eccentric * K_0, 0);
     add(list, SH_COLUMN_LOAD, 0, prior->load_friction, 0);
-    add(list, SH_COLUMN_DRIVE, 0, prior->load_friction, 0);
+    if (prior->tau_coulomb > 0) /* else the motor has no dry friction */
+        add(list, SH_COLUMN_DRIVE, 0, prior->load_friction, 0);
     add(list, SH_COLUMN_DELAY, 0, prior->delay, 0);
     add(list, SH_COLUMN_REVERSAL, 0, prior->reversal * prior->tau_coulomb, 0);
     for (i = 0; i < 2 && n + i < SH_MAX_N; ++i)

@@ -194,7 +194,7 @@ NEW: dict[str, tuple[str, ...]] = {
     "prior.hysteresis": ("PLAY",),
     "prior.eccentric_motor": ("SIN_M", "COS_M"),
     "prior.D_theta": ("VISCOUS",),
-    "prior.tau_coulomb": ("COULOMB", "REVERSAL"),
+    "prior.tau_coulomb": ("COULOMB", "DRIVE", "REVERSAL"),
     "prior.B": ("INERTIA",),
 }
 

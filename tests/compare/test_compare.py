@@ -71,11 +71,16 @@ def test_better_than_the_paper_in_every_row_with_wrong_motor_data(runs: list[lis
 
 
 def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
-    """From 0.3 Hz on within 10 % of the error, on the AwAS. At 20 Hz, where the motor reverses
-    every 25 ms, friction and a delay of its reversals look nearly alike: within 25 %."""
+    """From 0.3 Hz on within 10 % of the error, on the AwAS. Not at 0.3 Hz if B is unknown too:
+    inertia and friction by the torque of the motor look alike there, and no accuracy is asked. At
+    20 Hz, where the motor reverses every 25 ms, friction and a delay of its reversals look nearly
+    alike: within 25 %."""
     for row in (row for run in runs for row in run):
         motion = labels.motion(row.joint)
-        if motion in FREQUENCIES[1:]:
+        if motion not in FREQUENCIES[1:]:
+            continue
+        bounds = BOUNDS[labels.group(row), labels.case(row.case)]
+        if math.isfinite(bounds[FREQUENCIES.index(motion)]):
             D_theta = row.performance[MATCHED].D_theta
             share = 0.25 if motion == "20 Hz" else 0.1
             assert D_theta == pytest.approx(1e-3, abs=share * 1e-4), row

@@ -74,7 +74,8 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
     found += [("NOMINAL", 0, of("nominal") if nominal else 0.0), ("BIAS", 0, of("bias") * tau_e)]
     found += [("DAMPING", j, of("damping") * K_0) for j in sorted({0, m - 1})]
     found += [(f"{name}_Q", 0, of("eccentric") * K_0) for name in ("SIN", "COS")]
-    found += [(kind, 0, of("load_friction")) for kind in ("LOAD", "DRIVE")]
+    dry = of("tau_coulomb") > 0
+    found += [("LOAD", 0, of("load_friction")), ("DRIVE", 0, of("load_friction") if dry else 0.0)]
     found += [("DELAY", 0, of("delay"))]
     found += [("REVERSAL", 0, of("reversal") * of("tau_coulomb"))]
     found += [("POWER", i, of("power") * tau_e) for i in range(2) if n + i < most_n]

@@ -112,6 +112,7 @@ def test_own_plant(tmp_path: Path) -> None:
     np.testing.assert_allclose(recording.plant["sigma"], pendulum(recording.t), rtol=1e-5)
 
 
+@pytest.mark.slow("two controlled runs, tick by tick")
 def test_stiffness_control(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     example = load("stiffness_control")
     monkeypatch.setattr(example, "run", cache(example.run))
@@ -121,7 +122,7 @@ def test_stiffness_control(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     for last, stiffness in ((7, 200.0), (14, 320.0), (20, 150.0)):  # the last second of each step
         settled = (t >= last - 1) & (t < last)
         assert set(wanted[settled]) == {stiffness}
-        np.testing.assert_allclose(true[settled], stiffness, rtol=0.01)
+        np.testing.assert_allclose(true[settled], stiffness, rtol=0.015)
     sine = t >= example.DURATION - 20
     assert np.mean(np.abs(true - wanted)[sine] / wanted[sine]) < 0.03
     # Without the estimate, the controller does not know that the springs are 15 % softer.
