@@ -45,3 +45,4 @@ class SavingBar:
         self._write.disabled = not setup.is_ready
         self._overwrite.visible = setup.asks_to_overwrite
         self._words.text = escape(setup.message)
+        self._words.visible = bool(setup.message)
