@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 from sigmahat.fmi.instance import Value
@@ -25,7 +26,14 @@ def priors(p: Mapping[str, Value]) -> dict[str, float]:
     p  all parameters
     """
     tau_e, phi = float(p["prior.tau_e"]), float(p["range.phi"])
-    per_unit = {"bias": tau_e, "damping": tau_e / phi, "hysteresis": tau_e}
+    # Friction by load is the sum of two: by the torque of the spring, and by that of the motor.
+    by_load = math.sqrt(2) if p["prior.tau_coulomb"] else 1.0
+    per_unit = {
+        "bias": tau_e,
+        "damping": tau_e / phi,
+        "hysteresis": tau_e,
+        "load_friction": by_load,
+    }
     return {name: float(p[f"prior.{name}"]) * per_unit.get(name, 1.0) for name in UNITS}
 
 
