@@ -15,7 +15,7 @@ from sigmahat.logs.units import factor
 
 _LOOKED_AT = 20_000
 """Values among which the step of an encoder is looked for."""
-_FINER = 1.5  # a step that is told is wrong by more than this factor
+_FINER = 1.5  # a configured step is wrong by more than this factor
 _FLAT = 3  # samples in a row at an end of the range
 _OFTEN = 0.01  # of all samples
 _FEW = 50  # values: the torque is a series of steps
@@ -49,13 +49,13 @@ def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
 
 
 def _step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]:
-    """The step of the values beside the one that the estimator is told."""
-    told = float(seen.every[f"encoder.{name}"])
+    """The step of the values beside the one of the configured encoder."""
+    given = float(seen.every[f"encoder.{name}"])
     step = smallest_step(values[:: max(1, len(values) // _LOOKED_AT)])
-    if not told or step is None:
+    if not given or step is None:
         return
     angle = abs(step * factor(name, port) / port.gear_ratio)
-    expected = 2 * math.pi / told
+    expected = 2 * math.pi / given
     if 1 / _FINER < angle / expected < _FINER:
         return
     proposed: Proposal = float(round(2 * math.pi / angle))

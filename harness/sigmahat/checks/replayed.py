@@ -15,12 +15,12 @@ from sigmahat.identification.noise import variance
 from sigmahat.logs.replay import parameters, replay
 
 _MISFIT = 3.0  # of the model; what real joints have besides it gives up to about 2
-_NOISE = 3.0  # standard deviation over the one that is told
+_NOISE = 3.0  # standard deviation over the configured one
 _LEARNED = 0.5
 _DOUBTED = 0.5  # share of the second half
 _ROOM = 1.2  # of a range over the largest value
 _WIDE = 10.0  # a range over the largest value
-_TORQUE = 3.0  # torque over the one that is told
+_TORQUE = 3.0  # torque over the configured one
 
 Outputs = Mapping[str, np.ndarray[Any, Any]]
 _KEYS = {
@@ -56,17 +56,17 @@ def replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
 
 def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:
     every, is_matched = seen.every, seen.every["method"] == "MatchedFilter"
-    phi, told = float(np.max(np.abs(outputs["phi"]))), float(every["range.phi"])
-    if is_matched and not told / _WIDE < phi < told:
-        severity = Severity.WRONG if phi > _ROOM * told else Severity.NOTE
+    phi, given = float(np.max(np.abs(outputs["phi"]))), float(every["range.phi"])
+    if is_matched and not given / _WIDE < phi < given:
+        severity = Severity.WRONG if phi > _ROOM * given else Severity.NOTE
         proposed = float(f"{_ROOM * phi:.3g}")
-        yield Finding(Kind.RANGE, severity, "range.phi", phi, "rad", told, proposed)
+        yield Finding(Kind.RANGE, severity, "range.phi", phi, "rad", given, proposed)
     torque = max((float(np.max(np.abs(p.tau))) for p in seen.pieces), default=0.0)
-    torque, told = abs(seen.gamma) * torque, float(every["prior.tau_e"])
-    if is_matched and torque > _TORQUE * told > 0:
+    torque, given = abs(seen.gamma) * torque, float(every["prior.tau_e"])
+    if is_matched and torque > _TORQUE * given > 0:
         proposed = float(f"{_ROOM * torque:.3g}")
         key = "prior.tau_e"
-        yield Finding(Kind.RANGE, Severity.WRONG, key, torque, "N.m", told, proposed)
+        yield Finding(Kind.RANGE, Severity.WRONG, key, torque, "N.m", given, proposed)
 
 
 def _noise(seen: View) -> Iterator[Finding]:
@@ -76,10 +76,10 @@ def _noise(seen: View) -> Iterator[Finding]:
         return
     times = abs(seen.gamma) if seen.has_sensor else 1.0
     longest = max(seen.pieces, key=lambda piece: len(piece.tau))
-    noise, told = times * variance(longest.tau) ** 0.5, float(seen.every[key])
-    if told > 0 and noise > 0 and not 1 / _NOISE < noise / told < _NOISE:
+    noise, given = times * variance(longest.tau) ** 0.5, float(seen.every[key])
+    if given > 0 and noise > 0 and not 1 / _NOISE < noise / given < _NOISE:
         proposed = float(f"{noise:.3g}")
-        yield Finding(Kind.NOISE, Severity.NOTE, key, noise, "N.m", told, proposed)
+        yield Finding(Kind.NOISE, Severity.NOTE, key, noise, "N.m", given, proposed)
 
 
 def _claims(outputs: Outputs) -> Iterator[Finding]:

@@ -127,7 +127,7 @@ def _torque_scale(f: Finding) -> str:
 def _step(f: Finding) -> str:
     return (
         f"the values of {f.about} change in steps of {_number(f.measured, f.unit)}, "
-        f"the encoder is told to have {_number(f.expected, f.unit)}"
+        f"the configured encoder has {_number(f.expected, f.unit)}"
     )
 
 
@@ -142,7 +142,7 @@ def _saturation(f: Finding) -> str:
 def _noise(f: Finding) -> str:
     return (
         f"the noise of the torque is {_number(f.measured, f.unit)}, "
-        f"told are {_number(f.expected, f.unit)}"
+        f"the configuration says {_number(f.expected, f.unit)}"
     )
 
 
@@ -157,8 +157,8 @@ def _doubt(f: Finding) -> str:
 
 def _range(f: Finding) -> str:
     return (
-        f"the log reaches {_number(f.measured, f.unit)}, told are {_number(f.expected, f.unit)} "
-        "(identify sets it)"
+        f"the log reaches {_number(f.measured, f.unit)}, the configuration says "
+        f"{_number(f.expected, f.unit)} (identify sets it)"
     )
 
 

@@ -77,7 +77,7 @@ def _interval(value: Array, std: Array | None) -> tuple[Array, Array] | None:
 
 
 def characteristic(reach: Range) -> tuple[float, float, float]:
-    """Deformations at which the stiffness is told [rad]: the middle, and half way to either end.
+    """Deformations at which the stiffness is printed [rad]: the middle, and half way to either end.
 
     The middle is 0, where the reach contains it.
     """

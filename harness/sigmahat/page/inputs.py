@@ -98,7 +98,7 @@ class Choice:
         current: Callable[[], str],
         chosen: Callable[[str], object],
     ) -> None:
-        """current gives the item that is shown, chosen is told another one.
+        """current gives the item that is shown, chosen is called with another one.
 
         options  values and their texts; others are added when they are shown
         """

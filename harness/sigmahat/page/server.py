@@ -61,7 +61,7 @@ def serve(
     path      the file to write
     document  its contents, to start from; None: the guess of `init`
     port      0 for any that is free
-    say       is told the address, and what the browser does
+    say       is called with the address, and what the browser does
 
     Returns the files with edits that were not written, after Ctrl-C. Raises ValueError if the port
     is in use.
