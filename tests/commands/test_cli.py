@@ -51,8 +51,8 @@ def test_another_scenario_has_its_own_files(tmp_path: Path) -> None:
     done = run("reproduce", "--scenario", "single-hardening", "--out", "here", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert {path.name for path in (tmp_path / "here").iterdir()} == {
-        "summary.png",
-        "summary.svg",
+        "transmission.png",
+        "transmission.svg",
         "RESIDUAL.csv",
         "RESIDUAL-paper-prior.csv",
         "table.csv",
