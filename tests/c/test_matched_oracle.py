@@ -194,7 +194,7 @@ MISFITS: Mapping[str, tuple[Callable[[Joint, Array], Array], Mapping[str, float]
     "friction that warms up": (friction_that_warms_up, {}, 0),
     "load friction and delay": (load_and_delay, {}, 0),
 }
-DRIFTING = ("friction that warms up", "load friction and delay")
+DRIFTING = ("friction that warms up",)
 
 
 @pytest.mark.slow("dense matrices in extended precision")

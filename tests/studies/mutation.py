@@ -30,7 +30,7 @@ import pytest
 TESTS = Path(__file__).resolve().parents[1]
 LIBRARY = TESTS.parent / "c"
 SOURCES = {file.name: file for file in sorted(LIBRARY.rglob("*.c"))}
-NUMBER, SEED = 48, "fresh-b"  # the sample of the test in the gate
+NUMBER, SEED = 24, "fresh-b"  # the sample of the test in the gate
 # Limit for the tests of one mutant, which take up to 25 s for all files; a mutant that takes longer
 # is taken as an endless loop.
 CPU_SECONDS = 60
