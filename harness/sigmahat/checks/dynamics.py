@@ -24,8 +24,8 @@ _STD = 3.0
 def dynamics(seen: View, here: Relation) -> Iterator[Finding]:
     """All of it; nothing where the motion does not show it."""
     found = here.fitted
-    if found is None or not math.isfinite(found.linear.value.get(LINEAR, math.nan)):
-        return
+    if found is None or not 0 < found.linear.half_width.get(LINEAR, math.inf) < math.inf:
+        return  # there is no stiffness in it, or no torque
     sign = _sign(seen, found)
     if sign is not None:
         yield sign

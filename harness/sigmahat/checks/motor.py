@@ -34,6 +34,7 @@ LINEAR = "eta[0,0]"
 """The column of a linear spring."""
 _DELAY = "delay"
 _HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Coulomb friction
+_SLOWEST = 0.1  # [s] between ticks: slower ones do not show the motion of a joint
 _ORDERS = 3
 _STEPS = 4  # of Newton's method for the delay
 _LONGEST = 0.1  # [s] of a delay
@@ -62,8 +63,11 @@ class Fitted:
 
 
 def fitted(seen: View, pieces: Sequence[Signals]) -> Fitted | None:
-    """Fits the motor equation, or with a torque sensor the spring alone; None without data."""
-    if not pieces:
+    """Fits the motor equation, or with a torque sensor the spring alone.
+
+    None without data, or if they are too slow for motor and spring.
+    """
+    if not pieces or seen.T > _SLOWEST:
         return None
     f_0 = _band(seen, pieces)
     m_most = _ORDERS if np.ptp(pieces[0].set_point) > 0 else 1

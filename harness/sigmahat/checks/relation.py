@@ -119,7 +119,7 @@ def _sign_of_motor(found: Fitted | None) -> float:
     scores = [
         found.linear.value[name] / found.linear.half_width[name]
         for name in ("B", "D_theta", "tau_coulomb")
-        if found.linear.half_width.get(name, np.inf) < np.inf
+        if 0 < found.linear.half_width.get(name, np.inf) < np.inf
     ]
     return float(np.sign(sum(score for score in scores if abs(score) > 1)))
 

@@ -14,6 +14,8 @@ from sigmahat.logs.log import Array, Log
 from sigmahat.logs.resampling import stretches
 from sigmahat.logs.sampling import Samples, sample
 
+_LEAST = 40
+"""Samples of a stretch: filters need some."""
 _MOST = 60_000
 """Ticks that are looked at: of a longer log, those in which the joint moves most."""
 
@@ -84,7 +86,7 @@ def _pieces(seen: View) -> list[Signals]:
     good = np.isfinite(samples.values).all(axis=1)
     pieces = []
     for first, last in zip(*stretches(good), strict=True):
-        if last - first < shortest(samples.T):
+        if last - first < max(shortest(samples.T), _LEAST):
             continue
         part = {name: np.ascontiguousarray(each[first:last]) for name, each in columns.items()}
         nothing: Array = np.zeros(last - first)

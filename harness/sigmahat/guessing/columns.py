@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -136,13 +135,15 @@ def _liveliest(
     samples: Sequence[tuple[Array, Array]], start: float, end: float, length: float
 ) -> float:
     """Begin of the stretch of a length in which the columns together vary most."""
-    parts = int((end - start) / length)
-    if parts < 2:
+    if end - start < 2 * length:
         return start
-    edges = start + length * np.arange(parts + 1)
-    motion = np.zeros(parts)
+    # Only stretches with samples: a clock that was set during the log jumps by years.
+    inside = [t[(t >= start) & (t < end)] for t, _ in samples]
+    occupied = [((t - start) // length).astype(np.int64) for t in inside]
+    begins = start + length * np.unique(np.concatenate(occupied))
+    motion = np.zeros(len(begins))
     for t, x in samples:
-        at = np.searchsorted(t, edges)
-        spread = [float(np.std(x[a:b])) if b > a else 0.0 for a, b in pairwise(at)]
+        ends = zip(np.searchsorted(t, begins), np.searchsorted(t, begins + length), strict=True)
+        spread = [float(np.std(x[a:b])) if b > a else 0.0 for a, b in ends]
         motion += np.array(spread) / (max(spread) or 1.0)
-    return float(edges[int(np.argmax(motion))])
+    return float(begins[int(np.argmax(motion))])

@@ -10,6 +10,8 @@ from typing import Any
 import tomlkit
 
 from sigmahat.files.whole_file import write_whole
+from sigmahat.fmi.installed import fmu as installed_fmu
+from sigmahat.fmi.instance import Fmu
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import MOTOR
 from sigmahat.logs.configuration import (
@@ -139,11 +141,29 @@ def _move_zero(port: MutableMapping[str, Any], zero: float) -> None:
 
 def _without_what_is_not_known(document: tomlkit.TOMLDocument) -> tomlkit.TOMLDocument:
     """Without what `init` or an earlier run wrote because they could not tell: this one may be
-    able to.
+    able to. A value that somebody has put in its place stays.
     """
+    with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
+        start = {name: float(fmu.variable(name).start) for name in ("motor.B", "motor.D_theta")}
     lines = tomlkit.dumps(document).splitlines(keepends=True)
-    kept = [line for line in lines if not line.rstrip().endswith(_NOT_KNOWN)]
+    kept = [line for line in lines if not _is_not_known(line.rstrip(), start)]
     return tomlkit.parse("".join(kept))
+
+
+def _is_not_known(line: str, start: Mapping[str, float]) -> bool:
+    """Whether a line has a value that nobody knows.
+
+    start  start values of the FMU
+    """
+    if not line.endswith(_NOT_KNOWN):
+        return False
+    ((key, value),) = toml_file.dotted(tomlkit.parse(line).unwrap())
+    name = key.removeprefix("parameters.")
+    if line.endswith(NOT_YOURS):
+        return bool(value == start.get(name, value))
+    if line.endswith(WIDE_PRIOR):
+        return bool(value >= (ANY_COULOMB if name == "prior.tau_coulomb" else WIDE))
+    return True
 
 
 def _short(value: float) -> float:

@@ -16,9 +16,11 @@ from sigmahat.logs.configuration import PORTS, Configuration, Port
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Array, Log
 from sigmahat.logs.resampling import AT_TICK, Resampled, at_ticks, stretches
+from sigmahat.logs.turns import put_right
 from sigmahat.logs.units import convert, seconds, unwrap
 
 _MOST_TICKS = 200_000_000
+_MOST_TICKS_PER_ROW = 200  # else the time has another unit
 _LONG_AGO = 1e6  # [s] A time that is larger counts from 1970, or from the start of a machine.
 
 
@@ -50,6 +52,12 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
     rows = _times(log, configuration, configuration.time.column, T, notes)
     start, end = float(np.nanmin(rows)), float(np.nanmax(rows))
     ticks = int(np.floor((end - start) / T + AT_TICK)) + 1
+    step = float(np.nanmedian(np.diff(rows))) if len(rows) > 1 else T
+    if step > _MOST_TICKS_PER_ROW * T:
+        raise LogError(
+            f"{log.path}: most rows are {step:g} s apart, the ticks {T:g} s; "
+            "check time.unit and samplePeriod"
+        )
     if ticks > _MOST_TICKS:
         raise LogError(
             f"{log.path}: {end - start:g} s in steps of {T:g} s are {ticks} ticks; "
@@ -72,8 +80,10 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
             raise LogError(f"port {name}: its column holds no number; remove it or name another")
         notes += _notes(name, resampled, T)
         values[:, i] = resampled.values
+    names = tuple(configuration.ports)
+    notes += put_right(values, names, configuration.ports, T)
     notes += _skipped(values, T)
-    return Samples(T, tuple(configuration.ports), values, _tick_of(rows, T, ticks), notes)
+    return Samples(T, names, values, _tick_of(rows, T, ticks), notes)
 
 
 def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int64]:

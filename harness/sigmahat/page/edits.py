@@ -56,7 +56,7 @@ def set_port(document: tomlkit.TOMLDocument, port: str, table: Table | None) -> 
     if port in ports:
         del ports[port]
     if table is not None:
-        ports.append(port, table)
+        ports[port] = table
 
 
 def comment_of(document: tomlkit.TOMLDocument, key: str) -> str:

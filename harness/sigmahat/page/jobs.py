@@ -54,16 +54,19 @@ class Jobs:
         setup.show()
 
     def _run(self) -> None:
+        self._try(self._look)
+        while True:
+            with self._news:
+                self._news.wait_for(lambda: self._text is not None)
+                version, text = self._version, self._text
+                self._text = None
+            self._try(partial(self._check, version, str(text)))
+
+    def _try(self, job: Callable[[], object]) -> None:
         try:
-            self._look()
-            while True:
-                with self._news:
-                    self._news.wait_for(lambda: self._text is not None)
-                    version, text = self._version, self._text
-                    self._text = None
-                self._check(version, str(text))
+            job()
         except Exception as error:  # any: without a word the page would wait for ever
-            logging.getLogger("sigmahat").exception("the page cannot go on")
+            logging.getLogger("sigmahat").exception("a job of the page failed")
             self._later(partial(self._refused, None, f"a fault of sigmahat: {error!r}"))
 
     def _look(self) -> None:

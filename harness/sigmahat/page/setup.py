@@ -182,6 +182,9 @@ class Setup:
         if len(self.joints) > 1:
             one = self._first_path
             self.path = one.with_name(f"{one.stem}-{name}{one.suffix}")
+        # All that was found and asked is of the joint before.
+        self.message, self.problem, self.asks_to_overwrite = "", "", False
+        self.checked = self.answer = None
         self.changed()
 
     # Files
