@@ -160,11 +160,12 @@ def test_values_are_written_where_they_stand(
 
 
 def cannot_tell(found: Identified) -> Identified:
-    """The same, but without any motor data; the interval of tau_coulomb is known."""
+    """The same, but without any motor data; the interval of tau_coulomb is known. Nobody has set B:
+    it is the start value of the FMU."""
     unknown = {name: replace(q, determined=False) for name, q in found.quantities.items()}
     unknown["B"] = replace(unknown["B"], value=math.nan, half_width=math.inf)
     unknown["tau_coulomb"] = Quantity(0.01, 0.05, "N.m", determined=False)
-    return replace(found, quantities=unknown)
+    return replace(found, quantities=unknown, B=2.3e-5)
 
 
 @pytest.mark.parametrize(
@@ -191,8 +192,8 @@ def test_what_is_not_determined_is_never_exact(
         assert {name: read[name] for name in wide} == wide
         assert not any(f"parameters.{name}" in written for name in kept)
         # No value of another robot stays without a word: B has no interval, D_theta has one.
-        B, friction = found[1.0].B, found[1.0].quantities["D_theta"]
-        assert read["motor.B"] == pytest.approx(B)
+        friction = found[1.0].quantities["D_theta"]
+        assert read["motor.B"] == pytest.approx(2.3e-5)
         assert read["motor.D_theta"] == pytest.approx(friction.value, rel=1e-5)
         assert {"parameters.motor.B", "parameters.motor.D_theta"} <= set(written)
         if "{" not in parameters:
@@ -343,3 +344,20 @@ def test_instruments_take_away_what_rounding_does_to_least_squares() -> None:
     plain = np.linalg.lstsq(e.X, e.y, rcond=None)[0][0]
     error = abs(fit(e).value["B"] / TRUE["B"] - 1)
     assert error < 0.5 * abs(plain / TRUE["B"] - 1)
+
+
+def test_a_value_in_the_place_of_one_that_is_not_known_stays(
+    found: dict[float, Identified], tmp_path: Path
+) -> None:
+    # GIVEN a file in which identify marked B WHEN somebody changes value and prior, but not the
+    # comments, THEN the next run keeps both
+    path = tmp_path / "log.toml"
+    path.write_text('[ports.q]\ncolumn = "q"\n')
+    write(cannot_tell(found[1.0]), path)
+    text = path.read_text()
+    assert "motor.B = 2.3e-05 #" in text and "prior.B = 1000.0 #" in text
+    text = text.replace("motor.B = 2.3e-05", "motor.B = 1.2e-4")
+    path.write_text(text.replace("prior.B = 1000.0", "prior.B = 0.1"))
+    write(cannot_tell(found[1.0]), path)
+    read = read_configuration(path).parameters
+    assert (read["motor.B"], read["prior.B"]) == (1.2e-4, 0.1)

@@ -144,7 +144,7 @@ def _without_what_is_not_known(document: tomlkit.TOMLDocument) -> tomlkit.TOMLDo
     able to. A value that somebody has put in its place stays.
     """
     with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
-        start = {name: float(fmu.variable(name).start) for name in ("motor.B", "motor.D_theta")}
+        start = {name: float(fmu.variable(f"motor.{name}").start) for name in ("B", "D_theta")}
     lines = tomlkit.dumps(document).splitlines(keepends=True)
     kept = [line for line in lines if not _is_not_known(line.rstrip(), start)]
     return tomlkit.parse("".join(kept))
@@ -153,16 +153,17 @@ def _without_what_is_not_known(document: tomlkit.TOMLDocument) -> tomlkit.TOMLDo
 def _is_not_known(line: str, start: Mapping[str, float]) -> bool:
     """Whether a line has a value that nobody knows.
 
-    start  start values of the FMU
+    start  start values of the FMU, of motor.B and so on
     """
     if not line.endswith(_NOT_KNOWN):
         return False
     ((key, value),) = toml_file.dotted(tomlkit.parse(line).unwrap())
-    name = key.removeprefix("parameters.")
+    name = key.rpartition(".")[2]  # the line may be in a table [parameters.prior]
     if line.endswith(NOT_YOURS):
         return bool(value == start.get(name, value))
     if line.endswith(WIDE_PRIOR):
-        return bool(value >= (ANY_COULOMB if name == "prior.tau_coulomb" else WIDE))
+        # Of the Coulomb friction it is the end of an interval, which looks like any other value.
+        return bool(name == "tau_coulomb" or value >= WIDE)
     return True
 
 
