@@ -32,8 +32,8 @@ def check(log: Log, configuration: Configuration) -> Checked:
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
     """
     fmu = _fmu()
-    every = fmu.parameters(parameters(fmu, configuration))
-    seen = view(log, configuration, every)
+    seen = _view(log, configuration)
+    every = seen.every
     findings = list(_contradictions(seen))
     with Slave(fmu, "check") as slave:
         outputs = play(slave, seen)
@@ -58,7 +58,7 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
     checked = check(log, after)
     if before == after or not _is_given(before):
         return checked
-    of_inertia = [each for each in check(log, before).findings if each.kind in _INERTIA]
+    of_inertia = [each for each in _contradictions(_view(log, before)) if each.kind in _INERTIA]
     others = [each for each in checked.findings if each.kind not in _INERTIA]
     return replace(checked, findings=[*of_inertia, *others])
 
@@ -67,6 +67,10 @@ def _is_given(configuration: Configuration) -> bool:
     """Whether somebody has said what the inertia is."""
     prior = float(_fmu().parameters(parameters(_fmu(), configuration))["prior.B"])
     return "motor.B" in configuration.parameters and prior < WIDE
+
+
+def _view(log: Log, configuration: Configuration) -> View:
+    return view(log, configuration, _fmu().parameters(parameters(_fmu(), configuration)))
 
 
 @cache

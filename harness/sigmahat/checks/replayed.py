@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from fmpy import fmi2
 
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.checks.view import View
@@ -35,10 +34,9 @@ _KEYS = {
 
 def play(slave: Slave, seen: View) -> Outputs:
     """Outputs of the estimator at the ticks of the view. Raises FmuError if the FMU refuses."""
-    only_errors = (fmi2.fmi2String * 1)(b"logStatusError")  # its warnings are findings here
-    slave.call(slave.functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, only_errors)
     start = parameters(slave.fmu, seen.configuration)
-    (outputs,) = replay(slave, seen.samples, start, len(seen.samples.values))
+    with slave.only_errors():  # its warnings are findings here
+        (outputs,) = replay(slave, seen.samples, start, len(seen.samples.values))
     return outputs
 
 
