@@ -34,6 +34,20 @@ def _for_scripts(context: click.Context, parameter: click.Parameter, given: bool
         logger.setLevel(logging.ERROR)
 
 
+def log_argument(command: _Command) -> _Command:
+    """Gives a command the argument LOG."""
+    return click.argument("log", type=click.Path(path_type=Path))(command)
+
+
+def config_option(what: str) -> Callable[[_Command], _Command]:
+    """Gives a command the option --config; what says what the file is for."""
+    return click.option(
+        "--config",
+        type=click.Path(path_type=Path, dir_okay=False),
+        help=f"{what}  [default: LOG with the suffix .toml, in this folder]",
+    )
+
+
 def json_option(command: _Command) -> _Command:
     """Gives a command the option --json."""
     text = "Print the result as JSON, and no warnings."

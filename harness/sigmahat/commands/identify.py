@@ -10,12 +10,8 @@ from sigmahat.commands import common
 
 
 @click.command()
-@click.argument("log", type=click.Path(path_type=Path))
-@click.option(
-    "--config",
-    type=click.Path(path_type=Path, dir_okay=False),
-    help="It is read, then updated.  [default: LOG with the suffix .toml, in this folder]",
-)
+@common.log_argument
+@common.config_option("It is read, then updated.")
 @click.option(
     "--torque-constant",
     is_flag=True,

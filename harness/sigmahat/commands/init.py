@@ -15,12 +15,8 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("log", type=click.Path(path_type=Path))
-@click.option(
-    "--config",
-    type=click.Path(path_type=Path, dir_okay=False),
-    help="File to write.  [default: LOG with the suffix .toml, in this folder]",
-)
+@common.log_argument
+@common.config_option("File to write.")
 @click.option(
     "--joint",
     metavar="NAME",

@@ -10,12 +10,8 @@ from sigmahat.commands import common
 
 
 @click.command("open")
-@click.argument("log", type=click.Path(path_type=Path))
-@click.option(
-    "--config",
-    type=click.Path(path_type=Path, dir_okay=False),
-    help="File to start from and to write.  [default: LOG with the suffix .toml, in this folder]",
-)
+@common.log_argument
+@common.config_option("File to start from and to write.")
 @click.option(
     "--port",
     type=click.IntRange(0, 65535),

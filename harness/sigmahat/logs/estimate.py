@@ -15,12 +15,11 @@ from sigmahat.joint.curve import Curve
 from sigmahat.joint.curve_file import CURVE, write_curve
 from sigmahat.joint.curve_text import stiffness_points
 from sigmahat.joint.records import LearnedLog
+from sigmahat.logs.answer import Answer, answer
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve import curve
 from sigmahat.logs.data_sheet import data_sheet
 from sigmahat.logs.learned import LEARNED, Learned, go_on, read_learned, write_learned
 from sigmahat.logs.log import Log
-from sigmahat.logs.measured import MeasuredPoints, with_what_was_learned
 from sigmahat.logs.notes_file import REPLAYED, write_replayed
 from sigmahat.logs.output import EstimateWriter
 from sigmahat.logs.points_file import POINTS, write_points
@@ -136,22 +135,19 @@ def estimate(
         with EstimateWriter(log, samples, units, folder) as table:
             run(slave, samples, statistics, t_0, table.add, progress)
         eta = coefficients(slave, int(every["rls.n"]), int(every["rls.m"]))
-        logs = [*(learned.logs if learned else []), learned_log(log, statistics)]
+        logs = [*(learned.logs if learned else []), learned_log(log, statistics, sha256(log.path))]
         write_learned(slave, every, logs, folder / LEARNED.file)
         path, last = configuration.path, statistics.last
-        points = statistics.points(str(every["method"]))
-        learned_curve = curve(slave, every, logs, points)
-        if every["method"] == "MatchedFilter":
-            points = with_what_was_learned(slave, every, samples)
-        write_curve(learned_curve, folder / CURVE)
-        write_points(points, folder / POINTS)
-        found = data_sheet(slave, every, logs, path, last, statistics.last_doubt, learned_curve)
+        answered = answer(slave, every, logs, samples, statistics)
+        write_curve(answered.curve, folder / CURVE)
+        write_points(answered.points, folder / POINTS)
+        found = data_sheet(slave, every, logs, path, last, statistics.last_doubt, answered.curve)
         sheet.write(found, folder / sheet.FORMAT.file)
-    result = _estimate(log, samples, statistics, every, eta, logs[:-1], learned_curve)
+    result = _estimate(log, samples, statistics, every, eta, logs[:-1], answered.curve)
     write_replayed(
         log.path, result.ticks, result.skipped, result.T, result.notes, folder / REPLAYED.file
     )
-    _save_figure(samples, statistics, every, learned_curve, points, folder)
+    _save_figure(samples, statistics, every, answered, folder)
     return result
 
 
@@ -186,11 +182,11 @@ def run(
         done = now
 
 
-def learned_log(log: Log, statistics: ReplayStatistics) -> LearnedLog:
-    """The record of a log that was replayed to its end."""
+def learned_log(log: Log, statistics: ReplayStatistics, digest: str) -> LearnedLog:
+    """The record of a log that was replayed to its end; digest is the SHA-256 of its file."""
     return LearnedLog(
         file=str(log.path),
-        sha256=sha256(log.path),
+        sha256=digest,
         ticks=statistics.ticks,
         skipped=statistics.skipped,
         phi=statistics.used("phi"),
@@ -240,14 +236,18 @@ def _save_figure(
     samples: Samples,
     statistics: ReplayStatistics,
     every: Mapping[str, Value],
-    learned_curve: Curve,
-    points: MeasuredPoints,
+    answered: Answer,
     folder: Path,
 ) -> None:
     from sigmahat.logs.figure import Replay, draw
     from sigmahat.plotting.save import save
 
     replayed = Replay(
-        samples, statistics, str(every["modality"]), str(every["method"]), learned_curve, points
+        samples,
+        statistics,
+        str(every["modality"]),
+        str(every["method"]),
+        answered.curve,
+        answered.points,
     )
     save(draw, replayed, folder / "estimate")

@@ -80,8 +80,8 @@ class Jobs:
 
     def _check(self, version: int, text: str) -> None:
         from sigmahat.checks.check import check
-        from sigmahat.logs.answer import answer
         from sigmahat.logs.configuration import checked_configuration
+        from sigmahat.page.replayed import replayed
 
         log, path = self._setup.log, self._setup.path
         done = 0
@@ -100,7 +100,7 @@ class Jobs:
             checked = check(log, configuration)
             busy = "The curve ..."
             self._later(partial(self._show, version, checked=checked, problem="", busy=busy))
-            found = answer(log, configuration, progress)
+            found = replayed(log, configuration, progress)
         except _OutdatedError:
             return
         except _REFUSED as error:
