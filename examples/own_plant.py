@@ -87,7 +87,7 @@ def main(folder: Path) -> None:
             record=["sigma", "phi"],
         ),
         {
-            "RESIDUAL": sigmahat.Estimator(
+            "RESIDUAL": sigmahat.EstimatorFmu(
                 fmu="StiffnessEstimator",
                 # One transmission without set-point: rls.m = 1; phi and phi^3: rls.n = 2. phi^3 is
                 # some 1e-4, so over 10 000 ticks the ridge 1/(c P_0) must be far below 1e-4.

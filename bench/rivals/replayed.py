@@ -10,7 +10,9 @@ import numpy as np
 import sigmahat
 from rivals.records import Array, JointLog
 from rivals.spring import Spring, spring
-from sigmahat.fmi.instance import Fmu, Recorder, Slave, Value
+from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import SampleLoop
 
 OUTPUTS = ("sigma", "sigma_std", "confident")
 
@@ -29,13 +31,13 @@ def replayed(log: JointLog, start: Mapping[str, Value]) -> tuple[dict[str, Array
     ):
         slave.initialize({**_common(log, spring(log)), **start})
         inputs = fmu.references(("theta", "q", "theta_c", "tau"), "input")
-        recorder = Recorder(slave, OUTPUTS, len(samples))
-        T, fmi = log.sample_period, slave.functions
+        recorder, loop = Recorder(slave, OUTPUTS, len(samples)), SampleLoop()
+        t = log.sample_period * np.arange(len(samples))
+        loop.set_real(slave, inputs, samples)
+        loop.step(slave, np.column_stack([t, np.full_like(t, log.sample_period)]))
+        recorder.add_to(loop)
         begin = time.perf_counter()
-        for k, row in enumerate(np.ctypeslib.as_ctypes(samples)):
-            slave.call(fmi.fmi2SetReal, inputs, len(inputs), row)
-            slave.call(fmi.fmi2DoStep, k * T, T, 1)
-            recorder.sample(k)
+        loop.run(0, len(samples))
         seconds = time.perf_counter() - begin
         return recorder.columns(), seconds
 

@@ -4,7 +4,7 @@ from .export.plant_description import PlantVariable as PlantVariable
 from .export.plant_fmu import write_plant_fmu as write_plant_fmu
 from .fmi.installed import fmu as fmu
 from .fmi.instance import FmuError as FmuError
-from .fmi.master import Estimator as Estimator
+from .fmi.master import EstimatorFmu as EstimatorFmu
 from .fmi.master import Plant as Plant
 from .fmi.master import Recording as Recording
 from .fmi.master import Series as Series

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import logging
 import math
-import tempfile
+import os
+import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +19,8 @@ import pytest
 import sigmahat
 from recordings import one_seed
 from sigmahat.fmi.instance import Fmu, FmuError, Slave
-from sigmahat.fmi.master import Estimator, Plant, simulate
+from sigmahat.fmi.master import EstimatorFmu, Plant, simulate
+from sigmahat.fmi.opened import opened
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import T
 
@@ -25,7 +29,7 @@ ESTIMATORS = scenario("table1").estimators
 RESIDUAL = ESTIMATORS["RESIDUAL"]
 
 
-def changed(start: dict[str, Any]) -> Estimator:
+def changed(start: dict[str, Any]) -> EstimatorFmu:
     return replace(RESIDUAL, start={**RESIDUAL.start, **start})
 
 
@@ -147,7 +151,7 @@ def test_progress_adds_up_to_the_number_of_steps(steps: int) -> None:
         ),
     ],
 )
-def test_wrong_names_are_refused(plant: Plant, estimator: Estimator, message: str) -> None:
+def test_wrong_names_are_refused(plant: Plant, estimator: EstimatorFmu, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         simulate(plant, {"one": estimator}, T, 1)
 
@@ -163,25 +167,37 @@ def test_a_missing_fmu_is_named() -> None:
         simulate(replace(PLANT, fmu="NoSuchPlant"), {}, T, 1)
 
 
-@pytest.mark.parametrize("K_I", [300.0, -1.0])
-def test_unpacked_files_are_removed(
-    K_I: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    seen: list[list[Path]] = []
+def test_unpacked_files_are_there_once_and_are_removed_in_the_end(tmp_path: Path) -> None:
+    program = """
+from dataclasses import replace
+import os, sigmahat
+table1 = sigmahat.scenario("table1")
+one = table1.estimators["RESIDUAL"]
+for K_I in (300.0, -1.0, 300.0):
+    changed = replace(one, start={**one.start, "residual.K_I": K_I})
     try:
-        simulate(
-            PLANT,
-            {"one": changed({"residual.K_I": K_I})},
-            T,
-            1,
-            progress=lambda steps: seen.append(list(tmp_path.iterdir())),
-        )
-    except FmuError:
-        assert K_I < 0
-    else:
-        assert [len(folders) for folders in seen] == [2]
+        sigmahat.simulate(table1.plant, {"one": changed}, 1e-3, 1)
+    except sigmahat.FmuError:
+        pass
+    print(len(os.listdir(os.environ["TMPDIR"])))
+"""
+    shown = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "TMPDIR": str(tmp_path)},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert shown.stdout.split() == ["2", "2", "2"] and shown.stderr == ""
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_has_changed_is_unpacked_again(tmp_path: Path) -> None:
+    copy = tmp_path / "copy.fmu"
+    shutil.copy(sigmahat.fmu("AwasPlant"), copy)
+    assert opened(copy) is opened(copy)
+    shutil.copy(sigmahat.fmu("FlexibleJointPlant"), copy)
+    assert opened(copy).name == "FlexibleJointPlant"
 
 
 def test_a_warning_of_an_fmu_goes_to_the_log(caplog: pytest.LogCaptureFixture) -> None:

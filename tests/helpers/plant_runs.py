@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
-from fmpy import fmi2
 from numpy.typing import NDArray
 
 import sigmahat
-from sigmahat.fmi.instance import Fmu, Recorder, Slave
+from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import SampleLoop
 
 Array = NDArray[np.float64]
 
@@ -33,24 +34,21 @@ def run_plant(
     Torques are linear from one row to the next, or each is held until the next. Gives each
     recorded variable [size: steps + 1].
     """
-    steps, count = len(torques) - 1, len(inputs)
+    steps = len(torques) - 1
     slopes = np.zeros_like(torques) if held else np.diff(torques, axis=0, append=0.0) / h
-    values_c, slopes_c = (
-        np.ctypeslib.as_ctypes(np.ascontiguousarray(a)) for a in (torques, slopes)
-    )
-    orders = (fmi2.fmi2Integer * count)(*[1] * count)
+    t = times(h, steps * h)
     with Fmu(sigmahat.fmu(name)) as fmu, Slave(fmu, "plant") as plant:
         references = fmu.references(inputs, "input")
-        fmi = plant.functions
         first = dict(zip(inputs, torques[0].tolist(), strict=True))
         plant.initialize({**first, **(start or {})})
         recorder = Recorder(plant, record, steps + 1)
-        recorder.sample(0)
-        for k in range(steps):
-            plant.call(fmi.fmi2SetReal, references, count, values_c[k])
-            plant.call(fmi.fmi2SetRealInputDerivatives, references, count, orders, slopes_c[k])
-            plant.call(fmi.fmi2DoStep, k * h, h, fmi2.fmi2True)
-            recorder.sample(k + 1)
+        loop = SampleLoop()
+        recorder.add_to(loop)
+        loop.set_real(plant, references, np.ascontiguousarray(torques))
+        loop.set_slopes(plant, references, np.ascontiguousarray(slopes))
+        loop.step(plant, np.column_stack([t, np.full_like(t, h)]))
+        loop.run(0, steps)
+        recorder.sample(steps)
     return recorder.columns()
 
 

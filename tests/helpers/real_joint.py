@@ -11,19 +11,20 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from fmpy import fmi2
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import sigmahat
 from misfit_priors import WITHOUT_MISFITS
 from shared_data import data_folder
-from sigmahat.fmi.instance import Fmu, Recorder, Slave, Value
+from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import SampleLoop
 
 Array = NDArray[np.float64]
 
@@ -180,15 +181,21 @@ def samples(played: Sequence[Log]) -> Array:
     return np.column_stack(columns)
 
 
-def play(slave: Slave, rows: Array, start: Mapping[str, Value]) -> Iterator[int]:
-    """Initialises the estimator, runs a tick for each row of INPUTS, and yields its number."""
+def play(
+    slave: Slave, rows: Array, start: Mapping[str, Value], record: Sequence[str] = ()
+) -> dict[str, Array]:
+    """Initialises the estimator and runs a tick for each row of INPUTS.
+
+    Returns the recorded outputs [size: rows].
+    """
     slave.initialize({**PARAMETERS, **start})
-    inputs = slave.fmu.references(list(INPUTS), "input")
-    set_real, do_step = slave.functions.fmi2SetReal, slave.functions.fmi2DoStep
-    for k, row in enumerate(np.ctypeslib.as_ctypes(rows)):
-        slave.call(set_real, inputs, len(INPUTS), row)
-        slave.call(do_step, k * SAMPLE_PERIOD, SAMPLE_PERIOD, fmi2.fmi2True)
-        yield k
+    t = SAMPLE_PERIOD * np.arange(len(rows), dtype=np.float64)
+    recorder, loop = Recorder(slave, record, len(rows)), SampleLoop()
+    loop.set_real(slave, slave.fmu.references(list(INPUTS), "input"), rows)
+    loop.step(slave, np.column_stack([t, np.full_like(t, SAMPLE_PERIOD)]))
+    recorder.add_to(loop)
+    loop.run(0, len(rows))
+    return recorder.columns()
 
 
 def replay(
@@ -196,8 +203,7 @@ def replay(
 ) -> Fit:
     """Replays logs, one after another, through a new instance of the estimator."""
     with Slave(fmu, "real joint") as slave:
-        for _ in play(slave, samples(played), {**method, "rls.symmetric": symmetric}):
-            pass
+        play(slave, samples(played), {**method, "rls.symmetric": symmetric})
         coefficients = [f"eta[{i},{j}]" for i in range(N) for j in range(M)]
         end = Recorder(slave, [*coefficients, "tau_e", "sigma"], 1)
         end.sample(0)
@@ -211,10 +217,9 @@ def coverage(fmu: Fmu, measured: Sequence[Log], method: Mapping[str, Value]) -> 
     within 1.96 sigma_std of the estimate, when the logs are replayed a second time [%]."""
     rows = samples([*measured, *measured])
     with Slave(fmu, "real joint") as slave:
-        recorder = Recorder(slave, ["sigma", "sigma_std", "phi"], len(rows))
-        for k in play(slave, rows, {**method, "rls.symmetric": False}):
-            recorder.sample(k)
-        found = {name: column[len(rows) // 2 :] for name, column in recorder.columns().items()}
+        start = {**method, "rls.symmetric": False}
+        columns = play(slave, rows, start, ["sigma", "sigma_std", "phi"])
+        found = {name: column[len(rows) // 2 :] for name, column in columns.items()}
     inside, first = [], 0
     for log in measured:
         part = {name: c[first : first + len(log.q)] for name, c in found.items()}

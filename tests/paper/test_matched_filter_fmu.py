@@ -8,14 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import fmi2
 from scipy.signal import lfilter
 
 import sigmahat
 from c_library import Array, Estimator, Library, load
 from c_matched import covariance
 from plant_runs import run_awas, times
-from sigmahat.fmi.instance import Fmu, Recorder, Slave
+from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import SampleLoop
 from sigmahat.runs.metrics import msrep
 
 T = 1e-3  # [s]
@@ -137,22 +138,16 @@ def ageing() -> Iterator[tuple[Array, Array]]:
     )
     k_s = 14220 * (1 - 0.3 * np.clip((t - 20) / 20, 0, 1))
     with Fmu(sigmahat.fmu("AwasPlant")) as fmu, Slave(fmu, "plant") as plant:
-        references, spring = (
-            fmu.references(("tau", "tau_c"), "input"),
-            fmu.references(("spring.k_s",)),
-        )
-        order, pair = (fmi2.fmi2Integer * 2)(1, 1), fmi2.fmi2Real * 2
+        references = fmu.references(("tau", "tau_c"), "input")
         plant.initialize({**SHORTENED, "tau": 0.0, "tau_c": 0.0})
-        recorder = Recorder(plant, (*MEASURED, "sigma"), len(t))
-        for k, torque in enumerate(torques):
-            recorder.sample(k)
-            if k + 1 == len(t):
-                break
-            slope = (torques[k + 1] - torque) / T
-            plant.call(plant.fmi.fmi2SetReal, spring, 1, (fmi2.fmi2Real * 1)(k_s[k]))
-            plant.call(plant.fmi.fmi2SetReal, references, 2, pair(*torque))
-            plant.call(plant.fmi.fmi2SetRealInputDerivatives, references, 2, order, pair(*slope))
-            plant.call(plant.fmi.fmi2DoStep, k * T, T, fmi2.fmi2True)
+        recorder, loop = Recorder(plant, (*MEASURED, "sigma"), len(t)), SampleLoop()
+        recorder.add_to(loop)
+        loop.set_real(plant, fmu.references(("spring.k_s",)), k_s[:, None])
+        loop.set_real(plant, references, torques)
+        loop.set_slopes(plant, references, np.diff(torques, axis=0) / T)
+        loop.step(plant, np.column_stack([t, np.full_like(t, T)]))
+        loop.run(0, len(t) - 1)
+        recorder.sample(len(t) - 1)
     run = recorder.columns()
     yield np.column_stack([run[name] for name in MEASURED]), run["sigma"]
 

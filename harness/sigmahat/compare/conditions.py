@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from sigmahat.fmi.instance import Value
-from sigmahat.fmi.master import Estimator
+from sigmahat.fmi.master import EstimatorFmu
 from sigmahat.paper.awas import R_0, awas, estimator
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.scenario import Comparison, Scenario, Sine
@@ -86,8 +86,8 @@ _WHOLE, _SETTLED = "msrep", "msrep_settled"
 
 
 def _methods(
-    base: Estimator, case: Case, parts: Sequence[str], motors: Sequence[str]
-) -> dict[str, Estimator]:
+    base: EstimatorFmu, case: Case, parts: Sequence[str], motors: Sequence[str]
+) -> dict[str, EstimatorFmu]:
     """The estimator with each method, from one with the settings that they share."""
     given: dict[str, Value] = {
         f"{motor}.{name}": (1 + error) * TRUE[name]
@@ -117,7 +117,7 @@ def _methods(
 
 def _compared(
     scenario: Scenario,
-    base: Estimator,
+    base: EstimatorFmu,
     cases: Sequence[Case],
     judged: Sequence[str],
     parts: Sequence[str] = ("",),

@@ -10,18 +10,24 @@ from importlib import metadata
 from pathlib import Path
 
 
+def folder() -> Path:
+    """Where the FMUs of this installation are, and the library in C."""
+    in_wheel = Path(__file__).parents[1] / "fmus"
+    if in_wheel.is_dir():
+        return in_wheel
+    # The package runs from its sources, see cmake/PythonEnvironment.cmake.
+    return Path(sysconfig.get_path("data")) / "share" / "sigmahat"
+
+
 def fmu(name: str) -> Path:
     """Path of an FMU of this installation, for example ``fmu("StiffnessEstimator")``.
 
     Raises ``FileNotFoundError`` if it was not built or there is no FMU of this name.
     """
-    folder = Path(__file__).parents[1] / "fmus"
-    if not folder.is_dir():  # the package runs from its sources, see cmake/PythonEnvironment.cmake
-        folder = Path(sysconfig.get_path("data")) / "share" / "sigmahat"
-    path = folder / f"{name}.fmu"
+    path = folder() / f"{name}.fmu"
     if not path.is_file():
-        found = ", ".join(sorted(p.stem for p in folder.glob("*.fmu"))) or "no FMU"
-        raise FileNotFoundError(f"no {name}.fmu in {folder}, which holds {found}")
+        found = ", ".join(sorted(p.stem for p in folder().glob("*.fmu"))) or "no FMU"
+        raise FileNotFoundError(f"no {name}.fmu in {folder()}, which holds {found}")
     return path
 
 

@@ -79,7 +79,7 @@ class Fmu:
         for v in variables:
             if v.type != "Real":
                 raise ValueError(f"{self.name}.{v.name}: expected a Real variable, it is {v.type}")
-        return _references(variables)
+        return value_references(variables)
 
     def number(self, name: str, value: Value) -> float | int:
         """Returns the value as FMI takes it. Raises ValueError if it does not fit the variable."""
@@ -185,7 +185,7 @@ class Slave:
                 "Enumeration": (self.functions.fmi2SetInteger, fmi2.fmi2Integer),
                 "Boolean": (self.functions.fmi2SetBoolean, fmi2.fmi2Boolean),
             }[variable.type]
-            self.call(setter, _references([variable]), 1, (kind * 1)(number))
+            self.call(setter, value_references([variable]), 1, (kind * 1)(number))
         self.call(self.functions.fmi2EnterInitializationMode)
         self.call(self.functions.fmi2ExitInitializationMode)
 
@@ -210,49 +210,7 @@ class Slave:
         return f"{self.name}: {'; '.join(self._messages) or failure}"
 
 
-class Recorder:
-    """Values of some variables of a slave, one row per sample, written there by the FMU itself."""
-
-    def __init__(self, slave: Slave, names: Iterable[str], samples: int) -> None:
-        """Raises ValueError for an unknown name."""
-        self._slave = slave
-        self._tables: list[tuple[list[str], NDArray[Any]]] = []
-        self._reads: list[tuple[Callable[..., int], Any, int, Any]] = []
-        variables = [slave.fmu.variable(name) for name in names]
-        for types, getter, dtype in (
-            (("Real",), slave.functions.fmi2GetReal, np.float64),
-            (("Integer", "Enumeration"), slave.functions.fmi2GetInteger, np.int32),
-            (("Boolean",), slave.functions.fmi2GetBoolean, np.int32),
-        ):
-            group = [v for v in variables if v.type in types]
-            if group:
-                table = np.empty((samples, len(group)), dtype)
-                rows = np.ctypeslib.as_ctypes(table)
-                self._tables.append(([v.name for v in group], table))
-                self._reads.append((getter, _references(group), len(group), rows))
-        self.units = {v.name: v.unit for v in variables if v.unit is not None}
-
-    def sample(self, k: int) -> None:
-        """Reads row k."""
-        for getter, references, count, rows in self._reads:
-            self._slave.call(getter, references, count, rows[k])
-
-    def columns(self) -> dict[str, NDArray[Any]]:
-        """Returns the recorded values by name, each of shape (samples,); of an enumeration the
-        names of its items.
-        """
-        values = {
-            name: np.ascontiguousarray(table[:, i])
-            for names, table in self._tables
-            for i, name in enumerate(names)
-        }
-        fmu = self._slave.fmu
-        return {
-            name: fmu.item_names(name, each) if fmu.variable(name).type == "Enumeration" else each
-            for name, each in values.items()
-        }
-
-
-def _references(variables: Iterable[Any]) -> Any:
+def value_references(variables: Iterable[Any]) -> Any:
+    """Returns the value references of FMPy's descriptions as an array for FMI calls."""
     references = [v.valueReference for v in variables]
     return (fmi2.fmi2ValueReference * len(references))(*references)

@@ -13,16 +13,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fmpy import fmi2
 from numpy.typing import NDArray
 
 from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import Fmu, Recorder, Slave, Value
+from sigmahat.fmi.instance import Slave, Value
+from sigmahat.fmi.opened import opened
+from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import SampleLoop
 
 Signal = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Values of an input at the times given [s]."""
 
 _PROGRESS_STEPS = 100
+_PLANT = ""  # no estimator has this name
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ class Plant:
 
 
 @dataclass(frozen=True)
-class Estimator:
+class EstimatorFmu:
     """An estimator FMU."""
 
     fmu: str
@@ -82,102 +85,77 @@ class Recording:
 
 def simulate(
     plant: Plant,
-    estimators: Mapping[str, Estimator],
+    estimators: Mapping[str, EstimatorFmu],
     T: float,
     steps: int,
     progress: Callable[[int], object] = lambda steps: None,
 ) -> Recording:
     """Steps plant and estimators over N = steps periods of T [s].
 
-    The estimators tick at t_0 to t_N, N + 1 times; the plant makes N steps. From time to time
-    progress is called with the number of steps made since the last call.
+    The estimators tick at t_0 to t_N, N + 1 times; the plant makes N steps. Any FMUs for FMI 2.0
+    Co-Simulation can take the two places. Inputs of a plant that cannot interpolate (see
+    canInterpolateInputs in its model description) are held over a step, those of others are linear.
+    From time to time progress is called with the number of steps made since the last call.
 
     Raises FileNotFoundError for a missing FMU, ValueError for a name that an FMU does not have or
     a value that does not fit, FmuError with the FMU's own message if an FMU refuses. Warnings of
     FMUs go to the logger "sigmahat".
     """
     t = T * np.arange(steps + 1, dtype=np.float64)
+    times = np.column_stack([t, np.full_like(t, T)])
     with ExitStack() as stack:
-        fmus: dict[Path, Fmu] = {}
 
         def instantiate(fmu: str, name: str) -> Slave:
             path = Path(fmu) if fmu.endswith(".fmu") else installed_fmu(fmu)
-            if path not in fmus:
-                fmus[path] = stack.enter_context(Fmu(path))
-            return stack.enter_context(Slave(fmus[path], name))
+            return stack.enter_context(Slave(opened(path), name))
 
         plant_slave = instantiate(plant.fmu, "plant")
-        drive = _Drive(plant_slave, plant.inputs, t)
-        plant_slave.initialize({**plant.start, **drive.first})
-        truth = Recorder(plant_slave, plant.record, len(t))
-        links = {}
+        names, values = list(plant.inputs), _values(plant.inputs, t)
+        inputs = plant_slave.fmu.references(names, "input")
+        first = dict(zip(names, values[0].tolist(), strict=True))
+        plant_slave.initialize({**plant.start, **first})
+        recorders = {_PLANT: Recorder(plant_slave, plant.record, len(t))}
+        tick, loop = SampleLoop(), SampleLoop()
+        recorders[_PLANT].add_to(tick)
         for name, estimator in estimators.items():
             slave = instantiate(estimator.fmu, name)
             slave.initialize(estimator.start)
-            links[name] = _Link(plant_slave, slave, estimator, len(t))
+            _connect(tick, plant_slave, slave, estimator.connections)
+            tick.step(slave, times)
+            recorders[name] = Recorder(slave, estimator.record, len(t))
+            recorders[name].add_to(tick)
+        loop.extend(tick)
+        loop.set_real(plant_slave, inputs, values)
+        if plant_slave.fmu.description.coSimulation.canInterpolateInputs:
+            loop.set_slopes(plant_slave, inputs, np.diff(values, axis=0) / np.diff(t)[:, None])
+        loop.step(plant_slave, times)
 
-        for k, time in enumerate(t.tolist()):
-            truth.sample(k)
-            for link in links.values():
-                link.tick(k, time, T)
-            if k < steps:
-                drive.step(k, time, T)
-                if (k + 1) % _PROGRESS_STEPS == 0:
-                    progress(_PROGRESS_STEPS)
-        progress(steps % _PROGRESS_STEPS)
+        for begin in range(0, steps, _PROGRESS_STEPS):
+            end = min(begin + _PROGRESS_STEPS, steps)
+            loop.run(begin, end)
+            progress(end - begin)
+        tick.run(steps, steps + 1)
 
         return Recording(
             t,
-            _series(truth, plant_slave, plant.start),
-            {
-                name: _series(link.recorder, link.slave, estimators[name].start)
-                for name, link in links.items()
-            },
+            _series(recorders[_PLANT], plant.start),
+            {name: _series(recorders[name], each.start) for name, each in estimators.items()},
         )
 
 
-def _series(recorder: Recorder, slave: Slave, start: Mapping[str, Value]) -> Series:
-    return Series(recorder.columns(), recorder.units, slave.fmu.parameters(start))
+def _values(inputs: Mapping[str, Signal], t: NDArray[np.float64]) -> NDArray[np.float64]:
+    values = np.empty((len(t), len(inputs)))
+    for i, signal in enumerate(inputs.values()):
+        values[:, i] = signal(t)
+    return values
 
 
-class _Drive:
-    """Steps the plant under inputs that are linear from t_k to t_k+1."""
-
-    def __init__(self, plant: Slave, inputs: Mapping[str, Signal], t: NDArray[np.float64]) -> None:
-        count = len(inputs)
-        values = np.empty((len(t), count))
-        for i, signal in enumerate(inputs.values()):
-            values[:, i] = signal(t)
-        self.first = dict(zip(inputs, values[0].tolist(), strict=True))
-        self._values = np.ctypeslib.as_ctypes(values)
-        slopes = np.diff(values, axis=0) / np.diff(t)[:, None]
-        self._slopes = np.ctypeslib.as_ctypes(slopes)
-        self._plant = plant
-        self._references = plant.fmu.references(inputs, "input")
-        self._orders = (fmi2.fmi2Integer * count)(*[1] * count)
-
-    def step(self, k: int, t: float, T: float) -> None:
-        call, fmi, references = self._plant.call, self._plant.functions, self._references
-        count = len(references)
-        call(fmi.fmi2SetReal, references, count, self._values[k])
-        call(fmi.fmi2SetRealInputDerivatives, references, count, self._orders, self._slopes[k])
-        call(fmi.fmi2DoStep, t, T, fmi2.fmi2True)
+def _connect(loop: SampleLoop, plant: Slave, slave: Slave, connections: Mapping[str, str]) -> None:
+    """Passes outputs of the plant to inputs of a slave."""
+    wires = np.empty(len(connections))
+    loop.get_real(plant, plant.fmu.references(connections.values(), "output"), wires)
+    loop.set_real(slave, slave.fmu.references(connections.keys(), "input"), wires)
 
 
-class _Link:
-    """An estimator and its wires from the plant."""
-
-    def __init__(self, plant: Slave, slave: Slave, estimator: Estimator, samples: int) -> None:
-        self._plant = plant
-        self.slave = slave
-        self._sources = plant.fmu.references(estimator.connections.values(), "output")
-        self._inputs = slave.fmu.references(estimator.connections.keys(), "input")
-        self._buffer = (fmi2.fmi2Real * len(self._inputs))()
-        self.recorder = Recorder(slave, estimator.record, samples)
-
-    def tick(self, k: int, t: float, T: float) -> None:
-        plant, slave, count = self._plant, self.slave, len(self._buffer)
-        plant.call(plant.functions.fmi2GetReal, self._sources, count, self._buffer)
-        slave.call(slave.functions.fmi2SetReal, self._inputs, count, self._buffer)
-        slave.call(slave.functions.fmi2DoStep, t, T, fmi2.fmi2True)
-        self.recorder.sample(k)
+def _series(recorder: Recorder, start: Mapping[str, Value]) -> Series:
+    return Series(recorder.columns(), recorder.units, recorder.slave.fmu.parameters(start))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sigmahat.fmi.instance import Recorder, Slave, Value
+from sigmahat.fmi.instance import Slave, Value
+from sigmahat.fmi.recorder import Recorder
 
 _CURVE = "rls.eta_0["
 _NOT_IN_A_RUN = (

@@ -10,7 +10,8 @@ from typing import Any
 
 from sigmahat.files.digest import sha256
 from sigmahat.fmi.installed import version
-from sigmahat.fmi.instance import Fmu, Recorder, Slave, Value
+from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.fmi.recorder import Recorder
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import NORMAL_95, Curve
 from sigmahat.joint.records import FmuId, LearnedLog, Range

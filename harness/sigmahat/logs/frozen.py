@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from fmpy import fmi2
 
 from sigmahat.fmi.instance import Slave
+from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import SampleLoop
 from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Array
 
@@ -28,22 +29,17 @@ def stiffness_at(
     points  values of these inputs, finite [size: points x names]
     T       samplePeriod [s]
     """
-    fmu, fmi, component = slave.fmu, slave.functions, slave.component
-    every, inputs = fmu.references(PORTS, "input"), fmu.references(names, "input")
-    outputs = fmu.references(_OUTPUTS, "output")
-    zeros = (fmi2.fmi2Real * len(PORTS))()
-    missing = fmu.references(names[:1], "input")
-    nan = (fmi2.fmi2Real * 1)(np.nan)
-    table = np.empty((len(points), len(_OUTPUTS)))
-    rows = np.ctypeslib.as_ctypes(np.ascontiguousarray(points))
-    slave.call(fmi.fmi2SetReal, every, len(PORTS), zeros)
-    t = [t_0 + T * k for k in range(2 * len(points))]
+    fmu = slave.fmu
+    t = t_0 + T * np.arange(2 * len(points), dtype=np.float64).reshape(-1, 2)
+    gap, sample = (np.column_stack([each, np.full_like(each, T)]) for each in t.T)
+    recorder = Recorder(slave, _OUTPUTS, len(points))
+    loop = SampleLoop()
+    loop.set_real(slave, fmu.references(PORTS, "input"), np.zeros(len(PORTS)))
+    loop.set_real(slave, fmu.references(names[:1], "input"), np.full(1, np.nan))
+    loop.step(slave, gap)
+    loop.set_real(slave, fmu.references(names, "input"), np.ascontiguousarray(points))
+    loop.step(slave, sample)
+    recorder.add_to(loop)
     with slave.only_errors():
-        for k, (row, out) in enumerate(zip(rows, np.ctypeslib.as_ctypes(table), strict=True)):
-            fmi.fmi2SetReal(component, missing, 1, nan)
-            fmi.fmi2DoStep(component, t[2 * k], T, fmi2.fmi2True)
-            fmi.fmi2SetReal(component, inputs, len(names), row)
-            if fmi.fmi2DoStep(component, t[2 * k + 1], T, fmi2.fmi2True) > fmi2.fmi2Warning:
-                raise slave.failure("fmi2DoStep")
-            fmi.fmi2GetReal(component, outputs, len(_OUTPUTS), out)
-    return {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(_OUTPUTS)}
+        loop.run(0, len(points))
+    return recorder.columns()

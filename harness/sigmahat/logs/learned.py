@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from sigmahat.fmi.installed import version
-from sigmahat.fmi.instance import FmuError, Recorder, Slave, Value
+from sigmahat.fmi.instance import FmuError, Slave, Value
+from sigmahat.fmi.recorder import Recorder
 from sigmahat.fmi.saved_state import restore, save
 from sigmahat.joint.records import NO_OTHER_KEYS, FmuId, LearnedLog, Text
 from sigmahat.joint.stored import Format

@@ -11,6 +11,8 @@ from fmpy import fmi2
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import SampleLoop
 from sigmahat.logs.configuration import PORTS, Configuration
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.sampling import Samples
@@ -96,39 +98,19 @@ def play(
     The sample at t_0 + t_k is the input of the tick at that time; ports that are not configured
     keep their values, which are 0 at the start and after a gap.
     """
-    fmu, T, component = slave.fmu, samples.T, slave.component
-    # Not by slave.call, whose checks would take twice the time of a tick.
-    fmi = slave.functions
-    set_real, do_step = fmi.fmi2SetReal, fmi.fmi2DoStep
-    get_real, get_boolean, get_integer = fmi.fmi2GetReal, fmi.fmi2GetBoolean, fmi.fmi2GetInteger
+    fmu, T = slave.fmu, samples.T
     inputs = fmu.references(samples.names, "input")
-    outputs = fmu.references(OUTPUTS, "output")
-    n, m, f = len(inputs), len(outputs), len(FLAGS)
-    flags, reason = _references(fmu, FLAGS), _references(fmu, [_REASON])
     for first in range(0, len(samples.values), chunk):
         part = np.ascontiguousarray(samples.values[first : first + chunk])
-        table, raised = np.empty((len(part), m)), np.empty((len(part), f), np.int32)
-        reasons = np.empty((len(part), 1), np.int32)
-        rows = (np.ctypeslib.as_ctypes(a) for a in (part, table, raised, reasons))
-        for k, (row, out, flag, why) in enumerate(zip(*rows, strict=True), first):
-            set_real(component, inputs, n, row)
-            if do_step(component, t_0 + k * T, T, fmi2.fmi2True) > fmi2.fmi2Warning:
-                raise slave.failure("fmi2DoStep")
-            get_real(component, outputs, m, out)
-            get_boolean(component, flags, f, flag)
-            get_integer(component, reason, 1, why)
-        columns = {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(OUTPUTS)}
-        yield {
-            **columns,
-            _REASON: fmu.item_names(_REASON, reasons[:, 0]),
-            **dict(zip(FLAGS, raised.T.astype(bool), strict=True)),
-        }
-
-
-def _references(fmu: Fmu, names: Sequence[str]) -> Any:
-    """Value references of variables that are not Real."""
-    references = [fmu.variable(name).valueReference for name in names]
-    return (fmi2.fmi2ValueReference * len(references))(*references)
+        t = t_0 + T * np.arange(first, first + len(part), dtype=np.float64)
+        recorder = Recorder(slave, (*OUTPUTS, *FLAGS, _REASON), len(part))
+        loop = SampleLoop()
+        loop.set_real(slave, inputs, part)
+        loop.step(slave, np.column_stack([t, np.full_like(t, T)]))
+        recorder.add_to(loop)
+        loop.run(0, len(part))
+        columns = recorder.columns()
+        yield {**columns, **{name: columns[name].astype(bool) for name in FLAGS}}
 
 
 def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:

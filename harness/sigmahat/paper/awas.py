@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from sigmahat.fmi.instance import Value
-from sigmahat.fmi.master import Estimator, Plant
+from sigmahat.fmi.master import EstimatorFmu, Plant
 from sigmahat.paper.estimators import OUTPUTS, against_the_plant
 from sigmahat.runs.scenario import Comparison, Scenario, Sine, T
 
@@ -44,9 +44,9 @@ def awas(retraction: float, tau: Sine = SECTION_VI_B) -> Plant:
     )
 
 
-def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> Estimator:
+def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> EstimatorFmu:
     """The estimator of the AwAS with the start values of its FMU except for those given."""
-    return Estimator(
+    return EstimatorFmu(
         fmu="StiffnessEstimator",
         start={"samplePeriod": T, **start},
         connections={
@@ -60,7 +60,7 @@ def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> Est
     )
 
 
-def _modalities(start: Mapping[str, Value]) -> dict[str, Estimator]:
+def _modalities(start: Mapping[str, Value]) -> dict[str, EstimatorFmu]:
     """The three modalities of section VI.B, and the modality Model of the FMU.
 
     The MODEL of the paper is fed with (28) at the actual deformation (its footnote 1), like a
@@ -74,7 +74,7 @@ def _modalities(start: Mapping[str, Value]) -> dict[str, Estimator]:
     }
 
 
-def _constant_factors(start: Mapping[str, Value]) -> dict[str, Estimator]:
+def _constant_factors(start: Mapping[str, Value]) -> dict[str, EstimatorFmu]:
     """RESIDUAL with constant stability factors, one too small and one too large, for figure 8."""
     return {
         f"RESIDUAL, a = {a:g}": estimator(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sigmahat.fmi.instance import Value
-from sigmahat.fmi.master import Estimator, Plant
+from sigmahat.fmi.master import EstimatorFmu, Plant
 from sigmahat.paper.estimators import OUTPUTS, against_the_plant
 from sigmahat.runs.scenario import Comparison, Scenario, Sine, Sines, T
 
@@ -39,7 +39,7 @@ def single(k_3: float, frequency: float) -> Scenario:
             ),
         ),
         estimators={
-            modality: Estimator(
+            modality: EstimatorFmu(
                 fmu="StiffnessEstimator",
                 start={"samplePeriod": T, "modality": "Residual", **values},
                 connections={"theta": "theta_measured", "q": "q_measured", "tau": "tau_measured"},
@@ -88,7 +88,7 @@ def antagonistic() -> Scenario:
             ),
         ),
         estimators={
-            "RESIDUAL": Estimator(
+            "RESIDUAL": EstimatorFmu(
                 fmu="AntagonisticStiffnessEstimator",
                 start={"samplePeriod": T, "modality": "Residual", "rls.P_0": 1e24, "rls.m": 1},
                 connections={

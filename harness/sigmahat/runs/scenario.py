@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.fmi.master import Estimator, Plant
+from sigmahat.fmi.master import EstimatorFmu, Plant
 
 T = 1e-3
 """Sampling time of the paper [s], section VI.B."""
@@ -73,13 +73,13 @@ class Scenario:
     """Simulated time [s], a multiple of T."""
     plant: Plant
     """The joint whose stiffness is estimated."""
-    estimators: Mapping[str, Estimator]
+    estimators: Mapping[str, EstimatorFmu]
     """By modality."""
     comparisons: Sequence[Comparison]
     """Rows of the table. The estimators in them are not variants."""
     figures: Sequence[str]
     """Names in sigmahat.paper.figures.catalogue.FIGURES."""
-    variants: Mapping[str, Estimator] = field(default_factory=dict)
+    variants: Mapping[str, EstimatorFmu] = field(default_factory=dict)
     """Further estimators, for the figures only."""
     paper: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Indices that the paper gives for a comparison: MSE [(N.m/rad)2], MSREP [%]."""

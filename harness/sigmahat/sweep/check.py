@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu, Slave
-from sigmahat.fmi.master import Estimator, Plant
+from sigmahat.fmi.master import EstimatorFmu, Plant
 from sigmahat.runs.signals import PLANT
 from sigmahat.sweep.plan import Plan, Run
 from sigmahat.sweep.preparation import prepare
@@ -35,6 +35,6 @@ def check(plan: Plan) -> None:
                     slave.initialize(starts[name].start)
 
 
-def _models(run: Run) -> dict[str, Plant | Estimator]:
+def _models(run: Run) -> dict[str, Plant | EstimatorFmu]:
     scenario = prepare(run)
     return {PLANT: scenario.plant, **scenario.estimators}

@@ -7,12 +7,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from fmpy import fmi2
 from numpy.typing import NDArray
 
 from sigmahat.compare.misfits.experiment import DRIFT_TIME, Control, Drive, Experiment
 from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import Fmu, Recorder, Slave
+from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import SampleLoop
 
 Array = NDArray[np.float64]
 
@@ -129,26 +130,31 @@ def _step(
     They are linear from row to row; the torque is held where `held`. A control writes it into the
     table. Returns the recorded columns.
     """
-    call, fmi, count = plant.call, plant.functions, len(names)
-    references = plant.fmu.references(names, "input")
-    sensors = plant.fmu.references(_RECORD[:2], "output")
-    orders = (fmi2.fmi2Integer * count)(*[1] * count)
+    inputs = plant.fmu.references(names, "input")
     h = np.diff(t)
     slopes = np.diff(table, axis=0) / h[:, None]
     if held:
         slopes[:, 0] = 0.0
-    rows, slope_rows = np.ctypeslib.as_ctypes(table), np.ctypeslib.as_ctypes(slopes)
-    angles = (fmi2.fmi2Real * 2)()
-    recorder = Recorder(plant, _RECORD, len(t))
-    for k, (begin, step) in enumerate(zip(t.tolist(), [*h.tolist(), 0.0], strict=True)):
-        recorder.sample(k)
-        if control is not None:
-            call(fmi.fmi2GetReal, sensors, 2, angles)
-            table[k, 0] = control(k, *angles)
-        if step > 0:
-            call(fmi.fmi2SetReal, references, count, rows[k])
-            call(fmi.fmi2SetRealInputDerivatives, references, count, orders, slope_rows[k])
-            call(fmi.fmi2DoStep, begin, step, fmi2.fmi2True)
+    recorder, angles = Recorder(plant, _RECORD, len(t)), np.empty(2)
+    read, step = SampleLoop(), SampleLoop()
+    recorder.add_to(read)
+    read.get_real(plant, plant.fmu.references(_RECORD[:2], "output"), angles)
+    step.set_real(plant, inputs, table)
+    step.set_slopes(plant, inputs, slopes)
+    step.step(plant, np.column_stack([t[:-1], h]))
+    if control is None:
+        both = SampleLoop()
+        both.extend(read)
+        both.extend(step)
+        both.run(0, len(h))
+    else:
+        for k in range(len(h)):
+            read.run(k, k + 1)
+            table[k, 0] = control(k, *angles.tolist())
+            step.run(k, k + 1)
+    read.run(len(h), len(t))
+    if control is not None:
+        table[-1, 0] = control(len(h), *angles.tolist())
     return recorder.columns()
 
 

@@ -1,0 +1,14 @@
+# The library of the Python package: the loop over samples, and the estimator over arrays. It is
+# called with ctypes, so it is of a platform but of no Python.
+add_library(sigmahat_native MODULE harness/native/sample_loop.c harness/native/joints.c
+            ${PROJECT_BINARY_DIR}/fmu/StiffnessEstimator/variables.h)
+target_include_directories(sigmahat_native PRIVATE ${PROJECT_BINARY_DIR}/fmu/StiffnessEstimator
+                                                   ${PROJECT_SOURCE_DIR}/fmu_src)
+target_include_directories(sigmahat_native SYSTEM PRIVATE ${SIGMAHAT_FMI_HEADERS})
+target_link_libraries(sigmahat_native PRIVATE sigmahat_c)
+set_target_properties(sigmahat_native PROPERTIES PREFIX "" C_VISIBILITY_PRESET hidden
+                                                 LIBRARY_OUTPUT_DIRECTORY ${SIGMAHAT_FMU_FOLDER})
+if(APPLE)
+  set_target_properties(sigmahat_native PROPERTIES SUFFIX ".dylib")
+endif()
+add_dependencies(sigmahat_native StiffnessEstimator)

@@ -1,0 +1,85 @@
+#include "joints.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "export.h"
+#include "variables.h"
+
+SH_EXPORT const char *sh_joint_guid(void)
+{
+    return SH_GUID;
+}
+
+SH_EXPORT size_t sh_joint_size(void)
+{
+    return sizeof(sh_joint);
+}
+
+SH_EXPORT size_t sh_joint_place(unsigned variable)
+{
+    return VARIABLES[variable].offset;
+}
+
+SH_EXPORT void sh_joint_set(sh_joint *joint, unsigned variable, double value)
+{
+    void *place = (char *)joint + VARIABLES[variable].offset;
+
+    if (VARIABLES[variable].type == SH_TYPE_REAL)
+        *(double *)place = value;
+    else
+        *(int *)place = (int)value;
+}
+
+SH_EXPORT void sh_joint_default(sh_joint *joint)
+{
+    unsigned i;
+
+    memset(joint, 0, sizeof *joint);
+    for (i = 0; i < sizeof VARIABLES / sizeof VARIABLES[0]; ++i)
+        sh_joint_set(joint, i, VARIABLES[i].start);
+}
+
+SH_EXPORT int sh_joint_start(sh_joint *joint, sh_violation *violation)
+{
+    if (sh_parameters_check(&joint->parameters, violation))
+        return 1;
+    sh_estimator_start(&joint->estimator, &joint->parameters, &joint->output);
+    return 0;
+}
+
+/* The outputs of the tick of sample k, into their arrays. */
+static void record(const sh_joint *joint, const sh_joint_output *outputs, size_t count, size_t k)
+{
+    size_t i;
+
+    for (i = 0; i < count; ++i) {
+        const sh_variable *variable = &VARIABLES[outputs[i].variable];
+        const void *place = (const char *)joint + variable->offset;
+
+        if (variable->type == SH_TYPE_REAL)
+            ((double *)outputs[i].values)[k] = *(const double *)place;
+        else
+            ((int *)outputs[i].values)[k] = *(const int *)place;
+    }
+}
+
+static double at(const double *samples, size_t k)
+{
+    return samples == NULL ? 0.0 : samples[k];
+}
+
+SH_EXPORT void sh_joint_run(sh_joint *joint, size_t samples, const double *theta, const double *q,
+                            const double *theta_c, const double *tau, const double *tau_e_sensor,
+                            const sh_joint_output *outputs, size_t count)
+{
+    size_t k;
+
+    for (k = 0; k < samples; ++k) {
+        const sh_measurement z = {at(theta, k), at(q, k), at(theta_c, k), at(tau, k),
+                                  at(tau_e_sensor, k)};
+
+        sh_estimator_tick(&joint->estimator, &joint->parameters, &z, &joint->output);
+        record(joint, outputs, count, k);
+    }
+}

@@ -1,0 +1,50 @@
+/* Estimators over arrays of samples, without an FMU between. The caller owns all memory.
+ *
+ * A variable has the number that is its value reference in StiffnessEstimator.fmu.
+ */
+#ifndef SH_JOINTS_H
+#define SH_JOINTS_H
+
+#include <stddef.h>
+
+#include "estimator_fmu.h"
+
+/* One estimator: parameters, state, last outputs. A copy of the struct is a copy of the estimator. */
+typedef sh_estimator_fmu sh_joint;
+
+/* Where an output goes. */
+typedef struct {
+    unsigned variable; /* a Real output; an Integer or Boolean one */
+    void *values;      /* double; int [size: samples] */
+} sh_joint_output;
+
+/* The model description that the numbers of variables are of. */
+const char *sh_joint_guid(void);
+
+/* Size of sh_joint [bytes]. */
+size_t sh_joint_size(void);
+
+/* Place of a variable in sh_joint [bytes]. */
+size_t sh_joint_place(unsigned variable);
+
+/* Sets every variable to its start value. */
+void sh_joint_default(sh_joint *joint);
+
+/* Sets a parameter, of any type. */
+void sh_joint_set(sh_joint *joint, unsigned variable, double value);
+
+/* Starts the estimator with its parameters, and returns 0. Returns 1 if one is out of its range,
+ * which `violation` then describes.
+ */
+int sh_joint_start(sh_joint *joint, sh_violation *violation);
+
+/* Runs a tick for each sample.
+ *
+ * theta, q, theta_c, tau, tau_e_sensor  samples [size: samples]; NULL: all 0
+ * outputs                               [size: count]
+ */
+void sh_joint_run(sh_joint *joint, size_t samples, const double *theta, const double *q,
+                  const double *theta_c, const double *tau, const double *tau_e_sensor,
+                  const sh_joint_output *outputs, size_t count);
+
+#endif

@@ -1,0 +1,159 @@
+"""The calls that a co-simulation makes for every sample: in C, or in Python where C is missing."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from fmpy import fmi2
+from numpy.typing import NDArray
+
+from sigmahat.fmi import native
+from sigmahat.fmi.instance import Slave
+
+# As in harness/native/sample_loop.h.
+_SET_REAL, _SET_SLOPES, _DO_STEP, _GET_REAL, _GET_INTEGER = range(1, 6)
+
+
+class _NativeCall(ctypes.Structure):
+    """sh_call of harness/native/sample_loop.h."""
+
+    _fields_ = (
+        ("kind", ctypes.c_int),
+        ("component", ctypes.c_void_p),
+        ("function", ctypes.c_void_p),
+        ("references", ctypes.c_void_p),
+        ("count", ctypes.c_size_t),
+        ("orders", ctypes.c_void_p),
+        ("rows", ctypes.c_void_p),
+        ("stride", ctypes.c_size_t),
+    )
+
+
+@dataclass(frozen=True)
+class _Call:
+    kind: int
+    slave: Slave
+    function: Any
+    references: Any
+    orders: Any
+    table: NDArray[Any]
+
+    def native(self) -> _NativeCall:
+        """The call for the loop in C. It points to the arrays of this one."""
+        return _NativeCall(
+            self.kind,
+            self.slave.component,
+            ctypes.cast(self.function, ctypes.c_void_p),
+            _address(self.references),
+            0 if self.references is None else len(self.references),
+            _address(self.orders),
+            self.table.ctypes.data,
+            self.table.strides[0] if self.table.ndim == 2 else 0,
+        )
+
+
+class SampleLoop:
+    """A list of calls of FMI functions; for each sample all are made, in the order of the list.
+
+    A table has a row for each sample, [size: samples x values]. An array [size: values] is the
+    same row for every sample: with it, a value goes from the get of one FMU to the set of another.
+    Tables are C-contiguous, and are read and written in place.
+    """
+
+    def __init__(self) -> None:
+        self._calls: list[_Call] = []
+        self._native: ctypes.Array[_NativeCall] | None = None
+
+    def set_real(self, slave: Slave, references: Any, table: NDArray[np.float64]) -> None:
+        """Sets Real variables."""
+        if len(references):
+            self._add(_SET_REAL, slave, slave.functions.fmi2SetReal, references, None, table)
+
+    def set_slopes(self, slave: Slave, references: Any, table: NDArray[np.float64]) -> None:
+        """Sets the first derivatives of Real inputs."""
+        function = slave.functions.fmi2SetRealInputDerivatives
+        if len(references):
+            orders = (fmi2.fmi2Integer * len(references))(*[1] * len(references))
+            self._add(_SET_SLOPES, slave, function, references, orders, table)
+
+    def step(self, slave: Slave, times: NDArray[np.float64]) -> None:
+        """Makes a step; a row has the communication point and the length of the step [s]."""
+        self._add(_DO_STEP, slave, slave.functions.fmi2DoStep, None, None, times)
+
+    def get_real(self, slave: Slave, references: Any, table: NDArray[np.float64]) -> None:
+        """Gets Real variables."""
+        if len(references):
+            self._add(_GET_REAL, slave, slave.functions.fmi2GetReal, references, None, table)
+
+    def get_integer(self, slave: Slave, references: Any, table: NDArray[np.int32]) -> None:
+        """Gets Integer or Enumeration variables."""
+        if len(references):
+            self._add(_GET_INTEGER, slave, slave.functions.fmi2GetInteger, references, None, table)
+
+    def get_boolean(self, slave: Slave, references: Any, table: NDArray[np.int32]) -> None:
+        """Gets Boolean variables."""
+        if len(references):
+            self._add(_GET_INTEGER, slave, slave.functions.fmi2GetBoolean, references, None, table)
+
+    def extend(self, other: SampleLoop) -> None:
+        """Adds the calls of another loop."""
+        self._calls += other._calls
+        self._native = None
+
+    def run(self, first: int, end: int) -> None:
+        """Makes all calls for the samples first to end - 1.
+
+        Ctrl-C has its effect at the end; so a long loop is run in pieces. Raises FmuError if an
+        FMU refuses, with its own message; later calls are not made then.
+        """
+        library = native.library()
+        if library is None:
+            refused = _run_in_python(self._calls, first, end)
+        else:
+            if self._native is None:
+                self._native = (_NativeCall * len(self._calls))(*map(_Call.native, self._calls))
+            refused = _run_in_c(library, self._native, first, end)
+        if refused < len(self._calls):
+            call = self._calls[refused]
+            raise call.slave.failure(call.function.__name__)
+
+    def _add(self, *fields: Any) -> None:
+        call = _Call(*fields)
+        if not call.table.flags.c_contiguous:
+            raise ValueError("expected a C-contiguous table of values")
+        self._calls.append(call)
+        self._native = None
+
+
+def _run_in_c(library: ctypes.CDLL, calls: ctypes.Array[_NativeCall], first: int, end: int) -> int:
+    """The loop in C. Returns the place of the call that failed, or how many there are."""
+    loop = library.sh_sample_loop
+    loop.restype = ctypes.c_size_t
+    loop.argtypes = [ctypes.c_void_p, *[ctypes.c_size_t] * 3]
+    return int(loop(calls, len(calls), first, end))
+
+
+def _run_in_python(calls: list[_Call], first: int, end: int) -> int:
+    """The same in Python: what the loop in C has to do, and for installations without it."""
+    rows = [np.ctypeslib.as_ctypes(call.table) for call in calls]
+    for k in range(first, end):
+        for place, (call, table) in enumerate(zip(calls, rows, strict=True)):
+            row = table[k] if call.table.ndim == 2 else table
+            component = call.slave.component
+            if call.kind == _DO_STEP:
+                status = call.function(component, row[0], row[1], fmi2.fmi2True)
+            elif call.kind == _SET_SLOPES:
+                count = len(call.references)
+                status = call.function(component, call.references, count, call.orders, row)
+            else:
+                status = call.function(component, call.references, len(call.references), row)
+            if status > fmi2.fmi2Warning:
+                return place
+    return len(calls)
+
+
+def _address(array: Any) -> int | None:
+    return None if array is None else ctypes.addressof(array)
