@@ -40,15 +40,17 @@ SH_EXPORT void sh_joint_default(sh_joint *joint)
         sh_joint_set(joint, i, VARIABLES[i].start);
 }
 
-SH_EXPORT int sh_joint_start(sh_joint *joint, sh_violation *violation)
+SH_EXPORT int sh_joint_check(const sh_joint *joint, sh_violation *violation)
 {
-    if (sh_parameters_check(&joint->parameters, violation))
-        return 1;
-    sh_estimator_start(&joint->estimator, &joint->parameters, &joint->output);
-    return 0;
+    return sh_parameters_check(&joint->parameters, violation);
 }
 
-/* The outputs of the tick of sample k, into their arrays. */
+SH_EXPORT void sh_joint_start(sh_joint *joint)
+{
+    sh_estimator_start(&joint->estimator, &joint->parameters, &joint->output);
+}
+
+/* The outputs of the last tick, into place k of their arrays. */
 static void record(const sh_joint *joint, const sh_joint_output *outputs, size_t count, size_t k)
 {
     size_t i;
@@ -69,17 +71,22 @@ static double at(const double *samples, size_t k)
     return samples == NULL ? 0.0 : samples[k];
 }
 
-SH_EXPORT void sh_joint_run(sh_joint *joint, size_t samples, const double *theta, const double *q,
-                            const double *theta_c, const double *tau, const double *tau_e_sensor,
-                            const sh_joint_output *outputs, size_t count)
+SH_EXPORT void sh_joints_run(char *memory, size_t joints, size_t stride, size_t samples,
+                             size_t first, size_t end, const double *theta, const double *q,
+                             const double *theta_c, const double *tau, const double *tau_e_sensor,
+                             const sh_joint_output *outputs, size_t count)
 {
-    size_t k;
+    size_t j, k;
 
-    for (k = 0; k < samples; ++k) {
-        const sh_measurement z = {at(theta, k), at(q, k), at(theta_c, k), at(tau, k),
-                                  at(tau_e_sensor, k)};
+    for (j = 0; j < joints; ++j) {
+        sh_joint *joint = (sh_joint *)(void *)(memory + j * stride);
 
-        sh_estimator_tick(&joint->estimator, &joint->parameters, &z, &joint->output);
-        record(joint, outputs, count, k);
+        for (k = j * samples + first; k < j * samples + end; ++k) {
+            const sh_measurement z = {at(theta, k), at(q, k), at(theta_c, k), at(tau, k),
+                                      at(tau_e_sensor, k)};
+
+            sh_estimator_tick(&joint->estimator, &joint->parameters, &z, &joint->output);
+            record(joint, outputs, count, k);
+        }
     }
 }

@@ -15,7 +15,7 @@ typedef sh_estimator_fmu sh_joint;
 /* Where an output goes. */
 typedef struct {
     unsigned variable; /* a Real output; an Integer or Boolean one */
-    void *values;      /* double; int [size: samples] */
+    void *values;      /* double; int [size: joints x samples] */
 } sh_joint_output;
 
 /* The model description that the numbers of variables are of. */
@@ -33,18 +33,21 @@ void sh_joint_default(sh_joint *joint);
 /* Sets a parameter, of any type. */
 void sh_joint_set(sh_joint *joint, unsigned variable, double value);
 
-/* Starts the estimator with its parameters, and returns 0. Returns 1 if one is out of its range,
- * which `violation` then describes.
- */
-int sh_joint_start(sh_joint *joint, sh_violation *violation);
+/* Returns 1 if a parameter is out of its range, which `violation` then describes; else 0. */
+int sh_joint_check(const sh_joint *joint, sh_violation *violation);
 
-/* Runs a tick for each sample.
+/* Starts the estimator with its parameters, which pass the check. */
+void sh_joint_start(sh_joint *joint);
+
+/* Runs a tick for each of the samples first to end - 1 of each joint, joint after joint.
  *
- * theta, q, theta_c, tau, tau_e_sensor  samples [size: samples]; NULL: all 0
- * outputs                               [size: count]
+ * memory  of sh_joint, at memory + j * stride for joint j [size: joints x stride, bytes]
+ * theta, q, theta_c, tau, tau_e_sensor  samples [size: joints x samples]; NULL: all 0
+ * outputs [size: count]
  */
-void sh_joint_run(sh_joint *joint, size_t samples, const double *theta, const double *q,
-                  const double *theta_c, const double *tau, const double *tau_e_sensor,
-                  const sh_joint_output *outputs, size_t count);
+void sh_joints_run(char *memory, size_t joints, size_t stride, size_t samples, size_t first,
+                   size_t end, const double *theta, const double *q, const double *theta_c,
+                   const double *tau, const double *tau_e_sensor, const sh_joint_output *outputs,
+                   size_t count);
 
 #endif

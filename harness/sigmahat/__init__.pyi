@@ -15,6 +15,7 @@ from .identification.quantities import Quantity as Quantity
 from .joint.curve import Branch as Branch
 from .joint.curve import Curve as Curve
 from .joint.sheet import Polynomial as Polynomial
+from .library.estimator import Estimator as Estimator
 from .logs.configuration import Configuration as Configuration
 from .logs.configuration import Port as Port
 from .logs.configuration import Time as Time

@@ -26,7 +26,8 @@ def columns(seen: View) -> Iterator[Finding]:
     """All of it, for every port."""
     for name, port in seen.configuration.ports.items():
         values = seen.log.read(port.column)
-        values = values[np.isfinite(values)]
+        finite = np.isfinite(values)
+        values = values if finite.all() else values[finite]  # a long log needs much memory
         if name in ("theta", "q"):
             yield from _jumps(name, port, values)
             yield from _step(seen, name, port, values)
@@ -38,8 +39,8 @@ def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
     """A counter that starts again, without a wrap."""
     if port.wrap is not None or len(values) < 2:
         return
-    steps, span = np.abs(np.diff(values)), float(np.ptp(values))
-    jump = float(steps.max())
+    steps, span = np.diff(values), float(np.ptp(values))
+    jump = float(np.abs(steps, out=steps).max())
     if span == 0 or jump < 0.9 * span or float(np.quantile(steps, 0.9)) > 0.2 * jump:
         return
     period = min(_PERIODS, key=lambda each: abs(each - span))

@@ -69,10 +69,10 @@ def _liveliest(samples: Samples) -> Samples:
     if ticks <= _MOST:
         return samples
     angle = "theta" if "theta" in samples.names else "q"
-    motion = np.abs(np.diff(samples.values[:, list(samples.names).index(angle)], prepend=np.nan))
-    way = np.concatenate([[0.0], np.cumsum(np.nan_to_num(motion))])
+    values = samples.values[:, list(samples.names).index(angle)]
     starts = np.linspace(0, ticks - _MOST, 50).astype(int)
-    first = int(starts[np.argmax(way[starts + _MOST] - way[starts])])
+    ways = [np.nansum(np.abs(np.diff(values[first : first + _MOST]))) for first in starts]
+    first = int(starts[np.argmax(ways)])
     return replace(samples, values=samples.values[first : first + _MOST])
 
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from sigmahat.logs.log import Array
 
@@ -52,6 +51,8 @@ def low_pass(values: Array, frequency: float, h: float) -> Array:
     values     samples along the first axis, h [s] apart
     frequency  at which the gain of one pass is 1/sqrt(2) [Hz]
     """
+    from scipy.signal import butter, sosfiltfilt  # it takes a second, and is not always needed
+
     filtered: Array = sosfiltfilt(butter(2, frequency * 2 * h, output="sos"), values, axis=0)
     return filtered
 

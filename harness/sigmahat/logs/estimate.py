@@ -27,7 +27,7 @@ from sigmahat.logs.replay import OUTPUTS, coefficients, parameters, play
 from sigmahat.logs.sampling import Samples, sample
 from sigmahat.logs.statistics import ReplayStatistics
 
-_CHUNK = 1 << 16  # ticks that are replayed at a time, about
+_CHUNK = 1 << 15  # ticks that are replayed at a time, about
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
 
 

@@ -61,6 +61,7 @@ def draw(replay: Replay) -> Figure:
     top, below = parts
     torque, stiffness = top.subplots(1, 2)
     draw_curve(torque, stiffness, replay.curve, replay.points)
+    skipped = _skipped(replay.samples)
     every = below.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
     for axes, (label, lines) in zip(every, panels.items(), strict=True):
         limits: list[float] = []
@@ -76,7 +77,7 @@ def draw(replay: Replay) -> Figure:
         if axes is every[0] and replay.method == "MatchedFilter":
             limits += _interval(axes, replay)
         _scale(axes, min(limits), max(limits))
-        _skipped(axes, replay.samples)
+        _shade(axes, skipped)
         axes.set_ylabel(label)
         axes.margins(x=0.01)
         axes.legend(loc="upper right", ncols=3)
@@ -152,11 +153,15 @@ def _scale(axes: Axes, low: float, high: float) -> None:
     axes.set_ylim(low - 0.1 * span, high + _MARGIN * span)
 
 
-def _skipped(axes: Axes, samples: Samples) -> None:
+def _skipped(samples: Samples) -> Array:
+    """Begin and end of the longest stretches of ticks that the estimator skipped [s]."""
+    both = np.column_stack(stretches(np.isnan(samples.values).any(axis=1)))
+    longest = np.argsort(both[:, 1] - both[:, 0])[::-1][:200]
+    times: Array = samples.T * both[longest].astype(np.float64)
+    return times
+
+
+def _shade(axes: Axes, skipped: Array) -> None:
     """Grey areas where the estimator skipped ticks."""
-    first, last = stretches(np.isnan(samples.values).any(axis=1))
-    longest = np.argsort(last - first)[::-1][:200]
-    for i, (a, b) in enumerate(zip(first[longest], last[longest], strict=True)):
-        axes.axvspan(
-            a * samples.T, b * samples.T, color="#cccccc", lw=0.5, label=None if i else "skipped"
-        )
+    for i, (begin, end) in enumerate(skipped.tolist()):
+        axes.axvspan(begin, end, color="#cccccc", lw=0.5, label=None if i else "skipped")

@@ -35,7 +35,9 @@ class Log(ABC):
         column, or if it holds something other than numbers.
         """
         self.samples(name)
-        return self._read(name)
+        values = np.array(self._read(name))
+        pa.default_memory_pool().release_unused()  # it would keep the column of a long log
+        return values
 
     def samples(self, name: str) -> int:
         """Number of samples of a column. Raises LogError if there is no such column."""

@@ -8,6 +8,7 @@ the log.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,7 +27,7 @@ from sigmahat.logs.log import Log
 from sigmahat.logs.readers.tables import CsvLog
 from sigmahat.logs.sampling import Samples
 
-_ROWS = 1 << 16
+_ROWS = 1 << 15
 _STEM = "estimate"
 _PREFIX = "estimate."
 _TIME = "t"
@@ -58,6 +59,8 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         self._rows = _Rows(log.batches(names, _ROWS))
         self._row = self._tick = 0
         self._writer: Any = None
+        self._thread = ThreadPoolExecutor(1)  # writes a table while the next ticks are computed
+        self._written: Future[None] | None = None
 
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
         """Writes the rows of the next ticks, whose outputs these are."""
@@ -75,7 +78,14 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         if self._writer is None:
             writer = pa.csv.CSVWriter if self._text else pa.parquet.ParquetWriter
             self._writer = writer(self._path, table.schema, **self._options())
-        self._writer.write_table(table)
+        self._finish()
+        self._written = self._thread.submit(self._writer.write_table, table)
+
+    def _finish(self) -> None:
+        """Waits for the last table. Raises what its writing raised."""
+        if self._written is not None:
+            self._written.result()
+            self._written = None
 
     def _options(self) -> dict[str, Any]:
         if self._text:
@@ -85,11 +95,16 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
     def __exit__(
         self,
         _kind: type[BaseException] | None,
-        _error: BaseException | None,
+        error: BaseException | None,
         _trace: TracebackType | None,
     ) -> None:
-        if self._writer is not None:
-            self._writer.close()
+        try:
+            if error is None:
+                self._finish()
+        finally:
+            self._thread.shutdown()
+            if self._writer is not None:
+                self._writer.close()
 
 
 class _Rows:

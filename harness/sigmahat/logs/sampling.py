@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,10 +35,14 @@ class Samples:
     """Ports."""
     values: Array
     """[size: ticks x ports], nan where there is no value."""
-    tick_of_row: NDArray[np.int64]
+    tick_of_row: NDArray[np.int32]
     """Last tick at or before each row of the log."""
     notes: Sequence[str]
     """What had to be done to the samples, in sentences."""
+
+
+_last: WeakKeyDictionary[Log, tuple[Configuration, float, Samples]] = WeakKeyDictionary()
+"""What sample() gave last for a log: a check and a replay that follow each other need the same."""
 
 
 def sample(log: Log, configuration: Configuration, T: float) -> Samples:
@@ -46,6 +51,17 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
     Raises LogError for a T that is not positive, a missing column, times that do not increase, and
     a column without any value.
     """
+    last = _last.get(log)
+    if last is None or last[:2] != (configuration, T):
+        _last.pop(log, None)  # before the next one needs memory, too
+        last = configuration, T, _sample(log, configuration, T)
+        last[2].values.flags.writeable = False
+        _last[log] = last
+    return last[2]
+
+
+def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
+    """As sample()."""
     if not (np.isfinite(T) and T > 0.0):
         raise LogError(f"{configuration.path}: samplePeriod: expected more than 0 s, got {T:g}")
     notes: list[str] = []
@@ -86,14 +102,14 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
     return Samples(T, names, values, _tick_of(rows, T, ticks), notes)
 
 
-def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int64]:
+def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int32]:
     """Last tick at or before each row; times since the first tick [s], nan where unknown."""
     tick = rows / T
     tick += AT_TICK
     np.floor(tick, out=tick)
     tick[np.isnan(tick)] = -1
     np.maximum.accumulate(tick, out=tick)
-    return np.clip(tick, 0, ticks - 1, out=tick).astype(np.int64)
+    return np.clip(tick, 0, ticks - 1, out=tick).astype(np.int32)
 
 
 def _times(

@@ -94,6 +94,8 @@ def _is(unit: str, kind: str) -> bool:
 
 
 def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> float:
+    if unit == target:
+        return 1.0
     import pint
 
     try:

@@ -33,7 +33,8 @@ def save(draw: Callable[[Source], Figure], source: Source, path: Path) -> None:
     with matplotlib.rc_context(_STYLE):
         figure = draw(source)
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
+        figure.set_layout_engine("none")  # it stays as it is; to compute it again takes long
         pixels = BytesIO()
         figure.savefig(pixels, format="png")
     with Image.open(pixels) as image:  # 256 colours look the same in a third of the bytes
-        image.convert("RGB").quantize(256).save(path.with_suffix(".png"), optimize=True)
+        image.convert("RGB").quantize(256).save(path.with_suffix(".png"))

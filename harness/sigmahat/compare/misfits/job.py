@@ -76,7 +76,7 @@ def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Scor
     """The score of MatchedFilter on the samples of a run; torque_gain as for settings()."""
     names = list(motion.measured)
     values = np.column_stack(list(motion.measured.values()))
-    samples = Samples(experiment.T, names, values, np.arange(len(values)), ())
+    samples = Samples(experiment.T, names, values, np.arange(len(values), dtype=np.int32), ())
     with Fmu(installed_fmu(ESTIMATOR)) as fmu, Slave(fmu, "MatchedFilter") as slave:
         start = settings(experiment, torque_gain)
         (found,) = replay(slave, samples, start, len(values))

@@ -1,0 +1,1 @@
+"""The C library on arrays, without an FMU between."""

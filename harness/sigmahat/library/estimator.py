@@ -1,0 +1,215 @@
+"""The estimator as an object: over arrays of samples, or tick by tick in a loop of Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sigmahat.fmi.instance import Value
+from sigmahat.fmi.master import Series
+from sigmahat.library.joints import INPUTS, Joints
+
+Array = NDArray[np.float64]
+
+RECORD = ("sigma", "sigma_std", "tau_e", "phi", "misfit", "confident", "valid")
+"""Outputs that are recorded if no others are asked for."""
+
+_NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("theta", "q", "tau_e_sensor")}
+"""Inputs without which a modality has no torque. Model needs no more than theta and q."""
+
+
+class Estimator:
+    """The estimator of StiffnessEstimator.fmu, without an FMU between, for one joint or many.
+
+    The results are those of the FMU, to the last bit. What it has learned stays from call to call,
+    until reset(). While it computes, other threads of Python run; an object may be used by one
+    thread at a time. Memory: 140 kB a joint.
+
+    >>> import numpy as np, sigmahat
+    >>> estimator = sigmahat.Estimator({"method": "MatchedFilter", "motor.gamma": 100})
+    >>> found = estimator.run(theta=np.zeros(1000), q=np.zeros(1000), tau=np.zeros(1000))
+    >>> found["sigma"].shape, found.units["sigma"]
+    ((1000,), 'N.m/rad')
+    """
+
+    def __init__(
+        self,
+        parameters: Mapping[str, Value] | Sequence[Mapping[str, Value]] = {},
+        record: Sequence[str] = RECORD,
+    ) -> None:
+        """Starts the estimator.
+
+        parameters  by their names in the FMU, enumerations by item name; those that are not given
+                    have the start values of the FMU. A sequence: of each joint. One mapping: of
+                    all joints; the first samples say how many there are.
+        record      outputs of the FMU that run() and tick() return
+
+        Raises ValueError for a name that the FMU does not have, and for a value that does not fit
+        or is out of its range; RuntimeError if this installation has no library for this platform.
+        """
+        several = not isinstance(parameters, Mapping)
+        given = list(parameters) if not isinstance(parameters, Mapping) else [parameters]
+        if not given:
+            raise ValueError("expected the parameters of one joint or more, got an empty sequence")
+        self._joints = Joints(given)
+        self._shape: tuple[int, ...] | None = (len(given),) if several else None
+        self._record = tuple(record)
+        for name in self._record:
+            self._joints.fmu.variable(name, "output")
+        self._given = [dict(each) for each in given]
+        self._tick: Callable[[Sequence[ArrayLike]], dict[str, Any]] | None = None
+
+    @property
+    def parameters(self) -> list[dict[str, Value]]:
+        """All parameters of each joint as they were at the start, given ones and the FMU's."""
+        return [self._joints.fmu.parameters(each) for each in self._given]
+
+    def run(
+        self,
+        theta: ArrayLike,
+        q: ArrayLike,
+        tau: ArrayLike | None = None,
+        theta_c: ArrayLike | None = None,
+        tau_e_sensor: ArrayLike | None = None,
+    ) -> Series:
+        """A tick for each sample, samplePeriod apart; sample k gives output k.
+
+        All arrays have the shape (N,) for one joint, or (joints, N). A sample that is not finite is
+        skipped: the estimate is kept, and "valid" is False there.
+
+        theta, q      position of the motor behind its gear, and of the link [rad]
+        tau           torque of the motor, on its axis [N.m]; needed by the modality Residual
+        theta_c       position of the motor that adjusts the stiffness [rad]; None: 0
+        tau_e_sensor  flexibility torque of a sensor [N.m]; needed by the modality Sensor
+
+        Returns the recorded outputs, by name, in arrays of the same shape: Booleans as such, of an
+        enumeration the names of its items. Raises ValueError for other shapes or if an array is
+        missing.
+        """
+        given = dict(zip(INPUTS, (theta, q, theta_c, tau, tau_e_sensor), strict=True))
+        self._need(given)
+        arrays = {
+            n: np.asarray(v, np.float64, order="C") for n, v in given.items() if v is not None
+        }
+        shape = arrays["theta"].shape
+        if len(shape) not in (1, 2) or any(each.shape != shape for each in arrays.values()):
+            shapes = ", ".join(f"{name} {each.shape}" for name, each in arrays.items())
+            raise ValueError(f"expected arrays of one shape, (N,) or (joints, N), got {shapes}")
+        self._take_shape(shape[:-1])
+        joints, samples = len(self._joints.memory), shape[-1]
+        outputs = {name: self._joints.empty(name, joints, samples) for name in self._record}
+        rows = [arrays[n].reshape(joints, samples) if n in arrays else None for n in INPUTS]
+        self._joints.run(rows, outputs)
+        fmu = self._joints.fmu
+        return Series(
+            {name: self._joints.named(name, v).reshape(shape) for name, v in outputs.items()},
+            {n: fmu.variable(n).unit for n in outputs if fmu.variable(n).unit is not None},
+            self.parameters[0],
+        )
+
+    def tick(
+        self,
+        theta: ArrayLike,
+        q: ArrayLike,
+        tau: ArrayLike = 0.0,
+        theta_c: ArrayLike = 0.0,
+        tau_e_sensor: ArrayLike = 0.0,
+    ) -> dict[str, Any]:
+        """One tick, for a loop; arguments and results as those of run(), without the axis of time.
+
+        Numbers for one joint, arrays of shape (joints,) for many. Raises ValueError for another
+        number of joints.
+        """
+        if self._tick is None:
+            self._take_shape(np.shape(theta))
+            self._tick = self._prepared()
+        return self._tick((theta, q, theta_c, tau, tau_e_sensor))
+
+    def output(self, name: str) -> Any:
+        """An output as it is now, recorded or not: a number, or an array of shape (joints,)."""
+        self._joints.fmu.variable(name, "output")
+        values = self._joints.value(name)
+        return values if self._shape else values[0]
+
+    @property
+    def eta(self) -> Array:
+        """Coefficients of the torque now, (21) [size: n x m, or joints x n x m]."""
+        parameters = self.parameters
+        n = max(int(each["rls.n"]) for each in parameters)
+        m = max(int(each["rls.m"]) for each in parameters)
+        values = [[self._joints.value(f"eta[{i},{j}]") for j in range(m)] for i in range(n)]
+        eta = np.moveaxis(np.array(values), -1, 0)
+        return eta if self._shape else eta[0]
+
+    def tune(self, parameters: Mapping[str, Value]) -> None:
+        """Changes tunable parameters of all joints; what was learned stays.
+
+        Raises ValueError, and changes nothing, for a name or value that does not fit, and for a
+        parameter that is fixed.
+        """
+        for name in parameters:
+            if self._joints.fmu.variable(name, "parameter").variability != "tunable":
+                raise ValueError(f"{name} is fixed: give it when the estimator is made")
+        before = self._joints.memory.copy()
+        try:
+            for joint in range(len(before)):
+                self._joints.set(joint, parameters)
+        except ValueError:
+            self._joints.memory[:] = before
+            raise
+
+    def reset(self) -> None:
+        """Forgets all that was learned; parameters stay as they are."""
+        self._joints.start()
+
+    def _need(self, given: Mapping[str, ArrayLike | None]) -> None:
+        for modality in set(self._joints.value("modality")):
+            for name in _NEEDED.get(modality, ("theta", "q")):
+                if given[name] is None:
+                    raise ValueError(f"modality {modality} needs {name}, got None")
+
+    def _take_shape(self, shape: tuple[int, ...]) -> None:
+        """Shape of the samples without time: the first of it says how many joints there are."""
+        if self._shape is None:
+            if shape:
+                self._joints.repeated(*shape)
+                self._given *= shape[0]
+            self._shape = shape
+        if self._shape != shape:
+            raise ValueError(
+                f"expected samples of {self._shape[0] if self._shape else 'one'} joint(s), got "
+                f"{shape[0] if shape else 'one'}"
+            )
+
+    def _prepared(self) -> Callable[[Sequence[ArrayLike]], dict[str, Any]]:
+        """A tick that allocates nothing, for many calls."""
+        joints = self._joints
+        count, single = len(joints.memory), not self._shape
+        inputs = np.zeros((len(INPUTS), count, 1))
+        outputs = {name: joints.empty(name, count, 1) for name in self._record}
+        run = joints.prepared(list(inputs), outputs)
+        places = [(name, each, joints.names(name)) for name, each in outputs.items()]
+
+        def tick(values: Sequence[ArrayLike]) -> dict[str, Any]:
+            try:
+                for row, value in zip(inputs, values, strict=True):
+                    row[:, 0] = value
+            except ValueError as error:
+                shapes = ", ".join(str(np.shape(value)) for value in values)
+                expected = "numbers" if single else f"arrays of shape ({count},)"
+                raise ValueError(f"expected {expected}, got shapes {shapes}") from error
+            run(0, 1)
+            if single:
+                return {
+                    name: each.item() if named is None else named[each.item()]
+                    for name, each, named in places
+                }
+            return {
+                name: each[:, 0].copy() if named is None else joints.named(name, each[:, 0])
+                for name, each, named in places
+            }
+
+        return tick

@@ -1,0 +1,171 @@
+"""Estimators in memory that Python owns: harness/native/joints.h by ctypes."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sigmahat.fmi import native
+from sigmahat.fmi.installed import fmu as installed_fmu
+from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.fmi.opened import opened
+
+INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
+"""In the order in which the library takes them."""
+
+_CACHE_LINE = 64  # [bytes]
+_PIECE = 1 << 16  # ticks between two moments at which Ctrl-C has its effect, about
+_SHORTEST = 1 << 10  # ticks of a joint at a time: its state stays in the cache of the processor
+
+
+class _Violation(ctypes.Structure):
+    """sh_violation."""
+
+    _fields_ = (("name", ctypes.c_char_p), ("value", ctypes.c_double), ("range", ctypes.c_char_p))
+
+
+class Output(ctypes.Structure):
+    """sh_joint_output: number of a variable, address of its values."""
+
+    _fields_ = (("variable", ctypes.c_uint), ("values", ctypes.c_void_p))
+
+
+class Joints:
+    """One estimator a joint, in the order of their parameters."""
+
+    def __init__(self, parameters: Sequence[Mapping[str, Value]]) -> None:
+        """Starts them. Raises ValueError for a name or value that does not fit, RuntimeError if
+        this installation has no library.
+        """
+        self.fmu, self._library = _description(), _library()
+        size = int(self._library.sh_joint_size())
+        self._stride = -(-size // _CACHE_LINE) * _CACHE_LINE
+        self.memory = np.zeros((len(parameters), self._stride), np.uint8)
+        for joint, each in enumerate(parameters):
+            self._library.sh_joint_default(self._address(joint))
+            self.set(joint, each)
+        self.start()
+
+    def repeated(self, joints: int) -> None:
+        """Makes of one estimator many that are like it."""
+        self.memory = np.repeat(self.memory, joints, axis=0)
+
+    def start(self) -> None:
+        """Forgets all that was learned."""
+        for joint in range(len(self.memory)):
+            self._library.sh_joint_start(self._address(joint))
+
+    def set(self, joint: int, parameters: Mapping[str, Value]) -> None:
+        """Sets parameters of a joint: all, or none if one of them does not fit (ValueError)."""
+        changed = self.memory[joint].copy()
+        for name, value in parameters.items():
+            variable = self.fmu.variable(name, "parameter")
+            number = float(self.fmu.number(name, value))
+            self._library.sh_joint_set(changed.ctypes.data, variable.valueReference, number)
+        violation = _Violation()
+        if self._library.sh_joint_check(changed.ctypes.data, ctypes.byref(violation)):
+            name, expected = violation.name.decode(), violation.range.decode()
+            raise ValueError(f"{name}: expected {expected}, got {violation.value:.9g}")
+        self.memory[joint] = changed
+
+    def value(self, name: str) -> NDArray[Any]:
+        """The value of a variable now, [size: joints]."""
+        variable = self.fmu.variable(name)
+        dtype = np.float64 if variable.type == "Real" else np.int32
+        first = int(self._library.sh_joint_place(variable.valueReference))
+        place = self.memory[:, first : first + np.dtype(dtype).itemsize]
+        values = np.ascontiguousarray(place).view(dtype)[:, 0]
+        return self.named(name, values)
+
+    def named(self, name: str, values: NDArray[Any]) -> NDArray[Any]:
+        """Values as the library gives them, as Python has them: of an enumeration the names."""
+        kind = self.fmu.variable(name).type
+        if kind == "Enumeration":
+            return self.fmu.item_names(name, values)
+        return values.astype(bool) if kind == "Boolean" else values
+
+    def names(self, name: str) -> Mapping[int, Any] | None:
+        """What the numbers of a Boolean or an Enumeration are in Python; None for a Real."""
+        kind = self.fmu.variable(name).type
+        if kind == "Boolean":
+            return {0: False, 1: True}
+        return self.fmu.items(name) if kind == "Enumeration" else None
+
+    def run(
+        self, inputs: Sequence[NDArray[np.float64] | None], outputs: Mapping[str, NDArray[Any]]
+    ) -> None:
+        """A tick for each sample of each joint.
+
+        inputs   INPUTS [size: joints x samples], C-contiguous; None: all 0
+        outputs  arrays of empty() by name, of the same size, that are filled
+        """
+        joints, samples = next(each.shape for each in inputs if each is not None)
+        call = self.prepared(inputs, outputs)
+        piece = max(_PIECE // joints, _SHORTEST)
+        for first in range(0, samples, piece):
+            call(first, min(first + piece, samples))
+
+    def prepared(
+        self, inputs: Sequence[NDArray[np.float64] | None], outputs: Mapping[str, NDArray[Any]]
+    ) -> Callable[[int, int], None]:
+        """A function that runs the ticks of some samples: from the first up to, without, the end.
+
+        The arrays, as for run(), have to live as long as it is called.
+        """
+        joints, samples = next(each.shape for each in inputs if each is not None)
+        places = (Output * len(outputs))(
+            *(
+                Output(self.fmu.variable(n).valueReference, v.ctypes.data)
+                for n, v in outputs.items()
+            )
+        )
+        of_joints = (self._address(0), joints, self._stride, samples)
+        arrays = (*(None if each is None else each.ctypes.data for each in inputs), places)
+        run, count = self._library.sh_joints_run, len(places)
+
+        def call(first: int, end: int) -> None:
+            run(*of_joints, first, end, *arrays, count)
+
+        return call
+
+    def empty(self, name: str, joints: int, samples: int) -> NDArray[Any]:
+        """An array for an output."""
+        return np.empty((joints, samples), self._dtype(name))
+
+    def _dtype(self, name: str) -> type[np.float64] | type[np.int32]:
+        return np.float64 if self.fmu.variable(name).type == "Real" else np.int32
+
+    def _address(self, joint: int) -> int:
+        return int(self.memory.ctypes.data) + joint * self._stride
+
+
+def _description() -> Fmu:
+    return opened(installed_fmu("StiffnessEstimator"))
+
+
+def _library() -> ctypes.CDLL:
+    library = native.library()
+    if library is None:
+        raise RuntimeError("this installation has no library for this platform; install a wheel")
+    library.sh_joint_guid.restype = ctypes.c_char_p
+    if library.sh_joint_guid().decode() != _description().description.guid:
+        raise RuntimeError("the library and StiffnessEstimator.fmu are of two builds; build again")
+    pointer, size, number = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint
+    functions: dict[str, tuple[Any, list[Any]]] = {
+        "sh_joint_size": (size, []),
+        "sh_joint_place": (size, [number]),
+        "sh_joint_default": (None, [pointer]),
+        "sh_joint_set": (None, [pointer, number, ctypes.c_double]),
+        "sh_joint_check": (ctypes.c_int, [pointer, pointer]),
+        "sh_joint_start": (None, [pointer]),
+        "sh_joints_run": (None, [pointer, *[size] * 5, *[pointer] * 6, size]),
+    }
+    for name, (result, arguments) in functions.items():
+        function = library[name]
+        function.restype, function.argtypes = result, arguments
+        setattr(library, name, function)
+    return library

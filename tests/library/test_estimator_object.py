@@ -1,0 +1,203 @@
+"""sigmahat.Estimator: the numbers of the FMU without the FMU, and clear words on misuse."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import sigmahat
+from recordings import one_seed
+from sigmahat.fmi import native
+from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import SampleLoop
+
+T, N = 1e-3, 3000
+INPUTS = ("theta", "q", "tau", "theta_c")
+SETTINGS: list[dict[str, Any]] = [
+    {},
+    {"deformation": "Filtered", "rls.kind": "ConstantFactor", "filter.kind": "Kalman"},
+    {"method": "MatchedFilter"},
+    {"method": "MatchedFilter", "rls.n": 3, "prior.tau_coulomb": 0.02, "matched.drift": 1e-3},
+]
+
+
+@pytest.fixture(scope="module")
+def z() -> dict[str, NDArray[np.float64]]:
+    """Measurements of table1, a gap of ten samples among them."""
+    plant = one_seed("table1").recording.plant
+    measured = {name: plant[f"{name}_measured"][:N].copy() for name in INPUTS if name != "theta_c"}
+    measured["theta_c"] = plant["theta_c_measured"][:N].copy()
+    measured["q"][2000:2010] = np.nan
+    return measured
+
+
+def by_fmu(
+    z: Mapping[str, NDArray[np.float64]], start: Mapping[str, Any]
+) -> dict[str, NDArray[Any]]:
+    """All outputs of the FMU, called from Python."""
+    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "one") as slave:
+        slave.initialize(start)
+        every = [name for name, v in fmu.variables.items() if v.causality == "output"]
+        recorder, loop = Recorder(slave, every, N), SampleLoop()
+        times = np.column_stack([T * np.arange(N), np.full(N, T)])
+        loop.set_real(slave, fmu.references(z, "input"), np.column_stack(list(z.values())))
+        loop.step(slave, times)
+        recorder.add_to(loop)
+        loop.run(0, N)
+        return recorder.columns()
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("start", SETTINGS, ids=str)
+def test_run_gives_the_bits_of_the_fmu(
+    start: dict[str, Any], z: dict[str, NDArray[np.float64]]
+) -> None:
+    expected = by_fmu(z, start)
+    estimator = sigmahat.Estimator(start, record=list(expected))
+    found = estimator.run(**z)
+    assert not found["valid"][2000:2010].any() and found["valid"][:2000].all()
+    for name, values in expected.items():
+        np.testing.assert_array_equal(found[name], values, err_msg=name)
+        assert estimator.output(name) == values[-1]
+    n, m = estimator.parameters[0]["rls.n"], estimator.parameters[0]["rls.m"]
+    assert estimator.eta.shape == (n, m)
+    assert estimator.eta[1, 2] == expected["eta[1,2]"][-1]
+    assert found.units["sigma_std"] == "N.m/rad"
+
+
+@pytest.mark.parametrize("start", SETTINGS[1:3], ids=str)
+def test_ticks_are_those_of_run_also_in_turns(
+    start: dict[str, Any], z: dict[str, NDArray[np.float64]]
+) -> None:
+    record = ("sigma", "confident", "doubt", "valid")
+    whole = sigmahat.Estimator(start, record).run(**z)
+    estimator = sigmahat.Estimator(start, record)
+    head = estimator.run(**{name: each[:1000] for name, each in z.items()})
+    ticks = [estimator.tick(**{name: each[k] for name, each in z.items()}) for k in range(1000, N)]
+    for name in record:
+        joined = np.concatenate([head[name], [each[name] for each in ticks]])
+        np.testing.assert_array_equal(joined, whole[name], err_msg=name)
+    assert type(ticks[0]["sigma"]) is float and type(ticks[0]["valid"]) is bool
+    assert isinstance(ticks[0]["doubt"], str)
+
+
+def test_many_joints_are_as_many_estimators(z: dict[str, NDArray[np.float64]]) -> None:
+    alone = [sigmahat.Estimator(each).run(**z)["sigma"] for each in SETTINGS]
+    several = {name: np.tile(each, (len(SETTINGS), 1)) for name, each in z.items()}
+    together = sigmahat.Estimator(SETTINGS)
+    np.testing.assert_array_equal(together.run(**several)["sigma"], alone)
+    assert together.output("sigma").tolist() == [each[-1] for each in alone]
+    assert together.eta.shape == (len(SETTINGS), 6, 3)
+    # One mapping: the samples say how many joints there are.
+    alike = sigmahat.Estimator(SETTINGS[0])
+    np.testing.assert_array_equal(alike.run(**several)["sigma"], [alone[0]] * len(SETTINGS))
+    tick = alike.tick(**{name: each[:, 0] for name, each in several.items()})
+    assert tick["sigma"].shape == (len(SETTINGS),) and tick["valid"].dtype == bool
+
+
+def test_pieces_between_which_ctrl_c_works_change_nothing(
+    z: dict[str, NDArray[np.float64]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = sigmahat.Estimator(SETTINGS[:2])
+    several = {name: np.tile(each, (2, 1)) for name, each in z.items()}
+    expected = whole.run(**several)["sigma"]
+    monkeypatch.setattr("sigmahat.library.joints._PIECE", 2)
+    monkeypatch.setattr("sigmahat.library.joints._SHORTEST", 7)
+    found = sigmahat.Estimator(SETTINGS[:2]).run(**several)["sigma"]
+    np.testing.assert_array_equal(found, expected)
+
+
+def test_threads_with_an_estimator_each(z: dict[str, NDArray[np.float64]]) -> None:
+    expected = sigmahat.Estimator({}).run(**z)["sigma"]
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda _: sigmahat.Estimator({}).run(**z)["sigma"], range(16)))
+    for each in found:
+        np.testing.assert_array_equal(each, expected)
+
+
+def test_reset_forgets_and_keeps_what_was_tuned(z: dict[str, NDArray[np.float64]]) -> None:
+    estimator = sigmahat.Estimator({})
+    first = estimator.run(**z)["sigma"]
+    estimator.reset()
+    np.testing.assert_array_equal(estimator.run(**z)["sigma"], first)
+    estimator.tune({"motor.D_theta": 2e-3})
+    estimator.reset()
+    tuned = sigmahat.Estimator({"motor.D_theta": 2e-3}).run(**z)["sigma"]
+    np.testing.assert_array_equal(estimator.run(**z)["sigma"], tuned)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ({"motor.b": 1.0}, r"parameter of StiffnessEstimator.*motor\.b.*motor\.B"),
+        ({"method": "Matched"}, "Matched.*MatchedFilter"),
+        ({"motor.B": -1.0}, r"motor\.B: expected .*> 0.* got -1"),
+        ({"motor.B": float("nan")}, r"motor\.B: expected .*got nan"),
+        ({"rls.n": 2.5}, r"rls\.n: expected Integer, got 2\.5"),
+        ({"rls.n": 9}, r"rls\.n: expected .*8.* got 9"),
+        ({"sigma": 1.0}, "sigma"),
+        ([], "one joint or more"),
+    ],
+)
+def test_parameters_that_do_not_fit(parameters: Any, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        sigmahat.Estimator(parameters)
+
+
+def test_what_is_misused_is_named_and_changes_nothing(z: dict[str, NDArray[np.float64]]) -> None:
+    with pytest.raises(ValueError, match="sigma_hat"):
+        sigmahat.Estimator({}, record=["sigma_hat"])
+    estimator = sigmahat.Estimator({})
+    with pytest.raises(ValueError, match="modality Residual needs tau"):
+        estimator.run(z["theta"], z["q"])
+    with pytest.raises(ValueError, match=r"theta \(3000,\), q \(2999,\)"):
+        estimator.run(z["theta"], z["q"][1:], z["tau"])
+    with pytest.raises(ValueError, match=r"one shape.*\(\)"):
+        estimator.run(0.0, 0.0, 0.0)
+    expected = estimator.run(**z)["sigma"]
+    with pytest.raises(ValueError, match=r"one joint\(s\), got 2"):
+        estimator.run(*(np.zeros((2, 5)) for _ in range(3)))
+    with pytest.raises(ValueError, match=r"expected samples of one joint\(s\), got 3"):
+        estimator.tick(np.zeros(3), 0.0, 0.0)
+    with pytest.raises(ValueError, match=r"rls\.n is fixed"):
+        estimator.tune({"motor.B": 1e-5, "rls.n": 3})
+    with pytest.raises(ValueError, match=r"motor\.gamma: expected .*got 0"):
+        estimator.tune({"motor.B": 1e-5, "motor.gamma": 0.0})
+    estimator.reset()
+    np.testing.assert_array_equal(estimator.run(**z)["sigma"], expected)
+
+
+def test_no_samples_are_no_error() -> None:
+    found = sigmahat.Estimator({}).run([], [], [])
+    assert found["sigma"].shape == (0,)
+
+
+def test_without_a_library_the_message_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(native, "library", lambda: None)
+    with pytest.raises(RuntimeError, match="no library for this platform"):
+        sigmahat.Estimator({})
+
+
+def test_ctrl_c_ends_a_long_run() -> None:
+    program = """
+import os, signal, threading, numpy as np, sigmahat
+zeros = np.zeros(50_000_000)
+estimator = sigmahat.Estimator({"method": "MatchedFilter"})
+threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    estimator.run(zeros, zeros, zeros)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    shown = subprocess.run(
+        [sys.executable, "-c", program], check=True, capture_output=True, text=True, timeout=60
+    )
+    assert shown.stdout == "interrupted\n"
