@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
 
 from sigmahat.checks.columns import columns
 from sigmahat.checks.dynamics import dynamics
@@ -13,8 +12,8 @@ from sigmahat.checks.keys import gears, rests_on
 from sigmahat.checks.relation import relation
 from sigmahat.checks.replayed import Outputs, play, replayed
 from sigmahat.checks.view import View, view
-from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.opened import installed
 from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Log
@@ -31,7 +30,7 @@ def check(log: Log, configuration: Configuration) -> Checked:
 
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
     """
-    fmu = _fmu()
+    fmu = _estimator()
     seen = _view(log, configuration)
     every = seen.every
     findings = list(_contradictions(seen))
@@ -65,18 +64,18 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
 
 def _is_given(configuration: Configuration) -> bool:
     """Whether somebody has said what the inertia is."""
-    prior = float(_fmu().parameters(parameters(_fmu(), configuration))["prior.B"])
+    prior = float(_estimator().parameters(parameters(_estimator(), configuration))["prior.B"])
     return "motor.B" in configuration.parameters and prior < WIDE
 
 
+def _estimator() -> Fmu:
+    return installed("StiffnessEstimator")
+
+
 def _view(log: Log, configuration: Configuration) -> View:
-    return view(log, configuration, _fmu().parameters(parameters(_fmu(), configuration)))
-
-
-@cache
-def _fmu() -> Fmu:
-    """The estimator, unpacked once: a page checks again and again. Python removes it at exit."""
-    return Fmu(installed_fmu("StiffnessEstimator"))
+    return view(
+        log, configuration, _estimator().parameters(parameters(_estimator(), configuration))
+    )
 
 
 def _per_gain(outputs: Outputs, method: object) -> float:

@@ -35,8 +35,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     \b
     Example: sigmahat export sigmahat-results/knee --to ssv
     """
-    from sigmahat.fmi.installed import fmu as installed_fmu
-    from sigmahat.fmi.instance import Fmu
+    from sigmahat.fmi.opened import installed
     from sigmahat.joint import parameter_file
     from sigmahat.joint.sheet import FORMAT
 
@@ -48,6 +47,6 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
             raise click.ClickException(
                 f"{path} exists; --force overwrites it, --out names another file"
             )
-        with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
-            parameter_file.write(contents, fmu, to, path)
+        fmu = installed("StiffnessEstimator")
+        parameter_file.write(contents, fmu, to, path)
     common.answer(f"{len(contents.start_values)} start values are in {path.resolve()}")

@@ -36,8 +36,7 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
     Example: sigmahat init knee.csv
     """
     from sigmahat.files.whole_file import write_whole
-    from sigmahat.fmi.installed import fmu as installed_fmu
-    from sigmahat.fmi.instance import Fmu
+    from sigmahat.fmi.opened import installed
     from sigmahat.guessing import template
     from sigmahat.guessing.guess import guess, one_joint
     from sigmahat.logs.readers.formats import open_log
@@ -55,8 +54,8 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
                 raise click.ClickException(
                     f"{path} exists; --force overwrites it, --config names another file"
                 )
-        with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
-            motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
+        fmu = installed("StiffnessEstimator")
+        motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
         for name, path in files.items():
             write_whole(template.write(opened, guessed[name], motor), path)
     common.answer("\n\n".join(_text(log, guessed[name], path) for name, path in files.items()))

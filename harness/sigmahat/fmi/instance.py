@@ -5,11 +5,13 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from copy import copy
 from ctypes import byref
 from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
+from weakref import finalize
 
 import fmpy
 import numpy as np
@@ -40,7 +42,8 @@ class FmuError(RuntimeError):
 class Fmu:
     """An unpacked FMU and the variables of its model description, for any number of slaves.
 
-    Use it as a context manager: the unpacked files are removed at the end.
+    The unpacked files are removed at the end of the process, or of the block if it is used as a
+    context manager.
     """
 
     def __init__(self, path: Path) -> None:
@@ -55,14 +58,29 @@ class Fmu:
         if self.description.fmiVersion != "2.0" or self.description.coSimulation is None:
             raise FmuError(f"{path}: expected an FMU for FMI 2.0 Co-Simulation")
         self.variables = {v.name: v for v in self.description.modelVariables}
-        self._unpacked = TemporaryDirectory(prefix="sigmahat-", ignore_cleanup_errors=True)
-        self.folder = fmpy.extract(path, self._unpacked.name)
+        unpacked = TemporaryDirectory(prefix="sigmahat-", ignore_cleanup_errors=True)
+        self.folder = fmpy.extract(path, unpacked.name)
+        self._library: list[fmi2.FMU2Slave] = []
+        self._close = finalize(self, _close, self._library, unpacked)
 
     def __enter__(self) -> Fmu:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._unpacked.cleanup()
+        self._close()
+
+    def interface(self, instance: str) -> Any:
+        """FMPy's object for a new instance. FMPy loads the library once, which takes long."""
+        if not self._library:
+            library = fmi2.FMU2Slave(
+                guid=self.description.guid,
+                modelIdentifier=self.description.coSimulation.modelIdentifier,
+                unzipDirectory=self.folder,
+            )
+            self._library.append(library)
+        another = copy(self._library[0])
+        another.instanceName = instance
+        return another
 
     def variable(self, name: str, causality: str | None = None) -> Any:
         """Returns FMPy's description of a variable. Raises ValueError if there is none."""
@@ -141,12 +159,7 @@ class Slave:
         if addLoggerProxy is not None:
             addLoggerProxy(byref(self._callbacks))
         try:  # FMPy raises plain Exception here
-            self.fmi = fmi2.FMU2Slave(
-                guid=fmu.description.guid,
-                modelIdentifier=fmu.description.coSimulation.modelIdentifier,
-                unzipDirectory=fmu.folder,
-                instanceName=name,
-            )
+            self.fmi = fmu.interface(name)
             self.fmi.instantiate(callbacks=self._callbacks, loggingOn=True)
         except Exception as error:
             raise FmuError(self._explain(str(error))) from error
@@ -158,7 +171,7 @@ class Slave:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.fmi.freeInstance()
+        self.functions.fmi2FreeInstance(self.component)
 
     def call(self, function: Callable[..., int], *arguments: Any) -> None:
         """Calls one of the functions for this instance. Raises FmuError if it fails."""
@@ -208,6 +221,12 @@ class Slave:
 
     def _explain(self, failure: str) -> str:
         return f"{self.name}: {'; '.join(self._messages) or failure}"
+
+
+def _close(library: list[fmi2.FMU2Slave], unpacked: TemporaryDirectory[str]) -> None:
+    for each in library:
+        each.freeLibrary()
+    unpacked.cleanup()
 
 
 def value_references(variables: Iterable[Any]) -> Any:

@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.opened import opened
+from sigmahat.fmi.opened import installed, opened
 from sigmahat.fmi.recorder import Recorder
 from sigmahat.fmi.sample_loop import SampleLoop
 
@@ -106,8 +105,8 @@ def simulate(
     with ExitStack() as stack:
 
         def instantiate(fmu: str, name: str) -> Slave:
-            path = Path(fmu) if fmu.endswith(".fmu") else installed_fmu(fmu)
-            return stack.enter_context(Slave(opened(path), name))
+            unpacked = opened(Path(fmu)) if fmu.endswith(".fmu") else installed(fmu)
+            return stack.enter_context(Slave(unpacked, name))
 
         plant_slave = instantiate(plant.fmu, "plant")
         names, values = list(plant.inputs), _values(plant.inputs, t)

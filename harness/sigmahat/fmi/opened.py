@@ -5,16 +5,25 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
+from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu
+
+
+def installed(name: str) -> Fmu:
+    """An FMU of this installation. Raises FileNotFoundError if it has none of this name."""
+    return opened(installed_fmu(name))
 
 
 def opened(path: Path) -> Fmu:
     """An FMU, unpacked until the process ends. Raises what Fmu does.
 
-    A file that has changed since the last call is unpacked again.
+    It is unpacked again if the file has changed since the last call, or if the FMU allows one
+    instance in a process only: such an FMU may need its library loaded anew.
     """
     status = path.stat()
-    return _opened(path.resolve(), status.st_mtime_ns, status.st_size)
+    fmu = _opened(path.resolve(), status.st_mtime_ns, status.st_size)
+    once = fmu.description.coSimulation.canBeInstantiatedOnlyOncePerProcess
+    return Fmu(path) if once else fmu
 
 
 @lru_cache(maxsize=32)

@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.fmi.opened import installed
 from sigmahat.identification.coherence import TorqueNoise, coherent_range
 from sigmahat.identification.motor import KnownInertia, fit_motor, motor_form
 from sigmahat.identification.next_motion import advice
@@ -44,27 +44,27 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     long enough.
     """
     _check(configuration, torque_constant)
-    with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
-        start = parameters(fmu, configuration)
-        every = fmu.parameters(start)
-        samples = _beginning(sample(log, configuration, float(every["samplePeriod"])))
-        T, gamma = samples.T, float(every["motor.gamma"])
-        pieces = list(_pieces(samples, every, sensor=torque_constant))
-        if not pieces:
-            raise LogError(f"{log.path}: no stretch of {shortest(T) * T:g} s without a gap")
-        longest = max(pieces, key=lambda piece: len(piece.theta))
-        tau_variance = variance(longest.tau)
-        theta_variance = variance(longest.theta, _step(every["encoder.theta"]))
-        B, symmetric = float(every["motor.B"]), bool(every["rls.symmetric"])
-        f_0 = bandwidth(tau_variance, theta_variance, B * abs(gamma), T)
-        coherent = math.inf
-        if not torque_constant:
-            noise = TorqueNoise(tau_variance, theta_variance, B * abs(gamma), T)
-            coherent = coherent_range(longest, gamma, symmetric, f_0, noise)
-        motor = fit_motor(
-            pieces, T, gamma, symmetric, min(f_0, coherent), _known_inertia(every, configuration)
-        )
-        V_a = _best_V_a(fmu, samples, start, longest, f_0)
+    fmu = installed("StiffnessEstimator")
+    start = parameters(fmu, configuration)
+    every = fmu.parameters(start)
+    samples = _beginning(sample(log, configuration, float(every["samplePeriod"])))
+    T, gamma = samples.T, float(every["motor.gamma"])
+    pieces = list(_pieces(samples, every, sensor=torque_constant))
+    if not pieces:
+        raise LogError(f"{log.path}: no stretch of {shortest(T) * T:g} s without a gap")
+    longest = max(pieces, key=lambda piece: len(piece.theta))
+    tau_variance = variance(longest.tau)
+    theta_variance = variance(longest.theta, _step(every["encoder.theta"]))
+    B, symmetric = float(every["motor.B"]), bool(every["rls.symmetric"])
+    f_0 = bandwidth(tau_variance, theta_variance, B * abs(gamma), T)
+    coherent = math.inf
+    if not torque_constant:
+        noise = TorqueNoise(tau_variance, theta_variance, B * abs(gamma), T)
+        coherent = coherent_range(longest, gamma, symmetric, f_0, noise)
+    motor = fit_motor(
+        pieces, T, gamma, symmetric, min(f_0, coherent), _known_inertia(every, configuration)
+    )
+    V_a = _best_V_a(fmu, samples, start, longest, f_0)
     quantities = dict(motor.quantities)
     form = motor_form(min(f_0, coherent), T, symmetric)
     if quantities["B"].determined:  # until here it was that of the configuration

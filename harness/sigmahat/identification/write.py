@@ -10,8 +10,7 @@ from typing import Any
 import tomlkit
 
 from sigmahat.files.whole_file import write_whole
-from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.opened import installed
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import MOTOR
 from sigmahat.logs.configuration import (
@@ -143,8 +142,8 @@ def _without_what_is_not_known(document: tomlkit.TOMLDocument) -> tomlkit.TOMLDo
     """Without what `init` or an earlier run wrote because they could not tell: this one may be
     able to. A value that somebody has put in its place stays.
     """
-    with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
-        start = {name: float(fmu.variable(f"motor.{name}").start) for name in ("B", "D_theta")}
+    fmu = installed("StiffnessEstimator")
+    start = {name: float(fmu.variable(f"motor.{name}").start) for name in ("B", "D_theta")}
     lines = tomlkit.dumps(document).splitlines(keepends=True)
     kept = [line for line in lines if not _is_not_known(line.rstrip(), start)]
     return tomlkit.parse("".join(kept))

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.fmi import native
-from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import Fmu, Value
-from sigmahat.fmi.opened import opened
+from sigmahat.fmi.instance import Value
+from sigmahat.fmi.opened import installed
 
 INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 """In the order in which the library takes them."""
@@ -41,7 +40,7 @@ class Joints:
         """Starts them. Raises ValueError for a name or value that does not fit, RuntimeError if
         this installation has no library.
         """
-        self.fmu, self._library = _description(), _library()
+        self.fmu, self._library = installed("StiffnessEstimator"), _library()
         size = int(self._library.sh_joint_size())
         self._stride = -(-size // _CACHE_LINE) * _CACHE_LINE
         self.memory = np.zeros((len(parameters), self._stride), np.uint8)
@@ -143,16 +142,12 @@ class Joints:
         return int(self.memory.ctypes.data) + joint * self._stride
 
 
-def _description() -> Fmu:
-    return opened(installed_fmu("StiffnessEstimator"))
-
-
 def _library() -> ctypes.CDLL:
     library = native.library()
     if library is None:
         raise RuntimeError("this installation has no library for this platform; install a wheel")
     library.sh_joint_guid.restype = ctypes.c_char_p
-    if library.sh_joint_guid().decode() != _description().description.guid:
+    if library.sh_joint_guid().decode() != installed("StiffnessEstimator").description.guid:
         raise RuntimeError("the library and StiffnessEstimator.fmu are of two builds; build again")
     pointer, size, number = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint
     functions: dict[str, tuple[Any, list[Any]]] = {

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from sigmahat.files.digest import sha256
-from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.fmi.instance import Slave, Value
+from sigmahat.fmi.opened import installed
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import Curve
 from sigmahat.joint.curve_file import CURVE, write_curve
@@ -124,7 +124,8 @@ def estimate(
     fit the configuration; FmuError if the FMU refuses.
     """
     learned = None if start_from is None else read_learned(start_from)
-    with Fmu(installed_fmu("StiffnessEstimator")) as fmu, Slave(fmu, "estimator") as slave:
+    with Slave(installed("StiffnessEstimator"), "estimator") as slave:
+        fmu = slave.fmu
         start = parameters(fmu, configuration)
         every = fmu.parameters(start)
         configuration.need_ports(str(every["modality"]))

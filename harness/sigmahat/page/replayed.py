@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.instance import Slave
+from sigmahat.fmi.opened import installed
 from sigmahat.logs.answer import Answer, answer
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.estimate import begin, learned_log, run
@@ -25,7 +25,8 @@ def replayed(
 
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
     """
-    with Fmu(installed_fmu("StiffnessEstimator")) as fmu, Slave(fmu, "estimator") as slave:
+    with Slave(installed("StiffnessEstimator"), "estimator") as slave:
+        fmu = slave.fmu
         every = fmu.parameters(parameters(fmu, configuration))
         configuration.need_ports(str(every["modality"]))
         t_0 = begin(slave, configuration, None)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.opened import installed
 from sigmahat.guessing import template
 from sigmahat.guessing.columns import read_columns
 from sigmahat.guessing.guess import JointGuess, guess_chosen, guess_of
@@ -20,7 +19,7 @@ def guessed(log: Log) -> tuple[Mapping[str, JointGuess], Mapping[str, str], Chos
     """
     columns = read_columns(log)
     joints = guess_of(columns, log)
-    with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
-        motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
+    fmu = installed("StiffnessEstimator")
+    motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
     templates = {name: template.write(log, joint, motor) for name, joint in joints.items()}
     return joints, templates, partial(guess_chosen, columns)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
 from dataclasses import replace
 
-from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.master import EstimatorFmu, Plant
+from sigmahat.fmi.opened import installed
 from sigmahat.runs.signals import PLANT
 from sigmahat.sweep.plan import Plan, Run
 from sigmahat.sweep.preparation import prepare
@@ -18,21 +17,17 @@ def check(plan: Plan) -> None:
 
     Raises ValueError for a name or value that does not fit, FmuError if an FMU refuses a value.
     """
-    with ExitStack() as stack:
-        fmus: dict[str, Fmu] = {}
-        for run in plan.samples():
-            # What is drawn may leave its range now and then: that run fails, not the sweep.
-            listed = {name: run.parameters[name] for name in plan.listed}
-            starts = _models(replace(run, parameters=listed))
-            for name, model in _models(run).items():
-                if model.fmu not in fmus:
-                    fmus[model.fmu] = stack.enter_context(Fmu(installed_fmu(model.fmu)))
-                fmu = fmus[model.fmu]
-                for parameter, value in model.start.items():
-                    fmu.variable(parameter, "parameter")
-                    fmu.number(parameter, value)
-                with Slave(fmu, name) as slave:
-                    slave.initialize(starts[name].start)
+    for run in plan.samples():
+        # What is drawn may leave its range now and then: that run fails, not the sweep.
+        listed = {name: run.parameters[name] for name in plan.listed}
+        starts = _models(replace(run, parameters=listed))
+        for name, model in _models(run).items():
+            fmu = installed(model.fmu)
+            for parameter, value in model.start.items():
+                fmu.variable(parameter, "parameter")
+                fmu.number(parameter, value)
+            with Slave(fmu, name) as slave:
+                slave.initialize(starts[name].start)
 
 
 def _models(run: Run) -> dict[str, Plant | EstimatorFmu]:

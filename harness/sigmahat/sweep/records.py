@@ -8,7 +8,9 @@ are those of the larger plan.
 from __future__ import annotations
 
 import json
+import math
 import os
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import astuple, replace
@@ -24,6 +26,7 @@ from sigmahat.sweep.fmus import sweep_digest
 from sigmahat.sweep.plan import Outcome, Plan
 
 NAME = "runs.jsonl"
+_INTERVAL = 1.0  # between two times at which the disk is waited for [s]
 
 
 class Records:
@@ -47,11 +50,14 @@ class Records:
                 self._seeds = self._seeds_of(content)
             else:
                 self._take(content, i)
+        self._synchronized = -math.inf  # when the file was last written to the disk [s]
         self._file = path.open("ab")
         self._file.truncate(sum(map(len, lines)))
 
     def add(self, outcome: Outcome) -> None:
-        """Writes an outcome; it is on the disk before this returns."""
+        """Writes an outcome. A process that is killed later loses nothing; if the machine fails,
+        the outcomes of the last second are lost.
+        """
         if self._seeds != self._plan.seeds:  # before the first of the runs that are new
             self._seeds = self._plan.seeds
             self._write(_head(self._plan))
@@ -60,14 +66,20 @@ class Records:
         self._write({"number": outcome.number, "indices": indices, "failure": outcome.failure})
 
     def close(self) -> None:
-        """Closes the file."""
+        """Closes the file; all of it is on the disk then."""
+        self._synchronize()
         self._file.close()
 
     def _write(self, content: dict[str, Any]) -> None:
         text = json.dumps(content).encode()
         self._file.write(b"%08x %s\n" % (crc32(text), text))
         self._file.flush()
+        if time.monotonic() > self._synchronized + _INTERVAL:
+            self._synchronize()
+
+    def _synchronize(self) -> None:
         os.fsync(self._file.fileno())
+        self._synchronized = time.monotonic()
 
     def _parse(self, line: bytes, number: int) -> Any:
         crc, _, text = line.rstrip(b"\n").partition(b" ")

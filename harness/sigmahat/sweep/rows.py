@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from contextlib import ExitStack
 from dataclasses import astuple
 from typing import Any
 
-from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.opened import installed
 from sigmahat.runs.metrics import INDICES, Indices
 from sigmahat.runs.scenario import Scenario
 from sigmahat.runs.signals import PLANT, source_and_variable
@@ -29,15 +28,11 @@ def build(plan: Plan, outcomes: Mapping[int, Outcome]) -> SweepTable:
     outcomes  by number of the run
     """
     scenarios = {name: reduced(name, plan.modalities) for name in plan.scenarios}
-    with ExitStack() as stack:
-        fmus = {
-            name: stack.enter_context(Fmu(installed_fmu(name)))
-            for name in fmu_names(plan.scenarios)
-        }
-        parameters = _parameter_columns(plan, scenarios[plan.scenarios[0]], fmus)
-        errors = {
-            name: ParameterErrors(plan.parameters, each, fmus) for name, each in scenarios.items()
-        }
+    fmus = {name: installed(name) for name in fmu_names(plan.scenarios)}
+    parameters = _parameter_columns(plan, scenarios[plan.scenarios[0]], fmus)
+    errors = {
+        name: ParameterErrors(plan.parameters, each, fmus) for name, each in scenarios.items()
+    }
     error_columns = dict.fromkeys(column for each in errors.values() for column in each.columns)
     order: list[Column] = [RUN, SCENARIO, SEED, *parameters.values(), *error_columns]
     columns: dict[Column, list[Any]] = {

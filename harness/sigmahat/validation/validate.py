@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from sigmahat.files.digest import sha256
-from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.fmi.opened import installed
 from sigmahat.joint.start_values import as_fixed_curve, start_values
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.errors import LogError
@@ -102,22 +102,22 @@ def validate(log: Log, configuration: Configuration, start_from: Path) -> Valida
     Paper2011, which claims no interval; FmuError if the FMU refuses.
     """
     learned = read_learned(start_from)
-    with Fmu(installed_fmu("StiffnessEstimator")) as fmu:
-        every = fmu.parameters(parameters(fmu, configuration))
-        if every["method"] != "MatchedFilter":
-            raise LogError(
-                f"{configuration.path}: method = {every['method']} claims no interval, by which to "
-                "validate; expected method = MatchedFilter"
-            )
-        configuration.need_ports(str(every["modality"]))
-        with Slave(fmu, "learned") as slave:
-            t_0 = begin(slave, configuration, learned)  # before the log is read: it may not fit
-            samples = sample(log, configuration, float(every["samplePeriod"]))
-            points = _points(log, samples)
-            start = start_values(slave, every)
-            before = stiffness_at(slave, samples.names, points, t_0, samples.T)
-        alone = _alone(fmu, configuration, samples, points)
-        torque, below = torque_errors(fmu, samples, as_fixed_curve(start))
+    fmu = installed("StiffnessEstimator")
+    every = fmu.parameters(parameters(fmu, configuration))
+    if every["method"] != "MatchedFilter":
+        raise LogError(
+            f"{configuration.path}: method = {every['method']} claims no interval, by which to "
+            "validate; expected method = MatchedFilter"
+        )
+    configuration.need_ports(str(every["modality"]))
+    with Slave(fmu, "learned") as slave:
+        t_0 = begin(slave, configuration, learned)  # before the log is read: it may not fit
+        samples = sample(log, configuration, float(every["samplePeriod"]))
+        points = _points(log, samples)
+        start = start_values(slave, every)
+        before = stiffness_at(slave, samples.names, points, t_0, samples.T)
+    alone = _alone(fmu, configuration, samples, points)
+    torque, below = torque_errors(fmu, samples, as_fixed_curve(start))
     return _validation(log, configuration, learned, samples, torque, below, before, alone, every)
 
 

@@ -14,8 +14,8 @@ from sigmahat.compare.misfits.joints import JOINTS, Joint
 from sigmahat.compare.misfits.motion import Motion, run
 from sigmahat.compare.misfits.score import SETTLED, Score, score
 from sigmahat.compare.misfits.settings import settings
-from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.instance import Slave
+from sigmahat.fmi.opened import installed
 from sigmahat.logs.replay import replay
 from sigmahat.logs.sampling import Samples
 from sigmahat.runs.engine import Progress, run_all
@@ -77,7 +77,7 @@ def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Scor
     names = list(motion.measured)
     values = np.column_stack(list(motion.measured.values()))
     samples = Samples(experiment.T, names, values, np.arange(len(values), dtype=np.int32), ())
-    with Fmu(installed_fmu(ESTIMATOR)) as fmu, Slave(fmu, "MatchedFilter") as slave:
+    with Slave(installed(ESTIMATOR), "MatchedFilter") as slave:
         start = settings(experiment, torque_gain)
         (found,) = replay(slave, samples, start, len(values))
     t = experiment.T * np.arange(len(values))

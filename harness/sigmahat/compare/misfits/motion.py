@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.compare.misfits.experiment import DRIFT_TIME, Control, Drive, Experiment
-from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.instance import Slave
+from sigmahat.fmi.opened import installed
 from sigmahat.fmi.recorder import Recorder
 from sigmahat.fmi.sample_loop import SampleLoop
 
@@ -46,7 +46,7 @@ def run(experiment: Experiment) -> Motion:
     inputs = {"tau": _torque(experiment, ticks if held else t), **_other_inputs(experiment, t)}
     first = 0.0 if held else float(inputs["tau"][0])
     table = np.column_stack(list(inputs.values()))
-    with Fmu(installed_fmu(PLANT)) as fmu, Slave(fmu, "plant") as plant:
+    with Slave(installed(PLANT), "plant") as plant:
         start = {name: float(values[0]) for name, values in inputs.items()}
         plant.initialize({**_start(experiment), **start, "tau": first})
         control = _controller(experiment.control, ticks, experiment.T)
