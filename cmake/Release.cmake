@@ -1,4 +1,5 @@
-# Target release: writes every FMU and the system to release/, with the binaries of all platforms.
+# Target release: writes every FMU and the system to release/, with the binaries of all platforms, and
+# to release/python/ what pip installs: a wheel for each platform, and the source distribution.
 #
 # The cross compiler is a large download, so it is installed only for this target.
 sigmahat_add_packages(release)
@@ -19,4 +20,28 @@ endforeach()
 set(release ${PROJECT_BINARY_DIR}/release)
 sigmahat_add_system(${release}/sigmahat-awas.ssp ${release}/AwasPlant.fmu
                     ${release}/StiffnessEstimator.fmu)
-add_custom_target(release DEPENDS ${released} ${release}/sigmahat-awas.ssp)
+
+get_target_property(native_sources sigmahat_native SOURCES)
+get_target_property(library_sources sigmahat_c SOURCES)
+list(FILTER native_sources INCLUDE REGEX "[.]c$")
+list(TRANSFORM native_sources PREPEND ${PROJECT_SOURCE_DIR}/)
+set(compiled "")
+foreach(source IN LISTS native_sources library_sources)
+  list(APPEND compiled --source ${source})
+endforeach()
+set(included "")
+foreach(folder IN LISTS SIGMAHAT_NATIVE_INCLUDES)
+  list(APPEND included --include ${folder})
+endforeach()
+file(GLOB_RECURSE package CONFIGURE_DEPENDS harness/sigmahat/* harness/native/*)
+list(FILTER package EXCLUDE REGEX "__pycache__")
+add_custom_command(
+  OUTPUT ${release}/python.stamp
+  COMMAND ${SIGMAHAT_RUN} sigmahat.export distribute ${release}/python
+          ${released} ${release}/sigmahat-awas.ssp --project ${PROJECT_SOURCE_DIR}
+          ${compiled} ${included} --cache ${PROJECT_BINARY_DIR}/cross-compiler
+  COMMAND ${CMAKE_COMMAND} -E touch ${release}/python.stamp
+  DEPENDS ${released} ${release}/sigmahat-awas.ssp ${package} ${library_sources}
+          pyproject.toml ${packages_release} StiffnessEstimator
+  COMMENT "Wheels and source distribution" VERBATIM)
+add_custom_target(release DEPENDS ${released} ${release}/sigmahat-awas.ssp ${release}/python.stamp)

@@ -3,25 +3,24 @@
 #include <math.h>
 #include <string.h>
 
-#include "export.h"
 #include "variables.h"
 
-SH_EXPORT const char *sh_joint_guid(void)
+const char *sh_joint_guid(void)
 {
     return SH_GUID;
 }
 
-SH_EXPORT size_t sh_joint_size(void)
+size_t sh_joint_size(void)
 {
     return sizeof(sh_joint);
 }
 
-SH_EXPORT size_t sh_joint_place(unsigned variable)
+size_t sh_joint_place(unsigned variable)
 {
     return VARIABLES[variable].offset;
 }
 
-SH_EXPORT void sh_joint_set(sh_joint *joint, unsigned variable, double value)
+void sh_joint_set(sh_joint *joint, unsigned variable, double value)
 {
     void *place = (char *)joint + VARIABLES[variable].offset;
 
@@ -31,7 +30,7 @@ SH_EXPORT void sh_joint_set(sh_joint *joint, unsigned variable, double value)
         *(int *)place = (int)value;
 }
 
-SH_EXPORT void sh_joint_default(sh_joint *joint)
+void sh_joint_default(sh_joint *joint)
 {
     unsigned i;
 
@@ -40,12 +39,12 @@ SH_EXPORT void sh_joint_default(sh_joint *joint)
         sh_joint_set(joint, i, VARIABLES[i].start);
 }
 
-SH_EXPORT int sh_joint_check(const sh_joint *joint, sh_violation *violation)
+int sh_joint_check(const sh_joint *joint, sh_violation *violation)
 {
     return sh_parameters_check(&joint->parameters, violation);
 }
 
-SH_EXPORT void sh_joint_start(sh_joint *joint)
+void sh_joint_start(sh_joint *joint)
 {
     sh_estimator_start(&joint->estimator, &joint->parameters, &joint->output);
 }
@@ -71,10 +70,10 @@ static double at(const double *samples, size_t k)
     return samples == NULL ? 0.0 : samples[k];
 }
 
-SH_EXPORT void sh_joints_run(char *memory, size_t joints, size_t stride, size_t samples,
-                             size_t first, size_t end, const double *theta, const double *q,
-                             const double *theta_c, const double *tau, const double *tau_e_sensor,
-                             const sh_joint_output *outputs, size_t count)
+void sh_joints_run(char *memory, size_t joints, size_t stride, size_t samples, size_t first,
+                   size_t end, const double *theta, const double *q, const double *theta_c,
+                   const double *tau, const double *tau_e_sensor, const sh_joint_output *outputs,
+                   size_t count)
 {
     size_t j, k;
 

@@ -8,6 +8,7 @@
 #include <stddef.h>
 
 #include "estimator_fmu.h"
+#include "export.h"
 
 /* One estimator: parameters, state, last outputs. A copy of the struct is a copy of the estimator. */
 typedef sh_estimator_fmu sh_joint;
@@ -19,25 +20,25 @@ typedef struct {
 } sh_joint_output;
 
 /* The model description that the numbers of variables are of. */
-const char *sh_joint_guid(void);
+SH_EXPORT const char *sh_joint_guid(void);
 
 /* Size of sh_joint [bytes]. */
-size_t sh_joint_size(void);
+SH_EXPORT size_t sh_joint_size(void);
 
 /* Place of a variable in sh_joint [bytes]. */
-size_t sh_joint_place(unsigned variable);
+SH_EXPORT size_t sh_joint_place(unsigned variable);
 
 /* Sets every variable to its start value. */
-void sh_joint_default(sh_joint *joint);
+SH_EXPORT void sh_joint_default(sh_joint *joint);
 
 /* Sets a parameter, of any type. */
-void sh_joint_set(sh_joint *joint, unsigned variable, double value);
+SH_EXPORT void sh_joint_set(sh_joint *joint, unsigned variable, double value);
 
 /* Returns 1 if a parameter is out of its range, which `violation` then describes; else 0. */
-int sh_joint_check(const sh_joint *joint, sh_violation *violation);
+SH_EXPORT int sh_joint_check(const sh_joint *joint, sh_violation *violation);
 
 /* Starts the estimator with its parameters, which pass the check. */
-void sh_joint_start(sh_joint *joint);
+SH_EXPORT void sh_joint_start(sh_joint *joint);
 
 /* Runs a tick for each of the samples first to end - 1 of each joint, joint after joint.
  *
@@ -45,9 +46,9 @@ void sh_joint_start(sh_joint *joint);
  * theta, q, theta_c, tau, tau_e_sensor  samples [size: joints x samples]; NULL: all 0
  * outputs [size: count]
  */
-void sh_joints_run(char *memory, size_t joints, size_t stride, size_t samples, size_t first,
-                   size_t end, const double *theta, const double *q, const double *theta_c,
-                   const double *tau, const double *tau_e_sensor, const sh_joint_output *outputs,
-                   size_t count);
+SH_EXPORT void sh_joints_run(char *memory, size_t joints, size_t stride, size_t samples,
+                             size_t first, size_t end, const double *theta, const double *q,
+                             const double *theta_c, const double *tau, const double *tau_e_sensor,
+                             const sh_joint_output *outputs, size_t count);
 
 #endif

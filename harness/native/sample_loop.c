@@ -1,7 +1,5 @@
 #include "sample_loop.h"
 
-#include "export.h"
-
 static fmi2Status make(const sh_call *call, char *row)
 {
     const fmi2Component fmu = call->component;
@@ -26,7 +24,7 @@ static fmi2Status make(const sh_call *call, char *row)
     }
 }
 
-SH_EXPORT size_t sh_sample_loop(const sh_call *calls, size_t count, size_t first, size_t end)
+size_t sh_sample_loop(const sh_call *calls, size_t count, size_t first, size_t end)
 {
     size_t i, k;
 

@@ -8,6 +8,7 @@
 
 #include <stddef.h>
 
+#include "export.h"
 #include "fmi2FunctionTypes.h"
 
 /* Which FMI function a call is of, hence what its rows contain. */
@@ -36,6 +37,6 @@ typedef struct {
  * Returns `count`, or the place of the first call whose status was above fmi2Warning: it ends the
  * loop.
  */
-size_t sh_sample_loop(const sh_call *calls, size_t count, size_t first, size_t end);
+SH_EXPORT size_t sh_sample_loop(const sh_call *calls, size_t count, size_t first, size_t end);
 
 #endif

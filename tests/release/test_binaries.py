@@ -112,6 +112,8 @@ def test_macos_exports_only_the_fmi_functions_and_needs_only_the_system(
     by_the_linker = {"__mh_dylib_header", "___dso_handle"}
     exported = {str(symbol.name) for symbol in macho.exported_symbols} - by_the_linker
     assert exported == {"_" + function for function in functions}
+    assert macho.build_version is not None
+    assert list(macho.build_version.minos) == [11, 0, 0]
     own_name, *needed = [library.name for library in macho.libraries]
     assert own_name == f"{name}.dylib"
     assert needed == ["/usr/lib/libSystem.B.dylib"]

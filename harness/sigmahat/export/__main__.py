@@ -89,6 +89,27 @@ def release(fmu: Path, out: Path, cache: Path) -> None:
 
 @main.command()
 @click.argument("out", type=click.Path(file_okay=False, path_type=Path))
+@click.argument("contents", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--project", required=True, type=click.Path(exists=True, path_type=Path))
+@click.option("--source", multiple=True, required=True, type=click.Path(path_type=Path))
+@click.option("--include", multiple=True, required=True, type=click.Path(path_type=Path))
+@click.option("--cache", required=True, type=click.Path(file_okay=False, path_type=Path))
+def distribute(
+    out: Path,
+    contents: list[Path],
+    project: Path,
+    source: list[Path],
+    include: list[Path],
+    cache: Path,
+) -> None:
+    """Write wheels with CONTENTS, released FMUs, and the source distribution into OUT."""
+    from sigmahat.export import distribution
+
+    distribution.write(out, project, contents, source, include, cache)
+
+
+@main.command()
+@click.argument("out", type=click.Path(file_okay=False, path_type=Path))
 @click.argument("sources", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option("--interface", required=True, type=click.Path(path_type=Path))
 @click.option("--licence", required=True, type=click.Path(path_type=Path))

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -15,7 +16,7 @@ from sigmahat.export import archive
 PLATFORMS = {
     "linux64": ("x86_64-linux-gnu.2.17", ".so"),
     "win64": ("x86_64-windows-gnu", ".dll"),
-    "darwin64": ("x86_64-macos", ".dylib"),
+    "darwin64": ("x86_64-macos.11.0", ".dylib"),
 }
 """Platforms of FMI 2.0: target of the compiler, extension of a shared library."""
 
@@ -33,15 +34,34 @@ def compile_binary(folder: Path, platform: str, cache: Path) -> None:
     # FMPy reads the SourceFiles of FMI 2.0 as a build configuration of FMI 3.0.
     description: Any = fmpy.read_model_description(str(folder))
     sources = description.buildConfigurations[0].sourceFileSets[0].sourceFiles
+    name = description.coSimulation.modelIdentifier
+    compile_shared(
+        [folder / "sources" / source for source in sources],
+        [folder / "sources"],
+        folder / "binaries" / platform / name,
+        platform,
+        cache,
+    )
+
+
+def compile_shared(
+    sources: Iterable[Path], includes: Iterable[Path], out: Path, platform: str, cache: Path
+) -> Path:
+    """Compile C files to a shared library, and return its path: out with the usual extension.
+
+    ``includes`` are folders of headers beside FMI's; ``cache`` and errors as ``compile_binary``.
+    """
     target, extension = PLATFORMS[platform]
-    binary = description.coSimulation.modelIdentifier + extension
+    library = out.with_name(out.name + extension)
+    folders = [*includes, Path(fmpy.__file__).parent / "c-code"]
     with TemporaryDirectory() as scratch:
-        # Names without a folder: a dynamic library of macOS holds the name it was made with.
-        shutil.copytree(folder / "sources", scratch, dirs_exist_ok=True)
         subprocess.run(
             [
                 *(sys.executable, "-m", "ziglang", "cc", "-target", target, *FLAGS),
-                *(f"-I{Path(fmpy.__file__).parent / 'c-code'}", *sources, "-lm", "-o", binary),
+                *(f"-I{folder.resolve()}" for folder in folders),
+                *(source.resolve() for source in sources),
+                # Without a folder: a dynamic library of macOS holds the name it was made with.
+                *("-lm", "-o", library.name),
             ],
             cwd=scratch,
             env={
@@ -51,9 +71,9 @@ def compile_binary(folder: Path, platform: str, cache: Path) -> None:
             },
             check=True,
         )
-        place = folder / "binaries" / platform
-        place.mkdir(parents=True)
-        shutil.move(Path(scratch) / binary, place / binary)
+        library.parent.mkdir(parents=True, exist_ok=True)
+        shutil.move(Path(scratch) / library.name, library)
+    return library
 
 
 def release(fmu: Path, out: Path, cache: Path) -> None:

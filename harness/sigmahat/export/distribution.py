@@ -1,0 +1,79 @@
+"""What pip installs: a wheel for each platform, and the source distribution."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from sigmahat.export.cross_compiler import PLATFORMS, compile_shared
+
+TAGS = {
+    "linux64": "manylinux_2_17_x86_64",
+    "win64": "win_amd64",
+    "darwin64": "macosx_11_0_x86_64",
+}
+"""Platforms of pip, of the same versions of the systems as the targets of the cross compiler."""
+
+_HOOK = "import sys; from scikit_build_core import build; getattr(build, sys.argv[1])({arguments})"
+_EPOCH = "315532800"  # 1980, the first year of a zip file: equal contents are equal bytes
+
+
+def write(
+    out: Path,
+    project: Path,
+    contents: Iterable[Path],
+    sources: Iterable[Path],
+    includes: Iterable[Path],
+    cache: Path,
+) -> None:
+    """Write all of them into a folder, which is emptied before.
+
+    project    folder of pyproject.toml
+    contents   released FMUs and systems
+    sources    C files of the library of the package; includes: folders of their headers
+    cache      as for ``compile_shared``
+
+    Raises ``subprocess.CalledProcessError`` if a tool fails; it says why on stderr.
+    """
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    _python(project, "-c", _HOOK.format(arguments="sys.argv[2]"), "build_sdist", out.resolve())
+    with TemporaryDirectory() as scratch:
+        pure, unpacked = Path(scratch, "pure"), Path(scratch, "unpacked")
+        pure.mkdir()
+        hook = _HOOK.format(arguments="sys.argv[2], {'wheel.cmake': 'false'}")
+        _python(project, "-c", hook, "build_wheel", pure)
+        (wheel,) = pure.glob("*.whl")
+        _python(project, "-m", "wheel", "unpack", wheel, "--dest", unpacked)
+        (tree,) = unpacked.iterdir()
+        folder = tree / "sigmahat" / "fmus"
+        folder.mkdir()
+        for each in contents:
+            shutil.copy(each, folder)
+        for platform, tag in TAGS.items():
+            stem = folder / "sigmahat_native"
+            library = compile_shared(sources, includes, stem, platform, cache)
+            _python(project, "-m", "wheel", "pack", tree, "--dest-dir", scratch)
+            (packed,) = Path(scratch).glob("*.whl")
+            _python(project, "-m", "wheel", "tags", "--remove", "--platform-tag", tag, packed)
+            (tagged,) = Path(scratch).glob("*.whl")
+            shutil.move(tagged, out)
+            library.unlink()
+
+
+def _python(project: Path, *arguments: str | Path) -> None:
+    subprocess.run(
+        [sys.executable, *arguments],
+        cwd=project,
+        env={**os.environ, "SOURCE_DATE_EPOCH": _EPOCH},
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
+
+
+assert TAGS.keys() == PLATFORMS.keys()

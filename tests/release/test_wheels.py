@@ -1,0 +1,152 @@
+"""The wheels and the source distribution of a release, read from the files."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import hashlib
+import io
+import json
+import re
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import zipfile
+from pathlib import Path
+
+import lief
+import pytest
+
+import sigmahat
+from released_fmus import FMUS
+
+EXTENSIONS = {
+    "manylinux_2_17_x86_64": ".so",
+    "win_amd64": ".dll",
+    "macosx_11_0_x86_64": ".dylib",
+}
+each_platform = pytest.mark.parametrize("tag", EXTENSIONS)
+
+
+@pytest.fixture(scope="module")
+def folder(released: Path) -> Path:
+    return released / "python"
+
+
+def wheel(folder: Path, tag: str) -> Path:
+    return folder / f"sigmahat-{sigmahat.__version__}-py3-none-{tag}.whl"
+
+
+def library(folder: Path, tag: str) -> list[int]:
+    with zipfile.ZipFile(wheel(folder, tag)) as archive:
+        return list(archive.read(f"sigmahat/fmus/sigmahat_native{EXTENSIONS[tag]}"))
+
+
+def test_there_is_one_for_each_platform_and_the_sources(folder: Path) -> None:
+    expected = {wheel(folder, tag).name for tag in EXTENSIONS}
+    expected.add(f"sigmahat-{sigmahat.__version__}.tar.gz")
+    assert {path.name for path in folder.iterdir()} == expected
+
+
+@each_platform
+def test_it_contains_the_released_fmus_and_its_library_alone(
+    tag: str, folder: Path, released: Path
+) -> None:
+    with zipfile.ZipFile(wheel(folder, tag)) as archive:
+        files = {
+            Path(name).name: archive.read(name)
+            for name in archive.namelist()
+            if name.startswith("sigmahat/fmus/")
+        }
+        assert "sigmahat/py.typed" in archive.namelist()
+        assert not any("__pycache__" in name for name in archive.namelist())
+    native = {f"sigmahat_native{EXTENSIONS[tag]}"}
+    assert files.keys() == {*(f"{name}.fmu" for name in FMUS), "sigmahat-awas.ssp", *native}
+    for name in files.keys() - native:
+        assert files[name] == (released / name).read_bytes()
+
+
+@each_platform
+def test_its_record_is_right(tag: str, folder: Path) -> None:
+    with zipfile.ZipFile(wheel(folder, tag)) as archive:
+        (info,) = {n.split("/")[0] for n in archive.namelist() if ".dist-info/" in n}
+        assert f"Tag: py3-none-{tag}\n" in archive.read(f"{info}/WHEEL").decode()
+        rows = list(csv.reader(io.StringIO(archive.read(f"{info}/RECORD").decode())))
+        assert {name for name, *_ in rows} == set(archive.namelist())
+        for name, digest, _ in rows:
+            if name != f"{info}/RECORD":
+                found = base64.urlsafe_b64encode(hashlib.sha256(archive.read(name)).digest())
+                assert digest == "sha256=" + found.decode().rstrip("=")
+
+
+def functions() -> set[str]:
+    """What the headers of the library declare."""
+    headers = (Path(__file__).parents[2] / "harness" / "native").glob("*.h")
+    text = "".join(header.read_text() for header in headers)
+    return set(re.findall(r"^SH_EXPORT .*?(\w+)\(", text, re.M))
+
+
+def test_each_library_exports_the_functions_of_its_headers(folder: Path) -> None:
+    linux = lief.ELF.parse(library(folder, "manylinux_2_17_x86_64"))
+    windows = lief.PE.parse(library(folder, "win_amd64"))
+    mac = lief.MachO.parse(library(folder, "macosx_11_0_x86_64"))
+    assert isinstance(linux, lief.ELF.Binary) and isinstance(windows, lief.PE.Binary)
+    assert mac is not None and mac.size == 1
+    first, exports = mac.at(0), windows.get_export()
+    assert first is not None and exports is not None
+    by_the_linker = {"__mh_dylib_header", "___dso_handle"}
+    assert {str(symbol.name) for symbol in linux.exported_symbols} == functions()
+    assert {str(entry.name) for entry in exports.entries} == functions()
+    names = {str(symbol.name) for symbol in first.exported_symbols} - by_the_linker
+    assert names == {f"_{name}" for name in functions()}
+
+
+def test_linux_needs_glibc_2_17_at_most(folder: Path) -> None:
+    elf = lief.ELF.parse(library(folder, "manylinux_2_17_x86_64"))
+    assert isinstance(elf, lief.ELF.Binary)
+    versions = [
+        str(needed.name)
+        for each in elf.symbols_version_requirement
+        for needed in each.get_auxiliary_symbols()
+    ]
+    for version in versions:
+        numbers = [int(part) for part in version.removeprefix("GLIBC_").split(".")]
+        assert numbers <= [2, 17], version
+
+
+def test_source_distribution_is_of_this_version(folder: Path) -> None:
+    name = f"sigmahat-{sigmahat.__version__}"
+    with tarfile.open(folder / f"{name}.tar.gz") as archive:
+        names = archive.getnames()
+    assert {each.split("/")[0] for each in names} == {name}
+    assert f"{name}/harness/native/sample_loop.c" in names
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the wheel of this machine")
+def test_from_the_wheel_of_linux_the_estimator_gives_the_same_bits(
+    folder: Path, tmp_path: Path
+) -> None:
+    with zipfile.ZipFile(wheel(folder, "manylinux_2_17_x86_64")) as archive:
+        archive.extractall(tmp_path)
+    program = """
+import json, sys
+sys.path += sys.argv[1:]
+import sigmahat
+run = sigmahat.run(sigmahat.scenario("single-linear"), seed=1)
+z = [0.01 * k for k in range(100)]
+sigma = sigmahat.Estimator({"method": "MatchedFilter"}).run(z, z, z)["sigma"]
+print(json.dumps([sigmahat.__file__, run.estimators["RESIDUAL"]["sigma"].tolist(), sigma.tolist()]))
+"""
+    found = []
+    packages = sysconfig.get_path("purelib")
+    # Without "site" the package of this tree is on no path.
+    for command in (
+        [sys.executable, "-S", "-c", program, str(tmp_path), packages],
+        [sys.executable, "-c", program],
+    ):
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        found.append(json.loads(done.stdout))
+    assert Path(found[0][0]).is_relative_to(tmp_path)
+    assert not Path(found[1][0]).is_relative_to(tmp_path)
+    assert found[0][1:] == found[1][1:]
