@@ -94,26 +94,56 @@ void *master_start(const char *binary, const char *guid, const char *resources,
     return own;
 }
 
+static int get(master *own, double *y)
+{
+    return own->get(own->component, own->outputs, own->output_count, y) != fmi2OK;
+}
+
+/* Sets inputs and makes a step; `next` has the inputs at its end. */
+static int step(master *own, const double *row, const double *next, double h)
+{
+    double slopes[MAX_VARIABLES];
+    int failed = own->set(own->component, own->inputs, own->input_count, row) != fmi2OK;
+    size_t i;
+
+    if (own->slopes) {
+        for (i = 0; i < own->input_count; ++i)
+            slopes[i] = (next[i] - row[i]) / h;
+        failed += own->set_slopes(own->component, own->inputs, own->input_count, own->orders,
+                                  slopes) != fmi2OK;
+    }
+    failed += own->step(own->component, own->time, h, fmi2True) != fmi2OK;
+    own->time += h;
+    return failed;
+}
+
 int master_run(void *instance, const double *u, int samples, double h, double *y)
 {
     master *own = instance;
-    double slopes[MAX_VARIABLES];
     int failed = 0, k;
-    size_t i;
 
     for (k = 0; k < samples; ++k) {
         const double *row = u + (size_t)k * own->input_count;
-        failed += own->set(own->component, own->inputs, own->input_count, row) != fmi2OK;
-        if (own->slopes) {
-            const double *next = k + 1 < samples ? row + own->input_count : row;
-            for (i = 0; i < own->input_count; ++i)
-                slopes[i] = (next[i] - row[i]) / h;
-            failed += own->set_slopes(own->component, own->inputs, own->input_count, own->orders,
-                                      slopes) != fmi2OK;
-        }
-        failed += own->step(own->component, own->time, h, fmi2True) != fmi2OK;
-        own->time += h;
-        failed += own->get(own->component, own->outputs, own->output_count, y) != fmi2OK;
+
+        failed += step(own, row, k + 1 < samples ? row + own->input_count : row, h);
+        failed += get(own, y);
+    }
+    return failed;
+}
+
+int master_run_pair(void *from, void *to, const double *u, int samples, double h, double *y_from,
+                    double *y_to)
+{
+    master *plant = from, *estimator = to;
+    int failed = 0, k;
+
+    for (k = 0; k < samples; ++k) {
+        const double *row = u + (size_t)k * plant->input_count;
+
+        failed += get(plant, y_from);
+        failed += step(estimator, y_from, y_from, h);
+        failed += get(estimator, y_to);
+        failed += step(plant, row, k + 1 < samples ? row + plant->input_count : row, h);
     }
     return failed;
 }

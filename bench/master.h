@@ -19,4 +19,11 @@ BENCH_EXPORT void *master_start(const char *binary, const char *guid, const char
  */
 BENCH_EXPORT int master_run(void *master, const double *u, int samples, double h, double *y);
 
+/* The same for two FMUs, of which `to` is the estimator of the plant `from`: the first outputs of the
+ * plant, as many as the estimator has inputs, are its inputs. Outputs are as before the step of the
+ * plant.
+ */
+BENCH_EXPORT int master_run_pair(void *from, void *to, const double *u, int samples, double h,
+                                 double *y_from, double *y_to);
+
 #endif

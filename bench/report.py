@@ -20,6 +20,7 @@ the subject did not run."""
 SIZES = (3, 6, 18, 40)
 MAKES = ("sigmahat", "eigen", "dlib", "liquid", "numpy", "padasip", "covariance")
 LABELS = {"eigen": "Eigen", "liquid": "liquid-dsp", "covariance": "covariance alone, plain loops"}
+_PAIR, _MANY, _FMPY = "pair, master in C", "Estimator.run, 30 joints", "simulate_fmu of FMPy"
 _BEGIN, _END = "<!-- bench -->", "<!-- /bench -->"
 
 
@@ -99,6 +100,13 @@ def _requirements(
     for name in ("held", "linear"):
         median = float(np.nanmedian(times[f"plant, {name}"])) / 1e3
         at_most(f"AwAS plant, step of 1 ms, inputs {name}", median, 3, "us")
+    for what, one, other, limit in (
+        ("plant and estimator, loop in C, against the master in C", "pair, loop in C", _PAIR, 1.2),
+        ("Estimator.run, against the bare tick", "Estimator.run", tick, 1.1),
+        ("Estimator.run of 30 joints, against one, per joint", _MANY, "Estimator.run", 1.0),
+        ("simulate, against simulate_fmu of FMPy", "simulate of sigmahat", _FMPY, 1.0),
+    ):
+        at_most(what, ratio(times, one, other), limit, "x")
     for name in [n for n in times if n.startswith("table1")]:
         at_most(f"run of {name}", float(np.nanmedian(times[name])) / 1e9, 0.4, "s")
     for method, each in footprints.items():
@@ -135,7 +143,7 @@ def table(times: Times, footprints: Mapping[str, Footprint]) -> str:
         "|---" * 4 + "|",
     ]
     for name, of_name in times.items():
-        if not re.match(r"tick|.*FMU|plant|table1", name):
+        if not re.match(r"tick|.*FMU|plant|pair|Estimator|simulate|table1", name):
             continue
         low, middle = float(np.nanmin(of_name)), float(np.nanmedian(of_name))
         relative = ratio(times, name, "tick Paper2011") if re.match("tick|.*FMU", name) else None

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+import loops
 import subjects
 from report import Footprint, Times, figure, page, table, update
 from subjects import Array, Fmus, Library, Subject
@@ -73,6 +74,9 @@ def all_subjects(library: Library, fmus: Fmus, samples: int) -> list[Subject]:
         *(s for n in subjects.SIZES for s in subjects.least_squares(library, n, samples // 5)),
         *subjects.ticks(library, fmus, z),
         *subjects.plant(library, fmus, samples),
+        *loops.pair(library, fmus, samples),
+        *loops.objects(z),
+        *loops.whole(z),
         *subjects.table1(15 * samples // 10),
     ]
 

@@ -30,6 +30,8 @@ METHODS = ("Paper2011", "MatchedFilter", "MatchedFilter, 21 columns")
 MODALITIES = ("RESIDUAL", "SENSOR", "MODEL")
 MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 OUTPUTS = ("sigma", "tau_e", "theta_dot")
+TORQUES = {"tau": Sine(0.3, 0.1), "tau_c": Sine(8.0, 0.1)}
+"""Of scenario table1."""
 
 
 @dataclass(frozen=True)
@@ -207,7 +209,7 @@ class Master:
         name = description.coSimulation.modelIdentifier
         binary = folder / "binaries" / fmpy.platform / (name + fmpy.sharedLibraryExtension)
         references = {v.name: v.valueReference for v in description.modelVariables}
-        self._state = ctypes.c_void_p(
+        self.state = ctypes.c_void_p(
             library.start(
                 "master",
                 str(binary).encode(),
@@ -226,7 +228,7 @@ class Master:
     def run(self, u: Array) -> None:
         """Makes one step for each row of inputs. Raises RuntimeError if the FMU refuses one."""
         h = ctypes.c_double(T)
-        if self._run(self._state, doubles(u), len(u), h, doubles(self.outputs)) != 0:
+        if self._run(self.state, doubles(u), len(u), h, doubles(self.outputs)) != 0:
             raise RuntimeError("the FMU refused a call")
 
 
@@ -306,12 +308,11 @@ def ticks(library: Library, fmus: Fmus, z: Array) -> Iterator[Subject]:
 
 def plant(library: Library, fmus: Fmus, samples: int) -> Iterator[Subject]:
     """Steps of 1 ms of the AwAS with the torques of table1, held or linear over the step."""
-    inputs = {"tau": Sine(0.3, 0.1), "tau_c": Sine(8.0, 0.1)}
     outputs = ("q_measured", "theta_measured", "theta_c_measured", "tau_measured", "tau_e_measured")
     t = T * np.arange(samples, dtype=np.float64)
-    u = np.column_stack([signal(t) for signal in inputs.values()])
+    u = np.column_stack([signal(t) for signal in TORQUES.values()])
     for name, slopes in (("plant, held", False), ("plant, linear", True)):
-        master = Master(library, fmus.plant, list(inputs), outputs, slopes)
+        master = Master(library, fmus.plant, list(TORQUES), outputs, slopes)
         yield Subject(name, _bind(master.run, u), samples)
 
 

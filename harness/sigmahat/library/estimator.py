@@ -59,13 +59,9 @@ class Estimator:
         self._record = tuple(record)
         for name in self._record:
             self._joints.fmu.variable(name, "output")
-        self._given = [dict(each) for each in given]
-        self._tick: Callable[[Sequence[ArrayLike]], dict[str, Any]] | None = None
-
-    @property
-    def parameters(self) -> list[dict[str, Value]]:
+        self.parameters = [self._joints.fmu.parameters(each) for each in given]
         """All parameters of each joint as they were at the start, given ones and the FMU's."""
-        return [self._joints.fmu.parameters(each) for each in self._given]
+        self._tick: Callable[[Sequence[ArrayLike]], dict[str, Any]] | None = None
 
     def run(
         self,
@@ -176,7 +172,7 @@ class Estimator:
         if self._shape is None:
             if shape:
                 self._joints.repeated(*shape)
-                self._given *= shape[0]
+                self.parameters *= shape[0]
             self._shape = shape
         if self._shape != shape:
             raise ValueError(
