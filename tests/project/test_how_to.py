@@ -58,6 +58,18 @@ def page() -> dict[str, Any]:
     return names
 
 
+def test_the_code_on_the_page_of_python_works() -> None:
+    names: dict[str, Any] = {}
+    for code in blocks("python.md", "python"):
+        exec(compile(code, "python.md", "exec"), names)
+    # The joint of the first block has 1000 N.m/rad; the residual lags slightly behind.
+    assert names["found"]["sigma"][-1] == pytest.approx(1000, rel=1e-3)
+    assert names["now"]["sigma"] == names["found"]["sigma"][-1]
+    np.testing.assert_allclose(names["both"]["sigma"][:, -1], 1000, rtol=1e-3)
+    run = names["run"]
+    assert run.estimators["one"]["sigma"][-1] == pytest.approx(run.plant["sigma"][-1], rel=0.05)
+
+
 def test_fmpy_page_gives_the_results_of_a_master_written_by_hand(page: dict[str, Any]) -> None:
     times = page["t"]
     own = run(torques(times), late=False, linear=False, times=times)
