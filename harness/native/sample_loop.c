@@ -2,7 +2,7 @@
 
 static fmi2Status make(const sh_call *call, char *row)
 {
-    const fmi2Component fmu = call->component;
+    fmi2Component fmu = call->component;
     const fmi2Real *step = (const fmi2Real *)(void *)row;
 
     switch (call->kind) {

@@ -15,8 +15,7 @@ import c_sources
 from gate import missing
 
 REPOSITORY = Path(__file__).parents[2]
-SOURCES = [*c_sources.SOURCES, *sorted((REPOSITORY / "fmu_src").glob("*.c"))]
-PLANT = Path("fmu") / "AwasPlant"
+SOURCES = [*c_sources.SOURCES, *c_sources.OTHERS]
 every_source = pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.name)
 
 # False alarms of clang-tidy: file, check, line of code, why the alarm is wrong.
@@ -38,8 +37,7 @@ def test_every_false_alarm_is_about_code_that_exists(file: str, code: str) -> No
 
 def flags(source: Path, build: Path) -> list[str]:
     """Compiler options for a source of an FMU or of the library."""
-    own = build / "fmu" / source.stem  # code that is generated for this file, or for every plant
-    folders = [*c_sources.FOLDERS, REPOSITORY / "fmu_src", own if own.is_dir() else build / PLANT]
+    folders = [*c_sources.FOLDERS, *c_sources.OTHER_FOLDERS, c_sources.generated(source, build)]
     headers = Path(fmpy.__file__).parent / "c-code"
     return ["-std=c99", *(f"-I{folder}" for folder in folders), f"-isystem{headers}"]
 
@@ -72,6 +70,7 @@ def test_clang_tidy(source: Path, build: Path) -> None:
 def test_cppcheck(build: Path) -> None:
     if shutil.which("cppcheck") is None:
         missing("cppcheck", "apt-get install cppcheck")
+    folders = [*c_sources.FOLDERS, *c_sources.OTHER_FOLDERS, build / "fmu" / "AwasPlant"]
     text = run(
         *("cppcheck", "--quiet", "--std=c99", "--enable=warning,style,performance,portability"),
         *("--inconclusive", "--error-exitcode=1"),
@@ -79,7 +78,7 @@ def test_cppcheck(build: Path) -> None:
         "--suppress=unassignedVariable",
         # CasADi's functions read this array through the table of their arguments.
         f"--suppress=unreadVariable:{REPOSITORY / 'fmu_src' / 'plant.c'}",
-        *(f"-I{folder}" for folder in [*c_sources.FOLDERS, REPOSITORY / "fmu_src", build / PLANT]),
+        *(f"-I{folder}" for folder in folders),
         *SOURCES,
     )
     assert text == "", text
@@ -98,7 +97,7 @@ def test_gcc_analyzer(source: Path, build: Path, tmp_path: Path) -> None:
 
 def c_files() -> list[Path]:
     """All C and C++ of the project."""
-    folders = ("c", "fmu_src", "bench", "examples", "tests")
+    folders = ("c", "fmu_src", "harness", "bench", "examples", "tests")
     return sorted(
         file
         for folder in folders

@@ -4,7 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
-LIBRARY = Path(__file__).resolve().parents[2] / "c"
+REPOSITORY = Path(__file__).resolve().parents[2]
+LIBRARY = REPOSITORY / "c"
+NATIVE = REPOSITORY / "harness" / "native"
 SOURCES = sorted(LIBRARY.rglob("*.c"))
 HEADERS = sorted(LIBRARY.rglob("*.h"))
 FOLDERS = sorted({header.parent for header in HEADERS})
+
+OTHER_FOLDERS = [REPOSITORY / "fmu_src", NATIVE]
+OTHERS = [*sorted((REPOSITORY / "fmu_src").glob("*.c")), *sorted(NATIVE.glob("*.c"))]
+"""C files outside of the library: those of the FMUs and of the Python package."""
+
+
+def generated(source: Path, build: Path) -> Path:
+    """The folder of the generated code that a file includes, or that of a plant."""
+    fmu = "StiffnessEstimator" if source.parent == NATIVE else source.stem
+    own = build / "fmu" / fmu
+    return own if own.is_dir() else build / "fmu" / "AwasPlant"

@@ -10,24 +10,21 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from c_sources import FOLDERS, SOURCES
+from c_sources import FOLDERS, OTHER_FOLDERS, OTHERS, SOURCES, generated
 from gate import missing
 
 REPOSITORY = Path(__file__).parents[2]
 PYTHON = ["harness", "tests", "bench", "docs", "examples"]
 WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
-FMU = sorted((REPOSITORY / "fmu_src").glob("*.c"))
 
 
-@pytest.mark.parametrize("source", SOURCES + FMU, ids=lambda path: path.name)
+@pytest.mark.parametrize("source", SOURCES + OTHERS, ids=lambda path: path.name)
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_compilers_give_no_warning(
     compiler: str, source: Path, build: Path, tmp_path: Path
 ) -> None:
     if shutil.which(compiler) is None:
         missing(compiler, f"apt-get install {compiler}")
-    own = build / "fmu" / source.stem  # code that is generated for this file, or for every plant
-    generated = own if own.is_dir() else build / "fmu" / "AwasPlant"
     done = subprocess.run(
         [
             compiler,
@@ -37,7 +34,7 @@ def test_compilers_give_no_warning(
             str(source),
             "-o",
             str(tmp_path / "object.o"),
-            *(f"-I{folder}" for folder in [*FOLDERS, REPOSITORY / "fmu_src", generated]),
+            *(f"-I{folder}" for folder in [*FOLDERS, *OTHER_FOLDERS, generated(source, build)]),
             f"-isystem{Path(fmpy.__file__).parent / 'c-code'}",
         ],
         capture_output=True,
