@@ -140,6 +140,11 @@ class Estimator:
         eta = np.moveaxis(np.array(values), -1, 0)
         return eta if self._shape else eta[0]
 
+    @property
+    def size(self) -> int:
+        """Memory of a joint [bytes]."""
+        return self._joints.stride
+
     def tune(self, parameters: Mapping[str, Value]) -> None:
         """Changes tunable parameters of all joints; what was learned stays.
 

@@ -42,8 +42,8 @@ class Joints:
         """
         self.fmu, self._library = installed("StiffnessEstimator"), _library()
         size = int(self._library.sh_joint_size())
-        self._stride = -(-size // _CACHE_LINE) * _CACHE_LINE
-        self.memory = np.zeros((len(parameters), self._stride), np.uint8)
+        self.stride = -(-size // _CACHE_LINE) * _CACHE_LINE
+        self.memory = np.zeros((len(parameters), self.stride), np.uint8)
         for joint, each in enumerate(parameters):
             self._library.sh_joint_default(self._address(joint))
             self.set(joint, each)
@@ -122,7 +122,7 @@ class Joints:
                 for n, v in outputs.items()
             )
         )
-        of_joints = (self._address(0), joints, self._stride, samples)
+        of_joints = (self._address(0), joints, self.stride, samples)
         arrays = (*(None if each is None else each.ctypes.data for each in inputs), places)
         run, count = self._library.sh_joints_run, len(places)
 
@@ -139,7 +139,7 @@ class Joints:
         return np.float64 if self.fmu.variable(name).type == "Real" else np.int32
 
     def _address(self, joint: int) -> int:
-        return int(self.memory.ctypes.data) + joint * self._stride
+        return int(self.memory.ctypes.data) + joint * self.stride
 
 
 def _library() -> ctypes.CDLL:
