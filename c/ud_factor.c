@@ -28,6 +28,8 @@
 #include "pair.h"
 #include "real_math.h"
 
+enum { TWO_COLUMNS = 2 * SH_PANEL, THREE_COLUMNS = 3 * SH_PANEL }; /* of a panel, in memory */
+
 /* Place of entry (i, j) of U, i <= j, in memory. The panel of row i begins at row and column
  * i - i % SH_PANEL.
  */
@@ -87,8 +89,8 @@ static void multiply_four(sh_ud_factor *P, const sh_real *F, int j, const sh_rea
         F_1 = sh_pair_load(F + 2);
         sum_0 = sh_pair_add(sum_0, panel_product(u, F_0, F_1));
         sum_1 = sh_pair_add(sum_1, panel_product(u + SH_PANEL, F_0, F_1));
-        sum_2 = sh_pair_add(sum_2, panel_product(u + 2 * SH_PANEL, F_0, F_1));
-        sum_3 = sh_pair_add(sum_3, panel_product(u + 3 * SH_PANEL, F_0, F_1));
+        sum_2 = sh_pair_add(sum_2, panel_product(u + TWO_COLUMNS, F_0, F_1));
+        sum_3 = sh_pair_add(sum_3, panel_product(u + THREE_COLUMNS, F_0, F_1));
         u += stride;
         stride -= SH_PANEL * SH_PANEL;
     }
@@ -96,8 +98,8 @@ static void multiply_four(sh_ud_factor *P, const sh_real *F, int j, const sh_rea
     F_1 = sh_pair_load(diagonal + 2);
     sum_0 = sh_pair_add(sum_0, upper_panel_product(u, F_0));
     sum_1 = sh_pair_add(sum_1, upper_panel_product(u + SH_PANEL, F_0));
-    sum_2 = sh_pair_add(sum_2, panel_product(u + 2 * SH_PANEL, F_0, F_1));
-    sum_3 = sh_pair_add(sum_3, panel_product(u + 3 * SH_PANEL, F_0, F_1));
+    sum_2 = sh_pair_add(sum_2, panel_product(u + TWO_COLUMNS, F_0, F_1));
+    sum_3 = sh_pair_add(sum_3, panel_product(u + THREE_COLUMNS, F_0, F_1));
     sh_pair_store(P->work.f + j, sh_pair_sums(sum_0, sum_1));
     sh_pair_store(P->work.f + j + 2, sh_pair_sums(sum_2, sum_3));
 }
@@ -213,6 +215,7 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
 {
     const int size = P->size;
     sh_real *u = P->U, *g = P->work.g, *s = P->work.f;
+    int stride = size * SH_PANEL; /* from the begin of a panel to that of the next */
     int i, j;
 
     for (j = 0; j < size; ++j) {
@@ -226,7 +229,7 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
      * is not zero: there p becomes g_i, and u does not change.
      */
     for (i = 0; i + SH_PANEL < size; i += 2 * SH_PANEL) {
-        sh_real *next = u + (size - i) * SH_PANEL;
+        sh_real *next = u + stride;
         sh_pair p_0 = sh_pair_of(g[i], 0), p_1 = sh_pair_both(0);
         sh_pair p_2 = sh_pair_of(g[i + SH_PANEL], 0), p_3 = p_1;
 
@@ -243,6 +246,7 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
             rotate(next, s_j, g_j, &p_2, &p_3);
         }
         u = next + SH_PANEL;
+        stride -= 2 * SH_PANEL * SH_PANEL;
         sh_pair_store(g + i, p_0); /* the columns of the next panels do not need g_i any more */
         sh_pair_store(g + i + 2, p_1);
         sh_pair_store(g + i + 4, p_2);
