@@ -111,6 +111,16 @@ static int are_held(const double *du)
     return 1;
 }
 
+/* F_i = f */
+static void repeat(const double *f, double (*F)[STATES])
+{
+    int i, j;
+
+    for (i = 0; i < STAGES; ++i)
+        for (j = 0; j < STATES; ++j)
+            F[i][j] = f[j];
+}
+
 /* F_i = f(x + Z_i) at the nodes of a step */
 static void evaluate_stages(const double *x, const double *u, const double *du, const double *p,
                             double h, double (*Z)[STATES], double (*F)[STATES])
@@ -147,13 +157,10 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     for (iteration = 0; iteration < MAX_NEWTON_ITERATIONS; ++iteration) {
         const double previous = change;
 
-        if (iteration == 0 && held) { /* all stages are at x still */
-            for (i = 0; i < STAGES; ++i)
-                for (j = 0; j < STATES; ++j)
-                    F[i][j] = f[j];
-        } else {
+        if (iteration == 0 && held)
+            repeat(f, F); /* all stages are at x still */
+        else
             evaluate_stages(x, u, du, p, h, Z, F);
-        }
         transform(T_INVERSE, F, dW);
         for (j = 0; j < STATES; ++j) {
             dW[0][j] -= REAL * W[0][j] / h;
