@@ -19,7 +19,14 @@ the subject did not run."""
 
 SIZES = (3, 6, 18, 40)
 MAKES = ("sigmahat", "eigen", "dlib", "liquid", "numpy", "padasip", "covariance")
-LABELS = {"eigen": "Eigen", "liquid": "liquid-dsp", "covariance": "covariance alone, plain loops"}
+NATIVE = ("sigmahat native", "eigen native")
+LABELS = {
+    "eigen": "Eigen",
+    "sigmahat native": "sigmahat, `-march=native`",
+    "eigen native": "Eigen, `-march=native`",
+    "liquid": "liquid-dsp",
+    "covariance": "covariance alone, plain loops",
+}
 _PAIR, _MANY, _FMPY = "pair, master in C", "Estimator.run, 30 joints", "simulate_fmu of FMPy"
 _BEGIN, _END = "<!-- bench -->", "<!-- /bench -->"
 
@@ -130,12 +137,18 @@ def table(times: Times, footprints: Mapping[str, Footprint]) -> str:
 
     lines += ["", "Least squares, one sample, median (min) [ns]:", ""]
     lines += ["| | " + " | ".join(f"{n} parameters" for n in SIZES) + " |", "|---" * 5 + "|"]
-    for make in MAKES:
+    for make in (*MAKES, *NATIVE):
         cells = (f"{_short(times, f'{make} {n}')}" for n in SIZES)
         lines.append(f"| {LABELS.get(make, make)} | " + " | ".join(cells) + " |")
     flop = float(np.nanmin(times["peak"]))
     limit = (f"{update_flops(n) * flop:.1f}" for n in SIZES)
     lines.append("| limit of the machine | " + " | ".join(limit) + " |")
+    both_native = ratio(times, "sigmahat native 18", "eigen native 18")
+    lines += [
+        "",
+        "Least squares, 18 parameters, against Eigen, both compiled with `-march=native`: "
+        f"{both_native:.2f} x.",
+    ]
 
     lines += [
         "",

@@ -21,7 +21,7 @@ ROUNDS = 101
 SAMPLES = 10000  # one period of the torques
 
 
-def verify(library: Library, fmus: Fmus) -> None:
+def verify(library: Library, native: Library, fmus: Fmus) -> None:
     """Checks that all subjects compute the same results.
 
     Raises AssertionError, which names the subject that does not.
@@ -30,7 +30,8 @@ def verify(library: Library, fmus: Fmus) -> None:
         data = subjects.regression(size, 2000)
         information = np.eye(size) / subjects.P_0 + data.F.T @ data.F
         closed_form = np.linalg.solve(information, data.F.T @ data.y)
-        for make, rls in subjects.recursions(library, size).items():
+        recursions = subjects.recursions(library, size) | subjects.native_recursions(native, size)
+        for make, rls in recursions.items():
             rls.run(data)
             tolerance = 0.05 if make == "liquid" else 1e-9  # single precision, other P_0
             np.testing.assert_allclose(rls.eta, closed_form, 0, tolerance, err_msg=make)
@@ -66,12 +67,14 @@ def measure(every: list[Subject], rounds: int) -> Times:
     return times
 
 
-def all_subjects(library: Library, fmus: Fmus, samples: int) -> list[Subject]:
+def all_subjects(library: Library, native: Library, fmus: Fmus, samples: int) -> list[Subject]:
     """All subjects whose time is measured."""
     z: Array = subjects.measurements(samples)
+    few = samples // 5
     return [
         subjects.peak(library, samples),
-        *(s for n in subjects.SIZES for s in subjects.least_squares(library, n, samples // 5)),
+        *(s for n in subjects.SIZES for s in subjects.least_squares(library, n, few)),
+        *(s for n in subjects.SIZES for s in subjects.native_least_squares(native, n, few)),
         *subjects.ticks(library, fmus, z),
         *subjects.plant(library, fmus, samples),
         *loops.pair(library, fmus, samples),
@@ -121,11 +124,12 @@ def main() -> None:
     )
     parser.add_argument("--check", action="store_true", help="only check that every subject works")
     arguments = parser.parse_args()
-    library = Library(arguments.build)
+    library = Library(arguments.build / "libsigmahat_bench.so")
+    native = Library(arguments.build / "libsigmahat_bench_native.so")
     with tempfile.TemporaryDirectory(prefix="sigmahat-bench-") as name:
         fmus = subjects.unpack(Path(name))
-        verify(library, fmus)
-        every = all_subjects(library, fmus, 100 if arguments.check else SAMPLES)
+        verify(library, native, fmus)
+        every = all_subjects(library, native, fmus, 100 if arguments.check else SAMPLES)
         times = measure(every, 1 if arguments.check else ROUNDS)
     footprints = {
         method: footprint(arguments.build, method, library) for method in subjects.METHODS

@@ -47,10 +47,10 @@ class Subject:
 
 
 class Library:
-    """The shared library with the subjects in C and C++."""
+    """A shared library with subjects in C and C++."""
 
-    def __init__(self, build: Path) -> None:
-        self._library: Any = ctypes.CDLL(str(build / "libsigmahat_bench.so"))
+    def __init__(self, file: Path) -> None:
+        self._library: Any = ctypes.CDLL(str(file))
 
     def start(self, maker: str, *arguments: Any) -> int:
         """Address of the object that <maker>_start makes. Raises RuntimeError if it is NULL."""
@@ -160,6 +160,18 @@ def least_squares(library: Library, size: int, samples: int) -> Iterator[Subject
     for make, rls in every.items():
         data = short if make in ("numpy", "padasip", "liquid") else whole
         yield Subject(f"{make} {size}", _bind(rls.run, data), len(data.y))
+
+
+def native_recursions(native: Library, size: int) -> dict[str, Compiled]:
+    """New recursions that are compiled for the processor of this machine, by name."""
+    return {f"{make} native": Compiled(native, make, size) for make in ("sigmahat", "eigen")}
+
+
+def native_least_squares(native: Library, size: int, samples: int) -> Iterator[Subject]:
+    """The recursions of `native_recursions`."""
+    data = regression(size, samples)
+    for make, rls in native_recursions(native, size).items():
+        yield Subject(f"{make} {size}", _bind(rls.run, data), samples)
 
 
 def peak(library: Library, times: int) -> Subject:

@@ -1,24 +1,24 @@
 #include "torque_basis.h"
 
-void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi, sh_real *F,
-                     sh_real *dF)
+void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi,
+                     sh_real *restrict F, sh_real *restrict dF)
 {
     const sh_real step = symmetric ? phi * phi : phi; /* from one power to the next */
     const int size = n * m;
-    sh_real lower = 1; /* phi^(e_i - 1), from the first i with e_i > 0 on */
-    int i;
+    sh_real lower = 1;    /* phi^(exponent - 1) */
+    sh_real exponent = 1; /* of the first i with an exponent above 0 */
+    int i = 0;
 
-    for (i = 0; i < n; ++i) {
-        const int exponent = symmetric ? 2 * i + 1 : i;
-
-        if (exponent == 0) {
-            F[i] = 1;
-            dF[i] = 0;
-            continue;
-        }
+    if (!symmetric) {
+        F[0] = 1;
+        dF[0] = 0;
+        i = 1;
+    }
+    for (; i < n; ++i) {
         F[i] = lower * phi;
-        dF[i] = (sh_real)exponent * lower;
+        dF[i] = exponent * lower;
         lower *= step;
+        exponent += symmetric ? 2 : 1;
     }
     for (; i < size; ++i) { /* from l^j to l^(j+1) */
         F[i] = F[i - n] * set_point;

@@ -20,8 +20,8 @@
  *
  * The torque (21) is F' eta, the stiffness (23) is dF' eta, with eta in the same order.
  */
-void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi, sh_real *F,
-                     sh_real *dF);
+void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi,
+                     sh_real *restrict F, sh_real *restrict dF);
 
 /* Which i has the power 1 of phi. */
 int sh_torque_basis_linear(int symmetric);

@@ -16,17 +16,19 @@
  *
  *     memory   1000 a100 bc10 def1 ghij klmn  1000 o100
  *
- * What it gains: every inner loop computes four neighbours in the same way, without a test for the
- * diagonal, so that compilers use vector instructions. For 18 parameters a sample takes 0.8 of the
- * time of the same update on packed columns, for 40 about a half. What it costs: for 3 parameters it
- * takes twice the time; the zeros and ones need memory (200 entries in place of 153 for 18
- * parameters); and below there are loops over panels. More figures are in docs/performance.md.
+ * What it gains: the four entries of a column are two pairs (pair.h), and every inner loop computes
+ * four neighbours in the same way, without a test for the diagonal. What it costs: the zeros and
+ * ones need memory (200 entries in place of 153 for 18 parameters) and are computed with, which is
+ * much for 3 parameters; and below there are loops over panels. Figures are in docs/performance.md.
  */
 #include "ud_factor.h"
 
 #include <string.h>
 
+#include "pair.h"
 #include "real_math.h"
+
+enum { TWO_COLUMNS = 2 * SH_PANEL, THREE_COLUMNS = 3 * SH_PANEL }; /* of a panel, in memory */
 
 /* Place of entry (i, j) of U, i <= j, in memory. The panel of row i begins at row and column
  * i - i % SH_PANEL.
@@ -58,69 +60,100 @@ void sh_ud_factor_start(sh_ud_factor *P, int size, sh_real P_0)
     }
 }
 
-/* Adds one panel's part of a column u of U to its sum in U' F. Even and odd rows have a sum each,
- * as they are neighbours in memory.
- */
-static void add_products(const sh_real *u, const sh_real *F, sh_real *sum)
+/* One panel's part of column u of U in U' F: for even and for odd rows, as they are neighbours. */
+static inline sh_pair panel_product(const sh_real *u, sh_pair F_0, sh_pair F_1)
 {
-    sum[0] += u[0] * F[0] + u[2] * F[2];
-    sum[1] += u[1] * F[1] + u[3] * F[3];
+    return sh_pair_add(sh_pair_multiply(sh_pair_load(u), F_0),
+                       sh_pair_multiply(sh_pair_load(u + 2), F_1));
 }
 
-/* work.f = U' F, SH_PANEL columns at a time. The last group may have fewer columns; what is
- * computed for the others is not used, as the next panel is in memory there.
+/* The same in a panel where rows 2 and 3 are zero. */
+static inline sh_pair upper_panel_product(const sh_real *u, sh_pair F_0)
+{
+    return sh_pair_multiply(sh_pair_load(u), F_0);
+}
+
+/* work.f = U' F for the columns j .. j + 3.
+ *
+ * diagonal  F in the panel that begins at row j
+ */
+static void multiply_four(sh_ud_factor *P, const sh_real *F, int j, const sh_real *diagonal)
+{
+    const sh_real *const end = F + j, *u = P->U + place(P->size, 0, j);
+    sh_pair sum_0 = sh_pair_both(0), sum_1 = sum_0, sum_2 = sum_0, sum_3 = sum_0;
+    sh_pair F_0, F_1;
+    int stride = first_stride(P->size);
+
+    for (; F != end; F += SH_PANEL) {
+        F_0 = sh_pair_load(F);
+        F_1 = sh_pair_load(F + 2);
+        sum_0 = sh_pair_add(sum_0, panel_product(u, F_0, F_1));
+        sum_1 = sh_pair_add(sum_1, panel_product(u + SH_PANEL, F_0, F_1));
+        sum_2 = sh_pair_add(sum_2, panel_product(u + TWO_COLUMNS, F_0, F_1));
+        sum_3 = sh_pair_add(sum_3, panel_product(u + THREE_COLUMNS, F_0, F_1));
+        u += stride;
+        stride -= SH_PANEL * SH_PANEL;
+    }
+    F_0 = sh_pair_load(diagonal);
+    F_1 = sh_pair_load(diagonal + 2);
+    sum_0 = sh_pair_add(sum_0, upper_panel_product(u, F_0));
+    sum_1 = sh_pair_add(sum_1, upper_panel_product(u + SH_PANEL, F_0));
+    sum_2 = sh_pair_add(sum_2, panel_product(u + TWO_COLUMNS, F_0, F_1));
+    sum_3 = sh_pair_add(sum_3, panel_product(u + THREE_COLUMNS, F_0, F_1));
+    sh_pair_store(P->work.f + j, sh_pair_sums(sum_0, sum_1));
+    sh_pair_store(P->work.f + j + 2, sh_pair_sums(sum_2, sum_3));
+}
+
+/* The same for the columns j and j + 1. */
+static void multiply_two(sh_ud_factor *P, const sh_real *F, int j, const sh_real *diagonal)
+{
+    const sh_real *const end = F + j, *u = P->U + place(P->size, 0, j);
+    sh_pair sum_0 = sh_pair_both(0), sum_1 = sum_0, F_0, F_1;
+    int stride = first_stride(P->size);
+
+    for (; F != end; F += SH_PANEL) {
+        F_0 = sh_pair_load(F);
+        F_1 = sh_pair_load(F + 2);
+        sum_0 = sh_pair_add(sum_0, panel_product(u, F_0, F_1));
+        sum_1 = sh_pair_add(sum_1, panel_product(u + SH_PANEL, F_0, F_1));
+        u += stride;
+        stride -= SH_PANEL * SH_PANEL;
+    }
+    F_0 = sh_pair_load(diagonal);
+    sum_0 = sh_pair_add(sum_0, upper_panel_product(u, F_0));
+    sum_1 = sh_pair_add(sum_1, upper_panel_product(u + SH_PANEL, F_0));
+    sh_pair_store(P->work.f + j, sh_pair_sums(sum_0, sum_1));
+}
+
+/* work.f = U' F. The last columns may be one less than are computed at once: what is computed for
+ * the other one is not used, as the next panel is in memory there.
  */
 static void multiply(sh_ud_factor *P, const sh_real *F)
 {
-    const int size = P->size;
-    sh_real last[SH_PANEL] = {0, 0, 0, 0}; /* F in the last panel, if that has fewer rows */
-    int i, j;
+    const int size = P->size, rest = size % SH_PANEL, full = size - rest;
+    const sh_real last[SH_PANEL] = {rest > 0 ? F[full] : 0, rest > 1 ? F[full + 1] : 0,
+                                    rest > 2 ? F[full + 2] : 0, 0};
+    int j;
 
-    for (i = size - size % SH_PANEL; i < size; ++i)
-        last[i % SH_PANEL] = F[i];
-    for (j = 0; j < size; j += SH_PANEL) {
-        const sh_real *u = P->U + place(size, 0, j);
-        sh_real sum_0[2] = {0, 0}, sum_1[2] = {0, 0}, sum_2[2] = {0, 0}, sum_3[2] = {0, 0};
-        int stride = first_stride(size);
-
-        for (i = 0; i <= j; i += SH_PANEL) {
-            const sh_real *rows = i + SH_PANEL <= size ? F + i : last;
-            const sh_real F_i[SH_PANEL] = {rows[0], rows[1], rows[2], rows[3]};
-            const sh_real *u_1 = u + SH_PANEL, *u_2 = u_1 + SH_PANEL, *u_3 = u_2 + SH_PANEL;
-
-            add_products(u, F_i, sum_0);
-            add_products(u_1, F_i, sum_1);
-            add_products(u_2, F_i, sum_2);
-            add_products(u_3, F_i, sum_3);
-            u += stride;
-            stride -= SH_PANEL * SH_PANEL;
-        }
-        /* Through memory: gcc 12 would transpose vectors to sum them up here. */
-        P->work.pairs[j][0] = sum_0[0];
-        P->work.pairs[j][1] = sum_0[1];
-        P->work.pairs[j + 1][0] = sum_1[0];
-        P->work.pairs[j + 1][1] = sum_1[1];
-        P->work.pairs[j + 2][0] = sum_2[0];
-        P->work.pairs[j + 2][1] = sum_2[1];
-        P->work.pairs[j + 3][0] = sum_3[0];
-        P->work.pairs[j + 3][1] = sum_3[1];
-    }
-    for (j = 0; j < size; ++j)
-        P->work.f[j] = P->work.pairs[j][0] + P->work.pairs[j][1];
+    for (j = 0; j + 2 < size; j += SH_PANEL)
+        multiply_four(P, F, j, j < full ? F + j : last);
+    if (j < size)
+        multiply_two(P, F, j, last);
 }
 
 sh_real sh_ud_factor_variance(sh_ud_factor *P, const sh_real *F)
 {
     const sh_real *f = P->work.f, *D = P->D;
     sh_real even = 0, odd = 0; /* two sums, so that one does not wait for the other */
+    const int size = P->size;
     int j;
 
     multiply(P, F);
-    for (j = 0; j + 1 < P->size; j += 2) {
+    for (j = 0; j + 1 < size; j += 2) {
         even += f[j] * (D[j] * f[j]);
         odd += f[j + 1] * (D[j + 1] * f[j + 1]);
     }
-    if (j < P->size)
+    if (j < size)
         even += f[j] * (D[j] * f[j]);
     return even + odd;
 }
@@ -132,10 +165,11 @@ sh_real sh_ud_factor_project(sh_ud_factor *P, const sh_real *F)
 {
     const sh_real *f = P->work.f, *D = P->D;
     sh_real *g = P->work.g, *rho = P->work.rho, before = 0;
+    const int size = P->size;
     int j;
 
     multiply(P, F);
-    for (j = 0; j + 1 < P->size; j += 2) { /* in pairs: the sum is waited for half as often */
+    for (j = 0; j + 1 < size; j += 2) { /* in pairs: the sum is waited for half as often */
         const sh_real g_0 = D[j] * f[j], g_1 = D[j + 1] * f[j + 1];
         const sh_real one = f[j] * g_0, both = one + f[j + 1] * g_1;
 
@@ -145,28 +179,27 @@ sh_real sh_ud_factor_project(sh_ud_factor *P, const sh_real *F)
         rho[j + 1] = before + one;
         before += both;
     }
-    if (j < P->size) {
+    if (j < size) {
         g[j] = D[j] * f[j];
         rho[j] = before;
         before += f[j] * g[j];
     }
-    rho[P->size] = before;
+    rho[size] = before;
     return before;
 }
 
-/* One panel's part of column j of U in the update: u -= s_j p and p += g_j u. */
-static void rotate(sh_real *u, sh_real s, sh_real g, sh_real *p)
+/* One panel's part of column j of U in the update: u -= s_j p and p += g_j u.
+ *
+ * s, g  twice the same number
+ */
+static inline void rotate(sh_real *u, sh_pair s, sh_pair g, sh_pair *p_0, sh_pair *p_1)
 {
-    const sh_real u_0 = u[0], u_1 = u[1], u_2 = u[2], u_3 = u[3];
+    const sh_pair u_0 = sh_pair_load(u), u_1 = sh_pair_load(u + 2);
 
-    u[0] = u_0 - s * p[0];
-    u[1] = u_1 - s * p[1];
-    u[2] = u_2 - s * p[2];
-    u[3] = u_3 - s * p[3];
-    p[0] += g * u_0;
-    p[1] += g * u_1;
-    p[2] += g * u_2;
-    p[3] += g * u_3;
+    sh_pair_store(u, sh_pair_subtract(u_0, sh_pair_multiply(s, *p_0)));
+    sh_pair_store(u + 2, sh_pair_subtract(u_1, sh_pair_multiply(s, *p_1)));
+    *p_0 = sh_pair_add(*p_0, sh_pair_multiply(g, u_0));
+    *p_1 = sh_pair_add(*p_1, sh_pair_multiply(g, u_1));
 }
 
 /* Bierman's update, chapter V, for a sample of weight w. With f, g and rho_j of the projection, and
@@ -182,6 +215,7 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
 {
     const int size = P->size;
     sh_real *u = P->U, *g = P->work.g, *s = P->work.f;
+    int stride = size * SH_PANEL; /* from the begin of a panel to that of the next */
     int i, j;
 
     for (j = 0; j < size; ++j) {
@@ -190,21 +224,43 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
         P->D[j] *= beta / (1 + w * P->work.rho[j + 1]);
         P->work.f[j] = w * P->work.f[j] / beta; /* s_j */
     }
-    /* Panel after panel, as an entry of p depends on its own row of U alone. In the first column of
-     * a panel only the one on the diagonal is not zero: there p becomes g_i, and u does not change.
+    /* Panel after panel, as an entry of p depends on its own row of U alone; two at a time, as they
+     * share the factors of the columns. In the first column of a panel only the one on the diagonal
+     * is not zero: there p becomes g_i, and u does not change.
      */
-    for (i = 0; i < size; i += SH_PANEL) {
-        sh_real p[SH_PANEL] = {g[i], 0, 0, 0};
+    for (i = 0; i + SH_PANEL < size; i += 2 * SH_PANEL) {
+        sh_real *next = u + stride;
+        sh_pair p_0 = sh_pair_of(g[i], 0), p_1 = sh_pair_both(0);
+        sh_pair p_2 = sh_pair_of(g[i + SH_PANEL], 0), p_3 = p_1;
 
-        u += SH_PANEL;
-        for (j = i + 1; j < size; ++j) {
-            rotate(u, s[j], g[j], p);
+        for (j = i + 1; j <= i + SH_PANEL; ++j) {
             u += SH_PANEL;
+            rotate(u, sh_pair_both(s[j]), sh_pair_both(g[j]), &p_0, &p_1);
         }
-        g[i] = p[0]; /* the columns of the next panels do not need g_i any more */
-        g[i + 1] = p[1];
-        g[i + 2] = p[2];
-        g[i + 3] = p[3];
+        for (; j < size; ++j) {
+            const sh_pair s_j = sh_pair_both(s[j]), g_j = sh_pair_both(g[j]);
+
+            u += SH_PANEL;
+            next += SH_PANEL;
+            rotate(u, s_j, g_j, &p_0, &p_1);
+            rotate(next, s_j, g_j, &p_2, &p_3);
+        }
+        u = next + SH_PANEL;
+        stride -= 2 * SH_PANEL * SH_PANEL;
+        sh_pair_store(g + i, p_0); /* the columns of the next panels do not need g_i any more */
+        sh_pair_store(g + i + 2, p_1);
+        sh_pair_store(g + i + 4, p_2);
+        sh_pair_store(g + i + 6, p_3);
+    }
+    if (i < size) {
+        sh_pair p_0 = sh_pair_of(g[i], 0), p_1 = sh_pair_both(0);
+
+        for (j = i + 1; j < size; ++j) {
+            u += SH_PANEL;
+            rotate(u, sh_pair_both(s[j]), sh_pair_both(g[j]), &p_0, &p_1);
+        }
+        sh_pair_store(g + i, p_0);
+        sh_pair_store(g + i + 2, p_1);
     }
     return g;
 }

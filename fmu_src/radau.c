@@ -73,17 +73,18 @@ static void solve_complex(const double *factors, double *re, double *im)
     sh_plant_solve_complex(arguments, results, NULL, NULL, 0);
 }
 
-/* Largest |v| / (scale + |x|); not a number if one of v is not. */
-static double norm(const double *v, const double *x)
+/* Largest |v| weight; not a number if one of v is not. */
+static double norm(const double *v, const double *weight)
 {
     double largest = 0.0;
     int j;
 
     for (j = 0; j < STATES; ++j) {
-        const double size = fabs(v[j]) / (SCALE[j] + fabs(x[j]));
+        const double size = fabs(v[j]) * weight[j];
         if (isnan(size))
             return size;
-        largest = fmax(largest, size);
+        if (size > largest)
+            largest = size;
     }
     return largest;
 }
@@ -99,13 +100,55 @@ static void transform(const double (*matrix)[STAGES], double (*from)[STATES], do
                 matrix[i][0] * from[0][j] + matrix[i][1] * from[1][j] + matrix[i][2] * from[2][j];
 }
 
-/* Finds Z with Z_i = h sum_k a_ik f(x + Z_k) by Newton's iteration, with the Jacobian at x for all
- * stages. In the variables W = T^-1 Z it separates into a real and a complex system. Returns 0 if
- * it does not converge.
+/* Whether the inputs are constant. */
+static int are_held(const double *du)
+{
+    int j;
+
+    for (j = 0; j < INPUTS; ++j)
+        if (du[j] != 0.0)
+            return 0;
+    return 1;
+}
+
+/* F_i = f */
+static void repeat(const double *f, double (*F)[STATES])
+{
+    int i, j;
+
+    for (i = 0; i < STAGES; ++i)
+        for (j = 0; j < STATES; ++j)
+            F[i][j] = f[j];
+}
+
+/* F_i = f(x + Z_i) at the nodes of a step */
+static void evaluate_stages(const double *x, const double *u, const double *du, const double *p,
+                            double h, double (*Z)[STATES], double (*F)[STATES])
+{
+    int i, j;
+
+    for (i = 0; i < STAGES; ++i) {
+        double x_i[STATES], u_i[INPUTS];
+        for (j = 0; j < STATES; ++j)
+            x_i[j] = x[j] + Z[i][j];
+        for (j = 0; j < INPUTS; ++j)
+            u_i[j] = u[j] + du[j] * (NODE[i] * h);
+        evaluate(x_i, u_i, p, F[i]);
+    }
+}
+
+/* Finds Z with Z_i = h sum_k a_ik f(x + Z_k) by Newton's iteration from Z = 0, with the Jacobian at
+ * x for all stages. In the variables W = T^-1 Z it separates into a real and a complex system.
+ * Returns 0 if it does not converge.
+ *
+ * f       at x, under the inputs u
+ * weight  of the states in the size of a change
  */
 static int solve_stages(const double *x, const double *u, const double *du, const double *p,
-                        double h, const double *factors, double (*Z)[STATES])
+                        double h, const double *f, const double *weight, const double *factors,
+                        double (*Z)[STATES])
 {
+    const int held = are_held(du);
     double W[STAGES][STATES] = {{0.0}}, F[STAGES][STATES], dW[STAGES][STATES];
     double change = INFINITY;
     int iteration, i, j;
@@ -114,14 +157,10 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     for (iteration = 0; iteration < MAX_NEWTON_ITERATIONS; ++iteration) {
         const double previous = change;
 
-        for (i = 0; i < STAGES; ++i) {
-            double x_i[STATES], u_i[INPUTS];
-            for (j = 0; j < STATES; ++j)
-                x_i[j] = x[j] + Z[i][j];
-            for (j = 0; j < INPUTS; ++j)
-                u_i[j] = u[j] + du[j] * (NODE[i] * h);
-            evaluate(x_i, u_i, p, F[i]);
-        }
+        if (iteration == 0 && held)
+            repeat(f, F); /* all stages are at x still */
+        else
+            evaluate_stages(x, u, du, p, h, Z, F);
         transform(T_INVERSE, F, dW);
         for (j = 0; j < STATES; ++j) {
             dW[0][j] -= REAL * W[0][j] / h;
@@ -135,7 +174,7 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
                 W[i][j] += dW[i][j];
         transform(T, W, Z);
 
-        change = norm(dW[0], x) + norm(dW[1], x) + norm(dW[2], x);
+        change = norm(dW[0], weight) + norm(dW[1], weight) + norm(dW[2], weight);
         if (change <= NEWTON_TOLERANCE)
             return 1;
         /* The changes shrink by a constant factor; the error is the sum of those to come. Where f
@@ -153,52 +192,52 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     return 0;
 }
 
-/* One step as sh_radau_step, with factors for its length. The error is the part of it that is left
- * after `followers` more steps of this length.
+/* Estimated error of a step with the stages x + Z, as a multiple of what is allowed: the part of it
+ * that is left after `followers` more steps of this length.
  *
  * A motion that has decayed by then need not be resolved. A step multiplies a mode by R(z), where
  * the exact solution has exp(z). On the whole negative axis R(z) is below 1 / (1 - z / REAL), and
  * the factors give this bound for all modes at once.
+ *
+ * f  at the begin of the step
+ */
+static double estimate_error(double (*Z)[STATES], const double *f, const double *weight, double h,
+                             int followers, const double *factors)
+{
+    double error[STATES], size;
+    int j;
+
+    /* error = (REAL/h - J)^-1 (f(x) + defect) */
+    for (j = 0; j < STATES; ++j)
+        error[j] = f[j] + (DEFECT[0] * Z[0][j] + DEFECT[1] * Z[1][j] + DEFECT[2] * Z[2][j]) / h;
+    solve_real(factors, error);
+    size = norm(error, weight) / ERROR_TOLERANCE;
+    /* This counts fast modes fully. But the step itself damps them too, not its followers alone. */
+    for (; followers >= 0 && size > 1.0; --followers) {
+        for (j = 0; j < STATES; ++j)
+            error[j] *= REAL / h;
+        solve_real(factors, error);
+        size = norm(error, weight) / ERROR_TOLERANCE;
+    }
+    return size;
+}
+
+/* One step as sh_radau_step, with factors for its length. The error is the part of it that is left
+ * after `followers` more steps of this length.
  */
 static double take(const double *x, const double *u, const double *du, const double *p, double h,
                    int followers, const double *factors, double *x_new)
 {
-    double Z[STAGES][STATES], defect[STATES], error[STATES], size;
-    int j;
+    double Z[STAGES][STATES], f[STATES], weight[STATES];
+    int j, solved;
 
-    if (!solve_stages(x, u, du, p, h, factors, Z))
-        return INFINITY;
-    for (j = 0; j < STATES; ++j) {
-        x_new[j] = x[j] + Z[STAGES - 1][j];
-        defect[j] = (DEFECT[0] * Z[0][j] + DEFECT[1] * Z[1][j] + DEFECT[2] * Z[2][j]) / h;
-    }
-
-    /* error = (REAL/h - J)^-1 (f(x) + defect) */
-    evaluate(x, u, p, error);
+    evaluate(x, u, p, f);
     for (j = 0; j < STATES; ++j)
-        error[j] += defect[j];
-    solve_real(factors, error);
-    size = norm(error, x) / ERROR_TOLERANCE;
-    if (size > 1.0) {
-        /* This estimate counts fast modes fully, although the step damps them. Computed again at
-         * x + error, it counts the part of them that is left.
-         */
-        double x_error[STATES];
-        for (j = 0; j < STATES; ++j)
-            x_error[j] = x[j] + error[j];
-        evaluate(x_error, u, p, error);
-        for (j = 0; j < STATES; ++j)
-            error[j] += defect[j];
-        solve_real(factors, error);
-        size = norm(error, x) / ERROR_TOLERANCE;
-    }
-    for (; followers > 0 && size > 1.0; --followers) {
-        for (j = 0; j < STATES; ++j)
-            error[j] *= REAL / h;
-        solve_real(factors, error);
-        size = norm(error, x) / ERROR_TOLERANCE;
-    }
-    return size;
+        weight[j] = 1.0 / (SCALE[j] + fabs(x[j]));
+    solved = solve_stages(x, u, du, p, h, f, weight, factors, Z);
+    for (j = 0; j < STATES; ++j)
+        x_new[j] = x[j] + Z[STAGES - 1][j];
+    return solved ? estimate_error(Z, f, weight, h, followers, factors) : INFINITY;
 }
 
 double sh_radau_step(const double *x, const double *u, const double *du, const double *p, double h,
@@ -221,7 +260,9 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
 
     for (attempt = 0; attempt < MAX_ATTEMPTS; ++attempt) {
         const double left = duration - elapsed;
-        const double pieces = fmax(left > *h ? ceil(left / *h) : 1.0, owed);
+        const double wanted = left > *h ? ceil(left / *h) : 1.0;
+        /* A plan is carried out to its end. Only one of more steps than are counted may change. */
+        const double pieces = owed > 0 && owed < MAX_FOLLOWERS ? owed : fmax(wanted, owed);
         const double step = left / pieces;
         const int followers = (int)fmin(pieces - 1.0, MAX_FOLLOWERS);
         double u_now[INPUTS], x_new[STATES], error;
@@ -250,6 +291,8 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
                 begin = *h;
         } else if (step <= shortest) {
             return 0;
+        } else {
+            owed = 0;
         }
     }
     return 0;

@@ -24,7 +24,6 @@ typedef struct {
     sh_real D[SH_MAX_ROWS]; /* diagonal, >= 0 */
     sh_real U[SH_MAX_U];    /* unit upper triangular */
     struct {
-        sh_real pairs[SH_MAX_ROWS][2];
         sh_real g[SH_MAX_ROWS], f[SH_MAX_ROWS], rho[SH_MAX_ROWS + 1];
     } work;
     int size; /* number of parameters, 1..SH_MAX_PARAMETERS */
@@ -56,6 +55,7 @@ typedef struct {
 
 /* First stage of the paper's method: filters and residual. */
 typedef struct {
+    sh_real theta_w_s, q_w_s; /* (11): velocity of one encoder count per sample [rad/s] */
     sh_kinematic_kalman theta, q;
     sh_torque_residual residual;
     sh_real settling; /* time until r_e is right again after a gap [s] */

@@ -40,7 +40,7 @@ static void report_paper2011(sh_paper2011_state *state, const sh_parameters *p,
 
     for (j = 0; j < m; ++j)
         for (i = 0; i < n; ++i)
-            estimate->eta[i][j] = eta[j * n + i];
+            estimate->eta[i][j] = *eta++;
     estimate->sigma_std =
         sh_sqrt(unit_of_covariance(p) * sh_ud_factor_variance(&state->rls.P, state->work.dF));
     estimate->D_theta_hat = p->motor.D_theta;
@@ -60,6 +60,8 @@ static void start_paper2011(sh_estimator *estimator, const sh_parameters *p, sh_
     for (j = 0; j < m; ++j)
         for (i = 0; i < n; ++i)
             eta_0[j * n + i] = p->rls.eta_0[i][j];
+    state->filters.theta_w_s = sh_encoder_count(p->encoder.theta) / p->samplePeriod;
+    state->filters.q_w_s = sh_encoder_count(p->encoder.q) / p->samplePeriod;
     sh_torque_basis(p->rls.symmetric, n, m, p->setPoint.offset, 0, state->work.F, state->work.dF);
     sh_least_squares_start(&state->rls, n * m, eta_0, p->rls.P_0);
     report_paper2011(state, p, estimate);
@@ -72,7 +74,6 @@ static void start_paper2011(sh_estimator *estimator, const sh_parameters *p, sh_
 static sh_real track(sh_paper2011_filters *state, const sh_parameters *p, const sh_measurement *z,
                      sh_real dt)
 {
-    const sh_real T = p->samplePeriod;
     sh_kinematic_kalman *theta = &state->theta, *q = &state->q;
 
     if (!(dt > 0)) {
@@ -81,10 +82,9 @@ static sh_real track(sh_paper2011_filters *state, const sh_parameters *p, const 
         sh_torque_residual_start(&state->residual, z->tau);
         return p->motor.gamma * state->residual.r_e;
     }
-    sh_kinematic_kalman_step(theta, &p->filter, z->theta, dt,
-                             sh_encoder_count(p->encoder.theta) / T);
+    sh_kinematic_kalman_step(theta, &p->filter, z->theta, dt, state->theta_w_s);
     if (p->deformation == SH_DEFORMATION_FILTERED)
-        sh_kinematic_kalman_step(q, &p->filter, z->q, dt, sh_encoder_count(p->encoder.q) / T);
+        sh_kinematic_kalman_step(q, &p->filter, z->q, dt, state->q_w_s);
     /* (8) integrates over a gap as over one long sample while that is short compared with 1 / K_I.
      * After a longer gap the torque in between is unknown: r_e starts from its last value, which is
      * wrong, and the regression waits until it is forgotten.

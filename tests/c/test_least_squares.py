@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +16,8 @@ from hypothesis import strategies as st
 
 import oracle
 from c_library import Array, Library, covariance, load
+from c_sources import FOLDERS, LIBRARY
+from gate import missing
 from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
 from reference_plant import table1_recording
 
@@ -26,6 +31,27 @@ KINDS = {  # kind: factor and P_0; for ENHANCED those of the paper
 @pytest.fixture(scope="module")
 def c(build: Path) -> Library:
     return load(build)
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Library:
+    """The recursion in the plain C that pair.h has for processors without pairs of doubles."""
+    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    if compiler is None:
+        missing("a C compiler", "apt-get install gcc")
+    folder = tmp_path_factory.mktemp("plain")
+    suffix = ".dylib" if sys.platform == "darwin" else ".so"
+    subprocess.run(
+        [
+            *(compiler, "-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared"),
+            *("-U__SSE2__", "-U__aarch64__"),
+            *(f"-I{each}" for each in FOLDERS),
+            *(str(LIBRARY / name) for name in ("least_squares.c", "ud_factor.c")),
+            *("-lm", "-o", str(folder / f"libsigmahat_test_driver{suffix}")),
+        ],
+        check=True,
+    )
+    return Library(folder)
 
 
 class Recursion:
@@ -288,3 +314,13 @@ def test_the_prediction_uses_the_rounding_error_of_the_estimate(c: Library, size
         c.ffi.memmove(probe.state, recursion.state, c.ffi.sizeof("sh_least_squares"))
         assert probe.update(np.eye(size)[i], 1e8)
         assert probe.innovation.epsilon == pytest.approx(-5e-9, rel=1e-9)
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 4, 5, 6, 7, 8, 9, 18, 40])
+def test_pairs_and_plain_c_give_the_same_digits(c: Library, plain: Library, size: int) -> None:
+    random = np.random.default_rng(size)
+    recursions = [Recursion(each, STANDARD, 1.0, 1e3, np.zeros(size)) for each in (c, plain)]
+    for F, y in zip(random.standard_normal((100, size)), random.standard_normal(100), strict=True):
+        assert [each.update(F, y) for each in recursions] == [True, True]
+    with_pairs, without = (each.bytes() for each in recursions)
+    assert with_pairs == without

@@ -20,6 +20,10 @@ from gate import missing
 
 Array = NDArray[np.float64]
 REPOSITORY = Path(__file__).resolve().parents[2]
+_WITHOUT_DECLARATIONS = ("real_math.h", "pair.h", "scalar_product.h")
+"""Headers with nothing but macros and inline functions. They include those of the C library, which
+cffi cannot read."""
+
 MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
 
@@ -51,7 +55,7 @@ class Library:
 
     def __init__(self, build: Path) -> None:
         self.ffi = cffi.FFI()
-        own = (header for header in HEADERS if header.name != "real_math.h")  # it has only macros
+        own = (header for header in HEADERS if header.name not in _WITHOUT_DECLARATIONS)
         self.ffi.cdef(declarations(*own, REPOSITORY / "tests" / "drivers" / "run.h"))
         suffix = ".dylib" if sys.platform == "darwin" else ".so"
         self.lib: Any = self.ffi.dlopen(str(build / f"libsigmahat_test_driver{suffix}"))

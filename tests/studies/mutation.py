@@ -109,14 +109,14 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
         ("ud_factor.c", code, "what it sets behind the last one is not used")
         for code in (
             "for (j = 0; j <= size; ++j) { P->D[j] = P_0;",
-            "for (j = 0; j <= size; j += SH_PANEL) { const sh_real *u = P->U + place(size, 0, j);",
-            "for (j = 0; j <= size; ++j) P->work.f[j] =",
+            "for (j = 0; j + 2 <= size; j += SH_PANEL)",
+            "if (j <= size) multiply_two(P, F, j, last);",
             "for (j = 0; j <= size; ++j) { const sh_real beta",
         )
     ),
     (
         "ud_factor.c",
-        "if (j <= P->size) { g[j] = D[j] * f[j];",
+        "if (j <= size) { g[j] = D[j] * f[j];",
         "D behind the last entry is zero",
     ),
 )

@@ -1,0 +1,118 @@
+/* Two numbers that are neighbours in memory, computed with at once.
+ *
+ * Compilers use vector instructions for loops over long arrays. For the short loops of the
+ * recursion they often do not, or spend more on moving numbers within registers than they gain. So
+ * the pairs are written down. Where the processor has registers for two doubles, gcc and clang
+ * compute a pair in one instruction; the results are the same to the last digit as those of the
+ * plain C below.
+ */
+#ifndef SH_PAIR_H
+#define SH_PAIR_H
+
+#include <string.h>
+
+#include "sigmahat.h"
+
+#define SH_IS_double 1
+#define SH_IS_float 0
+#define SH_IS_TYPE(type) SH_IS_##type
+#define SH_IS(type) SH_IS_TYPE(type)
+
+#if SH_IS(SH_REAL) && defined __GNUC__ && (defined __SSE2__ || defined __aarch64__)
+
+typedef sh_real sh_pair __attribute__((vector_size(2 * sizeof(sh_real))));
+
+static inline sh_pair sh_pair_of(sh_real first, sh_real second)
+{
+    const sh_pair pair = {first, second};
+
+    return pair;
+}
+
+static inline sh_pair sh_pair_add(sh_pair a, sh_pair b)
+{
+    return a + b;
+}
+
+static inline sh_pair sh_pair_subtract(sh_pair a, sh_pair b)
+{
+    return a - b;
+}
+
+static inline sh_pair sh_pair_multiply(sh_pair a, sh_pair b)
+{
+    return a * b;
+}
+
+/* Sum of the two numbers of a, and that of b. */
+static inline sh_pair sh_pair_sums(sh_pair a, sh_pair b)
+{
+    return sh_pair_of(a[0], b[0]) + sh_pair_of(a[1], b[1]);
+}
+
+static inline sh_pair sh_pair_load(const sh_real *from)
+{
+    sh_pair pair;
+
+    memcpy(&pair, from, sizeof pair);
+    return pair;
+}
+
+static inline void sh_pair_store(sh_real *to, sh_pair pair)
+{
+    memcpy(to, &pair, sizeof pair);
+}
+
+#else
+
+typedef struct {
+    sh_real first, second;
+} sh_pair;
+
+static inline sh_pair sh_pair_of(sh_real first, sh_real second)
+{
+    const sh_pair pair = {first, second};
+
+    return pair;
+}
+
+static inline sh_pair sh_pair_add(sh_pair a, sh_pair b)
+{
+    return sh_pair_of(a.first + b.first, a.second + b.second);
+}
+
+static inline sh_pair sh_pair_subtract(sh_pair a, sh_pair b)
+{
+    return sh_pair_of(a.first - b.first, a.second - b.second);
+}
+
+static inline sh_pair sh_pair_multiply(sh_pair a, sh_pair b)
+{
+    return sh_pair_of(a.first * b.first, a.second * b.second);
+}
+
+/* Sum of the two numbers of a, and that of b. */
+static inline sh_pair sh_pair_sums(sh_pair a, sh_pair b)
+{
+    return sh_pair_of(a.first + a.second, b.first + b.second);
+}
+
+static inline sh_pair sh_pair_load(const sh_real *from)
+{
+    return sh_pair_of(from[0], from[1]);
+}
+
+static inline void sh_pair_store(sh_real *to, sh_pair pair)
+{
+    to[0] = pair.first;
+    to[1] = pair.second;
+}
+
+#endif
+
+static inline sh_pair sh_pair_both(sh_real value)
+{
+    return sh_pair_of(value, value);
+}
+
+#endif
