@@ -69,8 +69,8 @@ _LONG = 10.0  # [s] A test that takes longer says why: @pytest.mark.slow("reason
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Sends the reason of a slow test along with its results, also from another process.
 
-    In several processes, the files with slow tests come first: a long one at the end would leave the
-    other processes without work.
+    In several processes, the files with slow tests come first: a long one at the end would leave
+    the other processes without work.
     """
     slow_files = set()
     for item in items:
