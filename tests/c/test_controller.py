@@ -156,13 +156,12 @@ def test_smaller_sizes_cost_what_the_page_says(
     assert counted and memory, text
     page = (REPOSITORY / "docs" / "controller.md").read_text(encoding="utf-8")
     n, m, columns = (size.partition("=")[2] for size in sizes)
-    start = rf"^\| {row} \| {n} x {m}, `SH_MAX_COLUMNS={columns}` \|"
+    start = rf"^\| {row} \| {n} x {m}, {columns} \|"
     (line,) = re.findall(rf"{start}(.*)\|$", page, re.M)
     cells = [float(cell.strip(" %")) for cell in line.split("|")]
     mean, longest, joints = int(counted[1]), int(counted[2]), 7
-    million = joints * mean * 1e3 / 1e6
-    shares = 100 * million / 168, 100 * joints * longest / 168e3
-    expected = [mean, longest, million, *shares, joints * int(memory[1])]
+    shares = (100 * joints * count / 168e3 for count in (mean, longest))
+    expected = [mean, longest, *shares, joints * int(memory[1])]
     assert cells == pytest.approx(expected, rel=0.1)
 
 
