@@ -31,8 +31,8 @@ void sh_parameters_default(sh_parameters *p)
     p->setPoint.scale = (sh_real)(-0.0025 / (2 * SH_PI) * 1000);
     p->rls.kind = SH_RLS_ENHANCED;
     p->rls.symmetric = 1;
-    p->rls.n = 6;
-    p->rls.m = 3;
+    p->rls.n = SH_MAX_N < 6 ? SH_MAX_N : 6; /* a smaller size was given to the compiler */
+    p->rls.m = SH_MAX_M < 3 ? SH_MAX_M : 3;
     p->rls.P_0 = (sh_real)1e20;
     p->rls.c = (sh_real)1e-20;
     p->rls.a = (sh_real)0.1;

@@ -42,8 +42,10 @@ endif()
 list(APPEND SIGMAHAT_RUN ${SIGMAHAT_PYTHON} -m)
 set(SIGMAHAT_FMU_FOLDER ${SIGMAHAT_VENV}/share/sigmahat)
 
-# No dependencies: a file of requirements names every package that is needed.
-set(SIGMAHAT_PIP ${SIGMAHAT_PYTHON} -m pip install --disable-pip-version-check --no-deps)
+# No dependencies: a file of requirements names every package that is needed. Python compiles the
+# modules that are used when they are imported: most are not.
+set(SIGMAHAT_PIP ${SIGMAHAT_PYTHON} -m pip install --disable-pip-version-check --no-deps
+                 --no-compile)
 
 # sigmahat_add_packages(PURPOSE): adds a target packages_PURPOSE that installs
 # requirements/PURPOSE.txt, and sets the variable of this name to the file that it makes.

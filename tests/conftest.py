@@ -66,12 +66,20 @@ def site(build: Path) -> Path:
 _LONG = 10.0  # [s] A test that takes longer says why: @pytest.mark.slow("reason")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Sends the reason of a slow test along with its results, also from another process."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Sends the reason of a slow test along with its results, also from another process.
+
+    In several processes, the files with slow tests come first: a long one at the end would leave
+    the other processes without work.
+    """
+    slow_files = set()
     for item in items:
         for mark in item.iter_markers("slow"):
             (reason,) = mark.args
             item.user_properties.append(("slow", reason))
+            slow_files.add(item.path)
+    if hasattr(config, "workerinput"):  # one of the processes of pytest-xdist
+        items.sort(key=lambda item: item.path not in slow_files)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -276,7 +276,9 @@ typedef struct {
 /* State between ticks. It contains no pointer: copy it by assignment. */
 typedef struct sh_estimator sh_estimator;
 
-/* Sets the parameters of the AwAS, section VI.A, which are the start values of the FMU. */
+/* Sets the parameters of the AwAS, section VI.A, which are the start values of the FMU. The orders are
+ * at most SH_MAX_N and SH_MAX_M.
+ */
 void sh_parameters_default(sh_parameters *p);
 
 /* Returns 0 if every parameter is in its range. Else returns 1 and describes in violation the first

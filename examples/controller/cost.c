@@ -1,5 +1,6 @@
 /* What the estimator costs on this controller: instructions and stack of a tick, RAM of an
- * instance, for order 6 in the deformation and 3 in the set-point.
+ * instance. The orders are 6 in the deformation and 3 in the set-point, or SH_MAX_N and SH_MAX_M
+ * if these are smaller.
  */
 #include <math.h>
 #include <stdio.h>
@@ -68,14 +69,37 @@ static unsigned __attribute__((noinline)) stack(void (*function)(void))
     return depth;
 }
 
-static void report(const char *name, int method, double per_count)
+/* The parameters for which report() measures. */
+static void configure(int method)
+{
+    sh_parameters_default(&parameters);
+    parameters.method = method;
+}
+
+/* Leaves the columns of the spring, the bias, and the friction of the motor. */
+static void remove_columns(void)
+{
+    const sh_prior_parameters before = parameters.prior;
+
+    memset(&parameters.prior, 0, sizeof parameters.prior);
+    parameters.prior.tau_e = before.tau_e;
+    parameters.prior.bias = before.bias;
+    parameters.prior.D_theta = before.D_theta;
+    parameters.prior.tau_coulomb = before.tau_coulomb;
+}
+
+static void report(const char *name, double per_count)
 {
     double sum = 0.0, longest = 0.0;
     unsigned deepest = 0;
+    sh_violation violation;
     int k;
 
-    sh_parameters_default(&parameters);
-    parameters.method = method;
+    if (sh_parameters_check(&parameters, &violation)) {
+        printf("%s: %s is not possible with these sizes, expected %s\n", name, violation.name,
+               violation.range);
+        return;
+    }
     sh_estimator_start(&estimator, &parameters, &estimate);
     for (k = 0; k < TICKS; ++k) {
         double instructions;
@@ -100,8 +124,13 @@ int main(void)
 
     hardware_start_clock();
     per_count = 200000.0 / (double)(counts(loop) - counts(nothing));
-    report("Paper2011", SH_METHOD_PAPER2011, per_count);
-    report("MatchedFilter", SH_METHOD_MATCHED_FILTER, per_count);
+    configure(SH_METHOD_PAPER2011);
+    printf("orders %d and %d\n", parameters.rls.n, parameters.rls.m);
+    report("Paper2011", per_count);
+    configure(SH_METHOD_MATCHED_FILTER);
+    report("MatchedFilter, all columns", per_count);
+    remove_columns();
+    report("MatchedFilter, few columns", per_count);
     printf("RAM: %u bytes: state %u, parameters %u, estimate %u\n",
            (unsigned)(sizeof estimator + sizeof parameters + sizeof estimate),
            (unsigned)sizeof estimator, (unsigned)sizeof parameters, (unsigned)sizeof estimate);

@@ -122,6 +122,7 @@ def test_the_example_estimates_its_stiffness_at_1_khz(
     assert (int(printed[3]), int(printed[4])) == (3000, 0)
 
 
+@pytest.mark.slow("a Cortex-M4F computes double in software")
 @each_cortex
 @each_real
 def test_memory_and_stack_are_within_their_limits(
@@ -131,9 +132,44 @@ def test_memory_and_stack_are_within_their_limits(
     text = run("cmake", "--build", str(tree), "--target", "cost")
     stacks = [int(value) for value in re.findall(r"stack (\d+) bytes", text)]
     (memory,) = re.findall(r"RAM: (\d+) bytes", text)
-    assert len(stacks) == 2
+    assert len(stacks) == 3
     assert max(stacks) <= 1024, text
     assert int(memory) <= MEMORY[real], text
+
+
+@pytest.mark.parametrize(
+    ("sizes", "row"),
+    [
+        (("SH_MAX_N=6", "SH_MAX_M=3", "SH_MAX_COLUMNS=1"), "Paper2011"),
+        (("SH_MAX_N=2", "SH_MAX_M=1", "SH_MAX_COLUMNS=20"), "MatchedFilter, all columns"),
+        (("SH_MAX_N=3", "SH_MAX_M=1", "SH_MAX_COLUMNS=6"), "MatchedFilter, few columns"),
+    ],
+)
+def test_smaller_sizes_cost_what_the_page_says(
+    sizes: tuple[str, ...], row: str, folder: Path, ninja: Path
+) -> None:
+    """The table of seven joints in docs/controller.md. Another compiler may differ a little."""
+    tree = cross_build("examples/controller", TARGETS["Cortex-M4F"], "float", ninja, folder, sizes)
+    text = run("cmake", "--build", str(tree), "--target", "cost")
+    counted = re.search(rf"{row}: (\d+) instructions per tick, at most (\d+)", text)
+    memory = re.search(r"RAM: (\d+) bytes", text)
+    assert counted and memory, text
+    page = (REPOSITORY / "docs" / "controller.md").read_text(encoding="utf-8")
+    n, m, columns = (size.partition("=")[2] for size in sizes)
+    start = rf"^\| {row} \| {n} x {m}, {columns} \|"
+    (line,) = re.findall(rf"{start}(.*)\|$", page, re.M)
+    cells = [float(cell.strip(" %")) for cell in line.split("|")]
+    mean, longest, joints = int(counted[1]), int(counted[2]), 7
+    shares = (100 * joints * count / 168e3 for count in (mean, longest))
+    expected = [mean, longest, *shares, joints * int(memory[1])]
+    assert cells == pytest.approx(expected, rel=0.1)
+
+
+def test_columns_for_which_there_is_no_memory_are_refused(folder: Path, ninja: Path) -> None:
+    sizes = ("SH_MAX_N=3", "SH_MAX_M=1", "SH_MAX_COLUMNS=6")
+    tree = cross_build("examples/controller", TARGETS["Cortex-M4F"], "float", ninja, folder, sizes)
+    text = run("cmake", "--build", str(tree), "--target", "cost")
+    assert re.search("all columns: .* compiled for at most 6 columns", text)
 
 
 @each_real

@@ -1,11 +1,13 @@
-"""The C library in a program of a user: find_package, pkg-config, a pair of files."""
+"""The C library in a program of a user: find_package, pkg-config, a pair of files, Conan."""
 
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import shutil
 import subprocess
+import sysconfig
 from pathlib import Path
 
 import pytest
@@ -150,3 +152,73 @@ def test_the_pair_of_files_works_in_c_and_cpp(
         program = tmp_path / f"{file}.exe"
         run(compiler, *flags, *options, tmp_path / file, library, "-lm", "-o", program)
         check(program, build, size)
+
+
+class Conan:
+    """Conan of the environment, with a cache of its own that is empty."""
+
+    def __init__(self, build: Path, home: Path) -> None:
+        found = shutil.which("conan", path=sysconfig.get_path("scripts"))
+        if found is None:
+            missing("Conan of the environment", "cmake --build build --target packages_test")
+        self._program = found
+        self._environment = {
+            **os.environ,
+            "CONAN_HOME": str(home),
+            "PATH": f"{build / 'venv' / 'bin'}{os.pathsep}{os.environ['PATH']}",  # Ninja
+            "TMP": str(home),
+            "TMPDIR": str(home),
+        }
+        self.run("profile", "detect")
+
+    def run(self, *arguments: str) -> tuple[int, str]:
+        """Runs a command. Returns its exit code, and what it printed."""
+        done = subprocess.run(
+            [self._program, *arguments],
+            env=self._environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        return done.returncode, done.stdout
+
+    def create(self, *options: str) -> tuple[int, str]:
+        """Makes the package, with these options of the recipe, and runs its program."""
+        given = [part for option in options for part in ("-o", f"sigmahat/*:{option}")]
+        return self.run(
+            *("create", str(REPOSITORY / "c"), "--no-remote", *given),
+            *("-c", "tools.cmake.cmaketoolchain:generator=Ninja"),
+            *("-c", "tools.cmake.cmake_layout:test_folder=$TMP"),
+        )
+
+
+@pytest.fixture(scope="module")
+def conan(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Conan:
+    """Conan, without packages."""
+    return Conan(build, tmp_path_factory.mktemp("conan"))
+
+
+@pytest.mark.parametrize(
+    ("options", "number", "least", "most"),
+    [
+        ((), 8, 100_000, 150_000),
+        (("real=float", "max_n=2", "max_m=1", "max_columns=1"), 4, 500, 1200),
+    ],
+    ids=["double", "float, small"],
+)
+def test_conan_creates_the_package_and_its_program_runs(
+    options: tuple[str, ...], number: int, least: int, most: int, conan: Conan
+) -> None:
+    code, text = conan.create(*options)
+    assert code == 0, text
+    printed = re.search(r"sigma = (\S+) N.m/rad; a number has (\d+) bytes, an instance (\d+)", text)
+    assert printed, text
+    assert float(printed[1]) == pytest.approx(150.0, rel=1e-4)
+    assert int(printed[2]) == number
+    assert least < int(printed[3]) < most
+
+
+def test_conan_refuses_a_size_that_is_none(conan: Conan) -> None:
+    code, text = conan.create("max_n=0")
+    assert code != 0
+    assert "max_n: expected a whole number from 1 on, received 0" in text

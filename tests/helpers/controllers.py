@@ -49,8 +49,13 @@ TARGETS = {
 
 
 @cache
-def cross_build(project: str, target: Target, real: str, ninja: Path, folder: Path) -> Path:
-    """Builds a project of the repository for a target, with SH_REAL = real; the build tree."""
+def cross_build(
+    project: str, target: Target, real: str, ninja: Path, folder: Path, sizes: tuple[str, ...] = ()
+) -> Path:
+    """Builds a project of the repository for a target, with SH_REAL = real; the build tree.
+
+    sizes  each as SH_MAX_N=2; those of an estimator, see sigmahat.h
+    """
     for tool in target.tools:
         if shutil.which(tool) is None:
             missing(tool, target.packages)
@@ -60,6 +65,7 @@ def cross_build(project: str, target: Target, real: str, ninja: Path, folder: Pa
         *("cmake", "-S", str(REPOSITORY / project), "-B", str(tree), "-G", "Ninja"),
         *(f"-DCMAKE_MAKE_PROGRAM={ninja}", "-DCMAKE_BUILD_TYPE=Release", f"-DSH_REAL={real}"),
         *(["--toolchain", str(toolchain)] if target.toolchain else []),
+        *(f"-D{size}" for size in sizes),
     )
     run("cmake", "--build", str(tree))
     return tree

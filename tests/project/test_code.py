@@ -14,7 +14,7 @@ from c_sources import FOLDERS, OTHER_FOLDERS, OTHERS, SOURCES, generated
 from gate import missing
 
 REPOSITORY = Path(__file__).parents[2]
-PYTHON = ["harness", "tests", "bench", "docs", "examples"]
+PYTHON = ["c", "harness", "tests", "bench", "docs", "examples"]
 WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
 
 

@@ -37,16 +37,19 @@ pytestmark = pytest.mark.slow(
 
 
 def outside() -> dict[str, str]:
-    """Variables of a shell that knows nothing of this tree, nor of the environment of the tests."""
+    """Variables of a shell that knows nothing of this tree, nor of the environment of the tests.
+
+    pip does not compile modules of which most are never imported here.
+    """
     own = Path(sys.executable).parent
     path = [p for p in os.environ["PATH"].split(os.pathsep) if Path(p) != own]
     kept = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "SIGMAHAT"))}
-    return {**kept, "PATH": os.pathsep.join(path)}
+    return {**kept, "PATH": os.pathsep.join(path), "PIP_COMPILE": "0"}
 
 
-def new_environment(folder: Path) -> Path:
+def new_environment(folder: Path, *options: str) -> Path:
     """The folder of the programs of a new environment, with pip and nothing else."""
-    subprocess.run([sys.executable, "-m", "venv", folder], env=outside(), check=True)
+    subprocess.run([sys.executable, "-m", "venv", *options, folder], env=outside(), check=True)
     scheme = {"base": str(folder), "platbase": str(folder)}
     return Path(sysconfig.get_path("scripts", "venv", scheme))
 
@@ -74,14 +77,19 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def wheels(clone: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def empty(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Programs of an environment with pip and nothing else."""
+    return new_environment(tmp_path_factory.mktemp("empty"))
+
+
+@pytest.fixture(scope="module")
+def wheels(clone: Path, empty: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder of the wheel built from the clone, and of those that it requires."""
-    programs = new_environment(tmp_path_factory.mktemp("empty"))
     folder = tmp_path_factory.mktemp("wheels")
-    probe: list[str | Path] = [programs / "python", "-m", "pip", "download", "-d", folder, "click"]
+    probe: list[str | Path] = [empty / "python", "-m", "pip", "download", "-d", folder, "click"]
     if subprocess.run(probe, env=outside(), capture_output=True).returncode:
         missing("a connection to a package index", "connect this machine to one")
-    pip(programs, "wheel", clone, "-w", folder)
+    pip(empty, "wheel", clone, "-w", folder)
     return folder
 
 
@@ -93,10 +101,11 @@ def wheel(wheels: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def installed(wheels: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def installed(wheels: Path, empty: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Programs of an environment with the wheel, and with those that it requires."""
-    programs = new_environment(tmp_path_factory.mktemp("installed"))
-    pip(programs, "install", "--no-index", "--find-links", wheels, "sigmahat")
+    programs = new_environment(tmp_path_factory.mktemp("installed"), "--without-pip")
+    into = ("--python", programs / "python")
+    pip(empty, *into, "install", "--no-index", "--find-links", wheels, "sigmahat")
     return programs
 
 

@@ -11,6 +11,7 @@ stay the same if other lines of the code change.
 from __future__ import annotations
 
 import hashlib
+import math
 import os
 import re
 import resource
@@ -31,9 +32,10 @@ TESTS = Path(__file__).resolve().parents[1]
 LIBRARY = TESTS.parent / "c"
 SOURCES = {file.name: file for file in sorted(LIBRARY.rglob("*.c"))}
 NUMBER, SEED = 24, "fresh-b"  # the sample of the test in the gate
-# Limit for the tests of one mutant, which take up to 25 s for all files; a mutant that takes longer
-# is taken as an endless loop.
-CPU_SECONDS = 60
+# Limit for the tests of one mutant, as a share of the time of all tests with the code as it is.
+# Those of one file take up to a quarter of it; a mutant that takes longer is taken as an endless
+# loop.
+LIMIT = 0.5
 REQUIRED = 0.9  # share of the mutants that the tests have to notice
 # For each file, the tests of other files that use it. They are run besides its own tests.
 USERS = {
@@ -221,8 +223,10 @@ def files_for(source: str) -> list[str]:
     ]
 
 
-def start_tests(tree: Path, files: Sequence[str]) -> int:
+def start_tests(tree: Path, files: Sequence[str], limit: int = resource.RLIM_INFINITY) -> int:
     """Starts the fast tests with the library of a build tree in a new process; returns its id.
+
+    limit  time of the processor after which it ends [s]
 
     It is forked, because the imports of the tests take longer than most of the tests.
     """
@@ -230,7 +234,7 @@ def start_tests(tree: Path, files: Sequence[str]) -> int:
     if child:
         return child
     os.environ["SIGMAHAT_BUILD"] = str(tree)
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
+    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
     output = os.open(tree / "output.txt", os.O_WRONLY | os.O_CREAT)
     os.dup2(output, 1)
     os.dup2(output, 2)
@@ -240,6 +244,12 @@ def start_tests(tree: Path, files: Sequence[str]) -> int:
     finally:
         sys.stdout.flush()
         os._exit(status)
+
+
+def children_seconds() -> float:
+    """Time of the processor that processes took that were started here and have ended [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def finished(running: dict[int, Path]) -> tuple[int, bool]:
@@ -307,8 +317,10 @@ def run(folder: Path, number: int = NUMBER, seed: str = SEED) -> Outcome:
         pytest.main([*PYTEST, "--collect-only", *files])  # imports the modules that they use
     unchanged = Path(tempfile.mkdtemp(dir=folder))
     bench.link(unchanged, bench.objects)
+    before = children_seconds()
     if not finished({start_tests(unchanged, files): unchanged})[1]:
         raise RuntimeError("the tests fail without any change")
+    limit = math.ceil(LIMIT * (children_seconds() - before))
     outcome = Outcome([], [], [])
     running: dict[int, Path] = {}
     tested: dict[int, Mutant] = {}
@@ -321,7 +333,7 @@ def run(folder: Path, number: int = NUMBER, seed: str = SEED) -> Outcome:
         for mutant, tree in mutants(bench, file, share, seed):
             if len(running) == (os.cpu_count() or 1):
                 wait()
-            child = start_tests(tree, files_for(file))
+            child = start_tests(tree, files_for(file), limit)
             running[child], tested[child] = tree, mutant
     while running:
         wait()
