@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
@@ -10,6 +11,7 @@ from ctypes import byref
 from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Lock
 from typing import Any
 from weakref import finalize
 
@@ -62,6 +64,9 @@ class Fmu:
         self.folder = fmpy.extract(path, unpacked.name)
         self._library: list[fmi2.FMU2Slave] = []
         self._close = finalize(self, _close, self._library, unpacked)
+        # At the end of the process a thread may still be in the library. Windows alone removes no
+        # file of a library that is loaded.
+        self._close.atexit = sys.platform == "win32"
 
     def __enter__(self) -> Fmu:
         return self
@@ -151,6 +156,8 @@ class Slave:
         """Instantiates the FMU. Raises FmuError with the FMU's own message if it refuses."""
         self.fmu = fmu
         self.name = name
+        self.in_use = Lock()
+        """Held while a loop makes calls: the instance is not freed meanwhile."""
         self._messages: list[str] = []
         self._callbacks = fmi2.fmi2CallbackFunctions()
         self._callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._on_message)
@@ -171,7 +178,8 @@ class Slave:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.functions.fmi2FreeInstance(self.component)
+        with self.in_use:
+            self.functions.fmi2FreeInstance(self.component)
 
     def call(self, function: Callable[..., int], *arguments: Any) -> None:
         """Calls one of the functions for this instance. Raises FmuError if it fails."""

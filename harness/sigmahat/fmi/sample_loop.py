@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
@@ -109,16 +110,23 @@ class SampleLoop:
         Ctrl-C has its effect at the end; so a long loop is run in pieces. Raises FmuError if an
         FMU refuses, with its own message; later calls are not made then.
         """
-        library = native.library()
-        if library is None:
-            refused = _run_in_python(self._calls, first, end)
-        else:
-            if self._native is None:
-                self._native = (_NativeCall * len(self._calls))(*map(_Call.native, self._calls))
-            refused = _run_in_c(library, self._native, first, end)
+        slaves = list(dict.fromkeys(call.slave for call in self._calls))
+        with ExitStack() as stack:
+            for slave in slaves:
+                stack.enter_context(slave.in_use)
+            refused = self._run(first, end)
         if refused < len(self._calls):
             call = self._calls[refused]
             raise call.slave.failure(call.function.__name__)
+
+    def _run(self, first: int, end: int) -> int:
+        """Returns the place of the call that failed, or how many there are."""
+        library = native.library()
+        if library is None:
+            return _run_in_python(self._calls, first, end)
+        if self._native is None:
+            self._native = (_NativeCall * len(self._calls))(*map(_Call.native, self._calls))
+        return _run_in_c(library, self._native, first, end)
 
     def _add(self, *fields: Any) -> None:
         call = _Call(*fields)

@@ -11,7 +11,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import coherence, welch
 
 from sigmahat.identification.regression import MOTOR, Form, Signals, equations, fit
 from sigmahat.logs.log import Array
@@ -69,6 +68,8 @@ def coherent_range(
 
 
 def _incoherent_above(torque: Array, spring: Array, highest: float, noise: TorqueNoise) -> float:
+    from scipy.signal import coherence, welch  # it takes a second, and is not always needed
+
     h = 2 * noise.T  # every second sample
     segment = round(_SEGMENT / h)
     frequency, shared = coherence(torque, spring, 1 / h, nperseg=segment)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,7 +28,7 @@ from sigmahat.logs.replay import OUTPUTS, coefficients, parameters, play
 from sigmahat.logs.sampling import Samples, sample
 from sigmahat.logs.statistics import ReplayStatistics
 
-_CHUNK = 1 << 15  # ticks that are replayed at a time, about
+_CHUNK = 1 << 14  # ticks that are replayed at a time, about
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
 
 
@@ -175,12 +176,13 @@ def run(
     """Plays all samples, from the time t_0 [s]; statistics and `add` are given the outputs."""
     chunk = statistics.bucket * max(1, _CHUNK // statistics.bucket)
     done, ticks = 0, len(samples.values)
-    for outputs in play(slave, samples, chunk, t_0):
-        statistics.add(outputs)
-        add(outputs)
-        now = done + len(outputs["valid"])
-        progress(1000 * now // ticks - 1000 * done // ticks)
-        done = now
+    with closing(play(slave, samples, chunk, t_0)) as parts:
+        for outputs in parts:
+            statistics.add(outputs)
+            add(outputs)
+            now = done + len(outputs["valid"])
+            progress(1000 * now // ticks - 1000 * done // ticks)
+            done = now
 
 
 def learned_log(log: Log, statistics: ReplayStatistics, digest: str) -> LearnedLog:

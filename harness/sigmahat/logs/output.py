@@ -66,9 +66,12 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         """Writes the rows of the next ticks, whose outputs these are."""
         ticks = len(next(iter(outputs.values())))
         end = int(np.searchsorted(self._tick_of_row, self._tick + ticks))
-        take = self._tick_of_row[self._row : end] - self._tick
+        tick_of_row = self._tick_of_row[self._row : end] - self._tick
+        # A row for each tick, as usual: nothing has to be copied.
+        usual = np.array_equal(tick_of_row, np.arange(ticks))
+        take: slice | NDArray[np.int32] = slice(None) if usual else tick_of_row
         table = self._rows.take(end - self._row)
-        times = self._T * (self._tick + take)
+        times = self._T * np.arange(self._tick, self._tick + ticks)[take]
         estimates = [EstimatedSignal(_TIME, "s", times)]
         estimates += [EstimatedSignal(n, self._units.get(n), v[take]) for n, v in outputs.items()]
         for each in estimates:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from threading import Lock
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -42,7 +43,8 @@ class Samples:
 
 
 _last: WeakKeyDictionary[Log, tuple[Configuration, float, Samples]] = WeakKeyDictionary()
-"""What sample() gave last for a log: a check and a replay that follow each other need the same."""
+"""What sample() gave last for a log: the check and the replay of a log need the same."""
+_sampling = Lock()
 
 
 def sample(log: Log, configuration: Configuration, T: float) -> Samples:
@@ -51,13 +53,14 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
     Raises LogError for a T that is not positive, a missing column, times that do not increase, and
     a column without any value.
     """
-    last = _last.get(log)
-    if last is None or last[:2] != (configuration, T):
-        _last.pop(log, None)  # before the next one needs memory, too
-        last = configuration, T, _sample(log, configuration, T)
-        last[2].values.flags.writeable = False
-        _last[log] = last
-    return last[2]
+    with _sampling:
+        last = _last.get(log)
+        if last is None or last[:2] != (configuration, T):
+            _last.pop(log, None)  # before the next one needs memory, too
+            last = configuration, T, _sample(log, configuration, T)
+            last[2].values.flags.writeable = False
+            _last[log] = last
+        return last[2]
 
 
 def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
