@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 from selenium.webdriver.support.ui import Select
@@ -112,9 +113,15 @@ class Hand:
         """Waits until the page says something."""
         self.until(lambda: words in self.text(), words)
 
+    def _now(self, is_so: Callable[[], bool]) -> bool:
+        try:
+            return is_so()
+        except StaleElementReferenceException:  # the page has drawn it anew meanwhile
+            return False
+
     def until(self, is_so: Callable[[], bool], what: str) -> None:
         """Waits until something is so."""
         end = time.monotonic() + _LONGEST
-        while not is_so():
+        while not self._now(is_so):
             assert time.monotonic() < end, f"{what!r} is not in: {self.text()}"
             time.sleep(0.1)
