@@ -24,6 +24,7 @@ import pyarrow.csv
 import pyarrow.parquet
 
 import sigmahat
+from report import update
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.fmi.recorder import Recorder
@@ -229,8 +230,9 @@ def fmusim(program: Path, folder: Path) -> Iterator[Row]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--fmusim", type=Path, help="the program fmusim, to compare with")
+    parser.add_argument("--page", type=Path, help="Markdown page whose table is replaced")
     arguments = parser.parse_args()
-    print("| quantity | asked | measured |\n|---|---|---|")
+    lines = ["| quantity | asked | measured |", "|---|---|---|"]
     with tempfile.TemporaryDirectory(prefix="sigmahat-bench-") as name:
         folder = Path(name)
         jobs = [estimate(folder), sweep(folder), compare(folder), threads()]
@@ -238,7 +240,10 @@ def main() -> None:
             jobs.append(fmusim(arguments.fmusim, folder))
         for job in jobs:
             for row in job:
-                print(f"| {row.what} | {row.asked} | {row.measured} |", flush=True)
+                lines.append(f"| {row.what} | {row.asked} | {row.measured} |")
+                print(lines[-1], flush=True)
+    if arguments.page:
+        update(arguments.page, "processes", "\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

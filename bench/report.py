@@ -28,7 +28,6 @@ LABELS = {
     "covariance": "covariance alone, plain loops",
 }
 _PAIR, _MANY, _FMPY = "pair, master in C", "Estimator.run, 30 joints", "simulate_fmu of FMPy"
-_BEGIN, _END = "<!-- bench -->", "<!-- /bench -->"
 
 
 @dataclass(frozen=True)
@@ -225,15 +224,14 @@ def figure(times: Times) -> Figure:
     return drawing
 
 
-def page(text: str) -> str:
-    """The tables between the two marks that a page has for them."""
-    return f"{_BEGIN}\n\n{text}\n{_END}"
+def update(path: Path, mark: str, text: str) -> None:
+    """Replaces the text of a page between <!-- mark --> and <!-- /mark -->.
 
-
-def update(path: Path, block: str) -> None:
-    """Replaces the text between the two marks of a page. Raises ValueError if it has none."""
-    before, begin, rest = path.read_text(encoding="utf-8").partition(_BEGIN)
-    _, end, after = rest.partition(_END)
+    Raises ValueError if the page has no such marks.
+    """
+    first, last = f"<!-- {mark} -->", f"<!-- /{mark} -->"
+    before, begin, rest = path.read_text(encoding="utf-8").partition(first)
+    _, end, after = rest.partition(last)
     if not begin or not end:
-        raise ValueError(f"{path}: expected {_BEGIN} and {_END}")
-    path.write_text(before + block + after, encoding="utf-8")
+        raise ValueError(f"{path}: expected {first} and {last}")
+    path.write_text(f"{before}{first}\n\n{text}\n{last}{after}", encoding="utf-8")

@@ -14,7 +14,7 @@ import numpy as np
 
 import loops
 import subjects
-from report import Footprint, Times, figure, page, table, update
+from report import Footprint, Times, figure, table, update
 from subjects import Array, Fmus, Library, Subject
 
 ROUNDS = 101
@@ -145,7 +145,7 @@ def main() -> None:
         figure(times).savefig(arguments.out / "bench.png", dpi=150)
         print(f"Figure: {arguments.out / 'bench.png'}")
     if arguments.page:
-        update(arguments.page, page(text))
+        update(arguments.page, "bench", text)
         figure(times).savefig(arguments.page.parent / "images" / "bench.png", dpi=150)
 
 
