@@ -50,7 +50,7 @@ def _loop(u: Array, t: Array, in_c: bool) -> Callable[[], None]:
         Slave(installed(name), name) for name in ("AwasPlant", "StiffnessEstimator")
     )
     times, wires = np.column_stack([t, np.full_like(t, T)]), np.empty(len(MEASURED))
-    slopes = np.diff(u, axis=0, append=u[-1:]) / T
+    slopes = np.empty_like(u)
     loop = SampleLoop()
     Recorder(plant, ["sigma"], len(t)).add_to(loop)
     loop.get_real(plant, plant.fmu.references(MEASURED), wires)
@@ -65,6 +65,7 @@ def _loop(u: Array, t: Array, in_c: bool) -> Callable[[], None]:
         for slave in (plant, estimator):
             slave.call(slave.functions.fmi2Reset)
             slave.initialize({})
+        np.divide(np.diff(u, axis=0, append=u[-1:]), T, out=slopes)
         with nullcontext() if in_c else patch.object(native, "library", lambda: None):
             loop.run(0, len(t))
 

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import logging
+import os
+import signal
 import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import sigmahat
+from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.fmi import native
 from sigmahat.fmi.instance import Fmu, FmuError, Slave
 from sigmahat.fmi.master import EstimatorFmu, Plant, Recording, simulate
@@ -92,13 +97,112 @@ def test_calls_are_made_in_their_order_up_to_the_one_that_fails() -> None:
     assert table[:, 0].tolist() == [0.0, 1.0, 2.0, 0.0, 0.0]
 
 
-def test_a_table_must_be_contiguous() -> None:
-    with (
-        Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu,
-        Slave(fmu, "one") as slave,
-        pytest.raises(ValueError, match="C-contiguous"),
-    ):
-        SampleLoop().set_real(slave, fmu.references(["theta", "q"]), np.zeros((2, 5)).T)
+@pytest.mark.parametrize(
+    "table", [np.zeros((2, 5)).T, np.zeros((5, 1)), np.zeros((5, 2), np.float32), np.zeros(3)]
+)
+def test_a_table_of_another_layout_is_refused(table: np.typing.NDArray[np.float64]) -> None:
+    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "one") as slave:
+        both = fmu.references(["theta", "q"])
+        with pytest.raises(ValueError, match="C-contiguous table of float64 with 2 columns"):
+            SampleLoop().set_real(slave, both, table)
+        loop = SampleLoop()
+        loop.set_real(slave, both, np.zeros((5, 2)))
+        with pytest.raises(ValueError, match="within 5 rows, got 0 to 6"):
+            loop.run(0, 6)
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="no timers")
+@pytest.mark.filterwarnings("ignore")
+def test_interrupts_at_any_moment_end_it_and_leave_it_whole() -> None:
+    def lost(t: np.typing.NDArray[np.float64]) -> np.typing.NDArray[np.float64]:
+        return np.where(np.arange(len(t)) % 4 < 2, 0.0, np.nan)  # a warning every fourth sample
+
+    path = str(sigmahat.fmu("StiffnessEstimator"))
+    plant = Plant(path, {}, {"theta": lost}, ["sigma"])
+    random = np.random.default_rng(1)
+    interrupted = 0
+    simulate(plant, {}, T, 10)  # what others do when an FMU is read is not our affair
+    logging.getLogger("sigmahat").propagate = False  # to pytest, which keeps every warning
+    before = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    for _ in range(60):
+        try:
+            signal.setitimer(signal.ITIMER_REAL, random.uniform(0.001, 0.02))
+            simulate(plant, {}, T, 200_000)
+        except KeyboardInterrupt:
+            interrupted += 1
+    signal.signal(signal.SIGALRM, before)
+    logging.getLogger("sigmahat").propagate = True
+    assert interrupted >= 55  # Python itself drops one that comes in a finalizer
+    assert len(simulate(plant, {}, T, 10).plant["sigma"]) == 11
+
+
+def test_a_log_is_replayed_without_the_library(
+    without_c: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    log = awas_log(1.0, 0.3, duration=1.0)
+    del log["true"]
+    write_log(log, tmp_path / "a.csv")
+    (tmp_path / "a.toml").write_text(CONFIGURATION, encoding="utf-8")
+    found: list[dict[str, Any]] = []
+    for _ in range(2):
+        opened = sigmahat.open_log(tmp_path / "a.csv")
+        configuration = sigmahat.read_configuration(tmp_path / "a.toml")
+        folder = tmp_path / f"out{len(found)}"
+        folder.mkdir()
+        found.append(sigmahat.estimate(opened, configuration, folder).as_dict())
+        without_c.undo()
+    assert repr(found[0]) == repr(found[1])
+
+
+def test_forked_processes_leave_nothing_and_take_nothing(tmp_path: Path) -> None:
+    program = """
+import multiprocessing, os, sys, sigmahat
+table1 = sigmahat.scenario("table1")
+
+def run(_):
+    return sigmahat.simulate(table1.plant, {}, 1e-3, 2).plant.parameters["noise.seed"]
+
+run(0)
+child = os.fork()
+if child == 0:
+    sys.exit(0)
+os.waitpid(child, 0)
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    print(pool.map(run, range(4)))
+    pool.close()
+    pool.join()
+print(run(0))
+"""
+    if not hasattr(os, "fork"):
+        pytest.skip("no fork")
+    shown = subprocess.run(
+        [sys.executable, "-W", "error::ResourceWarning", "-c", program],
+        env={**os.environ, "TMPDIR": str(tmp_path)},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert (shown.stdout, shown.stderr) == ("[1, 1, 1, 1]\n1\n", "")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_estimator_may_have_any_name() -> None:
+    estimator = TABLE1.estimators["RESIDUAL"]
+    run = simulate(TABLE1.plant, {"": estimator}, T, 20)
+    assert (run.plant["sigma"] > 50).all() and run.estimators[""]["sigma"][0] == 0
+
+
+@pytest.mark.parametrize(
+    ("period", "steps"), [(0.0, 1), (-1.0, 1), (np.nan, 1), (np.inf, 1), (T, -1), (T, 0.5)]
+)
+def test_periods_and_steps_that_make_no_sense(period: float, steps: Any) -> None:
+    with pytest.raises(ValueError, match="expected T > 0 s and a number of steps"):
+        simulate(TABLE1.plant, {}, period, steps)
+
+
+def test_an_fmu_may_be_given_as_a_path() -> None:
+    plant = replace(TABLE1.plant, fmu=sigmahat.fmu("AwasPlant"))  # type: ignore[arg-type]
+    assert len(simulate(plant, {}, T, 3).plant["sigma"]) == 4
 
 
 def pythonfmu(script: str, folder: Path) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -10,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmpy import fmi2
 from numpy.typing import NDArray
 
 import sigmahat
@@ -145,6 +148,11 @@ def test_reset_forgets_and_keeps_what_was_tuned(z: dict[str, NDArray[np.float64]
         ({"rls.n": 9}, r"rls\.n: expected .*8.* got 9"),
         ({"sigma": 1.0}, "sigma"),
         ([], "one joint or more"),
+        ("Paper2011", "parameters of one joint or more, got 'Paper2011'"),
+        ([None], r"parameters of one joint or more, got \[None\]"),
+        ({"rls.n": float("inf")}, r"rls\.n: expected a number, got inf"),
+        ({"rls.n": 2**40}, r"rls\.n: expected at most 2147483647, got 1099511627776"),
+        ({"method": None}, "method: expected a number, got None"),
     ],
 )
 def test_parameters_that_do_not_fit(parameters: Any, message: str) -> None:
@@ -167,12 +175,73 @@ def test_what_is_misused_is_named_and_changes_nothing(z: dict[str, NDArray[np.fl
         estimator.run(*(np.zeros((2, 5)) for _ in range(3)))
     with pytest.raises(ValueError, match=r"expected samples of one joint\(s\), got 3"):
         estimator.tick(np.zeros(3), 0.0, 0.0)
+    with pytest.raises(ValueError, match="modality Residual needs tau"):
+        estimator.tick(0.0, 0.0)
+    with pytest.raises(ValueError, match="expected numbers or arrays of one shape"):
+        estimator.tick(np.zeros((2, 3)), 0.0, 0.0)
+    with pytest.raises(ValueError, match="one joint or more, got none"):
+        estimator.run(*(np.zeros((0, 5)) for _ in range(3)))
     with pytest.raises(ValueError, match=r"rls\.n is fixed"):
         estimator.tune({"motor.B": 1e-5, "rls.n": 3})
     with pytest.raises(ValueError, match=r"motor\.gamma: expected .*got 0"):
         estimator.tune({"motor.B": 1e-5, "motor.gamma": 0.0})
     estimator.reset()
     np.testing.assert_array_equal(estimator.run(**z)["sigma"], expected)
+
+
+def test_a_first_call_that_fails_leaves_the_number_of_joints_open() -> None:
+    estimator = sigmahat.Estimator({})
+    for wrong in ((np.zeros(3), np.zeros(2), 0.0), (np.zeros((2, 2)), 0.0, 0.0)):
+        with pytest.raises(ValueError, match="one shape"):
+            estimator.tick(*wrong)
+    assert np.ndim(estimator.tick(0.0, 0.0, 0.0)["sigma"]) == 0
+
+
+def test_masked_samples_are_skipped(z: dict[str, NDArray[np.float64]]) -> None:
+    mask = np.arange(N) % 7 == 0
+    found = sigmahat.Estimator({}).run(**{**z, "q": np.ma.masked_array(z["q"] + 9.0 * mask, mask)})
+    gaps = sigmahat.Estimator({}).run(**{**z, "q": np.where(mask, np.nan, z["q"])})
+    np.testing.assert_array_equal(found["sigma"], gaps["sigma"])
+    assert not found["valid"][mask].any()
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
+def test_a_copy_goes_on_by_itself(copied: Any, z: dict[str, NDArray[np.float64]]) -> None:
+    estimator = sigmahat.Estimator({})
+    estimator.run(**{name: each[:1000] for name, each in z.items()})
+    other, later = copied(estimator), {name: each[1000:] for name, each in z.items()}
+    first = other.run(**later)["sigma"]
+    np.testing.assert_array_equal(estimator.run(**later)["sigma"], first)
+    with pytest.raises(TypeError, match="cannot be pickled"):
+        pickle.dumps(estimator)
+
+
+def test_tuned_parameters_have_their_effect_while_it_runs(
+    z: dict[str, NDArray[np.float64]],
+) -> None:
+    estimator = sigmahat.Estimator({"method": "MatchedFilter"})
+    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "one") as slave:
+        slave.initialize({"method": "MatchedFilter"})
+        for k in range(1500):
+            row = {name: float(each[k]) for name, each in z.items()}
+            if k == 1000:
+                estimator.tune({"noise.tau": 0.1, "modality": "Sensor"})
+            now = estimator.tick(**row, tau_e_sensor=0.1 * row["q"])
+            for name, value in {**row, "tau_e_sensor": 0.1 * row["q"]}.items():
+                one = (fmi2.fmi2Real * 1)(value)
+                slave.call(slave.functions.fmi2SetReal, fmu.references([name]), 1, one)
+            if k == 1000:
+                noise, modality = (fmi2.fmi2Real * 1)(0.1), (fmi2.fmi2Integer * 1)(2)
+                references = fmu.references(["noise.tau"])
+                slave.call(slave.functions.fmi2SetReal, references, 1, noise)
+                reference = (fmi2.fmi2ValueReference * 1)(fmu.variable("modality").valueReference)
+                slave.call(slave.functions.fmi2SetInteger, reference, 1, modality)
+            slave.call(slave.functions.fmi2DoStep, k * T, T, 1)
+        recorder = Recorder(slave, ["sigma", "sigma_std"], 1)
+        recorder.sample(0)
+    for name, values in recorder.columns().items():
+        assert now[name] == values[0]
+    assert estimator.parameters[0]["noise.tau"] == 0.1
 
 
 def test_no_samples_are_no_error() -> None:

@@ -71,7 +71,8 @@ def test_it_contains_the_released_fmus_and_its_library_alone(
 def test_its_record_is_right(tag: str, folder: Path) -> None:
     with zipfile.ZipFile(wheel(folder, tag)) as archive:
         (info,) = {n.split("/")[0] for n in archive.namelist() if ".dist-info/" in n}
-        assert f"Tag: py3-none-{tag}\n" in archive.read(f"{info}/WHEEL").decode()
+        kind = archive.read(f"{info}/WHEEL").decode()
+        assert f"Tag: py3-none-{tag}\n" in kind and "Root-Is-Purelib: false\n" in kind
         rows = list(csv.reader(io.StringIO(archive.read(f"{info}/RECORD").decode())))
         assert {name for name, *_ in rows} == set(archive.namelist())
         for name, digest, _ in rows:
@@ -130,12 +131,14 @@ def test_from_the_wheel_of_linux_the_estimator_gives_the_same_bits(
     with zipfile.ZipFile(wheel(folder, "manylinux_2_17_x86_64")) as archive:
         archive.extractall(tmp_path)
     program = """
-import json, sys
+import json, math, sys
 sys.path += sys.argv[1:]
 import sigmahat
 run = sigmahat.run(sigmahat.scenario("single-linear"), seed=1)
-z = [0.01 * k for k in range(100)]
-sigma = sigmahat.Estimator({"method": "MatchedFilter"}).run(z, z, z)["sigma"]
+estimator = sigmahat.Estimator({"method": "MatchedFilter"})
+theta = [math.sin(0.01 * k) for k in range(2000)]
+q = [1.002 * x for x in theta]
+sigma = estimator.run(theta, q, [-0.04 * x for x in theta])["sigma"]
 print(json.dumps([sigmahat.__file__, run.estimators["RESIDUAL"]["sigma"].tolist(), sigma.tolist()]))
 """
     found = []
@@ -150,3 +153,4 @@ print(json.dumps([sigmahat.__file__, run.estimators["RESIDUAL"]["sigma"].tolist(
     assert Path(found[0][0]).is_relative_to(tmp_path)
     assert not Path(found[1][0]).is_relative_to(tmp_path)
     assert found[0][1:] == found[1][1:]
+    assert len(set(found[0][2])) > 100

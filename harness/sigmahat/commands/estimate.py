@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import click
@@ -52,14 +51,9 @@ def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path 
     with common.errors_in_one_line(out):
         opened = open_log(log)
         configuration = read_configuration(config or common.configuration_of(log))
-        with (
-            ThreadPoolExecutor(1) as meanwhile,  # the replay is in C and needs no Python
-            output_folder(out) as folder,
-            common.progress("Replaying", 1000) as bar,
-        ):
-            checking = meanwhile.submit(check, opened, configuration)
+        checked = check(opened, configuration)
+        with output_folder(out) as folder, common.progress("Replaying", 1000) as bar:
             result = run(opened, configuration, folder, bar.update, start_from)
-            checked = checking.result()
             shown = [ShownFinding(f.severity.value, sentence(f)) for f in checked.findings]
             write_findings(shown, folder)
     where = f"Table, curve, figure (PNG, SVG), joint.json and state.json are in {out.resolve()}"

@@ -51,6 +51,9 @@ def write(
         (wheel,) = pure.glob("*.whl")
         _python(project, "-m", "wheel", "unpack", wheel, "--dest", unpacked)
         (tree,) = unpacked.iterdir()
+        (kind,) = tree.glob("*.dist-info/WHEEL")
+        text = kind.read_text(encoding="utf-8").replace("Purelib: true", "Purelib: false")
+        kind.write_text(text, encoding="utf-8")
         folder = tree / "sigmahat" / "fmus"
         folder.mkdir()
         for each in contents:

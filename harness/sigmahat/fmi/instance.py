@@ -9,11 +9,11 @@ from contextlib import contextmanager
 from copy import copy
 from ctypes import byref
 from importlib import import_module
+from multiprocessing.util import Finalize, is_exiting
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from threading import Lock
+from shutil import rmtree
+from tempfile import mkdtemp
 from typing import Any
-from weakref import finalize
 
 import fmpy
 import numpy as np
@@ -60,13 +60,11 @@ class Fmu:
         if self.description.fmiVersion != "2.0" or self.description.coSimulation is None:
             raise FmuError(f"{path}: expected an FMU for FMI 2.0 Co-Simulation")
         self.variables = {v.name: v for v in self.description.modelVariables}
-        unpacked = TemporaryDirectory(prefix="sigmahat-", ignore_cleanup_errors=True)
-        self.folder = fmpy.extract(path, unpacked.name)
+        self.folder = mkdtemp(prefix="sigmahat-")
         self._library: list[fmi2.FMU2Slave] = []
-        self._close = finalize(self, _close, self._library, unpacked)
-        # At the end of the process a thread may still be in the library. Windows alone removes no
-        # file of a library that is loaded.
-        self._close.atexit = sys.platform == "win32"
+        # Also at the end of a process of multiprocessing, but not of one that was forked from this.
+        self._close = Finalize(self, _close, (self._library, self.folder), exitpriority=1)
+        fmpy.extract(path, self.folder)
 
     def __enter__(self) -> Fmu:
         return self
@@ -127,15 +125,18 @@ class Fmu:
     def item_names(self, name: str, numbers: NDArray[np.int32]) -> NDArray[np.str_]:
         """Returns the names of the items of an enumeration, which FMI gives as numbers.
 
-        numbers  of items, from 1 on, without a gap, shape (N,)
+        numbers  of items, shape (N,)
         """
-        return np.array(["", *self.items(name).values()])[numbers]
+        items = dict(sorted(self.items(name).items()))
+        places = np.searchsorted(list(items), numbers)
+        names: NDArray[np.str_] = np.array(list(items.values()))[places]
+        return names
 
     def parameters(self, start: Mapping[str, Value]) -> dict[str, Value]:
         """Returns the parameters of a slave with these start values: given ones, else the FMU's."""
         values: dict[str, Value] = {}
         for name, variable in self.variables.items():
-            if variable.causality != "parameter":
+            if variable.causality != "parameter" or variable.type == "String":
                 continue
             boolean = variable.type == "Boolean"
             default = variable.start == "true" if boolean else float(variable.start)
@@ -156,8 +157,6 @@ class Slave:
         """Instantiates the FMU. Raises FmuError with the FMU's own message if it refuses."""
         self.fmu = fmu
         self.name = name
-        self.in_use = Lock()
-        """Held while a loop makes calls: the instance is not freed meanwhile."""
         self._messages: list[str] = []
         self._callbacks = fmi2.fmi2CallbackFunctions()
         self._callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._on_message)
@@ -178,8 +177,7 @@ class Slave:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with self.in_use:
-            self.functions.fmi2FreeInstance(self.component)
+        self.functions.fmi2FreeInstance(self.component)
 
     def call(self, function: Callable[..., int], *arguments: Any) -> None:
         """Calls one of the functions for this instance. Raises FmuError if it fails."""
@@ -231,10 +229,12 @@ class Slave:
         return f"{self.name}: {'; '.join(self._messages) or failure}"
 
 
-def _close(library: list[fmi2.FMU2Slave], unpacked: TemporaryDirectory[str]) -> None:
-    for each in library:
+def _close(library: list[fmi2.FMU2Slave], folder: str) -> None:
+    # At the end of the process a thread may still be in the library. But Windows removes no file of
+    # a library that is loaded.
+    for each in library if sys.platform == "win32" or not is_exiting() else ():
         each.freeLibrary()
-    unpacked.cleanup()
+    rmtree(folder, ignore_errors=True)
 
 
 def value_references(variables: Iterable[Any]) -> Any:

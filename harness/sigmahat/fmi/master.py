@@ -6,6 +6,8 @@ at t_k; then the plant goes on to t_k+1 under inputs that are linear in between.
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -23,8 +25,8 @@ from sigmahat.fmi.sample_loop import SampleLoop
 Signal = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Values of an input at the times given [s]."""
 
-_PROGRESS_STEPS = 100
-_PLANT = ""  # no estimator has this name
+_PIECE = 0.05  # [s] about, between two moments at which Ctrl-C has its effect
+_MOST = 1024  # steps in a piece
 
 
 @dataclass(frozen=True)
@@ -100,12 +102,15 @@ def simulate(
     a value that does not fit, FmuError with the FMU's own message if an FMU refuses. Warnings of
     FMUs go to the logger "sigmahat".
     """
-    t = T * np.arange(steps + 1, dtype=np.float64)
+    if not (math.isfinite(T) and T > 0) or steps != int(steps) or steps < 0:
+        raise ValueError(f"expected T > 0 s and a number of steps, got T = {T} and {steps} steps")
+    t = T * np.arange(int(steps) + 1, dtype=np.float64)
     times = np.column_stack([t, np.full_like(t, T)])
     with ExitStack() as stack:
 
         def instantiate(fmu: str, name: str) -> Slave:
-            unpacked = opened(Path(fmu)) if fmu.endswith(".fmu") else installed(fmu)
+            path = Path(fmu)
+            unpacked = opened(path) if path.suffix.lower() == ".fmu" else installed(str(fmu))
             return stack.enter_context(Slave(unpacked, name))
 
         plant_slave = instantiate(plant.fmu, "plant")
@@ -113,9 +118,9 @@ def simulate(
         inputs = plant_slave.fmu.references(names, "input")
         first = dict(zip(names, values[0].tolist(), strict=True))
         plant_slave.initialize({**plant.start, **first})
-        recorders = {_PLANT: Recorder(plant_slave, plant.record, len(t))}
+        truth, recorders = Recorder(plant_slave, plant.record, len(t)), {}
         tick, loop = SampleLoop(), SampleLoop()
-        recorders[_PLANT].add_to(tick)
+        truth.add_to(tick)
         for name, estimator in estimators.items():
             slave = instantiate(estimator.fmu, name)
             slave.initialize(estimator.start)
@@ -129,17 +134,26 @@ def simulate(
             loop.set_slopes(plant_slave, inputs, np.diff(values, axis=0) / np.diff(t)[:, None])
         loop.step(plant_slave, times)
 
-        for begin in range(0, steps, _PROGRESS_STEPS):
-            end = min(begin + _PROGRESS_STEPS, steps)
-            loop.run(begin, end)
-            progress(end - begin)
+        _run_in_pieces(loop, steps, progress)
         tick.run(steps, steps + 1)
 
         return Recording(
             t,
-            _series(recorders[_PLANT], plant.start),
+            _series(truth, plant.start),
             {name: _series(recorders[name], each.start) for name, each in estimators.items()},
         )
+
+
+def _run_in_pieces(loop: SampleLoop, steps: int, progress: Callable[[int], object]) -> None:
+    """Runs the loop; how long a step takes is the FMUs' affair, so the pieces are fitted to it."""
+    first, size = 0, 1
+    while first < steps:
+        end, begin = min(first + size, steps), time.perf_counter()
+        loop.run(first, end)
+        progress(end - first)
+        took = time.perf_counter() - begin
+        size = min(2 * size, _MOST) if took < _PIECE / 2 else max(size // 2, 1)
+        first = end
 
 
 def _values(inputs: Mapping[str, Signal], t: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from functools import lru_cache
 from pathlib import Path
 
@@ -29,3 +30,7 @@ def opened(path: Path) -> Fmu:
 @lru_cache(maxsize=32)
 def _opened(path: Path, _changed: int, _size: int) -> Fmu:
     return Fmu(path)
+
+
+if hasattr(os, "register_at_fork"):  # the folders are those of the other process
+    os.register_at_fork(after_in_child=_opened.cache_clear)

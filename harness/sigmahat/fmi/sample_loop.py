@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from sigmahat.fmi import native
 from sigmahat.fmi.instance import Slave
+from sigmahat.fmi.interrupts import interrupts_wait
 
 # As in harness/native/sample_loop.h.
 _SET_REAL, _SET_SLOPES, _DO_STEP, _GET_REAL, _GET_INTEGER = range(1, 6)
@@ -110,10 +110,10 @@ class SampleLoop:
         Ctrl-C has its effect at the end; so a long loop is run in pieces. Raises FmuError if an
         FMU refuses, with its own message; later calls are not made then.
         """
-        slaves = list(dict.fromkeys(call.slave for call in self._calls))
-        with ExitStack() as stack:
-            for slave in slaves:
-                stack.enter_context(slave.in_use)
+        rows = [len(call.table) for call in self._calls if call.table.ndim == 2]
+        if not 0 <= first <= end <= min(rows, default=end):
+            raise ValueError(f"expected samples within {min(rows)} rows, got {first} to {end}")
+        with interrupts_wait():  # else Ctrl-C is lost if the FMU calls back
             refused = self._run(first, end)
         if refused < len(self._calls):
             call = self._calls[refused]
@@ -130,8 +130,13 @@ class SampleLoop:
 
     def _add(self, *fields: Any) -> None:
         call = _Call(*fields)
-        if not call.table.flags.c_contiguous:
-            raise ValueError("expected a C-contiguous table of values")
+        table, count = call.table, 2 if call.kind == _DO_STEP else len(call.references)
+        dtype = np.dtype(np.int32 if call.kind == _GET_INTEGER else np.float64)
+        if not table.flags.c_contiguous or table.dtype != dtype or table.shape[-1] != count:
+            raise ValueError(
+                f"expected a C-contiguous table of {dtype} with {count} columns, got one of "
+                f"{table.dtype} and shape {table.shape}"
+            )
         self._calls.append(call)
         self._native = None
 
@@ -146,7 +151,8 @@ def _run_in_c(library: ctypes.CDLL, calls: ctypes.Array[_NativeCall], first: int
 
 def _run_in_python(calls: list[_Call], first: int, end: int) -> int:
     """The same in Python: what the loop in C has to do, and for installations without it."""
-    rows = [np.ctypeslib.as_ctypes(call.table) for call in calls]
+    tables = [c.table if c.table.flags.writeable else c.table.copy() for c in calls]
+    rows: list[Any] = [np.ctypeslib.as_ctypes(table) for table in tables]
     for k in range(first, end):
         for place, (call, table) in enumerate(zip(calls, rows, strict=True)):
             row = table[k] if call.table.ndim == 2 else table

@@ -24,9 +24,10 @@ _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("theta", "q", "tau_e_se
 class Estimator:
     """The estimator of StiffnessEstimator.fmu, without an FMU between, for one joint or many.
 
-    The results are those of the FMU, to the last bit. What it has learned stays from call to call,
-    until reset(). While it computes, other threads of Python run; an object may be used by one
-    thread at a time. Memory: 140 kB a joint.
+    The results are those of the FMU, to the last bit; there are no messages, but the outputs valid
+    and doubt say the same. What it has learned stays from call to call, until reset(). A copy, by
+    `copy.copy`, goes on by itself. While it computes, other threads of Python run; an object may be
+    used by one thread at a time, and cannot be pickled. Memory: 135 kB a joint.
 
     >>> import numpy as np, sigmahat
     >>> estimator = sigmahat.Estimator({"method": "MatchedFilter", "motor.gamma": 100})
@@ -52,16 +53,19 @@ class Estimator:
         """
         several = not isinstance(parameters, Mapping)
         given = list(parameters) if not isinstance(parameters, Mapping) else [parameters]
-        if not given:
-            raise ValueError("expected the parameters of one joint or more, got an empty sequence")
+        if not given or not all(isinstance(each, Mapping) for each in given):
+            raise ValueError(f"expected the parameters of one joint or more, got {parameters!r}")
+        if isinstance(record, str):
+            raise ValueError(f"record: expected a list of names, got {record!r}")
         self._joints = Joints(given)
         self._shape: tuple[int, ...] | None = (len(given),) if several else None
         self._record = tuple(record)
         for name in self._record:
             self._joints.fmu.variable(name, "output")
         self.parameters = [self._joints.fmu.parameters(each) for each in given]
-        """All parameters of each joint as they were at the start, given ones and the FMU's."""
-        self._tick: Callable[[Sequence[ArrayLike]], dict[str, Any]] | None = None
+        """All parameters of each joint as they are now, given ones and the FMU's."""
+        self._needed = self._inputs_needed()
+        self._tick: Callable[[Sequence[ArrayLike | None]], dict[str, Any]] | None = None
 
     def run(
         self,
@@ -73,8 +77,8 @@ class Estimator:
     ) -> Series:
         """A tick for each sample, samplePeriod apart; sample k gives output k.
 
-        All arrays have the shape (N,) for one joint, or (joints, N). A sample that is not finite is
-        skipped: the estimate is kept, and "valid" is False there.
+        All arrays have the shape (N,) for one joint, or (joints, N). A sample that is not finite,
+        or masked, is skipped: the estimate is kept, and "valid" is False there.
 
         theta, q      position of the motor behind its gear, and of the link [rad]
         tau           torque of the motor, on its axis [N.m]; needed by the modality Residual
@@ -82,14 +86,12 @@ class Estimator:
         tau_e_sensor  flexibility torque of a sensor [N.m]; needed by the modality Sensor
 
         Returns the recorded outputs, by name, in arrays of the same shape: Booleans as such, of an
-        enumeration the names of its items. Raises ValueError for other shapes or if an array is
-        missing.
+        enumeration the names of its items; and the parameters of the first joint. Raises ValueError
+        for other shapes or if an array is missing.
         """
         given = dict(zip(INPUTS, (theta, q, theta_c, tau, tau_e_sensor), strict=True))
         self._need(given)
-        arrays = {
-            n: np.asarray(v, np.float64, order="C") for n, v in given.items() if v is not None
-        }
+        arrays = {name: _samples(each) for name, each in given.items() if each is not None}
         shape = arrays["theta"].shape
         if len(shape) not in (1, 2) or any(each.shape != shape for each in arrays.values()):
             shapes = ", ".join(f"{name} {each.shape}" for name, each in arrays.items())
@@ -110,19 +112,24 @@ class Estimator:
         self,
         theta: ArrayLike,
         q: ArrayLike,
-        tau: ArrayLike = 0.0,
-        theta_c: ArrayLike = 0.0,
-        tau_e_sensor: ArrayLike = 0.0,
+        tau: ArrayLike | None = None,
+        theta_c: ArrayLike | None = None,
+        tau_e_sensor: ArrayLike | None = None,
     ) -> dict[str, Any]:
         """One tick, for a loop; arguments and results as those of run(), without the axis of time.
 
-        Numbers for one joint, arrays of shape (joints,) for many. Raises ValueError for another
-        number of joints.
+        Numbers for one joint, arrays of shape (joints,) for many; a number then is that of every
+        joint. Raises ValueError for another number of joints, or if an input is missing.
         """
+        values = (theta, q, theta_c, tau, tau_e_sensor)
         if self._tick is None:
-            self._take_shape(np.shape(theta))
+            self._need(dict(zip(INPUTS, values, strict=True)))
+            shapes = {np.shape(each) for each in values if each is not None} - {()}
+            if len(shapes) > 1 or any(len(shape) > 1 for shape in shapes):
+                raise ValueError(f"expected numbers or arrays of one shape (joints,), got {shapes}")
+            self._take_shape(shapes.pop() if shapes else self._shape or ())
             self._tick = self._prepared()
-        return self._tick((theta, q, theta_c, tau, tau_e_sensor))
+        return self._tick(values)
 
     def output(self, name: str) -> Any:
         """An output as it is now, recorded or not: a number, or an array of shape (joints,)."""
@@ -133,9 +140,8 @@ class Estimator:
     @property
     def eta(self) -> Array:
         """Coefficients of the torque now, (21) [size: n x m, or joints x n x m]."""
-        parameters = self.parameters
-        n = max(int(each["rls.n"]) for each in parameters)
-        m = max(int(each["rls.m"]) for each in parameters)
+        n = max(int(each["rls.n"]) for each in self.parameters)
+        m = max(int(each["rls.m"]) for each in self.parameters)
         values = [[self._joints.value(f"eta[{i},{j}]") for j in range(m)] for i in range(n)]
         eta = np.moveaxis(np.array(values), -1, 0)
         return eta if self._shape else eta[0]
@@ -161,23 +167,48 @@ class Estimator:
         except ValueError:
             self._joints.memory[:] = before
             raise
+        now = self._joints.fmu.parameters(parameters)
+        self.parameters = [{**each, **{n: now[n] for n in parameters}} for each in self.parameters]
+        self._needed = self._inputs_needed()
+        self._tick = None
 
     def reset(self) -> None:
         """Forgets all that was learned; parameters stay as they are."""
         self._joints.start()
 
+    def __copy__(self) -> Estimator:
+        other = Estimator.__new__(Estimator)
+        other.__dict__.update(self.__dict__)
+        other._joints, other._tick = self._joints.copied(), None
+        return other
+
+    def __deepcopy__(self, _memo: object) -> Estimator:
+        return self.__copy__()
+
+    def __reduce__(self) -> str:
+        raise TypeError("an Estimator cannot be pickled; make one where it is needed")
+
+    def _inputs_needed(self) -> dict[str, str]:
+        """Inputs that must be given, and the modality that needs each."""
+        return {
+            name: modality
+            for modality in set(self._joints.value("modality").tolist())
+            for name in _NEEDED.get(modality, ("theta", "q"))
+        }
+
     def _need(self, given: Mapping[str, ArrayLike | None]) -> None:
-        for modality in set(self._joints.value("modality")):
-            for name in _NEEDED.get(modality, ("theta", "q")):
-                if given[name] is None:
-                    raise ValueError(f"modality {modality} needs {name}, got None")
+        for name, modality in self._needed.items():
+            if given[name] is None:
+                raise ValueError(f"modality {modality} needs {name}, got None")
 
     def _take_shape(self, shape: tuple[int, ...]) -> None:
         """Shape of the samples without time: the first of it says how many joints there are."""
+        if 0 in shape:
+            raise ValueError("expected samples of one joint or more, got none")
         if self._shape is None:
             if shape:
                 self._joints.repeated(*shape)
-                self.parameters *= shape[0]
+                self.parameters = self.parameters * shape[0]
             self._shape = shape
         if self._shape != shape:
             raise ValueError(
@@ -185,7 +216,7 @@ class Estimator:
                 f"{shape[0] if shape else 'one'}"
             )
 
-    def _prepared(self) -> Callable[[Sequence[ArrayLike]], dict[str, Any]]:
+    def _prepared(self) -> Callable[[Sequence[ArrayLike | None]], dict[str, Any]]:
         """A tick that allocates nothing, for many calls."""
         joints = self._joints
         count, single = len(joints.memory), not self._shape
@@ -193,15 +224,17 @@ class Estimator:
         outputs = {name: joints.empty(name, count, 1) for name in self._record}
         run = joints.prepared(list(inputs), outputs)
         places = [(name, each, joints.names(name)) for name, each in outputs.items()]
+        needed = [name in self._needed for name in INPUTS]
 
-        def tick(values: Sequence[ArrayLike]) -> dict[str, Any]:
-            try:
-                for row, value in zip(inputs, values, strict=True):
-                    row[:, 0] = value
-            except ValueError as error:
-                shapes = ", ".join(str(np.shape(value)) for value in values)
-                expected = "numbers" if single else f"arrays of shape ({count},)"
-                raise ValueError(f"expected {expected}, got shapes {shapes}") from error
+        def tick(values: Sequence[ArrayLike | None]) -> dict[str, Any]:
+            for row, value, must in zip(inputs, values, needed, strict=True):
+                try:
+                    if must and value is None:
+                        raise TypeError
+                    row[:, 0] = 0.0 if value is None else value
+                except (ValueError, TypeError) as error:
+                    expected = "a number" if single else f"a number or shape ({count},)"
+                    raise ValueError(f"expected {expected}, got {value!r}") from error
             run(0, 1)
             if single:
                 return {
@@ -214,3 +247,10 @@ class Estimator:
             }
 
         return tick
+
+
+def _samples(values: ArrayLike) -> Array:
+    """Samples as C has them; nan where they are masked."""
+    if isinstance(values, np.ma.MaskedArray):
+        values = np.ma.filled(values.astype(np.float64), np.nan)
+    return np.asarray(values, np.float64, order="C")

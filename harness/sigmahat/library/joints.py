@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,8 @@ INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 """In the order in which the library takes them."""
 
 _CACHE_LINE = 64  # [bytes]
-_PIECE = 1 << 16  # ticks between two moments at which Ctrl-C has its effect, about
+_LARGEST_INTEGER = 2**31 - 1
+_PIECE = 1 << 16  # ticks between two moments at which Ctrl-C has its effect
 _SHORTEST = 1 << 10  # ticks of a joint at a time: its state stays in the cache of the processor
 
 
@@ -63,13 +65,28 @@ class Joints:
         changed = self.memory[joint].copy()
         for name, value in parameters.items():
             variable = self.fmu.variable(name, "parameter")
-            number = float(self.fmu.number(name, value))
+            number = self._number(name, value)
             self._library.sh_joint_set(changed.ctypes.data, variable.valueReference, number)
         violation = _Violation()
         if self._library.sh_joint_check(changed.ctypes.data, ctypes.byref(violation)):
             name, expected = violation.name.decode(), violation.range.decode()
             raise ValueError(f"{name}: expected {expected}, got {violation.value:.9g}")
         self.memory[joint] = changed
+
+    def _number(self, name: str, value: Value) -> float:
+        try:
+            number = float(self.fmu.number(name, value))
+        except (TypeError, OverflowError) as error:
+            raise ValueError(f"{name}: expected a number, got {value!r}") from error
+        if self.fmu.variable(name).type != "Real" and abs(number) > _LARGEST_INTEGER:
+            raise ValueError(f"{name}: expected at most {_LARGEST_INTEGER}, got {value!r}")
+        return number
+
+    def copied(self) -> Joints:
+        """Other estimators in the same state."""
+        other = copy(self)
+        other.memory = self.memory.copy()
+        return other
 
     def value(self, name: str) -> NDArray[Any]:
         """The value of a variable now, [size: joints]."""
@@ -103,17 +120,28 @@ class Joints:
         outputs  arrays of empty() by name, of the same size, that are filled
         """
         joints, samples = next(each.shape for each in inputs if each is not None)
-        call = self.prepared(inputs, outputs)
-        piece = max(_PIECE // joints, _SHORTEST)
-        for first in range(0, samples, piece):
-            call(first, min(first + piece, samples))
+        group = max(_PIECE // _SHORTEST, 1)
+        for joint in range(0, joints, group):
+            of_group = slice(joint, joint + group)
+            call = self.prepared(
+                [None if each is None else each[of_group] for each in inputs],
+                {name: each[of_group] for name, each in outputs.items()},
+                joint,
+            )
+            piece = max(_PIECE // min(group, joints), 1)
+            for first in range(0, samples, piece):
+                call(first, min(first + piece, samples))
 
     def prepared(
-        self, inputs: Sequence[NDArray[np.float64] | None], outputs: Mapping[str, NDArray[Any]]
+        self,
+        inputs: Sequence[NDArray[np.float64] | None],
+        outputs: Mapping[str, NDArray[Any]],
+        joint: int = 0,
     ) -> Callable[[int, int], None]:
         """A function that runs the ticks of some samples: from the first up to, without, the end.
 
-        The arrays, as for run(), have to live as long as it is called.
+        The arrays, as for run(), are of as many joints as they have rows, from one joint on. They
+        have to live as long as it is called.
         """
         joints, samples = next(each.shape for each in inputs if each is not None)
         places = (Output * len(outputs))(
@@ -122,7 +150,7 @@ class Joints:
                 for n, v in outputs.items()
             )
         )
-        of_joints = (self._address(0), joints, self.stride, samples)
+        of_joints = (self._address(joint), joints, self.stride, samples)
         arrays = (*(None if each is None else each.ctypes.data for each in inputs), places)
         run, count = self._library.sh_joints_run, len(places)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from threading import Lock
 
 import numpy as np
 import pyarrow as pa
@@ -20,10 +19,9 @@ _EXACT = 2**53  # largest magnitude up to which a float64 holds every integer
 
 
 class Log(ABC):
-    """Named columns of numbers, not always of the same length. Any thread may read them."""
+    """Named columns of numbers, not always of the same length."""
 
     def __init__(self, path: Path, columns: Mapping[str, int]) -> None:
-        self._reading = Lock()
         self.path = path
         """The file."""
         self.columns = columns
@@ -37,8 +35,7 @@ class Log(ABC):
         column, or if it holds something other than numbers.
         """
         self.samples(name)
-        with self._reading:
-            values = np.array(self._read(name))
+        values = np.array(self._read(name))
         pa.default_memory_pool().release_unused()  # it would keep the column of a long log
         return values
 
@@ -52,19 +49,9 @@ class Log(ABC):
     def _read(self, name: str) -> Array:
         """As read, for a column that exists."""
 
+    @abstractmethod
     def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
         """Columns of one length as they are in the file, at most a number of rows at a time."""
-        batches = self._batches(names, rows)
-        while True:
-            with self._reading:
-                batch = next(batches, None)
-            if batch is None:
-                return
-            yield batch
-
-    @abstractmethod
-    def _batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
-        """As batches."""
 
 
 class LogInMemory(Log):
@@ -80,7 +67,7 @@ class LogInMemory(Log):
             array = array.astype(np.int64) - array.astype(np.int64)[0]
         return array.astype(np.float64)
 
-    def _batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
+    def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
         for first in range(0, max(self.columns[name] for name in names), rows):
             yield pa.record_batch(
                 {name: pa.array(self._arrays[name][first : first + rows]) for name in names}

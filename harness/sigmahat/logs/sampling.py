@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from threading import Lock
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.logs.configuration import PORTS, Configuration, Port
+from sigmahat.logs.configuration import PORTS, Configuration, Port, Time
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.log import Array, Log
 from sigmahat.logs.resampling import AT_TICK, Resampled, at_ticks, stretches
@@ -42,9 +41,9 @@ class Samples:
     """What had to be done to the samples, in sentences."""
 
 
-_last: WeakKeyDictionary[Log, tuple[Configuration, float, Samples]] = WeakKeyDictionary()
+_Asked = tuple[dict[str, Port], Time, float]
+_last: WeakKeyDictionary[Log, tuple[_Asked, Samples]] = WeakKeyDictionary()
 """What sample() gave last for a log: the check and the replay of a log need the same."""
-_sampling = Lock()
 
 
 def sample(log: Log, configuration: Configuration, T: float) -> Samples:
@@ -53,14 +52,14 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
     Raises LogError for a T that is not positive, a missing column, times that do not increase, and
     a column without any value.
     """
-    with _sampling:
-        last = _last.get(log)
-        if last is None or last[:2] != (configuration, T):
-            _last.pop(log, None)  # before the next one needs memory, too
-            last = configuration, T, _sample(log, configuration, T)
-            last[2].values.flags.writeable = False
-            _last[log] = last
-        return last[2]
+    asked = dict(configuration.ports), configuration.time, T
+    last = _last.get(log)
+    if last is None or last[0] != asked:
+        _last.pop(log, None)  # before the next one needs memory, too
+        last = asked, _sample(log, configuration, T)
+        last[1].values.flags.writeable = False
+        _last[log] = last
+    return last[1]
 
 
 def _sample(log: Log, configuration: Configuration, T: float) -> Samples:

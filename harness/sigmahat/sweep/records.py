@@ -8,13 +8,12 @@ are those of the larger plan.
 from __future__ import annotations
 
 import json
-import math
 import os
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import astuple, replace
 from pathlib import Path
+from threading import Timer
 from typing import Any
 from zlib import crc32
 
@@ -26,7 +25,7 @@ from sigmahat.sweep.fmus import sweep_digest
 from sigmahat.sweep.plan import Outcome, Plan
 
 NAME = "runs.jsonl"
-_INTERVAL = 1.0  # between two times at which the disk is waited for [s]
+_DELAY = 1.0  # after which the disk is waited for [s]: once for all that is written meanwhile
 
 
 class Records:
@@ -50,7 +49,7 @@ class Records:
                 self._seeds = self._seeds_of(content)
             else:
                 self._take(content, i)
-        self._synchronized = -math.inf  # when the file was last written to the disk [s]
+        self._waiting: Timer | None = None  # for the moment at which the disk is waited for
         self._file = path.open("ab")
         self._file.truncate(sum(map(len, lines)))
 
@@ -67,19 +66,25 @@ class Records:
 
     def close(self) -> None:
         """Closes the file; all of it is on the disk then."""
-        self._synchronize()
+        waiting = self._waiting
+        if waiting is not None:
+            waiting.cancel()
+            waiting.join()
+        os.fsync(self._file.fileno())
         self._file.close()
 
     def _write(self, content: dict[str, Any]) -> None:
         text = json.dumps(content).encode()
         self._file.write(b"%08x %s\n" % (crc32(text), text))
         self._file.flush()
-        if time.monotonic() > self._synchronized + _INTERVAL:
-            self._synchronize()
+        if self._waiting is None:
+            self._waiting = Timer(_DELAY, self._synchronize)
+            self._waiting.daemon = True
+            self._waiting.start()
 
     def _synchronize(self) -> None:
+        self._waiting = None  # what is written from now on needs another moment
         os.fsync(self._file.fileno())
-        self._synchronized = time.monotonic()
 
     def _parse(self, line: bytes, number: int) -> Any:
         crc, _, text = line.rstrip(b"\n").partition(b" ")

@@ -37,7 +37,7 @@ class ParquetLog(Log):
             raise LogError(f"{self.path}: damaged at column {name!r} ({error})") from error
         return numbers(self.path, name, column)
 
-    def _batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
+    def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
         try:
             yield from self._file.iter_batches(rows, columns=list(names), use_threads=False)
         except (pa.ArrowException, OSError) as error:
@@ -72,7 +72,7 @@ class CsvLog(Log):
             column = self._parsed(name)
         return numbers(self.path, name, column)
 
-    def _batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
+    def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
         yield from self._copy.iter_batches(rows, columns=list(names), use_threads=False)
 
     def _copied(self, file: IO[bytes]) -> pa.parquet.ParquetFile:
