@@ -51,6 +51,8 @@ def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path 
     with common.errors_in_one_line(out):
         opened = open_log(log)
         configuration = read_configuration(config or common.configuration_of(log))
+        # Check and figure need them; reading and replaying the log need little of Python.
+        common.import_meanwhile("scipy.signal", "matplotlib.figure")
         checked = check(opened, configuration)
         with output_folder(out) as folder, common.progress("Replaying", 1000) as bar:
             result = run(opened, configuration, folder, bar.update, start_from)
