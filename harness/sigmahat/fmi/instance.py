@@ -14,6 +14,7 @@ from pathlib import Path
 from shutil import rmtree
 from tempfile import mkdtemp
 from typing import Any
+from weakref import WeakValueDictionary
 
 import fmpy
 import numpy as np
@@ -159,7 +160,9 @@ class Slave:
         self.name = name
         self._messages: list[str] = []
         self._callbacks = fmi2.fmi2CallbackFunctions()
-        self._callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._on_message)
+        self._callbacks.logger = _LOGGER
+        self._callbacks.componentEnvironment = id(self)
+        _slaves[id(self)] = self
         self._callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
         self._callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
         if addLoggerProxy is not None:
@@ -216,10 +219,8 @@ class Slave:
         yield
         self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2False, 0, None)
 
-    def _on_message(
-        self, _environment: int, _instance: bytes, status: int, _category: bytes, message: bytes
-    ) -> None:
-        text = message.decode("utf-8", "replace")
+    def take_message(self, status: int, text: str) -> None:
+        """Logs a warning, and keeps the text of an error for what will be raised."""
         if status == fmi2.fmi2Warning:
             _log.warning("%s: %s", self.name, text)
         elif status > fmi2.fmi2Warning:
@@ -235,6 +236,26 @@ def _close(library: list[fmi2.FMU2Slave], folder: str) -> None:
     for each in library if sys.platform == "win32" or not is_exiting() else ():
         each.freeLibrary()
     rmtree(folder, ignore_errors=True)
+
+
+_slaves: WeakValueDictionary[int, Slave] = WeakValueDictionary()
+"""Who lives, by what an FMU says of itself in a message."""
+
+
+def _on_message(
+    environment: int | None, instance: bytes | None, status: int, _category: bytes, message: bytes
+) -> None:
+    name = (instance or b"").decode("utf-8", "replace")
+    slave = _slaves.get(environment or 0)
+    if slave is None:  # an FMU that does not know its environment
+        slave = next((each for each in _slaves.values() if each.name == name), None)
+    if slave is not None:
+        slave.take_message(status, message.decode("utf-8", "replace"))
+
+
+# One for all slaves, that lives as long as the process: FMPy's proxy keeps the last one that it was
+# given, and calls it for every FMU.
+_LOGGER = fmi2.fmi2CallbackLoggerTYPE(_on_message)
 
 
 def value_references(variables: Iterable[Any]) -> Any:
