@@ -43,10 +43,10 @@ class Estimator:
     ) -> None:
         """Starts the estimator.
 
-        parameters  by their names in the FMU, enumerations by item name; those that are not given
-                    have the start values of the FMU. A sequence: of each joint. One mapping: of
-                    all joints; the first samples say how many there are.
-        record      outputs of the FMU that run() and tick() return
+        The parameters have their names in the FMU, enumerations take an item name; those that are
+        not given have the start values of the FMU. A sequence has those of each joint. One mapping
+        is of all joints, and the first samples say how many there are. `record` names the outputs
+        that run() and tick() return.
 
         Raises ValueError for a name that the FMU does not have, and for a value that does not fit
         or is out of its range; RuntimeError if this installation has no library for this platform.
@@ -80,10 +80,10 @@ class Estimator:
         All arrays have the shape (N,) for one joint, or (joints, N). A sample that is not finite,
         or masked, is skipped: the estimate is kept, and "valid" is False there.
 
-        theta, q      position of the motor behind its gear, and of the link [rad]
-        tau           torque of the motor, on its axis [N.m]; needed by the modality Residual
-        theta_c       position of the motor that adjusts the stiffness [rad]; None: 0
-        tau_e_sensor  flexibility torque of a sensor [N.m]; needed by the modality Sensor
+        `theta` and `q` are the positions of the motor behind its gear and of the link [rad], `tau`
+        is the torque of the motor on its axis [N.m], which the modality Residual needs, `theta_c`
+        the position of the motor that adjusts the stiffness [rad], and `tau_e_sensor` the
+        flexibility torque of a sensor [N.m], which the modality Sensor needs. None stands for 0.
 
         Returns the recorded outputs, by name, in arrays of the same shape: Booleans as such, of an
         enumeration the names of its items; and the parameters of the first joint. Raises ValueError
