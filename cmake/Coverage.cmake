@@ -1,9 +1,9 @@
 # Target coverage: runs the tests of the C code, then prints the share of its branches that they ran.
 sigmahat_add_packages(coverage)
 file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py)
-# These compile programs of their own, without coverage, or run no C code.
+# These compile programs of their own, without coverage, run no C code, or need more packages.
 list(FILTER tests EXCLUDE REGEX
-     "controller|endurance|library_packages|misfit_study|model_description|mutation|static|stress")
+     "controller|endurance|library_packages|misfit_study|model_description|mutation|sample_loop|static|stress")
 list(APPEND tests tests/plants/test_awas.py tests/plants/test_noise.py tests/plants/test_radau.py)
 add_custom_target(
   coverage
