@@ -108,12 +108,13 @@ static void multiply_four(sh_ud_factor *P, const sh_real *F, int j, const sh_rea
 static void multiply_two(sh_ud_factor *P, const sh_real *F, int j, const sh_real *diagonal)
 {
     const sh_real *const end = F + j, *u = P->U + place(P->size, 0, j);
-    sh_pair sum_0 = sh_pair_both(0), sum_1 = sum_0, F_0, F_1;
+    sh_pair sum_0 = sh_pair_both(0), sum_1 = sum_0, F_0;
     int stride = first_stride(P->size);
 
     for (; F != end; F += SH_PANEL) {
+        const sh_pair F_1 = sh_pair_load(F + 2);
+
         F_0 = sh_pair_load(F);
-        F_1 = sh_pair_load(F + 2);
         sum_0 = sh_pair_add(sum_0, panel_product(u, F_0, F_1));
         sum_1 = sh_pair_add(sum_1, panel_product(u + SH_PANEL, F_0, F_1));
         u += stride;
