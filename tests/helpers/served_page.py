@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from selenium.common.exceptions import StaleElementReferenceException
+from selenium.common.exceptions import JavascriptException, StaleElementReferenceException
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 from selenium.webdriver.support.ui import Select
@@ -82,10 +82,15 @@ class Hand:
 
     def find(self, name: str) -> WebElement:
         """The input or button of a name, as soon as it is there."""
-        self.until(lambda: self.page.run(_FIND, name) is not None, name)
-        found = self.page.run(_FIND, name)
-        assert isinstance(found, WebElement)
-        return found
+        found: list[WebElement] = []
+
+        def is_there() -> bool:
+            element = self.page.run(_FIND, name)
+            found[:] = [element] if isinstance(element, WebElement) else []
+            return bool(found)
+
+        self.until(is_there, name)
+        return found[0]
 
     def value(self, name: str) -> str:
         """What an input shows."""
@@ -105,6 +110,23 @@ class Hand:
         self.page.run("arguments[0].scrollIntoView({block: 'center'})", button)
         button.click()
 
+    def accepts(self, name: str) -> None:
+        """Presses "accept" beside a finding until its value is in the input.
+
+        The findings are drawn anew when a check has ended, and take the button with them.
+        """
+        before = self.value(name)
+
+        def is_accepted() -> bool:
+            button = self.page.run(_FIND, f"accept {name}")
+            if self.value(name) == before and isinstance(button, WebElement):
+                self.page.run("arguments[0].scrollIntoView({block: 'center'})", button)
+                button.click()
+                time.sleep(0.5)
+            return self.value(name) != before
+
+        self.until(is_accepted, f"accept {name}")
+
     def text(self) -> str:
         """All that the page says."""
         return " ".join(str(self.page.run(_TEXT)).split())
@@ -116,8 +138,8 @@ class Hand:
     def _now(self, is_so: Callable[[], bool]) -> bool:
         try:
             return is_so()
-        except StaleElementReferenceException:  # the page has drawn it anew meanwhile
-            return False
+        except (StaleElementReferenceException, JavascriptException):
+            return False  # the page is drawing it anew: it is gone, or there twice, for a moment
 
     def until(self, is_so: Callable[[], bool], what: str) -> None:
         """Waits until something is so."""

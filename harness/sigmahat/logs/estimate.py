@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -176,13 +175,12 @@ def run(
     """Plays all samples, from the time t_0 [s]; statistics and `add` are given the outputs."""
     chunk = statistics.bucket * max(1, _CHUNK // statistics.bucket)
     done, ticks = 0, len(samples.values)
-    with closing(play(slave, samples, chunk, t_0)) as parts:
-        for outputs in parts:
-            statistics.add(outputs)
-            add(outputs)
-            now = done + len(outputs["valid"])
-            progress(1000 * now // ticks - 1000 * done // ticks)
-            done = now
+    for outputs in play(slave, samples, chunk, t_0):
+        statistics.add(outputs)
+        add(outputs)
+        now = done + len(outputs["valid"])
+        progress(1000 * now // ticks - 1000 * done // ticks)
+        done = now
 
 
 def learned_log(log: Log, statistics: ReplayStatistics, digest: str) -> LearnedLog:

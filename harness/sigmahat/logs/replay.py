@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -82,7 +81,7 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
 
 def replay(
     slave: Slave, samples: Samples, start: Mapping[str, Value], chunk: int
-) -> Generator[dict[str, NDArray[Any]], None, None]:
+) -> Iterator[dict[str, NDArray[Any]]]:
     """Initialises the estimator, and yields its outputs by name, a chunk of ticks at a time.
 
     Raises FmuError if the FMU refuses a value.
@@ -93,16 +92,14 @@ def replay(
 
 def play(
     slave: Slave, samples: Samples, chunk: int, t_0: float = 0.0
-) -> Generator[dict[str, NDArray[Any]], None, None]:
+) -> Iterator[dict[str, NDArray[Any]]]:
     """The same for an estimator that has reached the time t_0 [s].
 
     The sample at t_0 + t_k is the input of the tick at that time; ports that are not configured
-    keep their values, which are 0 at the start and after a gap. A thread computes the next chunk
-    while one is used: a generator that is not used to its end has to be closed before the slave.
+    keep their values, which are 0 at the start and after a gap.
     """
     inputs = slave.fmu.references(samples.names, "input")
-
-    def part(first: int) -> Recorder:
+    for first in range(0, len(samples.values), chunk):
         values = np.ascontiguousarray(samples.values[first : first + chunk])
         t = t_0 + samples.T * np.arange(first, first + len(values), dtype=np.float64)
         recorder, loop = Recorder(slave, (*OUTPUTS, *FLAGS, _REASON), len(values)), SampleLoop()
@@ -110,15 +107,8 @@ def play(
         loop.step(slave, np.column_stack([t, np.full_like(t, samples.T)]))
         recorder.add_to(loop)
         loop.run(0, len(values))
-        return recorder
-
-    with ThreadPoolExecutor(1) as thread:  # the next part is computed while one is used
-        parts = (thread.submit(part, first) for first in range(0, len(samples.values), chunk))
-        following = next(parts, None)
-        while following is not None:
-            columns = following.result().columns()
-            following = next(parts, None)
-            yield {**columns, **{name: columns[name].astype(bool) for name in FLAGS}}
+        columns = recorder.columns()
+        yield {**columns, **{name: columns[name].astype(bool) for name in FLAGS}}
 
 
 def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
