@@ -12,7 +12,7 @@ from sigmahat.checks.keys import gears, rests_on
 from sigmahat.checks.relation import relation
 from sigmahat.checks.replayed import Outputs, play, replayed
 from sigmahat.checks.view import View, view
-from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import Configuration
@@ -30,7 +30,7 @@ def check(log: Log, configuration: Configuration) -> Checked:
 
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
     """
-    fmu = _estimator()
+    fmu = installed("StiffnessEstimator")
     seen = _view(log, configuration)
     every = seen.every
     findings = list(_contradictions(seen))
@@ -64,18 +64,18 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
 
 def _is_given(configuration: Configuration) -> bool:
     """Whether somebody has said what the inertia is."""
-    prior = float(_estimator().parameters(parameters(_estimator(), configuration))["prior.B"])
+    prior = float(_every(configuration)["prior.B"])
     return "motor.B" in configuration.parameters and prior < WIDE
 
 
-def _estimator() -> Fmu:
-    return installed("StiffnessEstimator")
+def _every(configuration: Configuration) -> dict[str, Value]:
+    """All parameters of the estimator."""
+    fmu = installed("StiffnessEstimator")
+    return fmu.parameters(parameters(fmu, configuration))
 
 
 def _view(log: Log, configuration: Configuration) -> View:
-    return view(
-        log, configuration, _estimator().parameters(parameters(_estimator(), configuration))
-    )
+    return view(log, configuration, _every(configuration))
 
 
 def _per_gain(outputs: Outputs, method: object) -> float:

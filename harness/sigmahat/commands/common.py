@@ -11,10 +11,8 @@ import logging
 import math
 import shutil
 import sys
-import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
-from importlib import import_module
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -94,17 +92,6 @@ def progress(label: str, length: int) -> Any:
     """A progress bar on stderr, hidden where nobody sees it or wants it."""
     hidden = click.get_current_context().meta.get(_QUIET) or not sys.stderr.isatty()
     return click.progressbar(length=length, label=label, file=sys.stderr, hidden=hidden)
-
-
-def import_meanwhile(*modules: str) -> None:
-    """Imports modules in another thread, before they are needed; a failure shows then."""
-
-    def import_all() -> None:
-        with suppress(ImportError):
-            for module in modules:
-                import_module(module)
-
-    threading.Thread(target=import_all).start()
 
 
 def need_fmu(name: str) -> None:

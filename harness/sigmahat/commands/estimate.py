@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
+from threading import Thread
 
 import click
 
@@ -52,7 +55,7 @@ def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path 
         opened = open_log(log)
         configuration = read_configuration(config or common.configuration_of(log))
         # Check and figure need them; reading and replaying the log need little of Python.
-        common.import_meanwhile("scipy.signal", "matplotlib.figure")
+        Thread(target=_import, args=["scipy.signal", "matplotlib.figure"]).start()
         checked = check(opened, configuration)
         with output_folder(out) as folder, common.progress("Replaying", 1000) as bar:
             result = run(opened, configuration, folder, bar.update, start_from)
@@ -61,3 +64,10 @@ def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path 
     where = f"Table, curve, figure (PNG, SVG), joint.json and state.json are in {out.resolve()}"
     text = f"{summary(result)}\n\n{of_checks(checked, IN_LOG)}\n\n{where}"
     common.answer(text, {**result.as_dict(), "checks": as_dict(checked)})
+
+
+def _import(*modules: str) -> None:
+    """Imports modules before they are needed; a failure shows then."""
+    with suppress(ImportError):
+        for module in modules:
+            import_module(module)

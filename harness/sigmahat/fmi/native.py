@@ -8,11 +8,26 @@ from __future__ import annotations
 import ctypes
 import logging
 from functools import lru_cache
+from typing import Any
+
+import fmpy
 
 from sigmahat.fmi.installed import folder
 
-_EXTENSIONS = (".so", ".dylib", ".dll")
 _INTERFACE = 1  # as in harness/native/version.c
+_POINTER, _SIZE, _NUMBER = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint
+_FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
+    "sh_sample_loop": (_SIZE, [_POINTER, *[_SIZE] * 3]),
+    "sh_joint_guid": (ctypes.c_char_p, []),
+    "sh_joint_size": (_SIZE, []),
+    "sh_joint_place": (_SIZE, [_NUMBER]),
+    "sh_joint_default": (None, [_POINTER]),
+    "sh_joint_set": (None, [_POINTER, _NUMBER, ctypes.c_double]),
+    "sh_joint_check": (ctypes.c_int, [_POINTER, _POINTER]),
+    "sh_joint_start": (None, [_POINTER]),
+    "sh_joints_run": (None, [_POINTER, *[_SIZE] * 5, *[_POINTER] * 6, _SIZE]),
+}
+"""Result and arguments of the functions in harness/native/*.h."""
 
 _log = logging.getLogger("sigmahat")
 
@@ -23,16 +38,18 @@ def library() -> ctypes.CDLL | None:
 
     If there is one that does not work, a warning says so.
     """
-    for extension in _EXTENSIONS:
-        path = folder() / f"sigmahat_native{extension}"
-        if not path.is_file():
-            continue
-        try:
-            found = ctypes.CDLL(str(path))
-            if found.sh_native_interface() == _INTERFACE:
-                return found
-            reason = "it is of another version"
-        except (OSError, AttributeError) as error:
-            reason = str(error)
-        _log.warning("%s cannot be used, so simulations are slow: %s; install again", path, reason)
+    path = folder() / f"sigmahat_native{fmpy.sharedLibraryExtension}"
+    if not path.is_file():
+        return None
+    try:
+        found = ctypes.CDLL(str(path))
+        if found.sh_native_interface() == _INTERFACE:
+            for name, (result, arguments) in _FUNCTIONS.items():
+                function = getattr(found, name)
+                function.restype, function.argtypes = result, arguments
+            return found
+        reason = "it is of another version"
+    except (OSError, AttributeError) as error:
+        reason = str(error)
+    _log.warning("%s cannot be used, so simulations are slow: %s; install again", path, reason)
     return None

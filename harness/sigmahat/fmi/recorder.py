@@ -31,8 +31,6 @@ class Recorder:
             dtype = np.float64 if kind == "real" else np.int32
             self._tables[kind] = group, np.empty((samples, len(group)), dtype)
         self.units = {v.name: v.unit for v in variables if v.unit is not None}
-        self._loop = SampleLoop()
-        self.add_to(self._loop)
 
     def add_to(self, loop: SampleLoop) -> None:
         """From now on the loop writes a row for each of its samples."""
@@ -46,7 +44,9 @@ class Recorder:
 
     def sample(self, k: int) -> None:
         """Writes row k at once. Raises FmuError if the FMU refuses."""
-        self._loop.run(k, k + 1)
+        loop = SampleLoop()
+        self.add_to(loop)
+        loop.run(k, k + 1)
 
     def columns(self) -> dict[str, NDArray[Any]]:
         """Returns the recorded values by name, each of shape (samples,); of an enumeration the

@@ -126,7 +126,7 @@ class SampleLoop:
             return _run_in_python(self._calls, first, end)
         if self._native is None:
             self._native = (_NativeCall * len(self._calls))(*map(_Call.native, self._calls))
-        return _run_in_c(library, self._native, first, end)
+        return int(library.sh_sample_loop(self._native, len(self._calls), first, end))
 
     def _add(self, *fields: Any) -> None:
         call = _Call(*fields)
@@ -139,14 +139,6 @@ class SampleLoop:
             )
         self._calls.append(call)
         self._native = None
-
-
-def _run_in_c(library: ctypes.CDLL, calls: ctypes.Array[_NativeCall], first: int, end: int) -> int:
-    """The loop in C. Returns the place of the call that failed, or how many there are."""
-    loop = library.sh_sample_loop
-    loop.restype = ctypes.c_size_t
-    loop.argtypes = [ctypes.c_void_p, *[ctypes.c_size_t] * 3]
-    return int(loop(calls, len(calls), first, end))
 
 
 def _run_in_python(calls: list[_Call], first: int, end: int) -> int:

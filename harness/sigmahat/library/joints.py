@@ -174,21 +174,6 @@ def _library() -> ctypes.CDLL:
     library = native.library()
     if library is None:
         raise RuntimeError("this installation has no library for this platform; install a wheel")
-    library.sh_joint_guid.restype = ctypes.c_char_p
     if library.sh_joint_guid().decode() != installed("StiffnessEstimator").description.guid:
         raise RuntimeError("the library and StiffnessEstimator.fmu are of two builds; build again")
-    pointer, size, number = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint
-    functions: dict[str, tuple[Any, list[Any]]] = {
-        "sh_joint_size": (size, []),
-        "sh_joint_place": (size, [number]),
-        "sh_joint_default": (None, [pointer]),
-        "sh_joint_set": (None, [pointer, number, ctypes.c_double]),
-        "sh_joint_check": (ctypes.c_int, [pointer, pointer]),
-        "sh_joint_start": (None, [pointer]),
-        "sh_joints_run": (None, [pointer, *[size] * 5, *[pointer] * 6, size]),
-    }
-    for name, (result, arguments) in functions.items():
-        function = library[name]
-        function.restype, function.argtypes = result, arguments
-        setattr(library, name, function)
     return library

@@ -35,7 +35,7 @@ class Log(ABC):
         column, or if it holds something other than numbers.
         """
         self.samples(name)
-        values = np.array(self._read(name))
+        values = self._read(name)
         pa.default_memory_pool().release_unused()  # it would keep the column of a long log
         return values
 
@@ -101,7 +101,7 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
     if pa.types.is_integer(kind) and not fits_float64(column):
         first = next(x.as_py() for x in column if x.is_valid)
         column = pa.compute.subtract(column.cast(pa.int64()), first)
-    values: Array = column.cast(pa.float64(), safe=False).to_numpy()
+    values: Array = np.array(column.cast(pa.float64(), safe=False).to_numpy())
     return values
 
 
