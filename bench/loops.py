@@ -16,7 +16,7 @@ from sigmahat.fmi import native
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 from sigmahat.runs.scenario import T
 from subjects import MEASUREMENTS, OUTPUTS, TORQUES, Array, Fmus, Library, Master, Subject, doubles
 
@@ -49,7 +49,7 @@ def _loop(u: Array, t: Array, in_c: bool) -> Callable[[], None]:
     plant, estimator = (
         Slave(installed(name), name) for name in ("AwasPlant", "StiffnessEstimator")
     )
-    times, wires = np.column_stack([t, np.full_like(t, T)]), np.empty(len(MEASURED))
+    times, wires = step_times(t, T), np.empty(len(MEASURED))
     slopes = np.empty_like(u)
     loop = SampleLoop()
     Recorder(plant, ["sigma"], len(t)).add_to(loop)

@@ -28,7 +28,7 @@ from report import update
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 from sigmahat.runs.scenario import T
 
 PORTS = ("theta", "q", "theta_c", "tau")
@@ -135,12 +135,12 @@ def estimate(folder: Path) -> Iterator[Row]:
 def bare_loop(method: str, table: np.typing.NDArray[np.float64]) -> float:
     """Time of the loop in C alone over all samples [s]."""
     fmu = installed("StiffnessEstimator")
-    t = T * np.arange(len(table))
+    t = T * np.arange(len(table), dtype=np.float64)
     with Slave(fmu, "bare") as slave:
         slave.initialize({"method": method})
         loop = SampleLoop()
         loop.set_real(slave, fmu.references(PORTS, "input"), table)
-        loop.step(slave, np.column_stack([t, np.full_like(t, T)]))
+        loop.step(slave, step_times(t, T))
         Recorder(slave, OUTPUTS, len(t)).add_to(loop)
         begin = time.perf_counter()
         loop.run(0, len(t))

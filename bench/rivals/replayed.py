@@ -12,7 +12,7 @@ from rivals.records import Array, JointLog
 from rivals.spring import Spring, spring
 from sigmahat.fmi.instance import Fmu, Slave, Value
 from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 
 OUTPUTS = ("sigma", "sigma_std", "confident")
 
@@ -32,9 +32,9 @@ def replayed(log: JointLog, start: Mapping[str, Value]) -> tuple[dict[str, Array
         slave.initialize({**_common(log, spring(log)), **start})
         inputs = fmu.references(("theta", "q", "theta_c", "tau"), "input")
         recorder, loop = Recorder(slave, OUTPUTS, len(samples)), SampleLoop()
-        t = log.sample_period * np.arange(len(samples))
+        t = log.sample_period * np.arange(len(samples), dtype=np.float64)
         loop.set_real(slave, inputs, samples)
-        loop.step(slave, np.column_stack([t, np.full_like(t, log.sample_period)]))
+        loop.step(slave, step_times(t, log.sample_period))
         recorder.add_to(loop)
         begin = time.perf_counter()
         loop.run(0, len(samples))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 import sigmahat
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def run_plant(
         recorder.add_to(loop)
         loop.set_real(plant, references, np.ascontiguousarray(torques))
         loop.set_slopes(plant, references, np.ascontiguousarray(slopes))
-        loop.step(plant, np.column_stack([t, np.full_like(t, h)]))
+        loop.step(plant, step_times(t, h))
         loop.run(0, steps)
         recorder.sample(steps)
     return recorder.columns()

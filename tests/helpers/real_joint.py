@@ -24,7 +24,7 @@ from misfit_priors import WITHOUT_MISFITS
 from shared_data import data_folder
 from sigmahat.fmi.instance import Fmu, Slave, Value
 from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 
 Array = NDArray[np.float64]
 
@@ -192,7 +192,7 @@ def play(
     t = SAMPLE_PERIOD * np.arange(len(rows), dtype=np.float64)
     recorder, loop = Recorder(slave, record, len(rows)), SampleLoop()
     loop.set_real(slave, slave.fmu.references(list(INPUTS), "input"), rows)
-    loop.step(slave, np.column_stack([t, np.full_like(t, SAMPLE_PERIOD)]))
+    loop.step(slave, step_times(t, SAMPLE_PERIOD))
     recorder.add_to(loop)
     loop.run(0, len(rows))
     return recorder.columns()

@@ -16,7 +16,7 @@ from c_matched import covariance
 from plant_runs import run_awas, times
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 from sigmahat.runs.metrics import msrep
 
 T = 1e-3  # [s]
@@ -145,7 +145,7 @@ def ageing() -> Iterator[tuple[Array, Array]]:
         loop.set_real(plant, fmu.references(("spring.k_s",)), k_s[:, None])
         loop.set_real(plant, references, torques)
         loop.set_slopes(plant, references, np.diff(torques, axis=0) / T)
-        loop.step(plant, np.column_stack([t, np.full_like(t, T)]))
+        loop.step(plant, step_times(t, T))
         loop.run(0, len(t) - 1)
         recorder.sample(len(t) - 1)
     run = recorder.columns()

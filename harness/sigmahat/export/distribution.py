@@ -19,7 +19,11 @@ TAGS = {
 }
 """Platforms of pip, of the same versions of the systems as the targets of the cross compiler."""
 
-_HOOK = "import sys; from scikit_build_core import build; getattr(build, sys.argv[1])({arguments})"
+# The FMUs and the library come from elsewhere, so CMake is not run.
+_HOOK = (
+    "import sys; from scikit_build_core import build; "
+    "getattr(build, sys.argv[1])(sys.argv[2], {'wheel.cmake': 'false'})"
+)
 _EPOCH = "315532800"  # 1980, the first year of a zip file: equal contents are equal bytes
 
 
@@ -42,12 +46,11 @@ def write(
     """
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
-    _python(project, "-c", _HOOK.format(arguments="sys.argv[2]"), "build_sdist", out.resolve())
+    _python(project, "-c", _HOOK, "build_sdist", out.resolve())
     with TemporaryDirectory() as scratch:
         pure, unpacked = Path(scratch, "pure"), Path(scratch, "unpacked")
         pure.mkdir()
-        hook = _HOOK.format(arguments="sys.argv[2], {'wheel.cmake': 'false'}")
-        _python(project, "-c", hook, "build_wheel", pure)
+        _python(project, "-c", _HOOK, "build_wheel", pure)
         (wheel,) = pure.glob("*.whl")
         _python(project, "-m", "wheel", "unpack", wheel, "--dest", unpacked)
         (tree,) = unpacked.iterdir()

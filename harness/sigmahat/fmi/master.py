@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import installed, opened
 from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 
 Signal = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Values of an input at the times given [s]."""
@@ -105,7 +105,7 @@ def simulate(
     if not (math.isfinite(T) and T > 0) or steps != int(steps) or steps < 0:
         raise ValueError(f"expected T > 0 s and a number of steps, got T = {T} and {steps} steps")
     t = T * np.arange(int(steps) + 1, dtype=np.float64)
-    times = np.column_stack([t, np.full_like(t, T)])
+    times = step_times(t, T)
     with ExitStack() as stack:
 
         def instantiate(fmu: str, name: str) -> Slave:

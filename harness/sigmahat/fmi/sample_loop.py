@@ -81,7 +81,7 @@ class SampleLoop:
             self._add(_SET_SLOPES, slave, function, references, orders, table)
 
     def step(self, slave: Slave, times: NDArray[np.float64]) -> None:
-        """Makes a step; a row has the communication point and the length of the step [s]."""
+        """Makes a step; the rows are those of step_times()."""
         self._add(_DO_STEP, slave, slave.functions.fmi2DoStep, None, None, times)
 
     def get_real(self, slave: Slave, references: Any, table: NDArray[np.float64]) -> None:
@@ -139,6 +139,11 @@ class SampleLoop:
             )
         self._calls.append(call)
         self._native = None
+
+
+def step_times(t: NDArray[np.float64], h: float | NDArray[np.float64]) -> NDArray[np.float64]:
+    """The table for SampleLoop.step(): communication points t and steps h [s], one or each."""
+    return np.column_stack(np.broadcast_arrays(t, h))
 
 
 def _run_in_python(calls: list[_Call], first: int, end: int) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Array
 
@@ -31,7 +31,7 @@ def stiffness_at(
     """
     fmu = slave.fmu
     t = t_0 + T * np.arange(2 * len(points), dtype=np.float64).reshape(-1, 2)
-    gap, sample = (np.column_stack([each, np.full_like(each, T)]) for each in t.T)
+    gap, sample = (step_times(each, T) for each in t.T)
     recorder = Recorder(slave, _OUTPUTS, len(points))
     loop = SampleLoop()
     loop.set_real(slave, fmu.references(PORTS, "input"), np.zeros(len(PORTS)))

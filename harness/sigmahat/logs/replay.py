@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Fmu, Slave, Value
 from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 from sigmahat.logs.configuration import PORTS, Configuration
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.sampling import Samples
@@ -104,7 +104,7 @@ def play(
         t = t_0 + samples.T * np.arange(first, first + len(values), dtype=np.float64)
         recorder, loop = Recorder(slave, (*OUTPUTS, *FLAGS, _REASON), len(values)), SampleLoop()
         loop.set_real(slave, inputs, values)
-        loop.step(slave, np.column_stack([t, np.full_like(t, samples.T)]))
+        loop.step(slave, step_times(t, samples.T))
         recorder.add_to(loop)
         loop.run(0, len(values))
         columns = recorder.columns()

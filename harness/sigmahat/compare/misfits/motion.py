@@ -13,7 +13,7 @@ from sigmahat.compare.misfits.experiment import DRIFT_TIME, Control, Drive, Expe
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 
 Array = NDArray[np.float64]
 
@@ -141,7 +141,7 @@ def _step(
     read.get_real(plant, plant.fmu.references(_RECORD[:2], "output"), angles)
     step.set_real(plant, inputs, table)
     step.set_slopes(plant, inputs, slopes)
-    step.step(plant, np.column_stack([t[:-1], h]))
+    step.step(plant, step_times(t[:-1], h))
     if control is None:
         both = SampleLoop()
         both.extend(read)
