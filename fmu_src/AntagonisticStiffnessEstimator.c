@@ -52,17 +52,17 @@ static void sum(AntagonisticStiffnessEstimator *fmu)
     fmu->valid = fmu->side[0].output.valid && fmu->side[1].output.valid;
 }
 
-static fmi2Status check(const void *model, sh_instance *log)
+static sh_status check(const void *model, sh_instance *log)
 {
     const AntagonisticStiffnessEstimator *fmu = model;
     int i;
 
     for (i = 0; i < 2; ++i) {
         const sh_parameters p = parameters_of(fmu, i);
-        if (sh_estimator_fmu_check(&p, WHO[i], log) != fmi2OK)
-            return fmi2Error;
+        if (sh_estimator_fmu_check(&p, WHO[i], log) != SH_OK)
+            return SH_ERROR;
     }
-    return fmi2OK;
+    return SH_OK;
 }
 
 static void initialize(void *model)
@@ -77,16 +77,16 @@ static void initialize(void *model)
     sum(fmu);
 }
 
-static fmi2Status step(void *model, double t, double h, sh_instance *log)
+static sh_status step(void *model, double t, double h, sh_instance *log)
 {
     AntagonisticStiffnessEstimator *fmu = model;
-    fmi2Status status = fmi2OK;
+    sh_status status = SH_OK;
     int i;
 
     fmu->side[1].input.q = fmu->side[0].input.q;
     fmu->side[1].input_derivative.q = fmu->side[0].input_derivative.q;
     for (i = 0; i < 2; ++i) {
-        fmi2Status of_side;
+        sh_status of_side;
 
         fmu->side[i].parameters = parameters_of(fmu, i);
         of_side = sh_estimator_fmu_step(&fmu->side[i], t, h, WHO[i], log);

@@ -4,7 +4,7 @@
 #include "estimator_fmu.h"
 #include "variables.h"
 
-static fmi2Status check(const void *model, sh_instance *log)
+static sh_status check(const void *model, sh_instance *log)
 {
     const sh_estimator_fmu *fmu = model;
 
@@ -16,7 +16,7 @@ static void initialize(void *model)
     sh_estimator_fmu_initialize(model);
 }
 
-static fmi2Status step(void *model, double t, double h, sh_instance *log)
+static sh_status step(void *model, double t, double h, sh_instance *log)
 {
     return sh_estimator_fmu_step(model, t, h, "", log);
 }

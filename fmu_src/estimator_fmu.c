@@ -2,16 +2,16 @@
 
 #include <math.h>
 
-fmi2Status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
+sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
                                   sh_instance *log)
 {
     sh_violation violation;
 
     if (!sh_parameters_check(parameters, &violation))
-        return fmi2OK;
-    sh_log(log, fmi2Error, "%sParameter %s = %.9g is out of its range: %s.", who, violation.name,
+        return SH_OK;
+    sh_log(log, SH_ERROR, "%sParameter %s = %.9g is out of its range: %s.", who, violation.name,
            violation.value, violation.range);
-    return fmi2Error;
+    return SH_ERROR;
 }
 
 void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu)
@@ -57,32 +57,32 @@ static void log_skipped(const sh_measurement *z, double t, const char *who, sh_i
 
     for (i = 0; i < sizeof values / sizeof values[0]; ++i) {
         if (!(fabs(values[i]) <= SH_LARGEST_MEASUREMENT)) {
-            sh_log(log, fmi2Warning,
+            sh_log(log, SH_WARNING,
                    "%sTick at t = %.9g s skipped, the estimate is kept: expected %s finite and at "
                    "most %g in magnitude, received %g.",
                    who, t, NAMES[i], SH_LARGEST_MEASUREMENT, values[i]);
             return;
         }
     }
-    sh_log(log, fmi2Warning,
+    sh_log(log, SH_WARNING,
            "%sTick at t = %.9g s skipped, the estimate is kept: the regression overflows at "
            "theta = %g, q = %g, tau = %g.",
            who, t, z->theta, z->q, z->tau);
 }
 
-fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
+sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
                                  sh_instance *log)
 {
     const double T = fmu->parameters.samplePeriod;
-    fmi2Status status = fmi2OK;
+    sh_status status = SH_OK;
     double after;
 
     if (h / T > MAX_TICKS) {
-        sh_log(log, fmi2Error,
-               "%sfmi2DoStep: communicationStepSize = %g s is more than %g times samplePeriod = "
+        sh_log(log, SH_ERROR,
+               "%sThe communication step of %g s is more than %g times samplePeriod = "
                "%g s; expected a shorter step.",
                who, h, MAX_TICKS, T);
-        return fmi2Error;
+        return SH_ERROR;
     }
     while (sh_sample_clock_tick(&fmu->clock, h, T, &after)) {
         const sh_measurement z = extrapolate(fmu, after);
@@ -90,16 +90,16 @@ fmi2Status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, cons
         const double skipped = fmu->estimator.skipped;
 
         if (!sh_estimator_tick(&fmu->estimator, &fmu->parameters, &z, &fmu->output)) {
-            status = fmi2Warning;
+            status = SH_WARNING;
             if (was_valid)
                 log_skipped(&z, t + after, who, log);
         } else if (!was_valid) {
-            sh_log(log, fmi2OK, "%sMeasurements are good again at t = %.9g s, %g ticks skipped.",
+            sh_log(log, SH_OK, "%sMeasurements are good again at t = %.9g s, %g ticks skipped.",
                    who, t + after, skipped);
         }
         if (becomes_strained(fmu)) {
-            status = fmi2Warning;
-            sh_log(log, fmi2Warning,
+            status = SH_WARNING;
+            sh_log(log, SH_WARNING,
                    "%sDeformation phi = %g rad at t = %.9g s is more than %g times range.phi = %g "
                    "rad: expected a range.phi that covers it; the stiffness may be far off.",
                    who, fmu->output.phi, t + after,

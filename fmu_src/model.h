@@ -1,4 +1,4 @@
-/* What a model provides for the FMI shell (fmi2_*.c): one constant of type sh_model.
+/* What a model provides for the FMI shell (shell/, fmi2/, fmi3/): one constant of type sh_model.
  *
  * A model is one plain struct without pointers that holds parameters, inputs,
  * outputs and state. The shell allocates it, reaches its variables through the
@@ -10,9 +10,16 @@
 
 #include <stddef.h>
 
-#include "fmi2FunctionTypes.h"
+/* Result of a call. The values are those of FMI, in any of its versions. */
+typedef enum { SH_OK, SH_WARNING, SH_DISCARD, SH_ERROR } sh_status;
 
-typedef enum { SH_TYPE_REAL, SH_TYPE_INTEGER, SH_TYPE_BOOLEAN } sh_type;
+/* Bits, so that a function can name the types that it is for. */
+typedef enum {
+    SH_TYPE_REAL = 1,
+    SH_TYPE_INTEGER = 2,
+    SH_TYPE_ENUMERATION = 4,
+    SH_TYPE_BOOLEAN = 8
+} sh_type;
 
 typedef enum {
     SH_ROLE_INPUT,
@@ -26,6 +33,7 @@ typedef enum {
 typedef struct {
     const char *name;
     size_t offset; /* in the model's struct, of a double (Real) or an int */
+    size_t length; /* number of elements of the array that begins here; 1: no array, 0: inside */
     sh_type type;
     sh_role role;
     double start;
@@ -35,26 +43,26 @@ typedef struct {
 
 /* Sends a message to the user through the logger of the importer; format as in printf. */
 typedef struct sh_instance sh_instance;
-void sh_log(sh_instance *instance, fmi2Status status, const char *format, ...);
+void sh_log(sh_instance *instance, sh_status status, const char *format, ...);
 
 typedef struct {
     const char *identifier; /* modelIdentifier */
-    const char *guid;
+    const char *guid; /* of FMI 2.0; the instantiation token of FMI 3.0 is the same */
     size_t size; /* of the model's struct */
     const sh_variable *variables;
     size_t count;
     /* The time derivative of the input at offset o is at o + derivative_offset. */
     size_t derivative_offset;
-    /* Checks constraints between parameters, after the range of each one. Returns fmi2OK, or
-     * fmi2Error after a message. May be NULL.
+    /* Checks constraints between parameters, after the range of each one. Returns SH_OK, or
+     * SH_ERROR after a message. May be NULL.
      */
-    fmi2Status (*check)(const void *model, sh_instance *log);
+    sh_status (*check)(const void *model, sh_instance *log);
     /* Sets state and outputs from parameters and inputs. May be called again. */
     void (*initialize)(void *model);
     /* Advances the model from t to t + h. Inputs are u + du/dt (s - t) for s in
-     * [t, t + h]. Returns fmi2OK, fmi2Warning or fmi2Error, and logs unless fmi2OK.
+     * [t, t + h]. Returns SH_OK, SH_WARNING or SH_ERROR, and logs unless SH_OK.
      */
-    fmi2Status (*step)(void *model, double t, double h, sh_instance *log);
+    sh_status (*step)(void *model, double t, double h, sh_instance *log);
 } sh_model;
 
 extern const sh_model sh_fmu_model;

@@ -43,7 +43,7 @@ static const char *input_name(size_t i)
     return VARIABLES[k].name;
 }
 
-static fmi2Status step(void *model, double t, double h, sh_instance *log)
+static sh_status step(void *model, double t, double h, sh_instance *log)
 {
     sh_plant *plant = model;
     double x[SH_PLANT_STATES], u_end[SH_PLANT_INPUTS], internal_step = plant->h;
@@ -52,28 +52,28 @@ static fmi2Status step(void *model, double t, double h, sh_instance *log)
     for (i = 0; i < SH_PLANT_INPUTS; ++i) {
         u_end[i] = plant->u[i] + plant->du[i] * h;
         if (!isfinite(plant->u[i]) || !isfinite(u_end[i])) {
-            sh_log(log, fmi2Error,
+            sh_log(log, SH_ERROR,
                    "Step from t = %.9g s refused, the state is kept: expected a finite input "
                    "%s, received %g at its begin and %g at its end.",
                    t, input_name(i), plant->u[i], u_end[i]);
-            return fmi2Error;
+            return SH_ERROR;
         }
     }
     for (i = 0; i < SH_PLANT_STATES; ++i)
         x[i] = plant->x[i];
     if (sh_radau_integrate(x, plant->u, plant->du, plant->p, h, &internal_step) == 0) {
-        sh_log(log, fmi2Error,
+        sh_log(log, SH_ERROR,
                "Step from t = %.9g s to %.9g s refused, the state is kept: the equations have "
                "no solution there, or it takes more than a million internal steps. Look for "
                "extreme inputs or parameters.",
                t, t + h);
-        return fmi2Error;
+        return SH_ERROR;
     }
     for (i = 0; i < SH_PLANT_STATES; ++i)
         plant->x[i] = x[i];
     plant->h = internal_step;
     set_outputs(plant, u_end, plant->sample + 1);
-    return fmi2OK;
+    return SH_OK;
 }
 
 const sh_model sh_fmu_model = {

@@ -4,12 +4,13 @@ import re
 from collections.abc import Callable
 from xml.etree.ElementTree import Element
 
+from sigmahat.export.arrays import arrays
 from sigmahat.export.templates import variables
 
 _TYPES = {
     "Real": "SH_TYPE_REAL",
     "Integer": "SH_TYPE_INTEGER",
-    "Enumeration": "SH_TYPE_INTEGER",
+    "Enumeration": "SH_TYPE_ENUMERATION",
     "Boolean": "SH_TYPE_BOOLEAN",
 }
 
@@ -113,11 +114,13 @@ def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> st
     """
     identifier = root.findall("CoSimulation")[0].attrib["modelIdentifier"]
     rows = []
-    for variable in variables(root):
+    lengths = {a.first: a.length for a in arrays([v.attrib["name"] for v in variables(root)])}
+    for place, variable in enumerate(variables(root)):
         kind, name = variable[0], variable.attrib["name"]
         low, high, low_open, high_open = _limits(root, kind)
         rows.append(
-            f'    {{"{name}", offsetof({struct}, {places[name]}), {_TYPES[kind.tag]}, '
+            f'    {{"{name}", offsetof({struct}, {places[name]}), '
+            f"{lengths.get(place, 0)}, {_TYPES[kind.tag]}, "
             f"{_role(variable)}, {_start(kind)}, "
             f"{low}, {high}, {low_open}, {high_open}}},"
         )

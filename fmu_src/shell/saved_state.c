@@ -1,4 +1,4 @@
-/* FMI 2.0: saving, restoring and serialising the state of the FMU.
+/* Saving, restoring and serialising the state of the FMU, the same in every version of FMI.
  *
  * A saved state is one block without pointers: this header, then the model's
  * struct. Serialised, it is the same bytes; version, GUID, length and checksum
@@ -7,11 +7,11 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "instance.h"
+#include "saved_state.h"
 
 enum {
     GUID_LENGTH = 64,
-    STATE_VERSION = 6 /* to be raised with every change of a model's struct: the GUID changes
+    STATE_VERSION = 7 /* to be raised with every change of a model's struct: the GUID changes
                          with the variables only */
 };
 
@@ -21,7 +21,7 @@ typedef struct {
     uint32_t state; /* sh_state */
     uint64_t size;  /* of header and model */
     char guid[GUID_LENGTH];
-    double time;
+    double time, stop_time, longest_step;
     int32_t outputs_stale, parameters_unchecked;
     uint64_t checksum; /* of all bytes of the block, taken with 0 in this place */
 } state_header;
@@ -68,19 +68,19 @@ static const char *defect(const void *block, size_t size)
     return NULL;
 }
 
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
+sh_status sh_save_state(void *handle, void **state, const char *function)
 {
-    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2GetFMUstate");
+    sh_instance *instance = sh_enter(handle, SH_ANY, function);
     state_header header;
     unsigned char *block;
 
-    if (instance == NULL || !sh_has(instance, FMUstate, "fmi2GetFMUstate", "FMUstate"))
-        return fmi2Error;
+    if (instance == NULL || !sh_has(instance, state, function, "FMUState"))
+        return SH_ERROR;
     /* A state from an earlier call may be handed in, to be overwritten. */
-    block = *FMUstate != NULL ? *FMUstate : sh_allocate(&instance->callbacks, block_size());
+    block = *state != NULL ? *state : sh_allocate(&instance->importer, block_size());
     if (block == NULL) {
-        sh_log(instance, fmi2Error, "fmi2GetFMUstate: out of memory.");
-        return fmi2Error;
+        sh_log(instance, SH_ERROR, "%s: out of memory.", function);
+        return SH_ERROR;
     }
     memset(&header, 0, sizeof header);
     memcpy(header.magic, MAGIC, sizeof MAGIC);
@@ -89,104 +89,107 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
     header.size = block_size();
     strncpy(header.guid, sh_fmu_model.guid, GUID_LENGTH - 1);
     header.time = instance->time;
+    header.stop_time = instance->stop_time;
+    header.longest_step = instance->longest_step;
     header.outputs_stale = instance->outputs_stale;
     header.parameters_unchecked = instance->parameters_unchecked;
     memcpy(block, &header, sizeof header);
     memcpy(block + sizeof header, instance->model, sh_fmu_model.size);
     header.checksum = checksum(block, block_size());
     memcpy(block, &header, sizeof header);
-    *FMUstate = block;
-    return fmi2OK;
+    *state = block;
+    return SH_OK;
 }
 
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
+sh_status sh_restore_state(void *handle, const void *state, const char *function)
 {
-    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2SetFMUstate");
-    const unsigned char *block = FMUstate;
+    sh_instance *instance = sh_enter(handle, SH_ANY, function);
+    const unsigned char *block = state;
     state_header header;
     const char *what;
 
-    if (instance == NULL || !sh_has(instance, FMUstate, "fmi2SetFMUstate", "FMUstate"))
-        return fmi2Error;
+    if (instance == NULL || !sh_has(instance, state, function, "FMUState"))
+        return SH_ERROR;
     what = defect(block, block_size());
     if (what != NULL) {
-        sh_log(instance, fmi2Error, "fmi2SetFMUstate: the state %s.", what);
-        return fmi2Error;
+        sh_log(instance, SH_ERROR, "%s: the state %s.", function, what);
+        return SH_ERROR;
     }
     memcpy(&header, block, sizeof header);
     memcpy(instance->model, block + sizeof header, sh_fmu_model.size);
     instance->state = (sh_state)header.state;
     instance->time = header.time;
+    instance->stop_time = header.stop_time;
+    instance->longest_step = header.longest_step;
     instance->outputs_stale = header.outputs_stale;
     instance->parameters_unchecked = header.parameters_unchecked;
     instance->slopes_set = 1; /* the state may have some */
-    return fmi2OK;
+    return SH_OK;
 }
 
-fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
+sh_status sh_free_state(void *handle, void **state, const char *function)
 {
-    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2FreeFMUstate");
+    sh_instance *instance = sh_enter(handle, SH_ANY, function);
 
     if (instance == NULL)
-        return fmi2Error;
-    if (FMUstate != NULL) {
-        sh_release(&instance->callbacks, *FMUstate);
-        *FMUstate = NULL;
+        return SH_ERROR;
+    if (state != NULL) {
+        sh_release(&instance->importer, *state);
+        *state = NULL;
     }
-    return fmi2OK;
+    return SH_OK;
 }
 
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t *size)
+sh_status sh_state_size(void *handle, const void *state, size_t *size, const char *function)
 {
-    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2SerializedFMUstateSize");
+    sh_instance *instance = sh_enter(handle, SH_ANY, function);
 
-    if (instance == NULL || !sh_has(instance, FMUstate, "fmi2SerializedFMUstateSize", "FMUstate") ||
-        !sh_has(instance, size, "fmi2SerializedFMUstateSize", "size"))
-        return fmi2Error;
+    if (instance == NULL || !sh_has(instance, state, function, "FMUState") ||
+        !sh_has(instance, size, function, "size"))
+        return SH_ERROR;
     *size = block_size();
-    return fmi2OK;
+    return SH_OK;
 }
 
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[],
-                                 size_t size)
+sh_status sh_serialize_state(void *handle, const void *state, void *bytes, size_t size,
+                             const char *function)
 {
-    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2SerializeFMUstate");
+    sh_instance *instance = sh_enter(handle, SH_ANY, function);
 
-    if (instance == NULL || !sh_has(instance, FMUstate, "fmi2SerializeFMUstate", "FMUstate") ||
-        !sh_has(instance, serializedState, "fmi2SerializeFMUstate", "serializedState"))
-        return fmi2Error;
+    if (instance == NULL || !sh_has(instance, state, function, "FMUState") ||
+        !sh_has(instance, bytes, function, "serializedState"))
+        return SH_ERROR;
     if (size < block_size()) {
-        sh_log(instance, fmi2Error, "fmi2SerializeFMUstate: size = %lu bytes; expected %lu.",
+        sh_log(instance, SH_ERROR, "%s: size = %lu bytes; expected %lu.", function,
                (unsigned long)size, (unsigned long)block_size());
-        return fmi2Error;
+        return SH_ERROR;
     }
-    memcpy(serializedState, FMUstate, block_size());
-    return fmi2OK;
+    memcpy(bytes, state, block_size());
+    return SH_OK;
 }
 
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
-                                   fmi2FMUstate *FMUstate)
+sh_status sh_deserialize_state(void *handle, const void *bytes, size_t size, void **state,
+                               const char *function)
 {
-    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2DeSerializeFMUstate");
+    sh_instance *instance = sh_enter(handle, SH_ANY, function);
     const char *what;
     void *block;
 
-    if (instance == NULL ||
-        !sh_has(instance, serializedState, "fmi2DeSerializeFMUstate", "serializedState") ||
-        !sh_has(instance, FMUstate, "fmi2DeSerializeFMUstate", "FMUstate"))
-        return fmi2Error;
-    what = defect(serializedState, size);
+    if (instance == NULL || !sh_has(instance, bytes, function, "serializedState") ||
+        !sh_has(instance, state, function, "FMUState"))
+        return SH_ERROR;
+    what = defect(bytes, size);
     if (what != NULL) {
-        sh_log(instance, fmi2Error, "fmi2DeSerializeFMUstate: the state (%lu bytes) %s.",
-               (unsigned long)size, what);
-        return fmi2Error;
+        sh_log(instance, SH_ERROR, "%s: the state (%lu bytes) %s.", function, (unsigned long)size,
+               what);
+        return SH_ERROR;
     }
-    block = sh_allocate(&instance->callbacks, block_size());
+    block = sh_allocate(&instance->importer, block_size());
     if (block == NULL) {
-        sh_log(instance, fmi2Error, "fmi2DeSerializeFMUstate: out of memory.");
-        return fmi2Error;
+        sh_log(instance, SH_ERROR, "%s: out of memory.", function);
+        return SH_ERROR;
     }
-    memcpy(block, serializedState, block_size());
-    *FMUstate = block;
-    return fmi2OK;
+    memcpy(block, bytes, block_size());
+    *state = block;
+    return SH_OK;
 }

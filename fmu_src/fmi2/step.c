@@ -1,65 +1,13 @@
 /* FMI 2.0 for Co-Simulation: the communication step and its status. */
-#include <float.h>
-#include <math.h>
-#include <string.h>
-
+#include "fmi2Functions.h"
 #include "instance.h"
-
-/* Derivatives of inputs are valid for one step. In the next step inputs are constant, unless the
- * importer sets derivatives again.
- */
-static void clear_input_derivatives(sh_instance *instance)
-{
-    size_t i;
-
-    if (!instance->slopes_set)
-        return;
-    instance->slopes_set = 0;
-    for (i = 0; i < sh_fmu_model.count; ++i) {
-        const sh_variable *variable = &sh_fmu_model.variables[i];
-        if (variable->role == SH_ROLE_INPUT)
-            *(double *)(void *)((char *)instance->model + variable->offset +
-                                sh_fmu_model.derivative_offset) = 0.0;
-    }
-}
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
                       fmi2Real communicationStepSize, fmi2Boolean noSetFMUStatePriorToCurrentPoint)
 {
-    sh_instance *instance = sh_enter(c, SH_STEP, "fmi2DoStep");
-    const double t = currentCommunicationPoint, h = communicationStepSize;
-    double late, rounding;
-    fmi2Status status;
-
     (void)noSetFMUStatePriorToCurrentPoint;
-    if (instance == NULL)
-        return fmi2Error;
-    if (!(h > 0.0) || !isfinite(h)) {
-        sh_log(instance, fmi2Error,
-               "fmi2DoStep: communicationStepSize = %.9g s; expected a finite number above 0.", h);
-        return fmi2Error;
-    }
-    /* An importer that adds up its time makes rounding errors. They have no effect, as ticks are
-     * counted by h. A larger difference that is still small comes from an importer whose h does not
-     * quite fit its times: then this step also covers the difference, so that it ends at t + h.
-     */
-    late = t - instance->time;
-    rounding = 8.0 * DBL_EPSILON * fabs(t);
-    if (!isfinite(t) || !(fabs(late) <= fmin(1e-3 * h, 1e-6) + rounding)) {
-        sh_log(instance, fmi2Error,
-               "fmi2DoStep: currentCommunicationPoint = %.15g s; expected %.15g s, "
-               "where the last step ended.",
-               t, instance->time);
-        return fmi2Error;
-    }
-    if (sh_check_parameters(instance) != fmi2OK)
-        return fmi2Error;
-    status = sh_fmu_model.step(instance->model, t, fabs(late) > rounding ? h + late : h, instance);
-    if (status > fmi2Warning)
-        return status;
-    instance->time = t + h;
-    clear_input_derivatives(instance);
-    return status;
+    return (fmi2Status)sh_communication_step(c, currentCommunicationPoint, communicationStepSize,
+                                             "fmi2DoStep");
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c)
@@ -67,7 +15,7 @@ fmi2Status fmi2CancelStep(fmi2Component c)
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2CancelStep");
 
     if (instance != NULL)
-        sh_log(instance, fmi2Error,
+        sh_log(instance, SH_ERROR,
                "fmi2CancelStep: no step is in progress; steps run synchronously.");
     return fmi2Error;
 }
@@ -81,7 +29,7 @@ static fmi2Status no_status(fmi2Component c, const char *function)
 
     if (instance == NULL)
         return fmi2Error;
-    sh_log(instance, fmi2Discard, "%s: no information of this kind; no step is pending.", function);
+    sh_log(instance, SH_DISCARD, "%s: no information of this kind; no step is pending.", function);
     return fmi2Discard;
 }
 

@@ -1,0 +1,103 @@
+/* FMI 2.0: inquiry, logging, creation and the course of a simulation. */
+#include "fmi2Functions.h"
+#include "instance.h"
+
+const char *fmi2GetTypesPlatform(void)
+{
+    return fmi2TypesPlatform;
+}
+
+const char *fmi2GetVersion(void)
+{
+    return fmi2Version;
+}
+
+void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
+                const char *text)
+{
+    const fmi2CallbackLogger logger = (fmi2CallbackLogger)instance->importer.logger;
+    char escaped[1024];
+    size_t length = 0;
+
+    /* The logger uses the message as a format: a % must not start a conversion. */
+    for (; *text != '\0' && length + 2 < sizeof escaped; ++text) {
+        if (*text == '%')
+            escaped[length++] = '%';
+        escaped[length++] = *text;
+    }
+    escaped[length] = '\0';
+    logger(instance->importer.environment, instance->name, (fmi2Status)status, category, escaped);
+}
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
+                               const fmi2String categories[])
+{
+    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2SetDebugLogging");
+
+    if (instance == NULL)
+        return fmi2Error;
+    return (fmi2Status)sh_choose_categories(instance, loggingOn, nCategories, categories,
+                                            "fmi2SetDebugLogging");
+}
+
+fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
+                              fmi2String fmuResourceLocation,
+                              const fmi2CallbackFunctions *functions, fmi2Boolean visible,
+                              fmi2Boolean loggingOn)
+{
+    sh_importer importer;
+
+    (void)fmuResourceLocation; /* the FMU has no resources */
+    (void)visible;
+    if (functions == NULL)
+        return NULL;
+    importer.environment = functions->componentEnvironment;
+    importer.logger = (void (*)(void))functions->logger;
+    importer.allocate = functions->allocateMemory;
+    importer.release = functions->freeMemory;
+    if (fmuType != fmi2CoSimulation)
+        return sh_refuse_instance(&importer, "fmi2Instantiate", "model exchange");
+    return sh_create(&importer, instanceName, fmuGUID, loggingOn, "fmi2Instantiate");
+}
+
+void fmi2FreeInstance(fmi2Component c)
+{
+    sh_destroy(c);
+}
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance,
+                               fmi2Real startTime, fmi2Boolean stopTimeDefined, fmi2Real stopTime)
+{
+    const sh_experiment experiment = {toleranceDefined, tolerance, startTime, stopTimeDefined,
+                                      stopTime};
+    sh_instance *instance = sh_enter(c, SH_INSTANTIATED, "fmi2SetupExperiment");
+
+    if (instance == NULL)
+        return fmi2Error;
+    return (fmi2Status)sh_set_up(instance, &experiment, "fmi2SetupExperiment");
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c)
+{
+    return (fmi2Status)sh_begin_initialization(c, "fmi2EnterInitializationMode");
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c)
+{
+    return (fmi2Status)sh_end_initialization(c, "fmi2ExitInitializationMode");
+}
+
+fmi2Status fmi2Terminate(fmi2Component c)
+{
+    return (fmi2Status)sh_terminate(c, "fmi2Terminate");
+}
+
+fmi2Status fmi2Reset(fmi2Component c)
+{
+    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2Reset");
+
+    if (instance == NULL)
+        return fmi2Error;
+    sh_reset(instance);
+    return fmi2OK;
+}

@@ -1,0 +1,213 @@
+/* FMI 2.0: reading and writing variables, one by one. */
+#include "access.h"
+#include "fmi2Functions.h"
+
+const char *sh_type_name(sh_type type)
+{
+    switch (type) {
+    case SH_TYPE_REAL:
+        return "Real";
+    case SH_TYPE_BOOLEAN:
+        return "Boolean";
+    default:
+        return "Integer or Enumeration";
+    }
+}
+
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
+{
+    const sh_access access = {c, "fmi2GetReal", SH_TYPE_REAL, 0};
+    const sh_instance *instance = sh_begin_get(&access, vr, nvr, value);
+    size_t i;
+
+    if (instance == NULL)
+        return fmi2Error;
+    for (i = 0; i < nvr; ++i) {
+        const sh_variable *variable = sh_find(&access, vr[i]);
+        if (variable == NULL)
+            return fmi2Error;
+        value[i] = sh_read(instance, variable);
+    }
+    return fmi2OK;
+}
+
+static fmi2Status get_int(const sh_access *access, const fmi2ValueReference vr[], size_t nvr,
+                          int value[])
+{
+    const sh_instance *instance = sh_begin_get(access, vr, nvr, value);
+    size_t i;
+
+    if (instance == NULL)
+        return fmi2Error;
+    for (i = 0; i < nvr; ++i) {
+        const sh_variable *variable = sh_find(access, vr[i]);
+        if (variable == NULL)
+            return fmi2Error;
+        value[i] = (int)sh_read(instance, variable);
+    }
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                          fmi2Integer value[])
+{
+    const sh_access access = {c, "fmi2GetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, 0};
+
+    return get_int(&access, vr, nvr, value);
+}
+
+fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                          fmi2Boolean value[])
+{
+    const sh_access access = {c, "fmi2GetBoolean", SH_TYPE_BOOLEAN, 0};
+
+    return get_int(&access, vr, nvr, value);
+}
+
+/* No FMU of this project has a variable of type String. */
+static fmi2Status no_strings(sh_instance *instance, size_t nvr, const char *function)
+{
+    if (instance == NULL)
+        return fmi2Error;
+    if (nvr == 0)
+        return fmi2OK;
+    sh_log(instance, SH_ERROR, "%s: %s has no variables of type String.", function,
+           sh_fmu_model.identifier);
+    return fmi2Error;
+}
+
+fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                         fmi2String value[])
+{
+    const sh_access access = {c, "fmi2GetString", 0, 0};
+
+    return no_strings(sh_begin_get(&access, vr, nvr, value), nvr, "fmi2GetString");
+}
+
+fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                       const fmi2Real value[])
+{
+    const sh_access access = {c, "fmi2SetReal", SH_TYPE_REAL, 0};
+    sh_instance *instance = sh_begin_set(&access, vr, nvr, value);
+    const sh_variable *variables = sh_fmu_model.variables;
+    size_t i;
+
+    if (instance == NULL)
+        return fmi2Error;
+    for (i = 0; i < nvr; ++i)
+        if (!sh_accepts(instance, &variables[vr[i]], value[i], access.function))
+            return fmi2Error;
+    for (i = 0; i < nvr; ++i)
+        sh_write(instance, &variables[vr[i]], value[i]);
+    return fmi2OK;
+}
+
+static fmi2Status set_int(const sh_access *access, const fmi2ValueReference vr[], size_t nvr,
+                          const int value[])
+{
+    sh_instance *instance = sh_begin_set(access, vr, nvr, value);
+    const sh_variable *variables = sh_fmu_model.variables;
+    size_t i;
+
+    if (instance == NULL)
+        return fmi2Error;
+    for (i = 0; i < nvr; ++i)
+        if (!sh_accepts(instance, &variables[vr[i]], value[i], access->function))
+            return fmi2Error;
+    for (i = 0; i < nvr; ++i)
+        sh_write(instance, &variables[vr[i]], value[i]);
+    return fmi2OK;
+}
+
+fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                          const fmi2Integer value[])
+{
+    const sh_access access = {c, "fmi2SetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, 0};
+
+    return set_int(&access, vr, nvr, value);
+}
+
+fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                          const fmi2Boolean value[])
+{
+    const sh_access access = {c, "fmi2SetBoolean", SH_TYPE_BOOLEAN, 0};
+
+    return set_int(&access, vr, nvr, value);
+}
+
+fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                         const fmi2String value[])
+{
+    sh_instance *instance =
+        sh_enter(c, SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, "fmi2SetString");
+
+    (void)vr;
+    (void)value;
+    return no_strings(instance, nvr, "fmi2SetString");
+}
+
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                       const fmi2Integer order[], const fmi2Real value[])
+{
+    const sh_access access = {c, "fmi2SetRealInputDerivatives", SH_TYPE_REAL, 0};
+    sh_instance *instance = sh_begin_set(&access, vr, nvr, value);
+    const sh_variable *variables = sh_fmu_model.variables;
+    size_t i;
+
+    if (instance == NULL || (nvr > 0 && !sh_has(instance, order, access.function, "order")))
+        return fmi2Error;
+    for (i = 0; i < nvr; ++i) {
+        const sh_variable *variable = &variables[vr[i]];
+        if (variable->role != SH_ROLE_INPUT) {
+            sh_log(instance, SH_ERROR, "%s: %s is not an input.", access.function, variable->name);
+            return fmi2Error;
+        }
+        if (order[i] != 1) {
+            sh_log(instance, SH_ERROR, "%s: order %d of %s is not supported; expected 1.",
+                   access.function, order[i], variable->name);
+            return fmi2Error;
+        }
+    }
+    instance->slopes_set = 1;
+    for (i = 0; i < nvr; ++i)
+        *sh_slope(instance, &variables[vr[i]]) = value[i];
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                        const fmi2Integer order[], fmi2Real value[])
+{
+    sh_instance *instance = sh_enter(c, SH_STEP | SH_TERMINATED, "fmi2GetRealOutputDerivatives");
+
+    (void)vr;
+    (void)order;
+    (void)value;
+    if (instance == NULL)
+        return fmi2Error;
+    if (nvr == 0)
+        return fmi2OK;
+    sh_log(instance, SH_ERROR,
+           "fmi2GetRealOutputDerivatives: not provided (maxOutputDerivativeOrder is 0).");
+    return fmi2Error;
+}
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
+                                        size_t nUnknown, const fmi2ValueReference vKnown_ref[],
+                                        size_t nKnown, const fmi2Real dvKnown[],
+                                        fmi2Real dvUnknown[])
+{
+    sh_instance *instance =
+        sh_enter(c, SH_INITIALIZATION | SH_STEP | SH_TERMINATED, "fmi2GetDirectionalDerivative");
+
+    (void)vUnknown_ref;
+    (void)nUnknown;
+    (void)vKnown_ref;
+    (void)nKnown;
+    (void)dvKnown;
+    (void)dvUnknown;
+    if (instance != NULL)
+        sh_log(instance, SH_ERROR,
+               "fmi2GetDirectionalDerivative: not provided "
+               "(providesDirectionalDerivative is false).");
+    return fmi2Error;
+}

@@ -1,0 +1,160 @@
+/* FMI 3.0: inquiry, logging, creation and the course of a simulation. */
+#include "fmi3Functions.h"
+#include "instance.h"
+
+const char *fmi3GetVersion(void)
+{
+    return fmi3Version;
+}
+
+void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
+                const char *text)
+{
+    const fmi3LogMessageCallback logger = (fmi3LogMessageCallback)instance->importer.logger;
+
+    logger(instance->importer.environment, (fmi3Status)status, category, text);
+}
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
+                               const fmi3String categories[])
+{
+    sh_instance *entered = sh_enter(instance, SH_ANY, "fmi3SetDebugLogging");
+
+    if (entered == NULL)
+        return fmi3Error;
+    return (fmi3Status)sh_choose_categories(entered, loggingOn, nCategories, categories,
+                                            "fmi3SetDebugLogging");
+}
+
+static sh_importer importer_of(fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger)
+{
+    sh_importer importer = {0}; /* FMI 3.0 has no functions for memory */
+
+    importer.environment = environment;
+    importer.logger = (void (*)(void))logger;
+    return importer;
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(
+    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
+    fmi3Boolean visible, fmi3Boolean loggingOn, fmi3Boolean eventModeUsed,
+    fmi3Boolean earlyReturnAllowed, const fmi3ValueReference requiredIntermediateVariables[],
+    size_t nRequiredIntermediateVariables, fmi3InstanceEnvironment instanceEnvironment,
+    fmi3LogMessageCallback logMessage, fmi3IntermediateUpdateCallback intermediateUpdate)
+{
+    const sh_importer importer = importer_of(instanceEnvironment, logMessage);
+
+    (void)resourcePath; /* the FMU has no resources */
+    (void)visible;
+    (void)earlyReturnAllowed; /* no step ends early */
+    (void)requiredIntermediateVariables;
+    (void)intermediateUpdate; /* never called */
+    if (eventModeUsed)
+        return sh_refuse_instance(&importer, "fmi3InstantiateCoSimulation",
+                                  "event mode (hasEventMode is false)");
+    if (nRequiredIntermediateVariables > 0)
+        return sh_refuse_instance(&importer, "fmi3InstantiateCoSimulation",
+                                  "intermediate update (providesIntermediateUpdate is false)");
+    return sh_create(&importer, instanceName, instantiationToken, loggingOn,
+                     "fmi3InstantiateCoSimulation");
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String instantiationToken,
+                                          fmi3String resourcePath, fmi3Boolean visible,
+                                          fmi3Boolean loggingOn,
+                                          fmi3InstanceEnvironment instanceEnvironment,
+                                          fmi3LogMessageCallback logMessage)
+{
+    const sh_importer importer = importer_of(instanceEnvironment, logMessage);
+
+    (void)instanceName;
+    (void)instantiationToken;
+    (void)resourcePath;
+    (void)visible;
+    (void)loggingOn;
+    return sh_refuse_instance(&importer, "fmi3InstantiateModelExchange", "model exchange");
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(
+    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
+    fmi3Boolean visible, fmi3Boolean loggingOn, fmi3InstanceEnvironment instanceEnvironment,
+    fmi3LogMessageCallback logMessage, fmi3ClockUpdateCallback clockUpdate,
+    fmi3LockPreemptionCallback lockPreemption, fmi3UnlockPreemptionCallback unlockPreemption)
+{
+    const sh_importer importer = importer_of(instanceEnvironment, logMessage);
+
+    (void)instanceName;
+    (void)instantiationToken;
+    (void)resourcePath;
+    (void)visible;
+    (void)loggingOn;
+    (void)clockUpdate;
+    (void)lockPreemption;
+    (void)unlockPreemption;
+    return sh_refuse_instance(&importer, "fmi3InstantiateScheduledExecution",
+                              "scheduled execution");
+}
+
+void fmi3FreeInstance(fmi3Instance instance)
+{
+    sh_destroy(instance);
+}
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean toleranceDefined,
+                                       fmi3Float64 tolerance, fmi3Float64 startTime,
+                                       fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
+{
+    static const char function[] = "fmi3EnterInitializationMode";
+    const sh_experiment experiment = {toleranceDefined, tolerance, startTime, stopTimeDefined,
+                                      stopTime};
+    sh_instance *entered = sh_enter(instance, SH_INSTANTIATED, function);
+
+    if (entered == NULL || sh_set_up(entered, &experiment, function) != SH_OK)
+        return fmi3Error;
+    return (fmi3Status)sh_begin_initialization(entered, function);
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance instance)
+{
+    return (fmi3Status)sh_end_initialization(instance, "fmi3ExitInitializationMode");
+}
+
+fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint,
+                      fmi3Float64 communicationStepSize,
+                      fmi3Boolean noSetFMUStatePriorToCurrentPoint,
+                      fmi3Boolean *eventHandlingNeeded, fmi3Boolean *terminateSimulation,
+                      fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
+{
+    sh_instance *entered = sh_enter(instance, SH_STEP, "fmi3DoStep");
+    sh_status status;
+
+    (void)noSetFMUStatePriorToCurrentPoint;
+    if (entered == NULL ||
+        !sh_has(entered, eventHandlingNeeded, "fmi3DoStep", "eventHandlingNeeded") ||
+        !sh_has(entered, terminateSimulation, "fmi3DoStep", "terminateSimulation") ||
+        !sh_has(entered, earlyReturn, "fmi3DoStep", "earlyReturn") ||
+        !sh_has(entered, lastSuccessfulTime, "fmi3DoStep", "lastSuccessfulTime"))
+        return fmi3Error;
+    status = sh_communication_step(entered, currentCommunicationPoint, communicationStepSize,
+                                   "fmi3DoStep");
+    *eventHandlingNeeded = fmi3False;
+    *terminateSimulation = fmi3False;
+    *earlyReturn = fmi3False;
+    *lastSuccessfulTime = entered->time;
+    return (fmi3Status)status;
+}
+
+fmi3Status fmi3Terminate(fmi3Instance instance)
+{
+    return (fmi3Status)sh_terminate(instance, "fmi3Terminate");
+}
+
+fmi3Status fmi3Reset(fmi3Instance instance)
+{
+    sh_instance *entered = sh_enter(instance, SH_ANY, "fmi3Reset");
+
+    if (entered == NULL)
+        return fmi3Error;
+    sh_reset(entered);
+    return fmi3OK;
+}

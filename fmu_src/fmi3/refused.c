@@ -1,0 +1,96 @@
+/* FMI 3.0: the functions for what these FMUs do not have. The standard demands that each one exists;
+ * here it fails with a message that says what is missing.
+ */
+#include "fmi3Functions.h"
+#include "instance.h"
+
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-parameter" /* no argument but the instance is used */
+#endif
+
+static fmi3Status refuse(fmi3Instance instance, const char *function, const char *missing)
+{
+    sh_instance *entered = sh_enter(instance, SH_ANY, function);
+
+    if (entered != NULL)
+        sh_log(entered, SH_ERROR, "%s: %s has no %s.", function, sh_fmu_model.identifier, missing);
+    return fmi3Error;
+}
+
+#define REFUSED(Name, missing)                                                                     \
+    fmi3Status fmi3##Name(fmi3Instance instance)                                                   \
+    {                                                                                              \
+        return refuse(instance, "fmi3" #Name, missing);                                            \
+    }
+
+#define REFUSED_WITH(Name, missing, ...)                                                           \
+    fmi3Status fmi3##Name(fmi3Instance instance, __VA_ARGS__)                                      \
+    {                                                                                              \
+        return refuse(instance, "fmi3" #Name, missing);                                            \
+    }
+
+#define REFERENCES const fmi3ValueReference valueReferences[], size_t nValueReferences
+
+REFUSED(EnterEventMode, "event mode (hasEventMode is false)")
+REFUSED(EnterStepMode, "event mode (hasEventMode is false)")
+REFUSED(EvaluateDiscreteStates, "event mode (hasEventMode is false)")
+REFUSED_WITH(UpdateDiscreteStates, "event mode (hasEventMode is false)",
+             fmi3Boolean *discreteStatesNeedUpdate, fmi3Boolean *terminateSimulation,
+             fmi3Boolean *nominalsOfContinuousStatesChanged,
+             fmi3Boolean *valuesOfContinuousStatesChanged, fmi3Boolean *nextEventTimeDefined,
+             fmi3Float64 *nextEventTime)
+
+REFUSED(EnterConfigurationMode, "structural parameters")
+REFUSED(ExitConfigurationMode, "structural parameters")
+
+REFUSED_WITH(GetNumberOfVariableDependencies, "dependencies of single elements",
+             fmi3ValueReference valueReference, size_t *nDependencies)
+REFUSED_WITH(GetVariableDependencies, "dependencies of single elements",
+             fmi3ValueReference dependent, size_t elementIndicesOfDependent[],
+             fmi3ValueReference independents[], size_t elementIndicesOfIndependents[],
+             fmi3DependencyKind dependencyKinds[], size_t nDependencies)
+
+REFUSED_WITH(GetDirectionalDerivative, "directional derivatives",
+             const fmi3ValueReference unknowns[], size_t nUnknowns,
+             const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
+             size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
+REFUSED_WITH(GetAdjointDerivative, "adjoint derivatives", const fmi3ValueReference unknowns[],
+             size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns,
+             const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[],
+             size_t nSensitivity)
+REFUSED_WITH(GetOutputDerivatives, "derivatives of outputs (maxOutputDerivativeOrder is 0)",
+             REFERENCES, const fmi3Int32 orders[], fmi3Float64 values[], size_t nValues)
+
+REFUSED_WITH(GetIntervalDecimal, "clocks", REFERENCES, fmi3Float64 intervals[],
+             fmi3IntervalQualifier qualifiers[])
+REFUSED_WITH(GetIntervalFraction, "clocks", REFERENCES, fmi3UInt64 counters[],
+             fmi3UInt64 resolutions[], fmi3IntervalQualifier qualifiers[])
+REFUSED_WITH(GetShiftDecimal, "clocks", REFERENCES, fmi3Float64 shifts[])
+REFUSED_WITH(GetShiftFraction, "clocks", REFERENCES, fmi3UInt64 counters[],
+             fmi3UInt64 resolutions[])
+REFUSED_WITH(SetIntervalDecimal, "clocks", REFERENCES, const fmi3Float64 intervals[])
+REFUSED_WITH(SetIntervalFraction, "clocks", REFERENCES, const fmi3UInt64 counters[],
+             const fmi3UInt64 resolutions[])
+REFUSED_WITH(SetShiftDecimal, "clocks", REFERENCES, const fmi3Float64 shifts[])
+REFUSED_WITH(SetShiftFraction, "clocks", REFERENCES, const fmi3UInt64 counters[],
+             const fmi3UInt64 resolutions[])
+REFUSED_WITH(ActivateModelPartition, "clocks", fmi3ValueReference clockReference,
+             fmi3Float64 activationTime)
+
+REFUSED(EnterContinuousTimeMode, "model exchange")
+REFUSED_WITH(CompletedIntegratorStep, "model exchange",
+             fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *enterEventMode,
+             fmi3Boolean *terminateSimulation)
+REFUSED_WITH(SetTime, "model exchange", fmi3Float64 time)
+REFUSED_WITH(SetContinuousStates, "model exchange", const fmi3Float64 continuousStates[],
+             size_t nContinuousStates)
+REFUSED_WITH(GetContinuousStateDerivatives, "model exchange", fmi3Float64 derivatives[],
+             size_t nContinuousStates)
+REFUSED_WITH(GetEventIndicators, "model exchange", fmi3Float64 eventIndicators[],
+             size_t nEventIndicators)
+REFUSED_WITH(GetContinuousStates, "model exchange", fmi3Float64 continuousStates[],
+             size_t nContinuousStates)
+REFUSED_WITH(GetNominalsOfContinuousStates, "model exchange", fmi3Float64 nominals[],
+             size_t nContinuousStates)
+REFUSED_WITH(GetNumberOfEventIndicators, "model exchange", size_t *nEventIndicators)
+REFUSED_WITH(GetNumberOfContinuousStates, "model exchange", size_t *nContinuousStates)

@@ -1,0 +1,156 @@
+#include "instance.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "access.h"
+
+static const char *state_name(sh_state state)
+{
+    switch (state) {
+    case SH_INSTANTIATED:
+        return "before initialisation";
+    case SH_INITIALIZATION:
+        return "in initialisation mode";
+    case SH_STEP:
+        return "between steps";
+    default:
+        return "after termination";
+    }
+}
+
+sh_instance *sh_enter(void *handle, unsigned allowed_states, const char *function)
+{
+    sh_instance *instance = handle;
+
+    if (instance == NULL)
+        return NULL; /* no logger to report it to */
+    if (!((unsigned)instance->state & allowed_states)) {
+        sh_log(instance, SH_ERROR, "%s: not allowed %s.", function, state_name(instance->state));
+        return NULL;
+    }
+    return instance;
+}
+
+int sh_has(sh_instance *instance, const void *pointer, const char *function, const char *argument)
+{
+    if (pointer != NULL)
+        return 1;
+    sh_log(instance, SH_ERROR, "%s: argument %s is NULL.", function, argument);
+    return 0;
+}
+
+/* Both or none: memory must be freed by the same library that allocated it. */
+static int importer_allocates(const sh_importer *importer)
+{
+    return importer->allocate != NULL && importer->release != NULL;
+}
+
+void *sh_allocate(const sh_importer *importer, size_t size)
+{
+    void *memory = importer_allocates(importer) ? importer->allocate(1, size) : malloc(size);
+
+    if (memory != NULL)
+        memset(memory, 0, size);
+    return memory;
+}
+
+void sh_release(const sh_importer *importer, void *memory)
+{
+    if (memory == NULL)
+        return;
+    if (importer_allocates(importer))
+        importer->release(memory);
+    else
+        free(memory);
+}
+
+/* For messages while there is no instance. */
+static sh_instance nobody(const sh_importer *importer)
+{
+    static char nameless[] = "(no name)";
+    sh_instance instance = {0};
+
+    instance.importer = *importer;
+    instance.name = nameless;
+    instance.categories = SH_LOG_ALL;
+    return instance;
+}
+
+void *sh_refuse_instance(const sh_importer *importer, const char *function, const char *wanted)
+{
+    sh_instance before = nobody(importer);
+
+    sh_log(&before, SH_ERROR, "%s: %s is an FMU for co-simulation, not for %s.", function,
+           sh_fmu_model.identifier, wanted);
+    return NULL;
+}
+
+sh_instance *sh_create(const sh_importer *importer, const char *name, const char *guid,
+                       int logging_on, const char *function)
+{
+    sh_instance before = nobody(importer);
+    sh_instance *instance;
+
+    if (!sh_has(&before, name, function, "instanceName"))
+        return NULL;
+    if (guid == NULL || strcmp(guid, sh_fmu_model.guid) != 0) {
+        sh_log(&before, SH_ERROR,
+               "%s: the binary of %s expects the GUID %s, the importer gave %s: "
+               "modelDescription.xml and binary are not of the same FMU.",
+               function, sh_fmu_model.identifier, sh_fmu_model.guid, guid != NULL ? guid : "NULL");
+        return NULL;
+    }
+
+    instance = sh_allocate(importer, sizeof *instance);
+    if (instance != NULL) {
+        instance->model = sh_allocate(importer, sh_fmu_model.size);
+        instance->name = sh_allocate(importer, strlen(name) + 1);
+    }
+    if (instance == NULL || instance->model == NULL || instance->name == NULL) {
+        sh_log(&before, SH_ERROR, "%s: out of memory.", function);
+        if (instance != NULL) {
+            sh_release(importer, instance->model);
+            sh_release(importer, instance->name);
+        }
+        sh_release(importer, instance);
+        return NULL;
+    }
+    strcpy(instance->name, name);
+    instance->importer = *importer;
+    instance->categories = logging_on ? SH_LOG_ALL : SH_LOG_STATUS;
+    sh_reset(instance);
+    if (sh_make_utf8(instance->name))
+        sh_log(instance, SH_WARNING, "%s: instanceName is not UTF-8; messages name %s.", function,
+               instance->name);
+    return instance;
+}
+
+void sh_destroy(sh_instance *instance)
+{
+    sh_importer importer;
+
+    if (instance == NULL)
+        return;
+    importer = instance->importer;
+    sh_release(&importer, instance->model);
+    sh_release(&importer, instance->name);
+    sh_release(&importer, instance);
+}
+
+void sh_reset(sh_instance *instance)
+{
+    size_t i;
+
+    memset(instance->model, 0, sh_fmu_model.size);
+    for (i = 0; i < sh_fmu_model.count; ++i)
+        sh_write(instance, &sh_fmu_model.variables[i], sh_fmu_model.variables[i].start);
+    instance->state = SH_INSTANTIATED;
+    instance->time = 0.0;
+    instance->stop_time = INFINITY;
+    instance->longest_step = 0.0;
+    instance->outputs_stale = 1;
+    instance->parameters_unchecked = 1;
+    instance->slopes_set = 0;
+}

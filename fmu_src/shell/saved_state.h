@@ -1,0 +1,23 @@
+/* Saving, restoring and serialising the state of the FMU.
+ *
+ * `handle` is what the importer gave, and may be NULL; `function` is the name of its function, for
+ * messages. Every function returns SH_ERROR after a message, and then changes nothing.
+ */
+#ifndef SH_SAVED_STATE_H
+#define SH_SAVED_STATE_H
+
+#include "instance.h"
+
+/* Writes the state to *state, or to new memory if that is NULL. */
+sh_status sh_save_state(void *handle, void **state, const char *function);
+sh_status sh_restore_state(void *handle, const void *state, const char *function);
+sh_status sh_free_state(void *handle, void **state, const char *function);
+
+/* The serialised state has *size bytes. */
+sh_status sh_state_size(void *handle, const void *state, size_t *size, const char *function);
+sh_status sh_serialize_state(void *handle, const void *state, void *bytes, size_t size,
+                             const char *function);
+sh_status sh_deserialize_state(void *handle, const void *bytes, size_t size, void **state,
+                               const char *function);
+
+#endif

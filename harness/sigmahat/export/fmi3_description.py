@@ -1,0 +1,151 @@
+"""The model description of the FMI 3.0 twin of an FMU, from that of FMI 2.0.
+
+Value references are the same, and the instantiation token is the GUID. What differs: elements of an
+array become one variable, whose reference is that of its first element; the types have other names;
+there is a variable for time, whose reference follows the others.
+"""
+
+import copy
+from collections.abc import Sequence
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+from sigmahat.export.arrays import Array, arrays
+from sigmahat.export.templates import variables
+
+_TYPES = {"Real": "Float64", "Integer": "Int32", "Boolean": "Boolean", "Enumeration": "Enumeration"}
+
+
+def twin(root: Element) -> Element:
+    """Model description of FMI 3.0 for the complete one of FMI 2.0, which is left as it is."""
+    made = Element("fmiModelDescription", {**root.attrib, "fmiVersion": "3.0"})
+    made.set("instantiationToken", made.attrib.pop("guid"))
+    (identifier,) = (e.attrib["modelIdentifier"] for e in root.findall("CoSimulation"))
+    ElementTree.SubElement(
+        made,
+        "CoSimulation",
+        modelIdentifier=identifier,
+        canGetAndSetFMUState="true",
+        canSerializeFMUState="true",
+        canHandleVariableCommunicationStepSize="true",
+    )
+    found = arrays([v.attrib["name"] for v in variables(root)])
+    for part in ("UnitDefinitions", "TypeDefinitions", "LogCategories", "DefaultExperiment"):
+        made.extend(map(copy.deepcopy, root.findall(part)))
+    for definition in made.findall("TypeDefinitions"):
+        _convert_types(definition)
+    made.append(_model_variables(root, found))
+    made.append(_model_structure(root, found))
+    ElementTree.indent(made)
+    return made
+
+
+def _convert_types(definitions: Element) -> None:
+    for simple in list(definitions):
+        converted = ElementTree.SubElement(definitions, "EnumerationType", simple.attrib)
+        converted.extend(simple.findall("Enumeration/Item"))
+        definitions.remove(simple)
+
+
+def _model_variables(root: Element, found: Sequence[Array]) -> Element:
+    made = Element("ModelVariables")
+    listed = variables(root)
+    for array in found:
+        elements = listed[array.first : array.first + array.length]
+        kind, common = elements[0][0], dict(elements[0].attrib)
+        common["description"] = common.pop("array", common["description"])
+        start = " ".join(e[0].attrib["start"] for e in elements if "start" in e[0].attrib)
+        variable = ElementTree.SubElement(
+            made, _TYPES[kind.tag], {**common, **kind.attrib, "name": array.name}
+        )
+        if start:
+            variable.set("start", start)
+        for size in array.dimensions:
+            ElementTree.SubElement(variable, "Dimension", start=str(size))
+    ElementTree.SubElement(
+        made,
+        "Float64",
+        name="time",
+        valueReference=str(len(listed)),
+        causality="independent",
+        variability="continuous",
+        unit="s",
+        description="Simulation time",
+    )
+    return made
+
+
+def _model_structure(root: Element, found: Sequence[Array]) -> Element:
+    """Outputs and initial unknowns, by value references instead of indices from 1."""
+    made = Element("ModelStructure")
+    first = {a.first + i: a.first for a in found for i in range(a.length)}
+    for part, tag in (("Outputs", "Output"), ("InitialUnknowns", "InitialUnknown")):
+        known: dict[int, set[int]] = {}
+        for unknown in root.findall(f"ModelStructure/{part}/Unknown"):
+            reference = first[int(unknown.attrib["index"]) - 1]
+            listed = unknown.attrib["dependencies"].split()
+            known.setdefault(reference, set()).update(first[int(i) - 1] for i in listed)
+        for reference, dependencies in known.items():
+            entry = ElementTree.SubElement(made, tag, valueReference=str(reference))
+            entry.set("dependencies", " ".join(map(str, sorted(dependencies))))
+            entry.set("dependenciesKind", " ".join(["dependent"] * len(dependencies)))
+    return made
+
+
+def build_description(identifier: str, sources: Sequence[str]) -> Element:
+    """``sources/buildDescription.xml``: the C files that an importer has to compile."""
+    root = Element("fmiBuildDescription", fmiVersion="3.0")
+    configuration = ElementTree.SubElement(
+        root, "BuildConfiguration", modelIdentifier=identifier, description="C99"
+    )
+    files = ElementTree.SubElement(configuration, "SourceFileSet", language="C99")
+    for source in sources:
+        ElementTree.SubElement(files, "SourceFile", name=source)
+    ElementTree.indent(root)
+    return root
+
+
+def terminals_and_icons(root: Element) -> Element:
+    """``terminalsAndIcons/terminalsAndIcons.xml``: the icon, and the measurements as a bus.
+
+    A plant has the terminal ``measurements`` with what its sensors give, an estimator one of the
+    same name with its inputs. Members of one name belong together, so that a tool which knows
+    terminals connects both in one go.
+    """
+    made = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    shown = ElementTree.SubElement(made, "GraphicalRepresentation")
+    corners = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
+    ElementTree.SubElement(shown, "CoordinateSystem", corners, suggestedScalingFactorTo_mm="0.1")
+    ElementTree.SubElement(shown, "Icon", corners)
+    members = dict(_measurements(root))
+    if members:
+        listed = ElementTree.SubElement(made, "Terminals")
+        terminal = ElementTree.SubElement(
+            listed,
+            "Terminal",
+            name="measurements",
+            matchingRule="bus",
+            terminalKind="org.sigmahat.measurements",
+            description="Measured positions and torques of the joint",
+        )
+        for name, member in members.items():
+            ElementTree.SubElement(
+                terminal,
+                "TerminalMemberVariable",
+                variableName=name,
+                memberName=member,
+                variableKind="signal",
+            )
+    ElementTree.indent(made)
+    return made
+
+
+def _measurements(root: Element) -> list[tuple[str, str]]:
+    """Variables of the terminal and their names in it."""
+    names = {c: [] for c in ("input", "output", "parameter")}  # type: dict[str, list[str]]
+    for variable in variables(root):
+        names[variable.attrib["causality"]].append(variable.attrib["name"])
+    measured = [name for name in names["output"] if "_measured" in name]
+    if measured:
+        return [(name, name.replace("_measured", "")) for name in measured]
+    return [(name, name.replace("_sensor", "")) for name in names["input"]]
