@@ -125,6 +125,7 @@ PLANT = {  # AwasPlant: causality, variability, unit, start (None: any)
     "noise.tau_variance": (PLANT_FIXED, None, 1e-5),
     "noise.tau_e_variance": (PLANT_FIXED, None, 1e-3),
     "noise.seed": (PLANT_FIXED, None, 1),
+    "noise.samplePeriod": (PLANT_FIXED, "s", 1e-3),
     **dict.fromkeys(["initial.q", "initial.theta"], (PLANT_FIXED, "rad", 0.0)),
     "initial.theta_c": (PLANT_FIXED, "rad", 0.030 / B),
     **dict.fromkeys(

@@ -6,6 +6,11 @@ from xml.etree.ElementTree import Element
 
 from sigmahat.export.templates import variables
 
+SEED, SAMPLE_PERIOD = "noise.seed", "noise.samplePeriod"
+"""Parameters of a plant with noise besides those of its equations."""
+
+_OWN_FIELDS = {SEED: "seed", SAMPLE_PERIOD: "samplePeriod"}  # of sh_plant
+
 _TYPES = {
     "Real": "SH_TYPE_REAL",
     "Integer": "SH_TYPE_INTEGER",
@@ -50,14 +55,14 @@ def storage_in_sides(root: Element) -> dict[str, str]:
 def storage_in_arrays(root: Element) -> dict[str, str]:
     """Place of every variable of a plant: arrays p, u and y in the order of the template.
 
-    The one Integer, ``noise.seed``, is the field ``seed``.
+    ``noise.seed`` and ``noise.samplePeriod`` are fields of their own.
     """
     array = {"input": "u", "output": "y", "parameter": "p"}
     count = dict.fromkeys(array.values(), 0)
     places = {}
     for variable in variables(root):
-        if variable.find("Real") is None:
-            places[variable.attrib["name"]] = "seed"
+        if variable.attrib["name"] in _OWN_FIELDS:
+            places[variable.attrib["name"]] = _OWN_FIELDS[variable.attrib["name"]]
             continue
         name = array[variable.attrib["causality"]]
         places[variable.attrib["name"]] = f"{name}[{count[name]}]"

@@ -9,12 +9,10 @@ from xml.etree.ElementTree import Element
 
 import casadi as ca
 
+from sigmahat.export.c_variables import SAMPLE_PERIOD, SEED
 from sigmahat.fmi.installed import version
 from sigmahat.plants.equations import PlantEquations
 from sigmahat.user_input.unknown_name import unknown
-
-SEED = "noise.seed"
-"""Parameter that a plant with noise has besides those of its equations."""
 
 
 @dataclass(frozen=True)
@@ -102,6 +100,12 @@ def _list_variables(
         text = "Seed of the noise: one seed is one sequence of samples"
         seed.attrib |= {"variability": "fixed", "initial": "exact", "description": text}
         ElementTree.SubElement(seed, "Integer", start="1")
+        period = ElementTree.SubElement(
+            listed, "ScalarVariable", name=SAMPLE_PERIOD, causality="parameter"
+        )
+        text = "Time between two samples of the noise, which is held in between"
+        period.attrib |= {"variability": "fixed", "initial": "exact", "description": text}
+        ElementTree.SubElement(period, "Real", unit="s", start="1e-3", min="1e-9")
 
 
 def _depends(plant: PlantEquations) -> dict[str, list[str]]:

@@ -30,8 +30,8 @@ def write_plant_fmu(
     write; its folder is made.
 
     It is for FMI 2.0 Co-Simulation and behaves as the plants that come with sigmahat: inputs are
-    held or linear over a step, and a plant with noise has the parameter ``noise.seed``. Parameters
-    are tunable, but for those that start values of states depend on.
+    held or linear over a step, and a plant with noise has the parameters ``noise.seed`` and
+    ``noise.samplePeriod``. Parameters are tunable, but for those that start values of states depend on.
 
     Raises ValueError for a variable that is missing, not in the equations or in an unknown unit,
     RuntimeError if there is no compiler (gcc or clang, or what CC names) or it refuses.
