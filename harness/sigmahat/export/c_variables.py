@@ -93,21 +93,15 @@ def _start(kind: Element) -> str:
     return {"true": "1", "false": "0"}.get(start, start)
 
 
-def _limits(root: Element, kind: Element) -> tuple[str, str, int, int]:
+def _limits(root: Element, kind: Element) -> tuple[str, str]:
     if kind.tag == "Enumeration":
         name = kind.attrib["declaredType"]
         items = root.findall(f"TypeDefinitions/SimpleType[@name='{name}']/Enumeration/Item")
         values = [int(item.attrib["value"]) for item in items]
-        return str(min(values)), str(max(values)), 0, 0
+        return str(min(values)), str(max(values))
     if kind.tag == "Boolean":
-        return "0", "1", 0, 0
-    opened = kind.get("open", "").split()
-    return (
-        kind.get("min", "-HUGE_VAL"),
-        kind.get("max", "HUGE_VAL"),
-        int("min" in opened),
-        int("max" in opened),
-    )
+        return "0", "1"
+    return kind.get("min", "-HUGE_VAL"), kind.get("max", "HUGE_VAL")
 
 
 def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> str:
@@ -120,11 +114,10 @@ def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> st
     rows = []
     for variable in variables(root):
         kind, name = variable[0], variable.attrib["name"]
-        low, high, low_open, high_open = _limits(root, kind)
+        low, high = _limits(root, kind)
         rows.append(
             f'    {{"{name}", offsetof({struct}, {places[name]}), {_TYPES[kind.tag]}, '
-            f"{_role(variable)}, {_start(kind)}, "
-            f"{low}, {high}, {low_open}, {high_open}}},"
+            f"{_role(variable)}, {_start(kind)}, {low}, {high}}},"
         )
     return "\n".join(
         [

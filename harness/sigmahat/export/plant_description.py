@@ -9,6 +9,7 @@ from xml.etree.ElementTree import Element
 
 import casadi as ca
 
+from sigmahat.export import templates
 from sigmahat.export.c_variables import SAMPLE_PERIOD, SEED
 from sigmahat.fmi.installed import version
 from sigmahat.plants.equations import PlantEquations
@@ -20,7 +21,7 @@ class PlantVariable:
     """What the model description says of an input, output or parameter."""
 
     unit: str
-    """One of the units of ``AwasPlant.fmu``: 1, s, rad, rad/s, m, kg.m2, N.m, N.m/rad, ..."""
+    """One of the units of the FMUs that come with sigmahat: 1, s, rad, m, kg.m2, N.m, ..."""
     description: str
     """One line."""
     start: float = 0.0
@@ -39,8 +40,9 @@ def describe(
     """
     if not (plant.name.isidentifier() and plant.name.isascii()):
         raise ValueError(f"plant {plant.name!r}: expected a name that is also one in C")
-    units = [unit.attrib["name"] for unit in description.findall("UnitDefinitions/Unit")]
-    _check(plant, variables, units)
+    (defined,) = description.findall("UnitDefinitions")
+    defined[:] = ElementTree.parse(templates.UNITS).getroot()
+    _check(plant, variables, [unit.attrib["name"] for unit in defined])
     description.set("modelName", plant.name)
     for attribute in ("guid", "author", "copyright", "license", "version"):
         description.attrib.pop(attribute, None)
