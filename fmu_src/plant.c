@@ -60,6 +60,17 @@ static const char *input_name(size_t i)
     return VARIABLES[k].name;
 }
 
+/* The input of the largest magnitude during a step. */
+static size_t largest_input(const double *u, const double *u_end)
+{
+    size_t i, largest = 0;
+
+    for (i = 1; i < SH_PLANT_INPUTS; ++i)
+        if (fmax(fabs(u[i]), fabs(u_end[i])) > fmax(fabs(u[largest]), fabs(u_end[largest])))
+            largest = i;
+    return largest;
+}
+
 static fmi2Status step(void *model, double t, double h, sh_instance *log)
 {
     sh_plant *plant = model;
@@ -86,11 +97,13 @@ static fmi2Status step(void *model, double t, double h, sh_instance *log)
     for (i = 0; i < SH_PLANT_STATES; ++i)
         x[i] = plant->x[i];
     if (sh_radau_integrate(x, plant->u, plant->du, plant->p, h, &internal_step) == 0) {
+        i = largest_input(plant->u, u_end);
         sh_log(log, fmi2Error,
                "Step from t = %.9g s to %.9g s refused, the state is kept: the equations have "
-               "no solution there, or it takes more than a million internal steps. Look for "
-               "extreme inputs or parameters.",
-               t, t + h);
+               "no solution there, or it takes more than %d internal steps. Expected inputs and "
+               "parameters of a joint; the largest input is %s = %g.",
+               t, t + h, sh_radau_attempts(h), input_name(i),
+               fabs(u_end[i]) > fabs(plant->u[i]) ? u_end[i] : plant->u[i]);
         return fmi2Error;
     }
     for (i = 0; i < SH_PLANT_STATES; ++i)
