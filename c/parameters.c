@@ -71,8 +71,7 @@ typedef struct {
     const char *name;
     size_t offset; /* in sh_parameters */
     const char *range;
-    sh_real min, max;
-    int min_open; /* 1: min itself is not allowed */
+    sh_real min, max; /* allowed, too */
 } real_range;
 
 typedef struct {
@@ -84,57 +83,58 @@ typedef struct {
 
 #define AT(designator) #designator, offsetof(sh_parameters, designator)
 
-/* Limits other than 0, 1 and infinity are wide ones of what is squared or raised to a power: within
+/* 1e-9, 1e-15 and 1e-30 are least values of what must be above 0: far below what a machine has.
+ * Limits of 1e-12, 1e-6, 1e6 and 1e12 are wide ones of what is squared or raised to a power: within
  * them the numbers stay finite.
  */
 static const real_range REALS[] = {
-    {AT(samplePeriod), "> 0", 0, INFINITY, 1},
-    {AT(motor.B), "> 0", 0, INFINITY, 1},
-    {AT(motor.D_theta), ">= 0", 0, INFINITY, 0},
-    {AT(motor.gamma), "finite and not 0", -INFINITY, INFINITY, 0},
-    {AT(residual.K_I), "> 0", 0, INFINITY, 1},
-    {AT(filter.V_a), ">= 0", 0, INFINITY, 0},
-    {AT(filter.V_max), "> 0", 0, INFINITY, 1},
-    {AT(filter.V_min), "> 0", 0, INFINITY, 1},
-    {AT(filter.alpha), ">= 0", 0, INFINITY, 0},
-    {AT(filter.R), "> 0", 0, INFINITY, 1},
-    {AT(filter.P_0), "> 0", 0, INFINITY, 1},
-    {AT(encoder.theta), ">= 0 (0: no quantisation)", 0, INFINITY, 0},
-    {AT(encoder.q), ">= 0 (0: no quantisation)", 0, INFINITY, 0},
-    {AT(encoder.theta_c), ">= 0 (0: no quantisation)", 0, INFINITY, 0},
-    {AT(setPoint.offset), "finite", -INFINITY, INFINITY, 0},
-    {AT(setPoint.scale), "finite", -INFINITY, INFINITY, 0},
-    {AT(rls.P_0), "> 0", 0, INFINITY, 1},
-    {AT(rls.c), "> 0", 0, INFINITY, 1},
-    {AT(rls.a), "> 0 and <= 1", 0, 1, 1},
-    {AT(model.k_s), ">= 0", 0, INFINITY, 0},
-    {AT(model.r_0), "finite", -INFINITY, INFINITY, 0},
-    {AT(model.b), "finite", -INFINITY, INFINITY, 0},
-    {AT(noise.tau), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12, 0},
-    {AT(noise.tau_e), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12, 0},
-    {AT(confidence), "> 0", 0, INFINITY, 1},
-    {AT(matched.bandwidth), "> 0", 0, INFINITY, 1},
-    {AT(matched.slow), "> 0", 0, INFINITY, 1},
-    {AT(matched.drift), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(matched.memory), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(range.phi), "1e-6 to 1e6", (sh_real)1e-6, (sh_real)1e6, 0},
-    {AT(range.setPoint), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12, 0},
-    {AT(prior.tau_e), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.nominal), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.D_theta), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.B), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.tau_coulomb), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.torque_gain), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.bias), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.damping), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.load_friction), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.eccentric), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.delay), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.reversal), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.power), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.gap), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.hysteresis), "0 to 1e12", 0, (sh_real)1e12, 0},
-    {AT(prior.eccentric_motor), "0 to 1e12", 0, (sh_real)1e12, 0},
+    {AT(samplePeriod), ">= 1e-9", (sh_real)1e-9, INFINITY},
+    {AT(motor.B), ">= 1e-15", (sh_real)1e-15, INFINITY},
+    {AT(motor.D_theta), ">= 0", 0, INFINITY},
+    {AT(motor.gamma), "finite and not 0", -INFINITY, INFINITY},
+    {AT(residual.K_I), ">= 1e-15", (sh_real)1e-15, INFINITY},
+    {AT(filter.V_a), ">= 0", 0, INFINITY},
+    {AT(filter.V_max), ">= 1e-30", (sh_real)1e-30, INFINITY},
+    {AT(filter.V_min), ">= 1e-30", (sh_real)1e-30, INFINITY},
+    {AT(filter.alpha), ">= 0", 0, INFINITY},
+    {AT(filter.R), ">= 1e-30", (sh_real)1e-30, INFINITY},
+    {AT(filter.P_0), ">= 1e-30", (sh_real)1e-30, INFINITY},
+    {AT(encoder.theta), ">= 0 (0: no quantisation)", 0, INFINITY},
+    {AT(encoder.q), ">= 0 (0: no quantisation)", 0, INFINITY},
+    {AT(encoder.theta_c), ">= 0 (0: no quantisation)", 0, INFINITY},
+    {AT(setPoint.offset), "finite", -INFINITY, INFINITY},
+    {AT(setPoint.scale), "finite", -INFINITY, INFINITY},
+    {AT(rls.P_0), ">= 1e-30", (sh_real)1e-30, INFINITY},
+    {AT(rls.c), ">= 1e-30", (sh_real)1e-30, INFINITY},
+    {AT(rls.a), "1e-15 to 1", (sh_real)1e-15, 1},
+    {AT(model.k_s), ">= 0", 0, INFINITY},
+    {AT(model.r_0), "finite", -INFINITY, INFINITY},
+    {AT(model.b), "finite", -INFINITY, INFINITY},
+    {AT(noise.tau), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12},
+    {AT(noise.tau_e), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12},
+    {AT(confidence), ">= 1e-15", (sh_real)1e-15, INFINITY},
+    {AT(matched.bandwidth), ">= 1e-15", (sh_real)1e-15, INFINITY},
+    {AT(matched.slow), ">= 1e-15", (sh_real)1e-15, INFINITY},
+    {AT(matched.drift), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(matched.memory), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(range.phi), "1e-6 to 1e6", (sh_real)1e-6, (sh_real)1e6},
+    {AT(range.setPoint), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12},
+    {AT(prior.tau_e), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.nominal), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.D_theta), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.B), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.tau_coulomb), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.torque_gain), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.bias), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.damping), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.load_friction), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.eccentric), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.delay), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.reversal), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.power), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.gap), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.hysteresis), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(prior.eccentric_motor), "0 to 1e12", 0, (sh_real)1e12},
 };
 
 static const integer_range INTEGERS[] = {
@@ -166,8 +166,7 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
     for (i = 0; i < REAL_COUNT; ++i) {
         const real_range *r = &REALS[i];
         const sh_real value = *(const sh_real *)(const void *)(bytes + r->offset);
-        const int above = r->min_open ? value > r->min : value >= r->min;
-        if (!isfinite(value) || !above || value > r->max)
+        if (!isfinite(value) || value < r->min || value > r->max)
             return sh_violates(violation, r->name, value, r->range);
     }
     if (sh_method_of(p) == NULL)
@@ -185,7 +184,8 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
     if (!(p->motor.gamma > 0) && !(p->motor.gamma < 0))
         return sh_violates(violation, "motor.gamma", p->motor.gamma, "finite and not 0");
     if (p->filter.V_min > p->filter.V_max)
-        return sh_violates(violation, "filter.V_min", p->filter.V_min, "> 0 and <= filter.V_max");
+        return sh_violates(violation, "filter.V_min", p->filter.V_min,
+                           ">= 1e-30 and <= filter.V_max");
     return sh_method_of(p)->check(p, violation);
 }
 

@@ -10,7 +10,8 @@ function(sigmahat_add_fmu name)
   set(source_dir ${PROJECT_SOURCE_DIR})
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
   set(template ${source_dir}/modelDescription/${name}.xml)
-  file(GLOB shared CONFIGURE_DEPENDS ${source_dir}/modelDescription/*.xml ${source_dir}/harness/sigmahat/export/*.py)
+  file(GLOB shared CONFIGURE_DEPENDS ${source_dir}/modelDescription/*.xml
+       ${source_dir}/harness/sigmahat/export/*.py ${source_dir}/harness/sigmahat/export/units.xml)
 
   get_target_property(sources sigmahat_shell SOURCES)
   list(APPEND sources ${arg_SOURCES})

@@ -37,8 +37,7 @@ typedef struct {
     sh_type type;
     sh_role role;
     double start;
-    double min, max;        /* allowed range, infinite where there is none */
-    int min_open, max_open; /* 1: the limit itself is not allowed */
+    double min, max; /* allowed values, both limits among them; infinite where there is none */
 } sh_variable;
 
 /* Sends a message to the user through the logger of the importer; format as in printf. */

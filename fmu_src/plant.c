@@ -9,8 +9,11 @@
 #include "radau.h"
 #include "variables.h"
 
-/* Outputs of the state x under the inputs u, with noise of the sample given. */
-static void set_outputs(sh_plant *plant, const double *u, uint64_t sample)
+/* Most periods of the noise in one step: a number of samples that is exact. */
+static const double MAX_PERIODS = 1e15;
+
+/* Outputs of the state x under the inputs u. */
+static void set_outputs(sh_plant *plant, const double *u)
 {
     double normals[SH_PLANT_NORMALS + 1]; /* a plant may have none */
     const double *arguments[] = {plant->x, u, plant->p, normals};
@@ -18,9 +21,21 @@ static void set_outputs(sh_plant *plant, const double *u, uint64_t sample)
     int channel;
 
     for (channel = 0; channel < SH_PLANT_NORMALS; ++channel)
-        normals[channel] = sh_noise_normal(plant->seed, sample, (unsigned)channel);
+        normals[channel] = sh_noise_normal(plant->seed, plant->sample, (unsigned)channel);
     sh_plant_outputs(arguments, results, NULL, NULL, 0);
-    plant->sample = sample;
+}
+
+/* Goes on to the noise sample at the end of a step: the last one whose time, a multiple of the
+ * period, is reached. As in sample_clock.h it counts in periods, and a time that is missed by 1e-6
+ * of a period counts as reached.
+ */
+static void advance_noise(sh_plant *plant, double h)
+{
+    const double since = plant->since + h / plant->samplePeriod;
+    const double samples = fmax(floor(since + 1e-6), 0.0);
+
+    plant->since = since - samples;
+    plant->sample += (uint64_t)samples;
 }
 
 static void initialize(void *model)
@@ -31,7 +46,9 @@ static void initialize(void *model)
 
     sh_plant_start(arguments, results, NULL, NULL, 0);
     plant->h = INFINITY;
-    set_outputs(plant, plant->u, 0);
+    plant->since = 0.0;
+    plant->sample = 0;
+    set_outputs(plant, plant->u);
 }
 
 static const char *input_name(size_t i)
@@ -41,6 +58,17 @@ static const char *input_name(size_t i)
     while (VARIABLES[k].offset != offsetof(sh_plant, u) + i * sizeof(double))
         ++k;
     return VARIABLES[k].name;
+}
+
+/* The input of the largest magnitude during a step. */
+static size_t largest_input(const double *u, const double *u_end)
+{
+    size_t i, largest = 0;
+
+    for (i = 1; i < SH_PLANT_INPUTS; ++i)
+        if (fmax(fabs(u[i]), fabs(u_end[i])) > fmax(fabs(u[largest]), fabs(u_end[largest])))
+            largest = i;
+    return largest;
 }
 
 static sh_status step(void *model, double t, double h, sh_instance *log)
@@ -59,20 +87,31 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
             return SH_ERROR;
         }
     }
+    if (SH_PLANT_NORMALS > 0 && h / plant->samplePeriod > MAX_PERIODS) {
+        sh_log(log, SH_ERROR,
+               "Step from t = %.9g s refused, the state is kept: its length %g s is more than %g "
+               "times noise.samplePeriod = %g s; expected a shorter step.",
+               t, h, MAX_PERIODS, plant->samplePeriod);
+        return SH_ERROR;
+    }
     for (i = 0; i < SH_PLANT_STATES; ++i)
         x[i] = plant->x[i];
     if (sh_radau_integrate(x, plant->u, plant->du, plant->p, h, &internal_step) == 0) {
+        i = largest_input(plant->u, u_end);
         sh_log(log, SH_ERROR,
                "Step from t = %.9g s to %.9g s refused, the state is kept: the equations have "
-               "no solution there, or it takes more than a million internal steps. Look for "
-               "extreme inputs or parameters.",
-               t, t + h);
+               "no solution there, or it takes more than %d internal steps. Expected inputs and "
+               "parameters of a joint; the largest input is %s = %g.",
+               t, t + h, sh_radau_attempts(h), input_name(i),
+               fabs(u_end[i]) > fabs(plant->u[i]) ? u_end[i] : plant->u[i]);
         return SH_ERROR;
     }
     for (i = 0; i < SH_PLANT_STATES; ++i)
         plant->x[i] = x[i];
     plant->h = internal_step;
-    set_outputs(plant, u_end, plant->sample + 1);
+    if (SH_PLANT_NORMALS > 0)
+        advance_noise(plant, h);
+    set_outputs(plant, u_end);
     return SH_OK;
 }
 

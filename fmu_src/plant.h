@@ -13,9 +13,11 @@ typedef struct {
     double du[SH_PLANT_INPUTS]; /* time derivatives of u */
     double y[SH_PLANT_OUTPUTS];
     double x[SH_PLANT_STATES];
-    double h;        /* internal step that is short enough for the motion [s] */
-    uint64_t sample; /* number of the noise sample in y */
-    int seed;        /* of the noise */
+    double h;            /* internal step that is short enough for the motion [s] */
+    double samplePeriod; /* of the noise [s]; 0 for a plant without noise */
+    double since;        /* time of the noise sample in y, in periods before now */
+    uint64_t sample;     /* its number */
+    int seed;            /* of the noise */
 } sh_plant;
 
 #endif

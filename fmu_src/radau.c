@@ -13,6 +13,7 @@ enum { MAX_ATTEMPTS = 1000 }; /* a fuzzer finds steps that need all of them */
 #else
 enum { MAX_ATTEMPTS = 1000000 };
 #endif
+static const double FOR_A_TRANSIENT = 10000, PER_SECOND = 1e6;
 
 static const double SCALE[STATES] = SH_PLANT_SCALES;
 static const double ERROR_TOLERANCE = 1e-8;
@@ -249,6 +250,11 @@ double sh_radau_step(const double *x, const double *u, const double *du, const d
     return take(x, u, du, p, h, 0, factors, x_new);
 }
 
+int sh_radau_attempts(double duration)
+{
+    return (int)fmin(FOR_A_TRANSIENT + PER_SECOND * duration, MAX_ATTEMPTS);
+}
+
 int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
                        double duration, double *h)
 {
@@ -256,9 +262,10 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
     const double shortest = 1e-12 * (1.0 + duration);
     double elapsed = 0.0, begin = INFINITY;             /* suggested after the first step */
     double factors[SH_PLANT_FACTORS], factorized = 0.0; /* for steps of this length */
+    const int allowed = sh_radau_attempts(duration);
     int attempt, steps = 0, owed = 0, j;
 
-    for (attempt = 0; attempt < MAX_ATTEMPTS; ++attempt) {
+    for (attempt = 0; attempt < allowed; ++attempt) {
         const double left = duration - elapsed;
         const double wanted = left > *h ? ceil(left / *h) : 1.0;
         /* A plan is carried out to its end. Only one of more steps than are counted may change. */

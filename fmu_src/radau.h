@@ -24,9 +24,14 @@ double sh_radau_step(const double *x, const double *u, const double *du, const d
  * duration.
  *
  * Returns the number of steps. Returns 0 if the error of even a negligible step is too large, or
- * after a million attempts; x is then the state reached.
+ * after sh_radau_attempts(duration); x is then the state reached.
  */
 int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
                        double duration, double *h);
+
+/* Most attempts to make a step in a duration: 10000 for a transient, and one for each microsecond of
+ * the duration, but a million in all. A joint that needs more moves absurdly fast.
+ */
+int sh_radau_attempts(double duration);
 
 #endif

@@ -107,7 +107,7 @@ enum { SH_MAX_BASIS = SH_MAX_N * SH_MAX_M };
 
 /* Data of the motor, (3). */
 typedef struct {
-    sh_real B;       /* rotor inertia [kg.m2], > 0 */
+    sh_real B;       /* rotor inertia [kg.m2], >= 1e-15 */
     sh_real D_theta; /* viscous friction [N.m.s/rad], >= 0 */
     sh_real gamma;   /* gear ratio [1], not 0 */
 } sh_motor_parameters;
@@ -117,11 +117,11 @@ typedef struct {
     int kind;      /* SH_FILTER_*, fixed */
     int weighting; /* SH_WEIGHTING_*, fixed */
     sh_real V_a;   /* (9) variance of the acceleration [rad2/s4], >= 0 */
-    sh_real V_max; /* (11) measurement variance at rest [rad2], > 0, >= V_min */
-    sh_real V_min; /* (11) measurement variance in fast motion [rad2], > 0 */
+    sh_real V_max; /* (11) measurement variance at rest [rad2], >= V_min */
+    sh_real V_min; /* (11) measurement variance in fast motion [rad2], >= 1e-30 */
     sh_real alpha; /* (11) steepness between the two [1], >= 0 */
-    sh_real R;     /* (10) constant measurement variance, SH_FILTER_KALMAN [rad2], > 0 */
-    sh_real P_0;   /* initial covariance, both diagonal entries [rad2, rad2/s2], > 0, fixed */
+    sh_real R;     /* (10) constant measurement variance, SH_FILTER_KALMAN [rad2], >= 1e-30 */
+    sh_real P_0;   /* initial covariance, both diagonal entries [rad2, rad2/s2], >= 1e-30, fixed */
 } sh_filter_parameters;
 
 /* Ranges of the operating point. */
@@ -163,13 +163,13 @@ typedef struct {
  * change between ticks, and has its effect from the next tick on.
  */
 typedef struct {
-    sh_real samplePeriod; /* T [s], > 0, fixed */
+    sh_real samplePeriod; /* T [s], >= 1e-9, fixed */
     int method;           /* SH_METHOD_*, fixed */
     int modality;         /* SH_MODALITY_* */
     int deformation;      /* SH_DEFORMATION_*, fixed; for SH_METHOD_PAPER2011 */
     sh_motor_parameters motor;
     struct {
-        sh_real K_I; /* bandwidth of the residual [1/s], > 0; K_I T < 2 with
+        sh_real K_I; /* bandwidth of the residual [1/s], >= 1e-15; K_I T < 2 with
                         SH_METHOD_PAPER2011 */
     } residual;
     sh_filter_parameters filter;
@@ -186,9 +186,9 @@ typedef struct {
         int kind;                          /* SH_RLS_*, fixed */
         int symmetric;                     /* 1: torque odd in phi, (16); 0: any; fixed */
         int n, m;                          /* orders, 1..SH_MAX_N, 1..SH_MAX_M, fixed */
-        sh_real P_0;                       /* initial covariance, > 0, fixed */
-        sh_real c;                         /* (27), > 0, fixed */
-        sh_real a;                         /* constant stability factor, (0, 1], fixed */
+        sh_real P_0;                       /* initial covariance, >= 1e-30, fixed */
+        sh_real c;                         /* (27), >= 1e-30, fixed */
+        sh_real a;                         /* constant stability factor, 1e-15..1, fixed */
         sh_real eta_0[SH_MAX_N][SH_MAX_M]; /* initial estimate, fixed */
     } rls;
     struct {
@@ -201,17 +201,19 @@ typedef struct {
         sh_real tau_e; /* std deviation of the noise of tau_e_sensor, and of the error of the
                           model of SH_MODALITY_MODEL [N.m], 1e-12..1e12 */
     } noise;
-    sh_real confidence; /* sigma_std / |sigma| below which the estimate can be confident [1], > 0 */
+    sh_real confidence; /* sigma_std / |sigma| below which the estimate can be confident [1],
+                           >= 1e-15 */
     /* All below for SH_METHOD_MATCHED_FILTER. */
     struct {
         int held; /* 1: a drive holds each tau until the next sample; 0: tau is linear between
                      samples */
     } torque;
     struct {
-        sh_real bandwidth; /* w of the filter [rad/s], > 0, fixed; 1e-4 <= w T < 2 with this
+        sh_real bandwidth; /* w of the filter [rad/s], fixed; 1e-4 <= w T < 2 with this
                               method. A smaller one is used if the rounding of theta needs it:
                               sh_matched_bandwidth in signals.h */
-        sh_real slow;      /* |theta'| below which the sign of friction is unknown [rad/s], > 0 */
+        sh_real slow;      /* |theta'| below which the sign of friction is unknown [rad/s],
+                              >= 1e-15 */
         sh_real drift;     /* share of its prior variance by which the torque curve drifts in a
                               second [1/s], 0..1e12; 0: it does not change */
         sh_real memory;    /* time constant with which data are forgotten while they contradict
@@ -270,7 +272,7 @@ typedef struct {
 typedef struct {
     const char *name;  /* as in the FMU: "residual.K_I" */
     sh_real value;     /* its value */
-    const char *range; /* the allowed values: "> 0 and < 2 / samplePeriod" */
+    const char *range; /* the allowed values: ">= 1e-15 and < 2 / samplePeriod" */
 } sh_violation;
 
 /* State between ticks. It contains no pointer: copy it by assignment. */

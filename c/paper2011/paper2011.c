@@ -12,7 +12,7 @@ static int check_paper2011(const sh_parameters *p, sh_violation *violation)
 {
     if (p->residual.K_I * p->samplePeriod >= 2)
         return sh_violates(violation, "residual.K_I", p->residual.K_I,
-                           "> 0 and < 2 / samplePeriod");
+                           ">= 1e-15 and < 2 / samplePeriod");
     return 0;
 }
 

@@ -34,7 +34,8 @@ class FmuVariables(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         fmu = self.arguments[0]
         template = Path(self.env.srcdir).parent / "modelDescription" / f"{fmu}.xml"
-        for path in template.parent.glob("*.xml"):  # a template extends and includes others
+        # A template extends and includes others.
+        for path in (*template.parent.glob("*.xml"), templates.UNITS):
             self.env.note_dependency(path)
         root = templates.render(template, self.config.version)
         return [

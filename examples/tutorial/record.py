@@ -17,6 +17,7 @@ import sigmahat
 COUNTS, GEAR_RATIO, TORQUE_CONSTANT = 4096, 100, 0.1  # counts per turn of the motor; [N.m/A]
 LINK_COUNTS = 2**18
 WRAP = 2**16
+T = 0.004  # [s]
 JOINT = {
     "motor.B": 5e-5,
     "motor.D_theta": 8e-4,
@@ -30,8 +31,8 @@ JOINT = {
     "encoder.theta": float(COUNTS * GEAR_RATIO),
     "encoder.q": float(LINK_COUNTS),
     "noise.tau_variance": 0.004**2,
+    "noise.samplePeriod": T,
 }
-T = 0.004  # [s]
 
 
 def record(path: Path) -> sigmahat.Recording:

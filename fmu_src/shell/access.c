@@ -96,19 +96,16 @@ sh_instance *sh_begin_set(const sh_access *access, const uint32_t references[], 
     return instance;
 }
 
-/* Writes the allowed range of a variable, "(0, 1]" or "(-inf, inf)". */
+/* Writes the allowed range of a variable, "[0, 1]" or "(-inf, inf)". */
 static void write_range(char *text, size_t size, const sh_variable *variable)
 {
-    snprintf(text, size, "%c%.9g, %.9g%c",
-             variable->min_open || !isfinite(variable->min) ? '(' : '[', variable->min,
-             variable->max, variable->max_open || !isfinite(variable->max) ? ')' : ']');
+    snprintf(text, size, "%c%.9g, %.9g%c", isfinite(variable->min) ? '[' : '(', variable->min,
+             variable->max, isfinite(variable->max) ? ']' : ')');
 }
 
 static int in_range(const sh_variable *variable, double value)
 {
-    return isfinite(value) &&
-           (variable->min_open ? value > variable->min : value >= variable->min) &&
-           (variable->max_open ? value < variable->max : value <= variable->max);
+    return isfinite(value) && value >= variable->min && value <= variable->max;
 }
 
 int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,

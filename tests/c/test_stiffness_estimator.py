@@ -65,20 +65,21 @@ def test_defaults_are_those_of_the_paper_and_in_their_ranges(c: Library) -> None
     assert all(entry == 0 for row in p.rls.eta_0 for entry in row)
 
 
-POSITIVE = [
-    "samplePeriod",
-    "motor.B",
-    "residual.K_I",
-    "filter.V_max",
-    "filter.V_min",
-    "filter.R",
-    "filter.P_0",
-    "rls.P_0",
-    "rls.c",
-    "rls.a",
-    "confidence",
-    "matched.slow",
-]
+# What must be above 0: its least value, which is allowed.
+LEAST = {
+    "samplePeriod": 1e-9,
+    "motor.B": 1e-15,
+    "residual.K_I": 1e-15,
+    "filter.V_max": 1e-30,
+    "filter.V_min": 1e-30,
+    "filter.R": 1e-30,
+    "filter.P_0": 1e-30,
+    "rls.P_0": 1e-30,
+    "rls.c": 1e-30,
+    "rls.a": 1e-15,
+    "confidence": 1e-15,
+    "matched.slow": 1e-15,
+}
 NOT_NEGATIVE = [
     "motor.D_theta",
     "filter.V_a",
@@ -113,11 +114,15 @@ CHOICES = {
     "rls.m": 5,
 }
 OUTSIDE: list[tuple[str, float]] = [
-    *((name, bad) for name in POSITIVE for bad in (0.0, -0.0, -TINY, -1.0)),
+    *(
+        (name, bad)
+        for name, low in LEAST.items()
+        for bad in (math.nextafter(low, 0.0), 0.0, -0.0, -TINY, -1.0)
+    ),
     *((name, bad) for name in NOT_NEGATIVE for bad in (-TINY, -1.0)),
     *(
         (name, bad)
-        for name in [*POSITIVE, *NOT_NEGATIVE, *BOUNDED, *ANY_FINITE]
+        for name in [*LEAST, *NOT_NEGATIVE, *BOUNDED, *ANY_FINITE]
         for bad in (math.nan, math.inf, -math.inf)
     ),
     *((name, low * 0.999 or -TINY) for name, (low, _) in BOUNDED.items()),
@@ -145,7 +150,8 @@ def test_a_parameter_outside_its_range_is_named(c: Library, name: str, value: fl
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        *((name, TINY) for name in POSITIVE if name not in ("filter.V_max", "samplePeriod")),
+        *((name, low) for name, low in LEAST.items() if name != "filter.V_max"),
+        ("filter.V_max", 0.1),  # V_min
         *((name, 0.0) for name in NOT_NEGATIVE),
         *((name, -1.0) for name in ANY_FINITE),
         *((name, limit) for name, limits in BOUNDED.items() for limit in limits),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -73,11 +74,33 @@ def test_factors_of_display_units_are_right(
     fmu: Path, unit: str, display: str, shown: float
 ) -> None:
     root = read(fmu)
-    (found,) = root.xpath(f"UnitDefinitions/Unit[@name='{unit}']/DisplayUnit")
-    assert found.get("name") == display
-    assert float(found.get("factor")) == pytest.approx(shown, rel=1e-15)
-    for real in root.xpath(f"ModelVariables/ScalarVariable/Real[@unit='{unit}']"):
+    found = root.xpath(f"UnitDefinitions/Unit[@name='{unit}']/DisplayUnit")
+    reals = root.xpath(f"ModelVariables/ScalarVariable/Real[@unit='{unit}']")
+    assert bool(found) == bool(reals)
+    for each in found:
+        assert each.get("name") == display
+        assert float(each.get("factor")) == pytest.approx(shown, rel=1e-15)
+    for real in reals:
         assert real.get("displayUnit") == display
+
+
+def test_every_unit_is_used_and_every_used_one_defined(fmu: Path) -> None:
+    root = read(fmu)
+    used = {real.get("unit") for real in root.iterfind("ModelVariables/ScalarVariable/Real")}
+    defined = [unit.get("name") for unit in root.iterfind("UnitDefinitions/Unit")]
+    assert sorted(defined) == sorted(used - {None})
+
+
+def test_only_what_has_no_single_unit_has_none(fmu: Path) -> None:
+    """Coefficients of different powers, and covariances of quantities with different units."""
+    without = {
+        re.sub(r"\[.*", "", variable.get("name"))
+        for variable in read(fmu).iterfind("ModelVariables/ScalarVariable")
+        if variable.find("Real") is not None and variable.find("Real").get("unit") is None
+    }
+    sides = {"StiffnessEstimator": ["eta"], "AntagonisticStiffnessEstimator": ["eta_1", "eta_2"]}
+    own = sides.get(fmu.stem, [])
+    assert without == ({*own, "rls.eta_0", "rls.P_0", "filter.P_0"} if own else set())
 
 
 def test_start_and_nominal_values_are_in_their_ranges(fmu: Path) -> None:
@@ -107,7 +130,7 @@ def test_everything_has_a_description(fmu: Path) -> None:
 
 
 def test_the_description_has_only_attributes_of_the_standard(fmu: Path) -> None:
-    """`open` and `depends`, which only the build uses, are removed."""
+    """`depends`, which only the build uses, is removed."""
     folder = Path(fmpy.__file__).parent / "schema" / "fmi2"
     schema = etree.XMLSchema(file=str(folder / "fmi2ModelDescription.xsd"))
     schema.assertValid(read(fmu))

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from scipy import stats
 
+import sigmahat
+from fmi_instance import ERROR, OK, Instance
 from plant_runs import Array, run_awas
+from sigmahat.paper.scenarios import scenario
+from sigmahat.runs.engine import run
 
 SAMPLES = 50_000
 MASK = (1 << 64) - 1
@@ -98,11 +104,71 @@ def test_same_seed_same_noise() -> None:
     np.testing.assert_array_equal(normals(7, 100), first)
 
 
-def test_noise_is_drawn_once_per_step_whatever_its_length() -> None:
-    start = {"noise.tau_variance": 1.0}
-    short = run_awas(1e-4, np.zeros((50, 3)), start, ["tau_measured"])
-    long = run_awas(1e-2, np.zeros((50, 3)), start, ["tau_measured"])
-    np.testing.assert_array_equal(short["tau_measured"], long["tau_measured"])
+def measured(h: float, duration: float, start: Mapping[str, float] | None = None) -> Array:
+    """Noise of unit variance of tau in steps of h [s] [size: duration / h + 1]."""
+    torques = np.zeros((round(duration / h) + 1, 3))
+    start = {"noise.tau_variance": 1.0, **(start or {})}
+    return run_awas(h, torques, start, ["tau_measured"])["tau_measured"]
+
+
+@pytest.mark.parametrize("steps_in_a_period", [1, 2, 10])
+def test_noise_is_drawn_at_multiples_of_its_period_and_held_in_between(
+    steps_in_a_period: int,
+) -> None:
+    found = measured(1e-3 / steps_in_a_period, 5.0)
+    expected = np.repeat(normals(1)[:5001, 0], steps_in_a_period)
+    np.testing.assert_array_equal(found, expected[: len(found)])
+
+
+def test_noise_in_steps_that_do_not_fit_its_period() -> None:
+    """1/60 s is 16 2/3 periods: every third communication point is on the grid."""
+    found = measured(1 / 60, 20.0)
+    last = [50 * k // 3 for k in range(len(found))]
+    np.testing.assert_array_equal(found, normals(1)[last, 0])
+    np.testing.assert_array_equal(found[::3], measured(1e-3, 20.0)[::50])
+
+
+def test_another_period_is_the_same_noise_at_other_times() -> None:
+    found = measured(2e-4, 0.1, {"noise.samplePeriod": 2e-4})
+    np.testing.assert_array_equal(found, normals(1)[:501, 0])
+
+
+def test_noise_does_not_depend_on_a_last_step_of_a_moment() -> None:
+    """As OMSimulator makes it, where the sum of its steps misses the stop time by rounding."""
+    with Instance(sigmahat.fmu("AwasPlant")) as fmu:
+        fmu.initialise({"noise.tau_variance": 1.0})
+        t = 0.0
+        for _ in range(2000):
+            assert fmu.step(t, 1e-3) == OK
+            t += 1e-3
+        before = fmu.get("tau_measured")
+        assert before == normals(1)[2000, 0]
+        assert t != 2.0
+        assert fmu.step(t, 1e-13) == OK
+        assert fmu.get("tau_measured") == before
+        # It has not moved the grid either.
+        assert fmu.step(t + 1e-13, 1e-3) == OK
+        assert fmu.get("tau_measured") == normals(1)[2001, 0]
+
+
+def test_a_step_of_more_periods_than_can_be_counted_is_refused() -> None:
+    with Instance(sigmahat.fmu("AwasPlant")) as fmu:
+        fmu.initialise({"noise.samplePeriod": 1e-9})
+        assert fmu.step(0.0, 1e7) == ERROR
+        assert "1e+07 s is more than 1e+15 times noise.samplePeriod" in fmu.messages[-1][-1]
+
+
+def test_a_scenario_draws_noise_at_its_own_sampling_times() -> None:
+    """So that it is white for its estimators, whatever T is."""
+    table1 = scenario("table1")
+    plant = replace(
+        table1.plant, start={"noise.tau_variance": 1.0}, inputs={}, record=["tau_measured"]
+    )
+    short = replace(table1, plant=plant, estimators={}, comparisons=[], duration=0.02, T=2e-4)
+    np.testing.assert_array_equal(run(short, 1).plant["tau_measured"], normals(1)[:101, 0])
+    slower = replace(plant, start={**plant.start, "noise.samplePeriod": 4e-4})
+    held = run(replace(short, plant=slower), 1).plant["tau_measured"]
+    np.testing.assert_array_equal(held, normals(1)[np.arange(101) // 2, 0])
 
 
 def test_noise_has_the_variance_of_the_parameters() -> None:

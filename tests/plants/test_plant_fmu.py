@@ -48,7 +48,7 @@ def fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def run(fmu: Path, seed: int) -> sigmahat.Series:
     plant = sigmahat.Plant(
         fmu=str(fmu),
-        start={"mass": 4.0, "noise.seed": seed},
+        start={"mass": 4.0, "noise.seed": seed, "noise.samplePeriod": 1e-2},
         inputs={"force": lambda t: 0 * t + 2.0},
         record=["x", "counted", "measured"],
     )
@@ -73,7 +73,7 @@ def test_noise_is_that_of_the_seed(fmu: Path) -> None:
 def test_description_says_what_the_equations_are(fmu: Path) -> None:
     description = fmpy.read_model_description(str(fmu))
     variables = {v.name: v for v in description.modelVariables}
-    assert set(variables) == {*VARIABLES, "noise.seed"}
+    assert set(variables) == {*VARIABLES, "noise.seed", "noise.samplePeriod"}
     for name, variable in VARIABLES.items():
         assert (variables[name].unit, variables[name].description) == (
             variable.unit,
@@ -86,6 +86,7 @@ def test_description_says_what_the_equations_are(fmu: Path) -> None:
         "initial.x": "fixed",
         "variance": "tunable",
         "noise.seed": "fixed",
+        "noise.samplePeriod": "fixed",
         "x": "continuous",
         "counted": "discrete",
         "measured": "discrete",

@@ -7,6 +7,11 @@ from xml.etree.ElementTree import Element
 from sigmahat.export.arrays import arrays
 from sigmahat.export.templates import variables
 
+SEED, SAMPLE_PERIOD = "noise.seed", "noise.samplePeriod"
+"""Parameters of a plant with noise besides those of its equations."""
+
+_OWN_FIELDS = {SEED: "seed", SAMPLE_PERIOD: "samplePeriod"}  # of sh_plant
+
 _TYPES = {
     "Real": "SH_TYPE_REAL",
     "Integer": "SH_TYPE_INTEGER",
@@ -51,14 +56,14 @@ def storage_in_sides(root: Element) -> dict[str, str]:
 def storage_in_arrays(root: Element) -> dict[str, str]:
     """Place of every variable of a plant: arrays p, u and y in the order of the template.
 
-    The one Integer, ``noise.seed``, is the field ``seed``.
+    ``noise.seed`` and ``noise.samplePeriod`` are fields of their own.
     """
     array = {"input": "u", "output": "y", "parameter": "p"}
     count = dict.fromkeys(array.values(), 0)
     places = {}
     for variable in variables(root):
-        if variable.find("Real") is None:
-            places[variable.attrib["name"]] = "seed"
+        if variable.attrib["name"] in _OWN_FIELDS:
+            places[variable.attrib["name"]] = _OWN_FIELDS[variable.attrib["name"]]
             continue
         name = array[variable.attrib["causality"]]
         places[variable.attrib["name"]] = f"{name}[{count[name]}]"
@@ -89,21 +94,15 @@ def _start(kind: Element) -> str:
     return {"true": "1", "false": "0"}.get(start, start)
 
 
-def _limits(root: Element, kind: Element) -> tuple[str, str, int, int]:
+def _limits(root: Element, kind: Element) -> tuple[str, str]:
     if kind.tag == "Enumeration":
         name = kind.attrib["declaredType"]
         items = root.findall(f"TypeDefinitions/SimpleType[@name='{name}']/Enumeration/Item")
         values = [int(item.attrib["value"]) for item in items]
-        return str(min(values)), str(max(values)), 0, 0
+        return str(min(values)), str(max(values))
     if kind.tag == "Boolean":
-        return "0", "1", 0, 0
-    opened = kind.get("open", "").split()
-    return (
-        kind.get("min", "-HUGE_VAL"),
-        kind.get("max", "HUGE_VAL"),
-        int("min" in opened),
-        int("max" in opened),
-    )
+        return "0", "1"
+    return kind.get("min", "-HUGE_VAL"), kind.get("max", "HUGE_VAL")
 
 
 def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> str:
@@ -117,12 +116,12 @@ def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> st
     lengths = {a.first: a.length for a in arrays([v.attrib["name"] for v in variables(root)])}
     for place, variable in enumerate(variables(root)):
         kind, name = variable[0], variable.attrib["name"]
-        low, high, low_open, high_open = _limits(root, kind)
+        low, high = _limits(root, kind)
         rows.append(
             f'    {{"{name}", offsetof({struct}, {places[name]}), '
             f"{lengths.get(place, 0)}, {_TYPES[kind.tag]}, "
             f"{_role(variable)}, {_start(kind)}, "
-            f"{low}, {high}, {low_open}, {high_open}}},"
+            f"{low}, {high}}},"
         )
     return "\n".join(
         [

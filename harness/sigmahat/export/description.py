@@ -1,6 +1,7 @@
 """Model description of an FMU from its template: what follows from the variables is added here.
 
-These are value references, display units, the model structure, source files, and the GUID.
+These are value references, display units, the model structure, source files, and the GUID. Units
+that no variable has are left out.
 """
 
 import hashlib
@@ -46,8 +47,16 @@ def _add_display_units(root: Element) -> None:
         for display in unit.findall("DisplayUnit")
     }
     for real in root.findall("ModelVariables/ScalarVariable/Real"):
-        if real.attrib["unit"] in displayed:
+        if real.get("unit") in displayed:
             real.set("displayUnit", displayed[real.attrib["unit"]])
+
+
+def _remove_unused_units(root: Element) -> None:
+    used = {real.get("unit") for real in root.iterfind("ModelVariables/ScalarVariable/Real")}
+    for definitions in root.findall("UnitDefinitions"):
+        for unit in definitions.findall("Unit"):
+            if unit.attrib["name"] not in used:
+                definitions.remove(unit)
 
 
 def complete(root: Element) -> str:
@@ -58,7 +67,7 @@ def complete(root: Element) -> str:
     """
     for reference, variable in enumerate(variables(root)):
         variable.set("valueReference", str(reference))
-        variable[0].attrib.pop("open", None)
+    _remove_unused_units(root)
     _add_display_units(root)
     _add_model_structure(root)
     ElementTree.indent(root)

@@ -59,7 +59,7 @@ def _row(root: Element, variable: Element) -> dict[str, Any]:
     limits = _range(kind)
     if kind.tag == "Real":
         start = f"{float(start):.6g}" if start else ""
-        display = root.find(f"UnitDefinitions/Unit[@name='{kind.attrib['unit']}']/DisplayUnit")
+        display = root.find(f"UnitDefinitions/Unit[@name='{kind.get('unit')}']/DisplayUnit")
         if display is not None and float(start or 0):
             value = float(kind.attrib["start"]) * float(display.attrib["factor"])
             shown = f" ({value:.6g} {display.attrib['name']})"
@@ -86,6 +86,4 @@ def _range(kind: Element) -> str:
     low, high = kind.get("min"), kind.get("max")
     if low is None and high is None:
         return "any"
-    open_low = low is None or "min" in kind.get("open", "")
-    open_high = high is None or "max" in kind.get("open", "")
-    return f"{'(['[not open_low]}{low or '-∞'}, {high or '∞'}{')]'[not open_high]}"
+    return f"{'[' if low else '('}{low or '-∞'}, {high or '∞'}{']' if high else ')'}"

@@ -151,7 +151,7 @@ def main(name: str, folder: str) -> None:
     plant = find(name)
     root = templates.render(_TEMPLATES / f"{name}.xml", version="")
     places = c_variables.storage_in_arrays(root)
-    p, u, y = ([name for name, place in places.items() if place[0] == array] for array in "puy")
+    p, u, y = ([n for n, place in places.items() if place.startswith(f"{a}[")] for a in "puy")
     write(plant, p, u, y, Path(folder))
 
 

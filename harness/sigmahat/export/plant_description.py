@@ -9,12 +9,11 @@ from xml.etree.ElementTree import Element
 
 import casadi as ca
 
+from sigmahat.export import templates
+from sigmahat.export.c_variables import SAMPLE_PERIOD, SEED
 from sigmahat.fmi.installed import version
 from sigmahat.plants.equations import PlantEquations
 from sigmahat.user_input.unknown_name import unknown
-
-SEED = "noise.seed"
-"""Parameter that a plant with noise has besides those of its equations."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +21,7 @@ class PlantVariable:
     """What the model description says of an input, output or parameter."""
 
     unit: str
-    """One of the units of ``AwasPlant.fmu``: 1, s, rad, rad/s, m, kg.m2, N.m, N.m/rad, ..."""
+    """One of the units of the FMUs that come with sigmahat: 1, s, rad, m, kg.m2, N.m, ..."""
     description: str
     """One line."""
     start: float = 0.0
@@ -41,8 +40,9 @@ def describe(
     """
     if not (plant.name.isidentifier() and plant.name.isascii()):
         raise ValueError(f"plant {plant.name!r}: expected a name that is also one in C")
-    units = [unit.attrib["name"] for unit in description.findall("UnitDefinitions/Unit")]
-    _check(plant, variables, units)
+    (defined,) = description.findall("UnitDefinitions")
+    defined[:] = ElementTree.parse(templates.UNITS).getroot()
+    _check(plant, variables, [unit.attrib["name"] for unit in defined])
     description.set("modelName", plant.name)
     for attribute in ("guid", "author", "copyright", "license", "version"):
         description.attrib.pop(attribute, None)
@@ -102,6 +102,12 @@ def _list_variables(
         text = "Seed of the noise: one seed is one sequence of samples"
         seed.attrib |= {"variability": "fixed", "initial": "exact", "description": text}
         ElementTree.SubElement(seed, "Integer", start="1")
+        period = ElementTree.SubElement(
+            listed, "ScalarVariable", name=SAMPLE_PERIOD, causality="parameter"
+        )
+        text = "Time between two samples of the noise, which is held in between"
+        period.attrib |= {"variability": "fixed", "initial": "exact", "description": text}
+        ElementTree.SubElement(period, "Real", unit="s", start="1e-3", min="1e-9")
 
 
 def _depends(plant: PlantEquations) -> dict[str, list[str]]:

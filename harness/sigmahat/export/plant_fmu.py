@@ -30,8 +30,9 @@ def write_plant_fmu(
     write; its folder is made.
 
     It is for FMI 2.0 Co-Simulation and behaves as the plants that come with sigmahat: inputs are
-    held or linear over a step, and a plant with noise has the parameter ``noise.seed``. Parameters
-    are tunable, but for those that start values of states depend on.
+    held or linear over a step, and a plant with noise has the parameters ``noise.seed`` and
+    ``noise.samplePeriod``. Parameters are tunable, but for those that start values of states
+    depend on.
 
     Raises ValueError for a variable that is missing, not in the equations or in an unknown unit,
     RuntimeError if there is no compiler (gcc or clang, or what CC names) or it refuses.
@@ -60,10 +61,8 @@ def _write_description(
     """The model description, in place of that of the AwAS, and its table of variables in C."""
     root = ElementTree.parse(xml).getroot()
     describe(plant, variables, root)
-    # The table needs the open limits, which complete() removes, and the GUID, which it makes.
-    delivered = ElementTree.fromstring(ElementTree.tostring(root))
-    guid = description.complete(delivered)
-    ElementTree.ElementTree(delivered).write(xml, encoding="UTF-8", xml_declaration=True)
+    guid = description.complete(root)
+    ElementTree.ElementTree(root).write(xml, encoding="UTF-8", xml_declaration=True)
     places = c_variables.storage_in_arrays(root)
     table = c_variables.c_table(root, "sh_plant", places, guid)
     (sources / "variables.h").write_text(table, encoding="utf-8")

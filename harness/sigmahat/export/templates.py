@@ -1,9 +1,8 @@
 """Templates of model descriptions, in ``modelDescription/``.
 
 A template is Jinja2 that renders to FMI 2.0 XML without what follows from the rest, which
-``description`` adds. Two attributes are not in FMI: ``open`` of a Real says which of its limits is
-itself not allowed, for the table of variables in C; ``depends`` of an output names the variables
-that its initial value depends on, for the model structure.
+``description`` adds. One attribute is not in FMI: ``depends`` of an output names the variables that
+its initial value depends on, for the model structure.
 """
 
 import math
@@ -13,6 +12,9 @@ from xml.etree.ElementTree import Element
 
 import jinja2
 
+UNITS = Path(__file__).with_name("units.xml")
+"""All units that a variable may have."""
+
 
 def render(template: Path, version: str) -> Element:
     """Render a template to the root element of its XML.
@@ -20,7 +22,8 @@ def render(template: Path, version: str) -> Element:
     Raises ``jinja2.TemplateError`` or ``ElementTree.ParseError`` for a damaged template.
     """
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(template.parent), undefined=jinja2.StrictUndefined
+        loader=jinja2.FileSystemLoader([template.parent, UNITS.parent]),
+        undefined=jinja2.StrictUndefined,
     )
     text = environment.get_template(template.name).render(version=version, pi=math.pi)
     return ElementTree.fromstring(text)

@@ -11,14 +11,13 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.opened import installed, opened
+from sigmahat.fmi.opened import named
 from sigmahat.fmi.recorder import Recorder
 from sigmahat.fmi.sample_loop import SampleLoop, step_times
 
@@ -109,9 +108,7 @@ def simulate(
     with ExitStack() as stack:
 
         def instantiate(fmu: str, name: str) -> Slave:
-            path = Path(fmu)
-            unpacked = opened(path) if path.suffix.lower() == ".fmu" else installed(str(fmu))
-            return stack.enter_context(Slave(unpacked, name))
+            return stack.enter_context(Slave(named(str(fmu)), name))
 
         plant_slave = instantiate(plant.fmu, "plant")
         names, values = list(plant.inputs), _values(plant.inputs, t)

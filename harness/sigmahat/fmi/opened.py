@@ -15,6 +15,15 @@ def installed(name: str) -> Fmu:
     return opened(installed_fmu(name))
 
 
+def named(fmu: str) -> Fmu:
+    """An FMU of this installation by its name, or the one of a path that ends in .fmu.
+
+    Raises what `installed` and `opened` do.
+    """
+    path = Path(fmu)
+    return opened(path) if path.suffix.lower() == ".fmu" else installed(fmu)
+
+
 def opened(path: Path) -> Fmu:
     """An FMU, unpacked until the process ends. Raises what Fmu does.
 

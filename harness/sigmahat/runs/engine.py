@@ -10,7 +10,9 @@ from contextlib import closing
 from dataclasses import replace
 from typing import TypeVar
 
+from sigmahat.fmi.instance import Value
 from sigmahat.fmi.master import Recording, simulate
+from sigmahat.fmi.opened import named
 from sigmahat.runs.metrics import Indices, indices
 from sigmahat.runs.pool import spread
 from sigmahat.runs.scenario import Scenario
@@ -20,6 +22,8 @@ Progress = Callable[[int], object]
 Result = TypeVar("Result")
 SEED = "noise.seed"
 """Parameter of every plant."""
+SAMPLE_PERIOD = "noise.samplePeriod"
+"""Parameter of the plants with noise that this version makes."""
 
 
 def run(
@@ -30,12 +34,19 @@ def run(
 ) -> Recording:
     """Runs the scenario once, with this seed of the plant's noise.
 
+    The noise is drawn at the sampling times of the scenario, unless its plant has another period.
     With variants the estimators that only figures need run too. From time to time progress is
     called with the number of steps made since the last call. Raises what simulate() raises.
     """
-    plant = replace(scenario.plant, start={**scenario.plant.start, SEED: seed})
+    plant = replace(scenario.plant, start={**_noise(scenario), **scenario.plant.start, SEED: seed})
     estimators = {**scenario.estimators, **(scenario.variants if variants else {})}
     return simulate(plant, estimators, scenario.T, scenario.steps, progress)
+
+
+def _noise(scenario: Scenario) -> dict[str, Value]:
+    """Start values with which the noise is white at the sampling times of the scenario."""
+    has_period = SAMPLE_PERIOD in named(str(scenario.plant.fmu)).variables
+    return {SAMPLE_PERIOD: scenario.T} if has_period else {}
 
 
 def measured(

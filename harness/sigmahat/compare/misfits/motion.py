@@ -23,6 +23,8 @@ _LEAD = 0.0025 / (2 * math.pi)  # of the ball screw of the AwAS [m/rad]
 _RETRACTED = 0.1  # lever arm at theta_c = 0 [m]
 _COUNT = 2 * math.pi / 1024  # of the encoder of theta_c [rad]
 _LOW_PASS = 200.0  # of the velocities of a control [rad/s]
+_LARGEST_JITTER = 0.49  # of a period
+_SHORTEST = 1.0 - 2 * _LARGEST_JITTER  # time between two samples, in periods
 _MARGIN = 0.1  # a measured torque may be late or early by so much [s]
 
 
@@ -80,7 +82,9 @@ def _ticks(experiment: Experiment, first: int, end: int) -> Array:
 def _sample_times(experiment: Experiment, ticks: Array) -> Array:
     """Times [s] with jitter, which stays below half a period so that they increase."""
     rng = np.random.default_rng(experiment.seed)
-    off = np.clip(experiment.jitter * rng.standard_normal(len(ticks)), -0.49, 0.49)
+    off = np.clip(
+        experiment.jitter * rng.standard_normal(len(ticks)), -_LARGEST_JITTER, _LARGEST_JITTER
+    )
     off[0] = 0.0
     return ticks + experiment.T * off
 
@@ -114,6 +118,8 @@ def _start(experiment: Experiment) -> dict[str, float | int]:
         "initial.theta": theta,
         "initial.q": theta + (experiment.load - weight) / experiment.stiffness,
         "noise.seed": experiment.seed,
+        # With jitter two samples may fall into one period; each has noise of its own.
+        "noise.samplePeriod": experiment.T * (_SHORTEST if experiment.jitter else 1.0),
     }
 
 
