@@ -1,8 +1,9 @@
 # sigmahat_add_fmu(NAME STRUCT type STORAGE struct|sides|arrays SOURCES file...
 #                  [LIBRARY target])
 #
-# Adds a target NAME that builds NAME.fmu from modelDescription/NAME.xml, the FMI shell, the
-# given sources and those of the library. The FMU contains the binary of the host and the sources.
+# Adds targets NAME and NAME_FMI3 that build NAME.fmu and its twin for FMI 3.0, fmi3/NAME_FMI3.fmu,
+# from modelDescription/NAME.xml, the FMI shell, the given sources and those of the library. An FMU
+# contains the binary of the host and the sources.
 # STRUCT is the C type that contains the variables, STORAGE how they are stored in it: see
 # harness/sigmahat/export/c_variables.py.
 function(sigmahat_add_fmu name)
@@ -10,10 +11,13 @@ function(sigmahat_add_fmu name)
   set(source_dir ${PROJECT_SOURCE_DIR})
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
   set(template ${source_dir}/modelDescription/${name}.xml)
-  file(GLOB shared CONFIGURE_DEPENDS ${source_dir}/modelDescription/*.xml
-       ${source_dir}/harness/sigmahat/export/*.py ${source_dir}/harness/sigmahat/export/units.xml)
+  file(GLOB shared CONFIGURE_DEPENDS ${source_dir}/modelDescription/*.xml ${source_dir}/harness/sigmahat/export/*.py)
 
-  get_target_property(sources sigmahat_shell SOURCES)
+  set(sources "")
+  foreach(part shell fmi2 fmi3)
+    get_target_property(part_sources sigmahat_${part} SOURCES)
+    list(APPEND sources ${part_sources})
+  endforeach()
   list(APPEND sources ${arg_SOURCES})
   set(interface "")
   if(arg_LIBRARY)
@@ -21,52 +25,72 @@ function(sigmahat_add_fmu name)
     get_target_property(interface ${arg_LIBRARY} HEADER_SET)
     list(APPEND sources ${library_sources})
   endif()
-  file(GLOB headers ${source_dir}/c/*.h ${source_dir}/c/*/*.h ${source_dir}/fmu_src/*.h)
+  file(GLOB headers ${source_dir}/c/*.h ${source_dir}/c/*/*.h ${source_dir}/fmu_src/*.h ${source_dir}/fmu_src/*/*.h)
 
+  set(described ${dir}/modelDescription.xml ${dir}/fmi3/modelDescription.xml
+                ${dir}/fmi3/buildDescription.xml ${dir}/fmi3/terminalsAndIcons.xml)
   add_custom_command(
-    OUTPUT ${dir}/modelDescription.xml ${dir}/variables.h
+    OUTPUT ${described} ${dir}/variables.h
     COMMAND ${SIGMAHAT_RUN} sigmahat.export describe ${template} ${dir} ${sources}
             --version ${PROJECT_VERSION} --struct ${arg_STRUCT}
             --storage ${arg_STORAGE}
     DEPENDS ${shared}
-    COMMENT "Model description of ${name}" VERBATIM)
+    COMMENT "Model descriptions of ${name}" VERBATIM)
 
-  # The files for people: documentation and icons.
+  # The model, which knows no version of FMI.
+  add_library(${name}_model OBJECT ${arg_SOURCES} ${dir}/variables.h)
+  target_include_directories(${name}_model PRIVATE ${dir} ${source_dir}/fmu_src
+                             $<$<BOOL:${arg_LIBRARY}>:$<TARGET_PROPERTY:${arg_LIBRARY},INTERFACE_INCLUDE_DIRECTORIES>>)
+  set_target_properties(${name}_model PROPERTIES C_VISIBILITY_PRESET hidden)
+
   file(GLOB pages ${source_dir}/modelDescription/documentation/*.html)
-  set(shown ${dir}/shown)
-  set(shown_files ${shown}/model.png ${shown}/documentation/index.html
-                  ${shown}/documentation/icon.svg)
-  add_custom_command(
-    OUTPUT ${shown_files}
-    COMMAND ${SIGMAHAT_RUN} sigmahat.export document ${template} ${shown}
-            --version ${PROJECT_VERSION}
-    DEPENDS ${shared} ${pages}
-    COMMENT "Documentation of ${name}" VERBATIM)
+  foreach(fmi 2 3)
+    set(target ${name})
+    set(fmu ${SIGMAHAT_FMU_FOLDER}/${name}.fmu)
+    set(icons model.png documentation/icon.svg)
+    if(fmi EQUAL 3)
+      set(target ${name}_FMI3)
+      set(fmu ${PROJECT_BINARY_DIR}/fmi3/${name}_FMI3.fmu)
+      set(icons terminalsAndIcons/icon.png terminalsAndIcons/icon.svg)
+    endif()
 
-  add_library(${name}_binary MODULE $<TARGET_OBJECTS:sigmahat_shell> ${arg_SOURCES}
-              ${dir}/variables.h)
-  target_include_directories(${name}_binary PRIVATE ${dir} ${source_dir}/fmu_src)
-  target_include_directories(${name}_binary SYSTEM PRIVATE ${SIGMAHAT_FMI_HEADERS})
-  set_target_properties(
-    ${name}_binary PROPERTIES OUTPUT_NAME ${name} PREFIX "" C_VISIBILITY_PRESET hidden
-                              LIBRARY_OUTPUT_DIRECTORY ${dir}/binary)
-  if(APPLE)
-    set_target_properties(${name}_binary PROPERTIES SUFFIX ".dylib")
-  endif()
-  target_link_libraries(${name}_binary PRIVATE ${arg_LIBRARY} ${SIGMAHAT_MATH})
+    # The files for people: documentation and icons.
+    set(shown ${dir}/shown${fmi})
+    list(TRANSFORM icons PREPEND ${shown}/)
+    set(shown_files ${icons} ${shown}/documentation/index.html)
+    add_custom_command(
+      OUTPUT ${shown_files}
+      COMMAND ${SIGMAHAT_RUN} sigmahat.export document ${template} ${shown}
+              --fmi ${fmi} --version ${PROJECT_VERSION}
+      DEPENDS ${shared} ${pages}
+      COMMENT "Documentation of ${target}" VERBATIM)
 
-  set(fmu ${SIGMAHAT_FMU_FOLDER}/${name}.fmu)
-  add_custom_command(
-    OUTPUT ${fmu}
-    COMMAND ${SIGMAHAT_RUN} sigmahat.export pack ${fmu} ${sources} ${interface} ${dir}/variables.h
-            --description ${dir}/modelDescription.xml --binary $<TARGET_FILE:${name}_binary>
-            --licence ${source_dir}/LICENSE --shown ${shown}
-    DEPENDS ${name}_binary ${dir}/modelDescription.xml ${source_dir}/LICENSE ${shown_files}
-            ${shared} ${headers}
-    WORKING_DIRECTORY ${source_dir}
-    COMMENT "Packing ${name}.fmu" VERBATIM)
-  add_custom_target(${name} ALL DEPENDS ${fmu})
-  set_property(GLOBAL APPEND PROPERTY SIGMAHAT_FMUS ${fmu})
+    add_library(${target}_binary MODULE $<TARGET_OBJECTS:sigmahat_shell>
+                $<TARGET_OBJECTS:sigmahat_fmi${fmi}> $<TARGET_OBJECTS:${name}_model>)
+    set_target_properties(
+      ${target}_binary PROPERTIES OUTPUT_NAME ${name} PREFIX "" LINKER_LANGUAGE C
+                                  LIBRARY_OUTPUT_DIRECTORY ${dir}/binary${fmi})
+    if(APPLE)
+      set_target_properties(${target}_binary PROPERTIES SUFFIX ".dylib")
+    endif()
+    target_link_libraries(${target}_binary PRIVATE ${arg_LIBRARY} ${SIGMAHAT_MATH})
+
+    add_custom_command(
+      OUTPUT ${fmu}
+      COMMAND ${SIGMAHAT_RUN} sigmahat.export pack ${fmu} ${sources} ${interface} ${dir}/variables.h
+              --fmi ${fmi} --described ${dir} --binary $<TARGET_FILE:${target}_binary>
+              --licence ${source_dir}/LICENSE --shown ${shown}
+      DEPENDS ${target}_binary ${described} ${source_dir}/LICENSE ${shown_files} ${shared} ${headers}
+      WORKING_DIRECTORY ${source_dir}
+      COMMENT "Packing ${target}.fmu" VERBATIM)
+    set(all ALL)
+    if(SKBUILD AND fmi EQUAL 3) # a wheel has no use for the twins
+      set(all "")
+      set_target_properties(${target}_binary PROPERTIES EXCLUDE_FROM_ALL TRUE)
+    endif()
+    add_custom_target(${target} ${all} DEPENDS ${fmu})
+    set_property(GLOBAL APPEND PROPERTY SIGMAHAT_FMUS_${fmi} ${fmu})
+  endforeach()
 endfunction()
 
 # sigmahat_add_estimator(NAME STRUCT type STORAGE struct|sides): an FMU of the C library.

@@ -4,18 +4,20 @@
 # The cross compiler is a large download, so it is installed only for this target.
 sigmahat_add_packages(release)
 
-get_property(fmus GLOBAL PROPERTY SIGMAHAT_FMUS)
-set(released "")
-foreach(fmu IN LISTS fmus)
-  cmake_path(GET fmu FILENAME file)
-  set(release ${PROJECT_BINARY_DIR}/release/${file})
-  add_custom_command(
-    OUTPUT ${release}
-    COMMAND ${SIGMAHAT_RUN} sigmahat.export release ${fmu} ${release}
-            --cache ${PROJECT_BINARY_DIR}/cross-compiler
-    DEPENDS ${fmu} ${packages_release}
-    COMMENT "Compiling ${file} for every platform" VERBATIM)
-  list(APPEND released ${release})
+foreach(fmi 2 3)
+  get_property(fmus GLOBAL PROPERTY SIGMAHAT_FMUS_${fmi})
+  set(released_${fmi} "")
+  foreach(fmu IN LISTS fmus)
+    cmake_path(GET fmu FILENAME file)
+    set(release ${PROJECT_BINARY_DIR}/release/${file})
+    add_custom_command(
+      OUTPUT ${release}
+      COMMAND ${SIGMAHAT_RUN} sigmahat.export release ${fmu} ${release}
+              --cache ${PROJECT_BINARY_DIR}/cross-compiler
+      DEPENDS ${fmu} ${packages_release}
+      COMMENT "Compiling ${file} for every platform" VERBATIM)
+    list(APPEND released_${fmi} ${release})
+  endforeach()
 endforeach()
 set(release ${PROJECT_BINARY_DIR}/release)
 sigmahat_add_system(${release}/sigmahat-awas.ssp ${release}/AwasPlant.fmu
@@ -38,10 +40,11 @@ list(FILTER package EXCLUDE REGEX "__pycache__")
 add_custom_command(
   OUTPUT ${release}/python.stamp
   COMMAND ${SIGMAHAT_RUN} sigmahat.export distribute ${release}/python
-          ${released} ${release}/sigmahat-awas.ssp --project ${PROJECT_SOURCE_DIR}
+          ${released_2} ${release}/sigmahat-awas.ssp --project ${PROJECT_SOURCE_DIR}
           ${compiled} ${included} --cache ${PROJECT_BINARY_DIR}/cross-compiler
   COMMAND ${CMAKE_COMMAND} -E touch ${release}/python.stamp
-  DEPENDS ${released} ${release}/sigmahat-awas.ssp ${package} ${library_sources}
+  DEPENDS ${released_2} ${release}/sigmahat-awas.ssp ${package} ${library_sources}
           pyproject.toml ${packages_release} StiffnessEstimator
   COMMENT "Wheels and source distribution" VERBATIM)
-add_custom_target(release DEPENDS ${released} ${release}/sigmahat-awas.ssp ${release}/python.stamp)
+add_custom_target(release DEPENDS ${released_2} ${released_3} ${release}/sigmahat-awas.ssp
+                                  ${release}/python.stamp)

@@ -22,45 +22,64 @@ def main() -> None:
 def describe(
     template: Path, out: Path, sources: list[Path], version: str, struct: str, storage: str
 ) -> None:
-    """Write modelDescription.xml and variables.h of TEMPLATE, with C files SOURCES, into OUT."""
-    names = [source.name for source in sources]
-    description.write(template, out, version, struct, c_variables.STORAGE[storage], names)
+    """Write model descriptions and variables.h of TEMPLATE, with C files SOURCES, into OUT."""
+    description.write(template, out, version, struct, c_variables.STORAGE[storage], sources)
+
+
+_FMI = click.option("--fmi", required=True, type=click.IntRange(2, 3), help="Version of FMI.")
 
 
 @main.command()
 @click.argument("fmu", type=click.Path(dir_okay=False, path_type=Path))
 @click.argument("sources", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--description", "xml", required=True, type=click.Path(path_type=Path))
+@_FMI
+@click.option("--described", required=True, type=click.Path(path_type=Path))
 @click.option("--binary", required=True, type=click.Path(path_type=Path))
 @click.option("--licence", required=True, type=click.Path(path_type=Path))
 @click.option("--shown", required=True, type=click.Path(path_type=Path))
 def pack(
-    fmu: Path, sources: list[Path], xml: Path, binary: Path, licence: Path, shown: Path
+    fmu: Path,
+    sources: list[Path],
+    fmi: int,
+    described: Path,
+    binary: Path,
+    licence: Path,
+    shown: Path,
 ) -> None:
-    """Write an FMU with the binary of this machine, SOURCES and the headers they include."""
+    """Write an FMU with the binary of this machine, SOURCES and the headers they include.
+
+    --described and --shown are the folders that describe and document have written.
+    """
     import fmpy
 
-    archive.write(
-        fmu,
-        {
-            "modelDescription.xml": xml,
-            f"binaries/{fmpy.platform}/{binary.name}": binary,
-            "documentation/licenses/license.txt": licence,
-            **{f.relative_to(shown).as_posix(): f for f in shown.rglob("*") if f.is_file()},
-            **{f"sources/{f.name}": f for f in source_files.with_headers(sources)},
-        },
-    )
+    files = source_files.with_headers(source_files.for_version(sources, fmi))
+    contents = {
+        "documentation/licenses/license.txt": licence,
+        **{f.relative_to(shown).as_posix(): f for f in shown.rglob("*") if f.is_file()},
+        **{f"sources/{f.name}": f for f in files},
+    }
+    if fmi == 2:
+        contents["modelDescription.xml"] = described / "modelDescription.xml"
+        contents[f"binaries/{fmpy.platform}/{binary.name}"] = binary
+    else:
+        contents["modelDescription.xml"] = described / "fmi3/modelDescription.xml"
+        contents["sources/buildDescription.xml"] = described / "fmi3/buildDescription.xml"
+        icons = "terminalsAndIcons/terminalsAndIcons.xml"
+        contents[icons] = described / "fmi3/terminalsAndIcons.xml"
+        contents[f"binaries/{fmpy.platform_tuple}/{binary.name}"] = binary
+    archive.write(fmu, contents)
 
 
 @main.command()
 @click.argument("template", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.argument("out", type=click.Path(file_okay=False, path_type=Path))
+@_FMI
 @click.option("--version", required=True, help="Version of the FMU.")
-def document(template: Path, out: Path, version: str) -> None:
+def document(template: Path, out: Path, fmi: int, version: str) -> None:
     """Write documentation and icons of TEMPLATE into OUT, by their names in the FMU."""
     from sigmahat.export import documentation
 
-    documentation.write(template, out, version)
+    documentation.write(template, out, version, fmi)
 
 
 @main.command("system")

@@ -20,9 +20,23 @@ PLATFORMS = {
 }
 """Platforms of FMI 2.0: target of the compiler, extension of a shared library."""
 
+PLATFORMS_3 = {
+    "x86_64-linux": PLATFORMS["linux64"],
+    "x86_64-windows": PLATFORMS["win64"],
+    "x86_64-darwin": PLATFORMS["darwin64"],
+    "aarch64-linux": ("aarch64-linux-gnu.2.17", ".so"),
+    "aarch64-darwin": ("aarch64-macos.11.0", ".dylib"),
+}
+"""Those of FMI 3.0, which also has names for processors of the ARM family."""
+
 # No contraction to fused operations: the same numbers on every machine. No symbols and no
 # debug information (-s): they would hold paths.
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared", "-s")
+
+
+def _description(folder: Path) -> Any:
+    """FMPy reads the SourceFiles of FMI 2.0 as a build configuration of FMI 3.0."""
+    return fmpy.read_model_description(str(folder))
 
 
 def compile_binary(folder: Path, platform: str, cache: Path) -> None:
@@ -31,8 +45,7 @@ def compile_binary(folder: Path, platform: str, cache: Path) -> None:
     ``cache`` is a folder for compiled parts that can be used again. Raises
     ``subprocess.CalledProcessError`` where the compiler refuses; it says why on stderr.
     """
-    # FMPy reads the SourceFiles of FMI 2.0 as a build configuration of FMI 3.0.
-    description: Any = fmpy.read_model_description(str(folder))
+    description = _description(folder)
     sources = description.buildConfigurations[0].sourceFileSets[0].sourceFiles
     name = description.coSimulation.modelIdentifier
     compile_shared(
@@ -51,7 +64,7 @@ def compile_shared(
 
     ``includes`` are folders of headers beside FMI's; ``cache`` and errors as ``compile_binary``.
     """
-    target, extension = PLATFORMS[platform]
+    target, extension = {**PLATFORMS, **PLATFORMS_3}[platform]
     library = out.with_name(out.name + extension)
     folders = [*includes, Path(fmpy.__file__).parent / "c-code"]
     with TemporaryDirectory() as scratch:
@@ -84,7 +97,7 @@ def release(fmu: Path, out: Path, cache: Path) -> None:
     with TemporaryDirectory() as unpacked:
         folder = Path(fmpy.extract(str(fmu), unzipdir=unpacked))
         shutil.rmtree(folder / "binaries")
-        for platform in PLATFORMS:
+        for platform in PLATFORMS_3 if _description(folder).fmiVersion == "3.0" else PLATFORMS:
             compile_binary(folder, platform, cache)
         files = [f for f in folder.rglob("*") if f.is_file()]
         archive.write(out, {f.relative_to(folder).as_posix(): f for f in files})

@@ -10,6 +10,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
+from sigmahat.export import fmi3_description, source_files
 from sigmahat.export.c_variables import c_table
 from sigmahat.export.templates import render, variables
 
@@ -92,16 +93,28 @@ def write(
     version: str,
     struct: str,
     storage: Callable[[Element], dict[str, str]],
-    sources: Iterable[str],
+    sources: Iterable[Path],
 ) -> None:
     """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder.
 
-    ``sources`` are the names of the C files of the FMU.
+    Beside them, ``fmi3`` gets the three files that describe the twin for FMI 3.0. ``sources`` are
+    the C files of both; those in a folder ``fmi2`` or ``fmi3`` are for that version only.
     """
     out.mkdir(parents=True, exist_ok=True)
     root, delivered = render(template, version), render(template, version)
-    _add_source_files(delivered, sources)
+    sources = list(sources)
+    _add_source_files(delivered, source_files.names(source_files.for_version(sources, 2)))
     guid = complete(delivered)
     (out / "variables.h").write_text(c_table(root, struct, storage(root), guid), encoding="utf-8")
-    tree = ElementTree.ElementTree(delivered)
-    tree.write(out / "modelDescription.xml", encoding="UTF-8", xml_declaration=True)
+    _write_xml(delivered, out / "modelDescription.xml")
+    names = source_files.names(source_files.for_version(sources, 3))
+    described = fmi3_description.build_description(template.stem, names)
+    (out / "fmi3").mkdir(exist_ok=True)
+    _write_xml(fmi3_description.twin(delivered), out / "fmi3/modelDescription.xml")
+    _write_xml(described, out / "fmi3/buildDescription.xml")
+    shown = fmi3_description.terminals_and_icons(delivered)
+    _write_xml(shown, out / "fmi3/terminalsAndIcons.xml")
+
+
+def _write_xml(root: Element, file: Path) -> None:
+    ElementTree.ElementTree(root).write(file, encoding="UTF-8", xml_declaration=True)

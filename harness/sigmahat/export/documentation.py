@@ -1,4 +1,4 @@
-"""Documentation and icon of an FMU: ``documentation/index.html``, ``icon.svg``, ``model.png``.
+"""Documentation and icon of an FMU: ``documentation/index.html``, an SVG and a PNG.
 
 The page is one Jinja2 template for all FMUs, in ``modelDescription/documentation``; its
 variables are those of the template of the model description.
@@ -6,6 +6,7 @@ variables are those of the template of the model description.
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -16,14 +17,23 @@ import jinja2
 from sigmahat.export import icon, templates
 
 
-def write(template: Path, out: Path, version: str) -> None:
-    """Write the files into a folder, by their names in the FMU.
+_ICONS = {
+    2: ("model.png", "documentation/icon.svg"),
+    3: ("terminalsAndIcons/icon.png", "terminalsAndIcons/icon.svg"),
+}
+"""Names of PNG and SVG in an FMU, by the version of FMI."""
+
+
+def write(template: Path, out: Path, version: str, fmi: int = 2) -> None:
+    """Write the files into a folder, by their names in the FMU of FMI 2.0 or 3.0.
 
     Raises as `templates.render` does, and ``KeyError`` for an FMU without an icon.
     """
     folder = out / "documentation"
     folder.mkdir(parents=True, exist_ok=True)
-    icon.write(template.stem, out / "model.png", folder / "icon.svg")
+    png, svg = (out / name for name in _ICONS[fmi])
+    png.parent.mkdir(exist_ok=True)
+    icon.write(template.stem, png, svg)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(template.parent / "documentation"),
         undefined=jinja2.StrictUndefined,
@@ -33,6 +43,8 @@ def write(template: Path, out: Path, version: str) -> None:
     (experiment,) = root.findall("DefaultExperiment")
     page = environment.get_template("page.html").render(
         identifier=template.stem,
+        fmi=fmi,
+        icon=os.path.relpath(svg, folder).replace(os.sep, "/"),
         kind="plant" if template.stem.endswith("Plant") else "estimator",
         experiment=experiment.attrib,
         variables={c: table(root, c) for c in ("input", "output", "parameter")},

@@ -34,6 +34,8 @@ def twin(root: Element) -> Element:
         made.extend(map(copy.deepcopy, root.findall(part)))
     for definition in made.findall("TypeDefinitions"):
         _convert_types(definition)
+    for units in made.findall("UnitDefinitions"):
+        _add_second(units)
     made.append(_model_variables(root, found))
     made.append(_model_structure(root, found))
     ElementTree.indent(made)
@@ -45,6 +47,12 @@ def _convert_types(definitions: Element) -> None:
         converted = ElementTree.SubElement(definitions, "EnumerationType", simple.attrib)
         converted.extend(simple.findall("Enumeration/Item"))
         definitions.remove(simple)
+
+
+def _add_second(units: Element) -> None:
+    """The unit of time, for FMUs that use it for nothing else."""
+    if units.find("Unit[@name='s']") is None:
+        ElementTree.SubElement(ElementTree.SubElement(units, "Unit", name="s"), "BaseUnit", s="1")
 
 
 def _model_variables(root: Element, found: Sequence[Array]) -> Element:

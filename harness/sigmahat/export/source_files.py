@@ -5,6 +5,16 @@ from collections.abc import Iterable
 from pathlib import Path
 
 
+def for_version(files: Iterable[Path], fmi: int) -> list[Path]:
+    """The files of an FMU of FMI 2.0 or 3.0: not those in the folder of the other version."""
+    return [file for file in files if file.parent.name != {2: "fmi3", 3: "fmi2"}[fmi]]
+
+
+def names(files: Iterable[Path]) -> list[str]:
+    """The names of the C files among some files, which are those to compile."""
+    return [file.name for file in files if file.suffix == ".c"]
+
+
 def with_headers(files: Iterable[Path]) -> list[Path]:
     """The files given, and the headers they include from each other's folders, in any depth.
 
