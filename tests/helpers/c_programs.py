@@ -19,19 +19,19 @@ from fmi_runs import ESTIMATORS
 from gate import missing
 
 REPOSITORY = Path(__file__).resolve().parents[2]
+FMU_SOURCES = REPOSITORY / "fmu_src"
 PLANT_SOURCES = ("plant.c", "radau.c", "noise.c")
 
 
-def sources(fmu: str, build: Path) -> list[Path]:
-    """The C source files of an FMU."""
-    shell = REPOSITORY / "fmu_src"
-    files = [*sorted(shell.glob("fmi2_*.c")), shell / "instance.c"]
+def sources(fmu: str, build: Path, version: str = "fmi2") -> list[Path]:
+    """The C source files of an FMU, with the functions of a version of FMI."""
+    files = sorted([*(FMU_SOURCES / "shell").glob("*.c"), *(FMU_SOURCES / version).glob("*.c")])
     if fmu in ESTIMATORS:
-        own = [shell / name for name in (f"{fmu}.c", "estimator_fmu.c", "sample_clock.c")]
+        own = [FMU_SOURCES / name for name in (f"{fmu}.c", "estimator_fmu.c", "sample_clock.c")]
         return files + own + SOURCES
     return [
         *files,
-        *(shell / name for name in PLANT_SOURCES),
+        *(FMU_SOURCES / name for name in PLANT_SOURCES),
         build / f"fmu/{fmu}/plant_functions.c",
     ]
 
@@ -46,7 +46,7 @@ def compile_driver(
     common = (
         [here / "drive.c"] if '#include "drive.h"' in (here / f"{driver}.c").read_text() else []
     )
-    folders = [*FOLDERS, REPOSITORY / "fmu_src", build / "fmu" / fmu]
+    folders = [*FOLDERS, FMU_SOURCES, FMU_SOURCES / "shell", build / "fmu" / fmu]
     command = [
         *(
             compiler,

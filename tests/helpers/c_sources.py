@@ -11,8 +11,8 @@ SOURCES = sorted(LIBRARY.rglob("*.c"))
 HEADERS = sorted(LIBRARY.rglob("*.h"))
 FOLDERS = sorted({header.parent for header in HEADERS})
 
-OTHER_FOLDERS = [REPOSITORY / "fmu_src", NATIVE]
-OTHERS = [*sorted((REPOSITORY / "fmu_src").glob("*.c")), *sorted(NATIVE.glob("*.c"))]
+OTHER_FOLDERS = [REPOSITORY / "fmu_src", REPOSITORY / "fmu_src" / "shell", NATIVE]
+OTHERS = [*sorted((REPOSITORY / "fmu_src").rglob("*.c")), *sorted(NATIVE.glob("*.c"))]
 """C files outside of the library: those of the FMUs and of the Python package."""
 
 
