@@ -509,6 +509,44 @@ def test_an_experiment_with_impossible_times_is_refused(
         assert fmu.step(0.0, 1e-3) == OK
 
 
+@pytest.mark.parametrize("bad", [-1e-6, math.nan, math.inf])
+def test_a_tolerance_that_is_no_tolerance_is_refused(bad: float, estimator_fmu: Path) -> None:
+    def setup(fmu: Instance, defined: int) -> int:
+        times = (ctypes.c_double(0.0), 0, ctypes.c_double(0.0))
+        return fmu.call("fmi2SetupExperiment", defined, ctypes.c_double(bad), *times)
+
+    with Instance(estimator_fmu) as fmu:
+        assert setup(fmu, 1) == ERROR
+        assert "fmi2SetupExperiment: tolerance = " in fmu.messages[-1][2]
+        assert setup(fmu, 0) == OK  # it is not defined
+
+
+@every_fmu
+@pytest.mark.parametrize("h", [1e-4, 1e-3, 0.01])
+def test_a_step_after_the_stop_time_is_refused(name: str, h: float) -> None:
+    with Instance(sigmahat.fmu(name)) as fmu:
+        driver = Driver(fmu)
+        assert fmu.setup(start=1.0, stop=1.01) == OK
+        assert fmu.enter() == OK and fmu.exit() == OK
+        count = round(0.01 / h)
+        driver.run([(1.0 + k * h, h) for k in range(count)])
+        before = driver.result()
+        for end in (h, 2.1e-3 * h):
+            for _ in range(3):
+                assert fmu.step(1.0 + count * h, end) == ERROR
+                assert "expected an end not after stopTime = 1.01 s" in fmu.messages[-1][2]
+        assert driver.result() == before
+        assert fmu.step(1.0 + count * h, 1e-13) == OK  # as an importer makes it by rounding
+
+
+@every_fmu
+def test_without_a_stop_time_there_is_no_end(name: str) -> None:
+    with Instance(sigmahat.fmu(name)) as fmu:
+        assert fmu.setup() == OK  # the value of stopTime, 0, is not defined
+        assert fmu.enter() == OK and fmu.exit() == OK
+        Driver(fmu).run([(k * 1e-3, 1e-3) for k in range(12)])
+
+
 @every_fmu
 def test_steps_at_a_wrong_time_are_refused_and_change_nothing(name: str) -> None:
     with Instance(sigmahat.fmu(name)) as fmu, Instance(sigmahat.fmu(name)) as other:

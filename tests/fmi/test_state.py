@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import math
 import random
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context

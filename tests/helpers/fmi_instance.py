@@ -148,14 +148,14 @@ class Instance:
     def get_all(self, names: Sequence[str]) -> list[float]:
         return [self.get(name) for name in names]
 
-    def setup(self, start: float = 0.0) -> int:
+    def setup(self, start: float = 0.0, stop: float | None = None) -> int:
         return self.call(
             "fmi2SetupExperiment",
             0,
             ctypes.c_double(0),
             ctypes.c_double(start),
-            0,
-            ctypes.c_double(0),
+            int(stop is not None),
+            ctypes.c_double(stop or 0),
         )
 
     def enter(self) -> int:

@@ -16,7 +16,6 @@ import jinja2
 
 from sigmahat.export import icon, templates
 
-
 _ICONS = {
     2: ("model.png", "documentation/icon.svg"),
     3: ("terminalsAndIcons/icon.png", "terminalsAndIcons/icon.svg"),

@@ -1,0 +1,261 @@
+"""What FMI 3.0 does not allow, or these FMUs do not have, is refused with a message."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import pytest
+
+from fmi3_instance import C_TYPES, SIZE, Instance3, driver3
+from fmi_instance import ERROR, OK, WARNING
+from fmi_runs import ESTIMATORS, PLANTS, names
+
+every_fmu = pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
+Twin = Callable[[str], Path]
+HEADER = (Path(fmpy.__file__).parent / "c-code" / "fmi3Functions.h").read_text()
+FUNCTIONS = re.findall(r"^#define \w+\s+fmi3FullName\((\w+)\)", HEADER, re.MULTILINE)
+
+INSTANTIATED, INITIALISATION, STEP, TERMINATED = "instantiated", "initialisation", "step", "end"
+EVERYWHERE = {INSTANTIATED, INITIALISATION, STEP, TERMINATED}
+SETTABLE, READABLE = EVERYWHERE - {TERMINATED}, EVERYWHERE - {INSTANTIATED}
+ALLOWED = {
+    "fmi3SetDebugLogging": EVERYWHERE,
+    "fmi3EnterInitializationMode": {INSTANTIATED},
+    "fmi3ExitInitializationMode": {INITIALISATION},
+    "fmi3Terminate": {STEP},
+    "fmi3Reset": EVERYWHERE,
+    "fmi3DoStep": {STEP},
+    "fmi3GetFMUState": EVERYWHERE,
+    "fmi3SetFMUState": EVERYWHERE,
+    "fmi3FreeFMUState": EVERYWHERE,
+    "fmi3SerializedFMUStateSize": EVERYWHERE,
+    "fmi3SerializeFMUState": EVERYWHERE,
+    "fmi3DeserializeFMUState": EVERYWHERE,
+}
+NOT_CALLED = {  # they have no instance to be called with, or end it
+    "fmi3GetVersion",
+    "fmi3InstantiateModelExchange",
+    "fmi3InstantiateCoSimulation",
+    "fmi3InstantiateScheduledExecution",
+    "fmi3FreeInstance",
+}
+ACCESS = re.compile(r"fmi3([GS]et)((?:U?Int|Float)\d+|Boolean|String|Binary|Clock)")
+
+
+def allowed(function: str) -> set[str]:
+    """States in which the standard, section 2.3, allows a function of such an FMU."""
+    access = ACCESS.fullmatch(function)
+    if access:
+        return READABLE if access[1] == "Get" else SETTABLE
+    return ALLOWED.get(function, set())
+
+
+def bring_to(fmu: Instance3, state: str) -> None:
+    if state != INSTANTIATED:
+        assert fmu.enter() == OK
+    if state in (STEP, TERMINATED):
+        assert fmu.exit() == OK
+    if state == TERMINATED:
+        assert fmu.call("fmi3Terminate") == OK
+
+
+def test_the_binary_has_every_function_of_the_standard(estimator: Path) -> None:
+    assert len(FUNCTIONS) > 70
+    with Instance3(estimator) as fmu:
+        for function in FUNCTIONS:
+            assert fmu.dll[function]
+        fmu.dll.fmi3GetVersion.restype = ctypes.c_char_p
+        assert fmu.dll.fmi3GetVersion() == b"3.0"
+
+
+@pytest.mark.parametrize("state", sorted(EVERYWHERE))
+def test_a_function_is_refused_where_it_is_not_allowed(state: str, estimator: Path) -> None:
+    nothing = [ctypes.c_size_t(0)] * 12  # NULL, 0 or false for any argument
+    for function in sorted(set(FUNCTIONS) - NOT_CALLED):
+        if state in allowed(function):
+            continue
+        with Instance3(estimator) as fmu:
+            bring_to(fmu, state)
+            fmu.messages.clear()
+            assert fmu.call(function, *nothing) == ERROR, function
+            assert len(fmu.messages) == 1, function
+            status, category, message = fmu.messages[-1]
+            assert (status, category) == (ERROR, "logStatusError")
+            assert message.startswith(f"{function}: "), message
+            assert "not allowed" in message or "has no" in message
+
+
+def test_without_an_instance_every_function_fails_quietly(estimator: Path) -> None:
+    with Instance3(estimator) as fmu:
+        for function in sorted(set(FUNCTIONS) - NOT_CALLED):
+            assert fmu.dll[function](*[None] * 12) == ERROR, function
+        fmu.dll.fmi3FreeInstance(None)
+        assert fmu.messages == []
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ({"event_mode": True}, "hasEventMode is false"),
+        ({"intermediate": [0]}, "providesIntermediateUpdate is false"),
+        ({"token": "{not-this-one}"}, "{not-this-one}"),
+        ({"token": ""}, "GUID"),
+    ],
+)
+def test_an_instance_that_cannot_be_is_refused(
+    options: dict[str, Any], expected: str, estimator: Path
+) -> None:
+    with Instance3(estimator, **options) as fmu:
+        assert fmu.handle is None
+        status, category, message = fmu.messages[-1]
+        assert (status, category) == (ERROR, "logStatusError")
+        assert message.startswith("fmi3InstantiateCoSimulation: ") and expected in message
+
+
+@pytest.mark.parametrize("options", [{"early_return": True}, {"logger": False}])
+def test_importers_with_other_wishes_can_run_it(options: dict[str, Any], estimator: Path) -> None:
+    with Instance3(estimator, **options) as fmu:
+        fmu.initialise()
+        assert fmu.step(0.0, 1e-3) == OK
+        assert fmu.step(7.0, 1e-3) == ERROR
+
+
+def test_other_kinds_of_fmus_are_refused(estimator: Path) -> None:
+    with Instance3(estimator) as fmu:
+        environment = [ctypes.c_void_p(4711), fmu._logger]
+        assert fmu.instantiate("ModelExchange", *environment) is None
+        assert "not for model exchange" in fmu.last_message
+        assert fmu.instantiate("ScheduledExecution", *environment, None, None, None) is None
+        assert "not for scheduled execution" in fmu.last_message
+
+
+@every_fmu
+def test_invalid_references_and_values_are_refused(name: str, twin: Twin) -> None:
+    with Instance3(twin(name)) as fmu:
+        driver = driver3(fmu)
+        fmu.initialise()
+        driver.step(0.0, 1e-3)
+        before, one = driver.result(), SIZE(1)
+        unknown = (ctypes.c_uint32 * 1)(100000)
+        for function in (f for f in FUNCTIONS if ACCESS.fullmatch(f)):
+            sizes = [(SIZE * 1)()] if function.endswith("Binary") else []
+            assert fmu.call(function, unknown, one, *sizes, (ctypes.c_int64 * 1)(), one) == ERROR
+            assert "unknown value reference 100000" in fmu.last_message
+            theta = fmu.references([driver.inputs[0]])
+            if "Float64" not in function:
+                assert fmu.call(function, theta, one, *sizes, (ctypes.c_int64 * 1)(), one) == ERROR
+                assert f"is {driver.inputs[0]}, which is Float64" in fmu.last_message
+            assert fmu.call(function, None, one, *sizes, (ctypes.c_int64 * 1)(), one) == ERROR
+            assert "valueReferences is NULL" in fmu.last_message
+            assert fmu.call(function, theta, one, *sizes, None, one) == ERROR
+            assert fmu.call(function, None, SIZE(0), *sizes, None, SIZE(0)) == OK
+        for output in names(fmu, "output"):
+            assert fmu.set(output, *[1] * fmu.length(output)) == ERROR
+            assert re.search(rf"{output}(\[0,0\])? cannot be set now", fmu.last_message)
+        for fixed in names(fmu, "parameter", "fixed"):
+            assert fmu.set(fixed, *[1] * fmu.length(fixed)) == ERROR
+            named = re.escape(fixed)
+            assert re.search(rf"{named}(\[0,0\])? cannot be set now", fmu.last_message)
+        for tunable in names(fmu, "parameter", "tunable"):
+            good = fmu.get(tunable)
+            if fmu.variables[tunable].type == "Float64":
+                for bad in (math.nan, math.inf):
+                    assert fmu.set(tunable, bad) == ERROR
+                    assert f"{tunable} = " in fmu.last_message
+            assert fmu.get(tunable) == good
+        assert fmu.set("time", 1.0) == ERROR
+        assert fmu.get("time") == 1e-3
+        assert driver.result() == before
+        driver.step(1e-3, 1e-3)
+
+
+def test_an_array_is_set_and_read_as_a_whole(estimator: Path) -> None:
+    with Instance3(estimator) as fmu:
+        count = fmu.length("rls.eta_0")
+        assert count == 8 * 5
+        values = [0.5 * k for k in range(count)]
+        assert fmu.set("rls.eta_0", *values) == OK
+        for wrong in (0, 1, count - 1, count + 1):
+            assert fmu.set("rls.eta_0", *[9.0] * wrong) == ERROR
+            assert f"nValues = {wrong}; expected {count}" in fmu.last_message
+        assert fmu.set("rls.eta_0", *values[:-1], math.nan) == ERROR
+        assert "rls.eta_0[7,4] = " in fmu.last_message
+        fmu.initialise({"rls.n": 8, "rls.m": 5})
+        assert fmu.elements("rls.eta_0") == values
+        assert fmu.elements("eta") == values  # the initial estimate
+        inside = (ctypes.c_uint32 * 1)(fmu.variables["eta"].valueReference + 1)
+        assert (
+            fmu.call("fmi3GetFloat64", inside, SIZE(1), (ctypes.c_double * 1)(), SIZE(1)) == ERROR
+        )
+        assert "eta[0,1], an element; expected that of the array" in fmu.last_message
+
+
+@pytest.mark.parametrize("bad", [0, 4, -1, 2**31, 2**40, -(2**63), 2**63 - 1])
+def test_an_enumeration_outside_its_items_is_refused(bad: int, estimator: Path) -> None:
+    with Instance3(estimator) as fmu:
+        assert fmu.set("modality", bad) == ERROR
+        assert "modality = " in fmu.last_message and "[1, 3]" in fmu.last_message
+        fmu.initialise()
+        assert fmu.get("modality") == 1
+
+
+def test_every_variable_has_its_start_value(estimator: Path) -> None:
+    with Instance3(estimator) as fmu:
+        fmu.initialise()
+        for name, variable in fmu.variables.items():
+            if variable.causality != "parameter":
+                continue
+            word = {"true": 1.0, "false": 0.0}
+            starts = [word.get(s) or float(word.get(s, s)) for s in str(variable.start).split()]
+            assert fmu.elements(name) == starts, name
+        assert set(C_TYPES) == {v.type for v in fmu.variables.values()}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        ({"start": math.nan}, "startTime"),
+        ({"start": math.inf}, "startTime"),
+        ({"stop": -1.0}, "stopTime = -1 is before startTime = 0"),
+        ({"stop": math.nan}, "stopTime"),
+        ({"tolerance": -1e-6}, "tolerance = -1e-06"),
+        ({"tolerance": math.nan}, "tolerance"),
+    ],
+)
+def test_an_impossible_experiment_is_refused(
+    arguments: dict[str, float], expected: str, estimator: Path
+) -> None:
+    with Instance3(estimator) as fmu:
+        assert fmu.enter(**arguments) == ERROR
+        assert expected in fmu.last_message
+        fmu.initialise()
+
+
+@every_fmu
+def test_a_step_after_the_stop_time_is_refused(name: str, twin: Twin) -> None:
+    with Instance3(twin(name)) as fmu:
+        fmu.initialise(stop=0.01)
+        for k in range(10):
+            assert fmu.step(k * 1e-3, 1e-3) == OK
+        before = driver3(fmu).result()
+        for _ in range(12):
+            assert fmu.step(0.01, 1e-3) == ERROR
+            assert "stopTime = 0.01" in fmu.last_message
+        assert driver3(fmu).result() == before
+        assert fmu.step(0.01, 1e-13) == OK  # rounding of an importer
+
+
+def test_an_unknown_log_category_is_a_warning(estimator: Path) -> None:
+    with Instance3(estimator) as fmu:
+        categories = (ctypes.c_char_p * 2)(b"no such category", b"logStatusError")
+        assert fmu.call("fmi3SetDebugLogging", True, SIZE(2), categories) == WARNING
+        assert "no such category" in fmu.last_message
+        fmu.initialise()
+        assert fmu.step(1.0, 1e-3) == ERROR
+        assert fmu.messages[-1][1] == "logStatusError"
