@@ -52,7 +52,7 @@ html_theme = "pydata_sphinx_theme"
 html_theme_options = {
     "logo": {"text": "sigmahat"},
     "show_toc_level": 2,
-    "header_links_before_dropdown": 7,  # all
+    "header_links_before_dropdown": 8,  # all
     "navbar_align": "left",
     "footer_start": ["copyright"],
     "footer_end": [],

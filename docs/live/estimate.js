@@ -44,7 +44,7 @@ class LogEstimate {
   /** Stiffness, torque and their standard deviations at deformations of the log, at each set-point. */
   curves() {
     return this.#settings().map(({ setPoint, thetaC, phi: [low, high] }) => {
-      const phi = Float64Array.from({ length: WITHIN }, (_, i) => low + ((high - low) * i) / (WITHIN - 1));
+      const phi = grid(low, high);
       const points = Array.from(phi, (each) => this.#at(each, thetaC));
       const [sigma, std, torque] = FROZEN.map((_, i) => Float64Array.from(points, (point) => point[i]));
       return { setPoint, phi, sigma, std, torque, torqueStd: integral(std, phi) };
@@ -81,6 +81,12 @@ class LogEstimate {
       };
     });
   }
+}
+
+/** Deformations of a curve, 0 among them if it is between the ends. */
+function grid(low, high) {
+  const even = Array.from({ length: WITHIN }, (_, i) => low + ((high - low) * i) / (WITHIN - 1));
+  return Float64Array.from(new Set(low < 0 && high > 0 ? [...even, 0] : even)).sort();
 }
 
 /**

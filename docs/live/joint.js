@@ -28,6 +28,7 @@ const joint = {
     document.getElementById("again").addEventListener("click", () => this.start());
     requestAnimationFrame((now) => this.frame(now));
     this.start();
+    this.run(!matchMedia("(prefers-reduced-motion: reduce)").matches);
   },
 
   setting(name) {
@@ -174,15 +175,12 @@ const DOUBTS = {
   NegativeStiffness: "stiffness below 0",
 };
 
-/** A number as people read it: never a hundred digits. */
-function shortly(value) {
-  const text = Math.abs(value) < 1e5 ? value.toFixed(Math.abs(value) < 10 ? 2 : 1) : value.toExponential(1);
-  return text.replace("-", "−");
-}
-
 /** Writes a text into the page. */
 function say(id, text) {
   document.getElementById(id).textContent = text;
 }
 
-const opened = joint.open();
+const opened = joint.open().catch((error) => {
+  say("joint-message", `This browser cannot run the page: ${error.message}`);
+  throw error;
+});

@@ -5,6 +5,7 @@ const COLORS = ["estimate", "second", "third"];
 const ROOM = 1.2; // of a range over what the log has
 const GUESSES = { // parameters with a value that comes from the log; others begin as in the FMU
   "range.phi": ({ theta, q }) => ROOM * largest(q.map((value, i) => value - theta[i])),
+  "noise.tau": ({ tau }) => noise(tau),
   "prior.tau_e": ({ tau }, { "motor.gamma": gamma }) => ROOM * gamma * largest(tau),
 };
 const ASKED = ["motor.B", "motor.D_theta", "motor.gamma", "rls.n", "range.phi", "prior.tau_e", "prior.B",
@@ -36,6 +37,7 @@ const log = {
     this.form.hidden = document.getElementById("result").hidden = true;
     say("log-message", "");
     try {
+      await opened;
       checkSize(file);
       this.table = new Table(await file.text());
     } catch (error) {
@@ -100,8 +102,9 @@ const log = {
     for (const port of Object.keys(PORTS)) {
       const { unit } = this.chosen(port), field = this.form.elements[`${port} per`];
       if (!field) continue;
-      field.hidden = !PORTS[port].units[unit].per;
-      field.placeholder = field.title = PORTS[port].units[unit].per ?? "";
+      const { per } = PORTS[port].units[unit];
+      field.closest("td").classList.toggle("unused", !per);
+      field.placeholder = field.title = per ?? "";
     }
     const { variables } = joint.estimator, set = document.getElementById("parameters");
     const names = [...ASKED, ...(this.chosen("theta_c").column ? ASKED_WITH_SETTING : [])];
@@ -109,9 +112,9 @@ const log = {
     const fields = names.map((name) => {
       const { unit, description, start } = variables[name], label = document.createElement("label");
       label.title = description;
-      const field = number(name, before[name] ?? (name in GUESSES ? "" : Number(start)));
+      const field = number(name, before[name] ?? (name in GUESSES ? "" : Number(UNKNOWN[name] ?? start)));
       if (name in GUESSES) field.placeholder = "from the log";
-      label.append(`${name}${unit && unit !== "1" ? ` [${unit.replaceAll(".", "·")}]` : ""}`, field);
+      label.append(`${name}${unit && unit !== "1" ? ` [${unit.replaceAll(".", "·").replace(/2\b/, "²")}]` : ""}`, field);
       return label;
     });
     const symmetric = document.createElement("label"), box = checkbox("rls.symmetric");
@@ -168,10 +171,11 @@ const log = {
   },
 
   show(run) {
-    const { sigma, sigma_std: std } = run.columns, curves = run.curves();
+    const { sigma, sigma_std: std } = run.columns, warning = run.fmu.warnings[0];
+    const curves = run.curves(); // for which samples have to be missing: warnings that are no news
     const t = sigma.map((_, k) => k * run.T);
     document.getElementById("result").hidden = false;
-    say("answer", answer(run, curves));
+    say("answer", answer(run, curves, warning));
     const half = std.map((each) => NORMAL_95 * each);
     const most = Math.max(...curves.flatMap((curve) => [...curve.sigma].map((each, i) => each + NORMAL_95 * curve.std[i])));
     this.plots[0].draw({
@@ -211,17 +215,25 @@ function band(x, y, half) {
 }
 
 /** The answer in words. */
-function answer(run, curves) {
+function answer(run, curves, warning) {
   const { confident, doubt } = run.columns, { items } = joint.estimator.variables.doubt;
   const reason = Object.keys(items).find((name) => items[name] === doubt.at(-1));
   const values = curves.map(({ phi, sigma, std, setPoint }) => {
     const i = phi.reduce((best, each, k) => (Math.abs(each) < Math.abs(phi[best]) ? k : best), 0);
     const where = curves.length > 1 ? ` at set-point ${shortly(setPoint)}` : "";
-    return `${shortly(sigma[i])} ± ${shortly(NORMAL_95 * std[i])} N·m/rad at ${phi[i].toPrecision(2).replace("-", "−")} rad${where}`;
+    return `${shortly(sigma[i])} ± ${shortly(NORMAL_95 * std[i])} N·m/rad at ${Number(phi[i].toPrecision(2))} rad${where}`;
   });
   const sure = confident.at(-1) ? "The estimator is confident." : `The estimator is not confident: ${DOUBTS[reason]}.`;
-  const skipped = run.fmu.warnings.length ? ` ${run.fmu.warnings[0]}` : "";
-  return `Stiffness, with 95 % band: ${values.join("; ")}. ${sure}${skipped}`;
+  return `Stiffness, with 95 % band: ${values.join("; ")}. ${sure}${warning ? ` ${warning}` : ""}`;
+}
+
+/**
+ * Standard deviation of the noise of a signal: of its second differences, in which a motion hardly
+ * shows. Their median counts, since friction steps.
+ */
+function noise(values) {
+  const seconds = values.slice(2).map((value, i) => Math.abs(value - 2 * values[i + 1] + values[i])).sort();
+  return (1.4826 * seconds[seconds.length >> 1]) / Math.sqrt(6) || 1e-6 * largest(values);
 }
 
 function largest(values) {

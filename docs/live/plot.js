@@ -1,7 +1,7 @@
 "use strict";
 // A plot on a canvas: axes, lines and bands. Any number of points costs as many as there are pixels.
 
-const MARGIN = { left: 52, right: 10, top: 8, bottom: 26 };
+const MARGIN = { left: 56, right: 10, top: 8, bottom: 26 };
 
 class Plot {
   constructor(canvas) {
@@ -130,10 +130,15 @@ function ticks([low, high], count) {
 }
 
 function label(value, digits) {
-  if (value === 0) return "0";
-  return Math.abs(value) >= 1e5 || digits > 4
-    ? value.toExponential(1).replace("-", "−")
-    : value.toFixed(digits).replace("-", "−");
+  const large = Math.abs(value) >= 1e5 || (digits > 4 && value !== 0);
+  return large ? shortly(value) : value.toFixed(value ? digits : 0).replace("-", "−");
+}
+
+/** A number as people read it: never a hundred digits. */
+function shortly(value) {
+  const size = Math.abs(value), plain = value === 0 || (size >= 1e-3 && size < 1e5);
+  const text = plain ? value.toFixed(size < 10 ? 2 : 1) : Number(value.toPrecision(3)).toExponential();
+  return text.replaceAll("-", "−").replace("e+", "e");
 }
 
 /** Smallest and largest of the values that are finite, of several arrays. */

@@ -22,6 +22,7 @@ import fmpy
 
 from sigmahat import guessing
 from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.logs.configuration import ANOTHER_ROBOT, ANY_COULOMB
 from sigmahat.paper.scenarios import scenario
 from sigmahat.user_input import toml_file
 
@@ -46,6 +47,12 @@ FUNCTIONS = (
 # As for the other platforms, no contraction to fused operations.
 _FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-s")
 _TARGET = ("-target", "wasm32-wasi", "-mexec-model=reactor")
+_UNKNOWN = {
+    "prior.B": ANOTHER_ROBOT,
+    "prior.D_theta": ANOTHER_ROBOT,
+    "prior.tau_coulomb": ANY_COULOMB,
+}
+"""Parameters of a log whose motor nobody knows, as `sigmahat init` writes them."""
 _SHOWN = ("type", "unit", "start", "description")
 
 
@@ -65,7 +72,7 @@ def write(out: Path, page: Path, fmus: list[Path], cache: Path) -> None:
         if file.suffix in (".html", ".css", ".js"):
             shutil.copyfile(file, out / file.name)
     by_stem = {fmu.stem: fmu for fmu in fmus}
-    data = {"FMUS": types, "SCENARIO": _scenario(by_stem), "WORDS": _words()}
+    data = {"FMUS": types, "SCENARIO": _scenario(by_stem), "WORDS": _words(), "UNKNOWN": _UNKNOWN}
     lines = ['"use strict";', *(f"const {name} = {_json(each)};" for name, each in data.items())]
     (out / "fmus.js").write_text("\n".join([*lines, ""]), encoding="utf-8")
 
