@@ -20,7 +20,7 @@ function portOf(quantity, side) {
 }
 
 function meaning(column) {
-  const words = wordsOf(column), unit = unitOf(words);
+  const words = wordsOf(column), unit = unitOf(column);
   const says = (group) => Object.keys(WORDS[group]).filter(
     (key) => WORDS[group][key].some((entry) => ` ${words.join(" ")} `.includes(` ${entry} `)));
   const side = ["sensor", "setting", "motor", "link"].find((each) => says("side").includes(each))
@@ -36,10 +36,15 @@ const QUANTITY_OF = { rad: "position", deg: "position", counts: "position", "N.m
 
 /** motorPos_rad: motor, pos, rad */
 function wordsOf(column) {
-  return column.replace(/([a-z])([A-Z])/g, "$1 $2").toLowerCase().replace(/n\.m/g, "nm")
-    .split(/[^\p{L}\d]+/u).filter(Boolean);
+  return parts(column.replace(/([a-z])([A-Z])/g, "$1 $2"));
 }
 
-function unitOf(words) {
-  return Object.keys(WORDS.unit).find((unit) => WORDS.unit[unit].includes(words.at(-1)));
+/** The unit at the end of a name, also in brackets. */
+function unitOf(column) {
+  const last = parts(column).at(-1);
+  return Object.keys(WORDS.unit).find((unit) => WORDS.unit[unit].includes(last));
+}
+
+function parts(column) {
+  return column.toLowerCase().replace(/n\.m/g, "nm").split(/[^\p{L}\d]+/u).filter(Boolean);
 }

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,14 +74,14 @@ class LivePage:
     def drops(self, text: str, name: str = "log.csv") -> str:
         """Drops a file, and returns what the page complains of; nothing if the file is good."""
         self.page.run(f"{_DROP} log.form.hidden = true;", name, text)
-        self._until(lambda: self.text("log-message") or self.text("log-name"))
+        self.until(lambda: self.text("log-message") or self.text("log-name"))
         return self.text("log-message")
 
     def estimates(self, fields: Mapping[str, object]) -> str:
         """Fills fields of the log in, and lets it be estimated. Returns what it complains of."""
         self.page.run(_FILL, fields)
         self.page.run("log.form.requestSubmit()")
-        self._until(lambda: self.text("log-message") or self.text("answer"))
+        self.until(lambda: self.text("log-message") or self.text("answer"))
         return self.text("log-message")
 
     def columns_of_run(self, names: Sequence[str]) -> dict[str, NDArray[np.float64]]:
@@ -90,7 +89,8 @@ class LivePage:
         script = "return Object.fromEntries(given[0].map((n) => [n, log.run.columns[n]]))"
         return self.arrays(script, names)
 
-    def _until(self, is_so: Any) -> None:
+    def until(self, is_so: Callable[[], object]) -> None:
+        """Waits until something is so."""
         WebDriverWait(self.page.driver, _LONGEST, poll_frequency=0.05).until(lambda _: is_so())
 
 

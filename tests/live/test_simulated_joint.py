@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 from live_page import LivePage, live_page
@@ -35,12 +36,14 @@ def page(site: Path) -> Iterator[LivePage]:
 
 def simulate(page: LivePage, seconds: float) -> None:
     """Lets simulated time pass at once."""
-    page.page.run("joint.start(); joint.advance(arguments[0] / SCENARIO.T, Infinity); joint.show()", seconds)
+    page.page.run(
+        "joint.start(); joint.advance(arguments[0] / SCENARIO.T, Infinity); joint.show()", seconds
+    )
 
 
 def error(page: LivePage) -> float:
     """Relative error of the stiffness at the end, as the page shows it [%]."""
-    return float(page.text("value-error").removesuffix(" %").replace("−", "-"))
+    return float(page.text("value-error").removesuffix(" %").replace("\N{MINUS SIGN}", "-"))
 
 
 def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
@@ -93,10 +96,19 @@ def test_every_control_is_reached_by_the_keyboard(page: LivePage) -> None:
     page.page.run("document.activeElement.blur(); window.scrollTo(0, 0)")
     reached = []
     for _ in range(12):
-        active = page.page.driver.switch_to.active_element
-        active.send_keys(Keys.TAB)
+        ActionChains(page.page.driver).send_keys(Keys.TAB).perform()
         reached.append(page.page.run("const e = document.activeElement; return e.name || e.id"))
-    for name in ("method", "frequency", "friction", "coulomb", "noise", "speed", "run", "again", "file"):
+    for name in (
+        "method",
+        "frequency",
+        "friction",
+        "coulomb",
+        "noise",
+        "speed",
+        "run",
+        "again",
+        "file",
+    ):
         assert name in reached, name
 
 
@@ -111,7 +123,11 @@ def test_it_fits_the_window_without_a_complaint(width: int, dark: bool, site: Pa
         brightness = sum(map(int, re.findall(r"\d+", shown)[:3])) / 3
         assert brightness < 64 if dark else brightness > 192
         assert live.page.run("return document.documentElement.scrollWidth") <= width
-        for plot, color in (("stiffness", "true"), ("stiffness", "estimate"), ("torque", "estimate")):
+        for plot, color in (
+            ("stiffness", "true"),
+            ("stiffness", "estimate"),
+            ("torque", "estimate"),
+        ):
             assert live.page.run(_DRAWN, plot, color) > 100, (plot, color)
         assert live.page.complaints() == []
         assert all(url.startswith("file:") for url in live.page.requests())
