@@ -58,7 +58,7 @@ html_theme_options = {
     "footer_end": [],
 }
 html_context = {"default_mode": "auto"}  # light or dark, as the system is
-html_sidebars: dict[str, list[str]] = {"index": []}
+html_sidebars: dict[str, list[str]] = {"index": [], "live": []}
 copyright = "sigmahat, BSD-2-Clause"
 html_static_path = ["static"]
 html_css_files = ["site.css"]

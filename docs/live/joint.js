@@ -132,20 +132,20 @@ const joint = {
     const { history } = this, [t, truth, estimate] = ["t", "sigma", "sigma_hat"].map((n) => history.get(n));
     const now = t.at(-1), x = [Math.max(0, now - SECONDS), Math.max(SECONDS, now)];
     const [low, high] = [history.get("low"), history.get("high")];
-    const most = range(truth)[1];
+    const [least, most] = reaching(truth, estimate);
     this.plots[0].draw({
       x,
-      y: [0, roomy([0, 1.5 * most])[1]],
+      y: [least < 0 ? roomy([least, most])[0] : 0, roomy([0, 1.3 * most])[1]],
       bands: [{ x: t, low, high, color: "band" }],
       lines: [{ x: t, y: truth, color: "true" }, { x: t, y: estimate, color: "estimate" }],
     });
-    const torque = history.get("tau_e");
+    const torque = history.get("tau_e"), torqueEstimate = history.get("tau_e_hat");
     this.plots[1].draw({
       x,
-      y: roomy(range(torque)),
+      y: roomy(reaching(torque, torqueEstimate)),
       lines: [
         { x: t, y: torque, color: "true" },
-        { x: t, y: history.get("tau_e_hat"), color: "estimate" },
+        { x: t, y: torqueEstimate, color: "estimate" },
       ],
     });
     this.showValues(now, truth.at(-1), estimate.at(-1), high.at(-1) - estimate.at(-1));

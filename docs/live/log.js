@@ -3,12 +3,13 @@
 
 const COLORS = ["estimate", "second", "third"];
 const ROOM = 1.2; // of a range over what the log has
+const GEAR = "motor.gamma"; // the log does not show it, and no value of another robot fits
 const GUESSES = { // parameters with a value that comes from the log; others begin as in the FMU
   "range.phi": ({ theta, q }) => ROOM * largest(q.map((value, i) => value - theta[i])),
   "noise.tau": ({ tau }) => noise(tau),
-  "prior.tau_e": ({ tau }, { "motor.gamma": gamma }) => ROOM * gamma * largest(tau),
+  "prior.tau_e": ({ tau }, { [GEAR]: gamma }) => ROOM * gamma * largest(tau),
 };
-const ASKED = ["motor.B", "motor.D_theta", "motor.gamma", "rls.n", "range.phi", "prior.tau_e", "prior.B",
+const ASKED = ["motor.B", "motor.D_theta", GEAR, "rls.n", "range.phi", "prior.tau_e", "prior.B",
   "prior.D_theta", "prior.tau_coulomb", "noise.tau"];
 const ASKED_WITH_SETTING = ["rls.m", "setPoint.offset", "setPoint.scale", "range.setPoint"];
 
@@ -112,8 +113,9 @@ const log = {
     const fields = names.map((name) => {
       const { unit, description, start } = variables[name], label = document.createElement("label");
       label.title = description;
-      const field = number(name, before[name] ?? (name in GUESSES ? "" : Number(UNKNOWN[name] ?? start)));
-      if (name in GUESSES) field.placeholder = "from the log";
+      const asks = name in GUESSES || name === GEAR;
+      const field = number(name, before[name] ?? (asks ? "" : Number(UNKNOWN[name] ?? start)));
+      if (asks) field.placeholder = name === GEAR ? "fill in" : "from the log";
       label.append(`${name}${unit && unit !== "1" ? ` [${unit.replaceAll(".", "·").replace(/2\b/, "²")}]` : ""}`, field);
       return label;
     });
@@ -135,7 +137,10 @@ const log = {
 
   /** Start values of the estimator. */
   starts({ signals, T }) {
-    const values = { ...this.typed() };
+    const values = { ...this.typed() }, { gear } = this.chosen("theta");
+    if (gear !== 1) values[GEAR] ??= gear;
+    if (values[GEAR] === undefined) throw new Error(
+      `${GEAR}: fill in the gear ratio of your joint, between motor and flexibility`);
     for (const [name, guess] of Object.entries(GUESSES)) values[name] ??= guess(signals, values);
     const counts = (port) => {
       const { unit, per, gear } = this.chosen(port);
@@ -176,6 +181,7 @@ const log = {
     const t = sigma.map((_, k) => k * run.T);
     document.getElementById("result").hidden = false;
     say("answer", answer(run, curves, warning));
+    document.getElementById("answer").scrollIntoView({ block: "nearest" });
     const half = std.map((each) => NORMAL_95 * each);
     const most = Math.max(...curves.flatMap((curve) => [...curve.sigma].map((each, i) => each + NORMAL_95 * curve.std[i])));
     this.plots[0].draw({
@@ -241,22 +247,23 @@ function largest(values) {
 }
 
 function chooser(name, values, chosen) {
-  const made = document.createElement("select");
+  const made = named("select", name);
   made.append(...values.map((value) => new Option(value || "none", value, false, value === chosen)));
-  made.name = name;
-  made.ariaLabel = name;
   return made;
 }
 
 function number(name, value) {
-  const made = document.createElement("input");
-  Object.assign(made, { type: "number", step: "any", name, value, ariaLabel: name });
-  return made;
+  return Object.assign(named("input", name), { type: "number", step: "any", value });
 }
 
 function checkbox(name) {
-  const made = document.createElement("input");
-  Object.assign(made, { type: "checkbox", name, ariaLabel: name });
+  return Object.assign(named("input", name), { type: "checkbox" });
+}
+
+function named(tag, name) {
+  const made = document.createElement(tag);
+  made.name = name;
+  made.setAttribute("aria-label", name);
   return made;
 }
 

@@ -151,8 +151,19 @@ function range(...arrays) {
   return high > low ? [low, high] : [low - (Math.abs(low) || 1) / 2, high + (Math.abs(high) || 1) / 2];
 }
 
+/** The range of a truth and of most of an estimate of it, which may be far off for a while. */
+function reaching(truth, estimate) {
+  const [low, high] = range(truth), most = 2 * (high - low);
+  const some = estimate.filter((value, i) => i % 50 === 0 && !Number.isNaN(value)).sort();
+  const at = (share) => some[Math.floor(share * (some.length - 1))] ?? low;
+  return [
+    Math.min(low, Math.max(at(0.05), low - most)),
+    Math.max(high, Math.min(at(0.95), high + most)),
+  ];
+}
+
 /** A range with some room, whose ends are round: it does not change with every sample. */
 function roomy([low, high]) {
-  const step = 10 ** Math.floor(Math.log10(high - low)) / 2;
-  return [Math.floor((low - 0.05 * (high - low)) / step) * step, Math.ceil((high + 0.05 * (high - low)) / step) * step];
+  const room = 0.05 * (high - low), step = 10 ** Math.floor(Math.log10(high - low)) / 5;
+  return [Math.floor((low - room) / step) * step, Math.ceil((high + room) / step) * step];
 }

@@ -18,7 +18,7 @@ from recorded_logs import Array, awas_log
 from sigmahat.fmi.instance import Value
 
 KNEE = Path(__file__).parents[2] / "examples" / "tutorial" / "knee.csv"
-KNEE_FIELDS = {"theta per": 4096, "theta gear": 100, "tau per": 0.1, "motor.gamma": 100}
+KNEE_FIELDS = {"theta per": 4096, "theta gear": 100, "tau per": 0.1, "motor.gamma": ""}
 _CURVES = """
 return Object.fromEntries(log.run.curves().flatMap((curve, i) => Object.entries(curve)
   .map(([name, values]) => [`${name} ${i}`, values.length ? values : [values]])));
@@ -59,6 +59,7 @@ def test_the_log_of_the_tutorial(page: LivePage) -> None:
     t, counts, degrees, current = np.loadtxt(KNEE, delimiter=",", skiprows=1).T
     theta = np.unwrap(counts, period=65536) / 4096 * 2 * np.pi / 100
     given = parameters(page)
+    assert given["motor.gamma"] == 100  # the gear ratio of theta
     assert given["samplePeriod"] == pytest.approx(t[1] - t[0])
     expected = sigmahat.Estimator(given).run(theta, np.radians(degrees), 0.1 * current)
     for name, values in found.items():
@@ -156,7 +157,7 @@ BAD_COLUMNS = {
 def test_a_bad_column_is_named(case: str, page: LivePage) -> None:
     columns, expected = BAD_COLUMNS[case]
     assert page.drops(table({**good(), **columns})) == ""
-    assert page.estimates({}).startswith(expected)
+    assert page.estimates({"motor.gamma": 50}).startswith(expected)
 
 
 @pytest.mark.parametrize(
@@ -166,13 +167,14 @@ def test_a_bad_column_is_named(case: str, page: LivePage) -> None:
         ({"theta gear": 0}, "theta: expected a gear ratio above 0, got 0"),
         ({"q unit": "counts", "q per": ""}, "q: expected a number above 0 for counts per turn"),
         ({"q zero": ""}, "q: expected a number as zero"),
-        ({"motor.gamma": 0}, "Parameter motor.gamma = 0 is out of its range"),
+        ({"motor.gamma": ""}, "motor.gamma: fill in the gear ratio of your joint"),
+        ({"motor.gamma": 0}, "motor.gamma = 0 "),  # the FMU says it
     ],
     ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
 )
 def test_a_bad_field_is_named(fields: dict[str, object], expected: str, page: LivePage) -> None:
     assert page.drops(table(good())) == ""
-    assert page.estimates(fields).startswith(expected)
+    assert expected in page.estimates({"motor.gamma": 50, **fields})
 
 
 def test_decimal_commas_and_units(page: LivePage) -> None:
