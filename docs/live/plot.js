@@ -53,8 +53,10 @@ class Plot {
 
   #axes({ x, y }) {
     const { pen } = this;
-    this.toX = (value) => MARGIN.left + ((value - x[0]) / (x[1] - x[0])) * this.innerWidth;
-    this.toY = (value) => MARGIN.top + ((y[1] - value) / (y[1] - y[0])) * this.innerHeight;
+    const [perX, perY] = [this.innerWidth / (x[1] - x[0]), this.innerHeight / (y[1] - y[0])];
+    const [[left], [, top]] = [x, y];
+    this.toX = (value) => MARGIN.left + (value - left) * perX;
+    this.toY = (value) => MARGIN.top + (top - value) * perY;
     pen.font = "12px system-ui, sans-serif";
     pen.strokeStyle = this.#color("grid");
     pen.fillStyle = this.#color("soft");
@@ -98,20 +100,19 @@ class Plot {
     this.pen.stroke();
   }
 
-  /** For each pixel with points: their mean x, their smallest and their largest y, on the canvas. */
+  /** For each pixel with points: x of the first, the smallest and the largest y, on the canvas. */
   #outline(x, y) {
     const found = [], far = 10 * this.height; // a canvas draws nothing at 1e30
     for (let i = 0, pixel = null, last = null; i < x.length; i += 1) {
-      if (Number.isNaN(y[i])) continue;
-      const at = this.toX(x[i]), value = Math.min(Math.max(this.toY(y[i]), -far), far);
-      if (Math.floor(at) === pixel) {
-        last[1] = Math.max(last[1], value); // downwards on the canvas
-        last[2] = Math.min(last[2], value);
-      } else {
-        pixel = Math.floor(at);
+      const at = this.toX(x[i]), exact = this.toY(y[i]);
+      if (Number.isNaN(exact)) continue;
+      const value = exact > far ? far : exact < -far ? -far : exact, here = Math.floor(at);
+      if (here !== pixel) {
+        pixel = here;
         last = [at, value, value];
         found.push(last);
-      }
+      } else if (value > last[1]) last[1] = value; // downwards on the canvas
+      else if (value < last[2]) last[2] = value;
     }
     return found;
   }
@@ -145,8 +146,11 @@ function shortly(value) {
 function range(...arrays) {
   let [low, high] = [Infinity, -Infinity];
   for (const array of arrays)
-    for (const value of array)
-      if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
+    for (let i = 0; i < array.length; i += 1) {
+      const value = array[i];
+      if (value < low && value > -Infinity) low = value;
+      if (value > high && value < Infinity) high = value;
+    }
   if (low > high) return [0, 1];
   return high > low ? [low, high] : [low - (Math.abs(low) || 1) / 2, high + (Math.abs(high) || 1) / 2];
 }
