@@ -20,7 +20,7 @@ class Table {
     if (text.includes("\0")) throw new Error("expected text with separated values, got a binary file");
     this.separator = [";", "\t", ","].find((each) => lines[0].includes(each)) ?? ",";
     this.comma = this.separator === ";"; // 1,5 for 1.5
-    this.names = this.#cells(lines[0]).map((name) => name.replace(/^"(.*)"$/, "$1"));
+    this.names = this.#cells(lines[0]);
     this.lines = lines;
     this.rows = lines.length - 1;
     this.#check();
@@ -54,7 +54,7 @@ class Table {
   }
 
   #cells(line) {
-    return line.split(this.separator).map((cell) => cell.trim());
+    return line.split(this.separator).map((cell) => cell.trim().replace(/^"(.*)"$/, "$1"));
   }
 
   #number(text) {

@@ -177,10 +177,10 @@ def test_a_bad_field_is_named(fields: dict[str, object], expected: str, page: Li
     assert expected in page.estimates({"motor.gamma": 50, **fields})
 
 
-def test_decimal_commas_and_units(page: LivePage) -> None:
+def test_decimal_commas_quotes_and_units(page: LivePage) -> None:
     t = 0.001 * np.arange(200)
     lines = ["Zeit_ms;Motor_Winkel_deg;Abtrieb_Winkel_deg;Drehmoment_mNm"]
-    lines += [f"{1000 * x:g};{x:.6f};{2 * x:.6f};{50 * x:.6f}".replace(".", ",") for x in t]
+    lines += [f'{1000 * x:g};"{x:.6f}";{2 * x:.6f};{50 * x:.6f}'.replace(".", ",") for x in t]
     assert page.drops("\r\n".join(lines)) == ""
     script = "const { signals, T } = log.read(); return { ...signals, T: [T] }"
     found = page.arrays(script)

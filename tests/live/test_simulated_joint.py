@@ -112,6 +112,15 @@ def test_every_control_is_reached_by_the_keyboard(page: LivePage) -> None:
         assert name in reached, name
 
 
+def test_the_browser_lets_the_page_send_nothing(page: LivePage) -> None:
+    script = """
+    const done = arguments[0];
+    document.addEventListener("securitypolicyviolation", (event) => done(event.effectiveDirective));
+    fetch("http://127.0.0.1:9/").catch(() => {});
+    """
+    assert page.page.driver.execute_async_script(script) == "connect-src"
+
+
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 @pytest.mark.parametrize("width", [1400, 360])
 def test_it_fits_the_window_without_a_complaint(width: int, dark: bool, site: Path) -> None:
