@@ -53,6 +53,8 @@ class Fmu {
 
   #setStart(name, value) {
     const { type, reference } = this.variable(name);
+    if (type !== "Real" && !Number.isInteger(Number(value)))
+      throw new Error(`${name}: expected a whole number, got ${value}`);
     const place = this.wasm.malloc(16), memory = new DataView(this.wasm.memory.buffer);
     memory.setUint32(place, reference, true);
     if (type === "Real") memory.setFloat64(place + 8, value, true);

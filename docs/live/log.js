@@ -1,7 +1,6 @@
 "use strict";
 // A log of the user: the file, its columns, the parameters, and the answer.
 
-const COLORS = ["estimate", "second", "third"];
 const ROOM = 1.2; // of a range over what the log has
 const GEAR = "motor.gamma"; // the log does not show it, and no value of another robot fits
 const GUESSES = { // parameters with a value that comes from the log; others begin as in the FMU
@@ -18,8 +17,7 @@ const log = {
 
   open() {
     const drop = document.getElementById("drop"), file = document.getElementById("file");
-    this.plots = ["log-stiffness", "curve-stiffness", "curve-torque"]
-      .map((id) => new Plot(document.getElementById(id)));
+    answer.open();
     file.addEventListener("change", () => { this.take(file.files[0]); file.value = ""; });
     for (const name of ["dragenter", "dragover", "dragleave", "drop"])
       document.addEventListener(name, (event) => {
@@ -35,7 +33,8 @@ const log = {
   async take(file) {
     if (!file) return;
     this.run = null;
-    this.form.hidden = document.getElementById("result").hidden = true;
+    this.form.hidden = true;
+    answer.hide();
     say("log-message", "");
     try {
       await opened;
@@ -161,77 +160,20 @@ const log = {
   async estimate() {
     const bar = document.getElementById("progress");
     say("log-message", "");
-    document.getElementById("result").hidden = true;
+    answer.hide();
     try {
       const data = this.read();
       const run = new LogEstimate(joint.estimator, this.starts(data), data.signals);
       this.run = run;
       bar.hidden = false;
       await run.run((done) => { bar.value = done; }, () => this.run !== run);
-      if (this.run === run) this.show(run);
+      if (this.run === run) answer.show(run);
     } catch (error) {
       say("log-message", error.message);
     }
     bar.hidden = true;
   },
-
-  show(run) {
-    const { sigma, sigma_std: std } = run.columns, warning = run.fmu.warnings[0];
-    const curves = run.curves(); // for which samples have to be missing: warnings that are no news
-    const t = sigma.map((_, k) => k * run.T);
-    document.getElementById("result").hidden = false;
-    say("answer", answer(run, curves, warning));
-    document.getElementById("answer").scrollIntoView({ block: "nearest" });
-    const half = std.map((each) => NORMAL_95 * each);
-    const most = Math.max(...curves.flatMap((curve) => [...curve.sigma].map((each, i) => each + NORMAL_95 * curve.std[i])));
-    this.plots[0].draw({
-      x: range(t),
-      y: [0, roomy([0, 1.3 * Math.max(most, 1e-9)])[1]],
-      bands: [band(t, sigma, half)],
-      lines: [{ x: t, y: sigma, color: "estimate" }],
-    });
-    this.showCurve(this.plots[1], curves, ({ sigma: y, std: s }) => [y, s]);
-    this.showCurve(this.plots[2], curves, ({ torque: y, torqueStd: s }) => [y, s]);
-    for (const keys of document.querySelectorAll(".keys"))
-      keys.replaceChildren(...(curves.length > 1 ? curves : []).map(({ setPoint }, i) => {
-        const key = document.createElement("span");
-        key.className = `key ${COLORS[i]}`;
-        key.textContent = `set-point ${shortly(setPoint)}`;
-        return key;
-      }));
-  },
-
-  showCurve(plot, curves, of) {
-    const all = curves.map((curve) => {
-      const [y, std] = of(curve);
-      return { x: curve.phi, y, half: std.map((each) => NORMAL_95 * each) };
-    });
-    const bands = all.map(({ x, y, half }) => band(x, y, half));
-    plot.draw({
-      x: range(...all.map(({ x }) => x)),
-      y: roomy(range(...bands.flatMap(({ low, high }) => [low, high]))),
-      bands,
-      lines: all.map(({ x, y }, i) => ({ x, y, color: COLORS[i] })),
-    });
-  },
 };
-
-function band(x, y, half) {
-  return { x, low: y.map((each, i) => each - half[i]), high: y.map((each, i) => each + half[i]), color: "band" };
-}
-
-/** The answer in words. */
-function answer(run, curves, warning) {
-  const { confident, doubt } = run.columns, { items } = joint.estimator.variables.doubt;
-  const reason = Object.keys(items).find((name) => items[name] === doubt.at(-1));
-  const values = curves.map(({ phi, sigma, std, setPoint }) => {
-    const i = phi.reduce((best, each, k) => (Math.abs(each) < Math.abs(phi[best]) ? k : best), 0);
-    const where = curves.length > 1 ? ` at set-point ${shortly(setPoint)}` : "";
-    return `${shortly(sigma[i])} ± ${shortly(NORMAL_95 * std[i])} N·m/rad at ${Number(phi[i].toPrecision(2))} rad${where}`;
-  });
-  const sure = confident.at(-1) ? "The estimator is confident." : `The estimator is not confident: ${DOUBTS[reason]}.`;
-  return `Stiffness, with 95 % band: ${values.join("; ")}. ${sure}${warning ? ` ${warning}` : ""}`;
-}
 
 /**
  * Standard deviation of the noise of a signal: of its second differences, in which a motion hardly
@@ -244,27 +186,6 @@ function noise(values) {
 
 function largest(values) {
   return values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
-}
-
-function chooser(name, values, chosen) {
-  const made = named("select", name);
-  made.append(...values.map((value) => new Option(value || "none", value, false, value === chosen)));
-  return made;
-}
-
-function number(name, value) {
-  return Object.assign(named("input", name), { type: "number", step: "any", value });
-}
-
-function checkbox(name) {
-  return Object.assign(named("input", name), { type: "checkbox" });
-}
-
-function named(tag, name) {
-  const made = document.createElement(tag);
-  made.name = name;
-  made.setAttribute("aria-label", name);
-  return made;
 }
 
 log.open();

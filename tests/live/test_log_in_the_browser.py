@@ -168,7 +168,8 @@ def test_a_bad_column_is_named(case: str, page: LivePage) -> None:
         ({"q unit": "counts", "q per": ""}, "q: expected a number above 0 for counts per turn"),
         ({"q zero": ""}, "q: expected a number as zero"),
         ({"motor.gamma": ""}, "motor.gamma: fill in the gear ratio of your joint"),
-        ({"motor.gamma": 0}, "motor.gamma = 0 "),  # the FMU says it
+        ({"rls.n": 2.5}, "rls.n: expected a whole number, got 2.5"),
+        ({"rls.n": 6, "motor.gamma": 0}, "motor.gamma = 0 "),  # the FMU says it
     ],
     ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
 )
