@@ -52,13 +52,13 @@ html_theme = "pydata_sphinx_theme"
 html_theme_options = {
     "logo": {"text": "sigmahat"},
     "show_toc_level": 2,
-    "header_links_before_dropdown": 7,  # all
+    "header_links_before_dropdown": 8,  # all
     "navbar_align": "left",
     "footer_start": ["copyright"],
     "footer_end": [],
 }
 html_context = {"default_mode": "auto"}  # light or dark, as the system is
-html_sidebars: dict[str, list[str]] = {"index": []}
+html_sidebars: dict[str, list[str]] = {"index": [], "live": []}
 copyright = "sigmahat, BSD-2-Clause"
 html_static_path = ["static"]
 html_css_files = ["site.css"]

@@ -129,6 +129,18 @@ def distribute(
 
 @main.command()
 @click.argument("out", type=click.Path(file_okay=False, path_type=Path))
+@click.argument("fmus", nargs=-1, required=True, type=click.Path(exists=True, path_type=Path))
+@click.option("--page", required=True, type=click.Path(exists=True, path_type=Path))
+@click.option("--cache", required=True, type=click.Path(file_okay=False, path_type=Path))
+def live(out: Path, fmus: list[Path], page: Path, cache: Path) -> None:
+    """Write the folder PAGE with FMUS as WebAssembly into OUT."""
+    from sigmahat.export import web
+
+    web.write(out, page, list(fmus), cache)
+
+
+@main.command()
+@click.argument("out", type=click.Path(file_okay=False, path_type=Path))
 @click.argument("sources", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option("--interface", required=True, type=click.Path(path_type=Path))
 @click.option("--licence", required=True, type=click.Path(path_type=Path))

@@ -1,0 +1,186 @@
+"use strict";
+// The simulated joint: settings, the run in frames of the browser, values and plots.
+
+const SECONDS = SCENARIO.duration; // shown
+const NORMAL_95 = 1.96; // half the width of an interval of 95 % over the standard deviation
+const SHOWN = {
+  plant: ["sigma", "tau_e"],
+  estimator: ["sigma", "tau_e", "sigma_std", "confident", "doubt"],
+};
+const MOST_WORK = 8; // [ms] of a frame, for samples: at a speed that is too high, time goes slower
+
+const joint = {
+  form: document.getElementById("settings"),
+  running: false,
+
+  async open() {
+    [this.plant, this.estimator] =
+      await Promise.all(["AwasPlant", "StiffnessEstimator"].map(compiled));
+    this.plots = ["stiffness", "torque"].map((id) => new Plot(document.getElementById(id)));
+    const { items } = this.estimator.variables.method;
+    this.form.elements.method.append(
+      ...Object.entries(items).reverse().map(([name, value]) => new Option(name, value)));
+    this.form.addEventListener("submit", (event) => event.preventDefault());
+    this.form.addEventListener("input", (event) => {
+      if (event.target.name !== "speed") this.start();
+    });
+    document.getElementById("run").addEventListener("click", () => this.run(!this.running));
+    document.getElementById("again").addEventListener("click", () => this.start());
+    requestAnimationFrame((now) => this.frame(now));
+    this.start();
+    this.run(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+  },
+
+  setting(name) {
+    return Number(this.form.elements[name].value);
+  },
+
+  /** A new simulation with the settings. */
+  start() {
+    try {
+      this.simulation = new Simulation(
+        this.plant, this.estimator, this.starts(), this.torques(), SHOWN);
+      say("joint-message", "");
+    } catch (error) {
+      this.simulation = null;
+      say("joint-message", error.message);
+    }
+    this.due = 0;
+    const names = ["t", "sigma", "tau_e", "sigma_hat", "tau_e_hat", "low", "high"];
+    this.history = new Samples(names, Math.round(SECONDS / SCENARIO.T) + 1);
+    this.showSettings();
+    this.advance(1, Infinity);
+    this.show();
+  },
+
+  run(running) {
+    this.running = running;
+    document.getElementById("run").textContent = running ? "Pause" : "Start";
+  },
+
+  starts() {
+    const { variables } = this.estimator, of = this.plant.variables, noise = this.setting("noise");
+    const believed = 1 + this.setting("friction") / 100;
+    return {
+      plant: {
+        ...SCENARIO.plant,
+        "motor.tau_coulomb": this.setting("coulomb") / 1000,
+        "noise.tau_variance": Number(of["noise.tau_variance"].start) * noise ** 2,
+      },
+      estimator: {
+        ...SCENARIO.estimator,
+        method: this.setting("method"),
+        "motor.D_theta": Number(of["motor.D_theta"].start) * believed,
+        "noise.tau": Number(variables["noise.tau"].start) * (noise || 1),
+      },
+    };
+  },
+
+  /** The inputs of the plant, by the number of the sample. */
+  torques() {
+    const signals = Object.values(SCENARIO.inputs).map((sine) => ({ ...sine }));
+    signals[0].frequency = this.setting("frequency");
+    return (k) => signals.map(({ amplitude, frequency, phase }) =>
+      amplitude * Math.sin(2 * Math.PI * frequency * SCENARIO.T * k + phase));
+  },
+
+  /** A frame of the browser, at a time in ms. */
+  frame(now) {
+    requestAnimationFrame((next) => this.frame(next));
+    const passed = Math.min(now - (this.last ?? now), 100);
+    this.last = now;
+    if (!this.running || !this.simulation) return;
+    this.due += (this.setting("speed") * passed) / 1000 / SCENARIO.T;
+    this.due -= this.advance(Math.floor(this.due), MOST_WORK);
+    this.due = Math.min(this.due, 1000);
+    this.show();
+  },
+
+  /** Makes samples, for at most so many ms. Returns how many. */
+  advance(samples, most) {
+    const begin = performance.now();
+    let made = 0;
+    try {
+      while (this.simulation && made < samples && performance.now() - begin < most) {
+        const { recorded } = this.simulation, t = this.simulation.time;
+        this.simulation.advance();
+        const [sigma, torque] = recorded.plant.values;
+        const [estimate, torqueEstimate, std] = recorded.estimator.values;
+        const claims = this.simulation.start.estimator.method === METHODS.MatchedFilter;
+        const half = claims ? NORMAL_95 * std : NaN;
+        this.history.push(t, sigma, torque, estimate, torqueEstimate, estimate - half, estimate + half);
+        made += 1;
+      }
+    } catch (error) {
+      this.simulation = null;
+      say("joint-message", error.message);
+    }
+    return made;
+  },
+
+  showSettings() {
+    const show = (name, text) => { this.form.elements[`${name}-shown`].value = text; };
+    const friction = this.setting("friction");
+    show("frequency", `${this.setting("frequency")} Hz`);
+    show("friction", `${friction > 0 ? "+" : ""}${friction} %`.replace("-", "−"));
+    show("coulomb", `${this.setting("coulomb")} mN·m`);
+    show("noise", `${this.setting("noise")} × that of the paper`);
+  },
+
+  show() {
+    if (!this.simulation) return;
+    const { history } = this, [t, truth, estimate] = ["t", "sigma", "sigma_hat"].map((n) => history.get(n));
+    const now = t.at(-1), x = [Math.max(0, now - SECONDS), Math.max(SECONDS, now)];
+    const [low, high] = [history.get("low"), history.get("high")];
+    const [least, most] = reaching(truth, estimate);
+    this.plots[0].draw({
+      x,
+      y: [least < 0 ? roomy([least, most])[0] : 0, roomy([0, 1.3 * most])[1]],
+      bands: [{ x: t, low, high, color: "band" }],
+      lines: [{ x: t, y: truth, color: "true" }, { x: t, y: estimate, color: "estimate" }],
+    });
+    const torque = history.get("tau_e"), torqueEstimate = history.get("tau_e_hat");
+    this.plots[1].draw({
+      x,
+      y: roomy(reaching(torque, torqueEstimate)),
+      lines: [
+        { x: t, y: torque, color: "true" },
+        { x: t, y: torqueEstimate, color: "estimate" },
+      ],
+    });
+    this.showValues(now, truth.at(-1), estimate.at(-1), high.at(-1) - estimate.at(-1));
+  },
+
+  showValues(t, truth, estimate, half) {
+    const [, , , confident, doubt] = this.simulation.recorded.estimator.values;
+    const { items } = this.estimator.variables.doubt;
+    const reason = Object.keys(items).find((name) => items[name] === doubt);
+    const error = (100 * (estimate - truth)) / truth;
+    say("value-t", `${t.toFixed(2)} s`);
+    say("value-true", `${truth.toFixed(1)} N·m/rad`);
+    say("value-sigma", `${shortly(estimate)}${half > 0 ? ` ± ${shortly(half)}` : ""} N·m/rad`);
+    say("value-error", `${shortly(error)} %`);
+    say("value-doubt", confident ? "confident" : `not confident: ${DOUBTS[reason]}`);
+  },
+};
+
+const METHODS = FMUS.StiffnessEstimator.variables.method.items;
+const DOUBTS = {
+  NoClaim: "the method claims no band",
+  NotExcited: "too little motion yet",
+  Misfit: "the data contradict the model",
+  OutOfRange: "deformation beyond range.phi",
+  FrictionOutsidePrior: "friction far from what was given",
+  InertiaOutsidePrior: "inertia far from what was given",
+  NegativeStiffness: "stiffness below 0",
+};
+
+/** Writes a text into the page. */
+function say(id, text) {
+  document.getElementById(id).textContent = text;
+}
+
+const opened = joint.open().catch((error) => {
+  say("joint-message", `This browser cannot run the page: ${error.message}`);
+  throw error;
+});

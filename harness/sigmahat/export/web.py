@@ -1,0 +1,157 @@
+"""The page of ``docs/live``: the FMUs as WebAssembly, their variables, and the page, in one folder.
+
+The binaries are compiled from the sources in the FMUs. They call nothing of the browser but the
+logger of the page, and they are part of a script, because a page that was opened as a file may not
+read others.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import fmpy
+
+from sigmahat import guessing
+from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.logs.configuration import ANOTHER_ROBOT, ANY_COULOMB
+from sigmahat.paper.scenarios import scenario
+from sigmahat.user_input import toml_file
+
+FUNCTIONS = (
+    "fmi2Instantiate",
+    "fmi2SetupExperiment",
+    "fmi2EnterInitializationMode",
+    "fmi2ExitInitializationMode",
+    "fmi2DoStep",
+    "fmi2GetReal",
+    "fmi2GetInteger",
+    "fmi2GetBoolean",
+    "fmi2SetReal",
+    "fmi2SetInteger",
+    "fmi2SetBoolean",
+    "fmi2SetRealInputDerivatives",
+    "page_callbacks",
+    "malloc",
+    "free",
+)
+"""What the page calls."""
+# As for the other platforms, no contraction to fused operations.
+_FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-s")
+_TARGET = ("-target", "wasm32-wasi", "-mexec-model=reactor")
+_UNKNOWN = {
+    "prior.B": ANOTHER_ROBOT,
+    "prior.D_theta": ANOTHER_ROBOT,
+    "prior.tau_coulomb": ANY_COULOMB,
+}
+"""Parameters of a log whose motor nobody knows, as `sigmahat init` writes them."""
+_SHOWN = ("type", "unit", "start", "description")
+
+
+def write(out: Path, page: Path, fmus: list[Path], cache: Path) -> None:
+    """Writes the page into a folder, whose files of before are removed.
+
+    page   folder with the page itself and callbacks.c
+    fmus   to compile
+    cache  for compiled parts that can be used again
+
+    Raises ``subprocess.CalledProcessError`` where the compiler refuses; it says why on stderr.
+    """
+    types = {fmu.stem: _described(fmu, page / "callbacks.c", cache) for fmu in fmus}
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    for file in page.iterdir():
+        if file.suffix in (".html", ".css", ".js"):
+            shutil.copyfile(file, out / file.name)
+    by_stem = {fmu.stem: fmu for fmu in fmus}
+    data = {"FMUS": types, "SCENARIO": _scenario(by_stem), "WORDS": _words(), "UNKNOWN": _UNKNOWN}
+    lines = ['"use strict";', *(f"const {name} = {_json(each)};" for name, each in data.items())]
+    (out / "fmus.js").write_text("\n".join([*lines, ""]), encoding="utf-8")
+
+
+def _described(fmu: Path, callbacks: Path, cache: Path) -> dict[str, Any]:
+    """What the page has to know of an FMU, with its binary."""
+    with Fmu(fmu) as opened:
+        wasm = compile_wasm(Path(opened.folder), callbacks, cache)
+        return {
+            "name": opened.name,
+            "guid": opened.description.guid,
+            "variables": {name: _variable(v) for name, v in opened.variables.items()},
+            "wasm": base64.b64encode(wasm).decode("ascii"),
+        }
+
+
+def compile_wasm(folder: Path, callbacks: Path, cache: Path) -> bytes:
+    """The binary of an unpacked FMU as WebAssembly, with the C file of the page's callbacks.
+
+    ``cache`` and errors as ``write``.
+    """
+    description: Any = fmpy.read_model_description(str(folder))
+    sources = description.buildConfigurations[0].sourceFileSets[0].sourceFiles
+    with TemporaryDirectory() as scratch:
+        binary = Path(scratch) / "fmu.wasm"
+        subprocess.run(
+            [
+                *(sys.executable, "-m", "ziglang", "cc", *_TARGET, *_FLAGS),
+                *(f"-I{each}" for each in (folder / "sources", _headers())),
+                *(str(folder / "sources" / source) for source in sources),
+                *(str(callbacks), "-lm", "-o", str(binary)),
+                *(f"-Wl,--export={name}" for name in FUNCTIONS),
+            ],
+            env={
+                **os.environ,
+                "ZIG_GLOBAL_CACHE_DIR": str(cache.resolve()),
+                "ZIG_LOCAL_CACHE_DIR": str(cache.resolve()),
+            },
+            check=True,
+        )
+        return binary.read_bytes()
+
+
+def _headers() -> Path:
+    return Path(fmpy.__file__).parent / "c-code"
+
+
+def _variable(variable: Any) -> dict[str, Any]:
+    shown = {key: getattr(variable, key) for key in _SHOWN if getattr(variable, key) is not None}
+    shown["reference"] = variable.valueReference
+    if variable.type == "Enumeration":
+        shown["items"] = {item.name: int(item.value) for item in variable.declaredType.items}
+    return shown
+
+
+def _scenario(fmus: Mapping[str, Path]) -> dict[str, Any]:
+    """The conditions of Table I."""
+    table1 = scenario("table1")
+    estimator = table1.estimators["RESIDUAL"]
+    return {
+        "T": table1.T,
+        "duration": table1.duration,
+        "inputs": {name: vars(signal) for name, signal in table1.plant.inputs.items()},
+        "connections": estimator.connections,
+        "plant": _numbers(fmus[table1.plant.fmu], table1.plant.start),
+        "estimator": _numbers(fmus[estimator.fmu], estimator.start),
+    }
+
+
+def _numbers(fmu: Path, start: Mapping[str, Value]) -> dict[str, float | int]:
+    """Start values as FMI takes them."""
+    with Fmu(fmu) as opened:
+        return {name: opened.number(name, value) for name, value in start.items()}
+
+
+def _words() -> dict[str, Any]:
+    """The words by which `sigmahat init` recognises columns."""
+    return toml_file.read(Path(guessing.__file__).parent / "vocabulary.toml").unwrap()
+
+
+def _json(data: object) -> str:
+    return json.dumps(data, ensure_ascii=True, separators=(",", ":"), default=dict)

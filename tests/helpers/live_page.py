@@ -1,0 +1,101 @@
+"""What a user does with the page of the site that runs the FMUs in the browser."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from selenium.webdriver.support.ui import WebDriverWait
+
+from browser import Page, opened
+
+_LONGEST = 60.0  # [s] for all that the page computes
+_DROP = """
+const data = new DataTransfer();
+data.items.add(new File([arguments[1]], arguments[0]));
+document.getElementById("drop").dispatchEvent(
+  new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+"""
+_PACK = """
+const pack = (array) => {
+  const bytes = new Uint8Array(Float64Array.from(array).buffer), parts = [];
+  for (let i = 0; i < bytes.length; i += 8192)
+    parts.push(String.fromCharCode(...bytes.subarray(i, i + 8192)));
+  return btoa(parts.join(""));
+};
+"""
+"""An array of numbers as text, to the last bit."""
+_FILL = """
+for (const [name, value] of Object.entries(arguments[0])) {
+  const field = log.form.elements[name];
+  field[field.type === "checkbox" ? "checked" : "value"] = value;
+  field.dispatchEvent(new Event("change", { bubbles: true }));
+}
+"""
+
+
+class LivePage:
+    """The page, as soon as the FMUs are compiled. Its time stands still until `runs(True)`."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        page.driver.execute_async_script("opened.then(arguments[0])")
+        self.runs(False)
+
+    def runs(self, running: bool) -> None:
+        """Lets the time of the simulated joint pass, or not."""
+        self.page.run("joint.run(arguments[0])", running)
+
+    def text(self, name: str) -> str:
+        """What an element shows, by its id; nothing if it is hidden."""
+        return str(self.page.driver.find_element("id", name).text)
+
+    def sets(self, name: str, value: object) -> None:
+        """Moves a setting of the simulated joint."""
+        script = "const field = joint.form.elements[arguments[0]]; field.value = arguments[1];"
+        event = 'field.dispatchEvent(new Event("input", { bubbles: true }));'
+        self.page.run(script + event, name, value)
+
+    def time(self) -> float:
+        """Time of the simulated joint, as the page shows it [s]."""
+        return float(self.text("value-t").removesuffix(" s"))
+
+    def arrays(self, script: str, *arguments: object) -> dict[str, NDArray[np.float64]]:
+        """What a script returns: arrays of numbers by name."""
+        body = f"const found = (() => {{ {script} }})();"
+        end = "return Object.fromEntries(Object.entries(found).map(([n, a]) => [n, pack(a)]));"
+        packed = self.page.run(f"{_PACK} const given = arguments; {body} {end}", *arguments)
+        return {name: np.frombuffer(base64.b64decode(text)) for name, text in packed.items()}
+
+    def drops(self, text: str, name: str = "log.csv") -> str:
+        """Drops a file, and returns what the page complains of; nothing if the file is good."""
+        self.page.run(f"{_DROP} log.form.hidden = true;", name, text)
+        self.until(lambda: self.text("log-message") or self.text("log-name"))
+        return self.text("log-message")
+
+    def estimates(self, fields: Mapping[str, object]) -> str:
+        """Fills fields of the log in, and lets it be estimated. Returns what it complains of."""
+        self.page.run(_FILL, fields)
+        self.page.run("log.form.requestSubmit()")
+        self.until(lambda: self.text("log-message") or self.text("answer"))
+        return self.text("log-message")
+
+    def columns_of_run(self, names: Sequence[str]) -> dict[str, NDArray[np.float64]]:
+        """Outputs of the estimator over the log."""
+        script = "return Object.fromEntries(given[0].map((n) => [n, log.run.columns[n]]))"
+        return self.arrays(script, names)
+
+    def until(self, is_so: Callable[[], object]) -> None:
+        """Waits until something is so."""
+        WebDriverWait(self.page.driver, _LONGEST, poll_frequency=0.05).until(lambda _: is_so())
+
+
+@contextmanager
+def live_page(folder: Path, width: int = 1400, dark: bool = False) -> Iterator[LivePage]:
+    """Opens the page from its folder, without a server."""
+    with opened(folder / "index.html", width, dark) as page:
+        yield LivePage(page)

@@ -1,0 +1,191 @@
+"""A log that is dropped on the page: the same estimate as in Python, and clear messages."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv
+import pytest
+
+import sigmahat
+from live_page import LivePage, live_page
+from recorded_logs import Array, awas_log
+from sigmahat.fmi.instance import Value
+
+KNEE = Path(__file__).parents[2] / "examples" / "tutorial" / "knee.csv"
+KNEE_FIELDS = {"theta per": 4096, "theta gear": 100, "tau per": 0.1, "motor.gamma": ""}
+_CURVES = """
+return Object.fromEntries(log.run.curves().flatMap((curve, i) => Object.entries(curve)
+  .map(([name, values]) => [`${name} ${i}`, values.length ? values : [values]])));
+"""
+
+
+@pytest.fixture(scope="module")
+def page(site: Path) -> Iterator[LivePage]:
+    with live_page(site / "live") as page:
+        yield page
+        assert page.page.complaints() == []
+        assert all(url.startswith("file:") for url in page.page.requests())
+
+
+def parameters(page: LivePage) -> dict[str, Value]:
+    """What the page gives to the estimator, as `sigmahat.Estimator` takes it."""
+    start = dict(page.page.run("return log.starts(log.read())"))
+    return {**start, "method": "MatchedFilter", "modality": "Residual"}
+
+
+def table(columns: Mapping[str, Array]) -> str:
+    """A CSV file."""
+    text = io.BytesIO()
+    pyarrow.csv.write_csv(pa.table(dict(columns)), text)
+    return text.getvalue().decode()
+
+
+def good() -> dict[str, Array]:
+    """Columns of a log without a fault."""
+    t = 0.001 * np.arange(200)
+    return {"time": t, "theta": np.sin(t), "q": 1.002 * np.sin(t), "tau": 0.05 * np.cos(t)}
+
+
+def test_the_log_of_the_tutorial(page: LivePage) -> None:
+    assert page.drops(KNEE.read_text(encoding="utf-8"), "knee.csv") == ""
+    assert page.estimates(KNEE_FIELDS) == ""
+    found = page.columns_of_run(["sigma", "sigma_std"])
+    t, counts, degrees, current = np.loadtxt(KNEE, delimiter=",", skiprows=1).T
+    theta = np.unwrap(counts, period=65536) / 4096 * 2 * np.pi / 100
+    given = parameters(page)
+    assert given["motor.gamma"] == 100  # the gear ratio of theta
+    assert given["samplePeriod"] == pytest.approx(t[1] - t[0])
+    expected = sigmahat.Estimator(given).run(theta, np.radians(degrees), 0.1 * current)
+    for name, values in found.items():
+        size = np.ptp(expected[name][1000:])
+        assert np.max(np.abs(values - expected[name])[1000:]) < 1e-9 * size, name
+    curve = page.arrays(_CURVES)
+    phi, sigma, std = (curve[f"{name} 0"] for name in ("phi", "sigma", "std"))
+    # As record.py made it: tau_e = 300 phi + 25000 phi^3.
+    assert np.all(np.abs(sigma - (300 + 75000 * phi**2)) < 3 * std)
+    torque = np.abs(curve["torque 0"] - (300 * phi + 25000 * phi**3))
+    assert np.all(torque <= 3 * curve["torqueStd 0"] + 1e-9)
+    assert np.count_nonzero(phi == 0) == 1 and std.max() < 50
+    assert "The estimator is confident." in page.text("answer")
+
+
+def test_a_log_with_a_motor_that_sets_the_stiffness(page: LivePage) -> None:
+    columns = awas_log(0.4, 0.3)
+    assert page.drops(table(columns)) == ""
+    names = {"time": "t", "theta": "theta", "q": "q", "tau": "tau", "theta_c": "theta_c"}
+    for port, column in names.items():
+        assert page.page.run("return log.chosen(arguments[0]).column", port) == column
+    assert page.estimates({"motor.gamma": 50, "rls.m": 3}) == ""
+    ports = (columns[name] for name in ("theta", "q", "tau", "theta_c"))
+    expected = sigmahat.Estimator(parameters(page)).run(*ports)
+    (sigma,) = page.columns_of_run(["sigma"]).values()
+    assert np.max(np.abs(sigma - expected["sigma"])[1000:]) < 1e-9 * np.ptp(
+        expected["sigma"][1000:]
+    )
+    curves = page.arrays(_CURVES)
+    settings = [curves[f"setPoint {i}"][0] for i in range(3)]
+    assert settings[0] < settings[1] < settings[2]
+    for i, setting in enumerate(settings):  # (29), of the lever arm in mm
+        phi, found, std = (curves[f"{name} {i}"] for name in ("phi", "sigma", "std"))
+        true = 2 * 14220 * (setting / 1000) ** 2 * np.cos(2 * phi)
+        assert np.all(np.abs(found - true) < 3 * std)
+
+
+def test_a_file_is_chosen_instead(page: LivePage) -> None:
+    page.page.driver.find_element("id", "file").send_keys(str(KNEE))
+    page.until(lambda: page.text("log-name").startswith("knee.csv"))
+
+
+_NAMES = "t,theta,q,tau\n"
+REFUSED = {
+    "empty": ("", "expected a CSV file with numbers, the file is empty"),
+    "blank": ("\n\n", "the file is empty"),
+    "prose": ("Dear all,\nsee you\n", 'expected at least 4 columns .* got 2: "Dear all,"'),
+    "few columns": ("time,q\n" + "1,2\n" * 200, "expected at least 4 columns .* got 2"),
+    "no names": ("0,1,2,3\n" * 200, "names of the columns in the first line, got the number 0"),
+    "text": (_NAMES + "a,b,c,d\n" * 200, 'numbers in at least 4 columns, got "a,b,c,d" in row 2'),
+    "short": (_NAMES + "1,2,3,4\n" * 5, "100 to 1 million rows below the names, got 5"),
+    "twice": ("t,q,q,tau\n" + "1,2,3,4\n" * 200, 'name of its own for each column, got "q" twice'),
+    "binary": ("PK\3\4\0\0\n", "expected text with separated values, got a binary file"),
+}
+"""What is wrong with a file, and what the page says."""
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_a_bad_file_is_refused_in_one_line(case: str, page: LivePage) -> None:
+    text, expected = REFUSED[case]
+    message = page.drops(text)
+    assert message.startswith("log.csv: ") and "\n" not in message
+    assert re.search(expected, message), message
+
+
+def test_a_huge_file_is_refused_before_it_is_read(page: LivePage) -> None:
+    script = "try { checkSize({ size: 3e9 }); } catch (error) { return error.message; }"
+    assert page.page.run(script).startswith("expected at most 100 MB, the file has 3000 MB")
+
+
+def with_value(values: Array, place: int, value: float) -> Array:
+    """A copy with another value in a place."""
+    changed: Array = values.copy()
+    changed[place] = value
+    return changed
+
+
+_TIME, _TAU = good()["time"], good()["tau"]
+BAD_COLUMNS = {
+    "nan": (
+        {"tau": with_value(_TAU, 50, np.nan)},
+        'row 52, column tau: expected a finite number, got "nan"',
+    ),
+    "backwards": ({"time": -_TIME}, "time: expected times that rise, got 0 s first"),
+    "constant": ({"time": 0 * _TIME}, "time: expected times that rise, got 0 s first and 0 s last"),
+    "uneven": (
+        {"time": with_value(_TIME, 70, 0.0712)},
+        "time: expected steps of about 0.001 s as in the mean, got 0.0022 s in row 72;",
+    ),
+}
+"""Columns instead of good ones, and how the message begins."""
+
+
+@pytest.mark.parametrize("case", BAD_COLUMNS)
+def test_a_bad_column_is_named(case: str, page: LivePage) -> None:
+    columns, expected = BAD_COLUMNS[case]
+    assert page.drops(table({**good(), **columns})) == ""
+    assert page.estimates({"motor.gamma": 50}).startswith(expected)
+
+
+@pytest.mark.parametrize(
+    ("fields", "expected"),
+    [
+        ({"tau column": ""}, "tau: choose its column"),
+        ({"theta gear": 0}, "theta: expected a gear ratio above 0, got 0"),
+        ({"q unit": "counts", "q per": ""}, "q: expected a number above 0 for counts per turn"),
+        ({"q zero": ""}, "q: expected a number as zero"),
+        ({"motor.gamma": ""}, "motor.gamma: fill in the gear ratio of your joint"),
+        ({"rls.n": 2.5}, "rls.n: expected a whole number, got 2.5"),
+        ({"rls.n": 6, "motor.gamma": 0}, "motor.gamma = 0 "),  # the FMU says it
+    ],
+    ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
+)
+def test_a_bad_field_is_named(fields: dict[str, object], expected: str, page: LivePage) -> None:
+    assert page.drops(table(good())) == ""
+    assert expected in page.estimates({"motor.gamma": 50, **fields})
+
+
+def test_decimal_commas_quotes_and_units(page: LivePage) -> None:
+    t = 0.001 * np.arange(200)
+    lines = ["Zeit_ms;Motor_Winkel_deg;Abtrieb_Winkel_deg;Drehmoment_mNm"]
+    lines += [f'{1000 * x:g};"{x:.6f}";{2 * x:.6f};{50 * x:.6f}'.replace(".", ",") for x in t]
+    assert page.drops("\r\n".join(lines)) == ""
+    script = "const { signals, T } = log.read(); return { ...signals, T: [T] }"
+    found = page.arrays(script)
+    np.testing.assert_allclose(found["T"], 0.001)
+    np.testing.assert_allclose(found["theta"], np.radians(np.round(t, 6)), rtol=1e-12)
+    np.testing.assert_allclose(found["q"], 2 * np.radians(np.round(t, 6)), rtol=1e-12)
+    np.testing.assert_allclose(found["tau"], 0.05 * np.round(t, 6), rtol=1e-12)

@@ -1,0 +1,142 @@
+"""The simulated joint in the browser: settings, time, what it looks like."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
+
+from live_page import LivePage, live_page
+
+_DRAWN = """
+const canvas = document.getElementById(arguments[0]), color = getComputedStyle(
+  document.documentElement).getPropertyValue(`--${arguments[1]}`);
+const pen = canvas.getContext("2d"), one = document.createElement("canvas").getContext("2d");
+one.fillStyle = color;
+one.fillRect(0, 0, 1, 1);
+const [r, g, b] = one.getImageData(0, 0, 1, 1).data;
+const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
+let count = 0;
+for (let i = 0; i < data.length; i += 4)
+  count += data[i] === r && data[i + 1] === g && data[i + 2] === b && data[i + 3] === 255;
+return count;
+"""
+
+
+@pytest.fixture(scope="module")
+def page(site: Path) -> Iterator[LivePage]:
+    with live_page(site / "live") as page:
+        yield page
+
+
+def simulate(page: LivePage, seconds: float) -> None:
+    """Lets simulated time pass at once."""
+    page.page.run(
+        "joint.start(); joint.advance(arguments[0] / SCENARIO.T, Infinity); joint.show()", seconds
+    )
+
+
+def error(page: LivePage) -> float:
+    """Relative error of the stiffness at the end, as the page shows it [%]."""
+    return float(page.text("value-error").removesuffix(" %").replace("\N{MINUS SIGN}", "-"))
+
+
+def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
+    page.sets("speed", "10")
+    page.page.driver.find_element("id", "again").click()
+    assert page.time() == 0
+    button = page.page.driver.find_element("id", "run")
+    button.send_keys(Keys.ENTER)
+    time.sleep(0.5)
+    button.send_keys(Keys.ENTER)
+    reached = page.time()
+    assert button.text == "Start" and reached > 0.5
+    time.sleep(0.1)
+    assert page.time() == reached
+    page.sets("coulomb", 10)
+    assert page.time() == 0
+    page.sets("coulomb", 0)
+
+
+def test_wrong_friction_misleads_paper2011_and_not_matched_filter(page: LivePage) -> None:
+    errors = {}
+    for method in ("Paper2011", "MatchedFilter"):
+        page.page.run("joint.form.elements.method.value = METHODS[arguments[0]]", method)
+        for friction in (0, 20):
+            page.sets("friction", friction)
+            simulate(page, 15)
+            errors[method, friction] = abs(error(page))
+    assert errors["Paper2011", 20] > 20 > 5 > errors["MatchedFilter", 20]
+    assert max(errors["Paper2011", 0], errors["MatchedFilter", 0]) < 5
+    page.sets("friction", 0)
+
+
+def test_only_a_method_that_claims_a_band_gets_one(page: LivePage) -> None:
+    for method, claims in (("Paper2011", False), ("MatchedFilter", True)):
+        page.page.run("joint.form.elements.method.value = METHODS[arguments[0]]", method)
+        simulate(page, 10)
+        assert ("±" in page.text("value-sigma")) == claims
+        assert (page.text("value-doubt") == "confident") == claims
+
+
+def test_what_an_fmu_refuses_is_shown_in_its_own_words(page: LivePage) -> None:
+    page.page.run("joint.form.elements.friction.min = -200")
+    page.sets("friction", -150)
+    assert "motor.D_theta = -0.0005" in page.text("joint-message")
+    page.sets("friction", 0)
+    assert page.text("joint-message") == ""
+
+
+def test_every_control_is_reached_by_the_keyboard(page: LivePage) -> None:
+    page.page.run("document.activeElement.blur(); window.scrollTo(0, 0)")
+    reached = []
+    for _ in range(12):
+        ActionChains(page.page.driver).send_keys(Keys.TAB).perform()
+        reached.append(page.page.run("const e = document.activeElement; return e.name || e.id"))
+    for name in (
+        "method",
+        "frequency",
+        "friction",
+        "coulomb",
+        "noise",
+        "speed",
+        "run",
+        "again",
+        "file",
+    ):
+        assert name in reached, name
+
+
+def test_the_browser_lets_the_page_send_nothing(page: LivePage) -> None:
+    script = """
+    const done = arguments[0];
+    document.addEventListener("securitypolicyviolation", (event) => done(event.effectiveDirective));
+    fetch("http://127.0.0.1:9/").catch(() => {});
+    """
+    assert page.page.driver.execute_async_script(script) == "connect-src"
+
+
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+@pytest.mark.parametrize("width", [1400, 360])
+def test_it_fits_the_window_without_a_complaint(width: int, dark: bool, site: Path) -> None:
+    with live_page(site / "live", width, dark) as live:
+        simulate(live, 10)
+        live.runs(True)
+        time.sleep(0.2)
+        shown = live.page.run("return getComputedStyle(document.body).backgroundColor")
+        brightness = sum(map(int, re.findall(r"\d+", shown)[:3])) / 3
+        assert brightness < 64 if dark else brightness > 192
+        assert live.page.run("return document.documentElement.scrollWidth") <= width
+        for plot, color in (
+            ("stiffness", "true"),
+            ("stiffness", "estimate"),
+            ("torque", "estimate"),
+        ):
+            assert live.page.run(_DRAWN, plot, color) > 100, (plot, color)
+        assert live.page.complaints() == []
+        assert all(url.startswith("file:") for url in live.page.requests())
