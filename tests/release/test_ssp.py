@@ -95,6 +95,7 @@ def test_it_has_the_form_that_omsimulator_2_requires(ssp: Path) -> None:
     names, results = annotated(root.find("ssd:DefaultExperiment", NAMESPACES))
     assert names == ["oms:Annotations", "oms:SimulationInformation"]
     assert results.get("resultFile").endswith("_res.mat")
+    assert results.get("signalFilter") == ".*"  # 2.1.3 takes an empty one for the name of a file
 
 
 def annotated(element: Any) -> tuple[list[str], Any]:
