@@ -46,6 +46,7 @@ static void initialize(void *model)
 
     sh_plant_start(arguments, results, NULL, NULL, 0);
     plant->h = INFINITY;
+    plant->started = NAN;
     plant->since = 0.0;
     plant->sample = 0;
     set_outputs(plant, plant->u);
@@ -58,6 +59,16 @@ static const char *input_name(size_t i)
     while (VARIABLES[k].offset != offsetof(sh_plant, u) + i * sizeof(double))
         ++k;
     return VARIABLES[k].name;
+}
+
+/* The sine that is added to input i at time t. It is 0 at the start. */
+static double sine(const sh_plant *plant, size_t i, double t)
+{
+    static const double TURN = 6.283185307179586;
+
+    if (plant->amplitude[i] == 0.0)
+        return 0.0;
+    return plant->amplitude[i] * sin(TURN * plant->frequency[i] * (t - plant->started));
 }
 
 /* The input of the largest magnitude during a step. */
@@ -74,16 +85,23 @@ static size_t largest_input(const double *u, const double *u_end)
 static sh_status step(void *model, double t, double h, sh_instance *log)
 {
     sh_plant *plant = model;
-    double x[SH_PLANT_STATES], u_end[SH_PLANT_INPUTS], internal_step = plant->h;
+    double x[SH_PLANT_STATES], u[SH_PLANT_INPUTS], du[SH_PLANT_INPUTS], u_end[SH_PLANT_INPUTS];
+    double internal_step = plant->h;
     size_t i;
 
+    if (isnan(plant->started))
+        plant->started = t;
     for (i = 0; i < SH_PLANT_INPUTS; ++i) {
-        u_end[i] = plant->u[i] + plant->du[i] * h;
-        if (!isfinite(plant->u[i]) || !isfinite(u_end[i])) {
+        const double begin = sine(plant, i, t), end = sine(plant, i, t + h);
+
+        u[i] = plant->u[i] + begin;
+        du[i] = plant->du[i] + (end - begin) / h;
+        u_end[i] = plant->u[i] + plant->du[i] * h + end;
+        if (!isfinite(u[i]) || !isfinite(u_end[i])) {
             sh_log(log, SH_ERROR,
                    "Step from t = %.9g s refused, the state is kept: expected a finite input "
                    "%s, received %g at its begin and %g at its end.",
-                   t, input_name(i), plant->u[i], u_end[i]);
+                   t, input_name(i), u[i], u_end[i]);
             return SH_ERROR;
         }
     }
@@ -96,14 +114,14 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     }
     for (i = 0; i < SH_PLANT_STATES; ++i)
         x[i] = plant->x[i];
-    if (sh_radau_integrate(x, plant->u, plant->du, plant->p, h, &internal_step) == 0) {
-        i = largest_input(plant->u, u_end);
+    if (sh_radau_integrate(x, u, du, plant->p, h, &internal_step) == 0) {
+        i = largest_input(u, u_end);
         sh_log(log, SH_ERROR,
                "Step from t = %.9g s to %.9g s refused, the state is kept: the equations have "
                "no solution there, or it takes more than %d internal steps. Expected inputs and "
                "parameters of a joint; the largest input is %s = %g.",
                t, t + h, sh_radau_attempts(h), input_name(i),
-               fabs(u_end[i]) > fabs(plant->u[i]) ? u_end[i] : plant->u[i]);
+               fabs(u_end[i]) > fabs(u[i]) ? u_end[i] : u[i]);
         return SH_ERROR;
     }
     for (i = 0; i < SH_PLANT_STATES; ++i)

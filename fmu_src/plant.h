@@ -11,6 +11,9 @@ typedef struct {
     double p[SH_PLANT_PARAMETERS];
     double u[SH_PLANT_INPUTS];
     double du[SH_PLANT_INPUTS]; /* time derivatives of u */
+    /* A sine that is added to an input: amplitude, 0 for none, and frequency [Hz]. */
+    double amplitude[SH_PLANT_INPUTS], frequency[SH_PLANT_INPUTS];
+    double started; /* time of the begin of the first step [s]; NAN before */
     double y[SH_PLANT_OUTPUTS];
     double x[SH_PLANT_STATES];
     double h;            /* internal step that is short enough for the motion [s] */

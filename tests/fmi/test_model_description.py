@@ -23,6 +23,7 @@ FMUS = ESTIMATORS + PLANTS
 SYMBOLS = {
     "1": {},
     "s": {"s": 1},
+    "Hz": {"s": -1},
     "m": {"m": 1},
     "rad": {"rad": 1},
     "kg": {"kg": 1},

@@ -5,7 +5,7 @@ The differences between masters are arguments of `run`; the FMI calls are the sa
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from fmpy import fmi2
@@ -26,13 +26,18 @@ def torques(t: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def run(
-    torques: NDArray[np.float64], *, late: bool, linear: bool, times: Iterable[float]
+    torques: NDArray[np.float64],
+    *,
+    linear: bool,
+    times: Iterable[float],
+    start: Mapping[str, float] | None = None,
+    zeros_first: bool = False,
 ) -> dict[str, NDArray[np.float64]]:
     """Stiffness of the plant at each time, and of the estimator after its step from that time.
 
-    `torques` are those at the times. If `late`, every value is passed along a connection at the end
-    of a step, and is 0 before the first one: the plant receives its torques one step late, and the
-    first inputs of the estimator are 0. If `linear`, torques are linear over a step, else held.
+    `torques` are those at the times; if `linear`, they are linear over a step, else held. `start`
+    are start values of the plant besides those of the scenario. If `zeros_first`, every value is
+    passed along a connection at the end of a step, and the first inputs of the estimator are 0.
     """
     times = list(times)
     sigma: dict[str, list[float]] = {"plant.sigma": [], "estimator.sigma": []}
@@ -42,15 +47,19 @@ def run(
         Slave(of_plant, "plant") as plant,
         Slave(of_estimator, "estimator") as estimator,
     ):
-        plant.initialize(_TABLE1.plant.start)
+        plant.initialize({**_TABLE1.plant.start, **(start or {})})
         estimator.initialize(_RESIDUAL.start)
         for k, t in enumerate(times):
             *measured, truth = _get(plant, [*_RESIDUAL.connections.values(), "sigma"])
-            _set(estimator, _RESIDUAL.connections, np.multiply(measured, not (late and k == 0)))
+            _set(
+                estimator,
+                _RESIDUAL.connections,
+                np.multiply(measured, not (zeros_first and k == 0)),
+            )
             _step(estimator, t)
             sigma["estimator.sigma"] += _get(estimator, ["sigma"])
             sigma["plant.sigma"].append(truth)
-            _set(plant, _TABLE1.plant.inputs, torques[k - late] * (not late or k > 0))
+            _set(plant, _TABLE1.plant.inputs, torques[k])
             if linear and k + 1 < len(times):
                 slopes = (torques[k + 1] - torques[k]) / (times[k + 1] - t)
                 _set_slopes(plant, _TABLE1.plant.inputs, slopes)

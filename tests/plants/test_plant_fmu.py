@@ -140,6 +140,15 @@ def test_a_unit_that_does_not_exist(tmp_path: Path) -> None:
         write_plant_fmu(mass(), other, tmp_path / "x.fmu")
 
 
+@pytest.mark.parametrize("name", ["noise.seed", "noise.samplePeriod", "signal.tau.amplitude"])
+def test_a_parameter_whose_name_is_taken(name: str, tmp_path: Path) -> None:
+    plant = mass()
+    plant.parameter(name)
+    more = {**VARIABLES, name: PlantVariable("1", "Something else")}
+    with pytest.raises(ValueError, match=f"the name of the parameter {name} is taken"):
+        write_plant_fmu(plant, more, tmp_path / "x.fmu")
+
+
 def test_no_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.setenv("PATH", str(tmp_path))

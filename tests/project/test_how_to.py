@@ -70,9 +70,31 @@ def test_the_code_on_the_page_of_python_works() -> None:
     assert run.estimators["one"]["sigma"][-1] == pytest.approx(run.plant["sigma"][-1], rel=0.05)
 
 
+def test_a_copy_without_enumerations_is_the_same_fmu(page: dict[str, Any], tmp_path: Path) -> None:
+    """The function of the page on importers."""
+    names: dict[str, Any] = {}
+    (code,) = blocks("importers.md", "python")
+    exec(compile(code, "importers.md", "exec"), names)
+    source, copy = sigmahat.fmu("StiffnessEstimator"), tmp_path / "copy.fmu"
+    names["without_enumerations"](source, copy)
+    found = {
+        v.name: v for v in fmpy.read_model_description(str(copy), validate=True).modelVariables
+    }
+    assert "Enumeration" not in {v.type for v in found.values()}
+    assert (found["method"].type, found["method"].start) == ("Integer", "1")
+    log, start = page["log"][:500], {"method": 2, "modality": 2}
+    results = [
+        fmpy.simulate_fmu(str(fmu), input=log, start_values=start, output_interval=T, stop_time=0.4)
+        for fmu in (source, copy)
+    ]
+    assert results[0].dtype.names == results[1].dtype.names
+    for name in results[0].dtype.names:
+        np.testing.assert_array_equal(results[0][name], results[1][name])
+
+
 def test_fmpy_page_gives_the_results_of_a_master_written_by_hand(page: dict[str, Any]) -> None:
     times = page["t"]
-    own = run(torques(times), late=False, linear=False, times=times)
+    own = run(torques(times), linear=False, times=times)
     np.testing.assert_allclose(page["plant"]["sigma"], own["plant.sigma"], rtol=1e-9)
     # The outputs of the tick at t_k are available after the step.
     ticks = own["estimator.sigma"][:-1]

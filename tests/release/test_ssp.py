@@ -20,10 +20,16 @@ from sigmahat.export import system
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import simulate
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.scenario import T
+from sigmahat.runs.scenario import Sine, T
 
 TABLE1 = scenario("table1")
 RESIDUAL = TABLE1.estimators["RESIDUAL"]
+SIGNALS = {  # section VI.B
+    "signal.tau.amplitude": 0.3,
+    "signal.tau.frequency": 0.1,
+    "signal.tau_c.amplitude": 8.0,
+    "signal.tau_c.frequency": 0.1,
+}
 STEPS = 1500  # half of the first motion to one side
 TEMPLATES = Path(__file__).parents[2] / "modelDescription" / "system"
 NAMESPACES = {
@@ -81,15 +87,26 @@ def test_it_has_the_form_that_omsimulator_2_requires(ssp: Path) -> None:
     }
     for element, tags in known.items():
         assert {prefixed(child) for child in element} <= tags
-    (annotation,) = system.findall("ssd:Annotations/ssc:Annotation", NAMESPACES)
+    names, master = annotated(system)
+    assert names == ["oms:Annotations", "oms:SimulationInformation", "oms:FixedStepMaster"]
+    assert master.get("description") == "oms-ma"
+    assert float(master.get("stepSize")) == T
+    # Without it, OMSimulator 2.1.3 and 3.0.0 warn of "wrong/deprecated content".
+    names, results = annotated(root.find("ssd:DefaultExperiment", NAMESPACES))
+    assert names == ["oms:Annotations", "oms:SimulationInformation"]
+    assert results.get("resultFile").endswith("_res.mat")
+    assert results.get("signalFilter") == ".*"  # 2.1.3 takes an empty one for the name of a file
+
+
+def annotated(element: Any) -> tuple[list[str], Any]:
+    """The nested elements of an annotation for OMSimulator, and the innermost of them."""
+    (annotation,) = element.findall("ssd:Annotations/ssc:Annotation", NAMESPACES)
     assert annotation.get("type") == "org.openmodelica"
     names = []
     while len(annotation):
         (annotation,) = annotation
         names.append(prefixed(annotation))
-    assert names == ["oms:Annotations", "oms:SimulationInformation", "oms:FixedStepMaster"]
-    assert annotation.get("description") == "oms-ma"
-    assert float(annotation.get("stepSize")) == T
+    return names, annotation
 
 
 def prefixed(element: Any) -> str:
@@ -140,7 +157,7 @@ def test_parameters_are_those_of_the_scenario(ssp: Path) -> None:
     for p in read(ssp, "resources/table1.ssv").iterfind("ssv:Parameters/*", NAMESPACES):
         found[p.get("name")] = p[0].get("value")
     for element, name, start in (
-        ("plant", "AwasPlant", TABLE1.plant.start),
+        ("plant", "AwasPlant", {**TABLE1.plant.start, **SIGNALS}),
         ("estimator", "StiffnessEstimator", RESIDUAL.start),
     ):
         with Fmu(sigmahat.fmu(name)) as fmu:
@@ -169,19 +186,26 @@ def test_a_scenario_with_another_enumeration_is_refused(
         )
 
 
-def test_fmpy_follows_its_three_rules(ssp: Path) -> None:
-    """A master written from the three rules of docs/how-to/fmpy.md gives identical results."""
-    result = simulate_ssp(
-        str(ssp),
-        stop_time=STEPS * T,
-        step_size=T,
-        parameter_set=read_ssv(str(ssp), "resources/table1.ssv"),
-        input={
-            name: lambda t, signal=signal: float(signal(np.array(t)))
-            for name, signal in TABLE1.plant.inputs.items()
-        },
-    )
-    own = run(torques(result["time"]), late=True, linear=False, times=result["time"])
+@pytest.fixture(scope="module")
+def result(ssp: Path) -> Any:
+    """What FMPy computes of the system as it is: no input is connected."""
+    parameters = read_ssv(str(ssp), "resources/table1.ssv")
+    return simulate_ssp(str(ssp), stop_time=STEPS * T, step_size=T, parameter_set=parameters)
+
+
+def test_a_scenario_with_another_signal_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(TABLE1.plant.inputs, "tau", Sine(0.3, 0.1, 1.0))
+    plant, estimator = sigmahat.fmu("AwasPlant"), sigmahat.fmu("StiffnessEstimator")
+    with pytest.raises(ValueError, match="tau: expected a sine without a phase"):
+        system.write(tmp_path / "x.ssp", plant, estimator, TEMPLATES, sigmahat.__version__)
+
+
+def test_fmpy_passes_zeros_to_the_first_tick_and_is_else_exact(result: Any) -> None:
+    """A master written from the rule of docs/how-to/fmpy.md gives identical results."""
+    still = np.zeros((len(result), 2))
+    own = run(still, linear=False, times=result["time"], start=SIGNALS, zeros_first=True)
     # FMPy records the outputs of the plant after the step with the time of its begin.
     np.testing.assert_array_equal(result["plant.sigma"][:-1], own["plant.sigma"][1:])
     np.testing.assert_array_equal(result["estimator.sigma"], own["estimator.sigma"])
@@ -189,10 +213,19 @@ def test_fmpy_follows_its_three_rules(ssp: Path) -> None:
     assert own["estimator.sigma"].any()
 
 
-def test_without_those_rules_the_results_are_those_of_the_harness() -> None:
-    """The same master with torques that are not late and are linear over a step."""
+def test_the_system_as_it_is_gives_table_1(result: Any) -> None:
     recording = simulate(TABLE1.plant, {"RESIDUAL": RESIDUAL}, T, STEPS)
-    own = run(torques(recording.t), late=False, linear=True, times=recording.t)
+    n = STEPS
+    plant, estimate = recording.plant["sigma"], recording.estimators["RESIDUAL"]["sigma"]
+    np.testing.assert_allclose(result["plant.sigma"][:n], plant[1:], rtol=1e-10)
+    settled = recording.t[:n] > 1.0
+    # What is left is the first tick, whose inputs FMPy sets to 0.
+    np.testing.assert_allclose(result["sigma_hat"][:n][settled], estimate[:n][settled], rtol=1e-6)
+
+
+def test_a_master_written_by_hand_gives_the_results_of_the_harness() -> None:
+    recording = simulate(TABLE1.plant, {"RESIDUAL": RESIDUAL}, T, STEPS)
+    own = run(torques(recording.t), linear=True, times=recording.t)
     np.testing.assert_array_equal(recording.plant["sigma"], own["plant.sigma"])
     np.testing.assert_array_equal(recording.estimators["RESIDUAL"]["sigma"], own["estimator.sigma"])
     assert own["estimator.sigma"].any()

@@ -11,6 +11,7 @@ SEED, SAMPLE_PERIOD = "noise.seed", "noise.samplePeriod"
 """Parameters of a plant with noise besides those of its equations."""
 
 _OWN_FIELDS = {SEED: "seed", SAMPLE_PERIOD: "samplePeriod"}  # of sh_plant
+_SIGNAL = re.compile(r"signal\.(\w+)\.(amplitude|frequency)")
 
 _TYPES = {
     "Real": "SH_TYPE_REAL",
@@ -56,19 +57,28 @@ def storage_in_sides(root: Element) -> dict[str, str]:
 def storage_in_arrays(root: Element) -> dict[str, str]:
     """Place of every variable of a plant: arrays p, u and y in the order of the template.
 
-    ``noise.seed`` and ``noise.samplePeriod`` are fields of their own.
+    What `is_of_every_plant` names is in fields of its own.
     """
     array = {"input": "u", "output": "y", "parameter": "p"}
     count = dict.fromkeys(array.values(), 0)
     places = {}
     for variable in variables(root):
-        if variable.attrib["name"] in _OWN_FIELDS:
-            places[variable.attrib["name"]] = _OWN_FIELDS[variable.attrib["name"]]
+        full = variable.attrib["name"]
+        if is_of_every_plant(full):
+            signal = _SIGNAL.fullmatch(full)
+            places[full] = (
+                places[signal[1]].replace("u", signal[2]) if signal else _OWN_FIELDS[full]
+            )
             continue
         name = array[variable.attrib["causality"]]
-        places[variable.attrib["name"]] = f"{name}[{count[name]}]"
+        places[full] = f"{name}[{count[name]}]"
         count[name] += 1
     return places
+
+
+def is_of_every_plant(parameter: str) -> bool:
+    """Whether ``fmu_src/plant.c`` has this parameter, and not the equations of a plant."""
+    return parameter in _OWN_FIELDS or _SIGNAL.fullmatch(parameter) is not None
 
 
 STORAGE: dict[str, Callable[[Element], dict[str, str]]] = {

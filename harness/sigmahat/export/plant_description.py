@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element
 import casadi as ca
 
 from sigmahat.export import templates
-from sigmahat.export.c_variables import SAMPLE_PERIOD, SEED
+from sigmahat.export.c_variables import SAMPLE_PERIOD, SEED, is_of_every_plant
 from sigmahat.fmi.installed import version
 from sigmahat.plants.equations import PlantEquations
 from sigmahat.user_input.unknown_name import unknown
@@ -59,6 +59,9 @@ def _check(
     """Raises ValueError unless all names of the equations, and no others, have a variable."""
     kinds = {"input": plant.inputs, "output": plant.outputs, "parameter": plant.parameters}
     names = [name for names in kinds.values() for name in names]
+    for name in plant.parameters:
+        if is_of_every_plant(name):
+            raise ValueError(f"{plant.name}: the name of the parameter {name} is taken")
     for name in variables:
         if name not in names:
             raise ValueError(unknown(f"variable of {plant.name}", name, names))

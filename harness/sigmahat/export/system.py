@@ -15,13 +15,14 @@ import jinja2
 from sigmahat.export import archive
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.paper.scenarios import scenario
+from sigmahat.runs.scenario import Scenario, Sine
 
 
 def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str) -> None:
     """Write the SSP of this version from the two FMUs and the folder of its Jinja2 templates.
 
     Equal FMUs and templates give equal bytes. Raises ValueError if the scenario sets an
-    enumeration to something else than the FMU does.
+    enumeration to something else than the FMU does, or has an input that is no sine.
     """
     table1 = scenario("table1")
     residual = table1.estimators["RESIDUAL"]
@@ -34,15 +35,14 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
         sent = dict.fromkeys((*connections.values(), "sigma"))
         data = {
             "version": version,
-            "torques": table1.plant.inputs,
             "connections": connections,
             "duration": table1.duration,
             "step": table1.T,
             "units": units.values(),
-            "plant": _element("plant", of_plant, plant, table1.plant.inputs, sent),
+            "plant": _element("plant", of_plant, plant, (), sent),
             "estimator": _element("estimator", of_estimator, estimator, connections, ["sigma"]),
             "parameters": [
-                *_parameters("plant", of_plant, table1.plant.start),
+                *_parameters("plant", of_plant, {**table1.plant.start, **_torques(table1)}),
                 *_parameters("estimator", of_estimator, residual.start),
             ],
         }
@@ -55,6 +55,22 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
             text = environment.get_template(template).render(data)
             contents[name].write_text(text, encoding="utf-8")
         archive.write(ssp, contents)
+
+
+def _torques(table1: Scenario) -> dict[str, Value]:
+    """The torques of the scenario as the sines that the plant adds to its inputs.
+
+    So the system moves as it is. Raises ValueError for a signal that is no sine.
+    """
+    start: dict[str, Value] = {}
+    for name, signal in table1.plant.inputs.items():
+        if not isinstance(signal, Sine) or signal.phase:
+            raise ValueError(f"{name}: expected a sine without a phase, the scenario has {signal}")
+        start |= {
+            f"signal.{name}.amplitude": signal.amplitude,
+            f"signal.{name}.frequency": signal.frequency,
+        }
+    return start
 
 
 def _element(

@@ -95,6 +95,7 @@ def simulate(
     The estimators tick at t_0 to t_N, N + 1 times; the plant makes N steps. Any FMUs for FMI 2.0
     Co-Simulation can take the two places. Inputs of a plant that cannot interpolate (see
     canInterpolateInputs in its model description) are held over a step, those of others are linear.
+    The noise of a plant of this package has a period of its own, the parameter noise.samplePeriod.
     From time to time progress is called with the number of steps made since the last call.
 
     Raises FileNotFoundError for a missing FMU, ValueError for a name that an FMU does not have or

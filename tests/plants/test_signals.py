@@ -1,0 +1,84 @@
+"""The sines that plants add to the torques of their motors, so that they move without a source."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import sigmahat
+from fmi_instance import OK, Instance
+from plant_runs import INPUTS, QUIET, STATES, Array, run_awas, run_plant, times
+
+FIRST = {"signal.tau.amplitude": 0.3, "signal.tau.frequency": 2.0}
+SECOND = {"signal.tau_c.amplitude": 8.0, "signal.tau_c.frequency": 3.0}
+RECORD = (*STATES, "tau_measured")
+
+
+def sines(t: Array) -> Array:
+    tau, tau_c = 0.3 * np.sin(4 * np.pi * t), 8.0 * np.sin(6 * np.pi * t)
+    return np.column_stack([tau, tau_c, 0 * t])
+
+
+@pytest.mark.parametrize("h", [1e-3, 1e-2])
+def test_a_signal_is_an_input_that_is_linear_over_a_step(h: float) -> None:
+    t = times(h, 0.5)
+    driven = run_awas(h, sines(t), QUIET, RECORD)
+    still = run_awas(h, np.zeros((len(t), 3)), {**QUIET, **FIRST, **SECOND}, RECORD)
+    for name in RECORD:
+        np.testing.assert_allclose(still[name], driven[name], rtol=0, atol=1e-9)
+    assert np.ptp(still["q"]) > 0.01
+
+
+def test_a_signal_is_added_to_the_input() -> None:
+    t = times(1e-3, 0.2)
+    ramp = np.outer(t, [1.0, 0.0, 2.0])
+    both = run_awas(1e-3, ramp, {**QUIET, **FIRST}, RECORD)
+    sine = sines(t) * [1.0, 0.0, 0.0]
+    summed = run_awas(1e-3, ramp + sine, QUIET, RECORD)
+    for name in RECORD:
+        np.testing.assert_allclose(both[name], summed[name], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "motors"),
+    [
+        ("AwasPlant", ["tau", "tau_c"]),
+        ("FlexibleJointPlant", ["tau"]),
+        ("AntagonisticVsaPlant", ["tau_1", "tau_2"]),
+        ("RealJointPlant", ["tau"]),
+    ],
+)
+def test_every_motor_of_every_plant_has_its_own(name: str, motors: list[str]) -> None:
+    t = times(1e-3, 0.05)
+    for motor in motors:
+        sine = 0.2 * np.sin(10 * np.pi * t)[:, None]
+        angle = motor.replace("tau", "theta")
+        driven = run_plant(name, [motor], 1e-3, sine, QUIET, [angle])
+        start = {f"signal.{motor}.amplitude": 0.2, f"signal.{motor}.frequency": 5.0}
+        still = run_plant(name, [motor], 1e-3, 0 * sine, {**QUIET, **start}, [angle])
+        np.testing.assert_allclose(still[angle], driven[angle], rtol=0, atol=1e-12)
+        assert np.ptp(still[angle]) > 1e-3
+
+
+def test_a_signal_begins_at_zero_at_any_start_time() -> None:
+    with (
+        Instance(sigmahat.fmu("AwasPlant")) as early,
+        Instance(sigmahat.fmu("AwasPlant")) as late,
+    ):
+        for fmu, begin in ((early, 0.0), (late, 0.125)):
+            assert fmu.setup(begin) == OK
+            fmu.set_all({**QUIET, **FIRST})
+            assert (fmu.enter(), fmu.exit()) == (OK, OK)
+            assert fmu.get("tau_measured") == 0.0
+            for k in range(100):
+                assert fmu.step(begin + k / 1024, 1 / 1024) == OK
+        names = [n for n, v in early.variables.items() if v.causality == "output"]
+        assert late.get_all(names) == early.get_all(names)
+        assert early.get("tau_measured") == pytest.approx(0.3 * np.sin(4 * np.pi * 100 / 1024))
+        assert early.get("q") != 0.0
+
+
+def test_inputs_without_a_motor_have_none() -> None:
+    with Instance(sigmahat.fmu("AwasPlant")) as fmu:
+        found = {name.split(".")[1] for name in fmu.variables if name.startswith("signal.")}
+    assert found == set(INPUTS) - {"tau_ext"}
