@@ -61,7 +61,7 @@ def storage_in_arrays(root: Element) -> dict[str, str]:
     """
     array = {"input": "u", "output": "y", "parameter": "p"}
     count = dict.fromkeys(array.values(), 0)
-    places = {}
+    places: dict[str, str] = {}
     for variable in variables(root):
         full = variable.attrib["name"]
         if is_of_every_plant(full):
