@@ -1,0 +1,35 @@
+within Sigmahat.Plants;
+block TorqueNoise "Noise of the measured torques, (32), (33)"
+  extends Icons.Block;
+  parameter Integer sides(min=1) = 1 "Number of motors";
+  parameter Types.TorqueVariance tau_variance(min=0) = 1e-5
+    "Variance of the noise of a measured motor torque, (32)";
+  parameter Types.TorqueVariance tau_e_variance(min=0) = 1e-3
+    "Variance of the noise of a measured flexibility torque, (33)";
+  parameter Integer seed = 1 "Seed of the noise: one seed is one sequence of samples, on every platform";
+  parameter Types.Time samplePeriod(min=1e-9) = 1e-3
+    "Time between two samples of the noise, from the start time on; it is held in between, whatever the communication step";
+  replaceable function drawNoise = standardNormal constrainedby partialNoise "What draws a number";
+  discrete output Types.Torque tau[sides](each start=0, each fixed=true) "Noise of the motor torques";
+  discrete output Types.Torque tau_e[sides](each start=0, each fixed=true) "Noise of the flexibility torques";
+protected
+  discrete Integer k(start=-1, fixed=true) "Number of the sample";
+algorithm
+  when sample(0, samplePeriod) then
+    k := pre(k) + 1;
+    for i in 1:sides loop
+      tau[i] := sqrt(tau_variance)*drawNoise(seed, k, 2*(i - 1));
+      tau_e[i] := sqrt(tau_e_variance)*drawNoise(seed, k, 2*i - 1);
+    end for;
+  end when;
+  annotation (
+    Icon(coordinateSystem(extent={{-100,-100},{100,100}}), graphics={Line(
+          points={{-80,0},{-60,0},{-60,40},{-40,40},{-40,-20},{-20,-20},{-20,60},{0,60},{0,-50},{20,-50},{20,10},{40,10},
+              {40,-30},{60,-30},{60,20},{80,20}},
+          color={193,68,14},
+          thickness=0.5)}),
+    Documentation(info="<html>
+<p>Set <code>samplePeriod</code> to that of the estimator, so that the noise of its samples is white. Sample 0 is drawn at the time 0, or at
+the first multiple of the sample period after the start.</p>
+</html>"));
+end TorqueNoise;
