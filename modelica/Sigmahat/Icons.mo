@@ -103,8 +103,9 @@ package Icons "Drawings: a motor is a disk, the link a bar, a transmission a spr
     extends Block;
     annotation (
       Icon(coordinateSystem(extent={{-100,-100},{100,100}}), graphics={
-          Text(extent={{-60,70},{60,-20}}, textColor={29,53,87}, textString="σ"),
-          Line(points={{-20,66},{0,86},{20,66}}, color={29,53,87}, thickness=1),
+          Ellipse(extent={{-30,40},{18,-8}}, lineColor={29,53,87}, lineThickness=2),
+          Line(points={{-6,40},{38,40}}, color={29,53,87}, thickness=2),
+          Line(points={{-28,58},{0,84},{28,58}}, color={29,53,87}, thickness=2),
           Line(points={{-40,-52},{-28,-52},{-23,-38},{-13,-66},{-3,-38},{7,-66},{17,-38},{27,-66},{32,-52},{44,-52}},
             color={193,68,14}, thickness=1),
           Ellipse(extent={{-80,-30},{-36,-74}}, lineColor={29,53,87}, fillColor={29,53,87},

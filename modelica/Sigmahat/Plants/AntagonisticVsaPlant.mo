@@ -18,22 +18,22 @@ model AntagonisticVsaPlant
   TorqueNoise noise(final sides=2, redeclare function drawNoise = drawNoise) "Noise of the measured torques"
     annotation (Placement(transformation(extent={{-10,-90},{10,-70}})));
 
-  Interfaces.RealInput tau_1(final unit="N.m") "Torque of motor 1, on the motor axis"
+  Interfaces.RealInput tau_1(final unit="N.m") "Torque of the motor 1, on the motor axis"
     annotation (Placement(transformation(extent={{-140,40},{-100,80}})));
-  Interfaces.RealInput tau_2(final unit="N.m") "Torque of motor 2, on the motor axis"
+  Interfaces.RealInput tau_2(final unit="N.m") "Torque of the motor 2, on the motor axis"
     annotation (Placement(transformation(extent={{-140,-20},{-100,20}})));
   Interfaces.RealInput tau_ext(final unit="N.m") "External torque on the link"
     annotation (Placement(transformation(extent={{-140,-80},{-100,-40}})));
 
-  Interfaces.RealOutput theta_measured_1(final unit="rad") "Position of motor 1, from its encoder"
+  Interfaces.RealOutput theta_measured_1(final unit="rad") "Position of the motor 1, from its encoder"
     annotation (Placement(transformation(extent={{100,80},{120,100}})));
-  Interfaces.RealOutput theta_measured_2(final unit="rad") "Position of motor 2, from its encoder"
+  Interfaces.RealOutput theta_measured_2(final unit="rad") "Position of the motor 2, from its encoder"
     annotation (Placement(transformation(extent={{100,55},{120,75}})));
   Interfaces.RealOutput q_measured(final unit="rad") "Position of the link, from its encoder"
     annotation (Placement(transformation(extent={{100,30},{120,50}})));
-  Interfaces.RealOutput tau_measured_1(final unit="N.m") "Torque of motor 1 with noise, (32)"
+  Interfaces.RealOutput tau_measured_1(final unit="N.m") "Torque of the motor 1 with noise, (32)"
     annotation (Placement(transformation(extent={{100,5},{120,25}})));
-  Interfaces.RealOutput tau_measured_2(final unit="N.m") "Torque of motor 2 with noise, (32)"
+  Interfaces.RealOutput tau_measured_2(final unit="N.m") "Torque of the motor 2 with noise, (32)"
     annotation (Placement(transformation(extent={{100,-20},{120,0}})));
   Interfaces.RealOutput tau_e_measured_1(final unit="N.m")
     "Flexibility torque as its sensor shows it, with gain and noise, (33)"
@@ -46,10 +46,10 @@ model AntagonisticVsaPlant
 
   output Types.Angle q(start=init.q, fixed=true) "Position of the link";
   output Types.AngularVelocity q_dot(start=init.q_dot, fixed=true) "Velocity of the link";
-  output Types.Angle theta_1(start=init.theta_1, fixed=true) "Position of motor 1, after its gear";
-  output Types.AngularVelocity theta_dot_1(start=init.theta_dot_1, fixed=true) "Velocity of motor 1, after its gear";
-  output Types.Angle theta_2(start=init.theta_2, fixed=true) "Position of motor 2, after its gear";
-  output Types.AngularVelocity theta_dot_2(start=init.theta_dot_2, fixed=true) "Velocity of motor 2, after its gear";
+  output Types.Angle theta_1(start=init.theta_1, fixed=true) "Position of the motor 1, after its gear";
+  output Types.AngularVelocity theta_dot_1(start=init.theta_dot_1, fixed=true) "Velocity of the motor 1, after its gear";
+  output Types.Angle theta_2(start=init.theta_2, fixed=true) "Position of the motor 2, after its gear";
+  output Types.AngularVelocity theta_dot_2(start=init.theta_dot_2, fixed=true) "Velocity of the motor 2, after its gear";
   output Types.Angle phi_1 "Deformation of the transmission, q - theta_1";
   output Types.Angle phi_2 "Deformation of the transmission, q - theta_2";
   output Types.Torque tau_e_1 "Flexibility torque, k sinh(a phi)";

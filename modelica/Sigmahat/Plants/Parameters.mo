@@ -82,10 +82,10 @@ package Parameters "Groups of parameters of the plants"
 
   record InitialAntagonistic "Initial state of a joint with two motors"
     extends InitialLink;
-    parameter Types.Angle theta_1 = 0 "Position of motor 1 at the start";
-    parameter Types.AngularVelocity theta_dot_1 = 0 "Velocity of motor 1 at the start";
-    parameter Types.Angle theta_2 = 0 "Position of motor 2 at the start";
-    parameter Types.AngularVelocity theta_dot_2 = 0 "Velocity of motor 2 at the start";
+    parameter Types.Angle theta_1 = 0 "Position of the motor 1 at the start";
+    parameter Types.AngularVelocity theta_dot_1 = 0 "Velocity of the motor 1 at the start";
+    parameter Types.Angle theta_2 = 0 "Position of the motor 2 at the start";
+    parameter Types.AngularVelocity theta_dot_2 = 0 "Velocity of the motor 2 at the start";
     annotation (Documentation(info="<html><p>Initial values.</p></html>"));
   end InitialAntagonistic;
 
