@@ -16,7 +16,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 PACKAGE = REPOSITORY / "modelica" / "Sigmahat"
 FILES = sorted(PACKAGE.rglob("*.mo"))
 KEYWORDS = {"initial": "init", "model": "nominal"}
-"""Groups of parameters of the FMUs that are keywords of Modelica, and what they are called there."""
+"""Groups of parameters whose names in the FMUs are keywords of Modelica: their names there."""
 NO_NOISE = "redeclare function drawNoise = Sigmahat.Plants.noNoise"
 """For rumoca, which calls no C."""
 
@@ -26,7 +26,10 @@ def classes() -> Mapping[str, pymoca.ast.Class]:
     """All classes of the package by their names in it, such as "Plants.AwasPlant"."""
     found: dict[str, pymoca.ast.Class] = {}
     for file in FILES:
-        path = [*file.relative_to(PACKAGE).parent.parts, *([] if _is_package(file) else [file.stem])]
+        path = [
+            *file.relative_to(PACKAGE).parent.parts,
+            *([] if _is_package(file) else [file.stem]),
+        ]
         within = pymoca.parser.parse(file.read_text(encoding="utf-8")).classes["Sigmahat"]
         for name in path:
             within = within.classes[name]

@@ -1,8 +1,9 @@
-"""The Modelica package: every parser reads it, every class is documented, the archive is complete."""
+"""The Modelica package: parsers read it, every class is documented, the archive is complete."""
 
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from zipfile import ZipFile
@@ -11,7 +12,6 @@ import pymoca.ast
 import pymoca.parser
 import pytest
 import rumoca
-from modelica_builder.modelica_parser import parse as parse_by_grammar
 
 import sigmahat
 from modelica_package import FILES, PACKAGE, REPOSITORY, classes
@@ -32,11 +32,23 @@ def by_pymoca(file: Path) -> None:
 
 def by_antlr(file: Path) -> None:
     """The parser of modelica-builder, from the grammar of ANTLR."""
-    _, parser = parse_by_grammar(str(file))
+    if sys.version_info >= (3, 14):
+        pytest.skip("modelica-builder is for Python below 3.14")
+    from modelica_builder.modelica_parser import parse
+
+    _, parser = parse(str(file))
     assert parser.getNumberOfSyntaxErrors() == 0
 
 
-each_parser = pytest.mark.parametrize("parse", [by_rumoca, by_pymoca, by_antlr])
+def by_modelica(file: Path) -> None:
+    if sys.version_info < (3, 12):
+        pytest.skip("the package modelica is for Python 3.12 and newer")
+    from modelica.lang import parse
+
+    parse(file.read_text(encoding="utf-8"))
+
+
+each_parser = pytest.mark.parametrize("parse", [by_rumoca, by_pymoca, by_antlr, by_modelica])
 
 
 @each_parser
@@ -50,8 +62,12 @@ def test_a_damaged_file_is_refused(parse: Callable[[Path], None], tmp_path: Path
     damaged = tmp_path / "AwasPlant.mo"
     text = (PACKAGE / "Plants" / "AwasPlant.mo").read_text(encoding="utf-8")
     damaged.write_text(text.replace("phi = q - theta;", "phi = q - ;"), encoding="utf-8")
-    with pytest.raises(Exception):  # noqa: B017, PT011: each parser has its own, pymoca returns None
+    refused = False
+    try:
         parse(damaged)
+    except Exception:  # each parser has its own; pymoca returns None
+        refused = True
+    assert refused
 
 
 def test_the_order_of_a_package_names_all_that_is_in_it() -> None:
@@ -72,6 +88,8 @@ def test_every_class_has_a_description_a_documentation_and_an_icon() -> None:
     for name, each in classes().items():
         if each.type == "type":
             assert name.startswith("Types.")
+            continue
+        if each.replaceable:  # a parameter of a plant, as it were
             continue
         assert each.comment, name
         if each.is_short_class_definition:  # pymoca does not keep their annotations

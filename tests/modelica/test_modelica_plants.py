@@ -16,6 +16,7 @@ import sigmahat
 from modelica_package import NO_NOISE, REPOSITORY, compiled, modification
 from sigmahat.export.templates import render, variables
 from sigmahat.fmi.master import Plant, Series, simulate
+from sigmahat.paper.awas import SECTION_VI_B
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import Sine, T
 
@@ -29,17 +30,15 @@ STATES = {
 }
 each_plant = pytest.mark.parametrize("plant", STATES)
 
-TABLE_1 = scenario("table1").plant.inputs["tau"]
-assert isinstance(TABLE_1, Sine)
-
 
 def inputs_of_table1(plant: str) -> dict[str, Sine]:
     """The torque of Table I on every motor, and that of the secondary motor where there is one."""
     if plant == "AwasPlant":
-        return {name: s for name, s in scenario("table1").plant.inputs.items() if isinstance(s, Sine)}
+        inputs = scenario("table1").plant.inputs
+        return {name: each for name, each in inputs.items() if isinstance(each, Sine)}
     if plant == "AntagonisticVsaPlant":  # its springs are softer
         return {"tau_1": Sine(0.03, 0.1), "tau_2": Sine(0.02, 0.1, 1.0)}
-    return {"tau": TABLE_1}
+    return {"tau": SECTION_VI_B}
 
 
 @dataclass(frozen=True)
@@ -62,7 +61,9 @@ def fmu_variables(plant: str) -> dict[str, Any]:
     return {str(v.get("name")): v for v in variables(root)}
 
 
-def run(plant: str, inputs: Mapping[str, Sine], start: Mapping[str, float], duration: float) -> Both:
+def run(
+    plant: str, inputs: Mapping[str, Sine], start: Mapping[str, float], duration: float
+) -> Both:
     """Both forms from the same parameters, the FMU without noise."""
     declared = fmu_variables(plant)
     names = [n for n, v in declared.items() if v.get("causality") == "output"]
@@ -80,7 +81,9 @@ def run(plant: str, inputs: Mapping[str, Sine], start: Mapping[str, float], dura
         phase = f"{2 * math.pi * s.frequency!r}*time + {s.phase!r}"
         equations.append(f"p.{name} = {s.amplitude!r}*sin({phase});")
     changed = ", ".join(filter(None, (NO_NOISE, modification(**start))))
-    text = f"model Test Sigmahat.Plants.{plant} p({changed}); equation {' '.join(equations)} end Test;"
+    text = (
+        f"model Test Sigmahat.Plants.{plant} p({changed}); equation {' '.join(equations)} end Test;"
+    )
     # Its explicit solver: the implicit one of rumoca 0.10.2 stops at jumps of a derivative.
     config = rumoca.SimConfig(solver="rk-like", rtol=1e-11, atol=1e-13)
     result = compiled(text).simulate(t=(0.0, duration), dt=T, config=config)

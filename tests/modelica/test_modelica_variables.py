@@ -160,7 +160,10 @@ def test_inputs_of_an_estimator(name: str) -> None:
     expected = of(name, "input")
     assert inputs.keys() - {"theta_c"} == expected.keys() - {"theta_c"}
     for n, symbol in inputs.items():
-        assert (unit_of(symbol), symbol.comment) == (unit(expected[n]), expected[n].get("description"))
+        assert (unit_of(symbol), symbol.comment) == (
+            unit(expected[n]),
+            expected[n].get("description"),
+        )
 
 
 def test_outputs_of_the_estimator() -> None:

@@ -7,9 +7,7 @@ from pathlib import Path
 from sigmahat.export import archive
 
 
-def write(
-    out: Path, library: Path, sources: Iterable[Path], licence: Path, version: str
-) -> None:
+def write(out: Path, library: Path, sources: Iterable[Path], licence: Path, version: str) -> None:
     """Write the archive ``out`` with one folder, ``Sigmahat VERSION``.
 
     library  folder of the package, with its ``package.mo``
