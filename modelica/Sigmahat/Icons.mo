@@ -1,7 +1,7 @@
 within Sigmahat;
 package Icons "Drawings: a motor is a disk, the link a bar, a transmission a spring between them; an estimate has a hat"
 
-  partial class Package "Icon of a package"
+  partial package Package "Icon of a package"
     annotation (
       Icon(coordinateSystem(extent={{-100,-100},{100,100}}), graphics={
           Rectangle(extent={{-100,100},{100,-100}}, radius=25, lineColor={29,53,87}, fillColor={255,255,255},
@@ -15,7 +15,7 @@ package Icons "Drawings: a motor is a disk, the link a bar, a transmission a spr
       Documentation(info="<html><p>Extended by packages.</p></html>"));
   end Package;
 
-  partial class Record "Icon of a group of parameters"
+  partial record Record "Icon of a group of parameters"
     annotation (
       Icon(coordinateSystem(extent={{-100,-100},{100,100}}), graphics={
           Rectangle(extent={{-100,60},{100,-60}}, lineColor={29,53,87}, fillColor={255,255,255},
@@ -26,7 +26,7 @@ package Icons "Drawings: a motor is a disk, the link a bar, a transmission a spr
       Documentation(info="<html><p>Extended by records.</p></html>"));
   end Record;
 
-  partial class Function "Icon of a function"
+  partial function Function "Icon of a function"
     annotation (
       Icon(coordinateSystem(extent={{-100,-100},{100,100}}), graphics={
           Ellipse(extent={{-100,100},{100,-100}}, lineColor={29,53,87}, fillColor={255,255,255},
@@ -35,7 +35,7 @@ package Icons "Drawings: a motor is a disk, the link a bar, a transmission a spr
       Documentation(info="<html><p>Extended by functions.</p></html>"));
   end Function;
 
-  partial class Example "Icon of a model that can be run"
+  partial model Example "Icon of a model that can be run"
     annotation (
       Icon(coordinateSystem(extent={{-100,-100},{100,100}}), graphics={
           Ellipse(extent={{-100,100},{100,-100}}, lineColor={29,53,87}, fillColor={255,255,255},
@@ -123,5 +123,5 @@ package Icons "Drawings: a motor is a disk, the link a bar, a transmission a spr
           fillPattern=FillPattern.Solid),
         Rectangle(extent={{-10,10},{60,-60}}, lineColor={29,53,87}, fillColor={29,53,87},
           fillPattern=FillPattern.Solid)}),
-    Documentation(info="<html><p>Partial classes without equations.</p></html>"));
+    Documentation(info="<html><p>Classes without equations.</p></html>"));
 end Icons;

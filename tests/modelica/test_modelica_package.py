@@ -14,7 +14,7 @@ import pytest
 import rumoca
 
 import sigmahat
-from modelica_package import FILES, PACKAGE, REPOSITORY, classes
+from modelica_package import FILES, PACKAGE, REPOSITORY, classes, compiled
 from sigmahat.export import modelica
 
 FOLDER = f"Sigmahat {sigmahat.__version__}"
@@ -149,3 +149,27 @@ def test_another_version_than_that_of_the_project_is_refused(tmp_path: Path) -> 
     with pytest.raises(ValueError, match=r"expected version 9\.9\.9, got \d"):
         modelica.write(tmp_path / "a.zip", PACKAGE, [], REPOSITORY / "LICENSE", "9.9.9")
     assert not list(tmp_path.iterdir())
+
+
+EXAMPLES = sorted({file.stem for file in (PACKAGE / "Examples").glob("*.mo")} - {"package"})
+WITH_ESTIMATORS = ("Antagonistic", "Table1", "page")
+PAGE = REPOSITORY / "docs" / "how-to" / "modelica.md"
+
+
+def text_of(example: str) -> tuple[str, str]:
+    """Text and name of a model: an example, or the one on the page."""
+    if example != "page":
+        return f"model Test extends Sigmahat.Examples.{example}; end Test;", "Test"
+    found = re.search(r"```modelica\n(model (\w+)\n.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
+    assert found
+    return found[1], found[2]
+
+
+@pytest.mark.parametrize("example", [*EXAMPLES, "page"])
+def test_rumoca_compiles_every_example_as_far_as_it_can(example: str) -> None:
+    """It knows no external objects: with an estimator it ends there, after names and arguments."""
+    if example in WITH_ESTIMATORS:
+        with pytest.raises(rumoca.CompileError, match=r"ToDae.* unsupported type `Estimator`"):
+            compiled(*text_of(example))
+    else:
+        assert compiled(*text_of(example)).structure().is_balanced

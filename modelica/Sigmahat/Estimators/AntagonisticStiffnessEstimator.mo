@@ -78,7 +78,7 @@ equation
   // That one side alone is not certain enough is no reason.
   worse = if side_1.doubt > side_2.doubt then side_1.doubt else side_2.doubt;
   doubt = if worse <> Types.Doubt.None and worse <> Types.Doubt.NotExcited and worse <> Types.Doubt.Misfit then worse
-    elseif noEvent(sigma_std < confidence*abs(sigma)) then Types.Doubt.None
+    elseif sigma_std < confidence*abs(sigma) then Types.Doubt.None
     elseif worse <> Types.Doubt.None then worse else Types.Doubt.NotExcited;
   confident = doubt == Types.Doubt.None;
 

@@ -21,7 +21,7 @@ equation
     annotation (Line(points={{2,-2},{18,-2},{18,-8},{36,-8}}, color={0,0,127}));
   connect(plant.tau_e_measured, estimator.tau_e_sensor)
     annotation (Line(points={{2,-8},{14,-8},{14,-16},{36,-16}}, color={0,0,127}));
-  error = noEvent((estimator.sigma - plant.sigma)/plant.sigma);
+  error = (estimator.sigma - plant.sigma)/plant.sigma;
   annotation (
     experiment(StartTime=0, StopTime=15, Interval=0.001, Tolerance=1e-9),
     Documentation(info="<html>

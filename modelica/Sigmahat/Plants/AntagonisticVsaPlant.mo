@@ -15,7 +15,7 @@ model AntagonisticVsaPlant
   parameter Parameters.Sensor sensor "Sensors of the flexibility torques" annotation (Dialog(group="Measurement"));
   parameter Parameters.InitialAntagonistic init "Initial state" annotation (Dialog(group="Start"));
   replaceable function drawNoise = standardNormal constrainedby partialNoise "What draws the noise";
-  TorqueNoise noise(final sides=2, redeclare function drawNoise = drawNoise) "Noise of the measured torques"
+  TorqueNoise noise(final side=1, redeclare function drawNoise = drawNoise) "Noise of the measured torques"
     annotation (Placement(transformation(extent={{-10,-90},{10,-70}})));
 
   Interfaces.RealInput tau_1(final unit="N.m") "Torque of the motor 1, on the motor axis"
@@ -57,6 +57,15 @@ model AntagonisticVsaPlant
   output Types.Stiffness sigma_1 "Stiffness, k a cosh(a phi), (4)";
   output Types.Stiffness sigma_2 "Stiffness, k a cosh(a phi), (4)";
 
+protected
+  TorqueNoise noise_2(
+    final side=2,
+    final tau_variance=noise.tau_variance,
+    final tau_e_variance=noise.tau_e_variance,
+    final seed=noise.seed,
+    final samplePeriod=noise.samplePeriod,
+    redeclare function drawNoise = drawNoise) "Noise of motor 2, with the parameters of noise"
+    annotation (Placement(transformation(extent={{20,-90},{40,-70}})));
 equation
   // Transmissions
   phi_1 = q - theta_1;
@@ -84,10 +93,10 @@ equation
   q_measured = rounded(q, encoder.q);
   theta_measured_1 = rounded(theta_1, encoder.theta_1);
   theta_measured_2 = rounded(theta_2, encoder.theta_2);
-  tau_measured_1 = tau_1 + noise.tau[1];
-  tau_measured_2 = tau_2 + noise.tau[2];
-  tau_e_measured_1 = sensor.gain*tau_e_1 + noise.tau_e[1];
-  tau_e_measured_2 = sensor.gain*tau_e_2 + noise.tau_e[2];
+  tau_measured_1 = tau_1 + noise.tau;
+  tau_measured_2 = tau_2 + noise_2.tau;
+  tau_e_measured_1 = sensor.gain*tau_e_1 + noise.tau_e;
+  tau_e_measured_2 = sensor.gain*tau_e_2 + noise_2.tau_e;
 
   annotation (Documentation(info="<html>
 <p>A link between two motors, agonist and antagonist (section II). The transmissions are those of the qbmove Advanced:

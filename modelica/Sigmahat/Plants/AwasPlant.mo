@@ -13,7 +13,7 @@ model AwasPlant
   parameter Parameters.Sensor sensor "Sensor of the flexibility torque" annotation (Dialog(group="Measurement"));
   parameter Parameters.InitialAwas init "Initial state" annotation (Dialog(group="Start"));
   replaceable function drawNoise = standardNormal constrainedby partialNoise "What draws the noise";
-  TorqueNoise noise(redeclare function drawNoise = drawNoise) "Noise of the measured torques"
+  TorqueNoise noise(final side=1, redeclare function drawNoise = drawNoise) "Noise of the measured torques"
     annotation (Placement(transformation(extent={{-10,-90},{10,-70}})));
 
   Interfaces.RealInput tau(final unit="N.m") "Torque of the principal motor, on the motor axis"
@@ -76,8 +76,8 @@ equation
   q_measured = rounded(q, encoder.q);
   theta_measured = rounded(theta, encoder.theta);
   theta_c_measured = rounded(theta_c, encoder.theta_c);
-  tau_measured = tau + noise.tau[1];
-  tau_e_measured = sensor.gain*tau_e + noise.tau_e[1];
+  tau_measured = tau + noise.tau;
+  tau_e_measured = sensor.gain*tau_e + noise.tau_e;
 
   annotation (Documentation(info="<html>
 <p>The joint of section VI: a secondary motor moves the springs along a lever, by a ball screw, and so sets the stiffness. The torques

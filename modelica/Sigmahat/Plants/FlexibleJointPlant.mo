@@ -11,7 +11,7 @@ model FlexibleJointPlant
   parameter Parameters.Sensor sensor "Sensor of the flexibility torque" annotation (Dialog(group="Measurement"));
   parameter Parameters.InitialJoint init "Initial state" annotation (Dialog(group="Start"));
   replaceable function drawNoise = standardNormal constrainedby partialNoise "What draws the noise";
-  TorqueNoise noise(redeclare function drawNoise = drawNoise) "Noise of the measured torques"
+  TorqueNoise noise(final side=1, redeclare function drawNoise = drawNoise) "Noise of the measured torques"
     annotation (Placement(transformation(extent={{-10,-90},{10,-70}})));
 
   Interfaces.RealInput tau(final unit="N.m") "Torque of the motor, on the motor axis"
@@ -56,8 +56,8 @@ equation
   // Measurements, (32), (33)
   q_measured = rounded(q, encoder.q);
   theta_measured = rounded(theta, encoder.theta);
-  tau_measured = tau + noise.tau[1];
-  tau_e_measured = sensor.gain*tau_e + noise.tau_e[1];
+  tau_measured = tau + noise.tau;
+  tau_e_measured = sensor.gain*tau_e + noise.tau_e;
 
   annotation (Documentation(info="<html>
 <p>The link (2) hangs on one spring, which a motor (3) moves through a gear. The spring is linear with <code>spring.k_3</code> = 0, the start

@@ -13,7 +13,7 @@ model RealJointPlant
   parameter Parameters.RealSensor sensor "Torque sensors" annotation (Dialog(group="Measurement"));
   parameter Parameters.InitialJoint init "Initial state" annotation (Dialog(group="Start"));
   replaceable function drawNoise = standardNormal constrainedby partialNoise "What draws the noise";
-  TorqueNoise noise(redeclare function drawNoise = drawNoise) "Noise of the measured torques"
+  TorqueNoise noise(final side=1, redeclare function drawNoise = drawNoise) "Noise of the measured torques"
     annotation (Placement(transformation(extent={{-10,-90},{10,-70}})));
 
   Interfaces.RealInput tau(final unit="N.m") "Torque of the motor, on the motor axis"
@@ -98,8 +98,8 @@ equation
     q + encoder.q_eccentricity*sin(q + zero_q) + encoder.q_offset + encoder.q_delay*q_dot, encoder.q);
   theta_measured = rounded(
     theta + encoder.theta_eccentricity*sin(motor.gamma*theta + zero_theta), encoder.theta);
-  tau_measured = (tau - sensor.tau_bias)/sensor.tau_gain + noise.tau[1];
-  tau_e_measured = sensor.gain*tau_e + noise.tau_e[1];
+  tau_measured = (tau - sensor.tau_bias)/sensor.tau_gain + noise.tau;
+  tau_e_measured = sensor.gain*tau_e + noise.tau_e;
 
   annotation (Documentation(info="<html>
 <p>The joint of <a href=\"modelica://Sigmahat.Plants.FlexibleJointPlant\">FlexibleJointPlant</a> with departures from the models of the

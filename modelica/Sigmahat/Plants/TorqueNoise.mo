@@ -1,7 +1,7 @@
 within Sigmahat.Plants;
-block TorqueNoise "Noise of the measured torques, (32), (33)"
+block TorqueNoise "Noise of the measured torques of one motor, (32), (33)"
   extends Icons.Block;
-  parameter Integer sides(min=1) = 1 "Number of motors";
+  parameter Integer side(min=1) = 1 "Which motor it is, from 1: each has noise of its own";
   parameter Types.TorqueVariance tau_variance(min=0) = 1e-5
     "Variance of the noise of a measured motor torque, (32)";
   parameter Types.TorqueVariance tau_e_variance(min=0) = 1e-3
@@ -10,17 +10,15 @@ block TorqueNoise "Noise of the measured torques, (32), (33)"
   parameter Types.Time samplePeriod(min=1e-9) = 1e-3
     "Time between two samples of the noise, from the start time on; it is held in between, whatever the communication step";
   replaceable function drawNoise = standardNormal constrainedby partialNoise "What draws a number";
-  discrete output Types.Torque tau[sides](each start=0, each fixed=true) "Noise of the motor torques";
-  discrete output Types.Torque tau_e[sides](each start=0, each fixed=true) "Noise of the flexibility torques";
+  discrete output Types.Torque tau(start=0, fixed=true) "Noise of the motor torque";
+  discrete output Types.Torque tau_e(start=0, fixed=true) "Noise of the flexibility torque";
 protected
   discrete Integer k(start=-1, fixed=true) "Number of the sample";
-algorithm
+equation
   when sample(0, samplePeriod) then
-    k := pre(k) + 1;
-    for i in 1:sides loop
-      tau[i] := sqrt(tau_variance)*drawNoise(seed, k, 2*(i - 1));
-      tau_e[i] := sqrt(tau_e_variance)*drawNoise(seed, k, 2*i - 1);
-    end for;
+    k = pre(k) + 1;
+    tau = sqrt(tau_variance)*drawNoise(seed, k, 2*side - 2);
+    tau_e = sqrt(tau_e_variance)*drawNoise(seed, k, 2*side - 1);
   end when;
   annotation (
     Icon(coordinateSystem(extent={{-100,-100},{100,100}}), graphics={Line(
