@@ -48,9 +48,9 @@ def calls(parameters: Mapping[str, Any], eta_0: NDArray[Any]) -> str:
         [
             *(_prototype(name) for name in ("new", "tick", "free")),
             f"#define NEW {new}({', '.join(values)})",
-            f"#define OUTPUTS {declared}",
+            f"#define OUTPUTS {declared[:-1]}",
             f"#define TICK(object, t, z) {tick}({arguments})",
-            f"#define WRITE {written}",
+            f"#define WRITE {written[:-1]}",
             "",
         ]
     )

@@ -59,10 +59,9 @@ int main(int count, char **arguments)
     static const double zero[5], others[5] = {1.0, 2.0, 3.0, 4.0, 5.0};
     double sample[6];
     void *object, *second;
-    OUTPUTS
+    OUTPUTS;
 
-        (void)
-        arguments;
+    (void)arguments;
     if (setjmp(model) != 0)
         return 3;
     object = NEW;
@@ -72,7 +71,7 @@ int main(int count, char **arguments)
             TICK(object, sample[0], others);
         TICK(second, sample[0], zero);
         TICK(object, sample[0], (sample + 1));
-        WRITE
+        WRITE;
     }
     sigmahat_estimator_free(second);
     sigmahat_estimator_free(object);
