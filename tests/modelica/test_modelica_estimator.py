@@ -247,11 +247,11 @@ def test_the_address_sanitizer_finds_no_error_and_no_leak(
 
 def test_the_block_takes_the_outputs_in_the_order_of_the_function() -> None:
     block, tick = (classes()[f"Estimators.{n}"] for n in ("StiffnessEstimator", "Internal.tick"))
-    (when,) = block.equations
-    ((equation,),) = when.blocks
-    taken = [str(each).replace("setPoint_used", "setPoint") for each in equation.left]
+    (when,) = block.statements
+    ((statement,),) = when.blocks
+    taken = [str(each).replace("setPoint_used", "setPoint") for each in statement.left]
     assert taken == list(outputs())
-    given = [str(each) for each in equation.right.operands]
+    given = [str(each) for each in statement.right.operands]
     declared = [name for name, each in tick.symbols.items() if "input" in each.prefixes]
     assert ["t" if each == "time" else each for each in given] == declared
     arguments = external_arguments("Estimators/Internal.mo", "sigmahat_estimator_tick")

@@ -86,11 +86,11 @@ protected
     {prior.tau_e, prior.nominal, prior.D_theta, prior.B, prior.tau_coulomb, prior.torque_gain, prior.bias, prior.damping,
      prior.load_friction, prior.eccentric, prior.delay, prior.reversal, prior.power, prior.gap, prior.hysteresis,
      prior.eccentric_motor});
-equation
+algorithm
   when sample(startTime, samplePeriod) then
     (sigma, tau_e, tau_e_residual, theta_dot, phi, setPoint_used, a, rho, epsilon, eta, sigma_std, D_theta_hat, B_hat,
      tau_coulomb_hat, misfit, bias_hat, damping_hat, load_friction_hat, eccentric_hat, delay_hat, hysteresis_hat,
-     sigma_per_gain, doubt, confident, valid) = Internal.tick(
+     sigma_per_gain, doubt, confident, valid) := Internal.tick(
       estimator, time, theta, q, theta_c, tau, tau_e_sensor);
   end when;
 
