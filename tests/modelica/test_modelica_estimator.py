@@ -270,8 +270,17 @@ def test_the_noise_is_that_of_the_plants(c_sources: Path, tmp_path: Path) -> Non
     own = unit(tmp_path, c_sources, '#include "sigmahat_noise.c"\n')
     program = tmp_path / "noise"
     gcc(DRIVERS / "noise.c", own, "-lm", "-o", program)
-    done = subprocess.run([program, "7", "1001"], capture_output=True, text=True, check=True)
-    normals = np.array([float.fromhex(line) for line in done.stdout.split()])
-    start = {"noise.seed": 7, "noise.tau_variance": 4.0}
-    recording = simulate(Plant("FlexibleJointPlant", start, {}, ["tau_measured"]), {}, T, 1000)
-    np.testing.assert_array_equal(recording.plant["tau_measured"], 2.0 * normals)
+    start = {"noise.seed": 7, "noise.tau_variance": 4.0, "noise.tau_e_variance": 9.0}
+    # The plant is at rest: nothing but noise is measured. TorqueNoise.mo has these channels.
+    deviation = {
+        "tau_measured_1": 2,
+        "tau_e_measured_1": 3,
+        "tau_measured_2": 2,
+        "tau_e_measured_2": 3,
+    }
+    recording = simulate(Plant("AntagonisticVsaPlant", start, {}, list(deviation)), {}, T, 1000)
+    for channel, (name, factor) in enumerate(deviation.items()):
+        command = [str(program), "7", str(channel), "1001"]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        normals = np.array([float.fromhex(line) for line in done.stdout.split()])
+        np.testing.assert_array_equal(recording.plant[name], factor * normals)

@@ -145,3 +145,31 @@ def test_every_parameter_and_input_has_the_effect_that_it_has_in_the_fmu(plant: 
             assert np.mean(apart > 1e-3) < 0.01 and apart.max() < 1.001, name
         else:
             assert both.difference(name) < AGREEMENT, name
+
+
+NOISE = """package Own
+  function draw
+    extends Sigmahat.Plants.partialNoise;
+  algorithm
+    normal := k + 100*channel + 1000*seed;
+  end draw;
+  model Test
+    Sigmahat.Plants.AntagonisticVsaPlant p(
+      noise(seed=3, tau_variance=4, tau_e_variance=9, samplePeriod=0.01),
+      redeclare function drawNoise = draw);
+  equation
+    p.tau_1 = 0;
+    p.tau_2 = 0;
+    p.tau_ext = 0;
+  end Test;
+end Own;"""
+
+
+def test_noise_is_drawn_every_sample_period_from_a_channel_for_each_signal() -> None:
+    result = compiled(NOISE, "Own.Test").simulate(t=(0.0, 0.05), dt=T)
+    signals = [("tau_measured_1", 2), ("tau_e_measured_1", 3)]
+    signals += [("tau_measured_2", 2), ("tau_e_measured_2", 3)]
+    for moment, k in ((0.001, 0), (0.0098, 0), (0.0102, 1), (0.0398, 3)):
+        row = int(np.searchsorted(result.time, moment + 1e-9)) - 1
+        for channel, (name, deviation) in enumerate(signals):
+            assert result[f"p.{name}"][row] == deviation * (k + 100 * channel + 3000), name

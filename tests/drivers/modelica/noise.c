@@ -1,4 +1,4 @@
-/* Prints the first numbers of channel 0 of the noise of the Modelica package: seed, how many. */
+/* Prints the first numbers of the noise of the Modelica package: seed, channel, how many. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -8,9 +8,9 @@ int main(int count, char **arguments)
 {
     int k;
 
-    if (count != 3)
+    if (count != 4)
         return 2;
-    for (k = 0; k < atoi(arguments[2]); ++k)
-        printf("%a\n", sigmahat_standard_normal(atoi(arguments[1]), k, 0));
+    for (k = 0; k < atoi(arguments[3]); ++k)
+        printf("%a\n", sigmahat_standard_normal(atoi(arguments[1]), k, atoi(arguments[2])));
     return 0;
 }
