@@ -122,7 +122,7 @@ def other_values(plant: str) -> dict[str, float]:
     """Every parameter of the plant other than it is, but for the noise."""
     changed = {}
     for number, (name, v) in enumerate(fmu_variables(plant).items()):
-        if v.get("causality") == "parameter" and not name.startswith("noise."):
+        if v.get("causality") == "parameter" and not name.startswith(("noise.", "signal.")):
             value = float(v[0].get("start"))
             factor = 1 + 0.1 * math.sin(number)
             changed[name] = value * factor if value else OTHERWISE[v[0].get("unit")] * factor

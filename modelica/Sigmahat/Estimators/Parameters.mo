@@ -4,7 +4,7 @@ package Parameters "Groups of parameters of the estimators"
 
   record Motor "Data of the motor, (3)"
     extends Icons.Record;
-    parameter Types.Inertia B(min=0) = 2.3e-5 "Inertia of the rotor, (3); above 0";
+    parameter Types.Inertia B(min=1e-15) = 2.3e-5 "Inertia of the rotor, (3)";
     parameter Types.Friction D_theta(min=0) = 1e-3 "Viscous friction of the motor, (3)";
     parameter Types.Ratio gamma = 50 "Gear ratio, not 0";
     annotation (Documentation(info="<html><p>With the values of the AwAS.</p></html>"));
@@ -12,7 +12,7 @@ package Parameters "Groups of parameters of the estimators"
 
   record Residual "Residual, (6)"
     extends Icons.Record;
-    parameter Types.Rate K_I(min=0) = 300 "Paper2011: bandwidth of the residual, (6); K_I T must be below 2; above 0";
+    parameter Types.Rate K_I(min=1e-15) = 300 "Paper2011: bandwidth of the residual, (6); K_I T must be below 2";
     annotation (Documentation(info="<html><p>Of method Paper2011.</p></html>"));
   end Residual;
 
@@ -21,11 +21,11 @@ package Parameters "Groups of parameters of the estimators"
     parameter Types.FilterKind kind = Types.FilterKind.ModifiedKalman "Paper2011: how the motor velocity is obtained";
     parameter Types.Weighting weighting = Types.Weighting.Normalized "How (11) compares velocity and encoder resolution";
     parameter Types.AccelerationVariance V_a(min=0) = 3e9 "Variance of the acceleration, (9)";
-    parameter Types.AngleVariance V_max(min=0) = 10 "Measurement variance at rest, (11); above 0";
-    parameter Types.AngleVariance V_min(min=0) = 0.1 "Measurement variance in fast motion, (11); not above filter.V_max; above 0";
+    parameter Types.AngleVariance V_max(min=1e-30) = 10 "Measurement variance at rest, (11)";
+    parameter Types.AngleVariance V_min(min=1e-30) = 0.1 "Measurement variance in fast motion, (11); not above filter.V_max";
     parameter Types.Ratio alpha(min=0) = 6 "Steepness between the two variances, (11)";
-    parameter Types.AngleVariance R(min=0) = 10 "Measurement variance of filter.kind Kalman, (10); above 0";
-    parameter Types.Ratio P_0(min=0) = 1 "Initial covariance of the filter, both diagonal entries; above 0";
+    parameter Types.AngleVariance R(min=1e-30) = 10 "Measurement variance of filter.kind Kalman, (10)";
+    parameter Real P_0(min=1e-30) = 1 "Initial covariance of the filter, both diagonal entries";
     annotation (Documentation(info="<html><p>Of method Paper2011.</p></html>"));
   end Filter;
 
@@ -50,9 +50,9 @@ package Parameters "Groups of parameters of the estimators"
     parameter Boolean symmetric = true "True: the torque is odd in the deformation, (16), powers 2i+1; false: any, powers i from 0 on";
     parameter Integer n(min=1, max=8) = 6 "Order of the polynomial in the deformation, (18)";
     parameter Integer m(min=1, max=5) = 3 "Order of the polynomial in the set-point, (19); 1 for a transmission without set-point";
-    parameter Types.Ratio P_0(min=0) = 1e20 "Paper2011: initial covariance, every diagonal entry of P(0), (14); above 0";
-    parameter Types.Ratio c(min=0) = 1e-20 "Constant c of (27), for rls.kind Enhanced; above 0";
-    parameter Types.Ratio a(min=0, max=1) = 0.1 "Stability factor of rls.kind ConstantFactor, (25); above 0";
+    parameter Real P_0(min=1e-30) = 1e20 "Paper2011: initial covariance, every diagonal entry of P(0), (14)";
+    parameter Types.Ratio c(min=1e-30) = 1e-20 "Constant c of (27), for rls.kind Enhanced";
+    parameter Types.Ratio a(min=1e-15, max=1) = 0.1 "Stability factor of rls.kind ConstantFactor, (25)";
     parameter Real eta_0[8, 5] = zeros(8, 5)
       "Initial estimate of eta; MatchedFilter: its prior mean, the nominal curve";
     annotation (Documentation(info="<html><p>Of both methods, where a parameter does not name one.</p></html>"));
@@ -84,10 +84,10 @@ package Parameters "Groups of parameters of the estimators"
 
   record Matched "Method MatchedFilter"
     extends Icons.Record;
-    parameter Types.AngularVelocity bandwidth(min=0) = 350
-      "MatchedFilter: corner w of the filter (w/(s + w))^3 that all signals pass; w T from 1e-4 to below 2; a smaller one is used if the rounding of theta needs it; above 0";
-    parameter Types.AngularVelocity slow(min=0) = 0.05
-      "MatchedFilter: motor velocity below which the sign of Coulomb friction is unknown; above 0";
+    parameter Types.AngularVelocity bandwidth(min=1e-15) = 350
+      "MatchedFilter: corner w of the filter (w/(s + w))^3 that all signals pass; w T from 1e-4 to below 2; a smaller one is used if the rounding of theta needs it";
+    parameter Types.AngularVelocity slow(min=1e-15) = 0.05
+      "MatchedFilter: motor velocity below which the sign of Coulomb friction is unknown";
     parameter Types.Rate drift(min=0, max=1e12) = 0
       "MatchedFilter: share of its prior variance by which the torque curve drifts in a second; 0: it does not change";
     parameter Types.Time memory(min=0, max=1e12) = 20

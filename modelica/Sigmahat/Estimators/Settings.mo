@@ -1,11 +1,11 @@
 within Sigmahat.Estimators;
 partial block Settings "Parameters of an estimator other than those of motors"
-  parameter Types.Time samplePeriod(min=0) = 1e-3 "Sample period T; above 0";
+  parameter Types.Time samplePeriod(min=1e-9) = 1e-3 "Sample period T";
   parameter Types.Time startTime = 0 "Time of the first tick";
   parameter Types.Method method = Types.Method.Paper2011 "How the stiffness is estimated";
   parameter Types.Modality modality = Types.Modality.Residual "What feeds the regression";
-  parameter Types.Ratio confidence(min=0) = 0.1
-    "Ratio sigma_std / |sigma| below which the estimate is confident; above 0";
+  parameter Types.Ratio confidence(min=1e-15) = 0.1
+    "Ratio sigma_std / |sigma| below which the estimate is confident";
   parameter Parameters.Encoder encoder "Resolution of the encoders" annotation (Dialog(group="Joint"));
   parameter Parameters.SetPoint setPoint "Set-point of the stiffness" annotation (Dialog(group="Joint"));
   parameter Parameters.Nominal nominal "Nominal torque of modality Model" annotation (Dialog(group="Joint"));

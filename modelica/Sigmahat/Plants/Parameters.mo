@@ -4,7 +4,7 @@ package Parameters "Groups of parameters of the plants"
 
   record Link "Link, (2)"
     extends Icons.Record;
-    parameter Types.Inertia M(min=0) = 0.1 "Inertia of the link, (2); above 0";
+    parameter Types.Inertia M(min=1e-15) = 0.1 "Inertia of the link, (2)";
     parameter Types.Friction D_q(min=0) = 0.15 "Viscous friction of the link, (2)";
     parameter Types.Torque tau_coulomb(min=0) = 0
       "Coulomb friction of the link: tau_coulomb tanh(q_dot / (0.02 rad/s))";
@@ -15,9 +15,9 @@ package Parameters "Groups of parameters of the plants"
 
   record Motor "Motor, (3)"
     extends Icons.Record;
-    parameter Types.Inertia B(min=0) = 2.3e-5 "Inertia of the rotor, (3); above 0";
+    parameter Types.Inertia B(min=1e-15) = 2.3e-5 "Inertia of the rotor, (3)";
     parameter Types.Friction D_theta(min=0) = 1e-3 "Viscous friction, (3)";
-    parameter Types.Ratio gamma(min=0) = 50 "Gear ratio, (3); above 0";
+    parameter Types.Ratio gamma(min=1e-15) = 50 "Gear ratio, (3)";
     parameter Types.Torque tau_coulomb(min=0) = 0
       "Coulomb friction, on the motor axis: tau_coulomb tanh(theta_dot / (0.02 rad/s))";
     annotation (Documentation(info="<html><p>Data of a motor, with the values of the AwAS.</p></html>"));
@@ -25,9 +25,9 @@ package Parameters "Groups of parameters of the plants"
 
   record SecondaryMotor "Secondary motor, (5)"
     extends Icons.Record;
-    parameter Types.Inertia B(min=0) = 1.29e-7 "Inertia of the rotor, (5); above 0";
+    parameter Types.Inertia B(min=1e-15) = 1.29e-7 "Inertia of the rotor, (5)";
     parameter Types.Friction D(min=0) = 0.0141 "Viscous friction, (5)";
-    parameter Types.Ratio gamma(min=0) = 23 "Gear ratio, (5); above 0";
+    parameter Types.Ratio gamma(min=1e-15) = 23 "Gear ratio, (5)";
     annotation (Documentation(info="<html><p>Data of the motor that sets the stiffness of the AwAS.</p></html>"));
   end SecondaryMotor;
 
@@ -108,7 +108,7 @@ package Parameters "Groups of parameters of the plants"
   record ExponentialSpring "Spring of one side of an antagonistic joint"
     extends Icons.Record;
     parameter Types.Torque k(min=0) "Torque scale of the transmission: tau_e = k sinh(a phi)";
-    parameter Types.PerAngle a(min=0) "How fast the transmission hardens: tau_e = k sinh(a phi); above 0";
+    parameter Types.PerAngle a(min=1e-15) "How fast the transmission hardens: tau_e = k sinh(a phi)";
     annotation (Documentation(info="<html><p>tau_e = k sinh(a phi)</p></html>"));
   end ExponentialSpring;
 
@@ -130,8 +130,8 @@ package Parameters "Groups of parameters of the plants"
       "Friction per flexibility torque on the motor axis, of the sign of the velocity; 0: friction does not depend on the load";
     parameter Types.Ratio stribeck(min=0) = 0
       "By how much Coulomb friction is larger at rest, relative; 0: it is constant";
-    parameter Types.AngularVelocity v_stribeck(min=0) = 0.1
-      "That is exp(-(v / v_stribeck)^2) at a velocity v after the gear; above 0";
+    parameter Types.AngularVelocity v_stribeck(min=1e-15) = 0.1
+      "That is exp(-(v / v_stribeck)^2) at a velocity v after the gear";
     parameter Types.Torque cogging = 0
       "Amplitude of the cogging torque of the motor, on its axis; 0: no cogging";
     parameter Types.Ratio cogging_order(min=0) = 6 "Periods of the cogging torque per turn of the motor";
@@ -158,8 +158,8 @@ package Parameters "Groups of parameters of the plants"
       "Damping of the spring per stiffness: the torque damping sigma (q_dot - theta_dot) is added; 0: none";
     parameter Types.Torque dahl(min=0) = 0
       "Hysteresis after Dahl: torque that it reaches in a long motion; 0: none";
-    parameter Types.Angle dahl_phi(min=0) = 1e-3
-      "Deformation in which the hysteresis goes 63 % of the way; above 0";
+    parameter Types.Angle dahl_phi(min=1e-15) = 1e-3
+      "Deformation in which the hysteresis goes 63 % of the way";
     annotation (Documentation(info="<html><p>Each parameter but <code>k_1</code> starts at the value for &quot;none&quot;.</p></html>"));
   end RealSpring;
 
@@ -176,8 +176,8 @@ package Parameters "Groups of parameters of the plants"
 
   record RealSensor "Torque sensors with errors"
     extends Sensor;
-    parameter Types.Ratio tau_gain(min=0) = 1
-      "The measured motor torque is (tau - tau_bias) / tau_gain; 1: no scale error; above 0";
+    parameter Types.Ratio tau_gain(min=1e-15) = 1
+      "The measured motor torque is (tau - tau_bias) / tau_gain; 1: no scale error";
     parameter Types.Torque tau_bias = 0 "Motor torque that is not measured, on the motor axis";
     annotation (Documentation(info="<html><p>Each error starts at the value for &quot;none&quot;.</p></html>"));
   end RealSensor;
