@@ -210,7 +210,7 @@ def test_all_in_one_file_they_compile_too(c_sources: Path, tmp_path: Path) -> No
     ("wrong", "message"),
     [
         ({"motor.gamma": 0.0}, "parameter motor.gamma = 0 is out of its range: finite and not 0."),
-        ({"samplePeriod": -1.0}, "parameter samplePeriod = -1 is out of its range: > 0."),
+        ({"noise.tau": 2e12}, "parameter noise.tau = 2e+12 is out of its range: 1e-12 to 1e12."),
         ({"model.k_s": -2.0}, "parameter nominal.k_s = -2 is out of its range: >= 0."),
         ({"rls.n": 9}, "parameter rls.n = 9 is out of its range: 1 to 8."),
     ],
