@@ -12,6 +12,7 @@ import pymoca.ast
 import pymoca.parser
 import pytest
 import rumoca
+from lxml import etree
 
 import sigmahat
 from modelica_package import FILES, PACKAGE, REPOSITORY, classes, compiled
@@ -101,6 +102,22 @@ def test_every_class_has_a_description_a_documentation_and_an_icon() -> None:
         own = "Icon" in named(each.annotation)
         # By inheritance; records and functions extend those that have one.
         assert own or each.extends, name
+
+
+def test_the_documentation_is_html_whose_links_lead_to_classes() -> None:
+    known = {"Sigmahat", *(f"Sigmahat.{name}" for name in classes())}
+    pages = 0
+    for file in FILES:
+        text = file.read_text(encoding="utf-8")
+        for info in re.findall(r'Documentation\(\s*info="(.*?[^\\])"\)', text, re.DOTALL):
+            page = etree.fromstring(info.replace('\\"', '"'))
+            assert page.tag == "html"
+            assert {
+                link.get("href").removeprefix("modelica://") for link in page.iter("a")
+            } <= known
+            pages += 1
+        assert text.count("Documentation(") == len(re.findall("Documentation\\(info=", text))
+    assert pages == sum(file.read_text(encoding="utf-8").count("info=") for file in FILES)
 
 
 def test_every_example_says_how_it_is_run() -> None:
