@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
 
@@ -204,9 +203,3 @@ def test_enumerations_have_the_items_of_the_fmu() -> None:
         assert declared and declared[2] == each.get("description")
         items = re.findall(r'(\w+)\s+"([^"]*)"', declared[1])
         assert items == [(i.get("name"), i.get("description")) for i in each.iterfind(".//Item")]
-
-
-def test_the_version_is_that_of_the_project() -> None:
-    text = (REPOSITORY / "modelica/Sigmahat/package.mo").read_text(encoding="utf-8")
-    assert f'version="{sigmahat.__version__}"' in text
-    assert Path(REPOSITORY / "modelica/Sigmahat/package.order").exists()
