@@ -97,7 +97,7 @@ def test_gcc_analyzer(source: Path, build: Path, tmp_path: Path) -> None:
 
 def c_files() -> list[Path]:
     """All C and C++ of the project."""
-    folders = ("c", "fmu_src", "harness", "bench", "examples", "tests")
+    folders = ("c", "fmu_src", "harness", "bench", "examples", "modelica", "tests")
     return sorted(
         file
         for folder in folders

@@ -152,4 +152,19 @@ def amalgamate(
     amalgamation.write(out, sources, interface, licence, version)
 
 
+@main.command("modelica")
+@click.argument("out", type=click.Path(dir_okay=False, path_type=Path))
+@click.argument("library", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("sources", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--licence", required=True, type=click.Path(path_type=Path))
+@click.option("--version", required=True, help="Version of the package.")
+def write_modelica(
+    out: Path, library: Path, sources: list[Path], licence: Path, version: str
+) -> None:
+    """Write OUT, an archive of the Modelica package LIBRARY with the C files SOURCES."""
+    from sigmahat.export import modelica
+
+    modelica.write(out, library, sources, licence, version)
+
+
 main()
