@@ -2,8 +2,7 @@
 
 #include <math.h>
 
-sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
-                                  sh_instance *log)
+sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who, sh_instance *log)
 {
     sh_violation violation;
 
@@ -71,7 +70,7 @@ static void log_skipped(const sh_measurement *z, double t, const char *who, sh_i
 }
 
 sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
-                                 sh_instance *log)
+                                sh_instance *log)
 {
     const double T = fmu->parameters.samplePeriod;
     sh_status status = SH_OK;

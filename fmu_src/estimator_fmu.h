@@ -24,9 +24,9 @@ enum {
 
 /* As in sh_model. Messages begin with `who`: "", or which of several estimators it is. */
 sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
-                                  sh_instance *log);
+                                 sh_instance *log);
 void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu);
 sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
-                                 sh_instance *log);
+                                sh_instance *log);
 
 #endif

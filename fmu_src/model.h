@@ -46,8 +46,8 @@ void sh_log(sh_instance *instance, sh_status status, const char *format, ...);
 
 typedef struct {
     const char *identifier; /* modelIdentifier */
-    const char *guid; /* of FMI 2.0; the instantiation token of FMI 3.0 is the same */
-    size_t size; /* of the model's struct */
+    const char *guid;       /* of FMI 2.0; the instantiation token of FMI 3.0 is the same */
+    size_t size;            /* of the model's struct */
     const sh_variable *variables;
     size_t count;
     /* The time derivative of the input at offset o is at o + derivative_offset. */

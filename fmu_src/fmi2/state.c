@@ -22,12 +22,16 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, si
     return (fmi2Status)sh_state_size(c, FMUstate, size, "fmi2SerializedFMUstateSize");
 }
 
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[], size_t size)
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[],
+                                 size_t size)
 {
-    return (fmi2Status)sh_serialize_state(c, FMUstate, serializedState, size, "fmi2SerializeFMUstate");
+    return (fmi2Status)sh_serialize_state(c, FMUstate, serializedState, size,
+                                          "fmi2SerializeFMUstate");
 }
 
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size, fmi2FMUstate *FMUstate)
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
+                                   fmi2FMUstate *FMUstate)
 {
-    return (fmi2Status)sh_deserialize_state(c, serializedState, size, FMUstate, "fmi2DeSerializeFMUstate");
+    return (fmi2Status)sh_deserialize_state(c, serializedState, size, FMUstate,
+                                            "fmi2DeSerializeFMUstate");
 }

@@ -26,15 +26,6 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, siz
                                             "fmi3SetDebugLogging");
 }
 
-static sh_importer importer_of(fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger)
-{
-    sh_importer importer = {0}; /* FMI 3.0 has no functions for memory */
-
-    importer.environment = environment;
-    importer.logger = (void (*)(void))logger;
-    return importer;
-}
-
 fmi3Instance fmi3InstantiateCoSimulation(
     fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
     fmi3Boolean visible, fmi3Boolean loggingOn, fmi3Boolean eventModeUsed,
@@ -42,7 +33,8 @@ fmi3Instance fmi3InstantiateCoSimulation(
     size_t nRequiredIntermediateVariables, fmi3InstanceEnvironment instanceEnvironment,
     fmi3LogMessageCallback logMessage, fmi3IntermediateUpdateCallback intermediateUpdate)
 {
-    const sh_importer importer = importer_of(instanceEnvironment, logMessage);
+    /* FMI 3.0 has no functions for memory. */
+    const sh_importer importer = {instanceEnvironment, (void (*)(void))logMessage, NULL, NULL};
 
     (void)resourcePath; /* the FMU has no resources */
     (void)visible;
@@ -57,42 +49,6 @@ fmi3Instance fmi3InstantiateCoSimulation(
                                   "intermediate update (providesIntermediateUpdate is false)");
     return sh_create(&importer, instanceName, instantiationToken, loggingOn,
                      "fmi3InstantiateCoSimulation");
-}
-
-fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String instantiationToken,
-                                          fmi3String resourcePath, fmi3Boolean visible,
-                                          fmi3Boolean loggingOn,
-                                          fmi3InstanceEnvironment instanceEnvironment,
-                                          fmi3LogMessageCallback logMessage)
-{
-    const sh_importer importer = importer_of(instanceEnvironment, logMessage);
-
-    (void)instanceName;
-    (void)instantiationToken;
-    (void)resourcePath;
-    (void)visible;
-    (void)loggingOn;
-    return sh_refuse_instance(&importer, "fmi3InstantiateModelExchange", "model exchange");
-}
-
-fmi3Instance fmi3InstantiateScheduledExecution(
-    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
-    fmi3Boolean visible, fmi3Boolean loggingOn, fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage, fmi3ClockUpdateCallback clockUpdate,
-    fmi3LockPreemptionCallback lockPreemption, fmi3UnlockPreemptionCallback unlockPreemption)
-{
-    const sh_importer importer = importer_of(instanceEnvironment, logMessage);
-
-    (void)instanceName;
-    (void)instantiationToken;
-    (void)resourcePath;
-    (void)visible;
-    (void)loggingOn;
-    (void)clockUpdate;
-    (void)lockPreemption;
-    (void)unlockPreemption;
-    return sh_refuse_instance(&importer, "fmi3InstantiateScheduledExecution",
-                              "scheduled execution");
 }
 
 void fmi3FreeInstance(fmi3Instance instance)

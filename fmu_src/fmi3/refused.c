@@ -56,8 +56,7 @@ REFUSED_WITH(GetDirectionalDerivative, "directional derivatives",
              size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
 REFUSED_WITH(GetAdjointDerivative, "adjoint derivatives", const fmi3ValueReference unknowns[],
              size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns,
-             const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[],
-             size_t nSensitivity)
+             const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
 REFUSED_WITH(GetOutputDerivatives, "derivatives of outputs (maxOutputDerivativeOrder is 0)",
              REFERENCES, const fmi3Int32 orders[], fmi3Float64 values[], size_t nValues)
 
@@ -76,6 +75,22 @@ REFUSED_WITH(SetShiftFraction, "clocks", REFERENCES, const fmi3UInt64 counters[]
              const fmi3UInt64 resolutions[])
 REFUSED_WITH(ActivateModelPartition, "clocks", fmi3ValueReference clockReference,
              fmi3Float64 activationTime)
+
+#define NO_INSTANCE(Kind, words, ...)                                                              \
+    fmi3Instance fmi3Instantiate##Kind(fmi3String instanceName, fmi3String instantiationToken,     \
+                                       fmi3String resourcePath, fmi3Boolean visible,               \
+                                       fmi3Boolean loggingOn,                                      \
+                                       fmi3InstanceEnvironment instanceEnvironment, __VA_ARGS__)   \
+    {                                                                                              \
+        const sh_importer importer = {instanceEnvironment, (void (*)(void))logMessage, NULL,       \
+                                      NULL};                                                       \
+        return sh_refuse_instance(&importer, "fmi3Instantiate" #Kind, words);                      \
+    }
+
+NO_INSTANCE(ModelExchange, "model exchange", fmi3LogMessageCallback logMessage)
+NO_INSTANCE(ScheduledExecution, "scheduled execution", fmi3LogMessageCallback logMessage,
+            fmi3ClockUpdateCallback clockUpdate, fmi3LockPreemptionCallback lockPreemption,
+            fmi3UnlockPreemptionCallback unlockPreemption)
 
 REFUSED(EnterContinuousTimeMode, "model exchange")
 REFUSED_WITH(CompletedIntegratorStep, "model exchange",

@@ -22,12 +22,16 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState FMUSta
     return (fmi3Status)sh_state_size(instance, FMUState, size, "fmi3SerializedFMUStateSize");
 }
 
-fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState FMUState, fmi3Byte serializedState[], size_t size)
+fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState FMUState,
+                                 fmi3Byte serializedState[], size_t size)
 {
-    return (fmi3Status)sh_serialize_state(instance, FMUState, serializedState, size, "fmi3SerializeFMUState");
+    return (fmi3Status)sh_serialize_state(instance, FMUState, serializedState, size,
+                                          "fmi3SerializeFMUState");
 }
 
-fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte serializedState[], size_t size, fmi3FMUState *FMUState)
+fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte serializedState[],
+                                   size_t size, fmi3FMUState *FMUState)
 {
-    return (fmi3Status)sh_deserialize_state(instance, serializedState, size, FMUState, "fmi3DeserializeFMUState");
+    return (fmi3Status)sh_deserialize_state(instance, serializedState, size, FMUState,
+                                            "fmi3DeserializeFMUState");
 }

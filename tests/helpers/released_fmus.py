@@ -17,6 +17,7 @@ FMUS = [
     "RealJointPlant",
     "StiffnessEstimator",
 ]
+TWINS = [f"{name}_FMI3" for name in FMUS]
 STEP, STEPS = 1e-3, 1000
 
 # The greatest difference that is allowed between two runs, relative to the variable's range.
@@ -31,7 +32,11 @@ class Run:
         self.description: Any = fmpy.read_model_description(str(fmu))
         variables = self.description.modelVariables
         self.inputs = [v for v in variables if v.causality == "input"]
-        self.outputs = [v for v in variables if v.causality == "output" and v.type == "Real"]
+        self.outputs = [
+            v
+            for v in variables
+            if v.causality == "output" and v.type in ("Real", "Float64") and not v.dimensions
+        ]
         self.time = STEP * np.arange(STEPS + 1)
         # Different for each input, so that exchanged ones are seen; 0 at the start, where
         # importers differ in whether they set inputs before the initialisation ends.

@@ -58,6 +58,15 @@ def page() -> dict[str, Any]:
     return names
 
 
+def test_the_code_on_the_page_of_fmi_3_works(build: Path) -> None:
+    (code,) = blocks("fmi3.md", "python")
+    names: dict[str, Any] = {}
+    exec(compile(code.replace('"build/', f'"{build.resolve()}/'), "fmi3.md", "exec"), names)
+    assert names["sigma"] == pytest.approx(1000, rel=1e-3)
+    assert names["eta"].shape == (8, 5) and (names["eta"][6:] == 0).all()
+    assert names["sigma"] == pytest.approx(names["eta"][0, :3] @ 100.0 ** np.arange(3), rel=0.02)
+
+
 def test_the_code_on_the_page_of_python_works() -> None:
     names: dict[str, Any] = {}
     for code in blocks("python.md", "python"):

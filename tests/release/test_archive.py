@@ -12,10 +12,11 @@ import fmpy
 import pytest
 
 import sigmahat
-from released_fmus import FMUS, Run
+from released_fmus import FMUS, TWINS, Run
 from sigmahat.export import archive, cross_compiler
 
 each_fmu = pytest.mark.parametrize("name", FMUS)
+each_version = pytest.mark.parametrize("name", FMUS + TWINS)
 
 
 def binaries(fmu: Path) -> set[str]:
@@ -32,18 +33,30 @@ def test_a_released_fmu_contains_the_binaries_of_all_platforms(name: str, releas
     }
 
 
+@pytest.mark.parametrize("twin", TWINS)
+def test_a_released_twin_contains_the_binaries_of_more_platforms(twin: str, released: Path) -> None:
+    name = twin.removesuffix("_FMI3")
+    assert binaries(released / f"{twin}.fmu") == {
+        f"binaries/x86_64-linux/{name}.so",
+        f"binaries/x86_64-windows/{name}.dll",
+        f"binaries/x86_64-darwin/{name}.dylib",
+        f"binaries/aarch64-linux/{name}.so",
+        f"binaries/aarch64-darwin/{name}.dylib",
+    }
+
+
 @each_fmu
 def test_a_build_for_development_contains_the_binary_of_the_host(name: str) -> None:
     extension = fmpy.sharedLibraryExtension
     assert binaries(sigmahat.fmu(name)) == {f"binaries/{fmpy.platform}/{name}{extension}"}
 
 
-@each_fmu
+@each_version
 def test_a_released_fmu_has_at_most_1_mb(name: str, released: Path) -> None:
     assert (released / f"{name}.fmu").stat().st_size <= 1e6
 
 
-@each_fmu
+@each_version
 def test_it_contains_no_path_of_the_build_machine(name: str, released: Path) -> None:
     places = [str(path).encode() for path in (Path.home(), released.resolve().parent)]
     with ZipFile(released / f"{name}.fmu") as opened:
@@ -51,13 +64,14 @@ def test_it_contains_no_path_of_the_build_machine(name: str, released: Path) -> 
             assert not any(place in opened.read(entry) for place in places), entry
 
 
-@pytest.mark.parametrize("name", ["StiffnessEstimator", "AwasPlant"])
+@pytest.mark.parametrize("name", ["StiffnessEstimator", "AwasPlant", "AwasPlant_FMI3"])
 @pytest.mark.slow("an FMU is compiled again for every platform")
 def test_a_second_build_gives_identical_bytes(
     name: str, released: Path, build: Path, tmp_path: Path
 ) -> None:
     again = tmp_path / "again.fmu"
-    cross_compiler.release(sigmahat.fmu(name), again, build / "cross-compiler")
+    own = build / "fmi3" / f"{name}.fmu" if name in TWINS else sigmahat.fmu(name)
+    cross_compiler.release(own, again, build / "cross-compiler")
     assert again.read_bytes() == (released / f"{name}.fmu").read_bytes()
 
 
@@ -67,7 +81,7 @@ def test_the_released_binary_gives_the_results_of_the_host_build(name: str, rele
     run.assert_same(run.simulate(sigmahat.fmu(name)))
 
 
-@each_fmu
+@pytest.mark.parametrize("name", [*FMUS, "AwasPlant_FMI3", "StiffnessEstimator_FMI3"])
 def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: Path) -> None:
     run = Run(released / f"{name}.fmu")
     folder = Path(fmpy.extract(str(run.fmu), unzipdir=str(tmp_path / "unpacked")))

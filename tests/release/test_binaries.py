@@ -10,9 +10,10 @@ import fmpy
 import lief
 import pytest
 
-from released_fmus import FMUS
+from released_fmus import FMUS, TWINS
 
 each_fmu = pytest.mark.parametrize("name", FMUS)
+each_twin = pytest.mark.parametrize("twin", TWINS)
 
 # Functions of the header that are not for co-simulation.
 MODEL_EXCHANGE = {
@@ -27,6 +28,7 @@ MODEL_EXCHANGE = {
     "fmi2GetContinuousStates",
     "fmi2GetNominalsOfContinuousStates",
 }
+BY_THE_LINKER = {"__mh_dylib_header", "___dso_handle"}  # symbols of a library of macOS
 
 
 @pytest.fixture(scope="module")
@@ -109,11 +111,61 @@ def test_macos_exports_only_the_fmi_functions_and_needs_only_the_system(
     assert universal is not None and universal.size == 1
     macho = universal.at(0)
     assert macho is not None
-    by_the_linker = {"__mh_dylib_header", "___dso_handle"}
-    exported = {str(symbol.name) for symbol in macho.exported_symbols} - by_the_linker
+    exported = {str(symbol.name) for symbol in macho.exported_symbols} - BY_THE_LINKER
     assert exported == {"_" + function for function in functions}
     assert macho.build_version is not None
     assert list(macho.build_version.minos) == [11, 0, 0]
     own_name, *needed = [library.name for library in macho.libraries]
     assert own_name == f"{name}.dylib"
     assert needed == ["/usr/lib/libSystem.B.dylib"]
+
+
+@pytest.fixture(scope="module")
+def functions_3() -> set[str]:
+    """All functions of FMI 3.0: the standard demands them from every FMU."""
+    header = Path(fmpy.__file__).parent / "c-code" / "fmi3Functions.h"
+    return set(re.findall(r"^#define \w+\s+fmi3FullName\((\w+)\)", header.read_text(), re.M))
+
+
+@each_twin
+@pytest.mark.parametrize("platform", ["x86_64-linux", "aarch64-linux"])
+def test_linux_exports_all_functions_of_fmi_3(
+    twin: str, platform: str, released: Path, functions_3: set[str]
+) -> None:
+    elf = lief.ELF.parse(twin_binary(released, twin, platform, ".so"))
+    assert isinstance(elf, lief.ELF.Binary)
+    assert {symbol.name for symbol in elf.exported_symbols} == functions_3
+    arm = elf.header.machine_type == lief.ELF.ARCH.AARCH64
+    assert arm == (platform == "aarch64-linux")
+
+
+@each_twin
+def test_windows_exports_all_functions_of_fmi_3(
+    twin: str, released: Path, functions_3: set[str]
+) -> None:
+    dll = lief.PE.parse(twin_binary(released, twin, "x86_64-windows", ".dll"))
+    assert isinstance(dll, lief.PE.Binary)
+    export = dll.get_export()
+    assert export is not None
+    assert {str(entry.name) for entry in export.entries} == functions_3
+
+
+@each_twin
+@pytest.mark.parametrize("platform", ["x86_64-darwin", "aarch64-darwin"])
+def test_macos_exports_all_functions_of_fmi_3(
+    twin: str, platform: str, released: Path, functions_3: set[str]
+) -> None:
+    universal = lief.MachO.parse(twin_binary(released, twin, platform, ".dylib"))
+    assert universal is not None
+    macho = universal.at(0)
+    assert macho is not None
+    exported = {str(symbol.name) for symbol in macho.exported_symbols}
+    assert exported - BY_THE_LINKER == {"_" + function for function in functions_3}
+    # The loader of macOS refuses a library for ARM without a signature.
+    assert macho.has_code_signature == (platform == "aarch64-darwin")
+
+
+def twin_binary(released: Path, twin: str, platform: str, extension: str) -> list[int]:
+    with ZipFile(released / f"{twin}.fmu") as archive:
+        name = f"binaries/{platform}/{twin.removesuffix('_FMI3')}{extension}"
+        return list(archive.read(name))

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from gate import missing
-from released_fmus import FMUS, STEP, Run
+from released_fmus import FMUS, STEP, TWINS, Run
 
 each_fmu = pytest.mark.parametrize("run", FMUS, indirect=True)
 
@@ -59,6 +59,17 @@ def test_fmi_sim_gives_the_same_trajectories(run: Run, build: Path, tmp_path: Pa
     run.assert_same(np.array([[float(row[c]) for c in columns] for row in rows]))
 
 
+@pytest.mark.parametrize("name", TWINS)
+def test_a_twin_of_fmi_3_gives_the_same_bits(name: str, released: Path) -> None:
+    """Both in FMPy, with the binaries of the release."""
+    twin, run = Run(released / f"{name}.fmu"), Run(released / f"{name.removesuffix('_FMI3')}.fmu")
+    names = [v.name for v in run.outputs]
+    assert [v.name for v in twin.inputs] == [v.name for v in run.inputs]
+    columns = [names.index(v.name) for v in twin.outputs]
+    assert len(columns) >= 10 and np.ptp(run.trajectory[:, columns], axis=0).max() > 0
+    assert (twin.trajectory == run.trajectory[:, columns]).all()
+
+
 @each_fmu
 def test_libcosim_gives_the_same_trajectories(run: Run, capfd: pytest.CaptureFixture[str]) -> None:
     try:
@@ -89,18 +100,16 @@ def test_libcosim_gives_the_same_trajectories(run: Run, capfd: pytest.CaptureFix
     run.assert_same(np.array([run.trajectory[0], *rows[1:]]))
 
 
-@pytest.fixture(scope="module")
-def windows_master(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """``drivers/windows_master.c``, compiled for Windows."""
-    program = tmp_path_factory.mktemp("windows") / "master.exe"
+def compiled(driver: str, target: str, build: Path, program: Path) -> Path:
+    """``drivers/DRIVER.c``, compiled for a target of the cross compiler."""
     cache = str((build / "cross-compiler").resolve())
     subprocess.run(
         [
-            *(sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu"),
+            *(sys.executable, "-m", "ziglang", "cc", "-target", target),
             # With -s as the binaries of the release: so what the compiler made of its C library for
             # them is used again, which takes minutes to make.
             *("-std=c99", "-O2", "-s", f"-I{Path(fmpy.__file__).parent / 'c-code'}"),
-            *(str(Path(__file__).parents[1] / "drivers" / "windows_master.c"), "-o", str(program)),
+            *(str(Path(__file__).parents[1] / "drivers" / f"{driver}.c"), "-o", str(program)),
         ],
         env={**os.environ, "ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache},
         check=True,
@@ -108,24 +117,16 @@ def windows_master(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Pat
     return program
 
 
-@each_fmu
-@pytest.mark.slow("Wine starts for each FMU and steps it through a whole run")
-def test_the_windows_binary_gives_the_same_trajectories(
-    run: Run, windows_master: Path, build: Path, tmp_path: Path
-) -> None:
-    # Debian installs it in a folder that is not on the PATH.
-    wine = shutil.which("wine64", path=f"{os.environ['PATH']}{os.pathsep}/usr/lib/wine")
-    if wine is None:
-        missing("wine64", "apt-get install wine64")
-    fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))
+def assert_same_in(run: Run, command: list[str], build: Path, cwd: Path) -> None:
+    """Steps the FMU, unpacked in `cwd`, with a master that takes the arguments of drivers/."""
     done = subprocess.run(
         [
-            *(wine, str(windows_master), f"binaries/win64/{run.fmu.stem}.dll"),
+            *command,
             *(run.description.guid, repr(STEP), str(len(run.inputs))),
             *(str(v.valueReference) for v in run.inputs + run.outputs),
         ],
         input="\n".join(",".join(map(repr, row)) for row in run.signals[:-1].tolist()),
-        cwd=tmp_path,
+        cwd=cwd,
         env={
             **os.environ,
             "WINEPREFIX": str((build / "wine").resolve()),  # a separate one, not that of the user
@@ -138,3 +139,58 @@ def test_the_windows_binary_gives_the_same_trajectories(
     assert done.returncode == 0, done.stderr
     assert [line for line in done.stderr.splitlines() if not line.startswith("wine: ")] == []
     run.assert_same(np.array([line.split(",") for line in done.stdout.split()], np.float64))
+
+
+def wine() -> str:
+    # Debian installs it in a folder that is not on the PATH.
+    program = shutil.which("wine64", path=f"{os.environ['PATH']}{os.pathsep}/usr/lib/wine")
+    if program is None:
+        missing("wine64", "apt-get install wine64")
+    return program
+
+
+@pytest.fixture(scope="module")
+def windows_master(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    program = tmp_path_factory.mktemp("windows") / "master.exe"
+    return compiled("windows_master", "x86_64-windows-gnu", build, program)
+
+
+@each_fmu
+@pytest.mark.slow("Wine starts for each FMU and steps it through a whole run")
+def test_the_windows_binary_gives_the_same_trajectories(
+    run: Run, windows_master: Path, build: Path, tmp_path: Path
+) -> None:
+    fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))
+    library = f"binaries/win64/{run.fmu.stem}.dll"
+    assert_same_in(run, [wine(), str(windows_master), library], build, tmp_path)
+
+
+two_twins = pytest.mark.parametrize("name", ["AwasPlant_FMI3", "StiffnessEstimator_FMI3"])
+
+
+@two_twins
+@pytest.mark.slow("Wine starts and steps an FMU through a whole run")
+def test_the_windows_binary_of_a_twin_gives_the_same_trajectories(
+    name: str, released: Path, build: Path, tmp_path: Path
+) -> None:
+    run = Run(released / f"{name}.fmu")
+    master = compiled("fmi3_master", "x86_64-windows-gnu", build, tmp_path / "master.exe")
+    fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))
+    library = f"binaries/x86_64-windows/{name.removesuffix('_FMI3')}.dll"
+    assert_same_in(run, [wine(), str(master), library], build, tmp_path)
+
+
+@two_twins
+def test_the_binary_for_arm_gives_the_same_trajectories(
+    name: str, released: Path, build: Path, tmp_path: Path
+) -> None:
+    emulator, libraries = shutil.which("qemu-aarch64"), Path("/usr/aarch64-linux-gnu")
+    if emulator is None or not libraries.is_dir():
+        missing("qemu-aarch64", "apt-get install qemu-user libc6-dev-arm64-cross")
+    run = Run(released / f"{name}.fmu")
+    master = compiled("fmi3_master", "aarch64-linux-gnu.2.34", build, tmp_path / "master")
+    fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))
+    library = tmp_path / f"binaries/aarch64-linux/{name.removesuffix('_FMI3')}.so"
+    assert_same_in(
+        run, [emulator, "-L", str(libraries), str(master), str(library)], build, tmp_path
+    )
