@@ -8,6 +8,8 @@
 #pragma GCC diagnostic ignored "-Wunused-parameter" /* no argument but the instance is used */
 #endif
 
+/* NOLINTBEGIN(misc-unused-parameters) */
+
 static fmi3Status refuse(fmi3Instance instance, const char *function, const char *missing)
 {
     sh_instance *entered = sh_enter(instance, SH_ANY, function);
@@ -109,3 +111,5 @@ REFUSED_WITH(GetNominalsOfContinuousStates, "model exchange", fmi3Float64 nomina
              size_t nContinuousStates)
 REFUSED_WITH(GetNumberOfEventIndicators, "model exchange", size_t *nEventIndicators)
 REFUSED_WITH(GetNumberOfContinuousStates, "model exchange", size_t *nContinuousStates)
+
+/* NOLINTEND(misc-unused-parameters) */

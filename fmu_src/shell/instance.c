@@ -97,7 +97,8 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
         return NULL;
     if (guid == NULL || strcmp(guid, sh_fmu_model.guid) != 0) {
         sh_log(&before, SH_ERROR,
-               "%s: the binary of %s expects the GUID %s, the importer gave %s: "
+               "%s: the binary of %s expects the GUID or instantiation token %s, the importer gave "
+               "%s: "
                "modelDescription.xml and binary are not of the same FMU.",
                function, sh_fmu_model.identifier, sh_fmu_model.guid, guid != NULL ? guid : "NULL");
         return NULL;
