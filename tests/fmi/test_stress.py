@@ -12,8 +12,8 @@ from c_programs import VERSIONS, compile_driver, compiler_with
 from fmi_runs import ESTIMATORS, PLANTS
 from gate import missing
 
-# The versions of FMI share all code but their functions, which one estimator and one plant
-# go through.
+# The versions of FMI share all code but their functions. One estimator and one plant go through those
+# of FMI 3.0.
 IN_FMI3 = ["StiffnessEstimator", "AwasPlant"]
 every_fmu = pytest.mark.parametrize(
     ("fmu", "version"),
@@ -65,7 +65,7 @@ def test_memory_does_not_grow(fmu: str, version: str, build: Path, folder: Path)
     assert int(run(program, str(CYCLES))) * 1024 < 0.9 * CYCLES
 
 
-@every_fmu
+@every_fmu_in_one_version
 @pytest.mark.slow("all sources are compiled with sanitizers, and run slower with them")
 def test_sanitizers_find_no_leak_and_no_undefined_behaviour(
     fmu: str, version: str, build: Path, folder: Path
