@@ -12,8 +12,8 @@ from c_programs import VERSIONS, compile_driver, compiler_with
 from fmi_runs import ESTIMATORS, PLANTS
 from gate import missing
 
-# The versions of FMI share all code but their functions. One estimator and one plant go through those
-# of FMI 3.0.
+# The versions of FMI share all code but their functions. One estimator and one plant go through
+# those of FMI 3.0.
 IN_FMI3 = ["StiffnessEstimator", "AwasPlant"]
 every_fmu = pytest.mark.parametrize(
     ("fmu", "version"),
