@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include "drive.h"
+#include "fmi_calls.h"
 
 static long resident_memory(void)
 {
@@ -17,42 +18,42 @@ static long resident_memory(void)
     return usage.ru_maxrss;
 }
 
-static void copy_state(fmi2Component instance)
+static void copy_state(void *instance)
 {
-    fmi2FMUstate state = NULL, copy = NULL;
-    fmi2Byte *bytes;
+    void *state = NULL, *copy = NULL;
+    uint8_t *bytes;
     size_t size;
 
-    check(fmi2GetFMUstate(instance, &state) == fmi2OK, "fmi2GetFMUstate");
-    check(fmi2SerializedFMUstateSize(instance, state, &size) == fmi2OK, "size");
+    check(fmi_get_state(instance, &state) == SH_OK, "get the state");
+    check(fmi_state_size(instance, state, &size) == SH_OK, "size");
     bytes = malloc(size);
     check(bytes != NULL, "malloc");
-    check(fmi2SerializeFMUstate(instance, state, bytes, size) == fmi2OK, "serialise");
-    check(fmi2DeSerializeFMUstate(instance, bytes, size, &copy) == fmi2OK, "deserialise");
+    check(fmi_serialize_state(instance, state, bytes, size) == SH_OK, "serialise");
+    check(fmi_deserialize_state(instance, bytes, size, &copy) == SH_OK, "deserialise");
     bytes[size / 2] ^= 1;
-    check(fmi2DeSerializeFMUstate(instance, bytes, size, &copy) == fmi2Error,
+    check(fmi_deserialize_state(instance, bytes, size, &copy) == SH_ERROR,
           "a damaged state is refused");
     free(bytes);
     step(instance, 0, 1);
-    check(fmi2SetFMUstate(instance, copy) == fmi2OK, "fmi2SetFMUstate");
-    check(fmi2FreeFMUstate(instance, &state) == fmi2OK, "fmi2FreeFMUstate");
-    check(fmi2FreeFMUstate(instance, &copy) == fmi2OK, "fmi2FreeFMUstate");
+    check(fmi_set_state(instance, copy) == SH_OK, "set the state");
+    check(fmi_free_state(instance, &state) == SH_OK, "free the state");
+    check(fmi_free_state(instance, &copy) == SH_OK, "free the state");
 }
 
 static void cycle(void)
 {
-    const fmi2ValueReference unknown = 1000000;
+    const uint32_t unknown = 1000000;
     double values[256];
-    fmi2Component instance = start();
+    void *instance = start();
 
     step(instance, 0, 0);
     copy_state(instance);
     step(instance, 0, 1);
     get_outputs(instance, values);
-    check(fmi2GetReal(instance, &unknown, 1, values) == fmi2Error, "refused");
-    check(fmi2Terminate(instance) == fmi2OK, "fmi2Terminate");
-    check(fmi2Reset(instance) == fmi2OK, "fmi2Reset");
-    fmi2FreeInstance(instance);
+    check(fmi_get_reals(instance, &unknown, 1, values) == SH_ERROR, "refused");
+    check(fmi_terminate(instance) == SH_OK, "terminate");
+    check(fmi_reset(instance) == SH_OK, "reset");
+    fmi_free_instance(instance);
 }
 
 int main(int argc, char **argv)

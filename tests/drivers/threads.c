@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "drive.h"
+#include "fmi_calls.h"
 
 enum { INSTANCES = 8, STEPS = 200, OUTPUTS = 256 };
 
@@ -17,14 +18,14 @@ typedef struct {
 static void *run_alone(void *argument)
 {
     run *own = argument;
-    fmi2Component instance = start();
+    void *instance = start();
     long k;
 
     for (k = 0; k < STEPS; ++k) {
         step(instance, own->variant, k);
         get_outputs(instance, own->outputs[k]);
     }
-    fmi2FreeInstance(instance);
+    fmi_free_instance(instance);
     return NULL;
 }
 
@@ -42,7 +43,7 @@ static run *new_runs(void)
 int main(void)
 {
     run *separate = new_runs(), *in_turn = new_runs(), *in_threads = new_runs();
-    fmi2Component instances[INSTANCES];
+    void *instances[INSTANCES];
     pthread_t threads[INSTANCES];
     long k;
     int i;
@@ -60,7 +61,7 @@ int main(void)
             get_outputs(instances[i], in_turn[i].outputs[k]);
         }
     for (i = 0; i < INSTANCES; ++i)
-        fmi2FreeInstance(instances[i]);
+        fmi_free_instance(instances[i]);
 
     for (i = 0; i < INSTANCES; ++i)
         check(pthread_create(&threads[i], NULL, run_alone, &in_threads[i]) == 0, "pthread_create");

@@ -8,11 +8,24 @@ from pathlib import Path
 
 import pytest
 
-from c_programs import compile_driver, compiler_with
+from c_programs import VERSIONS, compile_driver, compiler_with
 from fmi_runs import ESTIMATORS, PLANTS
 from gate import missing
 
-every_fmu = pytest.mark.parametrize("fmu", ESTIMATORS + PLANTS)
+# The versions of FMI share all code but their functions. One estimator and one plant go through
+# those of FMI 3.0.
+IN_FMI3 = ["StiffnessEstimator", "AwasPlant"]
+every_fmu = pytest.mark.parametrize(
+    ("fmu", "version"),
+    [
+        *((fmu, "fmi2") for fmu in ESTIMATORS + PLANTS),
+        *((fmu, "fmi3") for fmu in IN_FMI3),
+    ],
+)
+every_fmu_in_one_version = pytest.mark.parametrize(
+    ("fmu", "version"),
+    [(fmu, "fmi3" if fmu in IN_FMI3 else "fmi2") for fmu in ESTIMATORS + PLANTS],
+)
 CYCLES = 20_000  # in each, the 130 kB of an estimator are copied many times
 THREAD = ("-fsanitize=thread", "-pthread")
 ADDRESS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
@@ -21,7 +34,6 @@ FUZZER = (
     "-fno-sanitize-recover=all",
     "-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION",
 )
-FUZZED = ["StiffnessEstimator", "AwasPlant"]
 
 
 @pytest.fixture(scope="module")
@@ -39,53 +51,58 @@ def run(*command: str | Path) -> str:
 @every_fmu
 @pytest.mark.slow("many instances run side by side")
 def test_instances_do_not_influence_each_other_in_turn_and_in_threads(
-    fmu: str, build: Path, folder: Path
+    fmu: str, version: str, build: Path, folder: Path
 ) -> None:
     compiler = compiler_with(THREAD, folder)
-    run(compile_driver("threads", fmu, build, folder, compiler, THREAD))
+    run(compile_driver("threads", fmu, version, build, folder, compiler, THREAD))
 
 
-@every_fmu
+@every_fmu_in_one_version
 @pytest.mark.slow("twenty thousand life cycles of an instance")
-def test_memory_does_not_grow(fmu: str, build: Path, folder: Path) -> None:
-    program = compile_driver("cycles", fmu, build, folder, compiler_with((), folder))
+def test_memory_does_not_grow(fmu: str, version: str, build: Path, folder: Path) -> None:
+    program = compile_driver("cycles", fmu, version, build, folder, compiler_with((), folder))
     # If only one byte were lost in each cycle, it would be more.
     assert int(run(program, str(CYCLES))) * 1024 < 0.9 * CYCLES
 
 
-@every_fmu
+@every_fmu_in_one_version
 @pytest.mark.slow("all sources are compiled with sanitizers, and run slower with them")
 def test_sanitizers_find_no_leak_and_no_undefined_behaviour(
-    fmu: str, build: Path, folder: Path
+    fmu: str, version: str, build: Path, folder: Path
 ) -> None:
     compiler = compiler_with(ADDRESS, folder)
     # They find what one cycle leaves behind, and all cycles are the same.
-    run(compile_driver("cycles", fmu, build, folder, compiler, ADDRESS), "100")
+    run(compile_driver("cycles", fmu, version, build, folder, compiler, ADDRESS), "100")
 
 
 @pytest.mark.slow("valgrind executes a hundred life cycles of an instance, tens of times slower")
-@every_fmu
-def test_valgrind_finds_nothing(fmu: str, build: Path, folder: Path) -> None:
+@every_fmu_in_one_version
+def test_valgrind_finds_nothing(fmu: str, version: str, build: Path, folder: Path) -> None:
     if shutil.which("valgrind") is None:
         missing("valgrind", "apt-get install valgrind")
-    program = compile_driver("cycles", fmu, build, folder, compiler_with((), folder))
+    program = compile_driver("cycles", fmu, version, build, folder, compiler_with((), folder))
     leaks = ["--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all"]
     run("valgrind", "-q", "--error-exitcode=1", *leaks, program, "100")
 
 
-@pytest.mark.slow("the fuzzer has a fixed number of inputs to try")
+@pytest.mark.slow("the fuzzer has a fixed time to try inputs")
 def test_fuzzer_finds_nothing(build: Path, folder: Path) -> None:
-    """An estimator and a plant at the same time, for half a minute."""
+    """An estimator and a plant at the same time, for half a minute: half of it in each version."""
     compiler = compiler_with(FUZZER, folder)
-    programs = [compile_driver("fuzz", fmu, build, folder, compiler, FUZZER) for fmu in FUZZED]
-    options = ["-max_total_time=30", "-max_len=512", "-timeout=20", f"-artifact_prefix={folder}/"]
-    running = [
-        subprocess.Popen(
-            [program, *options], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-        )
-        for program in programs
-    ]
-    for process in running:
-        log = process.communicate()[1]
-        assert process.returncode == 0, log[-10000:]
-        assert "DONE" in log
+    # Long sequences from the first second on: short ones do not get far.
+    lengths = ["-max_len=512", "-len_control=0"]
+    options = ["-max_total_time=15", *lengths, "-timeout=20", f"-artifact_prefix={folder}/"]
+    for version in VERSIONS:
+        programs = [
+            compile_driver("fuzz", fmu, version, build, folder, compiler, FUZZER) for fmu in IN_FMI3
+        ]
+        running = [
+            subprocess.Popen(
+                [program, *options], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+            )
+            for program in programs
+        ]
+        for process in running:
+            log = process.communicate()[1]
+            assert process.returncode == 0, log[-10000:]
+            assert "DONE" in log

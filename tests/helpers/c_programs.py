@@ -21,9 +21,20 @@ from gate import missing
 REPOSITORY = Path(__file__).resolve().parents[2]
 FMU_SOURCES = REPOSITORY / "fmu_src"
 PLANT_SOURCES = ("plant.c", "radau.c", "noise.c")
+DRIVERS = REPOSITORY / "tests" / "drivers"
+VERSIONS = ["fmi2", "fmi3"]
 
 
-def sources(fmu: str, build: Path, version: str = "fmi2") -> list[Path]:
+def _driver_sources(driver: str, version: str) -> list[Path]:
+    """The C source files of a program, which makes the calls of a version of FMI."""
+    files = [DRIVERS / name for name in (f"{driver}.c", "drive.c", f"{version}_calls.c")]
+    if driver == "fuzz":
+        files += [DRIVERS / "fuzz_arguments.c", DRIVERS / "fuzz_states.c"]
+        files += sorted(DRIVERS.glob(f"fuzz_{version}*.c"))
+    return files
+
+
+def sources(fmu: str, build: Path, version: str) -> list[Path]:
     """The C source files of an FMU, with the functions of a version of FMI."""
     files = sorted([*(FMU_SOURCES / "shell").glob("*.c"), *(FMU_SOURCES / version).glob("*.c")])
     if fmu in ESTIMATORS:
@@ -38,15 +49,22 @@ def sources(fmu: str, build: Path, version: str = "fmi2") -> list[Path]:
 
 @cache
 def compile_driver(
-    driver: str, fmu: str, build: Path, folder: Path, compiler: str, flags: tuple[str, ...] = ()
+    driver: str,
+    fmu: str,
+    version: str,
+    build: Path,
+    folder: Path,
+    compiler: str,
+    flags: tuple[str, ...] = (),
 ) -> Path:
-    """Compiles a program of drivers/DRIVER.c and an FMU, in a new folder inside `folder`."""
-    program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{fmu}"
-    here = REPOSITORY / "tests" / "drivers"
-    common = (
-        [here / "drive.c"] if '#include "drive.h"' in (here / f"{driver}.c").read_text() else []
-    )
+    """Compiles a program of drivers/ and an FMU, in a new folder inside `folder`.
+
+    driver   "threads", "cycles" or "fuzz"
+    version  of FMI, one of VERSIONS
+    """
+    program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{version}_{fmu}"
     folders = [*FOLDERS, FMU_SOURCES, FMU_SOURCES / "shell", build / "fmu" / fmu]
+    files = [*_driver_sources(driver, version), *sources(fmu, build, version)]
     command = [
         *(
             compiler,
@@ -57,7 +75,7 @@ def compile_driver(
         ),  # valgrind cannot read newer debug information
         *(f"-I{path}" for path in folders),
         f"-isystem{Path(fmpy.__file__).parent / 'c-code'}",
-        *(str(path) for path in (here / f"{driver}.c", *common, *sources(fmu, build))),
+        *(str(path) for path in files),
         *("-lm", "-o", str(program)),
     ]
     done = subprocess.run(command, capture_output=True, text=True)

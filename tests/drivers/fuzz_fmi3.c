@@ -1,0 +1,180 @@
+/* What only FMI 3.0 has: modes of an importer, integers of any size, arrays, results of a step. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "drive.h"
+#include "fmi3Functions.h"
+#include "fmi_calls.h"
+#include "fuzz.h"
+
+static int environment; /* that of the importer */
+
+static void logger(fmi3InstanceEnvironment received, fmi3Status status, fmi3String category,
+                   fmi3String message)
+{
+    check(received == &environment, "the logger got another environment");
+    check_message((int)status, category, message);
+}
+
+static void *instance_of(sequence *s, const char *name, const char *token, fmi3Boolean event_mode,
+                         size_t intermediate_variables)
+{
+    const unsigned how = byte(s);
+
+    return fmi3InstantiateCoSimulation(
+        name, token, how & 1 ? "/%s" : NULL, (how & 2) != 0, (how & 4) != 0, event_mode,
+        (how & 8) != 0, NULL, intermediate_variables, &environment, how & 16 ? NULL : logger, NULL);
+}
+
+void *some_instance(sequence *s)
+{
+    const char *const token = sh_fmu_model.guid;
+    char text[TEXT];
+
+    if (seldom(s, 16)) {
+        check(instance_of(s, "fuzz", some_text(s, text), fmi3False, 0) == NULL,
+              "a wrong token was taken");
+        check(instance_of(s, "fuzz", token, fmi3True, 0) == NULL, "event mode was promised");
+        check(instance_of(s, "fuzz", token, fmi3False, 1 + byte(s)) == NULL,
+              "intermediate update was promised");
+        check(fmi3InstantiateModelExchange("fuzz", token, NULL, fmi3False, fmi3True, &environment,
+                                           logger) == NULL,
+              "model exchange was promised");
+        check(fmi3InstantiateScheduledExecution("fuzz", token, NULL, fmi3False, fmi3True,
+                                                &environment, logger, NULL, NULL, NULL) == NULL,
+              "scheduled execution was promised");
+    }
+    return instance_of(s, seldom(s, 4) ? some_text(s, text) : "fuzz", token, fmi3False, 0);
+}
+
+/* 1 to 3, or what a conversion to int changes. */
+static fmi3Int64 some_int64(sequence *s)
+{
+    static const fmi3Int64 ODD[] = {INT64_MAX, INT64_MIN, INT64_C(1) + INT32_MAX, -1,
+                                    (INT64_C(1) << 32) + 1};
+
+    return seldom(s, 8) ? ODD[below(s, 5)] : some_integer(s);
+}
+
+static void set_enumerations(sequence *s)
+{
+    uint32_t references[MAX_REFERENCES];
+    fmi3Int64 values[MAX_REFERENCES];
+    const size_t n =
+        some_references(s, references, SH_TYPE_ENUMERATION,
+                        seldom(s, 16) ? SH_ROLE_INPUT : SH_ROLE_FIXED, SH_ROLE_TUNABLE);
+    size_t i;
+
+    for (i = 0; i < n; ++i)
+        values[i] = some_int64(s);
+    if (fmi3SetInt64(s->instance, references, n, values, n) != fmi3OK)
+        return;
+    for (i = 0; i < n; ++i)
+        check(values[i] >= 1 && (double)values[i] <= sh_fmu_model.variables[references[i]].max,
+              "an enumeration was set to a value that it has not");
+}
+
+void set_integers(sequence *s)
+{
+    uint32_t references[MAX_REFERENCES];
+    fmi3Int32 ints[MAX_REFERENCES];
+    fmi3Boolean booleans[MAX_REFERENCES];
+    const sh_type type = below(s, 2) ? SH_TYPE_BOOLEAN : SH_TYPE_INTEGER;
+    size_t n, i;
+
+    if (below(s, 2)) {
+        set_enumerations(s);
+        return;
+    }
+    n = some_references(s, references, type, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
+    for (i = 0; i < n; ++i) {
+        ints[i] = some_integer(s);
+        booleans[i] = ints[i] > 1;
+    }
+    if (type == SH_TYPE_BOOLEAN)
+        fmi3SetBoolean(s->instance, references, n, booleans, n);
+    else
+        fmi3SetInt32(s->instance, references, n, ints, n);
+}
+
+void get_integers(sequence *s)
+{
+    uint32_t references[MAX_REFERENCES];
+    fmi3Int64 int64s[MAX_REFERENCES];
+    fmi3Int32 int32s[MAX_REFERENCES];
+    fmi3Boolean booleans[MAX_REFERENCES];
+    const unsigned type = 1u << (1 + below(s, 3)); /* of SH_TYPE_* */
+    const size_t n = some_references(s, references, type, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
+
+    if (type == SH_TYPE_INTEGER)
+        fmi3GetInt32(s->instance, references, n, int32s, n);
+    else if (type == SH_TYPE_ENUMERATION)
+        fmi3GetInt64(s->instance, references, n, int64s, n);
+    else
+        fmi3GetBoolean(s->instance, references, n, booleans, n);
+}
+
+/* Reads and writes Real variables with any references, inside of arrays too, and any number of
+ * values. Only the right number may be taken, and a refused call reads nothing.
+ */
+static void use_arrays(sequence *s)
+{
+    uint32_t references[MAX_REFERENCES];
+    const size_t n = some_references(s, references, SH_TYPE_REAL, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
+    const size_t right = fmi_values(references, n);
+    int allowed = 1;
+    double *values, *before;
+    size_t given = right, i;
+
+    if (n > 0 && below(s, 2))
+        references[0] = (uint32_t)((byte(s) << 8 | byte(s)) % (sh_fmu_model.count + 2));
+    if (below(s, 2))
+        given = below(s, 8);
+    for (i = 0; i < n; ++i)
+        allowed = allowed && fmi_values(&references[i], 1) > 0;
+    allowed = allowed && given == fmi_values(references, n);
+    values = memory(given * sizeof *values);
+    before = memory(given * sizeof *before);
+    for (i = 0; i < given; ++i)
+        before[i] = values[i] = some_real(s, 1.0);
+    if (below(s, 2)) {
+        check(fmi3SetFloat64(s->instance, references, n, values, given) != fmi3OK || allowed,
+              "values of the wrong number were set");
+    } else if (fmi3GetFloat64(s->instance, references, n, values, given) == fmi3OK) {
+        check(allowed, "values of the wrong number were read");
+    } else {
+        check(memcmp(values, before, given * sizeof *values) == 0, "a refused call read values");
+    }
+    free(values);
+    free(before);
+}
+
+/* A step whose results have no place. */
+static void step_without_results(sequence *s)
+{
+    const unsigned absent = below(s, 15); /* not all four are there */
+    fmi3Boolean event, terminate, early;
+    double reached;
+
+    check(fmi3DoStep(s->instance, s->time, 1e-3, fmi3True, absent & 1 ? &event : NULL,
+                     absent & 2 ? &terminate : NULL, absent & 4 ? &early : NULL,
+                     absent & 8 ? &reached : NULL) == fmi3Error,
+          "a step was made whose results have no place");
+}
+
+void call_of_this_version(sequence *s)
+{
+    switch (below(s, 8)) {
+    case 0:
+        use_types_of_no_variable(s);
+        break;
+    case 1:
+        step_without_results(s);
+        break;
+    case 2:
+        call_what_is_not_provided(s);
+        break;
+    default:
+        use_arrays(s);
+    }
+}
