@@ -11,7 +11,8 @@ function(sigmahat_add_fmu name)
   set(source_dir ${PROJECT_SOURCE_DIR})
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
   set(template ${source_dir}/modelDescription/${name}.xml)
-  file(GLOB shared CONFIGURE_DEPENDS ${source_dir}/modelDescription/*.xml ${source_dir}/harness/sigmahat/export/*.py)
+  file(GLOB shared CONFIGURE_DEPENDS ${source_dir}/modelDescription/*.xml ${source_dir}/harness/sigmahat/export/*.py
+       ${source_dir}/harness/sigmahat/export/*.xml)
 
   set(sources "")
   foreach(part shell fmi2 fmi3)

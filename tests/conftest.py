@@ -2,6 +2,7 @@
 
 import os
 from collections import defaultdict
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,18 @@ def flexible_joint_fmu() -> Path:
 def antagonistic_plant_fmu() -> Path:
     """Path of AntagonisticVsaPlant.fmu."""
     return sigmahat.fmu("AntagonisticVsaPlant")
+
+
+@pytest.fixture(scope="session")
+def twin(build: Path) -> Callable[[str], Path]:
+    """Path of the twin for FMI 3.0 of an FMU, with the binary of this machine."""
+    return lambda name: build / "fmi3" / f"{name}_FMI3.fmu"
+
+
+@pytest.fixture(scope="session")
+def estimator_twin(twin: Callable[[str], Path]) -> Path:
+    """Path of StiffnessEstimator_FMI3.fmu."""
+    return twin("StiffnessEstimator")
 
 
 @pytest.fixture(scope="session")

@@ -31,6 +31,8 @@ class Table {
     const place = this.names.indexOf(name), values = new Float64Array(this.rows);
     for (let i = 0; i < this.rows; i += 1) {
       const cells = this.#cells(this.lines[i + 1]), text = cells[place] ?? "";
+      if (cells.length !== this.names.length) throw new Error(
+        `row ${i + 2}: expected ${this.names.length} cells, as in the first line, got ${cells.length}`);
       values[i] = this.#number(text);
       if (!Number.isFinite(values[i])) throw new Error(
         `row ${i + 2}, column ${name}: expected a finite number, got ${text ? `"${text.slice(0, 40)}"` : "nothing"}`);
@@ -54,7 +56,15 @@ class Table {
   }
 
   #cells(line) {
-    return line.split(this.separator).map((cell) => cell.trim().replace(/^"(.*)"$/, "$1"));
+    if (!line.includes('"')) return line.split(this.separator).map((cell) => cell.trim());
+    const cells = [""];
+    let quoted = false; // a separator inside quotes belongs to the cell
+    for (const part of line.split(/([",;\t])/)) {
+      if (part === '"') quoted = !quoted;
+      else if (part === this.separator && !quoted) cells.push("");
+      else cells[cells.length - 1] += part;
+    }
+    return cells.map((cell) => cell.trim());
   }
 
   #number(text) {

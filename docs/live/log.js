@@ -161,17 +161,17 @@ const log = {
     const bar = document.getElementById("progress");
     say("log-message", "");
     answer.hide();
+    let run = this.run = null;
     try {
       const data = this.read();
-      const run = new LogEstimate(joint.estimator, this.starts(data), data.signals);
-      this.run = run;
+      this.run = run = new LogEstimate(joint.estimator, this.starts(data), data.signals);
       bar.hidden = false;
       await run.run((done) => { bar.value = done; }, () => this.run !== run);
       if (this.run === run) answer.show(run);
     } catch (error) {
-      say("log-message", error.message);
+      if (this.run === run) say("log-message", error.message);
     }
-    bar.hidden = true;
+    if (this.run === run) bar.hidden = true; // another one may run by now
   },
 };
 

@@ -17,15 +17,9 @@ void sh_deliver(const sh_instance *instance, sh_status status, const char *categ
 {
     const fmi2CallbackLogger logger = (fmi2CallbackLogger)instance->importer.logger;
     char escaped[1024];
-    size_t length = 0;
 
     /* The logger uses the message as a format: a % must not start a conversion. */
-    for (; *text != '\0' && length + 2 < sizeof escaped; ++text) {
-        if (*text == '%')
-            escaped[length++] = '%';
-        escaped[length++] = *text;
-    }
-    escaped[length] = '\0';
+    sh_double(escaped, sizeof escaped, text, '%');
     logger(instance->importer.environment, instance->name, (fmi2Status)status, category, escaped);
 }
 
@@ -34,10 +28,17 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
 {
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2SetDebugLogging");
 
+    unsigned found = 0;
+    sh_status status;
+
     if (instance == NULL)
         return fmi2Error;
-    return (fmi2Status)sh_choose_categories(instance, loggingOn, nCategories, categories,
-                                            "fmi2SetDebugLogging");
+    status = sh_find_categories(instance, nCategories, categories, &found, "fmi2SetDebugLogging");
+    if (!loggingOn)
+        instance->categories = SH_LOG_STATUS; /* all but debug messages */
+    else if (found != 0)
+        instance->categories = found;
+    return (fmi2Status)status;
 }
 
 fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
@@ -57,7 +58,8 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     importer.release = functions->freeMemory;
     if (fmuType != fmi2CoSimulation)
         return sh_refuse_instance(&importer, "fmi2Instantiate", "model exchange");
-    return sh_create(&importer, instanceName, fmuGUID, loggingOn, "fmi2Instantiate");
+    return sh_create(&importer, instanceName, fmuGUID, loggingOn ? SH_LOG_ALL : SH_LOG_STATUS,
+                     "fmi2Instantiate");
 }
 
 void fmi2FreeInstance(fmi2Component c)

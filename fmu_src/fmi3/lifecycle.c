@@ -12,7 +12,11 @@ void sh_deliver(const sh_instance *instance, sh_status status, const char *categ
 {
     const fmi3LogMessageCallback logger = (fmi3LogMessageCallback)instance->importer.logger;
 
-    logger(instance->importer.environment, (fmi3Status)status, category, text);
+    char escaped[1024];
+
+    /* In a message #7# means the value of variable 7. */
+    sh_double(escaped, sizeof escaped, text, '#');
+    logger(instance->importer.environment, (fmi3Status)status, category, escaped);
 }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
@@ -20,10 +24,17 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, siz
 {
     sh_instance *entered = sh_enter(instance, SH_ANY, "fmi3SetDebugLogging");
 
+    unsigned found = 0;
+    sh_status status;
+
     if (entered == NULL)
         return fmi3Error;
-    return (fmi3Status)sh_choose_categories(entered, loggingOn, nCategories, categories,
-                                            "fmi3SetDebugLogging");
+    status = sh_find_categories(entered, nCategories, categories, &found, "fmi3SetDebugLogging");
+    if (loggingOn)
+        entered->categories |= found;
+    else
+        entered->categories &= ~found;
+    return (fmi3Status)status;
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(
@@ -47,8 +58,8 @@ fmi3Instance fmi3InstantiateCoSimulation(
     if (nRequiredIntermediateVariables > 0)
         return sh_refuse_instance(&importer, "fmi3InstantiateCoSimulation",
                                   "intermediate update (providesIntermediateUpdate is false)");
-    return sh_create(&importer, instanceName, instantiationToken, loggingOn,
-                     "fmi3InstantiateCoSimulation");
+    return sh_create(&importer, instanceName, instantiationToken,
+                     loggingOn ? SH_LOG_ALL : SH_LOG_ERROR, "fmi3InstantiateCoSimulation");
 }
 
 void fmi3FreeInstance(fmi3Instance instance)

@@ -62,6 +62,8 @@ static fmi3Status get(const sh_access *access, const fmi3ValueReference referenc
 
     if (instance == NULL || !fits(access, references, count, nValues))
         return fmi3Error;
+    if (store == NULL) /* no variable has the type, so there was no reference */
+        return fmi3OK;
     for (i = 0; i < count; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[references[i]];
         if (is_time(access, references[i]))
@@ -81,6 +83,8 @@ static fmi3Status set(const sh_access *access, const fmi3ValueReference referenc
 
     if (instance == NULL || !fits(access, references, count, nValues))
         return fmi3Error;
+    if (load == NULL)
+        return fmi3OK;
     for (i = 0; i < count; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[references[i]];
         for (k = 0; k < first->length; ++k)
@@ -108,7 +112,17 @@ static fmi3Status set(const sh_access *access, const fmi3ValueReference referenc
 CONVERSIONS(Float64)
 CONVERSIONS(Int32)
 CONVERSIONS(Int64)
-CONVERSIONS(Boolean)
+
+static void storeBoolean(void *values, size_t i, double value)
+{
+    ((fmi3Boolean *)values)[i] = value != 0.0;
+}
+
+/* As a byte, because a bool that is neither true nor false must not be read as one. */
+static double loadBoolean(const void *values, size_t i)
+{
+    return (double)((const unsigned char *)values)[i];
+}
 
 #define ACCESS(Type, TYPES, store, load)                                                           \
     fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference valueReferences[],    \

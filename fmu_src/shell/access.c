@@ -7,6 +7,12 @@ const sh_variable *sh_find(const sh_access *access, uint32_t reference)
 {
     const sh_variable *variable;
 
+    if (access->arrays && reference == sh_fmu_model.count) {
+        sh_log(access->handle, SH_ERROR,
+               "%s: value reference %lu is time, which can only be read, as Float64.",
+               access->function, (unsigned long)reference);
+        return NULL;
+    }
     if (reference >= sh_fmu_model.count) {
         sh_log(access->handle, SH_ERROR, "%s: unknown value reference %lu; the last one is %lu.",
                access->function, (unsigned long)reference, (unsigned long)sh_fmu_model.count - 1);
@@ -66,8 +72,10 @@ static sh_instance *begin(const sh_access *access, unsigned states, const uint32
 sh_instance *sh_begin_get(const sh_access *access, const uint32_t references[], size_t count,
                           const void *values)
 {
-    sh_instance *instance =
-        begin(access, SH_INITIALIZATION | SH_STEP | SH_TERMINATED, references, count, values);
+    /* With arrays, FMI 3.0, start values can be read from the begin. */
+    const unsigned states =
+        SH_INITIALIZATION | SH_STEP | SH_TERMINATED | (access->arrays ? SH_INSTANTIATED : 0);
+    sh_instance *instance = begin(access, states, references, count, values);
 
     if (instance == NULL ||
         (instance->state == SH_INITIALIZATION && sh_initialize(instance) != SH_OK))

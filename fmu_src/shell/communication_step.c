@@ -25,7 +25,7 @@ static void clear_input_derivatives(sh_instance *instance)
 sh_status sh_communication_step(void *handle, double t, double h, const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_STEP, function);
-    double late, rounding, longest;
+    double late, rounding, tolerance;
     sh_status status;
 
     if (instance == NULL)
@@ -49,23 +49,28 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
                function, t, instance->time);
         return SH_ERROR;
     }
-    /* Importers round: some make a last step of 1e-13 s, to a time or from a time that is off by that
-     * much. So the tolerance is of their usual step, not of this one.
+    /* Importers round. Some make a last step of 1e-13 s, so the tolerance is of the step before, too;
+     * some add up their time, whose error grows with the number of steps.
      */
-    longest = fmax(instance->longest_step, h);
-    if (t + h > instance->stop_time + 1e-3 * longest) {
+    tolerance = 1e-3 * fmax(instance->previous_step, h) + DBL_EPSILON * fabs(t) * instance->steps;
+    if (t + h > instance->stop_time + tolerance) {
         sh_log(instance, SH_ERROR,
-               "%s: a step from t = %.9g s to %.9g s; expected an end not after stopTime = %.9g s.",
+               "%s: a step from t = %.15g s to %.15g s; expected an end not after stopTime = %.15g "
+               "s.",
                function, t, t + h, instance->stop_time);
         return SH_ERROR;
     }
     if (sh_check_parameters(instance) != SH_OK)
         return SH_ERROR;
-    status = sh_fmu_model.step(instance->model, t, fabs(late) > rounding ? h + late : h, instance);
+    if (fabs(late) <= rounding)
+        status = sh_fmu_model.step(instance->model, t, h, instance);
+    else
+        status = sh_fmu_model.step(instance->model, instance->time, h + late, instance);
     if (status > SH_WARNING)
         return status;
     instance->time = t + h;
-    instance->longest_step = longest;
+    instance->previous_step = h;
+    instance->steps += 1.0;
     clear_input_derivatives(instance);
     return status;
 }

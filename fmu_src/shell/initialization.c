@@ -36,7 +36,8 @@ static int outputs_are_finite(sh_instance *instance)
         value = sh_read(instance, variable);
         if (!isfinite(value)) {
             sh_log(instance, SH_ERROR,
-                   "Initialisation: output %s = %g is not finite. Look for extreme parameters.",
+                   "Initialisation: output %s = %g is not finite. Look for extreme parameters and "
+                   "inputs.",
                    variable->name, value);
             return 0;
         }

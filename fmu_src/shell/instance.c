@@ -88,39 +88,37 @@ void *sh_refuse_instance(const sh_importer *importer, const char *function, cons
 }
 
 sh_instance *sh_create(const sh_importer *importer, const char *name, const char *guid,
-                       int logging_on, const char *function)
+                       unsigned categories, const char *function)
 {
     sh_instance before = nobody(importer);
     sh_instance *instance;
+    void *model;
+    char *own_name;
 
     if (!sh_has(&before, name, function, "instanceName"))
         return NULL;
     if (guid == NULL || strcmp(guid, sh_fmu_model.guid) != 0) {
         sh_log(&before, SH_ERROR,
                "%s: the binary of %s expects the GUID or instantiation token %s, the importer gave "
-               "%s: "
-               "modelDescription.xml and binary are not of the same FMU.",
+               "%s: modelDescription.xml and binary are not of the same FMU.",
                function, sh_fmu_model.identifier, sh_fmu_model.guid, guid != NULL ? guid : "NULL");
         return NULL;
     }
 
     instance = sh_allocate(importer, sizeof *instance);
-    if (instance != NULL) {
-        instance->model = sh_allocate(importer, sh_fmu_model.size);
-        instance->name = sh_allocate(importer, strlen(name) + 1);
-    }
-    if (instance == NULL || instance->model == NULL || instance->name == NULL) {
-        sh_log(&before, SH_ERROR, "%s: out of memory.", function);
-        if (instance != NULL) {
-            sh_release(importer, instance->model);
-            sh_release(importer, instance->name);
-        }
+    model = sh_allocate(importer, sh_fmu_model.size);
+    own_name = sh_allocate(importer, strlen(name) + 1);
+    if (instance == NULL || model == NULL || own_name == NULL) {
         sh_release(importer, instance);
+        sh_release(importer, model);
+        sh_release(importer, own_name);
+        sh_log(&before, SH_ERROR, "%s: out of memory.", function);
         return NULL;
     }
-    strcpy(instance->name, name);
     instance->importer = *importer;
-    instance->categories = logging_on ? SH_LOG_ALL : SH_LOG_STATUS;
+    instance->model = model;
+    instance->name = strcpy(own_name, name);
+    instance->categories = categories;
     sh_reset(instance);
     if (sh_make_utf8(instance->name))
         sh_log(instance, SH_WARNING, "%s: instanceName is not UTF-8; messages name %s.", function,
@@ -150,7 +148,8 @@ void sh_reset(sh_instance *instance)
     instance->state = SH_INSTANTIATED;
     instance->time = 0.0;
     instance->stop_time = INFINITY;
-    instance->longest_step = 0.0;
+    instance->steps = 0.0;
+    instance->previous_step = 0.0;
     instance->outputs_stale = 1;
     instance->parameters_unchecked = 1;
     instance->slopes_set = 0;

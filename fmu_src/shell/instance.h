@@ -45,7 +45,8 @@ struct sh_instance {
     sh_state state;
     double time;              /* communication point reached */
     double stop_time;         /* no step may end after it; infinite if there is none */
-    double longest_step;      /* of the communication steps made [s] */
+    double steps;             /* communication steps made */
+    double previous_step;     /* length of the last one [s]; 0: there is none */
     int outputs_stale;        /* in initialisation: outputs are older than what was set */
     int parameters_unchecked; /* a parameter was set since they were checked */
     int slopes_set;           /* derivatives of inputs may differ from 0 */
@@ -56,18 +57,23 @@ struct sh_instance {
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
                 const char *text);
 
-/* Chooses the categories that are passed on. Unknown ones are ignored, with a warning. */
-sh_status sh_choose_categories(sh_instance *instance, int logging_on, size_t count,
-                               const char *const categories[], const char *function);
+/* Writes the SH_LOG_* of some categories to *found, SH_LOG_ALL if count is 0. Unknown ones are ignored,
+ * with a warning.
+ */
+sh_status sh_find_categories(sh_instance *instance, size_t count, const char *const categories[],
+                             unsigned *found, const char *function);
 
-/* A new instance, or NULL after a message. */
+/* Copies text, with every `special` character twice; at most size - 1 characters. */
+void sh_double(char *copy, size_t size, const char *text, char special);
+
+/* A new instance that passes on some categories of messages, or NULL after a message. */
 sh_instance *sh_create(const sh_importer *importer, const char *name, const char *guid,
-                       int logging_on, const char *function);
+                       unsigned categories, const char *function);
 /* NULL, after a message that the FMU is not for what is wanted. */
 void *sh_refuse_instance(const sh_importer *importer, const char *function, const char *wanted);
 void sh_destroy(sh_instance *instance);
 
-/* Back to the state after sh_create, with all start values. */
+/* Back to the state after sh_create, with all start values. The categories of messages stay. */
 void sh_reset(sh_instance *instance);
 
 /* The instance behind the importer's handle if it is in one of the allowed states; else NULL, after a

@@ -78,15 +78,15 @@ void sh_log(sh_instance *instance, sh_status status, const char *format, ...)
     sh_deliver(instance, status, KNOWN[place].name, text);
 }
 
-sh_status sh_choose_categories(sh_instance *instance, int logging_on, size_t count,
-                               const char *const categories[], const char *function)
+sh_status sh_find_categories(sh_instance *instance, size_t count, const char *const categories[],
+                             unsigned *found, const char *function)
 {
     sh_status status = SH_OK;
-    unsigned chosen = 0;
     size_t i, k;
 
     if (count > 0 && !sh_has(instance, categories, function, "categories"))
         return SH_ERROR;
+    *found = count > 0 ? 0 : SH_LOG_ALL;
     for (i = 0; i < count; ++i) {
         unsigned category = 0;
         for (k = 0; k < sizeof KNOWN / sizeof KNOWN[0]; ++k)
@@ -99,11 +99,19 @@ sh_status sh_choose_categories(sh_instance *instance, int logging_on, size_t cou
                    function, categories[i] != NULL ? categories[i] : "NULL");
             status = SH_WARNING;
         }
-        chosen |= category;
+        *found |= category;
     }
-    if (!logging_on)
-        instance->categories = SH_LOG_STATUS; /* all but debug messages */
-    else
-        instance->categories = count > 0 ? chosen : SH_LOG_ALL;
     return status;
+}
+
+void sh_double(char *copy, size_t size, const char *text, char special)
+{
+    size_t length = 0;
+
+    for (; *text != '\0' && length + 2 < size; ++text) {
+        if (*text == special)
+            copy[length++] = special;
+        copy[length++] = *text;
+    }
+    copy[length] = '\0';
 }

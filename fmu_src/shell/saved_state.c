@@ -21,7 +21,7 @@ typedef struct {
     uint32_t state; /* sh_state */
     uint64_t size;  /* of header and model */
     char guid[GUID_LENGTH];
-    double time, stop_time, longest_step;
+    double time, stop_time, steps, previous_step;
     int32_t outputs_stale, parameters_unchecked;
     uint64_t checksum; /* of all bytes of the block, taken with 0 in this place */
 } state_header;
@@ -90,7 +90,8 @@ sh_status sh_save_state(void *handle, void **state, const char *function)
     strncpy(header.guid, sh_fmu_model.guid, GUID_LENGTH - 1);
     header.time = instance->time;
     header.stop_time = instance->stop_time;
-    header.longest_step = instance->longest_step;
+    header.steps = instance->steps;
+    header.previous_step = instance->previous_step;
     header.outputs_stale = instance->outputs_stale;
     header.parameters_unchecked = instance->parameters_unchecked;
     memcpy(block, &header, sizeof header);
@@ -120,7 +121,8 @@ sh_status sh_restore_state(void *handle, const void *state, const char *function
     instance->state = (sh_state)header.state;
     instance->time = header.time;
     instance->stop_time = header.stop_time;
-    instance->longest_step = header.longest_step;
+    instance->steps = header.steps;
+    instance->previous_step = header.previous_step;
     instance->outputs_stale = header.outputs_stale;
     instance->parameters_unchecked = header.parameters_unchecked;
     instance->slopes_set = 1; /* the state may have some */

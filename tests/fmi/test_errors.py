@@ -391,6 +391,9 @@ def test_only_chosen_log_categories_are_logged(estimator_fmu: Path) -> None:
         assert choose(fmu, True, b"logAll") == OK
         assert fmu.step(1.0, 1e-3) == ERROR
         assert fmu.messages[-1][1] == "logStatusError"
+        assert choose(fmu, True, b"no such category") == WARNING  # nothing is chosen
+        assert fmu.step(1.0, 1e-3) == ERROR
+        assert fmu.messages[-1][1] == "logStatusError"
         assert choose(fmu, True, b"no such category", b"logStatusError") == WARNING
         assert "no such category" in fmu.messages[-1][2]
         assert fmu.step(1.0, 1e-3) == ERROR  # the others are chosen

@@ -46,8 +46,10 @@ def test_both_versions_give_the_same_bits(name: str, start: dict[str, float], tw
                     assert new.get(other + side) == old.get(other + side)
 
 
-def test_a_state_goes_from_one_version_to_the_other(estimator: Path, estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as old, Instance3(estimator) as new:
+def test_a_state_goes_from_one_version_to_the_other(
+    estimator_twin: Path, estimator_fmu: Path
+) -> None:
+    with Instance(estimator_fmu) as old, Instance3(estimator_twin) as new:
         new_run = driver3(new)
         old_run = HeldInputs(old, new_run.inputs, new_run.outputs)
         old.initialise({"rls.n": 3})
@@ -132,15 +134,17 @@ def test_a_damaged_or_foreign_state_is_refused(name: str, twin: Twin) -> None:
 
 @every_fmu
 def test_instances_do_not_influence_each_other(name: str, twin: Twin) -> None:
-    with Instance3(twin(name)) as alone:
-        alone.initialise()
-        expected = driver3(alone).run(STEPS)
+    expected = []
+    for start in (0.0, 1.0):
+        with Instance3(twin(name)) as alone:
+            alone.initialise(start=start)
+            expected.append(driver3(alone).run([(start + t, h) for t, h in STEPS]))
     with Instance3(twin(name)) as first, Instance3(twin(name)) as second:
         drivers = [driver3(first), driver3(second)]
         first.initialise()
         second.initialise(start=1.0)
-        got = []
+        got: list[list[bytes]] = [[], []]
         for t, h in STEPS:
-            got.append(drivers[0].step(t, h))
-            drivers[1].step(1.0 + t, h)
+            got[0].append(drivers[0].step(t, h))
+            got[1].append(drivers[1].step(1.0 + t, h))
         assert got == expected

@@ -73,7 +73,8 @@ def test_variables_are_those_of_fmi_2(name: str, twin: Twin) -> None:
             items = [[(i.name, i.value, i.description) for i in v.declaredType.items]
                      for v in (first, variable)]  # fmt: skip
             assert items[0] == items[1]
-        assert variable.description
+        shared = variable.description == first.description
+        assert variable.description and shared == (not array.dimensions)
 
 
 @every_fmu
@@ -122,3 +123,12 @@ def test_the_terminals_of_a_plant_and_its_estimator_belong_together(
         terminals.append(set(members))
     assert terminals[0] <= terminals[1]
     assert {"q"} < terminals[0]
+
+
+@pytest.mark.parametrize(
+    "names",
+    [["a[1]", "a[2]"], ["a[0]", "b", "a[1]"], ["a[0,0]", "a[0,1]", "a[1,1]"], ["a[0]", "a[2]"]],
+)
+def test_elements_that_form_no_array_are_refused(names: list[str]) -> None:
+    with pytest.raises(ValueError, match=r"a\b.*: expected"):
+        arrays(names)

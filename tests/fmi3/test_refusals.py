@@ -23,7 +23,7 @@ FUNCTIONS = re.findall(r"^#define \w+\s+fmi3FullName\((\w+)\)", HEADER, re.MULTI
 
 INSTANTIATED, INITIALISATION, STEP, TERMINATED = "instantiated", "initialisation", "step", "end"
 EVERYWHERE = {INSTANTIATED, INITIALISATION, STEP, TERMINATED}
-SETTABLE, READABLE = EVERYWHERE - {TERMINATED}, EVERYWHERE - {INSTANTIATED}
+SETTABLE = EVERYWHERE - {TERMINATED}
 ALLOWED = {
     "fmi3SetDebugLogging": EVERYWHERE,
     "fmi3EnterInitializationMode": {INSTANTIATED},
@@ -52,7 +52,7 @@ def allowed(function: str) -> set[str]:
     """States in which the standard, section 2.3, allows a function of such an FMU."""
     access = ACCESS.fullmatch(function)
     if access:
-        return READABLE if access[1] == "Get" else SETTABLE
+        return EVERYWHERE if access[1] == "Get" else SETTABLE
     return ALLOWED.get(function, set())
 
 
@@ -65,9 +65,9 @@ def bring_to(fmu: Instance3, state: str) -> None:
         assert fmu.call("fmi3Terminate") == OK
 
 
-def test_the_binary_has_every_function_of_the_standard(estimator: Path) -> None:
+def test_the_binary_has_every_function_of_the_standard(estimator_twin: Path) -> None:
     assert len(FUNCTIONS) > 70
-    with Instance3(estimator) as fmu:
+    with Instance3(estimator_twin) as fmu:
         for function in FUNCTIONS:
             assert fmu.dll[function]
         fmu.dll.fmi3GetVersion.restype = ctypes.c_char_p
@@ -75,12 +75,12 @@ def test_the_binary_has_every_function_of_the_standard(estimator: Path) -> None:
 
 
 @pytest.mark.parametrize("state", sorted(EVERYWHERE))
-def test_a_function_is_refused_where_it_is_not_allowed(state: str, estimator: Path) -> None:
+def test_a_function_is_refused_where_it_is_not_allowed(state: str, estimator_twin: Path) -> None:
     nothing = [ctypes.c_size_t(0)] * 12  # NULL, 0 or false for any argument
     for function in sorted(set(FUNCTIONS) - NOT_CALLED):
         if state in allowed(function):
             continue
-        with Instance3(estimator) as fmu:
+        with Instance3(estimator_twin) as fmu:
             bring_to(fmu, state)
             fmu.messages.clear()
             assert fmu.call(function, *nothing) == ERROR, function
@@ -91,8 +91,8 @@ def test_a_function_is_refused_where_it_is_not_allowed(state: str, estimator: Pa
             assert "not allowed" in message or "has no" in message
 
 
-def test_without_an_instance_every_function_fails_quietly(estimator: Path) -> None:
-    with Instance3(estimator) as fmu:
+def test_without_an_instance_every_function_fails_quietly(estimator_twin: Path) -> None:
+    with Instance3(estimator_twin) as fmu:
         for function in sorted(set(FUNCTIONS) - NOT_CALLED):
             assert fmu.dll[function](*[None] * 12) == ERROR, function
         fmu.dll.fmi3FreeInstance(None)
@@ -109,9 +109,9 @@ def test_without_an_instance_every_function_fails_quietly(estimator: Path) -> No
     ],
 )
 def test_an_instance_that_cannot_be_is_refused(
-    options: dict[str, Any], expected: str, estimator: Path
+    options: dict[str, Any], expected: str, estimator_twin: Path
 ) -> None:
-    with Instance3(estimator, **options) as fmu:
+    with Instance3(estimator_twin, **options) as fmu:
         assert fmu.handle is None
         status, category, message = fmu.messages[-1]
         assert (status, category) == (ERROR, "logStatusError")
@@ -119,15 +119,17 @@ def test_an_instance_that_cannot_be_is_refused(
 
 
 @pytest.mark.parametrize("options", [{"early_return": True}, {"logger": False}])
-def test_importers_with_other_wishes_can_run_it(options: dict[str, Any], estimator: Path) -> None:
-    with Instance3(estimator, **options) as fmu:
+def test_importers_with_other_wishes_can_run_it(
+    options: dict[str, Any], estimator_twin: Path
+) -> None:
+    with Instance3(estimator_twin, **options) as fmu:
         fmu.initialise()
         assert fmu.step(0.0, 1e-3) == OK
         assert fmu.step(7.0, 1e-3) == ERROR
 
 
-def test_other_kinds_of_fmus_are_refused(estimator: Path) -> None:
-    with Instance3(estimator) as fmu:
+def test_other_kinds_of_fmus_are_refused(estimator_twin: Path) -> None:
+    with Instance3(estimator_twin) as fmu:
         environment = [ctypes.c_void_p(4711), fmu._logger]
         assert fmu.instantiate("ModelExchange", *environment) is None
         assert "not for model exchange" in fmu.last_message
@@ -170,13 +172,14 @@ def test_invalid_references_and_values_are_refused(name: str, twin: Twin) -> Non
                     assert f"{tunable} = " in fmu.last_message
             assert fmu.get(tunable) == good
         assert fmu.set("time", 1.0) == ERROR
+        assert "is time, which can only be read" in fmu.last_message
         assert fmu.get("time") == 1e-3
         assert driver.result() == before
         driver.step(1e-3, 1e-3)
 
 
-def test_an_array_is_set_and_read_as_a_whole(estimator: Path) -> None:
-    with Instance3(estimator) as fmu:
+def test_an_array_is_set_and_read_as_a_whole(estimator_twin: Path) -> None:
+    with Instance3(estimator_twin) as fmu:
         count = fmu.length("rls.eta_0")
         assert count == 8 * 5
         values = [0.5 * k for k in range(count)]
@@ -197,17 +200,19 @@ def test_an_array_is_set_and_read_as_a_whole(estimator: Path) -> None:
 
 
 @pytest.mark.parametrize("bad", [0, 4, -1, 2**31, 2**40, -(2**63), 2**63 - 1])
-def test_an_enumeration_outside_its_items_is_refused(bad: int, estimator: Path) -> None:
-    with Instance3(estimator) as fmu:
+def test_an_enumeration_outside_its_items_is_refused(bad: int, estimator_twin: Path) -> None:
+    with Instance3(estimator_twin) as fmu:
         assert fmu.set("modality", bad) == ERROR
         assert "modality = " in fmu.last_message and "[1, 3]" in fmu.last_message
         fmu.initialise()
         assert fmu.get("modality") == 1
 
 
-def test_every_variable_has_its_start_value(estimator: Path) -> None:
-    with Instance3(estimator) as fmu:
-        fmu.initialise()
+@pytest.mark.parametrize("initialised", [False, True])
+def test_every_parameter_has_its_start_value(initialised: bool, estimator_twin: Path) -> None:
+    with Instance3(estimator_twin) as fmu:
+        if initialised:
+            fmu.initialise()
         for name, variable in fmu.variables.items():
             if variable.causality != "parameter":
                 continue
@@ -229,9 +234,9 @@ def test_every_variable_has_its_start_value(estimator: Path) -> None:
     ],
 )
 def test_an_impossible_experiment_is_refused(
-    arguments: dict[str, float], expected: str, estimator: Path
+    arguments: dict[str, float], expected: str, estimator_twin: Path
 ) -> None:
-    with Instance3(estimator) as fmu:
+    with Instance3(estimator_twin) as fmu:
         assert fmu.enter(**arguments) == ERROR
         assert expected in fmu.last_message
         fmu.initialise()
@@ -251,10 +256,63 @@ def test_a_step_after_the_stop_time_is_refused(name: str, twin: Twin) -> None:
         assert fmu.step(0.01, 1e-13) == OK  # rounding of an importer
 
 
-def test_an_unknown_log_category_is_a_warning(estimator: Path) -> None:
-    with Instance3(estimator) as fmu:
-        categories = (ctypes.c_char_p * 2)(b"no such category", b"logStatusError")
-        assert fmu.call("fmi3SetDebugLogging", True, SIZE(2), categories) == WARNING
+def test_the_longest_step_does_not_widen_the_stop_time_for_long(estimator_twin: Path) -> None:
+    with Instance3(estimator_twin) as fmu:
+        fmu.initialise({"samplePeriod": 1.0, "residual.K_I": 1.0}, stop=10.0)
+        assert fmu.step(0.0, 10.0) == OK
+        statuses = [fmu.step(10.0 + 1e-3 * k, 1e-3) for k in range(3)]
+        assert statuses[1:] == [ERROR, ERROR]
+
+
+def test_an_importer_that_adds_up_its_time_reaches_the_stop_time(estimator_twin: Path) -> None:
+    """Its error after many steps is more than a thousandth of a step."""
+    h, count = 1e-5, 400_000
+    with Instance3(estimator_twin) as fmu:
+        fmu.initialise({"samplePeriod": 1.0, "residual.K_I": 1.0}, stop=h * count)
+        t = 0.0
+        for _ in range(count):
+            assert fmu.step(t, h) == OK, fmu.messages
+            t += h
+        assert fmu.step(t, h) == ERROR
+
+
+def choose(fmu: Instance3, on: bool, *names: bytes) -> int:
+    categories = (ctypes.c_char_p * len(names))(*names)
+    return fmu.call("fmi3SetDebugLogging", on, SIZE(len(names)), categories)
+
+
+def test_named_log_categories_are_turned_on_and_off(estimator_twin: Path) -> None:
+    def logged(fmu: Instance3) -> list[str]:
+        """Categories of the messages of an error, a warning and an event."""
+        fmu.messages.clear()
+        assert fmu.step(7.0, 1e-3) == ERROR
+        assert choose(fmu, True, b"logStatusDiscard", b"no such category") == WARNING
+        assert fmu.call("fmi3Reset") == OK
+        fmu.initialise()
+        return [category for _, category, _ in fmu.messages]
+
+    error, warning, event = "logStatusError", "logStatusWarning", "logEvents"
+    with Instance3(estimator_twin) as fmu:
+        fmu.initialise()
+        assert logged(fmu) == [error, warning, event]
+        assert choose(fmu, True, b"logEvents") == OK  # the others stay
+        assert logged(fmu) == [error, warning, event]
+        assert choose(fmu, False, b"logStatusWarning") == OK
+        assert logged(fmu) == [error, event]
+        assert choose(fmu, False) == OK
+        assert logged(fmu) == []
+        assert choose(fmu, True, b"logStatusError") == OK
+        assert logged(fmu) == [error]
+        assert choose(fmu, True) == OK
+        assert logged(fmu) == [error, warning, event]
+    with Instance3(estimator_twin, logging_on=False) as fmu:
+        fmu.initialise()
+        assert logged(fmu) == [error]
+
+
+def test_an_unknown_log_category_is_a_warning(estimator_twin: Path) -> None:
+    with Instance3(estimator_twin) as fmu:
+        assert choose(fmu, True, b"no such category", b"logStatusError") == WARNING
         assert "no such category" in fmu.last_message
         fmu.initialise()
         assert fmu.step(1.0, 1e-3) == ERROR

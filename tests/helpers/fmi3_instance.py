@@ -37,6 +37,7 @@ class Instance3:
         *,
         token: str | None = None,
         logger: bool = True,
+        logging_on: bool = True,
         event_mode: bool = False,
         early_return: bool = False,
         intermediate: Sequence[int] = (),
@@ -63,14 +64,17 @@ class Instance3:
             self._logger,
             None,
             token=token,
+            logging_on=logging_on,
         )
 
-    def instantiate(self, kind: str, *rest: Any, token: str | None = None) -> int | None:
+    def instantiate(
+        self, kind: str, *rest: Any, token: str | None = None, logging_on: bool = True
+    ) -> int | None:
         """Calls fmi3Instantiate of a kind. Returns the handle, None after an error."""
         function = self.dll[f"fmi3Instantiate{kind}"]
         function.restype = ctypes.c_void_p
         token = self.description.guid if token is None else token
-        handle: int | None = function(b"test", token.encode(), b"", False, True, *rest)
+        handle: int | None = function(b"test", token.encode(), b"", False, logging_on, *rest)
         return handle
 
     def __enter__(self) -> Instance3:
@@ -151,7 +155,7 @@ class Instance3:
         """Makes a step, of which nothing may be asked and which may not end early."""
         flags = [ctypes.c_bool(True) for _ in range(3)]
         reached = ctypes.c_double(math.nan)
-        pointers = [ctypes.byref(value) for value in (*flags, reached)]
+        pointers = [*(ctypes.byref(flag) for flag in flags), ctypes.byref(reached)]
         status = self.call("fmi3DoStep", ctypes.c_double(t), ctypes.c_double(h), True, *pointers)
         if status == OK:
             assert [flag.value for flag in flags] == [False, False, False]

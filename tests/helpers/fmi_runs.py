@@ -7,6 +7,7 @@ import math
 import random
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 from fmi_instance import OK, Instance
 
@@ -34,7 +35,7 @@ SIGNALS: dict[str, Callable[[float], float]] = {
 }
 
 
-def names(fmu: Instance, causality: str, variability: str | None = None) -> list[str]:
+def names(fmu: Any, causality: str, variability: str | None = None) -> list[str]:
     """Names of the variables with a causality and, if given, a variability, in their order."""
     return [
         name

@@ -111,6 +111,10 @@ REFUSED = {
     "no names": ("0,1,2,3\n" * 200, "names of the columns in the first line, got the number 0"),
     "text": (_NAMES + "a,b,c,d\n" * 200, 'numbers in at least 4 columns, got "a,b,c,d" in row 2'),
     "short": (_NAMES + "1,2,3,4\n" * 5, "100 to 1 million rows below the names, got 5"),
+    "quoted names": (
+        'time,"theta, motor",q,tau,x\n' + "1,2,3,4,5,6\n" * 200,
+        "row 2: expected 5 cells, as in the first line, got 6",
+    ),
     "twice": ("t,q,q,tau\n" + "1,2,3,4\n" * 200, 'name of its own for each column, got "q" twice'),
     "binary": ("PK\3\4\0\0\n", "expected text with separated values, got a binary file"),
 }

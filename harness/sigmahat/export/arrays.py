@@ -20,13 +20,15 @@ class Array:
 def arrays(names: Sequence[str]) -> list[Array]:
     """The arrays that variables of these names form, in their order.
 
-    Raises ``ValueError`` for elements that are missing or in another order.
+    Raises ``ValueError`` for elements that are missing, apart or in another order.
     """
     found: list[Array] = []
     place = 0
     while place < len(names):
         element = re.fullmatch(r"(.+)\[0(,0)*\]", names[place])
         if element is None:
+            if names[place].endswith("]"):
+                raise ValueError(f"{names[place]}: expected the elements before it in front of it")
             found.append(Array(names[place], place, (), 1))
         else:
             found.append(_array(element[1], place, names))

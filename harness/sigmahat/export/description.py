@@ -68,6 +68,7 @@ def complete(root: Element) -> str:
     """
     for reference, variable in enumerate(variables(root)):
         variable.set("valueReference", str(reference))
+        variable.attrib.pop("array", None)
     _remove_unused_units(root)
     _add_display_units(root)
     _add_model_structure(root)
@@ -101,18 +102,23 @@ def write(
     the C files of both; those in a folder ``fmi2`` or ``fmi3`` are for that version only.
     """
     out.mkdir(parents=True, exist_ok=True)
-    root, delivered = render(template, version), render(template, version)
+    root = render(template, version)
     sources = list(sources)
-    _add_source_files(delivered, source_files.names(source_files.for_version(sources, 2)))
-    guid = complete(delivered)
+    _add_source_files(root, source_files.names(source_files.for_version(sources, 2)))
+    descriptions = {
+        v.attrib["name"].partition("[")[0]: v.attrib["array"]
+        for v in variables(root)
+        if "array" in v.attrib
+    }
+    guid = complete(root)
     (out / "variables.h").write_text(c_table(root, struct, storage(root), guid), encoding="utf-8")
-    _write_xml(delivered, out / "modelDescription.xml")
+    _write_xml(root, out / "modelDescription.xml")
     names = source_files.names(source_files.for_version(sources, 3))
     described = fmi3_description.build_description(template.stem, names)
     (out / "fmi3").mkdir(exist_ok=True)
-    _write_xml(fmi3_description.twin(delivered), out / "fmi3/modelDescription.xml")
+    _write_xml(fmi3_description.twin(root, descriptions), out / "fmi3/modelDescription.xml")
     _write_xml(described, out / "fmi3/buildDescription.xml")
-    shown = fmi3_description.terminals_and_icons(delivered)
+    shown = fmi3_description.terminals_and_icons(root)
     _write_xml(shown, out / "fmi3/terminalsAndIcons.xml")
 
 

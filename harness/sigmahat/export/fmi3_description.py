@@ -6,7 +6,7 @@ there is a variable for time, whose reference follows the others.
 """
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
@@ -16,8 +16,11 @@ from sigmahat.export.templates import variables
 _TYPES = {"Real": "Float64", "Integer": "Int32", "Boolean": "Boolean", "Enumeration": "Enumeration"}
 
 
-def twin(root: Element) -> Element:
-    """Model description of FMI 3.0 for the complete one of FMI 2.0, which is left as it is."""
+def twin(root: Element, descriptions: Mapping[str, str]) -> Element:
+    """Model description of FMI 3.0 for the complete one of FMI 2.0, which is left as it is.
+
+    ``descriptions`` are those of the arrays, by their names.
+    """
     made = Element("fmiModelDescription", {**root.attrib, "fmiVersion": "3.0"})
     made.set("instantiationToken", made.attrib.pop("guid"))
     (identifier,) = (e.attrib["modelIdentifier"] for e in root.findall("CoSimulation"))
@@ -36,7 +39,9 @@ def twin(root: Element) -> Element:
         _convert_types(definition)
     for units in made.findall("UnitDefinitions"):
         _add_second(units)
-    made.append(_model_variables(root, found))
+    for categories in made.findall("LogCategories"):  # FMI 3.0 has no requests for status
+        categories.remove(categories.findall("Category[@name='logStatusDiscard']")[0])
+    made.append(_model_variables(root, found, descriptions))
     made.append(_model_structure(root, found))
     ElementTree.indent(made)
     return made
@@ -55,13 +60,16 @@ def _add_second(units: Element) -> None:
         ElementTree.SubElement(ElementTree.SubElement(units, "Unit", name="s"), "BaseUnit", s="1")
 
 
-def _model_variables(root: Element, found: Sequence[Array]) -> Element:
+def _model_variables(
+    root: Element, found: Sequence[Array], descriptions: Mapping[str, str]
+) -> Element:
     made = Element("ModelVariables")
     listed = variables(root)
     for array in found:
         elements = listed[array.first : array.first + array.length]
         kind, common = elements[0][0], dict(elements[0].attrib)
-        common["description"] = common.pop("array", common["description"])
+        if array.dimensions:
+            common["description"] = descriptions[array.name]
         start = " ".join(e[0].attrib["start"] for e in elements if "start" in e[0].attrib)
         variable = ElementTree.SubElement(
             made, _TYPES[kind.tag], {**common, **kind.attrib, "name": array.name}
@@ -150,10 +158,8 @@ def terminals_and_icons(root: Element) -> Element:
 
 def _measurements(root: Element) -> list[tuple[str, str]]:
     """Variables of the terminal and their names in it."""
-    names = {c: [] for c in ("input", "output", "parameter")}  # type: dict[str, list[str]]
-    for variable in variables(root):
-        names[variable.attrib["causality"]].append(variable.attrib["name"])
-    measured = [name for name in names["output"] if "_measured" in name]
+    names = [(v.attrib["causality"], v.attrib["name"]) for v in variables(root)]
+    measured = [name for kind, name in names if kind == "output" and "_measured" in name]
     if measured:
         return [(name, name.replace("_measured", "")) for name in measured]
-    return [(name, name.replace("_sensor", "")) for name in names["input"]]
+    return [(name, name.replace("_sensor", "")) for kind, name in names if kind == "input"]

@@ -1,8 +1,9 @@
 """Templates of model descriptions, in ``modelDescription/``.
 
 A template is Jinja2 that renders to FMI 2.0 XML without what follows from the rest, which
-``description`` adds. One attribute is not in FMI: ``depends`` of an output names the variables that
-its initial value depends on, for the model structure.
+``description`` adds. Two attributes are not in FMI: ``depends`` of an output names the variables
+that its initial value depends on, for the model structure; ``array`` of a first element describes
+its array.
 """
 
 import math

@@ -59,7 +59,11 @@ class Fmu:
             raise FmuError(f"{path}: not a readable FMU ({error}); build it again") from error
         self.name: str = self.description.modelName
         if self.description.fmiVersion != "2.0" or self.description.coSimulation is None:
-            raise FmuError(f"{path}: expected an FMU for FMI 2.0 Co-Simulation")
+            kind = "Co-Simulation" if self.description.coSimulation else "another use"
+            raise FmuError(
+                f"{path}: expected an FMU for FMI 2.0 Co-Simulation, got FMI "
+                f"{self.description.fmiVersion} for {kind}"
+            )
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.folder = mkdtemp(prefix="sigmahat-")
         self._library: list[fmi2.FMU2Slave] = []

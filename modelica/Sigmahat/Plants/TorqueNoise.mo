@@ -8,7 +8,7 @@ block TorqueNoise "Noise of the measured torques of one motor, (32), (33)"
     "Variance of the noise of a measured flexibility torque, (33)";
   parameter Integer seed = 1 "Seed of the noise: one seed is one sequence of samples, on every platform";
   parameter Types.Time samplePeriod(min=1e-9) = 1e-3
-    "Time between two samples of the noise, from the start time on; it is held in between, whatever the communication step";
+    "Time between two samples of the noise, the first of them at time 0; it is held in between";
   replaceable function drawNoise = standardNormal constrainedby partialNoise "What draws a number";
   discrete output Types.Torque tau(start=0, fixed=true) "Noise of the motor torque";
   discrete output Types.Torque tau_e(start=0, fixed=true) "Noise of the flexibility torque";

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -82,3 +84,16 @@ def test_inputs_without_a_motor_have_none() -> None:
     with Instance(sigmahat.fmu("AwasPlant")) as fmu:
         found = {name.split(".")[1] for name in fmu.variables if name.startswith("signal.")}
     assert found == set(INPUTS) - {"tau_ext"}
+
+
+def test_a_late_importer_gets_the_sine_of_the_right_time() -> None:
+    """A communication point may differ a little from the end of the last step."""
+    late, h, k = 0.9e-6, 1e-3, 2
+    with Instance(sigmahat.fmu("AwasPlant")) as fmu:
+        values = {"signal.tau.amplitude": 1.0, "signal.tau.frequency": 100.0}
+        fmu.initialise({**values, "noise.tau_variance": 0.0})
+        for i in range(k):
+            assert fmu.step(i * h, h) == OK
+        assert fmu.step(k * h + late, h) == OK
+        expected = math.sin(2 * math.pi * 100.0 * ((k + 1) * h + late))
+        assert fmu.get("tau_measured") == pytest.approx(expected, abs=1e-9)
