@@ -1,6 +1,6 @@
 # Target coverage: runs the tests of the C code, then prints the share of its branches that they ran.
 sigmahat_add_packages(coverage)
-file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py)
+file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py tests/fmi3/test_*.py)
 # These compile programs of their own, without coverage, run no C code, or need more packages.
 list(FILTER tests EXCLUDE REGEX
      "controller|endurance|library_packages|misfit_study|model_description|mutation|sample_loop|static|stress")
@@ -18,4 +18,6 @@ add_custom_target(
   COMMENT "Tests of the C code, and the branches that they took" USES_TERMINAL VERBATIM)
 add_dependencies(coverage sigmahat_test_driver StiffnessEstimator AntagonisticStiffnessEstimator
                  AwasPlant FlexibleJointPlant AntagonisticVsaPlant RealJointPlant awas_system
+                 StiffnessEstimator_FMI3 AntagonisticStiffnessEstimator_FMI3 AwasPlant_FMI3
+                 FlexibleJointPlant_FMI3 AntagonisticVsaPlant_FMI3 RealJointPlant_FMI3
                  packages_coverage)

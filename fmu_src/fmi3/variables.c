@@ -45,8 +45,8 @@ static int fits(const sh_access *access, const fmi3ValueReference references[], 
     if (found == expected)
         return 1;
     sh_log(access->handle, SH_ERROR,
-           "%s: nValues = %lu; expected %lu, the elements of %lu variables.", access->function,
-           (unsigned long)expected, (unsigned long)found, (unsigned long)count);
+           "%s: nValues = %lu; expected %lu, the number of elements behind %lu references.",
+           access->function, (unsigned long)expected, (unsigned long)found, (unsigned long)count);
     return 0;
 }
 
