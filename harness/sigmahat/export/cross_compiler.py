@@ -34,22 +34,44 @@ PLATFORMS_3 = {
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared", "-s")
 
 
+HEADERS = Path(fmpy.__file__).parent / "c-code"
+"""Folder of the header files of FMI."""
+
+
+def compile_files(target: str, arguments: Iterable[str | Path], cache: Path, cwd: Path) -> None:
+    """Call the compiler for a target in a folder.
+
+    ``cache`` is a folder for compiled parts that can be used again. Raises
+    ``subprocess.CalledProcessError`` where the compiler refuses; it says why on stderr.
+    """
+    folder = str(cache.resolve())
+    subprocess.run(
+        [sys.executable, "-m", "ziglang", "cc", "-target", target, *arguments],
+        cwd=cwd,
+        env={**os.environ, "ZIG_GLOBAL_CACHE_DIR": folder, "ZIG_LOCAL_CACHE_DIR": folder},
+        check=True,
+    )
+
+
+def source_files(folder: Path) -> list[Path]:
+    """The C files of an unpacked FMU."""
+    # FMPy reads the SourceFiles of FMI 2.0 as a build configuration of FMI 3.0.
+    listed = _description(folder).buildConfigurations[0].sourceFileSets[0].sourceFiles
+    return [folder / "sources" / source for source in listed]
+
+
 def _description(folder: Path) -> Any:
-    """FMPy reads the SourceFiles of FMI 2.0 as a build configuration of FMI 3.0."""
     return fmpy.read_model_description(str(folder))
 
 
 def compile_binary(folder: Path, platform: str, cache: Path) -> None:
     """Compile the sources of an unpacked FMU, and put the binary in its place in the folder.
 
-    ``cache`` is a folder for compiled parts that can be used again. Raises
-    ``subprocess.CalledProcessError`` where the compiler refuses; it says why on stderr.
+    ``cache`` and errors as ``compile_files``.
     """
-    description = _description(folder)
-    sources = description.buildConfigurations[0].sourceFileSets[0].sourceFiles
-    name = description.coSimulation.modelIdentifier
+    name = _description(folder).coSimulation.modelIdentifier
     compile_shared(
-        [folder / "sources" / source for source in sources],
+        source_files(folder),
         [folder / "sources"],
         folder / "binaries" / platform / name,
         platform,
@@ -62,27 +84,22 @@ def compile_shared(
 ) -> Path:
     """Compile C files to a shared library, and return its path: out with the usual extension.
 
-    ``includes`` are folders of headers beside FMI's; ``cache`` and errors as ``compile_binary``.
+    ``includes`` are folders of headers beside FMI's; ``cache`` and errors as ``compile_files``.
     """
     target, extension = {**PLATFORMS, **PLATFORMS_3}[platform]
     library = out.with_name(out.name + extension)
-    folders = [*includes, Path(fmpy.__file__).parent / "c-code"]
     with TemporaryDirectory() as scratch:
-        subprocess.run(
+        compile_files(
+            target,
             [
-                *(sys.executable, "-m", "ziglang", "cc", "-target", target, *FLAGS),
-                *(f"-I{folder.resolve()}" for folder in folders),
+                *FLAGS,
+                *(f"-I{folder.resolve()}" for folder in (*includes, HEADERS)),
                 *(source.resolve() for source in sources),
                 # Without a folder: a dynamic library of macOS holds the name it was made with.
                 *("-lm", "-o", library.name),
             ],
-            cwd=scratch,
-            env={
-                **os.environ,
-                "ZIG_GLOBAL_CACHE_DIR": str(cache.resolve()),
-                "ZIG_LOCAL_CACHE_DIR": str(cache.resolve()),
-            },
-            check=True,
+            cache,
+            Path(scratch),
         )
         library.parent.mkdir(parents=True, exist_ok=True)
         shutil.move(Path(scratch) / library.name, library)
@@ -92,7 +109,7 @@ def compile_shared(
 def release(fmu: Path, out: Path, cache: Path) -> None:
     """Write a copy of an FMU with the binaries of every platform instead of its own.
 
-    All are compiled from the sources in the FMU; ``cache`` and errors as ``compile_binary``.
+    All are compiled from the sources in the FMU; ``cache`` and errors as ``compile_files``.
     """
     with TemporaryDirectory() as unpacked:
         folder = Path(fmpy.extract(str(fmu), unzipdir=unpacked))

@@ -9,18 +9,14 @@ from __future__ import annotations
 
 import base64
 import json
-import os
 import shutil
-import subprocess
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import fmpy
-
 from sigmahat import guessing
+from sigmahat.export import cross_compiler
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.logs.configuration import ANOTHER_ROBOT, ANY_COULOMB
 from sigmahat.paper.scenarios import scenario
@@ -46,7 +42,7 @@ FUNCTIONS = (
 """What the page calls."""
 # As for the other platforms, no contraction to fused operations.
 _FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-s")
-_TARGET = ("-target", "wasm32-wasi", "-mexec-model=reactor")
+_TARGET, _KIND = "wasm32-wasi", "-mexec-model=reactor"
 _UNKNOWN = {
     "prior.B": ANOTHER_ROBOT,
     "prior.D_theta": ANOTHER_ROBOT,
@@ -94,30 +90,21 @@ def compile_wasm(folder: Path, callbacks: Path, cache: Path) -> bytes:
 
     ``cache`` and errors as ``write``.
     """
-    description: Any = fmpy.read_model_description(str(folder))
-    sources = description.buildConfigurations[0].sourceFileSets[0].sourceFiles
     with TemporaryDirectory() as scratch:
         binary = Path(scratch) / "fmu.wasm"
-        subprocess.run(
+        cross_compiler.compile_files(
+            _TARGET,
             [
-                *(sys.executable, "-m", "ziglang", "cc", *_TARGET, *_FLAGS),
-                *(f"-I{each}" for each in (folder / "sources", _headers())),
-                *(str(folder / "sources" / source) for source in sources),
-                *(str(callbacks), "-lm", "-o", str(binary)),
+                *(_KIND, *_FLAGS),
+                *(f"-I{each.resolve()}" for each in (folder / "sources", cross_compiler.HEADERS)),
+                *(source.resolve() for source in cross_compiler.source_files(folder)),
+                *(callbacks.resolve(), "-lm", "-o", binary),
                 *(f"-Wl,--export={name}" for name in FUNCTIONS),
             ],
-            env={
-                **os.environ,
-                "ZIG_GLOBAL_CACHE_DIR": str(cache.resolve()),
-                "ZIG_LOCAL_CACHE_DIR": str(cache.resolve()),
-            },
-            check=True,
+            cache,
+            Path(scratch),
         )
         return binary.read_bytes()
-
-
-def _headers() -> Path:
-    return Path(fmpy.__file__).parent / "c-code"
 
 
 def _variable(variable: Any) -> dict[str, Any]:
