@@ -66,9 +66,7 @@ def storage_in_arrays(root: Element) -> dict[str, str]:
         full = variable.attrib["name"]
         if is_of_every_plant(full):
             signal = _SIGNAL.fullmatch(full)
-            places[full] = (
-                places[signal[1]].replace("u", signal[2]) if signal else _OWN_FIELDS[full]
-            )
+            places[full] = signal[2] + places[signal[1]][1:] if signal else _OWN_FIELDS[full]
             continue
         name = array[variable.attrib["causality"]]
         places[full] = f"{name}[{count[name]}]"
