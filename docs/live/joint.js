@@ -7,6 +7,8 @@ const SHOWN = {
   plant: ["sigma", "tau_e"],
   estimator: ["sigma", "tau_e", "sigma_std", "confident", "doubt"],
 };
+// Of the noise of the paper: the estimator is told no less, since it has to be told some.
+const LEAST_NOISE = 1 / 20;
 const MOST_WORK = 8; // [ms] of a frame, for samples: at a speed that is too high, time goes slower
 
 const joint = {
@@ -71,7 +73,7 @@ const joint = {
         ...SCENARIO.estimator,
         method: this.setting("method"),
         "motor.D_theta": Number(of["motor.D_theta"].start) * believed,
-        "noise.tau": Number(variables["noise.tau"].start) * (noise || 1),
+        "noise.tau": Number(variables["noise.tau"].start) * Math.max(noise, LEAST_NOISE),
       },
     };
   },

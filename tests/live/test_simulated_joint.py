@@ -76,6 +76,20 @@ def test_wrong_friction_misleads_paper2011_and_not_matched_filter(page: LivePage
     page.sets("friction", 0)
 
 
+def test_the_band_holds_without_noise(page: LivePage) -> None:
+    """The estimator is told that there is next to none; it was once told that of the paper."""
+    page.page.run("joint.form.elements.method.value = METHODS.MatchedFilter")
+    for noise in (0, 1):
+        page.sets("noise", noise)
+        simulate(page, 45)
+        history = {
+            name: page.page.run("return joint.history.get(arguments[0]).at(-1)", name)
+            for name in ("sigma", "low", "high")
+        }
+        assert history["low"] < history["sigma"] < history["high"]
+        assert page.text("value-doubt") == "confident"
+
+
 def test_only_a_method_that_claims_a_band_gets_one(page: LivePage) -> None:
     for method, claims in (("Paper2011", False), ("MatchedFilter", True)):
         page.page.run("joint.form.elements.method.value = METHODS[arguments[0]]", method)
