@@ -19,6 +19,9 @@ from sigmahat.fmi.instance import Value
 
 KNEE = Path(__file__).parents[2] / "examples" / "tutorial" / "knee.csv"
 KNEE_FIELDS = {"theta per": 4096, "theta gear": 100, "tau per": 0.1, "motor.gamma": ""}
+RECORD = ["sigma", "sigma_std", "doubt"]
+ANSWER = r"Stiffness, with 95 % band: \d+\.\d ± \d\d\.\d N·m/rad at 0 rad \(confident\)\. "
+"""How the answer to KNEE begins."""
 _CURVES = """
 return Object.fromEntries(log.run.curves().flatMap((curve, i) => Object.entries(curve)
   .map(([name, values]) => [`${name} ${i}`, values.length ? values : [values]])));
@@ -61,7 +64,7 @@ def test_the_log_of_the_tutorial(page: LivePage) -> None:
     given = parameters(page)
     assert given["motor.gamma"] == 100  # the gear ratio of theta
     assert given["samplePeriod"] == pytest.approx(t[1] - t[0])
-    expected = sigmahat.Estimator(given).run(theta, np.radians(degrees), 0.1 * current)
+    expected = sigmahat.Estimator(given, RECORD).run(theta, np.radians(degrees), 0.1 * current)
     for name, values in found.items():
         size = np.ptp(expected[name][1000:])
         assert np.max(np.abs(values - expected[name])[1000:]) < 1e-9 * size, name
@@ -72,7 +75,39 @@ def test_the_log_of_the_tutorial(page: LivePage) -> None:
     torque = np.abs(curve["torque 0"] - (300 * phi + 25000 * phi**3))
     assert np.all(torque <= 3 * curve["torqueStd 0"] + 1e-9)
     assert np.count_nonzero(phi == 0) == 1 and std.max() < 50
-    assert "The estimator is confident." in page.text("answer")
+    assert re.match(ANSWER, page.text("answer")), page.text("answer")
+    half = (expected["doubt"] == "None")[len(t) // 2 :]
+    assert f"the estimator was confident {100 * np.mean(half):.3g} % of" in page.text("answer")
+
+
+def test_a_negative_stiffness_is_not_confident_and_is_drawn(page: LivePage) -> None:
+    assert page.drops(KNEE.read_text(encoding="utf-8"), "knee.csv") == ""
+    assert page.estimates({**KNEE_FIELDS, "tau reversed": True}) == ""
+    value, rest = page.text("answer").removeprefix("Stiffness, with 95 % band: ").split(" ", 1)
+    assert float(value.replace("\N{MINUS SIGN}", "-")) < 0
+    assert "(not confident: stiffness below 0)" in rest and "(confident)" not in rest
+    low, high = page.page.run("return answer.plots[0].content.y")
+    sigma = page.columns_of_run(["sigma"])["sigma"]
+    assert low < np.min(sigma[len(sigma) // 2 :]) and high >= 0
+
+
+@pytest.mark.parametrize(
+    ("value", "half", "expected"),
+    [
+        (303.456, 12.9, "303.5 ± 12.9"),
+        (-13.94, 5.474, "-13.94 ± 5.47"),
+        (42.7, 1234, "43 ± 1234"),
+        (42.7, 9.9996, "42.7 ± 10.0"),
+        (0.00123, 0.000012, "0.0012300 ± 0.0000120"),
+        (-2.5e7, 3.21e5, "(-2.5000 ± 0.0321)e7"),
+        (1e-9, 2e-9, "(1.00 ± 2.00)e-9"),
+    ],
+)
+def test_a_value_has_the_decimals_of_its_band(
+    value: float, half: float, expected: str, page: LivePage
+) -> None:
+    found = page.page.run("return withBand(...arguments)", value, half)
+    assert found.replace("\N{MINUS SIGN}", "-") == expected
 
 
 def test_a_log_with_a_motor_that_sets_the_stiffness(page: LivePage) -> None:

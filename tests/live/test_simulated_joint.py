@@ -48,10 +48,11 @@ def error(page: LivePage) -> float:
 
 def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
     page.sets("speed", "10")
-    page.page.driver.find_element("id", "again").click()
-    assert page.time() == 0
     button = page.page.driver.find_element("id", "run")
-    button.send_keys(Keys.ENTER)
+    simulate(page, 15)
+    assert button.text == "Start" and page.time() == 15
+    page.page.driver.find_element("id", "again").click()
+    assert button.text == "Pause" and page.time() < 15
     time.sleep(0.5)
     button.send_keys(Keys.ENTER)
     reached = page.time()
