@@ -26,16 +26,23 @@ const log = {
         if (name === "drop") this.take(event.dataTransfer.files[0]);
       });
     this.form.addEventListener("submit", (event) => { event.preventDefault(); this.estimate(); });
+    for (const name of ["input", "change"]) this.form.addEventListener(name, () => this.forget());
     this.form.addEventListener("change", (event) => { if (event.target.closest("#ports")) this.showParameters(); });
+  },
+
+  /** Ends a run and hides its answer, which would be one to other settings. */
+  forget() {
+    this.run = null;
+    document.getElementById("progress").hidden = true;
+    answer.hide();
+    say("log-message", "");
   },
 
   /** Reads a file, and guesses its columns. */
   async take(file) {
     if (!file) return;
-    this.run = null;
     this.form.hidden = true;
-    answer.hide();
-    say("log-message", "");
+    this.forget();
     try {
       await opened;
       checkSize(file);
@@ -47,6 +54,7 @@ const log = {
     say("log-name", `${file.name}: ${this.table.rows} rows`);
     this.form.hidden = false;
     this.showPorts(guessed(this.table.names));
+    document.querySelectorAll("#parameters label").forEach((label) => label.remove()); // of another log
     this.showParameters();
   },
 
@@ -159,9 +167,8 @@ const log = {
   /** Runs the estimator over the log, and shows its answer. */
   async estimate() {
     const bar = document.getElementById("progress");
-    say("log-message", "");
-    answer.hide();
-    let run = this.run = null;
+    this.forget();
+    let run = null;
     try {
       const data = this.read();
       this.run = run = new LogEstimate(joint.estimator, this.starts(data), data.signals);
