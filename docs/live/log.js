@@ -102,7 +102,7 @@ const log = {
       else if (!optional) throw new Error(`${port}: choose its column`);
     }
     const { time, ...signals } = ports;
-    return { signals, T: samplePeriod(time) };
+    return { signals, T: samplePeriod(time, this.table.first) };
   },
 
   /** A field for each parameter. What the user has typed stays. */

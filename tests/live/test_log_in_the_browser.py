@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -152,3 +153,22 @@ def test_decimal_commas_quotes_and_units(page: LivePage) -> None:
     np.testing.assert_allclose(found["theta"], np.radians(np.round(t, 6)), rtol=1e-12)
     np.testing.assert_allclose(found["q"], 2 * np.radians(np.round(t, 6)), rtol=1e-12)
     np.testing.assert_allclose(found["tau"], 0.05 * np.round(t, 6), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "above", ["", "sep=;\r\n", "# of today; by me\n#\n\n", "sep=;\n# of today\n"]
+)
+def test_lines_above_the_names_are_skipped(above: str, page: LivePage) -> None:
+    rows = "".join(f"{k};0,5;1;2\n" for k in range(200))
+    assert page.drops(f"{above}t;theta;q;tau\n{rows}") == ""
+    assert page.text("log-name") == "log.csv: 200 rows"
+    found = page.arrays("return { theta: log.table.column('theta') }")
+    assert found["theta"].tolist() == [0.5] * 200
+
+
+def test_names_behind_a_hash_as_numpy_writes_them(page: LivePage) -> None:
+    text = io.StringIO()
+    np.savetxt(text, np.ones((200, 4)), header="of today\nt\ttheta\tq\ttau", delimiter="\t")
+    assert page.drops(text.getvalue().replace(".", ",")) == ""
+    assert page.page.run("return log.table.names") == ["t", "theta", "q", "tau"]
+    assert page.arrays("return { q: log.table.column('q') }")["q"].tolist() == [1.0] * 200

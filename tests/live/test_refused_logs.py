@@ -26,12 +26,21 @@ REFUSED = {
     "blank": ("\n\n", "the file is empty"),
     "prose": ("Dear all,\nsee you\n", 'expected at least 4 columns .* got 2: "Dear all,"'),
     "few columns": ("time,q\n" + "1,2\n" * 200, "expected at least 4 columns .* got 2"),
-    "no names": ("0,1,2,3\n" * 200, "names of the columns in the first line, got the number 0"),
+    "no names": ("0,1,2,3\n" * 200, "names of the columns above the numbers, got the number 0"),
     "text": (_NAMES + "a,b,c,d\n" * 200, 'numbers in at least 4 columns, got "a,b,c,d" in row 2'),
+    "units": (
+        _NAMES + "s,rad,rad,Nm\n" + "1,2,3,4\n" * 200,
+        r"row 2 has no numbers \(units\?\): delete",
+    ),
+    "comments": ("#\n# of today\n", "the file is empty"),
+    "units below a comment": (
+        "# of today\n" + _NAMES + "s,rad,rad,Nm\n" + "1,2,3,4\n" * 200,
+        "row 3 has no numbers",
+    ),
     "short": (_NAMES + "1,2,3,4\n" * 5, "100 to 1 million rows below the names, got 5"),
     "quoted names": (
         'time,"theta, motor",q,tau,x\n' + "1,2,3,4,5,6\n" * 200,
-        "row 2: expected 5 cells, as in the first line, got 6",
+        "row 2: expected 5 cells, one for each name, got 6",
     ),
     "twice": ("t,q,q,tau\n" + "1,2,3,4\n" * 200, 'name of its own for each column, got "q" twice'),
     "binary": ("PK\3\4\0\0\n", "expected text with separated values, got a binary file"),
