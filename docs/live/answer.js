@@ -78,7 +78,7 @@ function inWords(run, curves, warning) {
   const found = shares(run.columns.doubt), percent = (share) => `${threeDigits(100 * share)} %`;
   const sure = found.find(([value]) => value === NO_DOUBT)?.[1] ?? 0;
   const reasons = found.filter(([value]) => value !== NO_DOUBT)
-    .map(([value, share]) => `${reason(value)} ${percent(share)}`);
+    .map(([value, share]) => `${reason(value)}: ${percent(share)}`);
   return `Stiffness, with 95 % band: ${values.join("; ")}. In the second half of the log the estimator was confident `
-    + `${percent(sure)} of the time${reasons.length ? ` (otherwise: ${reasons.join(", ")})` : ""}.${warning ? ` ${warning}` : ""}`;
+    + `${percent(sure)} of the time${reasons.length ? ` (${reasons.join(", ")})` : ""}.${warning ? ` ${warning}` : ""}`;
 }

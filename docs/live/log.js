@@ -1,13 +1,6 @@
 "use strict";
 // A log of the user: the file, its columns, the parameters, and the answer.
 
-const ROOM = 1.2; // of a range over what the log has
-const GEAR = "motor.gamma"; // the log does not show it, and no value of another robot fits
-const GUESSES = { // parameters with a value that comes from the log; others begin as in the FMU
-  "range.phi": ({ theta, q }) => ROOM * largest(q.map((value, i) => value - theta[i])),
-  "noise.tau": ({ tau }) => noise(tau),
-  "prior.tau_e": ({ tau }, { [GEAR]: gamma }) => ROOM * gamma * largest(tau),
-};
 const ASKED = ["motor.B", "motor.D_theta", GEAR, "rls.n", "range.phi", "prior.tau_e", "prior.B",
   "prior.D_theta", "prior.tau_coulomb", "noise.tau"];
 const ASKED_WITH_SETTING = ["rls.m", "setPoint.offset", "setPoint.scale", "range.setPoint"];
@@ -102,6 +95,7 @@ const log = {
       else if (!optional) throw new Error(`${port}: choose its column`);
     }
     const { time, ...signals } = ports;
+    checkMotion(signals);
     return { signals, T: samplePeriod(time, this.table.first) };
   },
 
@@ -176,23 +170,10 @@ const log = {
       await run.run((done) => { bar.value = done; }, () => this.run !== run);
       if (this.run === run) answer.show(run);
     } catch (error) {
-      if (this.run === run) say("log-message", error.message);
+      if (this.run === run) say("log-message", withAdvice(error.message, this.typed()));
     }
     if (this.run === run) bar.hidden = true; // another one may run by now
   },
 };
-
-/**
- * Standard deviation of the noise of a signal: of its second differences, in which a motion hardly
- * shows. Their median counts, since friction steps.
- */
-function noise(values) {
-  const seconds = values.slice(2).map((value, i) => Math.abs(value - 2 * values[i + 1] + values[i])).sort();
-  return (1.4826 * seconds[seconds.length >> 1]) / Math.sqrt(6) || 1e-6 * largest(values);
-}
-
-function largest(values) {
-  return values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
-}
 
 log.open();

@@ -70,6 +70,7 @@ def with_value(values: Array, place: int, value: float) -> Array:
 
 _TIME, _TAU = good()["time"], good()["tau"]
 BAD_COLUMNS = {
+    "no torque": ({"tau": 0 * _TAU}, "tau: expected a torque that changes, got 0 N·m in all rows"),
     "nan": (
         {"tau": with_value(_TAU, 50, np.nan)},
         'row 52, column tau: expected a finite number, got "nan"',
@@ -101,9 +102,27 @@ def test_a_bad_column_is_named(case: str, page: LivePage) -> None:
         ({"motor.gamma": ""}, "motor.gamma: fill in the gear ratio of your joint"),
         ({"rls.n": 2.5}, "rls.n: expected a whole number, got 2.5"),
         ({"rls.n": 6, "motor.gamma": 0}, "motor.gamma = 0 "),  # the FMU says it
+        ({"motor.B": -1}, "Parameter motor.B = -1 is out of its range"),
+        ({"q column": "theta"}, "theta and q do not differ: choose another column"),
+        ({"q column": "theta", "q zero": 0.1}, "expected a deformation that changes, got "),
+        ({"time unit": "us"}, "Is the unit of the time right?"),
+        ({"time unit": "ns"}, "Parameter samplePeriod = 1e-12 is out of its range"),
+        ({"theta gear": 1e-9}, "range.phi = 237226998 is out of its range"),
     ],
     ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
 )
 def test_a_bad_field_is_named(fields: dict[str, object], expected: str, page: LivePage) -> None:
     assert page.drops(csv(good())) == ""
     assert expected in page.estimates({"motor.gamma": 50, **fields})
+
+
+def test_what_is_guessed_is_called_so(page: LivePage) -> None:
+    assert page.drops(csv({**good(), "q": 1e9 * _TAU})) == ""
+    assert page.estimates({"motor.gamma": 50}).endswith("or fill it in.")
+    assert "guessed" not in page.estimates({"range.phi": 1e9})
+
+
+def test_a_gear_that_turns_backwards(page: LivePage) -> None:
+    """A negative gear ratio is one: the guess of the largest torque takes its size."""
+    assert page.drops(csv(good())) == ""
+    assert page.estimates({"motor.gamma": -50}) == ""
