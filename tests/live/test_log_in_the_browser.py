@@ -173,3 +173,11 @@ def test_names_behind_a_hash_as_numpy_writes_them(page: LivePage) -> None:
     assert page.drops(text.getvalue().replace(".", ",")) == ""
     assert page.page.run("return log.table.names") == ["t", "theta", "q", "tau"]
     assert page.arrays("return { q: log.table.column('q') }")["q"].tolist() == [1.0] * 200
+
+
+def test_the_page_has_every_unit_that_names_tell(page: LivePage) -> None:
+    script = """
+    const known = Object.values(PORTS).flatMap(({ units }) => Object.keys(units));
+    return Object.keys(WORDS.unit).filter((unit) => !known.includes(unit));
+    """
+    assert page.page.run(script) == []
