@@ -22,10 +22,9 @@ const answer = {
     say("answer", inWords(run, curves, warning));
     document.getElementById("answer").scrollIntoView({ block: "nearest" });
     const half = std.map((each) => NORMAL_95 * each);
-    const most = Math.max(...curves.flatMap((curve) => [...curve.sigma].map((each, i) => each + NORMAL_95 * curve.std[i])));
     this.plots[0].draw({
       x: range(t),
-      y: [0, roomy([0, 1.3 * Math.max(most, 1e-9)])[1]],
+      y: reach(curves, sigma),
       bands: [band(t, sigma, half)],
       lines: [{ x: t, y: sigma, color: "estimate" }],
     });
@@ -55,19 +54,31 @@ const answer = {
   },
 };
 
+/** For the stiffness over time: that of the curves, and that of the second half of the log, if it is not far off. */
+function reach(curves, sigma) {
+  const bands = curves.map(({ sigma: y, std }) => band([], y, std.map((each) => NORMAL_95 * each)));
+  const ends = range(...bands.flatMap(({ low, high }) => [low, high]));
+  const far = 3 * Math.max(...ends.map(Math.abs)), [low, high] = range(sigma.subarray(sigma.length >> 1));
+  const least = Math.min(0, ends[0], Math.max(low, -far)), most = Math.max(0, ends[1], Math.min(high, far));
+  const [bottom, top] = roomy([1.3 * least, 1.3 * most]);
+  return [least < 0 ? bottom : 0, most > 0 ? top : 0];
+}
+
 function band(x, y, half) {
   return { x, low: y.map((each, i) => each - half[i]), high: y.map((each, i) => each + half[i]), color: "band" };
 }
 
 /** The answer in words. */
 function inWords(run, curves, warning) {
-  const { confident, doubt } = run.columns, { items } = joint.estimator.variables.doubt;
-  const reason = Object.keys(items).find((name) => items[name] === doubt.at(-1));
-  const values = curves.map(({ phi, sigma, std, setPoint }) => {
+  const values = curves.map(({ phi, sigma, std, doubt, setPoint }) => {
     const i = phi.reduce((best, each, k) => (Math.abs(each) < Math.abs(phi[best]) ? k : best), 0);
     const where = curves.length > 1 ? ` at set-point ${shortly(setPoint)}` : "";
-    return `${shortly(sigma[i])} ± ${shortly(NORMAL_95 * std[i])} N·m/rad at ${Number(phi[i].toPrecision(2))} rad${where}`;
+    return `${withBand(sigma[i], NORMAL_95 * std[i])} N·m/rad at ${threeDigits(phi[i])} rad${where} (${confidence(doubt[i])})`;
   });
-  const sure = confident.at(-1) ? "The estimator is confident." : `The estimator is not confident: ${DOUBTS[reason]}.`;
-  return `Stiffness, with 95 % band: ${values.join("; ")}. ${sure}${warning ? ` ${warning}` : ""}`;
+  const found = shares(run.columns.doubt), percent = (share) => `${threeDigits(100 * share)} %`;
+  const sure = found.find(([value]) => value === NO_DOUBT)?.[1] ?? 0;
+  const reasons = found.filter(([value]) => value !== NO_DOUBT)
+    .map(([value, share]) => `${reason(value)}: ${percent(share)}`);
+  return `Stiffness, with 95 % band: ${values.join("; ")}. In the second half of the log the estimator was confident `
+    + `${percent(sure)} of the time${reasons.length ? ` (${reasons.join(", ")})` : ""}.${warning ? ` ${warning}` : ""}`;
 }

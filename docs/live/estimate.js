@@ -1,8 +1,8 @@
 "use strict";
 // The estimator over a log, and what it says over the deformation afterwards.
 
-const RUN = ["sigma", "sigma_std", "phi", "setPoint", "confident", "doubt"];
-const FROZEN = ["sigma", "sigma_std", "tau_e"];
+const RUN = ["sigma", "sigma_std", "phi", "setPoint", "doubt"];
+const FROZEN = ["sigma", "sigma_std", "tau_e", "doubt"];
 const INPUTS = ["theta", "q", "theta_c", "tau", "tau_e_sensor"];
 const WITHIN = 41; // points of a curve
 const OUTER = 0.001; // share of the points at either end: single wrong samples do not set the reach
@@ -46,8 +46,8 @@ class LogEstimate {
     return this.#settings().map(({ setPoint, thetaC, phi: [low, high] }) => {
       const phi = grid(low, high);
       const points = Array.from(phi, (each) => this.#at(each, thetaC));
-      const [sigma, std, torque] = FROZEN.map((_, i) => Float64Array.from(points, (point) => point[i]));
-      return { setPoint, phi, sigma, std, torque, torqueStd: integral(std, phi) };
+      const [sigma, std, torque, doubt] = FROZEN.map((_, i) => Float64Array.from(points, (point) => point[i]));
+      return { setPoint, phi, sigma, std, doubt, torque, torqueStd: integral(std, phi) };
     });
   }
 
@@ -81,6 +81,13 @@ class LogEstimate {
       };
     });
   }
+}
+
+/** Share of each value of the output doubt in the second half of a log, the largest first. */
+function shares(doubt) {
+  const later = doubt.subarray(doubt.length >> 1), counts = new Map();
+  for (const each of later) counts.set(each, (counts.get(each) ?? 0) + 1);
+  return [...counts].sort(([, a], [, b]) => b - a).map(([value, count]) => [value, count / later.length]);
 }
 
 /** Deformations of a curve, 0 among them if it is between the ends. */

@@ -77,7 +77,8 @@ class Fmu {
   }
 
   #explain(failed) {
-    return this.errors.at(-1) ?? `${this.type.name}: ${failed} failed`;
+    const message = this.errors.at(-1)?.replace(/^fmi2\w+: (.)/, (_, letter) => letter.toUpperCase());
+    return message ?? `${this.type.name}: ${failed} failed`;
   }
 }
 

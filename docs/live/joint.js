@@ -5,8 +5,10 @@ const SECONDS = SCENARIO.duration; // shown
 const NORMAL_95 = 1.96; // half the width of an interval of 95 % over the standard deviation
 const SHOWN = {
   plant: ["sigma", "tau_e"],
-  estimator: ["sigma", "tau_e", "sigma_std", "confident", "doubt"],
+  estimator: ["sigma", "tau_e", "sigma_std", "doubt"],
 };
+// Of the noise of the paper: the estimator is told no less, since it has to be told some.
+const LEAST_NOISE = 1 / 20;
 const MOST_WORK = 8; // [ms] of a frame, for samples: at a speed that is too high, time goes slower
 
 const joint = {
@@ -25,7 +27,10 @@ const joint = {
       if (event.target.name !== "speed") this.start();
     });
     document.getElementById("run").addEventListener("click", () => this.run(!this.running));
-    document.getElementById("again").addEventListener("click", () => this.start());
+    document.getElementById("again").addEventListener("click", () => {
+      this.start();
+      this.run(true);
+    });
     requestAnimationFrame((now) => this.frame(now));
     this.start();
     this.run(!matchMedia("(prefers-reduced-motion: reduce)").matches);
@@ -71,7 +76,7 @@ const joint = {
         ...SCENARIO.estimator,
         method: this.setting("method"),
         "motor.D_theta": Number(of["motor.D_theta"].start) * believed,
-        "noise.tau": Number(variables["noise.tau"].start) * (noise || 1),
+        "noise.tau": Number(variables["noise.tau"].start) * Math.max(noise, LEAST_NOISE),
       },
     };
   },
@@ -152,28 +157,17 @@ const joint = {
   },
 
   showValues(t, truth, estimate, half) {
-    const [, , , confident, doubt] = this.simulation.recorded.estimator.values;
-    const { items } = this.estimator.variables.doubt;
-    const reason = Object.keys(items).find((name) => items[name] === doubt);
+    const [, , , doubt] = this.simulation.recorded.estimator.values;
     const error = (100 * (estimate - truth)) / truth;
     say("value-t", `${t.toFixed(2)} s`);
     say("value-true", `${truth.toFixed(1)} N·m/rad`);
-    say("value-sigma", `${shortly(estimate)}${half > 0 ? ` ± ${shortly(half)}` : ""} N·m/rad`);
+    say("value-sigma", `${withBand(estimate, half)} N·m/rad`);
     say("value-error", `${shortly(error)} %`);
-    say("value-doubt", confident ? "confident" : `not confident: ${DOUBTS[reason]}`);
+    say("value-doubt", confidence(doubt));
   },
 };
 
 const METHODS = FMUS.StiffnessEstimator.variables.method.items;
-const DOUBTS = {
-  NoClaim: "the method claims no band",
-  NotExcited: "too little motion yet",
-  Misfit: "the data contradict the model",
-  OutOfRange: "deformation beyond range.phi",
-  FrictionOutsidePrior: "friction far from what was given",
-  InertiaOutsidePrior: "inertia far from what was given",
-  NegativeStiffness: "stiffness below 0",
-};
 
 /** Writes a text into the page. */
 function say(id, text) {

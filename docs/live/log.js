@@ -1,13 +1,6 @@
 "use strict";
 // A log of the user: the file, its columns, the parameters, and the answer.
 
-const ROOM = 1.2; // of a range over what the log has
-const GEAR = "motor.gamma"; // the log does not show it, and no value of another robot fits
-const GUESSES = { // parameters with a value that comes from the log; others begin as in the FMU
-  "range.phi": ({ theta, q }) => ROOM * largest(q.map((value, i) => value - theta[i])),
-  "noise.tau": ({ tau }) => noise(tau),
-  "prior.tau_e": ({ tau }, { [GEAR]: gamma }) => ROOM * gamma * largest(tau),
-};
 const ASKED = ["motor.B", "motor.D_theta", GEAR, "rls.n", "range.phi", "prior.tau_e", "prior.B",
   "prior.D_theta", "prior.tau_coulomb", "noise.tau"];
 const ASKED_WITH_SETTING = ["rls.m", "setPoint.offset", "setPoint.scale", "range.setPoint"];
@@ -26,16 +19,23 @@ const log = {
         if (name === "drop") this.take(event.dataTransfer.files[0]);
       });
     this.form.addEventListener("submit", (event) => { event.preventDefault(); this.estimate(); });
+    for (const name of ["input", "change"]) this.form.addEventListener(name, () => this.forget());
     this.form.addEventListener("change", (event) => { if (event.target.closest("#ports")) this.showParameters(); });
+  },
+
+  /** Ends a run and hides its answer, which would be one to other settings. */
+  forget() {
+    this.run = null;
+    document.getElementById("progress").hidden = true;
+    answer.hide();
+    say("log-message", "");
   },
 
   /** Reads a file, and guesses its columns. */
   async take(file) {
     if (!file) return;
-    this.run = null;
     this.form.hidden = true;
-    answer.hide();
-    say("log-message", "");
+    this.forget();
     try {
       await opened;
       checkSize(file);
@@ -47,6 +47,7 @@ const log = {
     say("log-name", `${file.name}: ${this.table.rows} rows`);
     this.form.hidden = false;
     this.showPorts(guessed(this.table.names));
+    document.querySelectorAll("#parameters label").forEach((label) => label.remove()); // of another log
     this.showParameters();
   },
 
@@ -94,7 +95,8 @@ const log = {
       else if (!optional) throw new Error(`${port}: choose its column`);
     }
     const { time, ...signals } = ports;
-    return { signals, T: samplePeriod(time) };
+    checkMotion(signals);
+    return { signals, T: samplePeriod(time, this.table.first) };
   },
 
   /** A field for each parameter. What the user has typed stays. */
@@ -159,9 +161,8 @@ const log = {
   /** Runs the estimator over the log, and shows its answer. */
   async estimate() {
     const bar = document.getElementById("progress");
-    say("log-message", "");
-    answer.hide();
-    let run = this.run = null;
+    this.forget();
+    let run = null;
     try {
       const data = this.read();
       this.run = run = new LogEstimate(joint.estimator, this.starts(data), data.signals);
@@ -169,23 +170,10 @@ const log = {
       await run.run((done) => { bar.value = done; }, () => this.run !== run);
       if (this.run === run) answer.show(run);
     } catch (error) {
-      if (this.run === run) say("log-message", error.message);
+      if (this.run === run) say("log-message", withAdvice(error.message, this.typed()));
     }
     if (this.run === run) bar.hidden = true; // another one may run by now
   },
 };
-
-/**
- * Standard deviation of the noise of a signal: of its second differences, in which a motion hardly
- * shows. Their median counts, since friction steps.
- */
-function noise(values) {
-  const seconds = values.slice(2).map((value, i) => Math.abs(value - 2 * values[i + 1] + values[i])).sort();
-  return (1.4826 * seconds[seconds.length >> 1]) / Math.sqrt(6) || 1e-6 * largest(values);
-}
-
-function largest(values) {
-  return values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
-}
 
 log.open();

@@ -135,13 +135,6 @@ function label(value, digits) {
   return large ? shortly(value) : value.toFixed(value ? digits : 0).replace("-", "−");
 }
 
-/** A number as people read it: never a hundred digits. */
-function shortly(value) {
-  const size = Math.abs(value), plain = value === 0 || (size >= 1e-3 && size < 1e5);
-  const text = plain ? value.toFixed(size < 10 ? 2 : 1) : Number(value.toPrecision(3)).toExponential();
-  return text.replaceAll("-", "−").replace("e+", "e");
-}
-
 /** Smallest and largest of the values that are finite, of several arrays. */
 function range(...arrays) {
   let [low, high] = [Infinity, -Infinity];

@@ -13,6 +13,8 @@ const ANGLES = {
 const TORQUES = {
   "N.m": { factor: 1 },
   "mN.m": { factor: 1e-3 },
+  "N.cm": { factor: 1e-2 },
+  "kN.m": { factor: 1e3 },
   A: { per: "N·m per A", factor: (number) => number },
   mA: { per: "N·m per A", factor: (number) => number / 1000 },
 };

@@ -77,9 +77,13 @@ class LivePage:
         self.until(lambda: self.text("log-message") or self.text("log-name"))
         return self.text("log-message")
 
+    def fills(self, fields: Mapping[str, object]) -> None:
+        """Fills fields of the log in."""
+        self.page.run(_FILL, fields)
+
     def estimates(self, fields: Mapping[str, object]) -> str:
         """Fills fields of the log in, and lets it be estimated. Returns what it complains of."""
-        self.page.run(_FILL, fields)
+        self.fills(fields)
         self.page.run("log.form.requestSubmit()")
         self.until(lambda: self.text("log-message") or self.text("answer"))
         return self.text("log-message")

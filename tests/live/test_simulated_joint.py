@@ -48,10 +48,11 @@ def error(page: LivePage) -> float:
 
 def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
     page.sets("speed", "10")
-    page.page.driver.find_element("id", "again").click()
-    assert page.time() == 0
     button = page.page.driver.find_element("id", "run")
-    button.send_keys(Keys.ENTER)
+    simulate(page, 15)
+    assert button.text == "Start" and page.time() == 15
+    page.page.driver.find_element("id", "again").click()
+    assert button.text == "Pause" and page.time() < 15
     time.sleep(0.5)
     button.send_keys(Keys.ENTER)
     reached = page.time()
@@ -74,6 +75,20 @@ def test_wrong_friction_misleads_paper2011_and_not_matched_filter(page: LivePage
     assert errors["Paper2011", 20] > 20 > 5 > errors["MatchedFilter", 20]
     assert max(errors["Paper2011", 0], errors["MatchedFilter", 0]) < 5
     page.sets("friction", 0)
+
+
+def test_the_band_holds_without_noise(page: LivePage) -> None:
+    """The estimator is told that there is next to none; it was once told that of the paper."""
+    page.page.run("joint.form.elements.method.value = METHODS.MatchedFilter")
+    for noise in (0, 1):
+        page.sets("noise", noise)
+        simulate(page, 45)
+        history = {
+            name: page.page.run("return joint.history.get(arguments[0]).at(-1)", name)
+            for name in ("sigma", "low", "high")
+        }
+        assert history["low"] < history["sigma"] < history["high"]
+        assert page.text("value-doubt") == "confident"
 
 
 def test_only_a_method_that_claims_a_band_gets_one(page: LivePage) -> None:
