@@ -64,7 +64,7 @@ def test_it_contains_no_path_of_the_build_machine(name: str, released: Path) -> 
             assert not any(place in opened.read(entry) for place in places), entry
 
 
-@pytest.mark.parametrize("name", ["StiffnessEstimator", "AwasPlant", "AwasPlant_FMI3"])
+@pytest.mark.parametrize("name", ["StiffnessEstimator", "AwasPlant_FMI3"])
 @pytest.mark.slow("an FMU is compiled again for every platform")
 def test_a_second_build_gives_identical_bytes(
     name: str, released: Path, build: Path, tmp_path: Path
@@ -81,7 +81,8 @@ def test_the_released_binary_gives_the_results_of_the_host_build(name: str, rele
     run.assert_same(run.simulate(sigmahat.fmu(name)))
 
 
-@pytest.mark.parametrize("name", [*FMUS, "AwasPlant_FMI3", "StiffnessEstimator_FMI3"])
+# The release compiles all of them from their sources, too; this is another way to do it.
+@pytest.mark.parametrize("name", ["StiffnessEstimator", "AwasPlant", "AwasPlant_FMI3"])
 def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: Path) -> None:
     run = Run(released / f"{name}.fmu")
     folder = Path(fmpy.extract(str(run.fmu), unzipdir=str(tmp_path / "unpacked")))
