@@ -65,11 +65,12 @@ static sh_status check(const void *model, sh_instance *log)
     return SH_OK;
 }
 
-static void initialize(void *model)
+static void initialize(void *model, double t)
 {
     AntagonisticStiffnessEstimator *fmu = model;
     int i;
 
+    (void)t; /* it counts ticks */
     for (i = 0; i < 2; ++i) {
         fmu->side[i].parameters = parameters_of(fmu, i);
         sh_estimator_fmu_initialize(&fmu->side[i]);

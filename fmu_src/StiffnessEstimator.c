@@ -11,8 +11,9 @@ static sh_status check(const void *model, sh_instance *log)
     return sh_estimator_fmu_check(&fmu->parameters, "", log);
 }
 
-static void initialize(void *model)
+static void initialize(void *model, double t)
 {
+    (void)t; /* it counts ticks */
     sh_estimator_fmu_initialize(model);
 }
 

@@ -56,8 +56,8 @@ typedef struct {
      * SH_ERROR after a message. May be NULL.
      */
     sh_status (*check)(const void *model, sh_instance *log);
-    /* Sets state and outputs from parameters and inputs. May be called again. */
-    void (*initialize)(void *model);
+    /* Sets state and outputs at time t [s] from parameters and inputs. May be called again. */
+    void (*initialize)(void *model, double t);
     /* Advances the model from t to t + h. Inputs are u + du/dt (s - t) for s in
      * [t, t + h]. Returns SH_OK, SH_WARNING or SH_ERROR, and logs unless SH_OK.
      */

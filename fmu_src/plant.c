@@ -38,7 +38,7 @@ static void advance_noise(sh_plant *plant, double h)
     plant->sample += (uint64_t)samples;
 }
 
-static void initialize(void *model)
+static void initialize(void *model, double t)
 {
     sh_plant *plant = model;
     const double *arguments[] = {plant->p};
@@ -46,7 +46,7 @@ static void initialize(void *model)
 
     sh_plant_start(arguments, results, NULL, NULL, 0);
     plant->h = INFINITY;
-    plant->started = NAN;
+    plant->started = t;
     plant->since = 0.0;
     plant->sample = 0;
     set_outputs(plant, plant->u);
@@ -89,8 +89,6 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     double internal_step = plant->h;
     size_t i;
 
-    if (isnan(plant->started))
-        plant->started = t;
     for (i = 0; i < SH_PLANT_INPUTS; ++i) {
         const double begin = sine(plant, i, t), end = sine(plant, i, t + h);
 

@@ -13,7 +13,7 @@ typedef struct {
     double du[SH_PLANT_INPUTS]; /* time derivatives of u */
     /* A sine that is added to an input: amplitude, 0 for none, and frequency [Hz]. */
     double amplitude[SH_PLANT_INPUTS], frequency[SH_PLANT_INPUTS];
-    double started; /* time of the begin of the first step [s]; NAN before */
+    double started; /* start time [s] */
     double y[SH_PLANT_OUTPUTS];
     double x[SH_PLANT_STATES];
     double h;            /* internal step that is short enough for the motion [s] */

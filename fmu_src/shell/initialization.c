@@ -51,7 +51,7 @@ sh_status sh_initialize(sh_instance *instance)
         return SH_OK;
     if (sh_check_parameters(instance) != SH_OK)
         return SH_ERROR;
-    sh_fmu_model.initialize(instance->model);
+    sh_fmu_model.initialize(instance->model, instance->time);
     if (!outputs_are_finite(instance))
         return SH_ERROR;
     instance->outputs_stale = 0;
