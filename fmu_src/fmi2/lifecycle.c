@@ -27,7 +27,6 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
                                const fmi2String categories[])
 {
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2SetDebugLogging");
-
     unsigned found = 0;
     sh_status status;
 

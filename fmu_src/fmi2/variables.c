@@ -1,6 +1,7 @@
 /* FMI 2.0: reading and writing variables, one by one. */
 #include "access.h"
 #include "fmi2Functions.h"
+#include "value.h"
 
 const char *sh_type_name(sh_type type)
 {
@@ -14,143 +15,107 @@ const char *sh_type_name(sh_type type)
     }
 }
 
-fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
+static void store_real(void *values, size_t i, double value)
 {
-    const sh_access access = {c, "fmi2GetReal", SH_TYPE_REAL, 0};
-    const sh_instance *instance = sh_begin_get(&access, vr, nvr, value);
-    size_t i;
-
-    if (instance == NULL)
-        return fmi2Error;
-    for (i = 0; i < nvr; ++i) {
-        const sh_variable *variable = sh_find(&access, vr[i]);
-        if (variable == NULL)
-            return fmi2Error;
-        value[i] = sh_read(instance, variable);
-    }
-    return fmi2OK;
+    ((fmi2Real *)values)[i] = value;
 }
 
-static fmi2Status get_int(const sh_access *access, const fmi2ValueReference vr[], size_t nvr,
-                          int value[])
+static double load_real(const void *values, size_t i)
 {
-    const sh_instance *instance = sh_begin_get(access, vr, nvr, value);
-    size_t i;
+    return ((const fmi2Real *)values)[i];
+}
 
-    if (instance == NULL)
-        return fmi2Error;
-    for (i = 0; i < nvr; ++i) {
-        const sh_variable *variable = sh_find(access, vr[i]);
-        if (variable == NULL)
-            return fmi2Error;
-        value[i] = (int)sh_read(instance, variable);
-    }
-    return fmi2OK;
+/* Integers, enumerations and Booleans. */
+static void store_int(void *values, size_t i, double value)
+{
+    ((int *)values)[i] = (int)value;
+}
+
+static double load_int(const void *values, size_t i)
+{
+    return ((const int *)values)[i];
+}
+
+/* The call of an importer that hands over one value for each reference. */
+static sh_access call(fmi2Component c, const char *function, unsigned types,
+                      const fmi2ValueReference vr[], size_t nvr)
+{
+    const sh_access access = {c, function, types, 0, vr, nvr, nvr};
+
+    return access;
+}
+
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
+{
+    const sh_access access = call(c, "fmi2GetReal", SH_TYPE_REAL, vr, nvr);
+
+    return (fmi2Status)sh_get(&access, value, store_real);
 }
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           fmi2Integer value[])
 {
-    const sh_access access = {c, "fmi2GetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, 0};
+    const sh_access access =
+        call(c, "fmi2GetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, vr, nvr);
 
-    return get_int(&access, vr, nvr, value);
+    return (fmi2Status)sh_get(&access, value, store_int);
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           fmi2Boolean value[])
 {
-    const sh_access access = {c, "fmi2GetBoolean", SH_TYPE_BOOLEAN, 0};
+    const sh_access access = call(c, "fmi2GetBoolean", SH_TYPE_BOOLEAN, vr, nvr);
 
-    return get_int(&access, vr, nvr, value);
-}
-
-/* No FMU of this project has a variable of type String. */
-static fmi2Status no_strings(sh_instance *instance, size_t nvr, const char *function)
-{
-    if (instance == NULL)
-        return fmi2Error;
-    if (nvr == 0)
-        return fmi2OK;
-    sh_log(instance, SH_ERROR, "%s: %s has no variables of type String.", function,
-           sh_fmu_model.identifier);
-    return fmi2Error;
-}
-
-fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                         fmi2String value[])
-{
-    const sh_access access = {c, "fmi2GetString", 0, 0};
-
-    return no_strings(sh_begin_get(&access, vr, nvr, value), nvr, "fmi2GetString");
+    return (fmi2Status)sh_get(&access, value, store_int);
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                        const fmi2Real value[])
 {
-    const sh_access access = {c, "fmi2SetReal", SH_TYPE_REAL, 0};
-    sh_instance *instance = sh_begin_set(&access, vr, nvr, value);
-    const sh_variable *variables = sh_fmu_model.variables;
-    size_t i;
+    const sh_access access = call(c, "fmi2SetReal", SH_TYPE_REAL, vr, nvr);
 
-    if (instance == NULL)
-        return fmi2Error;
-    for (i = 0; i < nvr; ++i)
-        if (!sh_accepts(instance, &variables[vr[i]], value[i], access.function))
-            return fmi2Error;
-    for (i = 0; i < nvr; ++i)
-        sh_write(instance, &variables[vr[i]], value[i]);
-    return fmi2OK;
-}
-
-static fmi2Status set_int(const sh_access *access, const fmi2ValueReference vr[], size_t nvr,
-                          const int value[])
-{
-    sh_instance *instance = sh_begin_set(access, vr, nvr, value);
-    const sh_variable *variables = sh_fmu_model.variables;
-    size_t i;
-
-    if (instance == NULL)
-        return fmi2Error;
-    for (i = 0; i < nvr; ++i)
-        if (!sh_accepts(instance, &variables[vr[i]], value[i], access->function))
-            return fmi2Error;
-    for (i = 0; i < nvr; ++i)
-        sh_write(instance, &variables[vr[i]], value[i]);
-    return fmi2OK;
+    return (fmi2Status)sh_set(&access, value, load_real);
 }
 
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           const fmi2Integer value[])
 {
-    const sh_access access = {c, "fmi2SetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, 0};
+    const sh_access access =
+        call(c, "fmi2SetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, vr, nvr);
 
-    return set_int(&access, vr, nvr, value);
+    return (fmi2Status)sh_set(&access, value, load_int);
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           const fmi2Boolean value[])
 {
-    const sh_access access = {c, "fmi2SetBoolean", SH_TYPE_BOOLEAN, 0};
+    const sh_access access = call(c, "fmi2SetBoolean", SH_TYPE_BOOLEAN, vr, nvr);
 
-    return set_int(&access, vr, nvr, value);
+    return (fmi2Status)sh_set(&access, value, load_int);
+}
+
+/* No FMU of this project has a variable of type String: any reference is an error. */
+fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                         fmi2String value[])
+{
+    const sh_access access = call(c, "fmi2GetString", 0, vr, nvr);
+
+    return (fmi2Status)sh_get(&access, (void *)value, NULL);
 }
 
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                          const fmi2String value[])
 {
-    sh_instance *instance =
-        sh_enter(c, SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, "fmi2SetString");
+    const sh_access access = call(c, "fmi2SetString", 0, vr, nvr);
 
-    (void)vr;
-    (void)value;
-    return no_strings(instance, nvr, "fmi2SetString");
+    return (fmi2Status)sh_set(&access, (const void *)value, NULL);
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                        const fmi2Integer order[], const fmi2Real value[])
 {
-    const sh_access access = {c, "fmi2SetRealInputDerivatives", SH_TYPE_REAL, 0};
-    sh_instance *instance = sh_begin_set(&access, vr, nvr, value);
+    const sh_access access = call(c, "fmi2SetRealInputDerivatives", SH_TYPE_REAL, vr, nvr);
+    sh_instance *instance = sh_begin_set(&access, value);
     const sh_variable *variables = sh_fmu_model.variables;
     size_t i;
 

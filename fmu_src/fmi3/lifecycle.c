@@ -11,7 +11,6 @@ void sh_deliver(const sh_instance *instance, sh_status status, const char *categ
                 const char *text)
 {
     const fmi3LogMessageCallback logger = (fmi3LogMessageCallback)instance->importer.logger;
-
     char escaped[1024];
 
     /* In a message #7# means the value of variable 7. */
@@ -23,7 +22,6 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, siz
                                const fmi3String categories[])
 {
     sh_instance *entered = sh_enter(instance, SH_ANY, "fmi3SetDebugLogging");
-
     unsigned found = 0;
     sh_status status;
 

@@ -1,13 +1,19 @@
 #include "access.h"
 
-#include <math.h>
-#include <stdio.h>
+#include "value.h"
 
-const sh_variable *sh_find(const sh_access *access, uint32_t reference)
+/* Time, the independent variable of FMI 3.0: it has the reference after those of the table. */
+static int is_time(const sh_access *access, uint32_t reference)
+{
+    return access->arrays && reference == sh_fmu_model.count;
+}
+
+/* The variable of a reference, or the first one of its array; NULL after a message. */
+static const sh_variable *find(const sh_access *access, uint32_t reference)
 {
     const sh_variable *variable;
 
-    if (access->arrays && reference == sh_fmu_model.count) {
+    if (is_time(access, reference)) {
         sh_log(access->handle, SH_ERROR,
                "%s: value reference %lu is time, which can only be read, as Float64.",
                access->function, (unsigned long)reference);
@@ -56,47 +62,60 @@ static int may_be_set(const sh_access *access, const sh_variable *variable)
     return 0;
 }
 
-/* The checks common to reading and writing. */
-static sh_instance *begin(const sh_access *access, unsigned states, const uint32_t references[],
-                          size_t count, const void *values)
+/* Number of elements that a reference means. */
+static size_t length_of(const sh_access *access, const sh_variable *variable)
+{
+    return access->arrays ? variable->length : 1;
+}
+
+/* The checks common to reading and writing: the arguments, and the number of elements behind the
+ * references.
+ */
+static sh_instance *begin(const sh_access *access, unsigned states, const void *values,
+                          int time_allowed)
 {
     sh_instance *instance = sh_enter(access->handle, states, access->function);
+    size_t elements = 0, i;
 
     if (instance == NULL ||
-        (count > 0 && (!sh_has(instance, references, access->function, "valueReferences") ||
-                       !sh_has(instance, values, access->function, "values"))))
+        (access->count > 0 &&
+         (!sh_has(instance, access->references, access->function, "valueReferences") ||
+          !sh_has(instance, values, access->function, "values"))))
         return NULL;
-    return instance;
+    for (i = 0; i < access->count; ++i) {
+        const uint32_t reference = access->references[i];
+        const sh_variable *variable;
+
+        if (time_allowed && is_time(access, reference)) {
+            elements += 1;
+            continue;
+        }
+        variable = find(access, reference);
+        if (variable == NULL)
+            return NULL;
+        elements += length_of(access, variable);
+    }
+    if (elements == access->length)
+        return instance;
+    sh_log(instance, SH_ERROR,
+           "%s: nValues = %lu; expected %lu, the number of elements behind %lu references.",
+           access->function, (unsigned long)access->length, (unsigned long)elements,
+           (unsigned long)access->count);
+    return NULL;
 }
 
-sh_instance *sh_begin_get(const sh_access *access, const uint32_t references[], size_t count,
-                          const void *values)
+sh_instance *sh_begin_set(const sh_access *access, const void *values)
 {
-    /* With arrays, FMI 3.0, start values can be read from the begin. */
-    const unsigned states =
-        SH_INITIALIZATION | SH_STEP | SH_TERMINATED | (access->arrays ? SH_INSTANTIATED : 0);
-    sh_instance *instance = begin(access, states, references, count, values);
-
-    if (instance == NULL ||
-        (instance->state == SH_INITIALIZATION && sh_initialize(instance) != SH_OK))
-        return NULL;
-    return instance;
-}
-
-sh_instance *sh_begin_set(const sh_access *access, const uint32_t references[], size_t count,
-                          const void *values)
-{
-    sh_instance *instance =
-        begin(access, SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, references, count, values);
+    sh_instance *instance = begin(access, SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, values, 0);
     size_t i;
 
     if (instance == NULL)
         return NULL;
-    for (i = 0; i < count; ++i) {
-        const sh_variable *variable = sh_find(access, references[i]);
-        if (variable == NULL || !may_be_set(access, variable))
+    for (i = 0; i < access->count; ++i) {
+        const sh_variable *variable = &sh_fmu_model.variables[access->references[i]];
+        if (!may_be_set(access, variable))
             return NULL;
-        if (variable->role == SH_ROLE_FIXED || variable->role == SH_ROLE_TUNABLE)
+        if (sh_is_parameter(variable))
             instance->parameters_unchecked = 1;
     }
     if (instance->state == SH_INITIALIZATION)
@@ -104,56 +123,50 @@ sh_instance *sh_begin_set(const sh_access *access, const uint32_t references[], 
     return instance;
 }
 
-/* Writes the allowed range of a variable, "[0, 1]" or "(-inf, inf)". */
-static void write_range(char *text, size_t size, const sh_variable *variable)
+sh_status sh_get(const sh_access *access, void *values, sh_store *store)
 {
-    snprintf(text, size, "%c%.9g, %.9g%c", isfinite(variable->min) ? '[' : '(', variable->min,
-             variable->max, isfinite(variable->max) ? ']' : ')');
+    /* FMI 3.0 lets importers read start values before the initialisation. */
+    const unsigned states =
+        SH_INITIALIZATION | SH_STEP | SH_TERMINATED | (access->arrays ? SH_INSTANTIATED : 0);
+    sh_instance *instance = begin(access, states, values, access->types == SH_TYPE_REAL);
+    size_t i, k, next = 0;
+
+    if (instance == NULL ||
+        (instance->state == SH_INITIALIZATION && sh_initialize(instance) != SH_OK))
+        return SH_ERROR;
+    if (store == NULL)
+        return SH_OK;
+    for (i = 0; i < access->count; ++i) {
+        const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
+        if (is_time(access, access->references[i]))
+            store(values, next++, instance->time);
+        else
+            for (k = 0; k < length_of(access, first); ++k)
+                store(values, next++, sh_read(instance, first + k));
+    }
+    return SH_OK;
 }
 
-static int in_range(const sh_variable *variable, double value)
+sh_status sh_set(const sh_access *access, const void *values, sh_load *load)
 {
-    return isfinite(value) && value >= variable->min && value <= variable->max;
-}
+    sh_instance *instance = sh_begin_set(access, values);
+    size_t i, k, next = 0;
 
-int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,
-               const char *function)
-{
-    char range[64];
-
-    if ((variable->role != SH_ROLE_FIXED && variable->role != SH_ROLE_TUNABLE) ||
-        in_range(variable, value))
-        return 1;
-    write_range(range, sizeof range, variable);
-    sh_log(instance, SH_ERROR, "%s: parameter %s = %.9g is out of its range %s.", function,
-           variable->name, value, range);
-    return 0;
-}
-
-static void *place_of_variable(const sh_instance *instance, const sh_variable *variable)
-{
-    return (char *)instance->model + variable->offset;
-}
-
-double sh_read(const sh_instance *instance, const sh_variable *variable)
-{
-    const void *place = place_of_variable(instance, variable);
-
-    return variable->type == SH_TYPE_REAL ? *(const double *)place : (double)*(const int *)place;
-}
-
-void sh_write(sh_instance *instance, const sh_variable *variable, double value)
-{
-    void *place = place_of_variable(instance, variable);
-
-    if (variable->type == SH_TYPE_REAL)
-        *(double *)place = value;
-    else
-        *(int *)place = (int)value;
-}
-
-double *sh_slope(sh_instance *instance, const sh_variable *input)
-{
-    return (double *)(void *)((char *)instance->model + input->offset +
-                              sh_fmu_model.derivative_offset);
+    if (instance == NULL)
+        return SH_ERROR;
+    if (load == NULL)
+        return SH_OK;
+    for (i = 0; i < access->count; ++i) {
+        const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
+        for (k = 0; k < length_of(access, first); ++k, ++next)
+            if (sh_is_parameter(first) &&
+                !sh_accepts(instance, first + k, load(values, next), access->function))
+                return SH_ERROR;
+    }
+    for (next = 0, i = 0; i < access->count; ++i) {
+        const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
+        for (k = 0; k < length_of(access, first); ++k)
+            sh_write(instance, first + k, load(values, next++));
+    }
+    return SH_OK;
 }

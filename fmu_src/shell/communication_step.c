@@ -2,8 +2,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "access.h"
-#include "instance.h"
+#include "value.h"
 
 /* Derivatives of inputs are valid for one step. In the next step inputs are constant, unless the
  * importer sets derivatives again.

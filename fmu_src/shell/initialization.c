@@ -1,8 +1,7 @@
 /* From the instance to its first step: parameters are checked, and initial outputs computed. */
 #include <math.h>
 
-#include "access.h"
-#include "instance.h"
+#include "value.h"
 
 sh_status sh_check_parameters(sh_instance *instance)
 {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "access.h"
+#include "value.h"
 
 static const char *state_name(sh_state state)
 {
