@@ -44,27 +44,27 @@ function(sigmahat_add_fmu name)
                              $<$<BOOL:${arg_LIBRARY}>:$<TARGET_PROPERTY:${arg_LIBRARY},INTERFACE_INCLUDE_DIRECTORIES>>)
   set_target_properties(${name}_model PROPERTIES C_VISIBILITY_PRESET hidden)
 
+  # The files for people: documentation and icons.
   file(GLOB pages ${source_dir}/modelDescription/documentation/*.html)
+  set(shown ${dir}/shown)
+  set(shown_files
+      ${shown}/fmi2/model.png ${shown}/fmi2/documentation/icon.svg
+      ${shown}/fmi2/documentation/index.html ${shown}/fmi3/terminalsAndIcons/icon.png
+      ${shown}/fmi3/terminalsAndIcons/icon.svg ${shown}/fmi3/documentation/index.html)
+  add_custom_command(
+    OUTPUT ${shown_files}
+    COMMAND ${SIGMAHAT_RUN} sigmahat.export document ${template} ${shown}
+            --version ${PROJECT_VERSION}
+    DEPENDS ${shared} ${pages}
+    COMMENT "Documentation of ${name}" VERBATIM)
+
   foreach(fmi 2 3)
     set(target ${name})
     set(fmu ${SIGMAHAT_FMU_FOLDER}/${name}.fmu)
-    set(icons model.png documentation/icon.svg)
     if(fmi EQUAL 3)
       set(target ${name}_FMI3)
       set(fmu ${PROJECT_BINARY_DIR}/fmi3/${name}_FMI3.fmu)
-      set(icons terminalsAndIcons/icon.png terminalsAndIcons/icon.svg)
     endif()
-
-    # The files for people: documentation and icons.
-    set(shown ${dir}/shown${fmi})
-    list(TRANSFORM icons PREPEND ${shown}/)
-    set(shown_files ${icons} ${shown}/documentation/index.html)
-    add_custom_command(
-      OUTPUT ${shown_files}
-      COMMAND ${SIGMAHAT_RUN} sigmahat.export document ${template} ${shown}
-              --fmi ${fmi} --version ${PROJECT_VERSION}
-      DEPENDS ${shared} ${pages}
-      COMMENT "Documentation of ${target}" VERBATIM)
 
     add_library(${target}_binary MODULE $<TARGET_OBJECTS:sigmahat_shell>
                 $<TARGET_OBJECTS:sigmahat_fmi${fmi}> $<TARGET_OBJECTS:${name}_model>)
@@ -80,7 +80,7 @@ function(sigmahat_add_fmu name)
       OUTPUT ${fmu}
       COMMAND ${SIGMAHAT_RUN} sigmahat.export pack ${fmu} ${sources} ${interface} ${dir}/variables.h
               --fmi ${fmi} --described ${dir} --binary $<TARGET_FILE:${target}_binary>
-              --licence ${source_dir}/LICENSE --shown ${shown}
+              --licence ${source_dir}/LICENSE --shown ${shown}/fmi${fmi}
       DEPENDS ${target}_binary ${described} ${source_dir}/LICENSE ${shown_files} ${shared} ${headers}
       WORKING_DIRECTORY ${source_dir}
       COMMENT "Packing ${target}.fmu" VERBATIM)

@@ -157,4 +157,4 @@ def test_a_second_build_gives_identical_bytes(name: str, tmp_path: Path) -> None
     documentation.write(TEMPLATES / f"{name}.xml", tmp_path, sigmahat.__version__)
     with zipfile.ZipFile(sigmahat.fmu(name)) as archive:
         for file in SHOWN:
-            assert (tmp_path / file).read_bytes() == archive.read(file), file
+            assert (tmp_path / "fmi2" / file).read_bytes() == archive.read(file), file

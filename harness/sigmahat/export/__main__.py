@@ -26,13 +26,10 @@ def describe(
     description.write(template, out, version, struct, c_variables.STORAGE[storage], sources)
 
 
-_FMI = click.option("--fmi", required=True, type=click.IntRange(2, 3), help="Version of FMI.")
-
-
 @main.command()
 @click.argument("fmu", type=click.Path(dir_okay=False, path_type=Path))
 @click.argument("sources", nargs=-1, required=True, type=click.Path(path_type=Path))
-@_FMI
+@click.option("--fmi", required=True, type=click.IntRange(2, 3), help="Version of FMI.")
 @click.option("--described", required=True, type=click.Path(path_type=Path))
 @click.option("--binary", required=True, type=click.Path(path_type=Path))
 @click.option("--licence", required=True, type=click.Path(path_type=Path))
@@ -48,7 +45,7 @@ def pack(
 ) -> None:
     """Write an FMU with the binary of this machine, SOURCES and the headers they include.
 
-    --described and --shown are the folders that describe and document have written.
+    --described is the folder that describe has written, --shown that of document for this version.
     """
     import fmpy
 
@@ -73,13 +70,12 @@ def pack(
 @main.command()
 @click.argument("template", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.argument("out", type=click.Path(file_okay=False, path_type=Path))
-@_FMI
 @click.option("--version", required=True, help="Version of the FMU.")
-def document(template: Path, out: Path, fmi: int, version: str) -> None:
-    """Write documentation and icons of TEMPLATE into OUT, by their names in the FMU."""
+def document(template: Path, out: Path, version: str) -> None:
+    """Write documentation and icons of TEMPLATE into OUT, for both versions of FMI."""
     from sigmahat.export import documentation
 
-    documentation.write(template, out, version, fmi)
+    documentation.write(template, out, version)
 
 
 @main.command("system")

@@ -23,16 +23,21 @@ _ICONS = {
 """Names of PNG and SVG in an FMU, by the version of FMI."""
 
 
-def write(template: Path, out: Path, version: str, fmi: int = 2) -> None:
-    """Write the files into a folder, by their names in the FMU of FMI 2.0 or 3.0.
+def write(template: Path, out: Path, version: str) -> None:
+    """Write the files into the folders ``fmi2`` and ``fmi3`` of ``out``, by their names in the FMU.
 
     Raises as `templates.render` does, and ``KeyError`` for an FMU without an icon.
     """
-    folder = out / "documentation"
-    folder.mkdir(parents=True, exist_ok=True)
-    png, svg = (out / name for name in _ICONS[fmi])
-    png.parent.mkdir(exist_ok=True)
-    icon.write(template.stem, png, svg)
+    for fmi, names in _ICONS.items():
+        folder = out / f"fmi{fmi}"
+        png, svg = (folder / name for name in names)
+        for file in (png, svg, folder / "documentation" / "index.html"):
+            file.parent.mkdir(parents=True, exist_ok=True)
+        icon.write(template.stem, png, svg)
+        _write_page(template, folder / "documentation", svg, version, fmi)
+
+
+def _write_page(template: Path, folder: Path, svg: Path, version: str, fmi: int) -> None:
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(template.parent / "documentation"),
         undefined=jinja2.StrictUndefined,
