@@ -31,7 +31,8 @@ PLATFORMS_3 = {
 
 # No contraction to fused operations: the same numbers on every machine. No symbols and no
 # debug information (-s): they would hold paths.
-FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared", "-s")
+CODE = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-s")
+FLAGS = (*CODE, "-fPIC", "-shared")
 
 
 HEADERS = Path(fmpy.__file__).parent / "c-code"

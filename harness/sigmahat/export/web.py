@@ -40,8 +40,6 @@ FUNCTIONS = (
     "free",
 )
 """What the page calls."""
-# As for the other platforms, no contraction to fused operations.
-_FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-s")
 _TARGET, _KIND = "wasm32-wasi", "-mexec-model=reactor"
 _UNKNOWN = {
     "prior.B": ANOTHER_ROBOT,
@@ -95,7 +93,7 @@ def compile_wasm(folder: Path, callbacks: Path, cache: Path) -> bytes:
         cross_compiler.compile_files(
             _TARGET,
             [
-                *(_KIND, *_FLAGS),
+                *(_KIND, *cross_compiler.CODE),
                 *(f"-I{each.resolve()}" for each in (folder / "sources", cross_compiler.HEADERS)),
                 *(source.resolve() for source in cross_compiler.source_files(folder)),
                 *(callbacks.resolve(), "-lm", "-o", binary),
