@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 import sigmahat
-from fmi3_instance import HeldInputs, Instance3, continue_from3, driver3
+from fmi3_instance import HeldInputs, Instance3, driver3
 from fmi_instance import ERROR, OK, Instance
-from fmi_runs import ESTIMATORS, PLANTS, names, random_steps
+from fmi_runs import ESTIMATORS, PLANTS, continue_from, names, random_steps
 
 every_fmu = pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
 STEPS = random_steps(120, seed=1)
@@ -100,10 +100,12 @@ def test_a_restored_state_continues_bit_for_bit(name: str, twin: Twin) -> None:
             fmu.free(states[point])
     with ProcessPoolExecutor(1, get_context("spawn")) as process:
         continued = process.submit(
-            continue_from3,
+            continue_from,
             twin(name),
             [serialised[p] for p in POINTS],
             [STEPS[p:] for p in POINTS],
+            Instance3,
+            driver3,
         ).result()
     for point, result in zip(POINTS, continued, strict=True):
         assert result == whole[point:]

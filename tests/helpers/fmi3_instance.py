@@ -16,6 +16,7 @@ import fmpy
 import fmpy.fmi3 as fmi3
 
 from fmi_instance import OK
+from fmi_runs import SIGNALS
 
 C_TYPES: dict[str, tuple[str, Any]] = {
     "Float64": ("Float64", ctypes.c_double),
@@ -198,8 +199,6 @@ class HeldInputs:
 
     def step(self, t: float, h: float) -> bytes:
         """Makes one step. Returns all Real outputs after it, as bytes."""
-        from fmi_runs import SIGNALS
-
         count = SIZE(len(self.inputs))
         values = (ctypes.c_double * len(self.inputs))(*[SIGNALS[name](t) for name in self.inputs])
         name, more = ("fmi3SetFloat64", [count]) if self._3 else ("fmi2SetReal", [])
@@ -223,18 +222,3 @@ def driver3(fmu: Instance3) -> HeldInputs:
     of_type = {n: v for n, v in fmu.variables.items() if v.type == "Float64" and not v.dimensions}
     inputs = [n for n, v in of_type.items() if v.causality == "input"]
     return HeldInputs(fmu, inputs, [n for n, v in of_type.items() if v.causality == "output"])
-
-
-def continue_from3(
-    path: Path, states: Sequence[bytes], rests: Sequence[Sequence[tuple[float, float]]]
-) -> list[list[bytes]]:
-    """Continues from serialised states in a new instance. Returns the outputs of each run."""
-    results = []
-    with Instance3(path) as fmu:
-        driver = driver3(fmu)
-        for data, rest in zip(states, rests, strict=True):
-            status, state = fmu.deserialise(data)
-            assert status == OK and fmu.restore(state) == OK, fmu.messages
-            fmu.free(state)
-            results.append(driver.run(rest))
-    return results

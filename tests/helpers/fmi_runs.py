@@ -93,12 +93,16 @@ class Driver:
 
 
 def continue_from(
-    path: Path, states: Sequence[bytes], rests: Sequence[Sequence[tuple[float, float]]]
+    path: Path,
+    states: Sequence[bytes],
+    rests: Sequence[Sequence[tuple[float, float]]],
+    instance: Callable[[Path], Any] = Instance,
+    driven: Callable[[Any], Any] = Driver,
 ) -> list[list[bytes]]:
     """Continues from serialised states in a new instance. Returns the outputs of each run."""
     results = []
-    with Instance(path) as fmu:
-        driver = Driver(fmu)
+    with instance(path) as fmu:
+        driver = driven(fmu)
         for data, rest in zip(states, rests, strict=True):
             status, state = fmu.deserialise(data)
             assert status == OK and fmu.restore(state) == OK, fmu.messages

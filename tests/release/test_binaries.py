@@ -41,8 +41,9 @@ def functions() -> set[str]:
 
 
 def binary(released: Path, name: str, platform: str, extension: str) -> list[int]:
+    library = name.removesuffix("_FMI3") + extension
     with ZipFile(released / f"{name}.fmu") as archive:
-        return list(archive.read(f"binaries/{platform}/{name}{extension}"))
+        return list(archive.read(f"binaries/{platform}/{library}"))
 
 
 # An object of lief is valid only as long as its parent exists, so each parent has a variable below.
@@ -132,7 +133,7 @@ def functions_3() -> set[str]:
 def test_linux_exports_all_functions_of_fmi_3(
     twin: str, platform: str, released: Path, functions_3: set[str]
 ) -> None:
-    elf = lief.ELF.parse(twin_binary(released, twin, platform, ".so"))
+    elf = lief.ELF.parse(binary(released, twin, platform, ".so"))
     assert isinstance(elf, lief.ELF.Binary)
     assert {symbol.name for symbol in elf.exported_symbols} == functions_3
     arm = elf.header.machine_type == lief.ELF.ARCH.AARCH64
@@ -143,7 +144,7 @@ def test_linux_exports_all_functions_of_fmi_3(
 def test_windows_exports_all_functions_of_fmi_3(
     twin: str, released: Path, functions_3: set[str]
 ) -> None:
-    dll = lief.PE.parse(twin_binary(released, twin, "x86_64-windows", ".dll"))
+    dll = lief.PE.parse(binary(released, twin, "x86_64-windows", ".dll"))
     assert isinstance(dll, lief.PE.Binary)
     export = dll.get_export()
     assert export is not None
@@ -155,7 +156,7 @@ def test_windows_exports_all_functions_of_fmi_3(
 def test_macos_exports_all_functions_of_fmi_3(
     twin: str, platform: str, released: Path, functions_3: set[str]
 ) -> None:
-    universal = lief.MachO.parse(twin_binary(released, twin, platform, ".dylib"))
+    universal = lief.MachO.parse(binary(released, twin, platform, ".dylib"))
     assert universal is not None
     macho = universal.at(0)
     assert macho is not None
@@ -163,9 +164,3 @@ def test_macos_exports_all_functions_of_fmi_3(
     assert exported - BY_THE_LINKER == {"_" + function for function in functions_3}
     # The loader of macOS refuses a library for ARM without a signature.
     assert macho.has_code_signature == (platform == "aarch64-darwin")
-
-
-def twin_binary(released: Path, twin: str, platform: str, extension: str) -> list[int]:
-    with ZipFile(released / f"{twin}.fmu") as archive:
-        name = f"binaries/{platform}/{twin.removesuffix('_FMI3')}{extension}"
-        return list(archive.read(name))
