@@ -71,7 +71,7 @@ function band(x, y, half) {
 /** The answer in words. */
 function inWords(run, curves, warning) {
   const values = curves.map(({ phi, sigma, std, doubt, setPoint }) => {
-    const i = phi.reduce((best, each, k) => (Math.abs(each) < Math.abs(phi[best]) ? k : best), 0);
+    const i = nextToZero(phi);
     const where = curves.length > 1 ? ` at set-point ${shortly(setPoint)}` : "";
     return `${withBand(sigma[i], NORMAL_95 * std[i])} N·m/rad at ${threeDigits(phi[i])} rad${where} (${confidence(doubt[i])})`;
   });

@@ -104,6 +104,11 @@ function integral(std, phi) {
   const sums = [0];
   for (let i = 1; i < phi.length; i += 1)
     sums.push(sums[i - 1] + ((phi[i] - phi[i - 1]) * (std[i] + std[i - 1])) / 2);
-  const zero = phi.reduce((best, value, i) => (Math.abs(value) < Math.abs(phi[best]) ? i : best), 0);
-  return Float64Array.from(sums, (sum) => Math.abs(sum - sums[zero]));
+  const zero = sums[nextToZero(phi)];
+  return Float64Array.from(sums, (sum) => Math.abs(sum - zero));
+}
+
+/** Place of the value that is nearest to 0. */
+function nextToZero(values) {
+  return values.reduce((best, value, i) => (Math.abs(value) < Math.abs(values[best]) ? i : best), 0);
 }
