@@ -56,16 +56,19 @@ static long used(void *(*function)(void *), void *argument)
     pthread_t thread;
     long untouched = 0;
 
-    if (posix_memalign((void **)&stack, 4096, STACK) != 0)
+    if (posix_memalign((void **)&stack, 4096, STACK) != 0) {
         exit(1);
+    }
     memset(stack, PAINT, STACK);
     pthread_attr_init(&attributes);
     if (pthread_attr_setstack(&attributes, stack, STACK) != 0 ||
-        pthread_create(&thread, &attributes, function, argument) != 0)
+        pthread_create(&thread, &attributes, function, argument) != 0) {
         exit(1);
+    }
     pthread_join(thread, NULL);
-    while (untouched < STACK && stack[untouched] == PAINT)
+    while (untouched < STACK && stack[untouched] == PAINT) {
         ++untouched;
+    }
     free(stack);
     return STACK - untouched;
 }
@@ -85,7 +88,8 @@ int main(int count, char **arguments)
         printf("%ld\n", used(run, ticks) - used(nothing, ticks));
         return 0;
     }
-    for (left = atol(arguments[2]); left > 0; left -= SAMPLES)
+    for (left = atol(arguments[2]); left > 0; left -= SAMPLES) {
         tick_run(ticks, z[0], left < SAMPLES ? (int)left : SAMPLES, outputs);
+    }
     return 0;
 }

@@ -10,8 +10,9 @@ void *sigmahat_start(int size)
 {
     sh_least_squares *rls = size <= SH_MAX_PARAMETERS ? malloc(sizeof *rls) : NULL;
 
-    if (rls != NULL)
+    if (rls != NULL) {
         sh_least_squares_start(rls, size, NULL, BENCH_P_0);
+    }
     return rls;
 }
 
@@ -21,8 +22,9 @@ void sigmahat_run(void *rls, const double *F, const double *y, int samples)
     sh_innovation innovation;
     int k;
 
-    for (k = 0; k < samples; ++k)
+    for (k = 0; k < samples; ++k) {
         sh_least_squares_update(rls, SH_RLS_STANDARD, 1.0, F + k * size, y[k], &innovation);
+    }
 }
 
 void sigmahat_eta(const void *rls, double *eta)
@@ -30,8 +32,9 @@ void sigmahat_eta(const void *rls, double *eta)
     const sh_least_squares *own = rls;
     int i;
 
-    for (i = 0; i < own->P.size; ++i)
+    for (i = 0; i < own->P.size; ++i) {
         eta[i] = own->eta[i];
+    }
 }
 
 /* K = P F / (1 + F' P F), P -= K F' P, with all entries of P, for a size known to the compiler. */
@@ -77,12 +80,14 @@ void *covariance_start(int size)
     covariance *c = calloc(1, sizeof *c + (size_t)(size * size) * sizeof(double));
     int i;
 
-    if (c == NULL)
+    if (c == NULL) {
         return NULL;
+    }
     c->size = size;
     c->run = size == 3 ? run_3 : size == 6 ? run_6 : size == 18 ? run_18 : run_40;
-    for (i = 0; i < size; ++i)
+    for (i = 0; i < size; ++i) {
         c->P[i * size + i] = BENCH_P_0;
+    }
     return size == 3 || size == 6 || size == 18 || size == 40 ? c : NULL;
 }
 
@@ -104,8 +109,9 @@ void *liquid_start(int size)
 {
     liquid_rls *rls = malloc(sizeof *rls);
 
-    if (rls == NULL)
+    if (rls == NULL) {
         return NULL;
+    }
     rls->equaliser = eqrls_rrrf_create(NULL, (unsigned)size);
     rls->size = size;
     eqrls_rrrf_set_bw(rls->equaliser, 1.0f); /* no forgetting */
@@ -132,8 +138,9 @@ void liquid_eta(const void *rls, double *eta)
     int i;
 
     eqrls_rrrf_get_weights(own->equaliser, weights);
-    for (i = 0; i < own->size; ++i)
+    for (i = 0; i < own->size; ++i) {
         eta[i] = (double)weights[i];
+    }
 }
 
 /* Independent chains x = a x + b, so many that every unit of the processor always has work. */
@@ -144,12 +151,16 @@ double peak_run(int times)
     const double factor = a, term = b;
     int i, k;
 
-    for (i = 0; i < BENCH_PEAK; ++i)
+    for (i = 0; i < BENCH_PEAK; ++i) {
         x[i] = i;
-    for (k = 0; k < times; ++k)
-        for (i = 0; i < BENCH_PEAK; ++i)
+    }
+    for (k = 0; k < times; ++k) {
+        for (i = 0; i < BENCH_PEAK; ++i) {
             x[i] = factor * x[i] + term;
-    for (i = 0; i < BENCH_PEAK; ++i)
+        }
+    }
+    for (i = 0; i < BENCH_PEAK; ++i) {
         sum += x[i];
+    }
     return sum;
 }

@@ -28,8 +28,9 @@ static void say(fmi2ComponentEnvironment environment, fmi2String name, fmi2Statu
 {
     (void)environment;
     (void)category;
-    if (status > fmi2OK)
+    if (status > fmi2OK) {
         fprintf(stderr, "%s: %s\n", name, message);
+    }
 }
 
 /* Function of a library; ISO C has no cast from void * to it. */
@@ -58,8 +59,9 @@ void *master_start(const char *binary, const char *guid, const char *resources,
     int i;
 
     if (library == NULL || own == NULL || input_count > MAX_VARIABLES ||
-        output_count > MAX_VARIABLES)
+        output_count > MAX_VARIABLES) {
         return NULL;
+    }
     FIND(library, fmi2Instantiate);
     FIND(library, fmi2SetupExperiment);
     FIND(library, fmi2EnterInitializationMode);
@@ -82,15 +84,17 @@ void *master_start(const char *binary, const char *guid, const char *resources,
         own->inputs[i] = inputs[i];
         own->orders[i] = 1;
     }
-    for (i = 0; i < output_count; ++i)
+    for (i = 0; i < output_count; ++i) {
         own->outputs[i] = outputs[i];
+    }
     own->component = fmi2Instantiate("bench", fmi2CoSimulation, guid, resources, &own->callbacks,
                                      fmi2False, fmi2False);
     if (own->component == NULL ||
         fmi2SetupExperiment(own->component, fmi2False, 0.0, 0.0, fmi2False, 0.0) != fmi2OK ||
         fmi2EnterInitializationMode(own->component) != fmi2OK ||
-        fmi2ExitInitializationMode(own->component) != fmi2OK)
+        fmi2ExitInitializationMode(own->component) != fmi2OK) {
         return NULL;
+    }
     return own;
 }
 
@@ -107,8 +111,9 @@ static int step(master *own, const double *row, const double *next, double h)
     size_t i;
 
     if (own->slopes) {
-        for (i = 0; i < own->input_count; ++i)
+        for (i = 0; i < own->input_count; ++i) {
             slopes[i] = (next[i] - row[i]) / h;
+        }
         failed += own->set_slopes(own->component, own->inputs, own->input_count, own->orders,
                                   slopes) != fmi2OK;
     }

@@ -15,12 +15,14 @@ static int choose(sh_parameters *p, const char *method)
 {
     sh_prior_parameters *prior = &p->prior;
 
-    if (strcmp(method, "Paper2011") == 0)
+    if (strcmp(method, "Paper2011") == 0) {
         return 1;
+    }
     p->method = SH_METHOD_MATCHED_FILTER;
     prior->B = 0.03;
-    if (strcmp(method, "MatchedFilter") == 0)
+    if (strcmp(method, "MatchedFilter") == 0) {
         return 1;
+    }
     prior->bias = prior->damping = prior->load_friction = prior->eccentric = 0;
     prior->delay = prior->reversal = 0;
     prior->power = prior->gap = prior->hysteresis = prior->eccentric_motor = 0;
@@ -32,8 +34,9 @@ void *tick_start(const char *method)
     tick *own = malloc(sizeof *own);
     sh_violation violation;
 
-    if (own == NULL)
+    if (own == NULL) {
         return NULL;
+    }
     sh_parameters_default(&own->parameters);
     if (!choose(&own->parameters, method) ||
         sh_parameters_check(&own->parameters, &violation) != 0) {

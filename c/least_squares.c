@@ -48,18 +48,21 @@ static sh_real prediction_error(const sh_least_squares *rls, const sh_real *F, s
 /* Stability factor a(k): (27), 1, or constant. */
 static sh_real stability_factor(int kind, sh_real factor, sh_real rho)
 {
-    if (kind == SH_RLS_ENHANCED)
+    if (kind == SH_RLS_ENHANCED) {
         return (factor + factor * rho) / (1 + factor * rho);
+    }
     return kind == SH_RLS_CONSTANT_FACTOR ? factor : 1;
 }
 
 /* Weight w of the sample, the left side of (26). */
 static sh_real sample_weight(int kind, sh_real factor, sh_real rho)
 {
-    if (kind == SH_RLS_ENHANCED)
+    if (kind == SH_RLS_ENHANCED) {
         return factor;
-    if (kind == SH_RLS_CONSTANT_FACTOR)
+    }
+    if (kind == SH_RLS_CONSTANT_FACTOR) {
         return factor / (1 + (1 - factor) * rho);
+    }
     return 1;
 }
 
@@ -68,8 +71,9 @@ static int take(sh_least_squares *rls, sh_real w, sh_real rho, sh_real epsilon)
 {
     const sh_real *PF;
 
-    if (!(w * rho <= LARGEST) || !(sh_fabs(epsilon) <= LARGEST)) /* also if not a number */
+    if (!(w * rho <= LARGEST) || !(sh_fabs(epsilon) <= LARGEST)) { /* also if not a number */
         return 0;
+    }
     PF = sh_ud_factor_update(&rls->P, w);                        /* P -= a K F' P */
     sh_least_squares_move(rls, w * epsilon / (1 + w * rho), PF); /* eta += a K epsilon */
     return 1;
@@ -81,8 +85,9 @@ int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, con
     const sh_real epsilon = prediction_error(rls, F, y);
     const sh_real rho = sh_ud_factor_project(&rls->P, F); /* rho = F' P F, (14) */
 
-    if (!take(rls, sample_weight(kind, factor, rho), rho, epsilon))
+    if (!take(rls, sample_weight(kind, factor, rho), rho, epsilon)) {
         return 0;
+    }
     innovation->epsilon = epsilon;
     innovation->rho = rho;
     innovation->a = stability_factor(kind, factor, rho);

@@ -166,26 +166,34 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
     for (i = 0; i < REAL_COUNT; ++i) {
         const real_range *r = &REALS[i];
         const sh_real value = *(const sh_real *)(const void *)(bytes + r->offset);
-        if (!isfinite(value) || value < r->min || value > r->max)
+        if (!isfinite(value) || value < r->min || value > r->max) {
             return sh_violates(violation, r->name, value, r->range);
+        }
     }
-    if (sh_method_of(p) == NULL)
+    if (sh_method_of(p) == NULL) {
         return sh_violates(violation, "method", (sh_real)p->method, sh_method_names());
+    }
     for (i = 0; i < INTEGER_COUNT; ++i) {
         const integer_range *r = &INTEGERS[i];
         const int value = *(const int *)(const void *)(bytes + r->offset);
-        if (value < r->min || value > r->max)
+        if (value < r->min || value > r->max) {
             return sh_violates(violation, r->name, (sh_real)value, r->range);
+        }
     }
-    for (i = 0; i < SH_MAX_N; ++i)
-        for (j = 0; j < SH_MAX_M; ++j)
-            if (!isfinite(p->rls.eta_0[i][j]))
+    for (i = 0; i < SH_MAX_N; ++i) {
+        for (j = 0; j < SH_MAX_M; ++j) {
+            if (!isfinite(p->rls.eta_0[i][j])) {
                 return sh_violates(violation, "rls.eta_0", p->rls.eta_0[i][j], "finite");
-    if (!(p->motor.gamma > 0) && !(p->motor.gamma < 0))
+            }
+        }
+    }
+    if (!(p->motor.gamma > 0) && !(p->motor.gamma < 0)) {
         return sh_violates(violation, "motor.gamma", p->motor.gamma, "finite and not 0");
-    if (p->filter.V_min > p->filter.V_max)
+    }
+    if (p->filter.V_min > p->filter.V_max) {
         return sh_violates(violation, "filter.V_min", p->filter.V_min,
                            ">= 1e-30 and <= filter.V_max");
+    }
     return sh_method_of(p)->check(p, violation);
 }
 

@@ -35,8 +35,9 @@ static inline sh_real sh_power(sh_real x, int exponent)
 {
     sh_real power = 1;
 
-    for (; exponent > 0; --exponent)
+    for (; exponent > 0; --exponent) {
         power *= x;
+    }
     return power;
 }
 

@@ -18,8 +18,9 @@ static sh_real polynomial(const sh_parameters *p, int i, sh_real set_point)
     sh_real sum = 0;
     int j;
 
-    for (j = p->rls.m - 1; j >= 0; --j)
+    for (j = p->rls.m - 1; j >= 0; --j) {
         sum = sum * set_point + p->rls.eta_0[i][j];
+    }
     return sum;
 }
 
@@ -29,13 +30,17 @@ static void start_curve(const sh_parameters *p, sh_real set_point, sh_estimate *
     const int linear = sh_torque_basis_linear(p->rls.symmetric);
     int i, j;
 
-    for (i = 0; i < p->rls.n; ++i)
-        for (j = 0; j < p->rls.m; ++j)
+    for (i = 0; i < p->rls.n; ++i) {
+        for (j = 0; j < p->rls.m; ++j) {
             estimate->eta[i][j] = p->rls.eta_0[i][j];
-    if (!p->rls.symmetric)
+        }
+    }
+    if (!p->rls.symmetric) {
         estimate->tau_e = polynomial(p, 0, set_point);
-    if (linear < p->rls.n)
+    }
+    if (linear < p->rls.n) {
         estimate->sigma = polynomial(p, linear, set_point);
+    }
 }
 
 void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate)

@@ -136,10 +136,12 @@ static void multiply(sh_ud_factor *P, const sh_real *F)
                                     rest > 2 ? F[full + 2] : 0, 0};
     int j;
 
-    for (j = 0; j + 2 < size; j += SH_PANEL)
+    for (j = 0; j + 2 < size; j += SH_PANEL) {
         multiply_four(P, F, j, j < full ? F + j : last);
-    if (j < size)
+    }
+    if (j < size) {
         multiply_two(P, F, j, last);
+    }
 }
 
 sh_real sh_ud_factor_variance(sh_ud_factor *P, const sh_real *F)
@@ -154,8 +156,9 @@ sh_real sh_ud_factor_variance(sh_ud_factor *P, const sh_real *F)
         even += f[j] * (D[j] * f[j]);
         odd += f[j + 1] * (D[j + 1] * f[j + 1]);
     }
-    if (j < size)
+    if (j < size) {
         even += f[j] * (D[j] * f[j]);
+    }
     return even + odd;
 }
 

@@ -33,13 +33,17 @@ static int doubt_of_sum(const AntagonisticStiffnessEstimator *fmu)
 {
     int worst = SH_DOUBT_NONE, i;
 
-    for (i = 0; i < 2; ++i)
-        if (fmu->side[i].output.doubt > worst)
+    for (i = 0; i < 2; ++i) {
+        if (fmu->side[i].output.doubt > worst) {
             worst = fmu->side[i].output.doubt;
-    if (worst != SH_DOUBT_NOT_EXCITED && worst != SH_DOUBT_MISFIT && worst != SH_DOUBT_NONE)
+        }
+    }
+    if (worst != SH_DOUBT_NOT_EXCITED && worst != SH_DOUBT_MISFIT && worst != SH_DOUBT_NONE) {
         return worst;
-    if (fmu->sigma_std < fmu->side[0].parameters.confidence * fabs(fmu->sigma))
+    }
+    if (fmu->sigma_std < fmu->side[0].parameters.confidence * fabs(fmu->sigma)) {
         return SH_DOUBT_NONE;
+    }
     return worst != SH_DOUBT_NONE ? worst : SH_DOUBT_NOT_EXCITED;
 }
 
@@ -59,8 +63,9 @@ static sh_status check(const void *model, sh_instance *log)
 
     for (i = 0; i < 2; ++i) {
         const sh_parameters p = parameters_of(fmu, i);
-        if (sh_estimator_fmu_check(&p, WHO[i], log) != SH_OK)
+        if (sh_estimator_fmu_check(&p, WHO[i], log) != SH_OK) {
             return SH_ERROR;
+        }
     }
     return SH_OK;
 }
@@ -91,8 +96,9 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
 
         fmu->side[i].parameters = parameters_of(fmu, i);
         of_side = sh_estimator_fmu_step(&fmu->side[i], t, h, WHO[i], log);
-        if (of_side > status)
+        if (of_side > status) {
             status = of_side;
+        }
     }
     sum(fmu);
     return status;

@@ -6,8 +6,9 @@ sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *wh
 {
     sh_violation violation;
 
-    if (!sh_parameters_check(parameters, &violation))
+    if (!sh_parameters_check(parameters, &violation)) {
         return SH_OK;
+    }
     sh_log(log, SH_ERROR, "%sParameter %s = %.9g is out of its range: %s.", who, violation.name,
            violation.value, violation.range);
     return SH_ERROR;
@@ -27,8 +28,9 @@ static const double MAX_TICKS = 1e9;
 static int becomes_strained(sh_estimator_fmu *fmu)
 {
     if (fmu->strained ||
-        fabs(fmu->output.phi) <= sh_parameters_largest_deformation(&fmu->parameters))
+        fabs(fmu->output.phi) <= sh_parameters_largest_deformation(&fmu->parameters)) {
         return 0;
+    }
     fmu->strained = 1;
     return 1;
 }
@@ -90,8 +92,9 @@ sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const
 
         if (!sh_estimator_tick(&fmu->estimator, &fmu->parameters, &z, &fmu->output)) {
             status = SH_WARNING;
-            if (was_valid)
+            if (was_valid) {
                 log_skipped(&z, t + after, who, log);
+            }
         } else if (!was_valid) {
             sh_log(log, SH_OK, "%sMeasurements are good again at t = %.9g s, %g ticks skipped.",
                    who, t + after, skipped);

@@ -20,8 +20,9 @@ static void set_outputs(sh_plant *plant, const double *u)
     double *results[] = {plant->y};
     int channel;
 
-    for (channel = 0; channel < SH_PLANT_NORMALS; ++channel)
+    for (channel = 0; channel < SH_PLANT_NORMALS; ++channel) {
         normals[channel] = sh_noise_normal(plant->seed, plant->sample, (unsigned)channel);
+    }
     sh_plant_outputs(arguments, results, NULL, NULL, 0);
 }
 
@@ -56,8 +57,9 @@ static const char *input_name(size_t i)
 {
     size_t k = 0;
 
-    while (VARIABLES[k].offset != offsetof(sh_plant, u) + i * sizeof(double))
+    while (VARIABLES[k].offset != offsetof(sh_plant, u) + i * sizeof(double)) {
         ++k;
+    }
     return VARIABLES[k].name;
 }
 
@@ -66,8 +68,9 @@ static double sine(const sh_plant *plant, size_t i, double t)
 {
     static const double TURN = 6.283185307179586;
 
-    if (plant->amplitude[i] == 0.0)
+    if (plant->amplitude[i] == 0.0) {
         return 0.0;
+    }
     return plant->amplitude[i] * sin(TURN * plant->frequency[i] * (t - plant->started));
 }
 
@@ -76,9 +79,11 @@ static size_t largest_input(const double *u, const double *u_end)
 {
     size_t i, largest = 0;
 
-    for (i = 1; i < SH_PLANT_INPUTS; ++i)
-        if (fmax(fabs(u[i]), fabs(u_end[i])) > fmax(fabs(u[largest]), fabs(u_end[largest])))
+    for (i = 1; i < SH_PLANT_INPUTS; ++i) {
+        if (fmax(fabs(u[i]), fabs(u_end[i])) > fmax(fabs(u[largest]), fabs(u_end[largest]))) {
             largest = i;
+        }
+    }
     return largest;
 }
 
@@ -110,8 +115,9 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
                t, h, MAX_PERIODS, plant->samplePeriod);
         return SH_ERROR;
     }
-    for (i = 0; i < SH_PLANT_STATES; ++i)
+    for (i = 0; i < SH_PLANT_STATES; ++i) {
         x[i] = plant->x[i];
+    }
     if (sh_radau_integrate(x, u, du, plant->p, h, &internal_step) == 0) {
         i = largest_input(u, u_end);
         sh_log(log, SH_ERROR,
@@ -122,11 +128,13 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
                fabs(u_end[i]) > fabs(u[i]) ? u_end[i] : u[i]);
         return SH_ERROR;
     }
-    for (i = 0; i < SH_PLANT_STATES; ++i)
+    for (i = 0; i < SH_PLANT_STATES; ++i) {
         plant->x[i] = x[i];
+    }
     plant->h = internal_step;
-    if (SH_PLANT_NORMALS > 0)
+    if (SH_PLANT_NORMALS > 0) {
         advance_noise(plant, h);
+    }
     set_outputs(plant, u_end);
     return SH_OK;
 }

@@ -82,10 +82,12 @@ static double norm(const double *v, const double *weight)
 
     for (j = 0; j < STATES; ++j) {
         const double size = fabs(v[j]) * weight[j];
-        if (isnan(size))
+        if (isnan(size)) {
             return size;
-        if (size > largest)
+        }
+        if (size > largest) {
             largest = size;
+        }
     }
     return largest;
 }
@@ -95,10 +97,12 @@ static void transform(const double (*matrix)[STAGES], double (*from)[STATES], do
 {
     int i, j;
 
-    for (i = 0; i < STAGES; ++i)
-        for (j = 0; j < STATES; ++j)
+    for (i = 0; i < STAGES; ++i) {
+        for (j = 0; j < STATES; ++j) {
             to[i][j] =
                 matrix[i][0] * from[0][j] + matrix[i][1] * from[1][j] + matrix[i][2] * from[2][j];
+        }
+    }
 }
 
 /* Whether the inputs are constant. */
@@ -106,9 +110,11 @@ static int are_held(const double *du)
 {
     int j;
 
-    for (j = 0; j < INPUTS; ++j)
-        if (du[j] != 0.0)
+    for (j = 0; j < INPUTS; ++j) {
+        if (du[j] != 0.0) {
             return 0;
+        }
+    }
     return 1;
 }
 
@@ -117,9 +123,11 @@ static void repeat(const double *f, double (*F)[STATES])
 {
     int i, j;
 
-    for (i = 0; i < STAGES; ++i)
-        for (j = 0; j < STATES; ++j)
+    for (i = 0; i < STAGES; ++i) {
+        for (j = 0; j < STATES; ++j) {
             F[i][j] = f[j];
+        }
+    }
 }
 
 /* F_i = f(x + Z_i) at the nodes of a step */
@@ -130,10 +138,12 @@ static void evaluate_stages(const double *x, const double *u, const double *du, 
 
     for (i = 0; i < STAGES; ++i) {
         double x_i[STATES], u_i[INPUTS];
-        for (j = 0; j < STATES; ++j)
+        for (j = 0; j < STATES; ++j) {
             x_i[j] = x[j] + Z[i][j];
-        for (j = 0; j < INPUTS; ++j)
+        }
+        for (j = 0; j < INPUTS; ++j) {
             u_i[j] = u[j] + du[j] * (NODE[i] * h);
+        }
         evaluate(x_i, u_i, p, F[i]);
     }
 }
@@ -158,10 +168,11 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     for (iteration = 0; iteration < MAX_NEWTON_ITERATIONS; ++iteration) {
         const double previous = change;
 
-        if (iteration == 0 && held)
+        if (iteration == 0 && held) {
             repeat(f, F); /* all stages are at x still */
-        else
+        } else {
             evaluate_stages(x, u, du, p, h, Z, F);
+        }
         transform(T_INVERSE, F, dW);
         for (j = 0; j < STATES; ++j) {
             dW[0][j] -= REAL * W[0][j] / h;
@@ -170,24 +181,29 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
         }
         solve_real(factors, dW[0]);
         solve_complex(factors, dW[1], dW[2]);
-        for (i = 0; i < STAGES; ++i)
-            for (j = 0; j < STATES; ++j)
+        for (i = 0; i < STAGES; ++i) {
+            for (j = 0; j < STATES; ++j) {
                 W[i][j] += dW[i][j];
+            }
+        }
         transform(T, W, Z);
 
         change = norm(dW[0], weight) + norm(dW[1], weight) + norm(dW[2], weight);
-        if (change <= NEWTON_TOLERANCE)
+        if (change <= NEWTON_TOLERANCE) {
             return 1;
+        }
         /* The changes shrink by a constant factor; the error is the sum of those to come. Where f
          * jumps by more than its size, the change grows once, however short the step is. That is
          * allowed as long as the change is below the allowed error of the step.
          */
         if (iteration > 0) {
             const double rate = change / previous;
-            if (rate < 1.0 && rate / (1.0 - rate) * change <= NEWTON_TOLERANCE)
+            if (rate < 1.0 && rate / (1.0 - rate) * change <= NEWTON_TOLERANCE) {
                 return 1;
-            if (!(rate < 1.0) && !(change < ERROR_TOLERANCE))
+            }
+            if (!(rate < 1.0) && !(change < ERROR_TOLERANCE)) {
                 return 0;
+            }
         }
     }
     return 0;
@@ -209,14 +225,16 @@ static double estimate_error(double (*Z)[STATES], const double *f, const double 
     int j;
 
     /* error = (REAL/h - J)^-1 (f(x) + defect) */
-    for (j = 0; j < STATES; ++j)
+    for (j = 0; j < STATES; ++j) {
         error[j] = f[j] + (DEFECT[0] * Z[0][j] + DEFECT[1] * Z[1][j] + DEFECT[2] * Z[2][j]) / h;
+    }
     solve_real(factors, error);
     size = norm(error, weight) / ERROR_TOLERANCE;
     /* This counts fast modes fully. But the step itself damps them too, not its followers alone. */
     for (; followers >= 0 && size > 1.0; --followers) {
-        for (j = 0; j < STATES; ++j)
+        for (j = 0; j < STATES; ++j) {
             error[j] *= REAL / h;
+        }
         solve_real(factors, error);
         size = norm(error, weight) / ERROR_TOLERANCE;
     }
@@ -233,11 +251,13 @@ static double take(const double *x, const double *u, const double *du, const dou
     int j, solved;
 
     evaluate(x, u, p, f);
-    for (j = 0; j < STATES; ++j)
+    for (j = 0; j < STATES; ++j) {
         weight[j] = 1.0 / (SCALE[j] + fabs(x[j]));
+    }
     solved = solve_stages(x, u, du, p, h, f, weight, factors, Z);
-    for (j = 0; j < STATES; ++j)
+    for (j = 0; j < STATES; ++j) {
         x_new[j] = x[j] + Z[STAGES - 1][j];
+    }
     return solved ? estimate_error(Z, f, weight, h, followers, factors) : INFINITY;
 }
 
@@ -274,8 +294,9 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
         const int followers = (int)fmin(pieces - 1.0, MAX_FOLLOWERS);
         double u_now[INPUTS], x_new[STATES], error;
 
-        for (j = 0; j < INPUTS; ++j)
+        for (j = 0; j < INPUTS; ++j) {
             u_now[j] = u[j] + du[j] * elapsed;
+        }
         /* Steps that were planned together have the same length and use the same factors. */
         if (owed == 0 || fabs(step - factorized) > 1e-9 * step) {
             factorize(x, u_now, p, step, factors);
@@ -285,8 +306,9 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
         /* The estimate falls with the fourth power of the step. */
         *h = step * fmin(8.0, fmax(0.2, 0.9 / sqrt(sqrt(error))));
         if (error <= 1.0) {
-            for (j = 0; j < STATES; ++j)
+            for (j = 0; j < STATES; ++j) {
                 x[j] = x_new[j];
+            }
             elapsed += step;
             ++steps;
             owed = followers;
@@ -294,8 +316,9 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
                 *h = fmin(*h, begin); /* the next call may begin with the same transient */
                 return steps;
             }
-            if (steps == 1)
+            if (steps == 1) {
                 begin = *h;
+            }
         } else if (step <= shortest) {
             return 0;
         } else {

@@ -55,8 +55,9 @@ void sh_blocks_interrupt(sh_blocks *blocks, int size)
 {
     int i;
 
-    for (i = 0; i < size + SH_SIDES; ++i)
+    for (i = 0; i < size + SH_SIDES; ++i) {
         blocks->sum[i] = 0;
+    }
     blocks->samples = blocks->weight = blocks->weight_window = 0;
     blocks->window = blocks->window_square = blocks->independent = blocks->rounding = 0;
 }
@@ -67,8 +68,9 @@ static void take_mean_row(sh_matched_state *state, sh_information *a, sh_real w)
     sh_real *const row = state->work.row;
     int i;
 
-    for (i = 0; i < state->size + SH_SIDES; ++i)
+    for (i = 0; i < state->size + SH_SIDES; ++i) {
         row[i] = state->blocks.sum[i] / state->blocks.weight;
+    }
     sh_information_take(a, row, w);
 }
 
@@ -98,8 +100,9 @@ static void end(sh_matched_state *state, const sh_parameters *p)
     blocks->count += count;
     blocks->recent_count += count;
     blocks->gained += count * blocks->length * state->design.T;
-    if (blocks->count > LARGEST_COUNT)
+    if (blocks->count > LARGEST_COUNT) {
         sh_blocks_fade(blocks, LARGEST_COUNT / blocks->count);
+    }
     sh_blocks_interrupt(blocks, state->size);
 }
 
@@ -110,8 +113,9 @@ void sh_blocks_take(sh_matched_state *state, const sh_parameters *p, const sh_re
     const sh_real h = window(blocks->samples, blocks->length), wh = w * h;
     int i;
 
-    for (i = 0; i < state->size + SH_SIDES; ++i)
+    for (i = 0; i < state->size + SH_SIDES; ++i) {
         blocks->sum[i] += wh * x[i];
+    }
     blocks->weight += wh;
     blocks->weight_window += wh * h;
     blocks->window += h;
@@ -119,8 +123,9 @@ void sh_blocks_take(sh_matched_state *state, const sh_parameters *p, const sh_re
     blocks->independent += sh_square(h) / last;
     blocks->rounding += sh_signals_roughness(state);
     blocks->samples += 1;
-    if (blocks->samples >= blocks->length)
+    if (blocks->samples >= blocks->length) {
         end(state, p);
+    }
 }
 
 sh_real sh_blocks_threshold(sh_real N)
@@ -138,11 +143,13 @@ static sh_real recent_misfit(sh_matched_state *state, const sh_parameters *p)
     sh_real squares;
     int i;
 
-    if (N < SH_BLOCKS_FIRST || state->friction_drifts || p->matched.drift > 0)
+    if (N < SH_BLOCKS_FIRST || state->friction_drifts || p->matched.drift > 0) {
         return 0;
+    }
     squares = sh_information_squares(&blocks->recent, state->beta);
-    for (i = 0; i < state->size; ++i)
+    for (i = 0; i < state->size; ++i) {
         squares -= state->beta[i] * state->beta[i];
+    }
     return squares > sh_blocks_threshold(N) ? squares / N : 0;
 }
 
@@ -153,16 +160,19 @@ void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p)
     sh_real q, t;
 
     state->q = state->variance_factor = 1;
-    if (N < SH_BLOCKS_FIRST || N <= (sh_real)state->live.information.size)
+    if (N < SH_BLOCKS_FIRST || N <= (sh_real)state->live.information.size) {
         return;
+    }
     q = sh_information_squares(state->friction_drifts ? &blocks->walking : &blocks->all,
                                state->beta) /
         (N - (sh_real)state->live.information.size / 2);
     t = sh_blocks_threshold(N) / N;
     state->q = sh_fmax(q, recent_misfit(state, p));
-    if (!(p->matched.memory > 0)) /* switched off */
+    if (!(p->matched.memory > 0)) { /* switched off */
         return;
+    }
     state->variance_factor = sh_fmax(1, state->q);
-    if (q > t)
+    if (q > t) {
         state->variance_factor = sh_fmax(state->variance_factor, 1 + (q - t) * sh_fmax(1, N / 5));
+    }
 }

@@ -49,10 +49,13 @@ int sh_has_nominal_curve(const sh_parameters *p)
 {
     int i, j;
 
-    for (i = 0; i < p->rls.n; ++i)
-        for (j = 0; j < p->rls.m; ++j)
-            if (sh_fabs(p->rls.eta_0[i][j]) > 0)
+    for (i = 0; i < p->rls.n; ++i) {
+        for (j = 0; j < p->rls.m; ++j) {
+            if (sh_fabs(p->rls.eta_0[i][j]) > 0) {
                 return 1;
+            }
+        }
+    }
     return 0;
 }
 
@@ -86,8 +89,9 @@ typedef struct {
 
 static void add(column_list *list, int kind, int index, sh_real prior, sh_real unit)
 {
-    if (!(prior > 0))
+    if (!(prior > 0)) {
         return;
+    }
     if (list->column != NULL) {
         sh_column *column = list->column + list->size;
 
@@ -108,31 +112,38 @@ static void list_columns(const sh_parameters *p, column_list *list)
     const int linear = sh_torque_basis_linear(symmetric);
     int i;
 
-    for (i = 0; i < n * m; ++i)
+    for (i = 0; i < n * m; ++i) {
         add(list, SH_COLUMN_BASIS, i, tau_e,
             sh_scaled_basis_unit(&p->range, symmetric, i % n, i / n));
+    }
     add(list, SH_COLUMN_NOMINAL, 0, sh_has_nominal_curve(p) ? prior->nominal : 0, 0);
     add(list, SH_COLUMN_BIAS, 0, prior->bias * tau_e, 0);
     add(list, SH_COLUMN_DAMPING, 0, prior->damping * K_0, 0);
-    if (m > 1)
+    if (m > 1) {
         add(list, SH_COLUMN_DAMPING, m - 1, prior->damping * K_0, 0);
+    }
     add(list, SH_COLUMN_SIN_Q, 0, prior->eccentric * K_0, 0);
     add(list, SH_COLUMN_COS_Q, 0, prior->eccentric * K_0, 0);
     add(list, SH_COLUMN_LOAD, 0, prior->load_friction, 0);
-    if (prior->tau_coulomb > 0) /* else the motor has no dry friction */
+    if (prior->tau_coulomb > 0) { /* else the motor has no dry friction */
         add(list, SH_COLUMN_DRIVE, 0, prior->load_friction, 0);
+    }
     add(list, SH_COLUMN_DELAY, 0, prior->delay, 0);
     add(list, SH_COLUMN_REVERSAL, 0, prior->reversal * prior->tau_coulomb, 0);
-    for (i = 0; i < 2 && n + i < SH_MAX_N; ++i)
+    for (i = 0; i < 2 && n + i < SH_MAX_N; ++i) {
         add(list, SH_COLUMN_POWER, i, prior->power * tau_e,
             sh_scaled_basis_unit(&p->range, symmetric, n + i, 0));
-    if (m > 1 && m < SH_MAX_M && linear < n)
+    }
+    if (m > 1 && m < SH_MAX_M && linear < n) {
         add(list, SH_COLUMN_SET_POWER, 0, prior->power * tau_e,
             sh_scaled_basis_unit(&p->range, symmetric, linear, m));
-    for (i = 0; i < SH_PLAYS; ++i)
+    }
+    for (i = 0; i < SH_PLAYS; ++i) {
         add(list, SH_COLUMN_GAP, i, prior->gap * tau_e, 0);
-    for (i = 0; i < SH_PLAYS; ++i)
+    }
+    for (i = 0; i < SH_PLAYS; ++i) {
         add(list, SH_COLUMN_PLAY, i, prior->hysteresis * tau_e, 0);
+    }
     add(list, SH_COLUMN_SIN_M, 0, prior->eccentric_motor, 0);
     add(list, SH_COLUMN_COS_M, 0, prior->eccentric_motor, 0);
     add(list, SH_COLUMN_VISCOUS, 0, prior->D_theta, 0);
@@ -157,10 +168,12 @@ void sh_columns_start(sh_matched_state *state, const sh_parameters *p)
     list_columns(p, &list);
     state->size = list.size;
     state->has_nominal = sh_has_nominal_curve(p);
-    for (j = 0; j < m; ++j)
-        for (i = 0; i < n; ++i)
+    for (j = 0; j < m; ++j) {
+        for (i = 0; i < n; ++i) {
             state->nominal_curve[j * n + i] =
                 p->rls.eta_0[i][j] / sh_scaled_basis_unit(&p->range, p->rls.symmetric, i, j);
+        }
+    }
 }
 
 int sh_column_can_join(const sh_matched_state *state, const sh_parameters *p,
@@ -169,12 +182,15 @@ int sh_column_can_join(const sh_matched_state *state, const sh_parameters *p,
     /* What is wider than a quarter of the covered range looks like the spring. */
     const sh_real covered = (state->history.phi_max - state->history.phi_min) / 4 / p->range.phi;
 
-    if (sh_column_group(column) != group)
+    if (sh_column_group(column) != group) {
         return 0;
-    if (column->kind == SH_COLUMN_GAP)
+    }
+    if (column->kind == SH_COLUMN_GAP) {
         return GAPS[column->index] < covered;
-    if (column->kind == SH_COLUMN_PLAY)
+    }
+    if (column->kind == SH_COLUMN_PLAY) {
         return PLAYS[column->index] < covered;
+    }
     return 1;
 }
 
@@ -189,8 +205,9 @@ void sh_columns_move_plays(sh_matched_state *state, const sh_parameters *p, sh_r
 {
     int i;
 
-    for (i = 0; i < SH_PLAYS; ++i)
+    for (i = 0; i < SH_PLAYS; ++i) {
         state->history.play[i] = clip(state->history.play[i] + change, PLAYS[i] * p->range.phi);
+    }
 }
 
 /* What the signals depend on. */
@@ -248,9 +265,10 @@ void sh_columns_input(sh_matched_state *state, const sh_parameters *p, sh_real t
 
     sh_scaled_basis(&p->range, p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi,
                     state->work.basis, state->work.slope);
-    if (state->has_nominal)
+    if (state->has_nominal) {
         sh_scalar_products(state->nominal_curve, state->work.basis, state->work.slope,
                            p->rls.n * p->rls.m, &state->tau_nominal, &state->sigma_nominal);
+    }
     for (i = 0; i < state->size; ++i) {
         const sh_column *column = &state->column[i];
         sh_real slope;
@@ -286,8 +304,9 @@ static motor_terms motor_terms_of(const sh_matched_state *state, const sh_parame
     const sh_real gamma2 = motor->gamma * motor->gamma;
     motor_terms terms = {0, 0, 1, sh_is_measured(p)};
 
-    if (terms.is_measured)
+    if (terms.is_measured) {
         return terms;
+    }
     terms.gain = -motor->gamma;
     terms.viscous =
         gamma2 * motor->D_theta * sh_state_variable_filter_first(&state->theta, &state->design);
@@ -369,12 +388,14 @@ sh_real sh_columns_row(const sh_matched_state *state, const sh_parameters *p, sh
     const sh_real y = motor.inertial + motor.viscous + torque;
     int i;
 
-    for (i = 0; i < state->size; ++i)
+    for (i = 0; i < state->size; ++i) {
         x[i] = entry_of(state, p, &motor, &state->column[i], &state->filter[i]);
+    }
     x[state->size + SH_SIDE_GAIN] = torque;
     x[state->size + SH_SIDE_Y] = y;
-    if (state->has_nominal)
+    if (state->has_nominal) {
         x[state->size + SH_SIDE_Y] -= sh_state_variable_filter_output(&state->nominal);
+    }
     return y;
 }
 
@@ -385,13 +406,14 @@ sh_real sh_columns_remove_noise(const sh_matched_state *state, const sh_paramete
     sh_real change = 0;
     int i;
 
-    for (i = 0; i < state->size; ++i)
+    for (i = 0; i < state->size; ++i) {
         if (state->column[i].kind == SH_COLUMN_DRIVE && !sh_is_measured(p)) {
             const sh_real entry = state->column[i].prior * drive_friction(state, torque - noise);
 
             change += (entry - x[i]) * state->beta[i];
             x[i] = entry;
         }
+    }
     return change;
 }
 
@@ -402,8 +424,10 @@ sh_real sh_columns_torque(const sh_matched_state *state)
     sh_real torque = state->tau_nominal;
     int i;
 
-    for (i = 0; i < state->size; ++i)
-        if (sh_column_is_torque(&state->column[i]))
+    for (i = 0; i < state->size; ++i) {
+        if (sh_column_is_torque(&state->column[i])) {
             torque += state->work.F[i] * state->beta[i];
+        }
+    }
     return torque;
 }

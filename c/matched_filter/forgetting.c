@@ -39,10 +39,12 @@ static void walk_friction(sh_matched_state *state, sh_information *a, sh_real va
     for (i = 0; i < state->size; ++i) {
         const int kind = state->column[i].kind;
 
-        if (kind != SH_COLUMN_VISCOUS && kind != SH_COLUMN_COULOMB)
+        if (kind != SH_COLUMN_VISCOUS && kind != SH_COLUMN_COULOMB) {
             continue;
-        for (k = 0; k < state->size; ++k)
+        }
+        for (k = 0; k < state->size; ++k) {
             v[k] = k == i ? 1 : 0;
+        }
         sh_information_walk(a, v, variance, state->work.row);
     }
 }
@@ -57,13 +59,15 @@ void sh_forgetting_of_friction(sh_matched_state *state, sh_real time)
         const sh_real constant = blocks->all.rest, walking = blocks->walking.rest;
         const sh_real limit = (N - parameters) * sh_blocks_threshold(N) / N;
 
-        if (walking < (sh_real)0.8 * constant && constant > limit)
+        if (walking < (sh_real)0.8 * constant && constant > limit) {
             state->friction_drifts = 1;
-        else if (walking > (sh_real)0.95 * constant)
+        } else if (walking > (sh_real)0.95 * constant) {
             state->friction_drifts = 0;
+        }
     }
-    if (state->friction_drifts)
+    if (state->friction_drifts) {
         walk_friction(state, &state->data, WALK * time);
+    }
 }
 
 /* Whether a column belongs to the smooth curve of the torque. */
@@ -82,8 +86,9 @@ static void drift(sh_matched_state *state, const sh_parameters *p, const sh_real
         v[i] = is_curve(&state->column[i]) ? x[i] : 0;
         power += v[i] * v[i];
     }
-    if (!(power > 0))
+    if (!(power > 0)) {
         return;
+    }
     variance = p->matched.drift * time / (power + state->R);
     sh_information_walk(&state->data, v, variance, state->work.row);
     sh_information_walk(&state->blocks.all, v, variance, state->work.row);
@@ -97,8 +102,10 @@ void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, const s
 
     state->blocks.gained = 0;
     fade_recent(&state->blocks, p, gained);
-    if (state->variance_factor > SH_CONTRADICTION)
+    if (state->variance_factor > SH_CONTRADICTION) {
         forget(state, p, gained);
-    if (p->matched.drift > 0)
+    }
+    if (p->matched.drift > 0) {
         drift(state, p, x, time);
+    }
 }

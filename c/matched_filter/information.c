@@ -22,8 +22,9 @@ void sh_information_start(sh_information *a, int size, sh_real precision)
     a->size = size;
     a->rest = 0;
     memset(a->U, 0, sizeof(sh_real) * (size_t)row_offset(size, size));
-    for (i = 0; i < size; ++i)
+    for (i = 0; i < size; ++i) {
         a->D[i] = precision;
+    }
 }
 
 void sh_information_copy(sh_information *to, const sh_information *from)
@@ -98,8 +99,9 @@ static sh_real sum_of_products(const sh_real *a, const sh_real *b, int count)
         sum[2] += a[k + 2] * b[k + 2];
         sum[3] += a[k + 3] * b[k + 3];
     }
-    for (; k < count; ++k)
+    for (; k < count; ++k) {
         sum[0] += a[k] * b[k];
+    }
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
@@ -132,8 +134,9 @@ static void subtract(sh_real *restrict x, const sh_real *restrict row, int count
         x[k + 2] = x_2;
         x[k + 3] = x_3;
     }
-    for (; k < count; ++k)
+    for (; k < count; ++k) {
         x[k] -= factor * row[k];
+    }
 }
 
 void sh_information_project(sh_information *a, const sh_real *c, sh_real *v)
@@ -142,13 +145,15 @@ void sh_information_project(sh_information *a, const sh_real *c, sh_real *v)
     const sh_real *row = a->U;
     int i;
 
-    for (i = 0; i < size; ++i)
+    for (i = 0; i < size; ++i) {
         v[i] = c[i];
+    }
     for (i = 0; i < size; ++i) {
         const int count = size - 1 - i;
 
-        if (sh_fabs(v[i]) > 0)
+        if (sh_fabs(v[i]) > 0) {
             subtract(v + i + 1, row, count, v[i]);
+        }
         row += count + SH_SIDES;
     }
 }
@@ -175,8 +180,9 @@ void sh_information_fade(sh_information *a, sh_real keep, sh_real least)
 {
     int i;
 
-    for (i = 0; i < a->size; ++i)
+    for (i = 0; i < a->size; ++i) {
         a->D[i] = sh_fmax(a->D[i] * keep, least);
+    }
     a->rest *= keep;
 }
 
@@ -197,8 +203,9 @@ void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real
         const sh_real scaled = a->D[i] * along;
 
         row[i] += scaled;
-        for (j = 0; j < count + SH_SIDES; ++j)
+        for (j = 0; j < count + SH_SIDES; ++j) {
             row[i + 1 + j] += scaled * of_U[j];
+        }
         vAv += scaled * along;
         of_U += count + SH_SIDES;
     }

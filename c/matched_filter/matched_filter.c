@@ -27,16 +27,19 @@ static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
 {
     const sh_real wT = p->matched.bandwidth * p->samplePeriod;
 
-    if (wT < (sh_real)1e-4 || wT >= 2)
+    if (wT < (sh_real)1e-4 || wT >= 2) {
         return sh_violates(violation, "matched.bandwidth", p->matched.bandwidth,
                            ">= 1e-4 / samplePeriod and < 2 / samplePeriod");
-    if (!(p->prior.tau_e > 0) && !(sh_has_nominal_curve(p) && p->prior.nominal > 0))
+    }
+    if (!(p->prior.tau_e > 0) && !(sh_has_nominal_curve(p) && p->prior.nominal > 0)) {
         return sh_violates(violation, "prior.tau_e", p->prior.tau_e,
                            "> 0, or 0 with a curve rls.eta_0 and prior.nominal > 0");
-    if (sh_columns_count(p) > SH_MAX_COLUMNS)
+    }
+    if (sh_columns_count(p) > SH_MAX_COLUMNS) {
         return sh_violates(violation, "rls.n", (sh_real)p->rls.n,
                            "smaller, or more priors 0: this library was compiled for at "
                            "most " SH_TEXT_OF(SH_MAX_COLUMNS) " columns");
+    }
     return 0;
 }
 
@@ -133,12 +136,15 @@ static void add_nominal_curve(const sh_matched_state *state, const sh_parameters
     const int is_basis = p->prior.tau_e > 0;
     int i, j;
 
-    if (!state->has_nominal)
+    if (!state->has_nominal) {
         return;
-    for (i = 0; i < p->rls.n; ++i)
-        for (j = 0; j < p->rls.m; ++j)
+    }
+    for (i = 0; i < p->rls.n; ++i) {
+        for (j = 0; j < p->rls.m; ++j) {
             estimate->eta[i][j] =
                 (is_basis ? estimate->eta[i][j] : 0) + (1 + error) * p->rls.eta_0[i][j];
+        }
+    }
 }
 
 static void report_joint(const sh_matched_state *state, const sh_parameters *p,
@@ -169,16 +175,21 @@ static int doubt_of(const sh_matched_state *state, const sh_parameters *p,
 {
     int doubt = SH_DOUBT_NONE;
 
-    if (!(estimate->sigma_std < p->confidence * sh_fabs(estimate->sigma)))
+    if (!(estimate->sigma_std < p->confidence * sh_fabs(estimate->sigma))) {
         doubt = state->variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
-    if (sh_fabs(estimate->phi) > state->largest_deformation)
+    }
+    if (sh_fabs(estimate->phi) > state->largest_deformation) {
         doubt = SH_DOUBT_OUT_OF_RANGE;
-    if (sh_fabs(joint->viscous) > 3 * p->prior.D_theta)
+    }
+    if (sh_fabs(joint->viscous) > 3 * p->prior.D_theta) {
         doubt = SH_DOUBT_FRICTION;
-    if (sh_fabs(joint->inertia) > 3 * p->prior.B)
+    }
+    if (sh_fabs(joint->inertia) > 3 * p->prior.B) {
         doubt = SH_DOUBT_INERTIA;
-    if (estimate->sigma < 0)
+    }
+    if (estimate->sigma < 0) {
         doubt = SH_DOUBT_NEGATIVE_STIFFNESS;
+    }
     return doubt;
 }
 
@@ -234,8 +245,9 @@ static sh_real sum_of_squares(const sh_real *x, int size)
     sh_real sum = 0;
     int i;
 
-    for (i = 0; i < size; ++i)
+    for (i = 0; i < size; ++i) {
         sum += x[i] * x[i];
+    }
     return sum;
 }
 
@@ -266,12 +278,14 @@ static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
     sh_sample_variance_watch(state, p);
     variance = sh_sample_variance_of(state, p);
     w = 1 / variance.R;
-    if (!(w > 0) || !(w * size2 <= SH_LARGE))
+    if (!(w > 0) || !(w * size2 <= SH_LARGE)) {
         return 0;
+    }
     state->R = variance.R;
     epsilon = x[state->size + SH_SIDE_Y];
-    for (i = 0; i < state->size; ++i)
+    for (i = 0; i < state->size; ++i) {
         epsilon -= x[i] * state->beta[i];
+    }
     epsilon -=
         sh_columns_remove_noise(state, p, sh_sample_variance_of_torque(state, p) * epsilon, x);
     share = sh_posterior_take(state, &state->live, x, w, row);
@@ -291,13 +305,15 @@ static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
 
         state->surplus += rounding;
         state->spread += spread;
-        for (i = 0; i < 2; ++i)
+        for (i = 0; i < 2; ++i) {
             both[i]->spread += spread * both[i]->weight * both[i]->weight;
+        }
         state->build.surplus += rounding * state->build.weight;
         sh_posterior_remove(&state->live, rounding * state->live.weight, p->prior.B);
     }
-    for (i = 0; i < state->size + SH_SIDES; ++i)
+    for (i = 0; i < state->size + SH_SIDES; ++i) {
         row[i] = x[i];
+    }
     sh_information_take(&state->data, row, w);
     sh_blocks_take(state, p, x, w, variance.last);
     sh_passes_step(state, p, x, w);
@@ -310,13 +326,16 @@ static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
 static int is_settled(sh_matched_state *state, const sh_parameters *p)
 {
     state->history.settling = sh_fmax(state->history.settling - p->samplePeriod, 0);
-    if (state->history.settling > 0)
+    if (state->history.settling > 0) {
         return 0;
-    if (sh_is_measured(p) || !(state->history.starting > 0))
+    }
+    if (sh_is_measured(p) || !(state->history.starting > 0)) {
         return 1;
+    }
     state->history.starting -= p->samplePeriod;
-    if (!sh_sample_variance_contradicts_rest(state, p, state->work.x))
+    if (!sh_sample_variance_contradicts_rest(state, p, state->work.x)) {
         return 1;
+    }
     sh_signals_unsettle(state);
     return 0;
 }
@@ -342,13 +361,16 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
     y = sh_columns_row(state, p, state->work.x);
     size2 = sum_of_squares(state->work.x, state->size + SH_SIDES);
     good = are_acceptable_signals(state) && size2 <= SH_LARGE; /* false if not a number */
-    if (good && is_settled(state, p))
+    if (good && is_settled(state, p)) {
         good = learn(state, p, size2, &innovation);
-    if (good)
+    }
+    if (good) {
         fit = sh_posterior_evaluate(state, &state->live);
+    }
     sigma = state->sigma_nominal;
-    for (i = 0; i < state->size; ++i)
+    for (i = 0; i < state->size; ++i) {
         sigma += state->work.dF[i] * state->beta[i];
+    }
     if (!good || !isfinite(sigma) || !isfinite(fit.variance)) {
         state->begun = 0; /* the filters start again, so their old state does not matter */
         state->history = before;

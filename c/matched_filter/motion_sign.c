@@ -38,12 +38,14 @@ void sh_motion_sign_step(sh_motion_sign *motion, sh_real position, sh_real count
          * the last count. A fast motor turned within this sample, where its velocity, taken as
          * linear in time, was zero.
          */
-        if (run > 1)
+        if (run > 1) {
             motion->sign -= motion->given;
-        else
+        } else {
             motion->sign = way * 2 * sh_fabs(change) / (sh_fabs(change) + sh_fabs(before));
-        if (sh_fmin(sh_fabs(change), sh_fabs(before)) < (sh_real)1.5 * count)
+        }
+        if (sh_fmin(sh_fabs(change), sh_fabs(before)) < (sh_real)1.5 * count) {
             motion->unknown = 1 + sh_fabs(motion->given);
+        }
     }
     motion->position = position;
     motion->change = change;

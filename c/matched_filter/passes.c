@@ -18,9 +18,11 @@ static int has_columns(const sh_matched_state *state, const sh_parameters *p, in
 {
     int i;
 
-    for (i = 0; i < state->size; ++i)
-        if (sh_column_can_join(state, p, &state->column[i], group))
+    for (i = 0; i < state->size; ++i) {
+        if (sh_column_can_join(state, p, &state->column[i], group)) {
             return 1;
+        }
+    }
     return 0;
 }
 
@@ -31,8 +33,9 @@ static int next_trial(sh_matched_state *state, const sh_parameters *p)
 
     for (tries = 1; tries < SH_GROUPS; ++tries) {
         state->last_trial = state->last_trial % (SH_GROUPS - 1) + 1;
-        if (has_columns(state, p, state->last_trial))
+        if (has_columns(state, p, state->last_trial)) {
             return state->last_trial;
+        }
     }
     return 0;
 }
@@ -59,8 +62,9 @@ static void plan(sh_matched_state *state, const sh_parameters *p)
 
     sh_blocks_judge(state, p);
     state->trial = 0;
-    if (!was_trial && state->blocks.count >= SH_BLOCKS_FIRST)
+    if (!was_trial && state->blocks.count >= SH_BLOCKS_FIRST) {
         state->trial = next_trial(state, p);
+    }
 }
 
 void sh_passes_start(sh_matched_state *state, const sh_parameters *p)
@@ -79,13 +83,16 @@ static void decide(sh_matched_state *state)
     for (i = 0; i < a->size; ++i) {
         const sh_real z = sh_information_row(a, i)[a->size - 1 - i + SH_SIDE_Y];
 
-        if (sh_column_group(&state->column[build->column[i]]) == state->trial)
+        if (sh_column_group(&state->column[build->column[i]]) == state->trial) {
             gain += (a->D[i] * z * z - sh_log(a->D[i])) / 2;
+        }
     }
-    if (gain > FIRST_GAIN + GAIN_PER_BLOCK * state->blocks.count)
+    if (gain > FIRST_GAIN + GAIN_PER_BLOCK * state->blocks.count) {
         state->used[state->trial] = 1;
-    if (gain < GAIN_PER_BLOCK / 2 * state->blocks.count)
+    }
+    if (gain < GAIN_PER_BLOCK / 2 * state->blocks.count) {
         state->used[state->trial] = 0;
+    }
 }
 
 static void end_pass(sh_matched_state *state, const sh_parameters *p)
@@ -95,8 +102,9 @@ static void end_pass(sh_matched_state *state, const sh_parameters *p)
         return;
     }
     sh_posterior_copy(&state->live, &state->build);
-    if (state->live.inertia >= 0)
+    if (state->live.inertia >= 0) {
         sh_posterior_remove(&state->live, 0, p->prior.B);
+    }
 }
 
 /* Takes the next row of the copy of the data. */
@@ -106,11 +114,13 @@ static void take_row(sh_matched_state *state, sh_real *x)
     const sh_real *row = sh_information_row(&state->frozen, i);
     int j;
 
-    for (j = 0; j < i; ++j)
+    for (j = 0; j < i; ++j) {
         x[j] = 0;
+    }
     x[i] = 1;
-    for (j = i + 1; j < entries; ++j)
+    for (j = i + 1; j < entries; ++j) {
         x[j] = row[j - i - 1];
+    }
     sh_posterior_take(state, &state->build, x, state->frozen.D[i], state->work.row);
     state->row += 1;
 }
@@ -126,8 +136,9 @@ void sh_passes_step(sh_matched_state *state, const sh_parameters *p, sh_real *x,
     state->since += 1;
     sh_posterior_take(state, &state->build, x, w, state->work.row);
     state->alternate = !state->alternate;
-    if (state->alternate)
+    if (state->alternate) {
         return;
+    }
     /* What a pass needs besides the rows is spread over ticks, too. */
     if (state->row < state->size) {
         take_row(state, x);
@@ -139,8 +150,9 @@ void sh_passes_step(sh_matched_state *state, const sh_parameters *p, sh_real *x,
         plan(state, p);
         break;
     case 1:
-        if (state->trial == 0)
+        if (state->trial == 0) {
             sh_forgetting_of_friction(state, time_since(state));
+        }
         break;
     case 2:
         if (state->trial == 0) {

@@ -28,17 +28,22 @@ void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
     for (i = 0; i < state->size; ++i) {
         const sh_column *column = &state->column[i];
 
-        if (!is_used(state, p, column, trial))
+        if (!is_used(state, p, column, trial)) {
             continue;
-        if (column->kind == SH_COLUMN_COULOMB)
+        }
+        if (column->kind == SH_COLUMN_COULOMB) {
             posterior->coulomb = size;
-        if (column->kind == SH_COLUMN_INERTIA)
+        }
+        if (column->kind == SH_COLUMN_INERTIA) {
             posterior->inertia = size;
+        }
         posterior->column[size++] = i;
     }
-    for (i = 0; i < state->size && trial != 0; ++i)
-        if (sh_column_can_join(state, p, &state->column[i], trial))
+    for (i = 0; i < state->size && trial != 0; ++i) {
+        if (sh_column_can_join(state, p, &state->column[i], trial)) {
             posterior->column[size++] = i;
+        }
+    }
     sh_information_start(&posterior->information, size, 1);
     posterior->weight = weight;
     posterior->surplus = posterior->removed = posterior->spread = 0;
@@ -49,8 +54,9 @@ void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
     int i;
 
     sh_information_copy(&to->information, &from->information);
-    for (i = 0; i < from->information.size; ++i)
+    for (i = 0; i < from->information.size; ++i) {
         to->column[i] = from->column[i];
+    }
     to->coulomb = from->coulomb;
     to->inertia = from->inertia;
     to->weight = from->weight;
@@ -66,10 +72,12 @@ sh_real sh_posterior_take(const sh_matched_state *state, sh_posterior *posterior
     const sh_real weight = w * posterior->weight;
     int i;
 
-    for (i = 0; i < size; ++i)
+    for (i = 0; i < size; ++i) {
         row[i] = x[posterior->column[i]];
-    for (i = 0; i < SH_SIDES; ++i)
+    }
+    for (i = 0; i < SH_SIDES; ++i) {
         row[size + i] = x[state->size + i];
+    }
     return sh_information_take(&posterior->information, row, weight) / weight;
 }
 
@@ -80,11 +88,13 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
     sh_real back, left, *z;
 
     posterior->surplus += information;
-    if (b < 0 || b != posterior->information.size - 1)
+    if (b < 0 || b != posterior->information.size - 1) {
         return;
+    }
     back = sh_fmin(posterior->surplus, D[b] - 1); /* 1: the prior */
-    if (!(back > 0))
+    if (!(back > 0)) {
         return;
+    }
     left = D[b] - back;
     z = sh_information_row(&posterior->information, b);
     z[SH_SIDE_GAIN] *= D[b] / left;
@@ -126,8 +136,9 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
         memcpy(z_b, sh_information_row(a, b), sizeof z_b);
         weigh_inertia(posterior, state->column[posterior->column[b]].prior);
     }
-    for (i = 0; i < size; ++i)
+    for (i = 0; i < size; ++i) {
         own[i] = state->work.dF[posterior->column[i]];
+    }
     sh_information_project(a, own, v);
     for (i = 0; i < size; ++i) {
         const sh_real *z = sh_information_row(a, i) + size - 1 - i;
@@ -136,10 +147,12 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
         fit.by_gain += v[i] * z[SH_SIDE_GAIN];
     }
     sh_information_solve(a, SH_SIDE_Y, own);
-    for (i = 0; i < state->size; ++i)
+    for (i = 0; i < state->size; ++i) {
         state->beta[i] = 0;
-    for (i = 0; i < size; ++i)
+    }
+    for (i = 0; i < size; ++i) {
         state->beta[posterior->column[i]] = own[i];
+    }
     if (weigh) {
         a->D[b] = D_b;
         memcpy(sh_information_row(a, b), z_b, sizeof z_b);
@@ -154,7 +167,8 @@ sh_real sh_posterior_variance(sh_posterior *posterior, const sh_real *c, sh_real
     int i;
 
     sh_information_project(a, c, v);
-    for (i = 0; i < a->size; ++i)
+    for (i = 0; i < a->size; ++i) {
         variance += v[i] * v[i] / a->D[i];
+    }
     return variance;
 }

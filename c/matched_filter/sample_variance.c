@@ -44,10 +44,12 @@ static sh_real friction_variance(sh_matched_state *state, const sh_parameters *p
     sh_real tau_C;
     int i;
 
-    if (C < 0 || !(sh_fabs(unknown) > 0))
+    if (C < 0 || !(sh_fabs(unknown) > 0)) {
         return 0;
-    for (i = 0; i < live->information.size; ++i)
+    }
+    for (i = 0; i < live->information.size; ++i) {
         c[i] = i == C ? 1 : 0;
+    }
     tau_C = sh_square(state->beta[live->column[C]]) + sh_posterior_variance(live, c, state->work.v);
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * unknown) * tau_C;
 }
@@ -109,8 +111,9 @@ void sh_sample_variance_watch(sh_matched_state *state, const sh_parameters *p)
     const sh_real inertial = inertial_noise(state, p);
     const sh_real rounded = torque + inertial * sh_square(state->count) / 12;
 
-    if (sh_is_measured(p))
+    if (sh_is_measured(p)) {
         return;
+    }
     state->history.rough +=
         sh_fmin(T / WATCH, 1) * (sh_signals_roughness(state) - state->history.rough);
     state->history.excess = sh_fmax(1, (torque + inertial * state->history.rough) / rounded);
@@ -128,8 +131,9 @@ sh_real sh_sample_variance_of_inertia(const sh_matched_state *state, const sh_pa
     const sh_real *theta = state->theta_before;
     const sh_real moved = sh_fabs(theta[0] - theta[1]) > 0 ? 1 : 0;
 
-    if (sh_is_measured(p) || state->live.inertia < 0)
+    if (sh_is_measured(p) || state->live.inertia < 0) {
         return 0;
+    }
     return sh_square(sh_square(p->motor.gamma) * p->motor.B * p->prior.B) * state->gain_second *
            (sh_signals_roughness(state) + ROUNDING * moved * sh_square(state->count) / 12);
 }

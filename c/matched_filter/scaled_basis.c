@@ -35,9 +35,11 @@ sh_real sh_scaled_basis_unit(const sh_range_parameters *range, int symmetric, in
     sh_real unit = e > 0 ? 1 / (sh_real)e : 1;
     int k;
 
-    for (k = 0; k < e; ++k)
+    for (k = 0; k < e; ++k) {
         unit /= range->phi;
-    for (k = 0; k < j; ++k)
+    }
+    for (k = 0; k < j; ++k) {
         unit /= range->setPoint;
+    }
     return unit;
 }

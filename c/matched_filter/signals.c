@@ -11,8 +11,9 @@ sh_real sh_matched_bandwidth(const sh_parameters *p)
     const sh_real count = sh_encoder_count(p->encoder.theta);
     const sh_real rounding = p->motor.B * sh_fabs(p->motor.gamma) * count / sh_sqrt(12);
 
-    if (sh_is_measured(p) || !(rounding > 0))
+    if (sh_is_measured(p) || !(rounding > 0)) {
         return p->matched.bandwidth;
+    }
     return sh_fmax(sh_fmin(p->matched.bandwidth, (sh_real)1.42 * sh_sqrt(p->noise.tau / rounding)),
                    (sh_real)1e-4 / p->samplePeriod);
 }
@@ -70,14 +71,16 @@ static void begin_all(sh_matched_state *state, sh_real theta, sh_real torque)
     for (i = 0; i < state->size; ++i) {
         const int signal = sh_column_signal(&state->column[i]);
 
-        if (signal == SH_SIGNAL_LINEAR)
+        if (signal == SH_SIGNAL_LINEAR) {
             sh_state_variable_filter_begin(&state->filter[i], state->work.F[i]);
-        else
+        } else {
             sh_state_variable_filter_start(&state->filter[i], state->work.F[i]);
+        }
     }
     sh_motion_sign_start(&state->motion, theta);
-    for (i = 0; i < 5; ++i)
+    for (i = 0; i < 5; ++i) {
         state->theta_before[i] = theta;
+    }
     state->begun = 1;
 }
 
@@ -98,11 +101,12 @@ static void advance_columns(sh_matched_state *state)
     for (i = 0; i < state->size; ++i) {
         const int signal = sh_column_signal(&state->column[i]);
 
-        if (signal == SH_SIGNAL_MEAN)
+        if (signal == SH_SIGNAL_MEAN) {
             sh_state_variable_filter_step_mean(&state->filter[i], design,
                                                load_friction(state) * state->column[i].prior);
-        else if (signal != SH_SIGNAL_NONE)
+        } else if (signal != SH_SIGNAL_NONE) {
             sh_state_variable_filter_step(&state->filter[i], design, state->work.F[i]);
+        }
     }
 }
 
@@ -112,16 +116,19 @@ static void advance_all(sh_matched_state *state, const sh_parameters *p, sh_real
     const sh_filter_design *design = &state->design;
     int i;
 
-    for (i = 4; i > 0; --i)
+    for (i = 4; i > 0; --i) {
         state->theta_before[i] = state->theta_before[i - 1];
+    }
     state->theta_before[0] = theta;
     sh_state_variable_filter_step(&state->theta, design, theta);
-    if (p->torque.held && !sh_is_measured(p))
+    if (p->torque.held && !sh_is_measured(p)) {
         sh_state_variable_filter_step_mean(&state->torque, design, state->torque_before);
-    else
+    } else {
         sh_state_variable_filter_step(&state->torque, design, torque);
-    if (state->has_nominal)
+    }
+    if (state->has_nominal) {
         sh_state_variable_filter_step(&state->nominal, design, state->tau_nominal);
+    }
     sh_motion_sign_step(&state->motion, theta, state->count, p->matched.slow * design->T);
     state->history.unsure = state->motion.unknown > 0 ? state->history.unsure + 1 : 0;
     sh_state_variable_filter_step_mean(&state->friction, design, state->motion.sign);
@@ -131,10 +138,11 @@ static void advance_all(sh_matched_state *state, const sh_parameters *p, sh_real
 
 void sh_signals_step(sh_matched_state *state, const sh_parameters *p, sh_real theta, sh_real torque)
 {
-    if (state->begun)
+    if (state->begun) {
         advance_all(state, p, theta, torque);
-    else
+    } else {
         begin_all(state, theta, torque);
+    }
     state->torque_before = torque;
 }
 

@@ -49,8 +49,9 @@ static void advance(sh_state_variable_filter *filter, const sh_filter_design *de
     behind[0] = lag + keep[0] * d0;
     behind[1] = 2 * lag + keep[0] * d1 + keep[1] * d0;
     behind[2] = 3 * lag + keep[0] * d2 + keep[1] * d1 + keep[2] * d0;
-    if (sh_fabs(behind[2]) < SMALL && sh_fabs(behind[1]) < SMALL && sh_fabs(behind[0]) < SMALL)
+    if (sh_fabs(behind[2]) < SMALL && sh_fabs(behind[1]) < SMALL && sh_fabs(behind[0]) < SMALL) {
         behind[0] = behind[1] = behind[2] = 0;
+    }
 }
 
 void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_filter_design *design,

@@ -12,8 +12,9 @@ sh_real sh_measurement_variance(const sh_filter_parameters *filter, sh_real x_do
     const sh_real speed = sh_fabs(x_dot);
     sh_real relative;
 
-    if (!(w_s > 0))
+    if (!(w_s > 0)) {
         return filter->V_min;
+    }
     relative = filter->weighting == SH_WEIGHTING_NORMALIZED ? speed / w_s : speed * w_s;
     /* (11). If exp overflows to infinity, R is V_min, which is right. */
     return (filter->V_max - filter->V_min) / (1 + sh_exp((relative - 1) * filter->alpha)) +

@@ -10,9 +10,10 @@
 
 static int check_paper2011(const sh_parameters *p, sh_violation *violation)
 {
-    if (p->residual.K_I * p->samplePeriod >= 2)
+    if (p->residual.K_I * p->samplePeriod >= 2) {
         return sh_violates(violation, "residual.K_I", p->residual.K_I,
                            ">= 1e-15 and < 2 / samplePeriod");
+    }
     return 0;
 }
 
@@ -38,9 +39,11 @@ static void report_paper2011(sh_paper2011_state *state, const sh_parameters *p,
     const sh_real *eta = state->rls.eta;
     int i, j;
 
-    for (j = 0; j < m; ++j)
-        for (i = 0; i < n; ++i)
+    for (j = 0; j < m; ++j) {
+        for (i = 0; i < n; ++i) {
             estimate->eta[i][j] = *eta++;
+        }
+    }
     estimate->sigma_std =
         sh_sqrt(unit_of_covariance(p) * sh_ud_factor_variance(&state->rls.P, state->work.dF));
     estimate->D_theta_hat = p->motor.D_theta;
@@ -57,9 +60,11 @@ static void start_paper2011(sh_estimator *estimator, const sh_parameters *p, sh_
     sh_real eta_0[SH_MAX_BASIS];
     int i, j;
 
-    for (j = 0; j < m; ++j)
-        for (i = 0; i < n; ++i)
+    for (j = 0; j < m; ++j) {
+        for (i = 0; i < n; ++i) {
             eta_0[j * n + i] = p->rls.eta_0[i][j];
+        }
+    }
     state->filters.theta_w_s = sh_encoder_count(p->encoder.theta) / p->samplePeriod;
     state->filters.q_w_s = sh_encoder_count(p->encoder.q) / p->samplePeriod;
     sh_torque_basis(p->rls.symmetric, n, m, p->setPoint.offset, 0, state->work.F, state->work.dF);
@@ -83,8 +88,9 @@ static sh_real track(sh_paper2011_filters *state, const sh_parameters *p, const 
         return p->motor.gamma * state->residual.r_e;
     }
     sh_kinematic_kalman_step(theta, &p->filter, z->theta, dt, state->theta_w_s);
-    if (p->deformation == SH_DEFORMATION_FILTERED)
+    if (p->deformation == SH_DEFORMATION_FILTERED) {
         sh_kinematic_kalman_step(q, &p->filter, z->q, dt, state->q_w_s);
+    }
     /* (8) integrates over a gap as over one long sample while that is short compared with 1 / K_I.
      * After a longer gap the torque in between is unknown: r_e starts from its last value, which is
      * wrong, and the regression waits until it is forgotten.
@@ -111,8 +117,9 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
     int kind = p->rls.kind;
     sh_innovation innovation;
 
-    if (p->deformation == SH_DEFORMATION_FILTERED)
+    if (p->deformation == SH_DEFORMATION_FILTERED) {
         phi += state->filters.q.lag - state->filters.theta.lag;
+    }
     sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, state->work.F,
                     state->work.dF);
     factor = kind == SH_RLS_ENHANCED ? p->rls.c : p->rls.a;

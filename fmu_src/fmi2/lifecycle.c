@@ -30,13 +30,15 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
     unsigned found = 0;
     sh_status status;
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return fmi2Error;
+    }
     status = sh_find_categories(instance, nCategories, categories, &found, "fmi2SetDebugLogging");
-    if (!loggingOn)
+    if (!loggingOn) {
         instance->categories = SH_LOG_STATUS; /* all but debug messages */
-    else if (found != 0)
+    } else if (found != 0) {
         instance->categories = found;
+    }
     return (fmi2Status)status;
 }
 
@@ -49,14 +51,16 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
 
     (void)fmuResourceLocation; /* the FMU has no resources */
     (void)visible;
-    if (functions == NULL)
+    if (functions == NULL) {
         return NULL;
+    }
     importer.environment = functions->componentEnvironment;
     importer.logger = (void (*)(void))functions->logger;
     importer.allocate = functions->allocateMemory;
     importer.release = functions->freeMemory;
-    if (fmuType != fmi2CoSimulation)
+    if (fmuType != fmi2CoSimulation) {
         return sh_refuse_instance(&importer, "fmi2Instantiate", "model exchange");
+    }
     return sh_create(&importer, instanceName, fmuGUID, loggingOn ? SH_LOG_ALL : SH_LOG_STATUS,
                      "fmi2Instantiate");
 }
@@ -73,8 +77,9 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
                                       stopTime};
     sh_instance *instance = sh_enter(c, SH_INSTANTIATED, "fmi2SetupExperiment");
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return fmi2Error;
+    }
     return (fmi2Status)sh_set_up(instance, &experiment, "fmi2SetupExperiment");
 }
 
@@ -97,8 +102,9 @@ fmi2Status fmi2Reset(fmi2Component c)
 {
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2Reset");
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return fmi2Error;
+    }
     sh_reset(instance);
     return fmi2OK;
 }

@@ -14,9 +14,10 @@ fmi2Status fmi2CancelStep(fmi2Component c)
 {
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2CancelStep");
 
-    if (instance != NULL)
+    if (instance != NULL) {
         sh_log(instance, SH_ERROR,
                "fmi2CancelStep: no step is in progress; steps run synchronously.");
+    }
     return fmi2Error;
 }
 
@@ -27,8 +28,9 @@ static fmi2Status no_status(fmi2Component c, const char *function)
 {
     sh_instance *instance = sh_enter(c, SH_STEP | SH_TERMINATED, function);
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return fmi2Error;
+    }
     sh_log(instance, SH_DISCARD, "%s: no information of this kind; no step is pending.", function);
     return fmi2Discard;
 }
@@ -44,11 +46,13 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *
 {
     sh_instance *instance;
 
-    if (s != fmi2LastSuccessfulTime)
+    if (s != fmi2LastSuccessfulTime) {
         return no_status(c, "fmi2GetRealStatus");
+    }
     instance = sh_enter(c, SH_STEP | SH_TERMINATED, "fmi2GetRealStatus");
-    if (instance == NULL || !sh_has(instance, value, "fmi2GetRealStatus", "value"))
+    if (instance == NULL || !sh_has(instance, value, "fmi2GetRealStatus", "value")) {
         return fmi2Error;
+    }
     *value = instance->time;
     return fmi2OK;
 }
@@ -64,11 +68,13 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boo
 {
     sh_instance *instance;
 
-    if (s != fmi2Terminated)
+    if (s != fmi2Terminated) {
         return no_status(c, "fmi2GetBooleanStatus");
+    }
     instance = sh_enter(c, SH_STEP | SH_TERMINATED, "fmi2GetBooleanStatus");
-    if (instance == NULL || !sh_has(instance, value, "fmi2GetBooleanStatus", "value"))
+    if (instance == NULL || !sh_has(instance, value, "fmi2GetBooleanStatus", "value")) {
         return fmi2Error;
+    }
     *value = fmi2False; /* the FMU never asks to stop */
     return fmi2OK;
 }

@@ -119,8 +119,9 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     const sh_variable *variables = sh_fmu_model.variables;
     size_t i;
 
-    if (instance == NULL || (nvr > 0 && !sh_has(instance, order, access.function, "order")))
+    if (instance == NULL || (nvr > 0 && !sh_has(instance, order, access.function, "order"))) {
         return fmi2Error;
+    }
     for (i = 0; i < nvr; ++i) {
         const sh_variable *variable = &variables[vr[i]];
         if (variable->role != SH_ROLE_INPUT) {
@@ -134,8 +135,9 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
         }
     }
     instance->slopes_set = 1;
-    for (i = 0; i < nvr; ++i)
+    for (i = 0; i < nvr; ++i) {
         *sh_slope(instance, &variables[vr[i]]) = value[i];
+    }
     return fmi2OK;
 }
 
@@ -147,10 +149,12 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     (void)vr;
     (void)order;
     (void)value;
-    if (instance == NULL)
+    if (instance == NULL) {
         return fmi2Error;
-    if (nvr == 0)
+    }
+    if (nvr == 0) {
         return fmi2OK;
+    }
     sh_log(instance, SH_ERROR,
            "fmi2GetRealOutputDerivatives: not provided (maxOutputDerivativeOrder is 0).");
     return fmi2Error;
@@ -170,9 +174,10 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     (void)nKnown;
     (void)dvKnown;
     (void)dvUnknown;
-    if (instance != NULL)
+    if (instance != NULL) {
         sh_log(instance, SH_ERROR,
                "fmi2GetDirectionalDerivative: not provided "
                "(providesDirectionalDerivative is false).");
+    }
     return fmi2Error;
 }

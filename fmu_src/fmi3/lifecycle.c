@@ -25,13 +25,15 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, siz
     unsigned found = 0;
     sh_status status;
 
-    if (entered == NULL)
+    if (entered == NULL) {
         return fmi3Error;
+    }
     status = sh_find_categories(entered, nCategories, categories, &found, "fmi3SetDebugLogging");
-    if (loggingOn)
+    if (loggingOn) {
         entered->categories |= found;
-    else
+    } else {
         entered->categories &= ~found;
+    }
     return (fmi3Status)status;
 }
 
@@ -50,12 +52,14 @@ fmi3Instance fmi3InstantiateCoSimulation(
     (void)earlyReturnAllowed; /* no step ends early */
     (void)requiredIntermediateVariables;
     (void)intermediateUpdate; /* never called */
-    if (eventModeUsed)
+    if (eventModeUsed) {
         return sh_refuse_instance(&importer, "fmi3InstantiateCoSimulation",
                                   "event mode (hasEventMode is false)");
-    if (nRequiredIntermediateVariables > 0)
+    }
+    if (nRequiredIntermediateVariables > 0) {
         return sh_refuse_instance(&importer, "fmi3InstantiateCoSimulation",
                                   "intermediate update (providesIntermediateUpdate is false)");
+    }
     return sh_create(&importer, instanceName, instantiationToken,
                      loggingOn ? SH_LOG_ALL : SH_LOG_ERROR, "fmi3InstantiateCoSimulation");
 }
@@ -74,8 +78,9 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
                                       stopTime};
     sh_instance *entered = sh_enter(instance, SH_INSTANTIATED, function);
 
-    if (entered == NULL || sh_set_up(entered, &experiment, function) != SH_OK)
+    if (entered == NULL || sh_set_up(entered, &experiment, function) != SH_OK) {
         return fmi3Error;
+    }
     return (fmi3Status)sh_begin_initialization(entered, function);
 }
 
@@ -98,8 +103,9 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
         !sh_has(entered, eventHandlingNeeded, "fmi3DoStep", "eventHandlingNeeded") ||
         !sh_has(entered, terminateSimulation, "fmi3DoStep", "terminateSimulation") ||
         !sh_has(entered, earlyReturn, "fmi3DoStep", "earlyReturn") ||
-        !sh_has(entered, lastSuccessfulTime, "fmi3DoStep", "lastSuccessfulTime"))
+        !sh_has(entered, lastSuccessfulTime, "fmi3DoStep", "lastSuccessfulTime")) {
         return fmi3Error;
+    }
     status = sh_communication_step(entered, currentCommunicationPoint, communicationStepSize,
                                    "fmi3DoStep");
     *eventHandlingNeeded = fmi3False;
@@ -118,8 +124,9 @@ fmi3Status fmi3Reset(fmi3Instance instance)
 {
     sh_instance *entered = sh_enter(instance, SH_ANY, "fmi3Reset");
 
-    if (entered == NULL)
+    if (entered == NULL) {
         return fmi3Error;
+    }
     sh_reset(entered);
     return fmi3OK;
 }

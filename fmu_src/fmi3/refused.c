@@ -14,8 +14,9 @@ static fmi3Status refuse(fmi3Instance instance, const char *function, const char
 {
     sh_instance *entered = sh_enter(instance, SH_ANY, function);
 
-    if (entered != NULL)
+    if (entered != NULL) {
         sh_log(entered, SH_ERROR, "%s: %s has no %s.", function, sh_fmu_model.identifier, missing);
+    }
     return fmi3Error;
 }
 

@@ -55,8 +55,9 @@ static int may_be_set(const sh_access *access, const sh_variable *variable)
     };
     sh_instance *instance = access->handle;
 
-    if ((unsigned)instance->state & RULES[variable->role].states)
+    if ((unsigned)instance->state & RULES[variable->role].states) {
         return 1;
+    }
     sh_log(instance, SH_ERROR, "%s: %s cannot be set now: it is %s.", access->function,
            variable->name, RULES[variable->role].rule);
     return 0;
@@ -80,8 +81,9 @@ static sh_instance *begin(const sh_access *access, unsigned states, const void *
     if (instance == NULL ||
         (access->count > 0 &&
          (!sh_has(instance, access->references, access->function, "valueReferences") ||
-          !sh_has(instance, values, access->function, "values"))))
+          !sh_has(instance, values, access->function, "values")))) {
         return NULL;
+    }
     for (i = 0; i < access->count; ++i) {
         const uint32_t reference = access->references[i];
         const sh_variable *variable;
@@ -91,12 +93,14 @@ static sh_instance *begin(const sh_access *access, unsigned states, const void *
             continue;
         }
         variable = find(access, reference);
-        if (variable == NULL)
+        if (variable == NULL) {
             return NULL;
+        }
         elements += length_of(access, variable);
     }
-    if (elements == access->length)
+    if (elements == access->length) {
         return instance;
+    }
     sh_log(instance, SH_ERROR,
            "%s: nValues = %lu; expected %lu, the number of elements behind %lu references.",
            access->function, (unsigned long)access->length, (unsigned long)elements,
@@ -109,17 +113,21 @@ sh_instance *sh_begin_set(const sh_access *access, const void *values)
     sh_instance *instance = begin(access, SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, values, 0);
     size_t i;
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return NULL;
+    }
     for (i = 0; i < access->count; ++i) {
         const sh_variable *variable = &sh_fmu_model.variables[access->references[i]];
-        if (!may_be_set(access, variable))
+        if (!may_be_set(access, variable)) {
             return NULL;
-        if (sh_is_parameter(variable))
+        }
+        if (sh_is_parameter(variable)) {
             instance->parameters_unchecked = 1;
+        }
     }
-    if (instance->state == SH_INITIALIZATION)
+    if (instance->state == SH_INITIALIZATION) {
         instance->outputs_stale = 1;
+    }
     return instance;
 }
 
@@ -132,17 +140,21 @@ sh_status sh_get(const sh_access *access, void *values, sh_store *store)
     size_t i, k, next = 0;
 
     if (instance == NULL ||
-        (instance->state == SH_INITIALIZATION && sh_initialize(instance) != SH_OK))
+        (instance->state == SH_INITIALIZATION && sh_initialize(instance) != SH_OK)) {
         return SH_ERROR;
-    if (store == NULL)
+    }
+    if (store == NULL) {
         return SH_OK;
+    }
     for (i = 0; i < access->count; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
-        if (is_time(access, access->references[i]))
+        if (is_time(access, access->references[i])) {
             store(values, next++, instance->time);
-        else
-            for (k = 0; k < length_of(access, first); ++k)
+        } else {
+            for (k = 0; k < length_of(access, first); ++k) {
                 store(values, next++, sh_read(instance, first + k));
+            }
+        }
     }
     return SH_OK;
 }
@@ -152,21 +164,26 @@ sh_status sh_set(const sh_access *access, const void *values, sh_load *load)
     sh_instance *instance = sh_begin_set(access, values);
     size_t i, k, next = 0;
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return SH_ERROR;
-    if (load == NULL)
+    }
+    if (load == NULL) {
         return SH_OK;
+    }
     for (i = 0; i < access->count; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
-        for (k = 0; k < length_of(access, first); ++k, ++next)
+        for (k = 0; k < length_of(access, first); ++k, ++next) {
             if (sh_is_parameter(first) &&
-                !sh_accepts(instance, first + k, load(values, next), access->function))
+                !sh_accepts(instance, first + k, load(values, next), access->function)) {
                 return SH_ERROR;
+            }
+        }
     }
     for (next = 0, i = 0; i < access->count; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
-        for (k = 0; k < length_of(access, first); ++k)
+        for (k = 0; k < length_of(access, first); ++k) {
             sh_write(instance, first + k, load(values, next++));
+        }
     }
     return SH_OK;
 }

@@ -11,13 +11,15 @@ static void clear_input_derivatives(sh_instance *instance)
 {
     size_t i;
 
-    if (!instance->slopes_set)
+    if (!instance->slopes_set) {
         return;
+    }
     instance->slopes_set = 0;
     for (i = 0; i < sh_fmu_model.count; ++i) {
         const sh_variable *variable = &sh_fmu_model.variables[i];
-        if (variable->role == SH_ROLE_INPUT)
+        if (variable->role == SH_ROLE_INPUT) {
             *sh_slope(instance, variable) = 0.0;
+        }
     }
 }
 
@@ -27,8 +29,9 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
     double late, rounding, tolerance;
     sh_status status;
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return SH_ERROR;
+    }
     if (!(h > 0.0) || !isfinite(h)) {
         sh_log(instance, SH_ERROR,
                "%s: communicationStepSize = %.9g s; expected a finite number above 0.", function,
@@ -59,14 +62,17 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
                function, t, t + h, instance->stop_time);
         return SH_ERROR;
     }
-    if (sh_check_parameters(instance) != SH_OK)
+    if (sh_check_parameters(instance) != SH_OK) {
         return SH_ERROR;
-    if (fabs(late) <= rounding)
+    }
+    if (fabs(late) <= rounding) {
         status = sh_fmu_model.step(instance->model, t, h, instance);
-    else
+    } else {
         status = sh_fmu_model.step(instance->model, instance->time, h + late, instance);
-    if (status > SH_WARNING)
+    }
+    if (status > SH_WARNING) {
         return status;
+    }
     instance->time = t + h;
     instance->previous_step = h;
     instance->steps += 1.0;
@@ -78,8 +84,9 @@ sh_status sh_terminate(void *handle, const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_STEP, function);
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return SH_ERROR;
+    }
     instance->state = SH_TERMINATED;
     return SH_OK;
 }

@@ -7,15 +7,18 @@ sh_status sh_check_parameters(sh_instance *instance)
 {
     size_t i;
 
-    if (!instance->parameters_unchecked)
+    if (!instance->parameters_unchecked) {
         return SH_OK;
+    }
     for (i = 0; i < sh_fmu_model.count; ++i) {
         const sh_variable *variable = &sh_fmu_model.variables[i];
-        if (!sh_accepts(instance, variable, sh_read(instance, variable), "Initialisation"))
+        if (!sh_accepts(instance, variable, sh_read(instance, variable), "Initialisation")) {
             return SH_ERROR;
+        }
     }
-    if (sh_fmu_model.check != NULL && sh_fmu_model.check(instance->model, instance) != SH_OK)
+    if (sh_fmu_model.check != NULL && sh_fmu_model.check(instance->model, instance) != SH_OK) {
         return SH_ERROR;
+    }
     instance->parameters_unchecked = 0;
     return SH_OK;
 }
@@ -30,8 +33,9 @@ static int outputs_are_finite(sh_instance *instance)
         double value;
 
         if (variable->type != SH_TYPE_REAL ||
-            (variable->role != SH_ROLE_OUTPUT && variable->role != SH_ROLE_GUESS))
+            (variable->role != SH_ROLE_OUTPUT && variable->role != SH_ROLE_GUESS)) {
             continue;
+        }
         value = sh_read(instance, variable);
         if (!isfinite(value)) {
             sh_log(instance, SH_ERROR,
@@ -46,13 +50,16 @@ static int outputs_are_finite(sh_instance *instance)
 
 sh_status sh_initialize(sh_instance *instance)
 {
-    if (!instance->outputs_stale)
+    if (!instance->outputs_stale) {
         return SH_OK;
-    if (sh_check_parameters(instance) != SH_OK)
+    }
+    if (sh_check_parameters(instance) != SH_OK) {
         return SH_ERROR;
+    }
     sh_fmu_model.initialize(instance->model, instance->time);
-    if (!outputs_are_finite(instance))
+    if (!outputs_are_finite(instance)) {
         return SH_ERROR;
+    }
     instance->outputs_stale = 0;
     return SH_OK;
 }
@@ -84,8 +91,9 @@ sh_status sh_begin_initialization(void *handle, const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_INSTANTIATED, function);
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return SH_ERROR;
+    }
     instance->state = SH_INITIALIZATION;
     instance->outputs_stale = 1;
     return SH_OK;
@@ -98,8 +106,9 @@ sh_status sh_end_initialization(void *handle, const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_INITIALIZATION, function);
 
-    if (instance == NULL || sh_initialize(instance) != SH_OK)
+    if (instance == NULL || sh_initialize(instance) != SH_OK) {
         return SH_ERROR;
+    }
     instance->state = SH_STEP;
     sh_log(instance, SH_OK, "Initialised at t = %.9g s.", instance->time);
     return SH_OK;

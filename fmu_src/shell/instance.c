@@ -24,8 +24,9 @@ sh_instance *sh_enter(void *handle, unsigned allowed_states, const char *functio
 {
     sh_instance *instance = handle;
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return NULL; /* no logger to report it to */
+    }
     if (!((unsigned)instance->state & allowed_states)) {
         sh_log(instance, SH_ERROR, "%s: not allowed %s.", function, state_name(instance->state));
         return NULL;
@@ -35,8 +36,9 @@ sh_instance *sh_enter(void *handle, unsigned allowed_states, const char *functio
 
 int sh_has(sh_instance *instance, const void *pointer, const char *function, const char *argument)
 {
-    if (pointer != NULL)
+    if (pointer != NULL) {
         return 1;
+    }
     sh_log(instance, SH_ERROR, "%s: argument %s is NULL.", function, argument);
     return 0;
 }
@@ -51,19 +53,22 @@ void *sh_allocate(const sh_importer *importer, size_t size)
 {
     void *memory = importer_allocates(importer) ? importer->allocate(1, size) : malloc(size);
 
-    if (memory != NULL)
+    if (memory != NULL) {
         memset(memory, 0, size);
+    }
     return memory;
 }
 
 void sh_release(const sh_importer *importer, void *memory)
 {
-    if (memory == NULL)
+    if (memory == NULL) {
         return;
-    if (importer_allocates(importer))
+    }
+    if (importer_allocates(importer)) {
         importer->release(memory);
-    else
+    } else {
         free(memory);
+    }
 }
 
 /* For messages while there is no instance. */
@@ -95,8 +100,9 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
     void *model;
     char *own_name;
 
-    if (!sh_has(&before, name, function, "instanceName"))
+    if (!sh_has(&before, name, function, "instanceName")) {
         return NULL;
+    }
     if (guid == NULL || strcmp(guid, sh_fmu_model.guid) != 0) {
         sh_log(&before, SH_ERROR,
                "%s: the binary of %s expects the GUID or instantiation token %s, the importer gave "
@@ -120,9 +126,10 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
     instance->name = strcpy(own_name, name);
     instance->categories = categories;
     sh_reset(instance);
-    if (sh_make_utf8(instance->name))
+    if (sh_make_utf8(instance->name)) {
         sh_log(instance, SH_WARNING, "%s: instanceName is not UTF-8; messages name %s.", function,
                instance->name);
+    }
     return instance;
 }
 
@@ -130,8 +137,9 @@ void sh_destroy(sh_instance *instance)
 {
     sh_importer importer;
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return;
+    }
     importer = instance->importer;
     sh_release(&importer, instance->model);
     sh_release(&importer, instance->name);
@@ -143,8 +151,9 @@ void sh_reset(sh_instance *instance)
     size_t i;
 
     memset(instance->model, 0, sh_fmu_model.size);
-    for (i = 0; i < sh_fmu_model.count; ++i)
+    for (i = 0; i < sh_fmu_model.count; ++i) {
         sh_write(instance, &sh_fmu_model.variables[i], sh_fmu_model.variables[i].start);
+    }
     instance->state = SH_INSTANTIATED;
     instance->time = 0.0;
     instance->stop_time = INFINITY;

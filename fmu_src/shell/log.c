@@ -26,24 +26,30 @@ static size_t utf8_length(const unsigned char *s)
     unsigned char low = 0x80, high = 0xbf; /* of the second byte */
     size_t length, i;
 
-    if (s[0] < 0x80)
+    if (s[0] < 0x80) {
         return 1;
-    if (s[0] < 0xc2 || s[0] > 0xf4)
+    }
+    if (s[0] < 0xc2 || s[0] > 0xf4) {
         return 0;
+    }
     length = s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
-    if (s[0] == 0xe0)
+    if (s[0] == 0xe0) {
         low = 0xa0; /* the rest has a shorter form */
-    else if (s[0] == 0xed)
+    } else if (s[0] == 0xed) {
         high = 0x9f; /* no halves of surrogate pairs */
-    else if (s[0] == 0xf0)
+    } else if (s[0] == 0xf0) {
         low = 0x90;
-    else if (s[0] == 0xf4)
+    } else if (s[0] == 0xf4) {
         high = 0x8f; /* no characters above U+10FFFF */
-    if (s[1] < low || s[1] > high)
+    }
+    if (s[1] < low || s[1] > high) {
         return 0;
-    for (i = 2; i < length; ++i)
-        if ((s[i] & 0xc0) != 0x80)
+    }
+    for (i = 2; i < length; ++i) {
+        if ((s[i] & 0xc0) != 0x80) {
             return 0;
+        }
+    }
     return length;
 }
 
@@ -69,8 +75,9 @@ void sh_log(sh_instance *instance, sh_status status, const char *format, ...)
     char text[512];
     va_list arguments;
 
-    if (instance->importer.logger == NULL || !(instance->categories & KNOWN[place].category))
+    if (instance->importer.logger == NULL || !(instance->categories & KNOWN[place].category)) {
         return;
+    }
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
@@ -84,14 +91,17 @@ sh_status sh_find_categories(sh_instance *instance, size_t count, const char *co
     sh_status status = SH_OK;
     size_t i, k;
 
-    if (count > 0 && !sh_has(instance, categories, function, "categories"))
+    if (count > 0 && !sh_has(instance, categories, function, "categories")) {
         return SH_ERROR;
+    }
     *found = count > 0 ? 0 : SH_LOG_ALL;
     for (i = 0; i < count; ++i) {
         unsigned category = 0;
-        for (k = 0; k < sizeof KNOWN / sizeof KNOWN[0]; ++k)
-            if (categories[i] != NULL && strcmp(categories[i], KNOWN[k].name) == 0)
+        for (k = 0; k < sizeof KNOWN / sizeof KNOWN[0]; ++k) {
+            if (categories[i] != NULL && strcmp(categories[i], KNOWN[k].name) == 0) {
                 category = KNOWN[k].category;
+            }
+        }
         if (category == 0) {
             sh_log(instance, SH_WARNING,
                    "%s: unknown category %s is ignored; known are logEvents, logStatusWarning, "
@@ -109,8 +119,9 @@ void sh_double(char *copy, size_t size, const char *text, char special)
     size_t length = 0;
 
     for (; *text != '\0' && length + 2 < size; ++text) {
-        if (*text == special)
+        if (*text == special) {
             copy[length++] = special;
+        }
         copy[length++] = *text;
     }
     copy[length] = '\0';

@@ -52,19 +52,25 @@ static const char *defect(const void *block, size_t size)
 {
     state_header header;
 
-    if (size < sizeof header)
+    if (size < sizeof header) {
         return "is truncated";
+    }
     memcpy(&header, block, sizeof header);
-    if (memcmp(header.magic, MAGIC, sizeof MAGIC) != 0)
+    if (memcmp(header.magic, MAGIC, sizeof MAGIC) != 0) {
         return "is not a state of a sigmahat FMU";
-    if (header.version != STATE_VERSION)
+    }
+    if (header.version != STATE_VERSION) {
         return "has another version of the format";
-    if (strncmp(header.guid, sh_fmu_model.guid, GUID_LENGTH) != 0)
+    }
+    if (strncmp(header.guid, sh_fmu_model.guid, GUID_LENGTH) != 0) {
         return "is of another FMU or another version of it";
-    if (header.size != block_size() || size != block_size())
+    }
+    if (header.size != block_size() || size != block_size()) {
         return "is truncated or too long";
-    if (header.checksum != checksum(block, size))
+    }
+    if (header.checksum != checksum(block, size)) {
         return "is damaged: its checksum does not match";
+    }
     return NULL;
 }
 
@@ -74,8 +80,9 @@ sh_status sh_save_state(void *handle, void **state, const char *function)
     state_header header;
     unsigned char *block;
 
-    if (instance == NULL || !sh_has(instance, state, function, "FMUState"))
+    if (instance == NULL || !sh_has(instance, state, function, "FMUState")) {
         return SH_ERROR;
+    }
     /* A state from an earlier call may be handed in, to be overwritten. */
     block = *state != NULL ? *state : sh_allocate(&instance->importer, block_size());
     if (block == NULL) {
@@ -109,8 +116,9 @@ sh_status sh_restore_state(void *handle, const void *state, const char *function
     state_header header;
     const char *what;
 
-    if (instance == NULL || !sh_has(instance, state, function, "FMUState"))
+    if (instance == NULL || !sh_has(instance, state, function, "FMUState")) {
         return SH_ERROR;
+    }
     what = defect(block, block_size());
     if (what != NULL) {
         sh_log(instance, SH_ERROR, "%s: the state %s.", function, what);
@@ -133,8 +141,9 @@ sh_status sh_free_state(void *handle, void **state, const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_ANY, function);
 
-    if (instance == NULL)
+    if (instance == NULL) {
         return SH_ERROR;
+    }
     if (state != NULL) {
         sh_release(&instance->importer, *state);
         *state = NULL;
@@ -147,8 +156,9 @@ sh_status sh_state_size(void *handle, const void *state, size_t *size, const cha
     sh_instance *instance = sh_enter(handle, SH_ANY, function);
 
     if (instance == NULL || !sh_has(instance, state, function, "FMUState") ||
-        !sh_has(instance, size, function, "size"))
+        !sh_has(instance, size, function, "size")) {
         return SH_ERROR;
+    }
     *size = block_size();
     return SH_OK;
 }
@@ -159,8 +169,9 @@ sh_status sh_serialize_state(void *handle, const void *state, void *bytes, size_
     sh_instance *instance = sh_enter(handle, SH_ANY, function);
 
     if (instance == NULL || !sh_has(instance, state, function, "FMUState") ||
-        !sh_has(instance, bytes, function, "serializedState"))
+        !sh_has(instance, bytes, function, "serializedState")) {
         return SH_ERROR;
+    }
     if (size < block_size()) {
         sh_log(instance, SH_ERROR, "%s: size = %lu bytes; expected %lu.", function,
                (unsigned long)size, (unsigned long)block_size());
@@ -178,8 +189,9 @@ sh_status sh_deserialize_state(void *handle, const void *bytes, size_t size, voi
     void *block;
 
     if (instance == NULL || !sh_has(instance, bytes, function, "serializedState") ||
-        !sh_has(instance, state, function, "FMUState"))
+        !sh_has(instance, state, function, "FMUState")) {
         return SH_ERROR;
+    }
     what = defect(bytes, size);
     if (what != NULL) {
         sh_log(instance, SH_ERROR, "%s: the state (%lu bytes) %s.", function, (unsigned long)size,

@@ -20,8 +20,9 @@ int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,
 {
     char range[64];
 
-    if (!sh_is_parameter(variable) || in_range(variable, value))
+    if (!sh_is_parameter(variable) || in_range(variable, value)) {
         return 1;
+    }
     write_range(range, sizeof range, variable);
     sh_log(instance, SH_ERROR, "%s: parameter %s = %.9g is out of its range %s.", function,
            variable->name, value, range);
@@ -44,10 +45,11 @@ void sh_write(sh_instance *instance, const sh_variable *variable, double value)
 {
     void *place = place_of_variable(instance, variable);
 
-    if (variable->type == SH_TYPE_REAL)
+    if (variable->type == SH_TYPE_REAL) {
         *(double *)place = value;
-    else
+    } else {
         *(int *)place = (int)value;
+    }
 }
 
 double *sh_slope(sh_instance *instance, const sh_variable *input)

@@ -63,8 +63,9 @@ int main(int argc, char **argv)
     check(argc == 2, "expected the number of cycles");
     cycles = strtol(argv[1], NULL, 10);
     for (k = 0; k < cycles; ++k) {
-        if (k == cycles / 10)
+        if (k == cycles / 10) {
             before = resident_memory();
+        }
         cycle();
     }
     printf("%ld\n", resident_memory() - before);

@@ -8,8 +8,9 @@
 
 void check(int condition, const char *what)
 {
-    if (condition)
+    if (condition) {
         return;
+    }
     fprintf(stderr, "failed: %s\n", what);
     abort();
 }
@@ -34,8 +35,9 @@ void step(void *instance, int variant, long k)
         const double frequency = 5.0 + i + variant;
         const double value = 0.3 * sin(frequency * t), slope = 0.3 * frequency * cos(frequency * t);
 
-        if (sh_fmu_model.variables[i].role != SH_ROLE_INPUT)
+        if (sh_fmu_model.variables[i].role != SH_ROLE_INPUT) {
             continue;
+        }
         check(fmi_set_reals(instance, &i, 1, &value) == SH_OK, "set an input");
         check(fmi_set_slope(instance, i, slope) == SH_OK, "set the derivative of an input");
     }
@@ -51,8 +53,9 @@ size_t get_outputs(void *instance, double *values)
         const sh_variable *variable = &sh_fmu_model.variables[i];
         const size_t more = fmi_values(&i, 1);
         if (variable->type != SH_TYPE_REAL || more == 0 ||
-            (variable->role != SH_ROLE_OUTPUT && variable->role != SH_ROLE_GUESS))
+            (variable->role != SH_ROLE_OUTPUT && variable->role != SH_ROLE_GUESS)) {
             continue;
+        }
         check(n + more <= 256, "more than 256 outputs");
         check(fmi_get_reals(instance, &i, 1, &values[n]) == SH_OK, "get an output");
         n += more;

@@ -16,9 +16,11 @@ static int positive(const sh_real *D, int size)
 {
     int j;
 
-    for (j = 0; j < size; ++j)
-        if (!(D[j] > 0.0))
+    for (j = 0; j < size; ++j) {
+        if (!(D[j] > 0.0)) {
             return 0;
+        }
+    }
     return 1;
 }
 
@@ -31,8 +33,9 @@ static int definite(const sh_estimator *estimator, const sh_parameters *p)
     const sh_matched_state *matched = &estimator->method.matched;
     const sh_information *posterior = &matched->live.information, *data = &matched->data;
 
-    if (p->method == SH_METHOD_PAPER2011)
+    if (p->method == SH_METHOD_PAPER2011) {
         return positive(P->D, P->size);
+    }
     return positive(posterior->D, posterior->size) && positive(data->D, data->size);
 }
 
@@ -52,8 +55,9 @@ static void print(long tick, const sh_estimate *e)
     size_t i;
 
     printf("%ld", tick);
-    for (i = 0; i < sizeof out / sizeof out[0]; ++i)
+    for (i = 0; i < sizeof out / sizeof out[0]; ++i) {
         printf(" %.20Lg", (long double)out[i]);
+    }
     printf("\n");
     fflush(stdout);
 }
@@ -67,8 +71,9 @@ int main(int argc, char **argv)
     sh_violation violation;
     long ticks, tick, next = 10;
 
-    if (argc != 6)
+    if (argc != 6) {
         return 2;
+    }
     sh_parameters_default(&p);
     p.method = atoi(argv[1]);
     p.rls.n = atoi(argv[2]);
@@ -95,10 +100,12 @@ int main(int argc, char **argv)
             fprintf(stderr, "failed at tick %ld\n", tick);
             return 1;
         }
-        if (tick == next || tick == ticks)
+        if (tick == next || tick == ticks) {
             print(tick, &estimate);
-        if (tick == next)
+        }
+        if (tick == next) {
             next += next / 3 + 1;
+        }
     }
     return 0;
 }

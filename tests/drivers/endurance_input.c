@@ -92,8 +92,9 @@ input_sample input_next(input_stream *input)
         input->held = z;
         return z;
     }
-    if (phase < 50000) /* the joint is at rest */
+    if (phase < 50000) { /* the joint is at rest */
         return input->held;
+    }
     if (phase < 60000) { /* the encoder of the motor saturates */
         z.theta = fmin(fmax(z.theta, -0.25), 0.25);
         return z;
@@ -103,11 +104,14 @@ input_sample input_next(input_stream *input)
         z.tau_e_sensor *= input->torque;
         return z;
     }
-    if (phase >= 70000 && phase < 80000) /* the modality changes */
+    if (phase >= 70000 && phase < 80000) { /* the modality changes */
         z.modality = 1 + (int)(phase / 500 % 3);
-    if (phase >= 80000 && phase < 82000 && phase % 100 == 0) /* single samples are lost */
+    }
+    if (phase >= 80000 && phase < 82000 && phase % 100 == 0) { /* single samples are lost */
         z.q = NAN;
-    if (phase >= 82000 && phase < 83000) /* all samples of a second are lost */
+    }
+    if (phase >= 82000 && phase < 83000) { /* all samples of a second are lost */
         z.tau = INFINITY;
+    }
     return z;
 }

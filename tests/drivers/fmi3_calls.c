@@ -46,9 +46,10 @@ sh_status fmi_do_step(void *instance, double t, double h)
     const fmi3Status status =
         fmi3DoStep(instance, t, h, fmi3True, &event, &terminate, &early, &reached);
 
-    if (status <= fmi3Warning)
+    if (status <= fmi3Warning) {
         check(!event && !terminate && !early && reached == fmi_time(instance, -1.0),
               "after a step fmi3DoStep tells what happened");
+    }
     return (sh_status)status;
 }
 
@@ -74,9 +75,10 @@ size_t fmi_values(const uint32_t references[], size_t n)
 {
     size_t values = 0, i;
 
-    for (i = 0; references != NULL && i < n; ++i)
+    for (i = 0; references != NULL && i < n; ++i) {
         values +=
             references[i] < sh_fmu_model.count ? sh_fmu_model.variables[references[i]].length : 1;
+    }
     return values;
 }
 

@@ -53,8 +53,9 @@ int main(int argc, char **argv)
         fprintf(stderr, "expected: fmi3_master LIBRARY TOKEN H INPUTS REFERENCE...\n");
         return 1;
     }
-    for (i = 0; i < variables; ++i)
+    for (i = 0; i < variables; ++i) {
         references[i] = (fmi3ValueReference)strtoul(argv[5 + i], NULL, 10);
+    }
     library = OPEN(argv[1]);
     if (library == NULL) {
         fprintf(stderr, "%s cannot be loaded\n", argv[1]);
@@ -73,18 +74,21 @@ int main(int argc, char **argv)
         fmi3InstantiateCoSimulation("fmu", argv[2], "", fmi3False, fmi3False, fmi3False, fmi3False,
                                     NULL, 0, NULL, log_message, NULL);
 
-    if (fmu == NULL)
+    if (fmu == NULL) {
         return 1;
+    }
     CHECK(fmi3EnterInitializationMode(fmu, fmi3False, 0, 0, fmi3False, 0));
     CHECK(fmi3ExitInitializationMode(fmu));
     for (step = 0;; ++step) {
         CHECK(fmi3GetFloat64(fmu, references + inputs, outputs, values, outputs));
-        for (i = 0; i < outputs; ++i)
+        for (i = 0; i < outputs; ++i) {
             printf("%.17g%c", values[i], i + 1 < outputs ? ',' : '\n');
+        }
         for (i = 0; i < inputs && scanf("%lf,", values + i) == 1; ++i)
             ;
-        if (i < inputs)
+        if (i < inputs) {
             break;
+        }
         CHECK(fmi3SetFloat64(fmu, references, inputs, values, inputs));
         CHECK(fmi3DoStep(fmu, (double)step * h, h, fmi3True, &event, &terminate, &early, &reached));
     }

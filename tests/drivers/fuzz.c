@@ -37,11 +37,13 @@ static void set_reals(sequence *s, sh_role first, sh_role last)
     double *values = memory(fmi_values(references, n) * sizeof *values), *next = values;
     size_t i, k;
 
-    for (i = 0; i < n; ++i)
-        for (k = 0; k < fmi_values(&references[i], 1); ++k)
+    for (i = 0; i < n; ++i) {
+        for (k = 0; k < fmi_values(&references[i], 1); ++k) {
             *next++ = some_real(s, references[i] < sh_fmu_model.count
                                        ? sh_fmu_model.variables[references[i] + k].start
                                        : 1.0);
+        }
+    }
     fmi_set_reals(s->instance, seldom(s, 99) ? NULL : references, n, seldom(s, 99) ? NULL : values);
     free(values);
 }
@@ -61,11 +63,14 @@ static void get_all(const sequence *s, double *values)
 {
     uint32_t i;
 
-    for (i = 0; i < sh_fmu_model.count; ++i)
+    for (i = 0; i < sh_fmu_model.count; ++i) {
         values[i] = 0.0;
-    for (i = 0; i < sh_fmu_model.count; ++i)
-        if (sh_fmu_model.variables[i].type == SH_TYPE_REAL && fmi_values(&i, 1) > 0)
+    }
+    for (i = 0; i < sh_fmu_model.count; ++i) {
+        if (sh_fmu_model.variables[i].type == SH_TYPE_REAL && fmi_values(&i, 1) > 0) {
             fmi_get_reals(s->instance, &i, 1, &values[i]);
+        }
+    }
 }
 
 /* A step of at most MAX_TICKS ticks: longer ones are valid, but slow. */
@@ -74,10 +79,12 @@ static double short_enough(const sequence *s, double h)
     uint32_t i;
     double T = 0.0;
 
-    for (i = 0; i < sh_fmu_model.count; ++i)
+    for (i = 0; i < sh_fmu_model.count; ++i) {
         if (strcmp(sh_fmu_model.variables[i].name, "samplePeriod") == 0 &&
-            fmi_get_reals(s->instance, &i, 1, &T) == SH_OK && h / T > MAX_TICKS && h / T <= 1e9)
+            fmi_get_reals(s->instance, &i, 1, &T) == SH_OK && h / T > MAX_TICKS && h / T <= 1e9) {
             return MAX_TICKS * T;
+        }
+    }
     return h;
 }
 
@@ -104,10 +111,12 @@ static void some_step(sequence *s)
     static const double SIZES[] = {1e-3, 1e-3, 1e-3, 1e-2, 1e-4, 1.0 / 60.0, 1e-9};
     double h = SIZES[below(s, sizeof SIZES / sizeof SIZES[0])], t = s->time;
 
-    if (seldom(s, 32))
+    if (seldom(s, 32)) {
         t = some_real(s, 1.0);
-    if (seldom(s, 32))
+    }
+    if (seldom(s, 32)) {
         h = some_real(s, 1.0);
+    }
     checked_step(s, t, short_enough(s, h));
     s->time = fmi_time(s->instance, s->time);
 }
@@ -259,10 +268,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         fmi_enter_initialization(s.instance, 0, 0.0, 0.0, 0, 0.0);
         fmi_exit_initialization(s.instance);
     }
-    while (s.next < s.end)
+    while (s.next < s.end) {
         call(&s);
-    for (slot = 0; slot < SLOTS; ++slot)
+    }
+    for (slot = 0; slot < SLOTS; ++slot) {
         fmi_free_state(s.instance, &s.states[slot]);
+    }
     fmi_free_instance(s.instance);
     return 0;
 }

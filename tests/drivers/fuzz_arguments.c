@@ -28,8 +28,9 @@ uint64_t bits(sequence *s)
     uint64_t all = 0;
     int i;
 
-    for (i = 0; i < 8; ++i)
+    for (i = 0; i < 8; ++i) {
         all = all << 8 | byte(s);
+    }
     return all;
 }
 
@@ -42,8 +43,9 @@ double some_real(sequence *s, double size)
     uint64_t pattern;
     double value;
 
-    if (choice < 16)
+    if (choice < 16) {
         return ODD[choice];
+    }
     if (choice == 16) {
         pattern = bits(s);
         memcpy(&value, &pattern, sizeof value);
@@ -64,10 +66,12 @@ const char *some_text(sequence *s, char *text)
 {
     size_t i, length = below(s, TEXT + 1);
 
-    if (length == TEXT)
+    if (length == TEXT) {
         return NULL;
-    for (i = 0; i < length; ++i)
+    }
+    for (i = 0; i < length; ++i) {
         text[i] = (char)byte(s);
+    }
     text[length] = '\0';
     return text;
 }
@@ -83,12 +87,14 @@ size_t some_references(sequence *s, uint32_t *references, unsigned types, sh_rol
         for (k = 0; k < sh_fmu_model.count; ++k) {
             const sh_variable *variable = &sh_fmu_model.variables[references[i]];
             if (((unsigned)variable->type & types) && variable->role >= first &&
-                variable->role <= last && fmi_values(&references[i], 1) > 0)
+                variable->role <= last && fmi_values(&references[i], 1) > 0) {
                 break;
+            }
             references[i] = (uint32_t)((references[i] + 1) % sh_fmu_model.count);
         }
-        if (seldom(s, 128))
+        if (seldom(s, 128)) {
             references[i] = (uint32_t)bits(s);
+        }
     }
     return n;
 }

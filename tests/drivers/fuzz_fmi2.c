@@ -23,9 +23,11 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
           "the logger got another environment");
     check(name != NULL, "the logger got no name");
     check_message((int)status, category, message);
-    for (c = message; *c != '\0'; ++c)
-        if (*c == '%')
+    for (c = message; *c != '\0'; ++c) {
+        if (*c == '%') {
             check(*++c == '%', "the logger got a message with a conversion");
+        }
+    }
 }
 
 void *some_instance(sequence *s)
@@ -35,16 +37,18 @@ void *some_instance(sequence *s)
     char text[TEXT];
 
     allocations_left = seldom(s, 16) ? (int)below(s, 16) : INT32_MAX;
-    if (how & 1)
+    if (how & 1) {
         callbacks.logger = logger;
+    }
     if (how & 2) {
         callbacks.allocateMemory = allocate;
         callbacks.freeMemory = free;
     }
-    if (seldom(s, 16))
+    if (seldom(s, 16)) {
         check(fmi2Instantiate("fuzz", fmi2CoSimulation, some_text(s, text), NULL, &callbacks,
                               fmi2False, fmi2True) == NULL,
               "a wrong GUID was taken");
+    }
     return fmi2Instantiate(seldom(s, 4) ? some_text(s, text) : "fuzz",
                            seldom(s, 64) ? fmi2ModelExchange : fmi2CoSimulation, sh_fmu_model.guid,
                            how & 4 ? "file:///%s" : NULL, &callbacks, fmi2False,
@@ -60,12 +64,14 @@ void set_integers(sequence *s)
     const size_t n = some_references(s, references, types, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
     size_t i;
 
-    for (i = 0; i < n; ++i)
+    for (i = 0; i < n; ++i) {
         values[i] = some_integer(s);
-    if (types == SH_TYPE_BOOLEAN)
+    }
+    if (types == SH_TYPE_BOOLEAN) {
         fmi2SetBoolean(s->instance, references, n, values);
-    else
+    } else {
         fmi2SetInteger(s->instance, references, n, values);
+    }
 }
 
 void get_integers(sequence *s)
@@ -77,10 +83,11 @@ void get_integers(sequence *s)
         below(s, 2) ? SH_TYPE_BOOLEAN : (unsigned)SH_TYPE_INTEGER | SH_TYPE_ENUMERATION;
     const size_t n = some_references(s, references, types, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
 
-    if (types == SH_TYPE_BOOLEAN)
+    if (types == SH_TYPE_BOOLEAN) {
         fmi2GetBoolean(s->instance, references, n, values);
-    else
+    } else {
         fmi2GetInteger(s->instance, references, n, values);
+    }
     if (seldom(s, 16)) {
         fmi2GetString(s->instance, references, n, strings);
         fmi2SetString(s->instance, references, n, strings);
@@ -129,8 +136,9 @@ static void set_up(sequence *s)
         s->time = start;
         s->stop_time = stop_time_defined ? stop_time : INFINITY;
     }
-    if (below(s, 2))
+    if (below(s, 2)) {
         fmi2EnterInitializationMode(s->instance);
+    }
 }
 
 void call_what_is_not_provided(sequence *s)

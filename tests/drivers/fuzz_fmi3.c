@@ -65,13 +65,16 @@ static void set_enumerations(sequence *s)
                         seldom(s, 16) ? SH_ROLE_INPUT : SH_ROLE_FIXED, SH_ROLE_TUNABLE);
     size_t i;
 
-    for (i = 0; i < n; ++i)
+    for (i = 0; i < n; ++i) {
         values[i] = some_int64(s);
-    if (fmi3SetInt64(s->instance, references, n, values, n) != fmi3OK)
+    }
+    if (fmi3SetInt64(s->instance, references, n, values, n) != fmi3OK) {
         return;
-    for (i = 0; i < n; ++i)
+    }
+    for (i = 0; i < n; ++i) {
         check(values[i] >= 1 && (double)values[i] <= sh_fmu_model.variables[references[i]].max,
               "an enumeration was set to a value that it has not");
+    }
 }
 
 void set_integers(sequence *s)
@@ -91,10 +94,11 @@ void set_integers(sequence *s)
         ints[i] = some_integer(s);
         booleans[i] = ints[i] > 1;
     }
-    if (type == SH_TYPE_BOOLEAN)
+    if (type == SH_TYPE_BOOLEAN) {
         fmi3SetBoolean(s->instance, references, n, booleans, n);
-    else
+    } else {
         fmi3SetInt32(s->instance, references, n, ints, n);
+    }
 }
 
 void get_integers(sequence *s)
@@ -106,12 +110,13 @@ void get_integers(sequence *s)
     const unsigned type = 1u << (1 + below(s, 3)); /* of SH_TYPE_* */
     const size_t n = some_references(s, references, type, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
 
-    if (type == SH_TYPE_INTEGER)
+    if (type == SH_TYPE_INTEGER) {
         fmi3GetInt32(s->instance, references, n, int32s, n);
-    else if (type == SH_TYPE_ENUMERATION)
+    } else if (type == SH_TYPE_ENUMERATION) {
         fmi3GetInt64(s->instance, references, n, int64s, n);
-    else
+    } else {
         fmi3GetBoolean(s->instance, references, n, booleans, n);
+    }
 }
 
 /* Reads and writes Real variables with any references, inside of arrays too, and any number of
@@ -126,17 +131,21 @@ static void use_arrays(sequence *s)
     double *values, *before;
     size_t given = right, i;
 
-    if (n > 0 && below(s, 2))
+    if (n > 0 && below(s, 2)) {
         references[0] = (uint32_t)((byte(s) << 8 | byte(s)) % (sh_fmu_model.count + 2));
-    if (below(s, 2))
+    }
+    if (below(s, 2)) {
         given = below(s, 8);
-    for (i = 0; i < n; ++i)
+    }
+    for (i = 0; i < n; ++i) {
         allowed = allowed && fmi_values(&references[i], 1) > 0;
+    }
     allowed = allowed && given == fmi_values(references, n);
     values = memory(given * sizeof *values);
     before = memory(given * sizeof *before);
-    for (i = 0; i < given; ++i)
+    for (i = 0; i < given; ++i) {
         before[i] = values[i] = some_real(s, 1.0);
+    }
     if (below(s, 2)) {
         check(fmi3SetFloat64(s->instance, references, n, values, given) != fmi3OK || allowed,
               "values of the wrong number were set");

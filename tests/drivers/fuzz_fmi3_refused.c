@@ -24,10 +24,12 @@ void use_types_of_no_variable(sequence *s)
     fmi3Binary binaries[MAX_REFERENCES] = {0};
     size_t n = some_references(s, references, ~0u, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
 
-    if (n == 0)
+    if (n == 0) {
         n = 1;
-    if (seldom(s, 8))
+    }
+    if (seldom(s, 8)) {
         references[0] = (uint32_t)sh_fmu_model.count; /* time */
+    }
     USE(Float32)
     USE(Int8)
     USE(UInt8)
@@ -88,7 +90,8 @@ void call_what_is_not_provided(sequence *s)
     };
     size_t i;
 
-    for (i = 0; i < sizeof statuses / sizeof statuses[0]; ++i)
+    for (i = 0; i < sizeof statuses / sizeof statuses[0]; ++i) {
         check(statuses[i] == fmi3Error, "something was done that is not provided");
+    }
     check(!yes && value == 0.0 && counter == 0 && n == 0, "a refused function gave a result");
 }

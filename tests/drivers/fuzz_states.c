@@ -14,12 +14,14 @@ static void serialise(sequence *s, void **state)
     size_t size = 0, length;
     int damaged = 0;
 
-    if (fmi_state_size(s->instance, *state, &size) != SH_OK)
+    if (fmi_state_size(s->instance, *state, &size) != SH_OK) {
         return;
+    }
     bytes = memory(size);
-    if (seldom(s, 16))
+    if (seldom(s, 16)) {
         check(fmi_serialize_state(s->instance, *state, bytes, size - 1) == SH_ERROR,
               "a state went into too little room");
+    }
     check(fmi_serialize_state(s->instance, *state, bytes, size) == SH_OK,
           "a good state was not serialised");
     length = size;
@@ -65,8 +67,9 @@ void use_states(sequence *s)
     switch (below(s, 5)) {
     case 0:
     case 1:
-        if (fmi_get_state(s->instance, &s->states[slot]) == SH_OK)
+        if (fmi_get_state(s->instance, &s->states[slot]) == SH_OK) {
             s->stop_times[slot] = s->stop_time;
+        }
         break;
     case 2:
         restore(s, slot);

@@ -35,8 +35,9 @@ static run *new_runs(void)
     int i;
 
     check(runs != NULL, "calloc");
-    for (i = 0; i < INSTANCES; ++i)
+    for (i = 0; i < INSTANCES; ++i) {
         runs[i].variant = i;
+    }
     return runs;
 }
 
@@ -48,25 +49,31 @@ int main(void)
     long k;
     int i;
 
-    for (i = 0; i < INSTANCES; ++i)
+    for (i = 0; i < INSTANCES; ++i) {
         run_alone(&separate[i]);
+    }
     check(memcmp(separate[0].outputs, separate[1].outputs, sizeof separate[0].outputs) != 0,
           "the instances differ");
 
-    for (i = 0; i < INSTANCES; ++i)
+    for (i = 0; i < INSTANCES; ++i) {
         instances[i] = start();
-    for (k = 0; k < STEPS; ++k)
+    }
+    for (k = 0; k < STEPS; ++k) {
         for (i = 0; i < INSTANCES; ++i) {
             step(instances[i], i, k);
             get_outputs(instances[i], in_turn[i].outputs[k]);
         }
-    for (i = 0; i < INSTANCES; ++i)
+    }
+    for (i = 0; i < INSTANCES; ++i) {
         fmi_free_instance(instances[i]);
+    }
 
-    for (i = 0; i < INSTANCES; ++i)
+    for (i = 0; i < INSTANCES; ++i) {
         check(pthread_create(&threads[i], NULL, run_alone, &in_threads[i]) == 0, "pthread_create");
-    for (i = 0; i < INSTANCES; ++i)
+    }
+    for (i = 0; i < INSTANCES; ++i) {
         check(pthread_join(threads[i], NULL) == 0, "pthread_join");
+    }
 
     check(memcmp(in_turn, separate, INSTANCES * sizeof *separate) == 0,
           "instances in turn give what they give alone");

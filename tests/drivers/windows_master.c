@@ -52,8 +52,9 @@ int main(int argc, char **argv)
         fprintf(stderr, "expected: windows_master LIBRARY GUID H INPUTS REFERENCE...\n");
         return 1;
     }
-    for (i = 0; i < variables; ++i)
+    for (i = 0; i < variables; ++i) {
         references[i] = (fmi2ValueReference)strtoul(argv[5 + i], NULL, 10);
+    }
 
     HMODULE library = LoadLibraryA(argv[1]);
 
@@ -74,19 +75,22 @@ int main(int argc, char **argv)
     const fmi2Component c =
         fmi2Instantiate("fmu", fmi2CoSimulation, argv[2], "", &callbacks, fmi2False, fmi2False);
 
-    if (c == NULL)
+    if (c == NULL) {
         return 1;
+    }
     CHECK(fmi2SetupExperiment(c, fmi2False, 0, 0, fmi2False, 0));
     CHECK(fmi2EnterInitializationMode(c));
     CHECK(fmi2ExitInitializationMode(c));
     for (step = 0;; ++step) {
         CHECK(fmi2GetReal(c, references + inputs, outputs, values));
-        for (i = 0; i < outputs; ++i)
+        for (i = 0; i < outputs; ++i) {
             printf("%.17g%c", values[i], i + 1 < outputs ? ',' : '\n');
+        }
         for (i = 0; i < inputs && scanf("%lf,", values + i) == 1; ++i)
             ;
-        if (i < inputs)
+        if (i < inputs) {
             break;
+        }
         CHECK(fmi2SetReal(c, references, inputs, values));
         CHECK(fmi2DoStep(c, (double)step * h, h, fmi2True));
     }

@@ -8,9 +8,11 @@ int main(int count, char **arguments)
 {
     int k;
 
-    if (count != 4)
+    if (count != 4) {
         return 2;
-    for (k = 0; k < atoi(arguments[3]); ++k)
+    }
+    for (k = 0; k < atoi(arguments[3]); ++k) {
         printf("%a\n", sigmahat_standard_normal(atoi(arguments[1]), k, atoi(arguments[2])));
+    }
     return 0;
 }

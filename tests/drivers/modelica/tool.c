@@ -62,13 +62,15 @@ int main(int count, char **arguments)
     OUTPUTS;
 
     (void)arguments;
-    if (setjmp(model) != 0)
+    if (setjmp(model) != 0) {
         return 3;
+    }
     object = NEW;
     second = NEW;
     while (fread(sample, sizeof sample, 1, stdin) == 1) {
-        if (count > 1)
+        if (count > 1) {
             TICK(object, sample[0], others);
+        }
         TICK(second, sample[0], zero);
         TICK(object, sample[0], (sample + 1));
         WRITE;
