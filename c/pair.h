@@ -54,13 +54,13 @@ static inline sh_pair sh_pair_load(const sh_real *from)
 {
     sh_pair pair;
 
-    memcpy(&pair, from, sizeof pair);
+    (void)memcpy(&pair, from, sizeof pair);
     return pair;
 }
 
 static inline void sh_pair_store(sh_real *to, sh_pair pair)
 {
-    memcpy(to, &pair, sizeof pair);
+    (void)memcpy(to, &pair, sizeof pair);
 }
 
 #else

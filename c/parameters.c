@@ -7,7 +7,7 @@
 
 void sh_parameters_default(sh_parameters *p)
 {
-    memset(p, 0, sizeof *p);
+    (void)memset(p, 0, sizeof *p);
     p->samplePeriod = (sh_real)1e-3;
     p->method = SH_METHOD_PAPER2011;
     p->modality = SH_MODALITY_RESIDUAL;

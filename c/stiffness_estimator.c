@@ -45,8 +45,8 @@ static void start_curve(const sh_parameters *p, sh_real set_point, sh_estimate *
 
 void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate)
 {
-    memset(estimator, 0, sizeof *estimator);
-    memset(estimate, 0, sizeof *estimate);
+    (void)memset(estimator, 0, sizeof *estimator);
+    (void)memset(estimate, 0, sizeof *estimate);
     start_curve(p, p->setPoint.offset, estimate);
     sh_method_of(p)->start(estimator, p, estimate);
     judge(p->setPoint.offset, estimate);

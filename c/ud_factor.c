@@ -52,7 +52,7 @@ void sh_ud_factor_start(sh_ud_factor *P, int size, sh_real P_0)
 {
     int j;
 
-    memset(P, 0, sizeof *P);
+    (void)memset(P, 0, sizeof *P);
     P->size = size;
     for (j = 0; j < size; ++j) {
         P->D[j] = P_0;

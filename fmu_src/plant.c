@@ -23,7 +23,7 @@ static void set_outputs(sh_plant *plant, const double *u)
     for (channel = 0; channel < SH_PLANT_NORMALS; ++channel) {
         normals[channel] = sh_noise_normal(plant->seed, plant->sample, (unsigned)channel);
     }
-    sh_plant_outputs(arguments, results, NULL, NULL, 0);
+    (void)sh_plant_outputs(arguments, results, NULL, NULL, 0);
 }
 
 /* Goes on to the noise sample at the end of a step: the last one whose time, a multiple of the
@@ -45,7 +45,7 @@ static void initialize(void *model, double t)
     const double *arguments[] = {plant->p};
     double *results[] = {plant->x};
 
-    sh_plant_start(arguments, results, NULL, NULL, 0);
+    (void)sh_plant_start(arguments, results, NULL, NULL, 0);
     plant->h = INFINITY;
     plant->started = t;
     plant->since = 0.0;

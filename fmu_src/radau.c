@@ -45,7 +45,7 @@ static void evaluate(const double *x, const double *u, const double *p, double *
 {
     const double *arguments[] = {x, u, p};
 
-    sh_plant_xdot(arguments, &f, NULL, NULL, 0);
+    (void)sh_plant_xdot(arguments, &f, NULL, NULL, 0);
 }
 
 /* Factors of REAL/h - J and of (RE + i IM)/h - J, where J = df/dx. */
@@ -54,7 +54,7 @@ static void factorize(const double *x, const double *u, const double *p, double 
     const double shifts[] = {REAL / h, RE / h, IM / h};
     const double *arguments[] = {x, u, p, shifts};
 
-    sh_plant_factorize(arguments, &factors, NULL, NULL, 0);
+    (void)sh_plant_factorize(arguments, &factors, NULL, NULL, 0);
 }
 
 /* b becomes (REAL/h - J)^-1 b. */
@@ -62,7 +62,7 @@ static void solve_real(const double *factors, double *b)
 {
     const double *arguments[] = {factors, b};
 
-    sh_plant_solve_real(arguments, &b, NULL, NULL, 0);
+    (void)sh_plant_solve_real(arguments, &b, NULL, NULL, 0);
 }
 
 /* re + i im becomes ((RE + i IM)/h - J)^-1 (re + i im). */
@@ -71,7 +71,7 @@ static void solve_complex(const double *factors, double *re, double *im)
     const double *arguments[] = {factors, re, im};
     double *results[] = {re, im};
 
-    sh_plant_solve_complex(arguments, results, NULL, NULL, 0);
+    (void)sh_plant_solve_complex(arguments, results, NULL, NULL, 0);
 }
 
 /* Largest |v| weight; not a number if one of v is not. */

@@ -71,7 +71,7 @@ static void take_mean_row(sh_matched_state *state, sh_information *a, sh_real w)
     for (i = 0; i < state->size + SH_SIDES; ++i) {
         row[i] = state->blocks.sum[i] / state->blocks.weight;
     }
-    sh_information_take(a, row, w);
+    (void)sh_information_take(a, row, w);
 }
 
 void sh_blocks_fade(sh_blocks *blocks, sh_real keep)

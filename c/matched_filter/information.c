@@ -21,7 +21,7 @@ void sh_information_start(sh_information *a, int size, sh_real precision)
 
     a->size = size;
     a->rest = 0;
-    memset(a->U, 0, sizeof(sh_real) * (size_t)row_offset(size, size));
+    (void)memset(a->U, 0, sizeof(sh_real) * (size_t)row_offset(size, size));
     for (i = 0; i < size; ++i) {
         a->D[i] = precision;
     }
@@ -33,8 +33,8 @@ void sh_information_copy(sh_information *to, const sh_information *from)
 
     to->size = size;
     to->rest = from->rest;
-    memcpy(to->D, from->D, sizeof(sh_real) * (size_t)size);
-    memcpy(to->U, from->U, sizeof(sh_real) * (size_t)row_offset(size, size));
+    (void)memcpy(to->D, from->D, sizeof(sh_real) * (size_t)size);
+    (void)memcpy(to->U, from->U, sizeof(sh_real) * (size_t)row_offset(size, size));
 }
 
 /* Combines a row of U with a sample. What is left of the sample stays in x, for the next row. Four
@@ -196,7 +196,7 @@ void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real
     sh_real vAv = 0;
     int i, j;
 
-    memset(row, 0, sizeof(sh_real) * (size_t)(size + SH_SIDES));
+    (void)memset(row, 0, sizeof(sh_real) * (size_t)(size + SH_SIDES));
     for (i = 0; i < size; ++i) { /* row = v' U' D [U, U z] */
         const int count = size - 1 - i;
         const sh_real along = v[i] + sum_of_products(of_U, v + i + 1, count);
@@ -209,5 +209,5 @@ void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real
         vAv += scaled * along;
         of_U += count + SH_SIDES;
     }
-    sh_information_take(a, row, -c / (1 + c * vAv));
+    (void)sh_information_take(a, row, -c / (1 + c * vAv));
 }

@@ -314,7 +314,7 @@ static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
     for (i = 0; i < state->size + SH_SIDES; ++i) {
         row[i] = x[i];
     }
-    sh_information_take(&state->data, row, w);
+    (void)sh_information_take(&state->data, row, w);
     sh_blocks_take(state, p, x, w, variance.last);
     sh_passes_step(state, p, x, w);
     return 1;

@@ -121,7 +121,7 @@ static void take_row(sh_matched_state *state, sh_real *x)
     for (j = i + 1; j < entries; ++j) {
         x[j] = row[j - i - 1];
     }
-    sh_posterior_take(state, &state->build, x, state->frozen.D[i], state->work.row);
+    (void)sh_posterior_take(state, &state->build, x, state->frozen.D[i], state->work.row);
     state->row += 1;
 }
 
@@ -134,7 +134,7 @@ static sh_real time_since(const sh_matched_state *state)
 void sh_passes_step(sh_matched_state *state, const sh_parameters *p, sh_real *x, sh_real w)
 {
     state->since += 1;
-    sh_posterior_take(state, &state->build, x, w, state->work.row);
+    (void)sh_posterior_take(state, &state->build, x, w, state->work.row);
     state->alternate = !state->alternate;
     if (state->alternate) {
         return;

@@ -133,7 +133,7 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
 
     if (weigh) {
         D_b = a->D[b];
-        memcpy(z_b, sh_information_row(a, b), sizeof z_b);
+        (void)memcpy(z_b, sh_information_row(a, b), sizeof z_b);
         weigh_inertia(posterior, state->column[posterior->column[b]].prior);
     }
     for (i = 0; i < size; ++i) {
@@ -155,7 +155,7 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
     }
     if (weigh) {
         a->D[b] = D_b;
-        memcpy(sh_information_row(a, b), z_b, sizeof z_b);
+        (void)memcpy(sh_information_row(a, b), z_b, sizeof z_b);
     }
     return fit;
 }

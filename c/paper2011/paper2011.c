@@ -97,8 +97,8 @@ static sh_real track(sh_paper2011_filters *state, const sh_parameters *p, const 
      */
     state->settling -= dt;
     if (dt * p->residual.K_I < 2) {
-        sh_torque_residual_step(&state->residual, &p->motor, theta->dx, theta->dx_dot, z->tau,
-                                p->residual.K_I, dt);
+        (void)sh_torque_residual_step(&state->residual, &p->motor, theta->dx, theta->dx_dot, z->tau,
+                                      p->residual.K_I, dt);
     } else {
         sh_torque_residual_resume(&state->residual, z->tau);
         state->settling = 10 / p->residual.K_I;

@@ -54,7 +54,7 @@ void *sh_allocate(const sh_importer *importer, size_t size)
     void *memory = importer_allocates(importer) ? importer->allocate(1, size) : malloc(size);
 
     if (memory != NULL) {
-        memset(memory, 0, size);
+        (void)memset(memory, 0, size);
     }
     return memory;
 }
@@ -150,7 +150,7 @@ void sh_reset(sh_instance *instance)
 {
     size_t i;
 
-    memset(instance->model, 0, sh_fmu_model.size);
+    (void)memset(instance->model, 0, sh_fmu_model.size);
     for (i = 0; i < sh_fmu_model.count; ++i) {
         sh_write(instance, &sh_fmu_model.variables[i], sh_fmu_model.variables[i].start);
     }

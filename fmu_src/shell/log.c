@@ -79,9 +79,9 @@ void sh_log(sh_instance *instance, sh_status status, const char *format, ...)
         return;
     }
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    (void)vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    sh_make_utf8(text); /* it may contain text of the importer, or be cut inside a character */
+    (void)sh_make_utf8(text); /* may contain text of the importer, or be cut inside a character */
     sh_deliver(instance, status, KNOWN[place].name, text);
 }
 

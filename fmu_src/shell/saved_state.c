@@ -55,7 +55,7 @@ static const char *defect(const void *block, size_t size)
     if (size < sizeof header) {
         return "is truncated";
     }
-    memcpy(&header, block, sizeof header);
+    (void)memcpy(&header, block, sizeof header);
     if (memcmp(header.magic, MAGIC, sizeof MAGIC) != 0) {
         return "is not a state of a sigmahat FMU";
     }
@@ -89,22 +89,22 @@ sh_status sh_save_state(void *handle, void **state, const char *function)
         sh_log(instance, SH_ERROR, "%s: out of memory.", function);
         return SH_ERROR;
     }
-    memset(&header, 0, sizeof header);
-    memcpy(header.magic, MAGIC, sizeof MAGIC);
+    (void)memset(&header, 0, sizeof header);
+    (void)memcpy(header.magic, MAGIC, sizeof MAGIC);
     header.version = STATE_VERSION;
     header.state = (uint32_t)instance->state;
     header.size = block_size();
-    strncpy(header.guid, sh_fmu_model.guid, GUID_LENGTH - 1);
+    (void)strncpy(header.guid, sh_fmu_model.guid, GUID_LENGTH - 1);
     header.time = instance->time;
     header.stop_time = instance->stop_time;
     header.steps = instance->steps;
     header.previous_step = instance->previous_step;
     header.outputs_stale = instance->outputs_stale;
     header.parameters_unchecked = instance->parameters_unchecked;
-    memcpy(block, &header, sizeof header);
-    memcpy(block + sizeof header, instance->model, sh_fmu_model.size);
+    (void)memcpy(block, &header, sizeof header);
+    (void)memcpy(block + sizeof header, instance->model, sh_fmu_model.size);
     header.checksum = checksum(block, block_size());
-    memcpy(block, &header, sizeof header);
+    (void)memcpy(block, &header, sizeof header);
     *state = block;
     return SH_OK;
 }
@@ -124,8 +124,8 @@ sh_status sh_restore_state(void *handle, const void *state, const char *function
         sh_log(instance, SH_ERROR, "%s: the state %s.", function, what);
         return SH_ERROR;
     }
-    memcpy(&header, block, sizeof header);
-    memcpy(instance->model, block + sizeof header, sh_fmu_model.size);
+    (void)memcpy(&header, block, sizeof header);
+    (void)memcpy(instance->model, block + sizeof header, sh_fmu_model.size);
     instance->state = (sh_state)header.state;
     instance->time = header.time;
     instance->stop_time = header.stop_time;
@@ -177,7 +177,7 @@ sh_status sh_serialize_state(void *handle, const void *state, void *bytes, size_
                (unsigned long)size, (unsigned long)block_size());
         return SH_ERROR;
     }
-    memcpy(bytes, state, block_size());
+    (void)memcpy(bytes, state, block_size());
     return SH_OK;
 }
 
@@ -203,7 +203,7 @@ sh_status sh_deserialize_state(void *handle, const void *bytes, size_t size, voi
         sh_log(instance, SH_ERROR, "%s: out of memory.", function);
         return SH_ERROR;
     }
-    memcpy(block, bytes, block_size());
+    (void)memcpy(block, bytes, block_size());
     *state = block;
     return SH_OK;
 }

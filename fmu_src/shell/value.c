@@ -6,8 +6,8 @@
 /* Writes the allowed range of a variable, "[0, 1]" or "(-inf, inf)". */
 static void write_range(char *text, size_t size, const sh_variable *variable)
 {
-    snprintf(text, size, "%c%.9g, %.9g%c", isfinite(variable->min) ? '[' : '(', variable->min,
-             variable->max, isfinite(variable->max) ? ']' : ')');
+    (void)snprintf(text, size, "%c%.9g, %.9g%c", isfinite(variable->min) ? '[' : '(', variable->min,
+                   variable->max, isfinite(variable->max) ? ']' : ')');
 }
 
 static int in_range(const sh_variable *variable, double value)
