@@ -1,0 +1,131 @@
+"""What the MISRA addon of cppcheck finds in c/ and fmu_src/."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import fmpy
+
+import c_sources
+from c_sources import REPOSITORY
+from gate import missing
+
+LIBRARY = ("c",)
+FMU = ("c", "fmu_src")
+CONFIGURATIONS = (
+    (("SH_REAL=double", "__GNUC__", "__SSE2__"), FMU),
+    (("SH_REAL=float",), LIBRARY),
+)
+"""Macros and folders. The second one takes the other branch of c/pair.h, which is plain C."""
+
+FOLDERS = [*c_sources.FOLDERS, REPOSITORY / "fmu_src", REPOSITORY / "fmu_src" / "shell"]
+FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
+
+# A checker for each file, as one writes what all files say together for its first file only.
+PROGRAM = """
+import sys
+sys.path.insert(0, sys.argv.pop(1))
+import misra
+arguments = misra.get_args_parser().parse_args()
+for file in arguments.dumpfile:
+    misra.MisraChecker(misra.MisraSettings(arguments)).parseDump(file)
+"""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One place that does not follow a rule."""
+
+    rule: str
+    file: str
+    line: int
+    column: int
+
+
+def version() -> str:
+    """Version of cppcheck, such as 2.10."""
+    if shutil.which("cppcheck") is None:
+        missing("cppcheck", "apt-get install cppcheck")
+    done = subprocess.run(["cppcheck", "--version"], capture_output=True, text=True, check=True)
+    return done.stdout.split()[1]
+
+
+def addons() -> Path:
+    """The folder with misra.py. `cppcheck --addon` shows only one of the findings of a line."""
+    prefix = Path(shutil.which("cppcheck") or "").resolve().parents[1]
+    for pattern in ("lib/*/cppcheck/addons/misra.py", "share/cppcheck/addons/misra.py"):
+        for file in prefix.glob(pattern):
+            return file.parent
+    missing("misra.py of cppcheck", "apt-get install cppcheck")
+
+
+def dump(
+    tree: Path, sources: Iterable[Path], folders: Iterable[Path], macros: Sequence[str]
+) -> None:
+    """Writes what cppcheck knows of each source beside the source, into FILE.dump."""
+    subprocess.run(
+        [
+            *("cppcheck", "--dump", "--quiet", "--std=c99"),
+            *(f"-D{macro}" for macro in macros),
+            *(f"-I{folder}" for folder in folders),
+            *map(str, sources),
+        ],
+        cwd=tree,
+        check=True,
+    )
+
+
+def ask(tree: Path, pattern: str, *program: str | Path) -> set[Finding]:
+    """The findings in files of c/ and fmu_src/ that the program prints for all files `pattern`."""
+    files = sorted(str(file.relative_to(tree)) for file in tree.rglob(pattern))
+    done = subprocess.run(
+        [sys.executable, *program, "--cli", *files],
+        cwd=tree,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    found = set()
+    for text in done.stdout.splitlines():
+        line = json.loads(text)
+        file = Path(line["file"])
+        if not file.is_absolute():  # else it is a header of FMI or a generated file
+            rule = line["errorId"].removeprefix("c2012-")
+            found.add(Finding(rule, file.as_posix(), line["linenr"], line["column"]))
+    return found
+
+
+def addon_findings(tree: Path) -> set[Finding]:
+    """The findings in each file that has a dump, and in all files together."""
+    in_files = ask(tree, "*.dump", "-c", PROGRAM, addons())
+    return in_files | ask(tree, "*.ctu-info", addons() / "misra.py")
+
+
+def findings_of(
+    macros: Sequence[str], names: Sequence[str], tree: Path, build: Path
+) -> set[Finding]:
+    """The findings in one configuration. `tree` is a new folder for what cppcheck writes."""
+    groups: dict[Path, list[Path]] = {}
+    for name in names:
+        shutil.copytree(REPOSITORY / name, tree / name)
+        for source in sorted((REPOSITORY / name).rglob("*.c")):
+            group = groups.setdefault(c_sources.generated(source, build), [])
+            group.append(source.relative_to(REPOSITORY))
+    folders = [folder.relative_to(REPOSITORY) for folder in FOLDERS]
+    for generated, sources in groups.items():
+        dump(tree, sources, [*folders, generated, FMI_HEADERS], macros)
+    return addon_findings(tree)
+
+
+def findings(folder: Path, build: Path) -> set[Finding]:
+    """The findings in all configurations. `folder` is for files that nobody needs later."""
+    found = set()
+    for index, (macros, names) in enumerate(CONFIGURATIONS):
+        found |= findings_of(macros, names, folder / str(index), build)
+    return found
