@@ -129,7 +129,8 @@ typedef struct {
 /* A column of the regression. */
 typedef struct {
     int kind;      /* SH_COLUMN_*, columns.h */
-    int index;     /* which one of its kind */
+    int index;     /* for a product of powers: i SH_MAX_M + j, where its coefficient is eta[i][j] of
+                      sh_estimate; for SH_COLUMN_DAMPING: the power of the set-point; else 0 */
     sh_real prior; /* std deviation of its coefficient, by which the column is multiplied */
     sh_real unit;  /* for a product of powers: what its coefficient is multiplied by to get that of
                       sh_estimate; else 0 */

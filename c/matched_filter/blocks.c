@@ -27,18 +27,18 @@ void sh_blocks_start(sh_matched_state *state)
     sh_blocks *blocks = &state->blocks;
     const sh_filter_design *design = &state->design;
     sh_state_variable_filter filter;
-    sh_real of_window = 0, output = 0, second = 0;
-    int samples, k;
+    sh_real of_window = 0, output = 0, second = 0, samples;
+    int k;
 
     sh_information_start(&blocks->all, state->size, SH_INFORMATION_LEAST);
     sh_information_start(&blocks->walking, state->size, SH_INFORMATION_LEAST);
     sh_information_start(&blocks->recent, state->size, 1);
     blocks->length = sh_floor(DURATION / design->T + (sh_real)0.5);
     blocks->length = sh_fmin(sh_fmax(blocks->length, 4), LONGEST);
-    samples = (int)(blocks->length + 30 / (design->w * design->T));
+    samples = blocks->length + sh_floor(30 / (design->w * design->T));
     /* What is left of white noise: the energy of the filtered window. */
     sh_state_variable_filter_start(&filter, 0);
-    for (k = 0; k < samples; ++k) {
+    for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < samples; ++k) {
         const sh_real place = (sh_real)k;
         const sh_real h = place < blocks->length ? window(place, blocks->length) : 0;
 

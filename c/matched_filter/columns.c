@@ -31,8 +31,12 @@ static const struct {
     [SH_COLUMN_REVERSAL] = {ALWAYS, 0, 0, SH_SIGNAL_NONE},
     [SH_COLUMN_POWER] = {POWERS, 1, 0, SH_SIGNAL_LINEAR},
     [SH_COLUMN_SET_POWER] = {SET_POWER, 1, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_GAP] = {GAP, 1, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_PLAY] = {HYSTERESIS, 0, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_GAP_1] = {GAP, 1, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_GAP_2] = {GAP, 1, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_GAP_3] = {GAP, 1, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_PLAY_1] = {HYSTERESIS, 0, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_PLAY_2] = {HYSTERESIS, 0, 0, SH_SIGNAL_LINEAR},
+    [SH_COLUMN_PLAY_3] = {HYSTERESIS, 0, 0, SH_SIGNAL_LINEAR},
     [SH_COLUMN_SIN_M] = {MOTOR_ENCODER, 0, 0, SH_SIGNAL_STEADY},
     [SH_COLUMN_COS_M] = {MOTOR_ENCODER, 0, 0, SH_SIGNAL_STEADY},
     [SH_COLUMN_VISCOUS] = {ALWAYS, 0, 1, SH_SIGNAL_NONE},
@@ -69,6 +73,11 @@ int sh_column_is_torque(const sh_column *column)
     return TRAITS[column->kind].is_torque;
 }
 
+int sh_column_is_gap(const sh_column *column)
+{
+    return TRAITS[column->kind].group == GAP;
+}
+
 int sh_column_is_of_equation(const sh_column *column)
 {
     return TRAITS[column->kind].is_of_equation;
@@ -87,7 +96,7 @@ typedef struct {
     int size;
 } column_list;
 
-static void add(column_list *list, int kind, int index, sh_real prior, sh_real unit)
+static void add_as(column_list *list, int kind, int index, sh_real prior, sh_real unit)
 {
     if (!(prior > 0)) {
         return;
@@ -103,52 +112,68 @@ static void add(column_list *list, int kind, int index, sh_real prior, sh_real u
     list->size += 1;
 }
 
+static void add(column_list *list, int kind, sh_real prior)
+{
+    add_as(list, kind, 0, prior, 0);
+}
+
+/* The product of powers whose coefficient is eta[i][j]. */
+static void add_powers(column_list *list, int kind, const sh_parameters *p, int i, int j,
+                       sh_real prior)
+{
+    add_as(list, kind, i * SH_MAX_M + j, prior,
+           sh_scaled_basis_unit(&p->range, p->rls.symmetric, i, j));
+}
+
 /* Those of the torque that are always used, then others, then the motor's. */
 static void list_columns(const sh_parameters *p, column_list *list)
 {
     const sh_prior_parameters *prior = &p->prior;
     const sh_real tau_e = prior->tau_e, K_0 = tau_e / p->range.phi;
-    const int n = p->rls.n, m = p->rls.m, symmetric = p->rls.symmetric;
-    const int linear = sh_torque_basis_linear(symmetric);
-    int i;
+    const int n = p->rls.n, m = p->rls.m, linear = sh_torque_basis_linear(p->rls.symmetric);
+    int i, j;
 
-    for (i = 0; i < n * m; ++i) {
-        add(list, SH_COLUMN_BASIS, i, tau_e,
-            sh_scaled_basis_unit(&p->range, symmetric, i % n, i / n));
+    /*@ loop unroll SH_MAX_M; */
+    for (j = 0; j < m; ++j) {
+        /*@ loop unroll SH_MAX_N; */
+        for (i = 0; i < n; ++i) {
+            add_powers(list, SH_COLUMN_BASIS, p, i, j, tau_e);
+        }
     }
-    add(list, SH_COLUMN_NOMINAL, 0, sh_has_nominal_curve(p) ? prior->nominal : 0, 0);
-    add(list, SH_COLUMN_BIAS, 0, prior->bias * tau_e, 0);
-    add(list, SH_COLUMN_DAMPING, 0, prior->damping * K_0, 0);
+    add(list, SH_COLUMN_NOMINAL, sh_has_nominal_curve(p) ? prior->nominal : 0);
+    add(list, SH_COLUMN_BIAS, prior->bias * tau_e);
+    add(list, SH_COLUMN_DAMPING, prior->damping * K_0);
     if (m > 1) {
-        add(list, SH_COLUMN_DAMPING, m - 1, prior->damping * K_0, 0);
+        add_as(list, SH_COLUMN_DAMPING, m - 1, prior->damping * K_0, 0);
     }
-    add(list, SH_COLUMN_SIN_Q, 0, prior->eccentric * K_0, 0);
-    add(list, SH_COLUMN_COS_Q, 0, prior->eccentric * K_0, 0);
-    add(list, SH_COLUMN_LOAD, 0, prior->load_friction, 0);
+    add(list, SH_COLUMN_SIN_Q, prior->eccentric * K_0);
+    add(list, SH_COLUMN_COS_Q, prior->eccentric * K_0);
+    add(list, SH_COLUMN_LOAD, prior->load_friction);
     if (prior->tau_coulomb > 0) { /* else the motor has no dry friction */
-        add(list, SH_COLUMN_DRIVE, 0, prior->load_friction, 0);
+        add(list, SH_COLUMN_DRIVE, prior->load_friction);
     }
-    add(list, SH_COLUMN_DELAY, 0, prior->delay, 0);
-    add(list, SH_COLUMN_REVERSAL, 0, prior->reversal * prior->tau_coulomb, 0);
+    add(list, SH_COLUMN_DELAY, prior->delay);
+    add(list, SH_COLUMN_REVERSAL, prior->reversal * prior->tau_coulomb);
+    /*@ loop unroll 2; */
     for (i = 0; i < 2 && n + i < SH_MAX_N; ++i) {
-        add(list, SH_COLUMN_POWER, i, prior->power * tau_e,
-            sh_scaled_basis_unit(&p->range, symmetric, n + i, 0));
+        add_powers(list, SH_COLUMN_POWER, p, n + i, 0, prior->power * tau_e);
     }
     if (m > 1 && m < SH_MAX_M && linear < n) {
-        add(list, SH_COLUMN_SET_POWER, 0, prior->power * tau_e,
-            sh_scaled_basis_unit(&p->range, symmetric, linear, m));
+        add_powers(list, SH_COLUMN_SET_POWER, p, linear, m, prior->power * tau_e);
     }
+    /*@ loop unroll SH_PLAYS; */
     for (i = 0; i < SH_PLAYS; ++i) {
-        add(list, SH_COLUMN_GAP, i, prior->gap * tau_e, 0);
+        add(list, SH_COLUMN_GAP_1 + i, prior->gap * tau_e);
     }
+    /*@ loop unroll SH_PLAYS; */
     for (i = 0; i < SH_PLAYS; ++i) {
-        add(list, SH_COLUMN_PLAY, i, prior->hysteresis * tau_e, 0);
+        add(list, SH_COLUMN_PLAY_1 + i, prior->hysteresis * tau_e);
     }
-    add(list, SH_COLUMN_SIN_M, 0, prior->eccentric_motor, 0);
-    add(list, SH_COLUMN_COS_M, 0, prior->eccentric_motor, 0);
-    add(list, SH_COLUMN_VISCOUS, 0, prior->D_theta, 0);
-    add(list, SH_COLUMN_COULOMB, 0, prior->tau_coulomb, 0);
-    add(list, SH_COLUMN_INERTIA, 0, prior->B, 0);
+    add(list, SH_COLUMN_SIN_M, prior->eccentric_motor);
+    add(list, SH_COLUMN_COS_M, prior->eccentric_motor);
+    add(list, SH_COLUMN_VISCOUS, prior->D_theta);
+    add(list, SH_COLUMN_COULOMB, prior->tau_coulomb);
+    add(list, SH_COLUMN_INERTIA, prior->B);
 }
 
 int sh_columns_count(const sh_parameters *p)
@@ -159,14 +184,20 @@ int sh_columns_count(const sh_parameters *p)
     return list.size;
 }
 
+void sh_columns_list(const sh_parameters *p, sh_column *column)
+{
+    column_list list = {column, 0};
+
+    list_columns(p, &list);
+}
+
 void sh_columns_start(sh_matched_state *state, const sh_parameters *p)
 {
     const int n = p->rls.n, m = p->rls.m;
-    column_list list = {state->column, 0};
     int i, j;
 
-    list_columns(p, &list);
-    state->size = list.size;
+    sh_columns_list(p, state->column);
+    state->size = sh_columns_count(p);
     state->has_nominal = sh_has_nominal_curve(p);
     for (j = 0; j < m; ++j) {
         for (i = 0; i < n; ++i) {
@@ -181,17 +212,23 @@ int sh_column_can_join(const sh_matched_state *state, const sh_parameters *p,
 {
     /* What is wider than a quarter of the covered range looks like the spring. */
     const sh_real covered = (state->history.phi_max - state->history.phi_min) / 4 / p->range.phi;
+    const int kind = column->kind;
 
     if (sh_column_group(column) != group) {
         return 0;
     }
-    if (column->kind == SH_COLUMN_GAP) {
-        return GAPS[column->index] < covered;
+    switch (kind) {
+    case SH_COLUMN_GAP_1:
+    case SH_COLUMN_GAP_2:
+    case SH_COLUMN_GAP_3:
+        return GAPS[kind - SH_COLUMN_GAP_1] < covered;
+    case SH_COLUMN_PLAY_1:
+    case SH_COLUMN_PLAY_2:
+    case SH_COLUMN_PLAY_3:
+        return PLAYS[kind - SH_COLUMN_PLAY_1] < covered;
+    default:
+        return 1;
     }
-    if (column->kind == SH_COLUMN_PLAY) {
-        return PLAYS[column->index] < covered;
-    }
-    return 1;
 }
 
 /* ---- signals before the filter ----------------------------------------------------------- */
@@ -219,13 +256,15 @@ typedef struct {
 static sh_real input_of(const sh_matched_state *state, const sh_parameters *p,
                         const sh_column *column, const joint_point *at, sh_real *slope)
 {
+    const int kind = column->kind;
+    const int i = column->index / SH_MAX_M, j = column->index % SH_MAX_M; /* of powers */
     int e;
 
     *slope = 0;
-    switch (column->kind) {
+    switch (kind) {
     case SH_COLUMN_BASIS:
-        *slope = state->work.slope[column->index];
-        return state->work.basis[column->index];
+        *slope = state->work.slope[j * p->rls.n + i];
+        return state->work.basis[j * p->rls.n + i];
     case SH_COLUMN_NOMINAL:
         *slope = state->sigma_nominal;
         return state->tau_nominal;
@@ -238,16 +277,21 @@ static sh_real input_of(const sh_matched_state *state, const sh_parameters *p,
     case SH_COLUMN_COS_Q:
         return sh_cos(at->q);
     case SH_COLUMN_POWER:
-        e = sh_scaled_basis_power(p->rls.symmetric, p->rls.n + column->index);
+        e = sh_scaled_basis_power(p->rls.symmetric, i);
         *slope = sh_power(at->x, e - 1) / p->range.phi;
         return sh_power(at->x, e) / (sh_real)e;
     case SH_COLUMN_SET_POWER:
         *slope = sh_power(at->l, p->rls.m) / p->range.phi;
         return at->x * sh_power(at->l, p->rls.m);
-    case SH_COLUMN_GAP: /* no slope: sigma is that of the spring where it is engaged */
-        return clip(at->x, GAPS[column->index]) / GAPS[column->index];
-    case SH_COLUMN_PLAY:
-        return state->history.play[column->index] / (PLAYS[column->index] * p->range.phi);
+    case SH_COLUMN_GAP_1: /* no slope: sigma is that of the spring where it is engaged */
+    case SH_COLUMN_GAP_2:
+    case SH_COLUMN_GAP_3:
+        return clip(at->x, GAPS[kind - SH_COLUMN_GAP_1]) / GAPS[kind - SH_COLUMN_GAP_1];
+    case SH_COLUMN_PLAY_1:
+    case SH_COLUMN_PLAY_2:
+    case SH_COLUMN_PLAY_3:
+        return state->history.play[kind - SH_COLUMN_PLAY_1] /
+               (PLAYS[kind - SH_COLUMN_PLAY_1] * p->range.phi);
     case SH_COLUMN_SIN_M:
         return sh_sin(p->motor.gamma * at->theta);
     case SH_COLUMN_COS_M:

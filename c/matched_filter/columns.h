@@ -42,9 +42,13 @@ enum {
     SH_COLUMN_REVERSAL,  /* derivative of sign(theta'): friction reverses late or early */
     SH_COLUMN_POWER,     /* torque: more powers of phi */
     SH_COLUMN_SET_POWER, /* torque: phi l^m, one more power of the set-point */
-    SH_COLUMN_GAP,       /* torque: clip(phi, h) / h, dead zone (backlash) */
-    SH_COLUMN_PLAY,      /* elastic-plastic elements of width h: hysteresis (Prandtl, Ishlinskii) */
-    SH_COLUMN_SIN_M,     /* sin, cos of gamma theta: motor encoder that is not centred */
+    SH_COLUMN_GAP_1,     /* torque: clip(phi, h) / h, dead zones (backlash) of three widths */
+    SH_COLUMN_GAP_2,
+    SH_COLUMN_GAP_3,
+    SH_COLUMN_PLAY_1, /* elastic-plastic elements of three widths: hysteresis (Prandtl, Ishlinskii) */
+    SH_COLUMN_PLAY_2,
+    SH_COLUMN_PLAY_3,
+    SH_COLUMN_SIN_M, /* sin, cos of gamma theta: motor encoder that is not centred */
     SH_COLUMN_COS_M,
     SH_COLUMN_VISCOUS, /* d */
     SH_COLUMN_COULOMB, /* tau_C */
@@ -61,6 +65,9 @@ int sh_is_measured(const sh_parameters *p);
 /* Number of columns for these parameters. May be larger than SH_MAX_COLUMNS. */
 int sh_columns_count(const sh_parameters *p);
 
+/* Writes the columns for these parameters to column [size: sh_columns_count(p)]. */
+void sh_columns_list(const sh_parameters *p, sh_column *column);
+
 /* Sets the columns and the nominal curve. There must not be more than SH_MAX_COLUMNS. */
 void sh_columns_start(sh_matched_state *state, const sh_parameters *p);
 
@@ -75,6 +82,9 @@ int sh_column_can_join(const sh_matched_state *state, const sh_parameters *p,
 
 /* Whether the column is part of the torque of the spring. */
 int sh_column_is_torque(const sh_column *column);
+
+/* Whether the column is one of the dead zones. */
+int sh_column_is_gap(const sh_column *column);
 
 /* Whether the column is in the equation above, and does not stand for something more. */
 int sh_column_is_of_equation(const sh_column *column);

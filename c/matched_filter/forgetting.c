@@ -73,7 +73,7 @@ void sh_forgetting_of_friction(sh_matched_state *state, sh_real time)
 /* Whether a column belongs to the smooth curve of the torque. */
 static int is_curve(const sh_column *column)
 {
-    return sh_column_is_torque(column) && column->kind != SH_COLUMN_GAP;
+    return sh_column_is_torque(column) && !sh_column_is_gap(column);
 }
 
 static void drift(sh_matched_state *state, const sh_parameters *p, const sh_real *x, sh_real time)

@@ -10,9 +10,35 @@ static int row_offset(int size, int i)
     return i * (size - 1 + SH_SIDES) - i * (i - 1) / 2;
 }
 
-sh_real *sh_information_row(sh_information *a, int i)
+sh_real sh_information_sample(const sh_information *a, int i, sh_real *x)
 {
-    return a->U + row_offset(a->size, i);
+    const int size = a->size;
+    const sh_real *row = a->U + row_offset(size, i);
+    int j;
+
+    for (j = 0; j < i; ++j) {
+        x[j] = 0;
+    }
+    x[i] = 1;
+    for (j = i + 1; j < size + SH_SIDES; ++j) {
+        x[j] = row[j - i - 1];
+    }
+    return a->D[i];
+}
+
+void sh_information_side(const sh_information *a, int side, sh_real *z)
+{
+    const int size = a->size;
+    int i;
+
+    for (i = 0; i < size; ++i) {
+        z[i] = a->U[row_offset(size, i) + size - 1 - i + side];
+    }
+}
+
+sh_real *sh_information_last(sh_information *a)
+{
+    return a->U + row_offset(a->size, a->size - 1);
 }
 
 void sh_information_start(sh_information *a, int size, sh_real precision)
@@ -105,17 +131,17 @@ static sh_real sum_of_products(const sh_real *a, const sh_real *b, int count)
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-void sh_information_solve(sh_information *a, int side, sh_real *beta)
+void sh_information_solve(const sh_information *a, int side, sh_real *beta)
 {
     const int size = a->size;
-    const sh_real *row = sh_information_row(a, size - 1);
+    const sh_real *row = a->U + row_offset(size, size); /* behind the last one */
     int i;
 
     for (i = size - 1; i >= 0; --i) {
         const int count = size - 1 - i;
 
+        row -= count + SH_SIDES;
         beta[i] = row[count + side] - sum_of_products(row, beta + i + 1, count);
-        row -= count + 1 + SH_SIDES; /* the row before is longer by one */
     }
 }
 
@@ -139,7 +165,7 @@ static void subtract(sh_real *restrict x, const sh_real *restrict row, int count
     }
 }
 
-void sh_information_project(sh_information *a, const sh_real *c, sh_real *v)
+void sh_information_project(const sh_information *a, const sh_real *c, sh_real *v)
 {
     const int size = a->size;
     const sh_real *row = a->U;
@@ -158,7 +184,7 @@ void sh_information_project(sh_information *a, const sh_real *c, sh_real *v)
     }
 }
 
-sh_real sh_information_squares(sh_information *a, const sh_real *beta)
+sh_real sh_information_squares(const sh_information *a, const sh_real *beta)
 {
     const int size = a->size;
     const sh_real *row = a->U;

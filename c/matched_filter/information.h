@@ -43,17 +43,28 @@ void sh_information_copy(sh_information *to, const sh_information *from);
  */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 
-/* Row i of U: entries i + 1 to size - 1, then the right-hand sides. */
-sh_real *sh_information_row(sh_information *a, int i);
+/* Row i of U' D U as a sample: sets x [size: size + SH_SIDES] to row i of [U, U z].
+ *
+ * i  0..size - 1
+ *
+ * Returns its weight D[i].
+ */
+sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
+
+/* The entries of U z in row i of a side, SH_SIDE_*, for all rows: z [size: size]. */
+void sh_information_side(const sh_information *a, int side, sh_real *z);
+
+/* Right-hand sides [size: SH_SIDES] of the last row. */
+sh_real *sh_information_last(sh_information *a);
 
 /* The estimate of all parameters [size: size] for a right-hand side, SH_SIDE_*. */
-void sh_information_solve(sh_information *a, int side, sh_real *beta);
+void sh_information_solve(const sh_information *a, int side, sh_real *beta);
 
 /* v = U'^-1 c [size: size]. Then c' beta = v' z, and its variance is the sum of v_i^2 / D_i. */
-void sh_information_project(sh_information *a, const sh_real *c, sh_real *v);
+void sh_information_project(const sh_information *a, const sh_real *c, sh_real *v);
 
 /* Weighted sum of squares of y - x' beta over all samples, and of the first precision. */
-sh_real sh_information_squares(sh_information *a, const sh_real *beta);
+sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
 
 /* Multiplies the weights of all samples by keep, 0..1. No entry of D falls below least. */
 void sh_information_fade(sh_information *a, sh_real keep, sh_real least);

@@ -13,7 +13,6 @@
 #include "scaled_basis.h"
 #include "signals.h"
 #include "state_variable_filter.h"
-#include "torque_basis.h"
 
 /* Relative uncertainty of the stiffness below which columns that need it have an effect. */
 static const sh_real KNOWN = (sh_real)0.2;
@@ -89,7 +88,6 @@ static sh_real *coefficient_of(joint_coefficients *joint, int kind)
 static joint_coefficients read_columns(const sh_matched_state *state, const sh_parameters *p,
                                        sh_real set_point, sh_estimate *estimate)
 {
-    const int n = p->rls.n;
     const sh_real l = set_point / p->range.setPoint;
     joint_coefficients joint = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     int i;
@@ -100,13 +98,9 @@ static joint_coefficients read_columns(const sh_matched_state *state, const sh_p
 
         switch (column->kind) {
         case SH_COLUMN_BASIS:
-            estimate->eta[column->index % n][column->index / n] = value * column->unit;
-            break;
         case SH_COLUMN_POWER:
-            estimate->eta[n + column->index][0] = value * column->unit;
-            break;
         case SH_COLUMN_SET_POWER:
-            estimate->eta[sh_torque_basis_linear(p->rls.symmetric)][p->rls.m] =
+            estimate->eta[column->index / SH_MAX_M][column->index % SH_MAX_M] =
                 value * column->unit;
             break;
         case SH_COLUMN_DAMPING:
@@ -116,7 +110,9 @@ static joint_coefficients read_columns(const sh_matched_state *state, const sh_p
         case SH_COLUMN_DRIVE: /* both torques are nearly the same where the motion is slow */
             joint.load += value;
             break;
-        case SH_COLUMN_PLAY:
+        case SH_COLUMN_PLAY_1:
+        case SH_COLUMN_PLAY_2:
+        case SH_COLUMN_PLAY_3:
             joint.plays += value;
             break;
         default:

@@ -76,15 +76,15 @@ void sh_passes_start(sh_matched_state *state, const sh_parameters *p)
 static void decide(sh_matched_state *state)
 {
     sh_posterior *build = &state->build;
-    sh_information *a = &build->information;
+    const sh_information *a = &build->information;
+    sh_real *const z = state->work.own;
     sh_real gain = 0;
     int i;
 
+    sh_information_side(a, SH_SIDE_Y, z);
     for (i = 0; i < a->size; ++i) {
-        const sh_real z = sh_information_row(a, i)[a->size - 1 - i + SH_SIDE_Y];
-
         if (sh_column_group(&state->column[build->column[i]]) == state->trial) {
-            gain += (a->D[i] * z * z - sh_log(a->D[i])) / 2;
+            gain += (a->D[i] * z[i] * z[i] - sh_log(a->D[i])) / 2;
         }
     }
     if (gain > FIRST_GAIN + GAIN_PER_BLOCK * state->blocks.count) {
@@ -110,18 +110,9 @@ static void end_pass(sh_matched_state *state, const sh_parameters *p)
 /* Takes the next row of the copy of the data. */
 static void take_row(sh_matched_state *state, sh_real *x)
 {
-    const int i = state->row, entries = state->size + SH_SIDES;
-    const sh_real *row = sh_information_row(&state->frozen, i);
-    int j;
+    const sh_real w = sh_information_sample(&state->frozen, state->row, x);
 
-    for (j = 0; j < i; ++j) {
-        x[j] = 0;
-    }
-    x[i] = 1;
-    for (j = i + 1; j < entries; ++j) {
-        x[j] = row[j - i - 1];
-    }
-    (void)sh_posterior_take(state, &state->build, x, state->frozen.D[i], state->work.row);
+    (void)sh_posterior_take(state, &state->build, x, w, state->work.row);
     state->row += 1;
 }
 

@@ -25,6 +25,7 @@ void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
     int size = 0, i;
 
     posterior->coulomb = posterior->inertia = -1;
+    /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < state->size; ++i) {
         const sh_column *column = &state->column[i];
 
@@ -39,7 +40,7 @@ void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
         }
         posterior->column[size++] = i;
     }
-    for (i = 0; i < state->size && trial != 0; ++i) {
+    for (i = 0; i < state->size && size < state->size && trial != 0; ++i) {
         if (sh_column_can_join(state, p, &state->column[i], trial)) {
             posterior->column[size++] = i;
         }
@@ -96,7 +97,7 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
         return;
     }
     left = D[b] - back;
-    z = sh_information_row(&posterior->information, b);
+    z = sh_information_last(&posterior->information);
     z[SH_SIDE_GAIN] *= D[b] / left;
     z[SH_SIDE_Y] = (z[SH_SIDE_Y] * D[b] + back / prior_B) / left; /* biased towards b = -1 */
     D[b] = left;
@@ -104,12 +105,11 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
     posterior->removed += back;
 }
 
-/* Gives the data about b the weight that they have after the removal: D[b], and both sides z. */
-static void weigh_inertia(sh_posterior *posterior, sh_real prior_B)
+/* Gives the data about b, the last one, the weight that they have after the removal: D[b], and both sides z. */
+static void weigh_inertia(sh_posterior *posterior, int b, sh_real prior_B)
 {
-    const int b = posterior->inertia;
     sh_real *const D = &posterior->information.D[b];
-    sh_real *const z = sh_information_row(&posterior->information, b);
+    sh_real *const z = sh_information_last(&posterior->information);
     const sh_real of_data = sh_fmax(*D - 1, 0);
     const sh_real unsure = REMOVAL_ERROR / prior_B * posterior->removed;
     const sh_real share =
@@ -125,26 +125,23 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
 {
     sh_information *a = &posterior->information;
     const int size = a->size, b = posterior->inertia;
-    const int weigh = b >= 0 && posterior->removed > 0;
     sh_real *const own = state->work.own, *const v = state->work.v;
     sh_real D_b = 0, z_b[SH_SIDES] = {0, 0};
     sh_stiffness_fit fit = {0, 0};
     int i;
 
-    if (weigh) {
+    if (b >= 0 && posterior->removed > 0) {
         D_b = a->D[b];
-        (void)memcpy(z_b, sh_information_row(a, b), sizeof z_b);
-        weigh_inertia(posterior, state->column[posterior->column[b]].prior);
+        (void)memcpy(z_b, sh_information_last(a), sizeof z_b);
+        weigh_inertia(posterior, b, state->column[posterior->column[b]].prior);
     }
     for (i = 0; i < size; ++i) {
         own[i] = state->work.dF[posterior->column[i]];
     }
-    sh_information_project(a, own, v);
+    fit.variance = sh_posterior_variance(posterior, own, v);
+    sh_information_side(a, SH_SIDE_GAIN, own);
     for (i = 0; i < size; ++i) {
-        const sh_real *z = sh_information_row(a, i) + size - 1 - i;
-
-        fit.variance += v[i] * v[i] / a->D[i];
-        fit.by_gain += v[i] * z[SH_SIDE_GAIN];
+        fit.by_gain += v[i] * own[i];
     }
     sh_information_solve(a, SH_SIDE_Y, own);
     for (i = 0; i < state->size; ++i) {
@@ -153,16 +150,16 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
     for (i = 0; i < size; ++i) {
         state->beta[posterior->column[i]] = own[i];
     }
-    if (weigh) {
+    if (b >= 0 && posterior->removed > 0) {
         a->D[b] = D_b;
-        (void)memcpy(sh_information_row(a, b), z_b, sizeof z_b);
+        (void)memcpy(sh_information_last(a), z_b, sizeof z_b);
     }
     return fit;
 }
 
-sh_real sh_posterior_variance(sh_posterior *posterior, const sh_real *c, sh_real *v)
+sh_real sh_posterior_variance(const sh_posterior *posterior, const sh_real *c, sh_real *v)
 {
-    sh_information *a = &posterior->information;
+    const sh_information *a = &posterior->information;
     sh_real variance = 0;
     int i;
 

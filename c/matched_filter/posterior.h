@@ -64,6 +64,6 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
  *
  * v  [size: of the posterior] memory
  */
-sh_real sh_posterior_variance(sh_posterior *posterior, const sh_real *c, sh_real *v);
+sh_real sh_posterior_variance(const sh_posterior *posterior, const sh_real *c, sh_real *v);
 
 #endif

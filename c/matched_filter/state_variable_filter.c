@@ -93,14 +93,14 @@ sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
 sh_real sh_state_variable_filter_noise(const sh_filter_design *design)
 {
     /* Sum of squares of the response to one sample, which has decayed after 60 time constants. */
-    const int samples = 3 + (int)(60 / (design->w * design->T));
+    const sh_real samples = 3 + sh_floor(60 / (design->w * design->T));
     sh_state_variable_filter filter;
     sh_real sum = 0;
     int k;
 
     sh_state_variable_filter_start(&filter, 0);
     sh_state_variable_filter_step(&filter, design, 1);
-    for (k = 0; k < samples; ++k) {
+    for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < samples; ++k) {
         const sh_real response = sh_state_variable_filter_second(&filter, design);
         sum += response * response;
         sh_state_variable_filter_step(&filter, design, 0);

@@ -36,12 +36,11 @@ static void report_paper2011(sh_paper2011_state *state, const sh_parameters *p,
                              sh_estimate *estimate)
 {
     const int n = p->rls.n, m = p->rls.m;
-    const sh_real *eta = state->rls.eta;
     int i, j;
 
     for (j = 0; j < m; ++j) {
         for (i = 0; i < n; ++i) {
-            estimate->eta[i][j] = *eta++;
+            estimate->eta[i][j] = state->rls.eta[j * n + i];
         }
     }
     estimate->sigma_std =
@@ -57,7 +56,7 @@ static void start_paper2011(sh_estimator *estimator, const sh_parameters *p, sh_
 {
     sh_paper2011_state *const state = &estimator->method.paper2011;
     const int n = p->rls.n, m = p->rls.m;
-    sh_real eta_0[SH_MAX_BASIS];
+    sh_real eta_0[SH_MAX_BASIS] = {0};
     int i, j;
 
     for (j = 0; j < m; ++j) {
@@ -115,7 +114,7 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
     const sh_real tau_e_residual = track(&state->filters, p, z, dt);
     sh_real phi = z->q - z->theta, factor;
     int kind = p->rls.kind;
-    sh_innovation innovation;
+    sh_innovation innovation = {0, 0, 0};
 
     if (p->deformation == SH_DEFORMATION_FILTERED) {
         phi += state->filters.q.lag - state->filters.theta.lag;
