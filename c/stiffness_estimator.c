@@ -36,10 +36,10 @@ static void start_curve(const sh_parameters *p, sh_real set_point, sh_estimate *
         }
     }
     if (!p->rls.symmetric) {
-        estimate->tau_e = polynomial(p, 0, set_point);
+        estimate->tau_e = sh_limited(polynomial(p, 0, set_point), SH_LARGEST_OUTPUT);
     }
     if (linear < p->rls.n) {
-        estimate->sigma = polynomial(p, linear, set_point);
+        estimate->sigma = sh_limited(polynomial(p, linear, set_point), SH_LARGEST_OUTPUT);
     }
 }
 
@@ -63,7 +63,7 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
     const sh_real set_point = p->setPoint.offset + p->setPoint.scale * z->theta_c;
 
     if (!is_measurement(z->theta) || !is_measurement(z->q) || !is_measurement(z->theta_c) ||
-        !is_measurement(z->tau) || !is_measurement(z->tau_e_sensor) ||
+        !is_measurement(z->tau) || !is_measurement(z->tau_e_sensor) || !isfinite(set_point) ||
         !sh_method_of(p)->tick(estimator, p, z, set_point, estimate)) {
         estimator->skipped += 1;
         estimate->valid = 0;

@@ -206,6 +206,18 @@ static inline void rotate(sh_real *u, sh_pair s, sh_pair g, sh_pair *p_0, sh_pai
     *p_1 = sh_pair_add(*p_1, sh_pair_multiply(g, u_1));
 }
 
+/* Column j when D_j underflows to 0: the column has no part in P any more. It would go on to change
+ * by rounding errors alone, which grow until they overflow; so it is cleared.
+ */
+static void clear_column(sh_ud_factor *P, int j)
+{
+    int i;
+
+    for (i = 0; i < j; ++i) {
+        P->U[place(P->size, i, j)] = 0;
+    }
+}
+
 /* Bierman's update, chapter V, for a sample of weight w. With f, g and rho_j of the projection, and
  * beta_j = 1 + w rho_j, for j = 0, 1, ...
  *
@@ -227,6 +239,10 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
 
         P->D[j] *= beta / (1 + w * P->work.rho[j + 1]);
         P->work.f[j] = w * P->work.f[j] / beta; /* s_j */
+        if (!(P->D[j] > 0)) {
+            clear_column(P, j);
+            P->work.f[j] = 0;
+        }
     }
     /* Panel after panel, as an entry of p depends on its own row of U alone; two at a time, as they
      * share the factors of the columns. In the first column of a panel only the one on the diagonal

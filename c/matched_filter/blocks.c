@@ -62,16 +62,24 @@ void sh_blocks_interrupt(sh_blocks *blocks, int size)
     blocks->window = blocks->window_square = blocks->independent = blocks->rounding = 0;
 }
 
-/* Takes the mean row of the block. */
-static void take_mean_row(sh_matched_state *state, sh_information *a, sh_real w)
+/* Sets work.row to the mean row of the block. Returns its sum of squares. */
+static sh_real mean_row(sh_matched_state *state)
 {
     sh_real *const row = state->work.row;
+    sh_real squares = 0;
     int i;
 
     for (i = 0; i < state->size + SH_SIDES; ++i) {
         row[i] = state->blocks.sum[i] / state->blocks.weight;
+        squares += sh_square(row[i]);
     }
-    (void)sh_information_take(a, row, w);
+    return squares;
+}
+
+static void take_mean_row(sh_matched_state *state, sh_information *a, sh_real w)
+{
+    mean_row(state);
+    (void)sh_information_take(a, state->work.row, w);
 }
 
 void sh_blocks_fade(sh_blocks *blocks, sh_real keep)
@@ -94,6 +102,10 @@ static void end(sh_matched_state *state, const sh_parameters *p)
         rounding * blocks->energy_second * blocks->window_square / sh_square(blocks->window);
     const sh_real count = blocks->independent / blocks->window_square;
 
+    if (!(variance > 0) || !(mean_row(state) / variance <= SH_LARGE)) { /* also if not a number */
+        sh_blocks_interrupt(blocks, state->size);
+        return;
+    }
     take_mean_row(state, &blocks->walking, 1 / variance);
     take_mean_row(state, &blocks->recent, 1 / variance);
     take_mean_row(state, &blocks->all, 1 / variance);

@@ -93,7 +93,7 @@ static void combine(sh_real *restrict row, sh_real *restrict x, int count, sh_re
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
 {
     const int size = a->size;
-    sh_real *row = a->U;
+    sh_real *row = a->U, squares;
     int i;
 
     for (i = 0; i < size; ++i) {
@@ -109,7 +109,8 @@ sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
         }
         row += count;
     }
-    a->rest += w * x[size + SH_SIDE_Y] * x[size + SH_SIDE_Y];
+    squares = w * x[size + SH_SIDE_Y] * x[size + SH_SIDE_Y];
+    a->rest += squares < SH_LARGE ? squares : SH_LARGE;
     return w;
 }
 
@@ -212,6 +213,11 @@ void sh_information_fade(sh_information *a, sh_real keep, sh_real least)
     a->rest *= keep;
 }
 
+/* Largest factor by which one step may increase the variance along v. With more, what is left of D
+ * would consist of rounding errors.
+ */
+static const sh_real LARGEST_GROWTH = SH_FOR(SH_REAL, 1e12, 1e6f);
+
 /* In terms of the information A = U' D U, the step is A -= A v v' A c / (1 + c v' A v): a sample of
  * negative weight with the regressor v' A.
  */
@@ -235,5 +241,9 @@ void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real
         vAv += scaled * along;
         of_U += count + SH_SIDES;
     }
+    if (!(vAv > 0)) { /* nothing is known along v; or an overflow */
+        return;
+    }
+    c = sh_fmin(c, LARGEST_GROWTH / vAv);
     (void)sh_information_take(a, row, -c / (1 + c * vAv));
 }

@@ -95,16 +95,16 @@ static joint_coefficients read_columns(const sh_matched_state *state, const sh_p
     for (i = 0; i < state->size; ++i) {
         const sh_column *column = &state->column[i];
         const sh_real value = column->prior * state->beta[i];
+        const sh_real coefficient = sh_limited(value * column->unit, SH_LARGEST_OUTPUT);
 
         switch (column->kind) {
         case SH_COLUMN_BASIS:
         case SH_COLUMN_POWER:
         case SH_COLUMN_SET_POWER:
-            estimate->eta[column->index / SH_MAX_M][column->index % SH_MAX_M] =
-                value * column->unit;
+            estimate->eta[column->index / SH_MAX_M][column->index % SH_MAX_M] = coefficient;
             break;
         case SH_COLUMN_DAMPING:
-            joint.damping += value * sh_power(l, column->index);
+            joint.damping += value * sh_limited(sh_power(l, column->index), SH_LARGE);
             break;
         case SH_COLUMN_LOAD:
         case SH_COLUMN_DRIVE: /* both torques are nearly the same where the motion is slow */
@@ -156,7 +156,9 @@ static void report_joint(const sh_matched_state *state, const sh_parameters *p,
     estimate->load_friction_hat = joint->load;
     estimate->eccentric_hat =
         stiffness > 0
-            ? sh_sqrt(joint->sin_q * joint->sin_q + joint->cos_q * joint->cos_q) / stiffness
+            ? sh_limited(sh_sqrt(joint->sin_q * joint->sin_q + joint->cos_q * joint->cos_q) /
+                             stiffness,
+                         SH_LARGEST_OUTPUT)
             : 0;
     estimate->delay_hat = joint->delay;
     estimate->hysteresis_hat = joint->plays;
@@ -207,9 +209,12 @@ static void report(const sh_matched_state *state, const sh_parameters *p, sh_rea
 
     const sh_real by_rounding = attenuation(state, fit) * estimate->sigma;
 
-    estimate->sigma_std = sh_sqrt(fit->variance + by_gain * by_gain + by_rounding * by_rounding);
+    estimate->sigma_std =
+        sh_std_deviation(fit->variance + by_gain * by_gain + by_rounding * by_rounding);
     estimate->sigma_per_gain =
-        sh_fabs(estimate->sigma) > 0 ? fit->by_gain / sh_fabs(estimate->sigma) : 0;
+        sh_fabs(estimate->sigma) > 0
+            ? sh_limited(fit->by_gain / sh_fabs(estimate->sigma), SH_LARGEST_OUTPUT)
+            : 0;
     joint = read_columns(state, p, set_point, estimate);
     add_nominal_curve(state, p, joint.nominal, estimate);
     report_joint(state, p, &joint, estimate);
@@ -286,17 +291,18 @@ static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
         sh_columns_remove_noise(state, p, sh_sample_variance_of_torque(state, p) * epsilon, x);
     share = sh_posterior_take(state, &state->live, x, w, row);
     innovation->a = 1;
-    innovation->rho = (1 - share) / share;
+    innovation->rho =
+        share > 0 ? sh_fmin((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     innovation->epsilon = epsilon;
 
-    state->rounding += sh_sample_variance_of_deformation(state) * w;
-    rounding = sh_sample_variance_of_inertia(state, p) * w;
+    state->rounding += sh_fmin(sh_sample_variance_of_deformation(state) * w, SH_LARGE);
+    rounding = sh_fmin(sh_sample_variance_of_inertia(state, p) * w, SH_LARGE);
     if (state->live.inertia >= 0) { /* what could not be removed before may be removed now */
         /* 6: variance of the square of a noise that is correlated from sample to sample. The
          * removal acts on b over prior.B, see sh_posterior_remove.
          */
         const sh_real by_removal = rounding / p->prior.B;
-        const sh_real spread = 6 * by_removal * by_removal;
+        const sh_real spread = sh_fmin(6 * by_removal * by_removal, SH_LARGE);
         sh_posterior *const both[] = {&state->live, &state->build};
 
         state->surplus += rounding;
@@ -367,9 +373,12 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
     for (i = 0; i < state->size; ++i) {
         sigma += state->work.dF[i] * state->beta[i];
     }
-    if (!good || !isfinite(sigma) || !isfinite(fit.variance)) {
+    if (!good || !isfinite(sigma) || !isfinite(fit.variance) || !isfinite(fit.by_gain)) {
         state->begun = 0; /* the filters start again, so their old state does not matter */
         state->history = before;
+        /* The next row must not be as large as this one because of what the last one left. */
+        state->sigma = state->delay = state->y = 0;
+        state->stiffness_known = 0;
         return 0;
     }
     state->modality = p->modality;

@@ -96,7 +96,7 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
     if (!(back > 0)) {
         return;
     }
-    left = D[b] - back;
+    left = sh_fmax(D[b] - back, 1); /* D[b] - 1 is rounded where D[b] is larger than 1 / epsilon */
     z = sh_information_last(&posterior->information);
     z[SH_SIDE_GAIN] *= D[b] / left;
     z[SH_SIDE_Y] = (z[SH_SIDE_Y] * D[b] + back / prior_B) / left; /* biased towards b = -1 */

@@ -1,5 +1,7 @@
 #include "scaled_basis.h"
 
+#include "real_math.h"
+
 int sh_scaled_basis_power(int symmetric, int i)
 {
     return symmetric ? 2 * i + 1 : i;
@@ -41,5 +43,5 @@ sh_real sh_scaled_basis_unit(const sh_range_parameters *range, int symmetric, in
     for (k = 0; k < j; ++k) {
         unit /= range->setPoint;
     }
-    return unit;
+    return sh_fmin(unit, SH_LARGEST_OUTPUT); /* single precision: phi^15 of a stiff joint */
 }

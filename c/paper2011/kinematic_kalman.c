@@ -73,5 +73,5 @@ void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_param
     /* This is P11 - P11^2/S. The subtraction would lose digits if P11 >> R. */
     kalman->P11 = P11 * (R / S);
     kalman->P12 = P12 * (R / S);
-    kalman->P22 = P22 - P12 * (P12 / S);
+    kalman->P22 = sh_fmax(P22 - P12 * (P12 / S), 0); /* the difference may be below by rounding */
 }

@@ -43,8 +43,8 @@ static void report_paper2011(sh_paper2011_state *state, const sh_parameters *p,
             estimate->eta[i][j] = state->rls.eta[j * n + i];
         }
     }
-    estimate->sigma_std =
-        sh_sqrt(unit_of_covariance(p) * sh_ud_factor_variance(&state->rls.P, state->work.dF));
+    estimate->sigma_std = sh_std_deviation(unit_of_covariance(p) *
+                                           sh_ud_factor_variance(&state->rls.P, state->work.dF));
     estimate->D_theta_hat = p->motor.D_theta;
     estimate->B_hat = p->motor.B;
     estimate->misfit = 1;
@@ -112,7 +112,7 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
     sh_paper2011_state *const state = &estimator->method.paper2011;
     const sh_paper2011_filters before = state->filters;
     const sh_real tau_e_residual = track(&state->filters, p, z, dt);
-    sh_real phi = z->q - z->theta, factor;
+    sh_real phi = z->q - z->theta, factor, torque, stiffness;
     int kind = p->rls.kind;
     sh_innovation innovation = {0, 0, 0};
 
@@ -126,20 +126,26 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
         kind = SH_RLS_CONSTANT_FACTOR; /* with a = 0 nothing changes, (25) */
         factor = 0;
     }
-    if (!isfinite(tau_e_residual) ||
+    if (!isfinite(tau_e_residual) || !isfinite(state->filters.theta.x_dot) ||
         !sh_least_squares_update(&state->rls, kind, factor, state->work.F,
                                  sh_regression_torque(p, z, tau_e_residual), &innovation)) {
         state->filters = before;
         return 0;
     }
+    sh_scalar_products(state->rls.eta, state->work.F, state->work.dF, p->rls.n * p->rls.m, &torque,
+                       &stiffness);
+    if (!isfinite(torque) || !isfinite(stiffness)) {
+        state->filters = before;
+        return 0;
+    }
+    estimate->tau_e = torque;
+    estimate->sigma = stiffness;
     estimate->phi = phi;
     estimate->tau_e_residual = tau_e_residual;
     estimate->theta_dot = state->filters.theta.x_dot;
     estimate->a = innovation.a;
     estimate->rho = innovation.rho;
     estimate->epsilon = innovation.epsilon;
-    sh_scalar_products(state->rls.eta, state->work.F, state->work.dF, p->rls.n * p->rls.m,
-                       &estimate->tau_e, &estimate->sigma);
     report_paper2011(state, p, estimate);
     return 1;
 }
