@@ -136,12 +136,13 @@ sh_status sh_get(const sh_access *access, void *values, sh_store *store)
         return SH_ERROR;
     if (store == NULL)
         return SH_OK;
-    for (i = 0; i < access->count; ++i) {
+    /* `begin` has counted: the importer's array ends with the last reference. */
+    for (i = 0; i < access->count && next < access->length; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
         if (is_time(access, access->references[i]))
             store(values, next++, instance->time);
         else
-            for (k = 0; k < length_of(access, first); ++k)
+            for (k = 0; k < length_of(access, first) && next < access->length; ++k)
                 store(values, next++, sh_read(instance, first + k));
     }
     return SH_OK;
@@ -158,14 +159,14 @@ sh_status sh_set(const sh_access *access, const void *values, sh_load *load)
         return SH_OK;
     for (i = 0; i < access->count; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
-        for (k = 0; k < length_of(access, first); ++k, ++next)
+        for (k = 0; k < length_of(access, first) && next < access->length; ++k, ++next)
             if (sh_is_parameter(first) &&
                 !sh_accepts(instance, first + k, load(values, next), access->function))
                 return SH_ERROR;
     }
     for (next = 0, i = 0; i < access->count; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
-        for (k = 0; k < length_of(access, first); ++k)
+        for (k = 0; k < length_of(access, first) && next < access->length; ++k)
             sh_write(instance, first + k, load(values, next++));
     }
     return SH_OK;
