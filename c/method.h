@@ -42,8 +42,22 @@ typedef struct {
                 sh_real set_point, sh_estimate *estimate);
 } sh_method;
 
-#define SH_METHOD_DECLARATION(constant, number, name, block) extern const sh_method block;
+/* Besides the constant each method has a function that checks a state that comes from elsewhere, as
+ * sh_estimator_check. It is not a member of the constant, and stands in a file of its own, so that a
+ * program that calls no check does not contain it.
+ *
+ * Returns 0, or 1 if sizes, places and choices in it are not those of a state of the method.
+ */
+#define SH_METHOD_DECLARATION(constant, number, name, block)                                       \
+    extern const sh_method block;                                                                  \
+    int block##_check_state(const sh_estimator *estimator, const sh_parameters *p);
 SH_METHODS(SH_METHOD_DECLARATION)
+
+/* Whether min <= x <= max. */
+static inline int sh_is_within(int x, int min, int max)
+{
+    return x >= min && x <= max;
+}
 
 /* The method that the parameters choose, NULL if there is none of this number. */
 const sh_method *sh_method_of(const sh_parameters *p);

@@ -324,6 +324,17 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
 int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                       sh_estimate *estimate);
 
+/* Checks a state that comes from elsewhere, as from a file: its sizes, places and choices must be
+ * those of a state that sh_estimator_start and sh_estimator_tick make with these parameters. Then a
+ * tick reads and writes nothing beyond the state, and ends. The check does not show whether the
+ * other numbers are the ones that were saved. For that, save a checksum.
+ *
+ * p  parameters, each in its range; the fixed ones as they were at the start
+ *
+ * Returns 0 if the state passes, else 1.
+ */
+int sh_estimator_check(const sh_estimator *estimator, const sh_parameters *p);
+
 /* What sh_estimator contains, so that it can be a variable of yours. */
 #include "sigmahat_state.h"
 

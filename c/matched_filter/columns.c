@@ -159,14 +159,20 @@ int sh_columns_count(const sh_parameters *p)
     return list.size;
 }
 
+void sh_columns_list(const sh_parameters *p, sh_column *column)
+{
+    column_list list = {column, 0};
+
+    list_columns(p, &list);
+}
+
 void sh_columns_start(sh_matched_state *state, const sh_parameters *p)
 {
     const int n = p->rls.n, m = p->rls.m;
-    column_list list = {state->column, 0};
     int i, j;
 
-    list_columns(p, &list);
-    state->size = list.size;
+    sh_columns_list(p, state->column);
+    state->size = sh_columns_count(p);
     state->has_nominal = sh_has_nominal_curve(p);
     for (j = 0; j < m; ++j) {
         for (i = 0; i < n; ++i) {

@@ -61,6 +61,9 @@ int sh_is_measured(const sh_parameters *p);
 /* Number of columns for these parameters. May be larger than SH_MAX_COLUMNS. */
 int sh_columns_count(const sh_parameters *p);
 
+/* Writes the columns for these parameters to column [size: sh_columns_count(p)]. */
+void sh_columns_list(const sh_parameters *p, sh_column *column);
+
 /* Sets the columns and the nominal curve. There must not be more than SH_MAX_COLUMNS. */
 void sh_columns_start(sh_matched_state *state, const sh_parameters *p);
 

@@ -1,0 +1,21 @@
+/* Whether a state that comes from elsewhere can be used: the question goes to the method. */
+#include <stddef.h>
+
+#include "method.h"
+#include "real_math.h"
+
+typedef int state_check(const sh_estimator *estimator, const sh_parameters *p);
+
+#define SH_STATE_CHECK(constant, number, name, block) [constant] = block##_check_state,
+static state_check *const STATE_CHECKS[] = {SH_METHODS(SH_STATE_CHECK)};
+
+int sh_estimator_check(const sh_estimator *estimator, const sh_parameters *p)
+{
+    if (sh_method_of(p) == NULL || !sh_is_within(estimator->started, 0, 1)) {
+        return 1;
+    }
+    if (!isfinite(estimator->skipped) || estimator->skipped < 0) {
+        return 1;
+    }
+    return STATE_CHECKS[p->method](estimator, p);
+}
