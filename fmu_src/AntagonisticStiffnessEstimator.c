@@ -83,6 +83,20 @@ static void initialize(void *model, double t)
     sum(fmu);
 }
 
+static int is_state(const void *model)
+{
+    const AntagonisticStiffnessEstimator *fmu = model;
+    int i;
+
+    for (i = 0; i < 2; ++i) {
+        const sh_parameters p = parameters_of(fmu, i);
+        if (!sh_estimator_fmu_is_state(&fmu->side[i], &p)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 static sh_status step(void *model, double t, double h, sh_instance *log)
 {
     AntagonisticStiffnessEstimator *fmu = model;
@@ -113,5 +127,6 @@ const sh_model sh_fmu_model = {
     .derivative_offset = SH_ESTIMATOR_DERIVATIVE_OFFSET,
     .check = check,
     .initialize = initialize,
+    .is_state = is_state,
     .step = step,
 };

@@ -17,6 +17,13 @@ static void initialize(void *model, double t)
     sh_estimator_fmu_initialize(model);
 }
 
+static int is_state(const void *model)
+{
+    const sh_estimator_fmu *fmu = model;
+
+    return sh_estimator_fmu_is_state(fmu, &fmu->parameters);
+}
+
 static sh_status step(void *model, double t, double h, sh_instance *log)
 {
     return sh_estimator_fmu_step(model, t, h, "", log);
@@ -31,5 +38,6 @@ const sh_model sh_fmu_model = {
     .derivative_offset = SH_ESTIMATOR_DERIVATIVE_OFFSET,
     .check = check,
     .initialize = initialize,
+    .is_state = is_state,
     .step = step,
 };

@@ -21,6 +21,12 @@ void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu)
     fmu->strained = 0;
 }
 
+int sh_estimator_fmu_is_state(const sh_estimator_fmu *fmu, const sh_parameters *parameters)
+{
+    return sh_sample_clock_is_state(&fmu->clock) &&
+           sh_estimator_check(&fmu->estimator, parameters) == 0;
+}
+
 /* Most ticks in one step. More would take minutes, and are the mistake of a wrong unit. */
 static const double MAX_TICKS = 1e9;
 

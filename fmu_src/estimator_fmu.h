@@ -22,6 +22,9 @@ enum {
         (offsetof(sh_estimator_fmu, input_derivative) - offsetof(sh_estimator_fmu, input))
 };
 
+/* As in sh_model; with the parameters that the estimator uses. */
+int sh_estimator_fmu_is_state(const sh_estimator_fmu *fmu, const sh_parameters *parameters);
+
 /* As in sh_model. Messages begin with `who`: "", or which of several estimators it is. */
 sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
                                  sh_instance *log);

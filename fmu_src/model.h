@@ -58,7 +58,11 @@ typedef struct {
     sh_status (*check)(const void *model, sh_instance *log);
     /* Sets state and outputs at time t [s] from parameters and inputs. May be called again. */
     void (*initialize)(void *model, double t);
-    /* Advances the model from t to t + h. Inputs are u + du/dt (s - t) for s in
+    /* Whether this can be the state of a model that has been initialised, so that it can advance: asked
+     * of one that comes from outside. Its parameters are each in its range.
+     */
+    int (*is_state)(const void *model);
+    /* Advances the model from t to t + h, h > 0. Inputs are u + du/dt (s - t) for s in
      * [t, t + h]. Returns SH_OK, SH_WARNING or SH_ERROR, and logs unless SH_OK.
      */
     sh_status (*step)(void *model, double t, double h, sh_instance *log);

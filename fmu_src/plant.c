@@ -53,6 +53,22 @@ static void initialize(void *model, double t)
     set_outputs(plant, plant->u);
 }
 
+/* A step that is not above 0 would have no end, and the time since the last sample of the noise is
+ * below a period.
+ */
+static int is_state(const void *model)
+{
+    const sh_plant *plant = model;
+    int i;
+
+    for (i = 0; i < SH_PLANT_STATES; ++i) {
+        if (!isfinite(plant->x[i])) {
+            return 0;
+        }
+    }
+    return plant->h > 0.0 && plant->since >= -1.0 && plant->since <= 1.0;
+}
+
 static const char *input_name(size_t i)
 {
     size_t k = 0;
@@ -148,5 +164,6 @@ const sh_model sh_fmu_model = {
     .derivative_offset = offsetof(sh_plant, du) - offsetof(sh_plant, u),
     .check = NULL,
     .initialize = initialize,
+    .is_state = is_state,
     .step = step,
 };

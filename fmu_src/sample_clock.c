@@ -7,6 +7,11 @@ void sh_sample_clock_start(sh_sample_clock *clock)
     clock->ahead = 0.0;
 }
 
+int sh_sample_clock_is_state(const sh_sample_clock *clock)
+{
+    return clock->ahead >= -1.0 && clock->ahead <= 1.0; /* false if it is not a number */
+}
+
 int sh_sample_clock_tick(sh_sample_clock *clock, double h, double T, double *after)
 {
     const double step = h / T;

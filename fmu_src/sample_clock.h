@@ -12,6 +12,11 @@ typedef struct {
 /* Starts the clock: the first tick is at the current communication point. */
 void sh_sample_clock_start(sh_sample_clock *clock);
 
+/* Whether a clock that comes from outside can be one between steps. Another one could be so far behind
+ * that it does not reach the end of a step.
+ */
+int sh_sample_clock_is_state(const sh_sample_clock *clock);
+
 /* Returns 1 if a tick is due before the end of a step of h seconds; then *after is its time after
  * the begin of the step [s], and the next call asks for the next tick. Returns 0 if not; then the
  * clock has moved to the end of the step.

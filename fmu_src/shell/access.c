@@ -146,12 +146,13 @@ sh_status sh_get(const sh_access *access, void *values, sh_store *store)
     if (store == NULL) {
         return SH_OK;
     }
-    for (i = 0; i < access->count; ++i) {
+    /* `begin` has counted: the importer's array ends with the last reference. */
+    for (i = 0; i < access->count && next < access->length; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
         if (is_time(access, access->references[i])) {
             store(values, next++, instance->time);
         } else {
-            for (k = 0; k < length_of(access, first); ++k) {
+            for (k = 0; k < length_of(access, first) && next < access->length; ++k) {
                 store(values, next++, sh_read(instance, first + k));
             }
         }
@@ -172,7 +173,7 @@ sh_status sh_set(const sh_access *access, const void *values, sh_load *load)
     }
     for (i = 0; i < access->count; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
-        for (k = 0; k < length_of(access, first); ++k, ++next) {
+        for (k = 0; k < length_of(access, first) && next < access->length; ++k, ++next) {
             if (sh_is_parameter(first) &&
                 !sh_accepts(instance, first + k, load(values, next), access->function)) {
                 return SH_ERROR;
@@ -181,7 +182,7 @@ sh_status sh_set(const sh_access *access, const void *values, sh_load *load)
     }
     for (next = 0, i = 0; i < access->count; ++i) {
         const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
-        for (k = 0; k < length_of(access, first); ++k) {
+        for (k = 0; k < length_of(access, first) && next < access->length; ++k) {
             sh_write(instance, first + k, load(values, next++));
         }
     }

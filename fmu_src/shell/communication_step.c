@@ -55,7 +55,7 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
      * some add up their time, whose error grows with the number of steps.
      */
     tolerance = 1e-3 * fmax(instance->previous_step, h) + DBL_EPSILON * fabs(t) * instance->steps;
-    if (t + h > instance->stop_time + tolerance) {
+    if (t + h > instance->stop_time + tolerance || isinf(t + h)) {
         sh_log(instance, SH_ERROR,
                "%s: a step from t = %.15g s to %.15g s; expected an end not after stopTime = %.15g "
                "s.",
@@ -65,7 +65,8 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
     if (sh_check_parameters(instance) != SH_OK) {
         return SH_ERROR;
     }
-    if (fabs(late) <= rounding) {
+    if (fabs(late) <= rounding ||
+        !(h + late > 0.0)) { /* a step that is shorter than the rounding */
         status = sh_fmu_model.step(instance->model, t, h, instance);
     } else {
         status = sh_fmu_model.step(instance->model, instance->time, h + late, instance);

@@ -3,18 +3,26 @@
 
 #include "value.h"
 
-sh_status sh_check_parameters(sh_instance *instance)
+sh_status sh_check_ranges(sh_instance *instance, const char *function)
 {
     size_t i;
 
+    for (i = 0; i < sh_fmu_model.count; ++i) {
+        const sh_variable *variable = &sh_fmu_model.variables[i];
+        if (!sh_accepts(instance, variable, sh_read(instance, variable), function)) {
+            return SH_ERROR;
+        }
+    }
+    return SH_OK;
+}
+
+sh_status sh_check_parameters(sh_instance *instance)
+{
     if (!instance->parameters_unchecked) {
         return SH_OK;
     }
-    for (i = 0; i < sh_fmu_model.count; ++i) {
-        const sh_variable *variable = &sh_fmu_model.variables[i];
-        if (!sh_accepts(instance, variable, sh_read(instance, variable), "Initialisation")) {
-            return SH_ERROR;
-        }
+    if (sh_check_ranges(instance, "Initialisation") != SH_OK) {
+        return SH_ERROR;
     }
     if (sh_fmu_model.check != NULL && sh_fmu_model.check(instance->model, instance) != SH_OK) {
         return SH_ERROR;

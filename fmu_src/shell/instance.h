@@ -109,6 +109,9 @@ sh_status sh_end_initialization(void *handle, const char *function);
 sh_status sh_communication_step(void *handle, double t, double h, const char *function);
 sh_status sh_terminate(void *handle, const char *function);
 
+/* Checks the range of each parameter. */
+sh_status sh_check_ranges(sh_instance *instance, const char *function);
+
 /* Checks the parameters, if one was set since the last check. */
 sh_status sh_check_parameters(sh_instance *instance);
 

@@ -10,7 +10,7 @@
 
 /* Writes the state to *state, or to new memory if that is NULL. */
 sh_status sh_save_state(void *handle, void **state, const char *function);
-sh_status sh_restore_state(void *handle, const void *state, const char *function);
+sh_status sh_restore_state(void *handle, void *state, const char *function);
 sh_status sh_free_state(void *handle, void **state, const char *function);
 
 /* The serialised state has *size bytes. */

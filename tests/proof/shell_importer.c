@@ -1,0 +1,67 @@
+#include "shell_importer.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "__fc_builtin.h"
+
+static volatile int unknown_int;
+static volatile double unknown_real;
+static volatile size_t unknown_size;
+
+int any_choice(void)
+{
+    return Frama_C_interval(0, 1);
+}
+
+int any_int(void)
+{
+    return unknown_int;
+}
+
+size_t any_size(void)
+{
+    return unknown_size;
+}
+
+double any_real(void)
+{
+    return unknown_real;
+}
+
+void *any_bytes(size_t size)
+{
+    char *bytes = malloc(size);
+
+    if (bytes == NULL) /* what cannot be handed over is not */
+        Frama_C_abort();
+    if (size > 0)
+        Frama_C_make_unknown(bytes, size);
+    return bytes;
+}
+
+char *any_string(size_t length)
+{
+    char *text = any_bytes(length + 1);
+    size_t i;
+
+    //@ loop unroll length;
+    for (i = 0; i < length; ++i) {
+        text[i] = (char)Frama_C_interval(-128, 127);
+        //@ split text[i] == 0;
+        if (text[i] == 0)
+            text[i] = 1;
+    }
+    text[length] = '\0';
+    return text;
+}
+
+void *allocate(size_t count, size_t size)
+{
+    return any_choice() ? any_bytes(count * size) : NULL;
+}
+
+void release(void *memory)
+{
+    free(memory);
+}

@@ -1,0 +1,64 @@
+/* In place of c/: what its functions may do at most. A state or parameters that they accept carry a
+ * mark, and the functions that need it ask for it. Part 1 proves the functions themselves.
+ *
+ * Marks: p->method is one of the methods only after sh_parameters_check; estimator->started is 0 or
+ * 1 only after sh_estimator_start or sh_estimator_check. Both are necessary conditions of the real
+ * ones.
+ */
+#include "__fc_builtin.h"
+#include "shell_importer.h"
+#include "sigmahat.h"
+
+int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
+{
+    if (p->method >= 1 && p->method <= 2 && any_choice())
+        return 0;
+    violation->name = "rls.n";
+    violation->value = any_real();
+    violation->range = "1 to 8";
+    return 1;
+}
+
+/*@ requires checked: 1 <= p->method <= 2; */
+static void need_parameters(const sh_parameters *p)
+{
+    (void)p;
+}
+
+/*@ requires sound: 0 <= estimator->started <= 1; */
+static void need_state(const sh_estimator *estimator)
+{
+    (void)estimator;
+}
+
+int sh_estimator_check(const sh_estimator *estimator, const sh_parameters *p)
+{
+    (void)p;
+    return estimator->started < 0 || estimator->started > 1 || any_choice();
+}
+
+sh_real sh_parameters_largest_deformation(const sh_parameters *p)
+{
+    need_parameters(p);
+    return any_real();
+}
+
+void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate)
+{
+    need_parameters(p);
+    Frama_C_make_unknown((char *)estimator, sizeof *estimator);
+    Frama_C_make_unknown((char *)estimate, sizeof *estimate);
+    estimator->started = 0;
+}
+
+int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
+                      sh_estimate *estimate)
+{
+    need_parameters(p);
+    need_state(estimator);
+    (void)z;
+    Frama_C_make_unknown((char *)estimator, sizeof *estimator);
+    Frama_C_make_unknown((char *)estimate, sizeof *estimate);
+    estimator->started = any_choice();
+    return any_choice();
+}
