@@ -75,10 +75,9 @@ def read_program(elf: Path) -> Program:
             places, is_new = [], True
         elif place := _PLACE.match(line):
             here = Place(Path(place["file"]).name, int(place["line"]))
-            if not place["inlined"]:
-                places = [here]
-            else:  # after an instruction, only the places of inlining are repeated
-                places = [*(places if is_new else places[:1]), here]
+            # After an instruction, only the places of inlining are repeated.
+            inner = places if is_new else places[:1]
+            places = [*inner, here] if place["inlined"] else [here]
             is_new = True
         elif code := _INSTRUCTION.match(line):
             address, name, operands = int(code[1], 16), code[2], code[3] or ""
@@ -101,7 +100,7 @@ def _connect(program: Program, data: dict[int, int]) -> None:
     for address, after in zip(addresses, [*addresses[1:], -1], strict=True):
         it = program.instructions[address]
         target = int(it.operands.split()[-2], 16) if "<" in it.operands else None
-        if call := _CALL.fullmatch(it.name):
+        if _CALL.fullmatch(it.name):
             it.calls, it.calls_pointer = target, target is None
             it.following = [after]
         elif jump := _JUMP.fullmatch(it.name):
@@ -132,6 +131,7 @@ def _writes_pc(it: Instruction) -> bool:
         return True
     if it.name.startswith(("pop", "ldm")):
         return it.operands.rstrip("}").endswith("pc")
+    assert not it.operands.startswith("pc,") or it.operands.startswith(("pc, lr", "pc, [sp]")), it
     return it.operands.startswith("pc,")
 
 

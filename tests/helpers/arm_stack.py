@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 
 from arm_code import Instruction
-from longest_path import LongestPath
+from program_functions import Functions
 
 _PUSH = re.compile(r"(?:v?push|v?stmdb)(?: sp!,)? {(.*)}")
 _POP = re.compile(r"(?:v?pop|v?ldm(?:ia)?)(?: sp!,)? {(.*)}")
@@ -20,20 +20,20 @@ _REGISTER = re.compile(r"([sdr])(\d+)(?:-[sdr](\d+))?|\w+")
 class Stack:
     """Depths of the stack, from the instructions that move its pointer [bytes]."""
 
-    paths: LongestPath
+    functions: Functions
     known: dict[int, tuple[int, int]] = field(default_factory=dict)
 
     def depth(self, address: int, under: tuple[int, ...] = ()) -> tuple[int, int]:
         """Depth of a function alone, and with all that it calls. No function may call itself."""
-        assert address not in under, f"{self.paths.name(address)} is recursive"
+        assert address not in under, f"{self.functions.name(address)} is recursive"
         if address not in self.known:
             self.known[address] = self._depth(address, (*under, address))
         return self.known[address]
 
     def _depth(self, address: int, under: tuple[int, ...]) -> tuple[int, int]:
-        graph = self.paths.graph(address)
+        graph = self.functions.graph(address)
         callees: dict[int, list[int]] = {}
-        for _, instruction, callee in self.paths.callees(graph):
+        for _, instruction, callee in self.functions.callees(graph):
             callees.setdefault(instruction.address, []).append(callee)
         own = deepest = 0
         begins, todo = {graph.begin: 0}, [graph.begin]

@@ -109,7 +109,9 @@ def _find_loops(
         # An inner loop is also entered from the header of the one around it.
         entrances |= {begin} & inside
         if len(entrances) > 1:
-            return inside, min(entrances, key=lambda it: (_copied(blocks, inside, entrances, it), it))
+            return inside, min(
+                entrances, key=lambda it: (_copied(blocks, inside, entrances, it), it)
+            )
         header = entrances.pop()
         back = tuple((it, to) for it, to in edges if to == header and it in inside)
         found.append(NaturalLoop(header, inside, back))
@@ -147,7 +149,7 @@ def _circles(blocks: dict[int, Block], within: set[int]) -> list[frozenset[int]]
 
 
 def _split(blocks: dict[int, Block], inside: frozenset[int], header: int) -> None:
-    """Gives a loop one entrance: who comes in elsewhere takes copies of the blocks to the header."""
+    """Gives a loop one entrance: who comes in elsewhere takes copies of blocks to the header."""
     first = max(blocks) + 1  # above all addresses: a name for the first copy
     copies = {block: first + i for i, block in enumerate(sorted(inside - {header}))}
     for name in list(blocks):

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import tomlkit
 
 import c_loops
 from arm_code import Instruction
 from control_flow import Graph, NaturalLoop
-
-if TYPE_CHECKING:
-    from longest_path import LongestPath
 
 BOUNDS = Path(__file__).resolve().parents[1] / "proof" / "bounds.toml"
 
@@ -78,13 +75,15 @@ class Facts:
         return float(value)
 
     def name_of(self, graph: Graph, loop: NaturalLoop) -> str:
-        """Which loop of the source a loop of the machine code is. In other libraries: file and line.
+        """Which loop of the source a loop of the machine code is; in other libraries file and line.
 
         It is the one whose condition ends the loop. If there are several, it is that of no inner
         loop, and evaluated in each round. (It need not be if there is one: the compiler leaves out
         what is known to be true.)
         """
-        inner = frozenset[int]().union(*(it.blocks for it in graph.loops if it.blocks < loop.blocks))
+        inner = frozenset[int]().union(
+            *(it.blocks for it in graph.loops if it.blocks < loop.blocks)
+        )
         ends = {it for it in loop.blocks if not loop.blocks.issuperset(graph.blocks[it].following)}
         tests: dict[str, set[int]] = {}
         for block in ends - inner or ends:
@@ -109,13 +108,13 @@ class Facts:
         """Largest number of rounds of a loop."""
         return self.value({**self.library, **self.loops}[name], sizes, copied)
 
-    def copied(self, call: Instruction, callee: str, paths: LongestPath) -> int:
+    def copied(self, call: Instruction, callee: str, sizes: Sizes) -> int:
         """Number of bytes that a call of memcpy, memmove or memset treats; 0 for other calls."""
         if callee not in ("memcpy", "memmove", "memset"):
             return 0
         function = c_loops.function_at(call.places[0].file, call.places[0].line)
         assert function is not None, f"{callee} is called outside of c/: {call}"
-        return int(self.value(self.copies[function.name], paths.sizes))
+        return int(self.value(self.copies[function.name], sizes))
 
 
 def read_facts(method: str) -> Facts:

@@ -13,10 +13,11 @@ from control_flow import Graph
 from controllers import TARGETS, cross_build, run
 from flow_facts import Sizes, read_facts
 from longest_path import LongestPath
+from program_functions import Functions
 
 METHODS = {"paper2011": "Paper2011", "matched_filter": "MatchedFilter"}
 REDUCTION = {"float": "__kernel_rem_pio2f", "double": "__kernel_rem_pio2"}
-"""The function of newlib that sin and cos call for angles above 201 rad, or 823549 rad in double."""
+"""The function of newlib that sin and cos call for angles above 201 rad, in double 823549 rad."""
 N, M, COLUMNS = 8, 5, 64
 """SH_MAX_N, SH_MAX_M and SH_MAX_COLUMNS, if nothing else is given to the compiler."""
 DEFAULT = {"paper2011": (6, 3, 0), "matched_filter": (6, 3, 40)}
@@ -68,23 +69,23 @@ class Analysis:
         """Analysis of a build of tests/proof/ticks."""
         return cls(read_program(tree / "ticks"), real)
 
-    def paths(self, method: str, size: tuple[int, int, int], *, small: bool) -> LongestPath:
-        """The longest paths, for n, m and the number of columns."""
+    def functions(self, method: str, size: tuple[int, int, int], *, small: bool) -> Functions:
+        """The functions, for n, m and the number of columns."""
         n, m, columns = size
         sizes = Sizes(N, M, n, m, columns, real=4 if self.real == "float" else 8)
         without = frozenset({REDUCTION[self.real]} if small else ())
         facts = read_facts(method)
         known = (self.graphs, self.names)
-        return LongestPath(self.program, facts, sizes, self.real, without, *known)
+        return Functions(self.program, facts, sizes, self.real, without, *known)
 
     def bounds(self, method: str, size: tuple[int, int, int]) -> Bounds:
         """Bounds of a tick."""
         tick = self.program.address("sh_estimator_tick")
         instructions, stacks = [], []
         for small in (False, True):
-            paths = self.paths(method, size, small=small)
-            instructions.append(round(paths.of_function(tick)))
-            stacks.append(Stack(paths).depth(tick)[1])
+            functions = self.functions(method, size, small=small)
+            instructions.append(round(LongestPath(functions).of(tick)))
+            stacks.append(Stack(functions).depth(tick)[1])
         return Bounds(*instructions, *stacks)
 
 
@@ -113,4 +114,8 @@ def rows(analysis: Analysis, measured: dict[tuple[str, int], int] | None) -> Ite
                 yield [label, "longest measured", str(measured[method, n])]
             if configuration is LARGEST:
                 yield [f"stack, {METHODS[method]}", "at most", str(bounds.stack)]
-                yield [f"stack, {METHODS[method]}", "at most, small angles", str(bounds.stack_small)]
+                yield [
+                    f"stack, {METHODS[method]}",
+                    "at most, small angles",
+                    str(bounds.stack_small),
+                ]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from arm_stack import Stack
 from controllers import REPOSITORY
 from tick_bounds import (
     LARGEST,
@@ -17,7 +18,6 @@ from tick_bounds import (
     longest_measured,
     rows,
 )
-from arm_stack import Stack
 
 PAGE = REPOSITORY / "docs" / "proof" / "bounds.md"
 
@@ -37,8 +37,11 @@ def table(column: str) -> dict[tuple[str, str], float]:
 
 # A Cortex-M4F computes double in software, which QEMU takes a minute to measure, and the code of a
 # Cortex-M7 for float is that of a Cortex-M4F but for the order of the instructions.
+@pytest.mark.slow("a library is built, disassembled, and run in QEMU")
 @pytest.mark.parametrize(("name", "real"), [("Cortex-M4F", "float"), ("Cortex-M7", "double")])
-def test_no_tick_is_longer_than_its_bound(name: str, real: str, build: Path, tmp_path: Path) -> None:
+def test_no_tick_is_longer_than_its_bound(
+    name: str, real: str, build: Path, tmp_path: Path
+) -> None:
     tree = build_ticks(name, real, build / "venv" / "bin" / "ninja", tmp_path)
     analysis = Analysis.of(tree, real)
     measured = longest_measured(tree)
@@ -51,12 +54,12 @@ def test_no_tick_is_longer_than_its_bound(name: str, real: str, build: Path, tmp
             assert bound < 3 * longest, label
     # Another compiler may differ a little.
     assert table(f"{name}, {real}") == pytest.approx(found, rel=0.1)
-    # The depths of the stack come from the instructions; the compiler knows those of single functions.
-    own = frames(tree)
+    # The depths come from the instructions; the compiler knows those of single functions.
+    compiler = frames(tree)
     for method in METHODS:
-        stack = Stack(analysis.paths(method, LARGEST[method], small=False))
+        stack = Stack(analysis.functions(method, LARGEST[method], small=False))
         stack.depth(analysis.program.address("sh_estimator_tick"))
-        names = {analysis.program.names.get(it): depth[0] for it, depth in stack.known.items()}
-        same = names.keys() & own.keys()
+        names = {analysis.program.names.get(it, ""): own for it, (own, _) in stack.known.items()}
+        same = names.keys() & compiler.keys()
         assert len(same) > 15
-        assert {it: names[it] for it in same} == {it: own[it] for it in same}
+        assert {it: names[it] for it in same} == {it: compiler[it] for it in same}
