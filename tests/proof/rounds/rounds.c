@@ -1,6 +1,7 @@
 /* Runs estimators of a library whose loops count their rounds: tests/proof/test_loops.py.
  *
- * Arguments: method, rls.n, rls.m. Each line: the most rounds of a loop, in the order of the loops,
+ * Arguments: method, rls.n, rls.m, and 1 with the columns that are used if the data ask for them, 0
+ * without. Each line: the most rounds of a loop, in the order of the loops,
  * then the most of each pair of loops.
  */
 #include <math.h>
@@ -49,7 +50,7 @@ int sh_round(int loop, int goes_on)
 }
 
 /* Every column, a curve, and every part of a tick that parameters switch on. */
-static void use_everything(sh_parameters *p)
+static void use_everything(sh_parameters *p, int optional)
 {
     sh_real *const prior = &p->prior.tau_e;
     const int priors = (int)(sizeof p->prior / sizeof *prior);
@@ -57,6 +58,8 @@ static void use_everything(sh_parameters *p)
 
     for (i = 0; i < priors; ++i)
         prior[i] = prior[i] > 0 ? prior[i] : 0.1;
+    if (!optional) /* then every column is always used */
+        p->prior.power = p->prior.gap = p->prior.hysteresis = p->prior.eccentric_motor = 0;
     p->rls.eta_0[p->rls.n - 1][p->rls.m - 1] = 10;
     p->samplePeriod = 0.0125;
     p->matched.bandwidth = 40;
@@ -84,13 +87,13 @@ int main(int argc, char **argv)
     sh_estimate estimate;
     int k;
 
-    if (argc != 4)
+    if (argc != 5)
         return 2;
     sh_parameters_default(&p);
     p.method = atoi(argv[1]);
     p.rls.n = atoi(argv[2]);
     p.rls.m = atoi(argv[3]);
-    use_everything(&p);
+    use_everything(&p, atoi(argv[4]));
     if (sh_parameters_check(&p, &violation)) {
         printf("%s: expected %s\n", violation.name, violation.range);
         return 1;
