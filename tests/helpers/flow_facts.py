@@ -87,10 +87,7 @@ class Facts:
         ends = {it for it in loop.blocks if not loop.blocks.issuperset(graph.blocks[it].following)}
         tests: dict[str, set[int]] = {}
         for block in ends - inner or ends:
-            place = graph.blocks[block].instructions[-1].places[0]
-            own = c_loops.loop_at(place.file, place.line)
-            name = own.name if own else f"{place.file}:{place.line}"
-            tests.setdefault(name, set()).add(block)
+            tests.setdefault(_condition(graph, block), set()).add(block)
         found = tests.keys() & (self.loops.keys() | self.library.keys())
         if len(found) > 1:
             found = {name for name in found if not graph.goes_round(loop, tests[name])}
@@ -102,6 +99,10 @@ class Facts:
         if found <= self.library.keys():  # one of them is right: which one does not matter
             return max(found, key=lambda name: (self.library[name].zfill(9), name))
         assert len(found) == 1, f"the loop at {where} has several conditions: {found}"
+        # Two loops that begin at one instruction would be one here, with the bound of the outer.
+        deciding = {block for block, _ in loop.back if len(graph.blocks[block].following) > 1}
+        again = {_condition(graph, block) for block in deciding} & self.loops.keys()
+        assert len(loop.back) == 1 or again <= found, f"several loops begin at {where}: {again}"
         return found.pop()
 
     def rounds(self, name: str, sizes: Sizes, copied: int) -> float:
@@ -115,6 +116,13 @@ class Facts:
         function = c_loops.function_at(call.places[0].file, call.places[0].line)
         assert function is not None, f"{callee} is called outside of c/: {call}"
         return int(self.value(self.copies[function.name], sizes))
+
+
+def _condition(graph: Graph, block: int) -> str:
+    """The loop whose head is the line of the last instruction of a block; else file and line."""
+    place = graph.blocks[block].instructions[-1].places[0]
+    own = c_loops.loop_at(place.file, place.line)
+    return own.name if own else f"{place.file}:{place.line}"
 
 
 def read_facts(method: str) -> Facts:

@@ -11,6 +11,7 @@ them together. Those of other libraries count with their own largest number.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
@@ -18,11 +19,13 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csr_array
 
+from arm_code import Place
 from control_flow import Graph, NaturalLoop
 from program_functions import Functions
 
 Cost = Callable[[int, int], float]
 """Instructions of a call: address of the function, number of bytes that it copies."""
+Places = tuple[Place, ...]
 Sum = dict[int, float]
 """Coefficients of unknowns."""
 
@@ -171,23 +174,36 @@ class FlowProgram:
 
     def _limit(self) -> None:
         """Functions that run only a few times in all rounds of a loop."""
-        facts, suffix = self.functions.facts, "f" if self.functions.real == "float" else ""
+        facts, sizes = self.functions.facts, self.functions.sizes
         for limit in facts.limits:
-            sums: dict[tuple[str, tuple[int, ...]], tuple[Sum, Sum]] = {}
-            for what, count, outer in self._executions(limit.function, suffix, limit.over):
-                total, _ = sums.setdefault((what, tuple(outer)), ({}, outer))
-                for i, it in count.items():
-                    total[i] = total.get(i, 0.0) + it
-            for total, outer in sums.values():
-                self._at_most(total, facts.value(limit.most, self.functions.sizes), outer)
+            name = limit.function
+            found = [*self._calls_of(name, limit.over), *self._begins_in(name, limit.over)]
+            sums: dict[tuple[str, tuple[int, ...]], list[tuple[Sum, Places]]] = {}
+            outers = {}
+            for what, count, places, outer in found:
+                sums.setdefault((what, tuple(outer)), []).append((count, places))
+                outers[tuple(outer)] = outer
+            for (what, key), counts in sums.items():
+                total: Sum = {}
+                for count, _ in counts:
+                    for i, it in count.items():
+                        total[i] = total.get(i, 0.0) + it
+                # One call may begin all the loops that the compiler has made of one.
+                made = max(Counter(places for _, places in counts).values()) if what else 1
+                self._at_most(total, made * facts.value(limit.most, sizes), outers[key])
 
-    def _executions(self, function: str, suffix: str, over: str) -> Iterator[tuple[str, Sum, Sum]]:
-        """Calls of a function, and begins of its loops, where it was put into another one."""
+    def _calls_of(self, function: str, over: str) -> Iterator[tuple[str, Sum, Places, Sum]]:
+        """Calls of a function in a loop."""
+        names = {function, function + ("f" if self.functions.real == "float" else "")}
         for call in self.calls:
-            for block, _, callee in self.functions.callees(call.graph):
+            for block, instruction, callee in self.functions.callees(call.graph):
                 outer = self._around(call, None, over, block)
-                if self.functions.name(callee) in (function, function + suffix) and outer:
-                    yield "", call.count(block), outer
+                if self.functions.name(callee) in names and outer:
+                    yield "", call.count(block), instruction.places, outer
+
+    def _begins_in(self, function: str, over: str) -> Iterator[tuple[str, Sum, Places, Sum]]:
+        """Begins of the loops of a function in a loop, also where it was put into another one."""
+        for call in self.calls:
             for loop in call.graph.loops:
                 name = self.functions.name_of(call.graph, loop)
                 outer = self._around(call, loop, over)
@@ -197,7 +213,10 @@ class FlowProgram:
                     for it in call.graph.loops
                 )
                 if name.startswith(f"{function}: ") and outer and not inner:
-                    yield name, call.entries(loop), outer
+                    # Where the function was put in: every function around it has another place.
+                    first = call.graph.blocks[loop.header].instructions[0]
+                    places = (*first.places[1:], Place(f"{id(call)}", 0))
+                    yield name, call.entries(loop), places, outer
 
     def _at_most(self, rounds: Sum, most: float, entries: Sum) -> None:
         row = dict(rounds)
