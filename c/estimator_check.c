@@ -11,7 +11,7 @@ static state_check *const STATE_CHECKS[] = {SH_METHODS(SH_STATE_CHECK)};
 
 int sh_estimator_check(const sh_estimator *estimator, const sh_parameters *p)
 {
-    if (sh_method_of(p) == NULL || !sh_is_within(estimator->started, 0, 1)) {
+    if (sh_method_of(p) == NULL || estimator->started < 0 || estimator->started > 1) {
         return 1;
     }
     if (!isfinite(estimator->skipped) || estimator->skipped < 0) {

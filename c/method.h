@@ -53,12 +53,6 @@ typedef struct {
     int block##_check_state(const sh_estimator *estimator, const sh_parameters *p);
 SH_METHODS(SH_METHOD_DECLARATION)
 
-/* Whether min <= x <= max. */
-static inline int sh_is_within(int x, int min, int max)
-{
-    return x >= min && x <= max;
-}
-
 /* The method that the parameters choose, NULL if there is none of this number. */
 const sh_method *sh_method_of(const sh_parameters *p);
 

@@ -1,0 +1,119 @@
+/* What the functions do that work on triangles: with them, a tick is analysed without the loops over
+ * all entries, and for any numbers. Their bodies are analysed in information.c and ud_factor.c.
+ *
+ * The last two are about parameters that passed sh_parameters_check, which calls the same functions
+ * with the same parameters: there are 1..SH_MAX_COLUMNS columns, and a curve rls.eta_0 if
+ * prior.tau_e is 0. The proof is made for each number of columns.
+ */
+#ifndef CONTRACTS_H
+#define CONTRACTS_H
+
+#include "columns.h"
+#include "information.h"
+#include "ud_factor.h"
+
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    requires \valid(x + (0 .. a->size + SH_SIDES - 1));
+    requires \initialized(x + (0 .. a->size + SH_SIDES - 1));
+    assigns \result, a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->rest,
+            x[0 .. SH_MAX_COLUMNS + SH_SIDES - 1] \from w;
+*/
+sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
+
+/*@ requires 1 <= size <= SH_MAX_COLUMNS;
+    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->rest \from precision;
+    assigns a->size \from size;
+    ensures a->size == size;
+*/
+void sh_information_start(sh_information *a, int size, sh_real precision);
+
+/*@ requires 1 <= from->size <= SH_MAX_COLUMNS;
+    assigns to->D[0 .. SH_MAX_COLUMNS - 1], to->U[0 .. SH_MAX_TRIANGLE - 1], to->rest \from *from;
+    assigns to->size \from from->size;
+    ensures to->size == from->size;
+*/
+void sh_information_copy(sh_information *to, const sh_information *from);
+
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    requires 0 <= i < a->size;
+    assigns \result, x[0 .. SH_MAX_COLUMNS + SH_SIDES - 1] \from *a;
+*/
+sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
+
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    requires side == SH_SIDE_GAIN || side == SH_SIDE_Y;
+    assigns z[0 .. SH_MAX_COLUMNS - 1] \from *a;
+*/
+void sh_information_side(const sh_information *a, int side, sh_real *z);
+
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    assigns \result \from a;
+    ensures \subset(\result, a->U + (0 .. SH_MAX_TRIANGLE - SH_SIDES));
+*/
+sh_real *sh_information_last(sh_information *a);
+
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    requires side == SH_SIDE_GAIN || side == SH_SIDE_Y;
+    assigns beta[0 .. SH_MAX_COLUMNS - 1] \from *a;
+*/
+void sh_information_solve(const sh_information *a, int side, sh_real *beta);
+
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    requires \initialized(c + (0 .. a->size - 1));
+    assigns v[0 .. SH_MAX_COLUMNS - 1] \from *a, c[0 .. SH_MAX_COLUMNS - 1];
+*/
+void sh_information_project(const sh_information *a, const sh_real *c, sh_real *v);
+
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    requires \initialized(beta + (0 .. a->size - 1));
+    assigns \result \from *a, beta[0 .. SH_MAX_COLUMNS - 1];
+*/
+sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
+
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    requires \initialized(v + (0 .. a->size - 1));
+    requires \valid(row + (0 .. a->size + SH_SIDES - 1));
+    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->rest,
+            row[0 .. SH_MAX_COLUMNS + SH_SIDES - 1] \from c;
+*/
+void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real *row);
+
+/*@ requires 1 <= size <= SH_MAX_PARAMETERS;
+    assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work \from P_0;
+    assigns P->size \from size;
+    ensures P->size == size;
+    ensures \initialized(&P->D[0 .. SH_MAX_ROWS - 1]);
+*/
+void sh_ud_factor_start(sh_ud_factor *P, int size, sh_real P_0);
+
+/*@ requires 1 <= P->size <= SH_MAX_PARAMETERS;
+    requires \initialized(F + (0 .. P->size - 1));
+    assigns \result, P->work \from *P, F[0 .. SH_MAX_ROWS - 1];
+*/
+sh_real sh_ud_factor_project(sh_ud_factor *P, const sh_real *F);
+
+/*@ requires 1 <= P->size <= SH_MAX_PARAMETERS;
+    assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work \from *P, w;
+    assigns \result \from P;
+    ensures \result == P->work.g;
+*/
+const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w);
+
+/*@ requires 1 <= P->size <= SH_MAX_PARAMETERS;
+    requires \initialized(F + (0 .. P->size - 1));
+    assigns \result, P->work \from *P, F[0 .. SH_MAX_ROWS - 1];
+*/
+sh_real sh_ud_factor_variance(sh_ud_factor *P, const sh_real *F);
+
+/*@ assigns \result \from *p;
+    ensures \result == PROOF_SIZE;
+*/
+int sh_columns_count(const sh_parameters *p);
+
+/*@ assigns \result \from *p;
+    ensures \result == 0 || \result == 1;
+    ensures PROOF_CURVE == 0 ==> \result == 1;
+*/
+int sh_has_nominal_curve(const sh_parameters *p);
+
+#endif
