@@ -47,3 +47,15 @@ void sizes(void)
     }
     //@ assert reached: \true;
 }
+
+/* A row of a triangle with any sample whose numbers are finite, also one that is removed, w < 0: the
+ * entry of D stays positive.
+ */
+void positive(void)
+{
+    any_information(1);
+    a.D[0] = (sh_real)Frama_C_float_interval(1e-38f, 1e37f);
+    x[0] = (sh_real)Frama_C_float_interval(-1e9f, 1e9f);
+    sh_information_take(&a, x, (sh_real)Frama_C_float_interval(-1e18f, 1e18f));
+    //@ assert positive: a.D[0] > 0;
+}

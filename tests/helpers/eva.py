@@ -1,0 +1,88 @@
+"""Frama-C Eva: which run-time errors are possible in C code, found by abstract interpretation."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from gate import missing
+
+OPTIONS = (
+    *("-eva", "-machdep", "gcc_x86_64"),
+    # Infinite numbers and NaN are values as others: no operation on them is an error.
+    *("-warn-special-float", "none"),
+    "-warn-invalid-pointer",  # computing a pointer outside of an object is an error, too
+    *("-eva-domains", "cvalue", "-eva-slevel", "0"),
+    "-eva-msg-key=-initial-state,-final-states",
+)
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What Eva found."""
+
+    alarms: tuple[str, ...]
+    """Possible errors, and assertions and preconditions that it could not prove: place and text."""
+
+    proven: int
+    """Number of assertions and preconditions that it proved."""
+
+    coverage: int
+    """Share of the statements that it reached in the functions that it analysed [%]."""
+
+    text: str
+    """All that it printed."""
+
+
+def analyse(
+    sources: Sequence[Path], main: str, folders: Sequence[Path], *options: str, **macros: object
+) -> Analysis:
+    """Analyses a program from `main` on.
+
+    sources  all C files of the program
+    folders  of its headers
+    options  of Frama-C
+    macros   for the preprocessor
+    """
+    program = shutil.which("frama-c")
+    if program is None:
+        missing("frama-c", "apt-get install frama-c-base")
+    preprocessor = [
+        *(f"-I{folder}" for folder in folders),
+        *(f"-D{name}={value}" for name, value in macros.items()),
+        "-U__SSE2__",  # vectors are no standard C: pair.h has the same in plain C
+    ]
+    done = subprocess.run(
+        [
+            *(program, *OPTIONS, "-main", main, f"-cpp-extra-args={' '.join(preprocessor)}"),
+            *options,
+            *map(str, sources),
+        ],
+        capture_output=True,
+        text=True,
+    )
+    return read(done.stdout + done.stderr)
+
+
+def read(text: str) -> Analysis:
+    """Reads what Frama-C printed. AssertionError if it did not come to its end."""
+    alarms = re.findall(r"^\[eva:alarm\] (\S+?):(\d+): Warning:\s+(.*(?:\n {2,}.*)*)", text, re.M)
+    coverage = re.search(r"statements reached \(out of \d+\): (\d+)% coverage", text)
+    properties = re.findall(
+        r"^ +(?:Assertions|Preconditions) +(\d+) valid +(\d+) unknown +(\d+) invalid", text, re.M
+    )
+    assert coverage is not None and properties, text
+    unproven = sum(int(unknown) + int(invalid) for _, unknown, invalid in properties)
+    assert unproven == 0 or alarms, text  # each of them is an alarm, too
+    return Analysis(
+        alarms=tuple(
+            f"{Path(file).name}:{line}: {' '.join(found.split())}" for file, line, found in alarms
+        ),
+        proven=sum(int(valid) for valid, _, _ in properties),
+        coverage=int(coverage.group(1)),
+        text=text,
+    )
