@@ -78,8 +78,9 @@ _SIGNED = ("motor.gamma", "setPoint.offset", "setPoint.scale")
 
 
 @st.composite
-def parameters(draw: st.DrawFn, method: int) -> dict[str, Any]:
-    """Parameters by dotted name, in the domain of the promises; some of them are the defaults."""
+def parameters(draw: st.DrawFn, method: int, real: str) -> dict[str, Any]:
+    """Parameters by dotted name, in the domain of the promises for a type of numbers; some of them
+    are the defaults."""
     names = draw(st.lists(st.sampled_from(sorted(RANGES)), unique=True, max_size=12))
     values: dict[str, Any] = {name: draw(magnitudes(*RANGES[name])) for name in names}
     for name in _SIGNED:
@@ -96,6 +97,9 @@ def parameters(draw: st.DrawFn, method: int) -> dict[str, Any]:
     if "filter.V_min" in values or "filter.V_max" in values:
         pair = values.get("filter.V_min", 0.1), values.get("filter.V_max", 10.0)
         values["filter.V_min"], values["filter.V_max"] = min(pair), max(pair)
+    if real == "float":
+        weight = values.get("rls.c", 1e-20) if values["rls.kind"] == 1 else 1.0
+        values["rls.P_0"] = min(values.get("rls.P_0", 1e20), 1e3 / weight)
     if draw(st.integers(0, 3)) == 0:
         eta_0 = np.zeros((8, 5))
         place = draw(st.integers(0, 7)), draw(st.integers(0, 4))

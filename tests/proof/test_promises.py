@@ -94,7 +94,7 @@ def check_matched(state: Any) -> None:
 def test_every_output_and_the_state_stay_in_their_bounds(
     c: Library, method: int, data: st.DataObject
 ) -> None:
-    values, z = data.draw(parameters(method)), data.draw(measurements())
+    values, z = data.draw(parameters(method, c.real)), data.draw(measurements())
     estimator = Estimator(c, values)
     p = estimator.parameters
     for part in np.array_split(z, 3):
@@ -115,7 +115,7 @@ def test_matched_filter_takes_samples_again_after_any_others(
 ) -> None:
     gentle = np.zeros((20, 5))
     gentle[:, :2] = 0.01 * np.sin(0.1 * np.arange(20))[:, None] * [1.0, 1.1]
-    values, z = data.draw(parameters(MATCHED)), data.draw(measurements())
+    values, z = data.draw(parameters(MATCHED, c.real)), data.draw(measurements())
     fresh, used = Estimator(c, values), Estimator(c, values)
     used.run(z)
     assert used.repeat(gentle, 20) > 0 or fresh.repeat(gentle, 20) == 0
@@ -125,7 +125,7 @@ def test_matched_filter_takes_samples_again_after_any_others(
 @given(data=st.data())
 @pytest.mark.parametrize("method", [PAPER2011, MATCHED])
 def test_a_gap_changes_nothing_in_the_state(c: Library, method: int, data: st.DataObject) -> None:
-    values, z = data.draw(parameters(method)), data.draw(measurements())
+    values, z = data.draw(parameters(method, c.real)), data.draw(measurements())
     estimator = Estimator(c, values)
     estimator.run(z)
     before = estimator.lasting()

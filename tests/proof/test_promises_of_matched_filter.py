@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from c_library import Array, Estimator, Library
 from c_matched import factors
 from edges import LARGEST, SUBNORMAL, magnitudes
-from promises import EPSILON, c, often, reals
+from promises import c, often, reals
 
 __all__ = ["c"]  # a fixture
 
@@ -49,7 +49,7 @@ def test_information_only_grows_with_samples(c: Library, data: st.DataObject) ->
         left = take(c, a, scale * rng.normal(size=size + 2), w)
         assert np.all(factors(a)[1] >= before)
         assert np.all(before >= 1)
-        assert 0 <= left <= w * (1 + 2 * size * EPSILON[c.real])
+        assert 0 <= left <= float(reals(c, [w])[0])
 
 
 @often
