@@ -144,6 +144,14 @@ def test_a_stiffness_that_is_too_large_for_the_next_row_does_not_block_all_rows(
     assert estimator.repeat(z[1:], 199) >= 198
 
 
+def test_the_variance_of_a_direction_that_is_well_known_does_not_overflow(c: Library) -> None:
+    posterior = c.new("sh_posterior", weight=1.0)
+    a, combination, v = c.ffi.addressof(posterior, "information"), reals(c, [1e20]), reals(c, [0.0])
+    c.lib.sh_information_start(a, 1, 1e30)
+    variance = c.lib.sh_posterior_variance(posterior, c.pointer(combination), c.pointer(v))
+    assert variance == pytest.approx(1e10)
+
+
 def test_an_initial_curve_that_overflows_starts_with_finite_outputs(c: Library) -> None:
     values = {"setPoint.offset": 1e12, "rls.eta_0": [[1e12] * 5] * 8, "rls.symmetric": 0}
     for method in (1, 2):
