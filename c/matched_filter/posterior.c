@@ -121,6 +121,14 @@ static void weigh_inertia(sh_posterior *posterior, sh_real prior_B)
     *D = weighted;
 }
 
+/* v^2 / D, also where v^2 overflows: in single precision D can be as large. */
+static sh_real square_over(sh_real v, sh_real D)
+{
+    const sh_real square = v * v;
+
+    return square <= SH_LARGEST_OUTPUT ? square / D : v / D * v;
+}
+
 sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *posterior)
 {
     sh_information *a = &posterior->information;
@@ -143,7 +151,7 @@ sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *po
     for (i = 0; i < size; ++i) {
         const sh_real *z = sh_information_row(a, i) + size - 1 - i;
 
-        fit.variance += v[i] * v[i] / a->D[i];
+        fit.variance += square_over(v[i], a->D[i]);
         fit.by_gain += v[i] * z[SH_SIDE_GAIN];
     }
     sh_information_solve(a, SH_SIDE_Y, own);
@@ -168,7 +176,7 @@ sh_real sh_posterior_variance(sh_posterior *posterior, const sh_real *c, sh_real
 
     sh_information_project(a, c, v);
     for (i = 0; i < a->size; ++i) {
-        variance += v[i] * v[i] / a->D[i];
+        variance += square_over(v[i], a->D[i]);
     }
     return variance;
 }
