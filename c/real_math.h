@@ -50,10 +50,13 @@ static inline sh_real sh_power(sh_real x, int exponent)
 /* Limit of an output that would overflow. */
 #define SH_LARGEST_OUTPUT SH_FOR(SH_REAL, 1e300, 1e38f)
 
-/* x within -limit..limit; -limit if x is not a number */
+/* x within -limit..limit; limit if x is not a number */
 static inline sh_real sh_limited(sh_real x, sh_real limit)
 {
-    return sh_fmin(sh_fmax(x, -limit), limit);
+    if (x < -limit) {
+        return -limit;
+    }
+    return x <= limit ? x : limit;
 }
 
 /* Std deviation of a variance; infinite if the variance overflowed or is not a number. */

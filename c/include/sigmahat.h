@@ -248,7 +248,7 @@ typedef struct {
     sh_real eta[SH_MAX_N][SH_MAX_M]; /* eta[i][j]: coefficient of setPoint^j phi^(2i+1), (21),
                                         or of setPoint^j phi^i if not symmetric */
     sh_real sigma_std;               /* std deviation of sigma by the model of the method
-                                        [N.m/rad] */
+                                        [N.m/rad]; infinite if its square overflows */
     sh_real D_theta_hat, B_hat;      /* corrected motor data [N.m.s/rad, kg.m2] */
     sh_real tau_coulomb_hat;         /* Coulomb friction obtained, on the motor axis [N.m] */
     sh_real misfit;                  /* square root of how much larger the slow part of the
@@ -309,7 +309,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  * estimate  in: as the last tick, or sh_estimator_start, left it; out: the new estimate
  *
  * Returns 1, or 0 if the tick is skipped: a measurement is not finite or beyond
- * SH_LARGEST_MEASUREMENT, or the regressor overflows. A skipped tick sets estimate->valid to 0, is
+ * SH_LARGEST_MEASUREMENT, or the numbers overflow. A skipped tick sets estimate->valid to 0, is
  * counted, and changes nothing else. What happens at the first good sample after such a gap
  * depends on the method:
  *

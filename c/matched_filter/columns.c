@@ -372,6 +372,11 @@ static sh_real drive_friction(const sh_matched_state *state, sh_real torque)
     return -sh_fabs(torque) * as_if_smooth(&state->friction, &state->design);
 }
 
+/* A stiffness that is wrong by many orders must not make the row too large to be learned from: then
+ * every sample would be refused, and the stiffness would never be corrected.
+ */
+static const sh_real LARGEST_ENCODER_ERROR = SH_FOR(SH_REAL, 1e74, 1e14f); /* [N.m] */
+
 /* Error of y by an encoder of the motor that is wrong by the signal of a filter [N.m]. */
 static sh_real encoder_error(const sh_matched_state *state, const sh_parameters *p,
                              const sh_state_variable_filter *filter)
@@ -413,7 +418,9 @@ static sh_real entry_of(const sh_matched_state *state, const sh_parameters *p,
                    : prior * gamma * sh_state_variable_filter_first(&state->friction, design);
     case SH_COLUMN_SIN_M:
     case SH_COLUMN_COS_M: /* prior is already in the signal */
-        return motor->is_measured || !state->stiffness_known ? 0 : encoder_error(state, p, filter);
+        return motor->is_measured || !state->stiffness_known
+                   ? 0
+                   : sh_limited(encoder_error(state, p, filter), LARGEST_ENCODER_ERROR);
     case SH_COLUMN_VISCOUS:
         return -prior * motor->viscous;
     case SH_COLUMN_COULOMB:

@@ -292,17 +292,17 @@ static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
     share = sh_posterior_take(state, &state->live, x, w, row);
     innovation->a = 1;
     innovation->rho =
-        share > 0 ? sh_fmin((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
+        share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     innovation->epsilon = epsilon;
 
-    state->rounding += sh_fmin(sh_sample_variance_of_deformation(state) * w, SH_LARGE);
-    rounding = sh_fmin(sh_sample_variance_of_inertia(state, p) * w, SH_LARGE);
+    state->rounding += sh_limited(sh_sample_variance_of_deformation(state) * w, SH_LARGE);
+    rounding = sh_limited(sh_sample_variance_of_inertia(state, p) * w, SH_LARGE);
     if (state->live.inertia >= 0) { /* what could not be removed before may be removed now */
         /* 6: variance of the square of a noise that is correlated from sample to sample. The
          * removal acts on b over prior.B, see sh_posterior_remove.
          */
         const sh_real by_removal = rounding / p->prior.B;
-        const sh_real spread = sh_fmin(6 * by_removal * by_removal, SH_LARGE);
+        const sh_real spread = sh_limited(6 * by_removal * by_removal, SH_LARGE);
         sh_posterior *const both[] = {&state->live, &state->build};
 
         state->surplus += rounding;

@@ -121,6 +121,14 @@ static void weigh_inertia(sh_posterior *posterior, int b, sh_real prior_B)
     *D = weighted;
 }
 
+/* v^2 / D, also where v^2 overflows: in single precision D can be as large. */
+static sh_real square_over(sh_real v, sh_real D)
+{
+    const sh_real square = v * v;
+
+    return square <= SH_LARGEST_OUTPUT ? square / D : v / D * v;
+}
+
 sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *posterior)
 {
     sh_information *a = &posterior->information;
@@ -165,7 +173,7 @@ sh_real sh_posterior_variance(const sh_posterior *posterior, const sh_real *c, s
 
     sh_information_project(a, c, v);
     for (i = 0; i < a->size; ++i) {
-        variance += v[i] * v[i] / a->D[i];
+        variance += square_over(v[i], a->D[i]);
     }
     return variance;
 }

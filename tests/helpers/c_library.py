@@ -53,10 +53,11 @@ def load(build: Path) -> Library:
 class Library:
     """The estimator library, and the loops over ticks in `drivers/run.c`."""
 
-    def __init__(self, build: Path) -> None:
-        self.ffi = cffi.FFI()
+    def __init__(self, build: Path, real: str = "double") -> None:
+        self.ffi, self.real = cffi.FFI(), real
         own = (header for header in HEADERS if header.name not in _WITHOUT_DECLARATIONS)
-        self.ffi.cdef(declarations(*own, REPOSITORY / "tests" / "drivers" / "run.h"))
+        text = declarations(*own, REPOSITORY / "tests" / "drivers" / "run.h")
+        self.ffi.cdef(re.sub(r"\bdouble\b", real, text))
         suffix = ".dylib" if sys.platform == "darwin" else ".so"
         self.lib: Any = self.ffi.dlopen(str(build / f"libsigmahat_test_driver{suffix}"))
 
@@ -65,8 +66,8 @@ class Library:
         return self.ffi.new(f"{struct} *", values)
 
     def pointer(self, array: Array) -> Any:
-        """A `double *` to a contiguous array. It is valid only as long as the array exists."""
-        return self.ffi.cast("double *", self.ffi.from_buffer(array, require_writable=False))
+        """A pointer to a contiguous array of reals. It is valid as long as the array exists."""
+        return self.ffi.cast(f"{self.real} *", self.ffi.from_buffer(array, require_writable=False))
 
     def dtype(self, struct: str) -> np.dtype[Any]:
         """The numpy type with the layout of a struct of doubles, integers and arrays of them."""
@@ -78,7 +79,7 @@ class Library:
                 shape.append(item.length)
                 item = item.item
             names.append(name)
-            formats.append(({"double": "f8", "int": "i4"}[item.cname], tuple(shape)))
+            formats.append(({"double": "f8", "float": "f4", "int": "i4"}[item.cname], tuple(shape)))
             offsets.append(field.offset)
         size = self.ffi.sizeof(struct)
         return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})

@@ -1,0 +1,157 @@
+"""Parameters and measurements at the edges of what is allowed, for hypothesis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+
+from c_library import MEASUREMENTS, Array
+
+LARGEST = 1e12
+"""Largest magnitude of a measurement, and of most parameters of docs/proof/promises.md."""
+SUBNORMAL = (4.9e-324, 1e-310, 1e-45, 1e-40)  # the last two in single precision
+
+RANGES: Mapping[str, tuple[float, float]] = {
+    "motor.B": (1e-15, LARGEST),
+    "motor.D_theta": (0, LARGEST),
+    "motor.gamma": (1e-6, 1e6),
+    "residual.K_I": (1e-15, LARGEST),
+    "filter.V_a": (0, LARGEST),
+    "filter.V_max": (1e-30, LARGEST),
+    "filter.V_min": (1e-30, LARGEST),
+    "filter.alpha": (0, LARGEST),
+    "filter.R": (1e-30, LARGEST),
+    "filter.P_0": (1e-30, LARGEST),
+    "encoder.theta": (0, LARGEST),
+    "encoder.q": (0, LARGEST),
+    "setPoint.offset": (0, LARGEST),
+    "setPoint.scale": (0, LARGEST),
+    "rls.P_0": (1e-30, 1e20),
+    "rls.c": (1e-30, LARGEST),
+    "rls.a": (1e-15, 1),
+    "model.k_s": (0, LARGEST),
+    "model.r_0": (0, LARGEST),
+    "model.b": (0, LARGEST),
+    "noise.tau": (1e-12, LARGEST),
+    "noise.tau_e": (1e-12, LARGEST),
+    "confidence": (1e-15, LARGEST),
+    "matched.slow": (1e-15, LARGEST),
+    "matched.drift": (0, LARGEST),
+    "matched.memory": (0, LARGEST),
+    "range.phi": (1e-6, 1e6),
+    "range.setPoint": (1e-12, LARGEST),
+    **{
+        f"prior.{name}": (0, LARGEST)
+        for name in (
+            *("tau_e", "nominal", "D_theta", "B", "tau_coulomb", "torque_gain", "bias", "damping"),
+            *("load_friction", "eccentric", "delay", "reversal", "power", "gap", "hysteresis"),
+            "eccentric_motor",
+        )
+    },
+}
+"""The domain of the promises. gamma, offset, scale and rls.eta_0 may be negative."""
+
+
+def magnitudes(low: float, high: float) -> st.SearchStrategy[float]:
+    """Both limits, and what is between them, on a logarithmic scale."""
+    exponents = st.floats(math.log10(max(low, 1e-15)), math.log10(high))
+    between = exponents.map(lambda e: min(max(10.0**e, low), high))
+    return st.one_of(st.sampled_from([float(low), float(high)]), between)
+
+
+_CHOICES: Mapping[str, tuple[int, ...]] = {
+    "modality": (1, 2, 3),
+    "deformation": (1, 2),
+    "filter.kind": (1, 2, 3),
+    "filter.weighting": (1, 2),
+    "rls.kind": (1, 2, 3),
+    "rls.symmetric": (1, 0),
+    "rls.n": (8, 1, 2, 3, 4, 5, 6, 7),
+    "rls.m": (5, 1, 2, 3, 4),
+    "torque.held": (0, 1),
+}
+_SIGNED = ("motor.gamma", "setPoint.offset", "setPoint.scale")
+
+
+@st.composite
+def parameters(draw: st.DrawFn, method: int, real: str) -> dict[str, Any]:
+    """Parameters by dotted name, in the domain of the promises for a type of numbers; some of them
+    are the defaults."""
+    names = draw(st.lists(st.sampled_from(sorted(RANGES)), unique=True, max_size=12))
+    values: dict[str, Any] = {name: draw(magnitudes(*RANGES[name])) for name in names}
+    for name in _SIGNED:
+        if name in values and draw(st.booleans()):
+            values[name] = -values[name]
+    values |= {name: draw(st.sampled_from(choice)) for name, choice in _CHOICES.items()}
+    period = draw(st.one_of(st.just(1e-3), magnitudes(1e-9, 1e3)))
+    wT = draw(st.sampled_from([0.35, 1.001e-4, 1.99]))
+    values |= {"method": method, "samplePeriod": period, "matched.bandwidth": wT / period}
+    if method == 1:
+        values["residual.K_I"] = min(values.get("residual.K_I", 300.0), 1.99 / period)
+    elif not values.get("prior.tau_e", 45.0) > 0:
+        values["prior.tau_e"] = LARGEST
+    if "filter.V_min" in values or "filter.V_max" in values:
+        pair = values.get("filter.V_min", 0.1), values.get("filter.V_max", 10.0)
+        values["filter.V_min"], values["filter.V_max"] = min(pair), max(pair)
+    if real == "float":
+        weight = values.get("rls.c", 1e-20) if values["rls.kind"] == 1 else 1.0
+        values["rls.P_0"] = min(values.get("rls.P_0", 1e20), 1e3 / weight)
+    if draw(st.integers(0, 3)) == 0:
+        eta_0 = np.zeros((8, 5))
+        place = draw(st.integers(0, 7)), draw(st.integers(0, 4))
+        eta_0[place] = draw(st.sampled_from([-1, 1])) * draw(magnitudes(1e-12, LARGEST))
+        values["rls.eta_0"] = eta_0.tolist()
+    return values
+
+
+def _rest(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
+    return np.full(len(k), amplitude if rng.random() < 0.5 else 0.0)
+
+
+def _motion(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
+    noise = 10.0 ** rng.uniform(-6, 0) * rng.uniform(-1, 1, len(k))
+    wave = amplitude * (np.sin(k * 10.0 ** rng.uniform(-2, 0.5)) + noise)
+    return np.asarray(wave, dtype=np.float64)
+
+
+def _counts(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
+    count = 2 * np.pi / 40000
+    return np.asarray(np.round(_motion(rng, k, amplitude) / count) * count, dtype=np.float64)
+
+
+def _ramp(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
+    return amplitude * k
+
+
+def _glitches(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
+    return np.where(rng.random(len(k)) < 0.02, amplitude, _motion(rng, k, 1.0))
+
+
+def _edges(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
+    edges = np.array([0.0, LARGEST, -LARGEST, amplitude, 1.0, *SUBNORMAL])
+    return np.asarray(rng.choice(edges, len(k)), dtype=np.float64)
+
+
+_SIGNALS: tuple[Callable[[np.random.Generator, Array, float], Array], ...] = (
+    *(_motion, _motion, _rest, _counts, _ramp, _glitches, _edges),
+)
+
+
+@st.composite
+def measurements(draw: st.DrawFn) -> Array:
+    """Samples [size: ticks x 5] up to the largest allowed magnitude, with gaps of NaN."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32)))
+    k = np.arange(draw(st.sampled_from([30, 150, 400])), dtype=np.float64)
+    z = np.empty((len(k), len(MEASUREMENTS)))
+    for i in range(len(MEASUREMENTS)):
+        amplitude = draw(st.one_of(magnitudes(1e-3, 1e3), magnitudes(1e-12, LARGEST)))
+        z[:, i] = draw(st.sampled_from(_SIGNALS))(rng, k, amplitude)
+    if draw(st.booleans()):  # the link follows the motor
+        z[:, 1] = z[:, 0] * (1 + 10.0 ** rng.uniform(-6, 0))
+    z = np.clip(z, -LARGEST, LARGEST)
+    z[rng.random(len(k)) < 0.01, rng.integers(0, 2)] = math.nan
+    return z

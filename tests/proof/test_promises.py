@@ -1,0 +1,140 @@
+"""Numerical promises of an estimator as a whole: docs/proof/promises.md."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from c_library import Array, Estimator, Library
+from edges import measurements, parameters
+from promises import c, often
+
+__all__ = ["c"]  # a fixture
+
+PAPER2011, MATCHED = 1, 2
+
+
+def check_outputs(record: NDArray[np.void], largest_a: float, confidence: float) -> None:
+    """What holds for the outputs of every tick."""
+    for name in record.dtype.names or ():
+        if name != "sigma_std":
+            assert np.all(np.isfinite(record[name])), name
+    assert np.all(record["sigma_std"] >= 0)  # infinite if its square overflows, never NaN
+    assert np.all(record["rho"] >= 0)
+    assert np.all((record["a"] >= 0) & (record["a"] <= largest_a))
+    assert np.all(record["misfit"] >= 1)
+    sure = record[record["confident"] == 1]
+    assert np.all(sure["sigma_std"] < confidence * np.abs(sure["sigma"]))
+    assert np.all(sure["sigma"] >= 0)
+
+
+def check_skipped(before: NDArray[np.void], record: NDArray[np.void]) -> None:
+    """A skipped tick changes no output but `valid`."""
+    every = np.concatenate([before, record])
+    every["valid"] = 0
+    for k in np.flatnonzero(record["valid"] == 0):
+        assert every[k].tobytes() == every[k + 1].tobytes()
+
+
+def check_paper2011(state: Any, P_0: float) -> None:
+    rls, filters = state.method.paper2011.rls, state.method.paper2011.filters
+    D = np.array(list(rls.P.D)[: rls.P.size])
+    assert np.all((D >= 0) & (D <= P_0))
+    assert all(map(math.isfinite, (*rls.eta, *rls.eta_low, *rls.P.U)))
+    for axis in (filters.theta, filters.q):
+        assert axis.P11 >= 0
+        assert axis.P12 >= 0
+        assert axis.P22 >= 0
+        numbers = (axis.lag, axis.x_dot, axis.P11, axis.P12, axis.P22)
+        assert all(map(math.isfinite, numbers))
+    assert math.isfinite(filters.residual.r_e)
+
+
+def informations(state: Any) -> Iterator[tuple[Any, float]]:
+    """The factors of the information, each with a bound that no entry of D may go below."""
+    matched = state.method.matched
+    for posterior in (matched.live, matched.build):
+        yield posterior.information, 1.0
+    yield matched.blocks.recent, 1.0
+    for data in (matched.data, matched.blocks.all, matched.blocks.walking):
+        yield data, 0.0  # a random walk may reduce it below what it began with
+
+
+def check_matched(state: Any) -> None:
+    matched = state.method.matched
+    for a, least in informations(state):
+        used = a.size * (a.size - 1) // 2 + 2 * a.size
+        D, U = np.array(list(a.D)[: a.size]), np.array(list(a.U)[:used])
+        assert np.all(np.isfinite(D) & (D > 0) & (least <= D))
+        assert np.all(np.isfinite(U))
+        assert math.isfinite(a.rest)
+    numbers = (*matched.beta, *matched.blocks.sum, matched.sigma, matched.y, matched.delay)
+    assert all(map(math.isfinite, numbers))
+    for posterior in (matched.live, matched.build):
+        assert 0 < posterior.weight <= 1
+        assert min(posterior.removed, posterior.spread, posterior.surplus) >= 0
+        assert max(posterior.removed, posterior.spread, posterior.surplus) < math.inf
+    assert 1 <= matched.variance_factor < math.inf
+    assert 0 <= matched.q < math.inf
+    assert 1 <= matched.history.excess < math.inf
+    assert 1 <= matched.history.excess_mean < math.inf
+    assert abs(matched.motion.direction) <= 1
+
+
+@often
+@given(data=st.data())
+@pytest.mark.parametrize("method", [PAPER2011, MATCHED])
+def test_every_output_and_the_state_stay_in_their_bounds(
+    c: Library, method: int, data: st.DataObject
+) -> None:
+    values, z = data.draw(parameters(method, c.real)), data.draw(measurements())
+    estimator = Estimator(c, values)
+    p = estimator.parameters
+    for part in np.array_split(z, 3):
+        before = np.frombuffer(c.ffi.buffer(estimator.estimate), c.dtype("sh_estimate")).copy()
+        record = estimator.run(part)
+        check_outputs(np.concatenate([before, record]), max(1.0, p.rls.c), p.confidence)
+        check_skipped(before, record)
+        if method == PAPER2011:
+            check_paper2011(estimator.state, p.rls.P_0)
+        else:
+            check_matched(estimator.state)
+
+
+@often
+@given(data=st.data())
+def test_matched_filter_takes_samples_again_after_any_others(
+    c: Library, data: st.DataObject
+) -> None:
+    gentle = np.zeros((20, 5))
+    gentle[:, :2] = 0.01 * np.sin(0.1 * np.arange(20))[:, None] * [1.0, 1.1]
+    values, z = data.draw(parameters(MATCHED, c.real)), data.draw(measurements())
+    fresh, used = Estimator(c, values), Estimator(c, values)
+    used.run(z)
+    assert used.repeat(gentle, 20) > 0 or fresh.repeat(gentle, 20) == 0
+
+
+@often
+@given(data=st.data())
+@pytest.mark.parametrize("method", [PAPER2011, MATCHED])
+def test_a_gap_changes_nothing_in_the_state(c: Library, method: int, data: st.DataObject) -> None:
+    values, z = data.draw(parameters(method, c.real)), data.draw(measurements())
+    estimator = Estimator(c, values)
+    estimator.run(z)
+    before = estimator.lasting()
+    skipped = estimator.state.skipped
+    bad: Array = np.zeros((3, 5))
+    bad[:, data.draw(st.integers(0, 4))] = data.draw(
+        st.sampled_from([math.nan, math.inf, -math.inf, 2e12])
+    )
+    assert estimator.repeat(bad, 3) == 0
+    assert estimator.state.skipped == skipped + 3
+    estimator.state.skipped = skipped
+    assert estimator.lasting() == before
