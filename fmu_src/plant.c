@@ -30,9 +30,9 @@ static void set_outputs(sh_plant *plant, const double *u)
  * period, is reached. As in sample_clock.h it counts in periods, and a time that is missed by 1e-6
  * of a period counts as reached.
  */
-static void advance_noise(sh_plant *plant, double h)
+static void advance_noise(sh_plant *plant, double periods)
 {
-    const double since = plant->since + h / plant->samplePeriod;
+    const double since = plant->since + periods;
     const double samples = fmax(floor(since + 1e-6), 0.0);
 
     plant->since = since - samples;
@@ -108,6 +108,7 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     sh_plant *plant = model;
     double x[SH_PLANT_STATES], u[SH_PLANT_INPUTS], du[SH_PLANT_INPUTS], u_end[SH_PLANT_INPUTS];
     double internal_step = plant->h;
+    const double periods = SH_PLANT_NORMALS > 0 ? h / plant->samplePeriod : 0.0; /* of the noise */
     size_t i;
 
     for (i = 0; i < SH_PLANT_INPUTS; ++i) {
@@ -124,7 +125,7 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
             return SH_ERROR;
         }
     }
-    if (SH_PLANT_NORMALS > 0 && h / plant->samplePeriod > MAX_PERIODS) {
+    if (!(periods <= MAX_PERIODS)) {
         sh_log(log, SH_ERROR,
                "Step from t = %.9g s refused, the state is kept: its length %g s is more than %g "
                "times noise.samplePeriod = %g s; expected a shorter step.",
@@ -149,7 +150,7 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     }
     plant->h = internal_step;
     if (SH_PLANT_NORMALS > 0) {
-        advance_noise(plant, h);
+        advance_noise(plant, periods);
     }
     set_outputs(plant, u_end);
     return SH_OK;

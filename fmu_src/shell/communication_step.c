@@ -26,7 +26,7 @@ static void clear_input_derivatives(sh_instance *instance)
 sh_status sh_communication_step(void *handle, double t, double h, const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_STEP, function);
-    double late, rounding, tolerance;
+    double late, rounding, tolerance, whole;
     sh_status status;
 
     if (instance == NULL) {
@@ -65,11 +65,11 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
     if (sh_check_parameters(instance) != SH_OK) {
         return SH_ERROR;
     }
-    if (fabs(late) <= rounding ||
-        !(h + late > 0.0)) { /* a step that is shorter than the rounding */
-        status = sh_fmu_model.step(instance->model, t, h, instance);
+    whole = h + late;
+    if (fabs(late) > rounding && whole > 0.0) { /* else h is shorter than the rounding */
+        status = sh_fmu_model.step(instance->model, instance->time, whole, instance);
     } else {
-        status = sh_fmu_model.step(instance->model, instance->time, h + late, instance);
+        status = sh_fmu_model.step(instance->model, t, h, instance);
     }
     if (status > SH_WARNING) {
         return status;

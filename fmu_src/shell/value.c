@@ -1,5 +1,6 @@
 #include "value.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -48,7 +49,8 @@ void sh_write(sh_instance *instance, const sh_variable *variable, double value)
     if (variable->type == SH_TYPE_REAL) {
         *(double *)place = value;
     } else {
-        *(int *)place = (int)value;
+        /* In its range, unless the importer has changed it since the check. */
+        *(int *)place = value >= INT_MAX ? INT_MAX : value > INT_MIN ? (int)value : INT_MIN;
     }
 }
 

@@ -7,7 +7,6 @@
 
 static volatile int unknown_int;
 static volatile double unknown_real;
-static volatile size_t unknown_size;
 
 int any_choice(void)
 {
@@ -19,11 +18,6 @@ int any_int(void)
     return unknown_int;
 }
 
-size_t any_size(void)
-{
-    return unknown_size;
-}
-
 double any_real(void)
 {
     return unknown_real;
@@ -33,27 +27,13 @@ void *any_bytes(size_t size)
 {
     char *bytes = malloc(size);
 
-    if (bytes == NULL) /* what cannot be handed over is not */
+    if (bytes == NULL) { /* what cannot be handed over is not */
         Frama_C_abort();
-    if (size > 0)
-        Frama_C_make_unknown(bytes, size);
-    return bytes;
-}
-
-char *any_string(size_t length)
-{
-    char *text = any_bytes(length + 1);
-    size_t i;
-
-    //@ loop unroll length;
-    for (i = 0; i < length; ++i) {
-        text[i] = (char)Frama_C_interval(-128, 127);
-        //@ split text[i] == 0;
-        if (text[i] == 0)
-            text[i] = 1;
     }
-    text[length] = '\0';
-    return text;
+    if (size > 0) {
+        Frama_C_make_unknown(bytes, size);
+    }
+    return bytes;
 }
 
 void *allocate(size_t count, size_t size)

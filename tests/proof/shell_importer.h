@@ -10,22 +10,12 @@
 
 #include "instance.h"
 
-int any_choice(void);  /* 0 or 1 */
+int any_choice(void); /* 0 or 1 */
 int any_int(void);
-size_t any_size(void);
 double any_real(void); /* infinities and NaN, too */
 
 /* Memory of exactly this size with any bytes. */
 void *any_bytes(size_t size);
-
-/* A string of exactly this length; each of its characters may be anything but 0. */
-char *any_string(size_t length);
-
-/* NULL, a string of a few lengths, or the GUID of the FMU. */
-const char *any_guid(void);
-
-/* An instance as the shell makes it, in any state that its calls can reach. */
-sh_instance *any_instance(void);
 
 /* Allocation by the importer: NULL, or memory with any bytes. */
 void *allocate(size_t count, size_t size);

@@ -11,8 +11,9 @@
 
 int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
 {
-    if (p->method >= 1 && p->method <= 2 && any_choice())
+    if (p->method >= 1 && p->method <= 2 && any_choice()) {
         return 0;
+    }
     violation->name = "rls.n";
     violation->value = any_real();
     violation->range = "1 to 8";

@@ -61,12 +61,14 @@ static void of_this_size(unsigned course, int stale, int unchecked, int own_memo
 
     memcpy(bytes + PLACE_OF_STATE, &course, sizeof course);
     memcpy(bytes + PLACE_OF_FLAGS, flags, sizeof flags);
-    if (sh_deserialize_state(&instance, bytes, size, &state, "proof") != SH_OK)
+    if (sh_deserialize_state(&instance, bytes, size, &state, "proof") != SH_OK) {
         return;
+    }
     if (sh_restore_state(&instance, state, "proof") == SH_OK) {
         //@ assert taken: instance.state == course;
-        if (course != SH_INITIALIZATION || sh_end_initialization(&instance, "proof") == SH_OK)
+        if (course != SH_INITIALIZATION || sh_end_initialization(&instance, "proof") == SH_OK) {
             sh_communication_step(&instance, any_real(), any_real(), "proof");
+        }
     }
     sh_free_state(&instance, &state, "proof");
     //@ assert freed: state == \null;

@@ -1,0 +1,111 @@
+"""The check of a state that comes from elsewhere: states of runs pass, damaged ones do not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from c_library import Estimator, Library, load
+from matched_joint import Joint
+
+PAPER2011, MATCHED_FILTER = 1, 2
+JOINTS: list[dict[str, Any]] = [
+    {},
+    {"rls.n": 8, "rls.m": 5},
+    {"rls.symmetric": 0, "rls.n": 4, "rls.m": 1},
+    {"rls.n": 3, "prior.B": 0.1, "matched.drift": 0.01},
+    {"rls.n": 2, "prior.tau_coulomb": 0.0, "prior.D_theta": 0.0},
+]
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+def passes(e: Estimator) -> bool:
+    return bool(e.library.lib.sh_estimator_check(e.state, e.parameters) == 0)
+
+
+@pytest.mark.parametrize("method", [PAPER2011, MATCHED_FILTER])
+@pytest.mark.parametrize("joint", JOINTS)
+def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, Any]) -> None:
+    """GIVEN a run with gaps, refused samples and changes of the modality, THEN each of its 1500
+    states passes."""
+    rng = np.random.default_rng(1)
+    e = Estimator(c, {"method": method, **joint})
+    assert passes(e)
+    for row in Joint(duration=1.5).measurements():
+        chance = rng.random()
+        if chance < 0.004:
+            row[:] = np.nan
+        elif chance < 0.006:
+            row[0] = 1e12
+        elif chance < 0.008:
+            e.parameters.modality = int(rng.integers(1, 4))
+        e.tick(row)
+        assert passes(e)
+
+
+INTEGERS_OF_MATCHED_FILTER = [
+    *("modality", "begun", "has_nominal", "size", "alternate", "row", "trial", "last_trial"),
+    *("friction_drifts", "stiffness_known", "used", "data.size", "frozen.size"),
+    *("blocks.all.size", "blocks.walking.size", "blocks.recent.size"),
+    *("live.information.size", "live.column", "live.coulomb", "live.inertia"),
+    *("build.information.size", "build.column", "build.coulomb", "build.inertia"),
+    *("column.kind", "column.index"),
+]
+
+
+def damage(part: Any, member: str, place: int, value: int) -> None:
+    """Sets a member by its dotted name; of an array, the element at `place`."""
+    *groups, last = member.split(".")
+    for group in groups:
+        part = getattr(part, group)
+        if group == "column":
+            part = part[place]
+    if last in ("used", "column"):
+        getattr(part, last)[place] = value
+    else:
+        setattr(part, last, value)
+
+
+@settings(max_examples=20, deadline=None)
+@pytest.mark.parametrize("member", INTEGERS_OF_MATCHED_FILTER)
+@given(
+    place=st.integers(0, 5), value=st.one_of(st.integers(-(2**31), -2), st.integers(65, 2**31 - 1))
+)
+def test_a_damaged_member_is_found(c: Library, member: str, place: int, value: int) -> None:
+    """GIVEN a state of MatchedFilter, WHEN an integer of it is out of all that it can be, THEN it
+    does not pass."""
+    e = Estimator(c, {"method": MATCHED_FILTER, "rls.n": 3, "prior.B": 0.1})
+    damage(e.state.method.matched, member, place, value)
+    assert not passes(e)
+
+
+@given(value=st.integers(-(2**31), 2**31 - 1).filter(lambda value: value != 9))
+def test_another_size_of_the_recursion_is_found(c: Library, value: int) -> None:
+    e = Estimator(c, {"method": PAPER2011, "rls.n": 3, "rls.m": 3})
+    e.state.method.paper2011.rls.P.size = value
+    assert not passes(e)
+
+
+@pytest.mark.parametrize(
+    ("member", "value"),
+    [("started", 2), ("started", -1), ("skipped", -1.0), ("skipped", np.nan), ("skipped", np.inf)],
+)
+def test_another_count_of_samples_is_found(c: Library, member: str, value: float) -> None:
+    e = Estimator(c, {})
+    setattr(e.state, member, value)
+    assert not passes(e)
+
+
+def test_no_method_has_no_state(c: Library) -> None:
+    e = Estimator(c, {})
+    e.parameters.method = 7
+    assert not passes(e)

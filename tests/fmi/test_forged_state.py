@@ -1,0 +1,75 @@
+"""States with a right checksum that no FMU has saved: anybody can write one."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+
+import sigmahat
+from fmi_instance import ERROR, OK, Instance
+
+HEADER, CHECKSUM = 136, 128
+STATE, TIME, STOP_TIME, STEPS, PREVIOUS_STEP, STALE, UNCHECKED = 12, 88, 96, 104, 112, 120, 124
+
+
+def signed(state: bytearray) -> bytes:
+    """The state with its checksum: FNV-1a over all bytes but its own."""
+    state[CHECKSUM:HEADER] = bytes(8)
+    value = 14695981039346656037
+    for byte in state:
+        value = ((value ^ byte) * 1099511628211) % 2**64
+    state[CHECKSUM:HEADER] = value.to_bytes(8, "little")
+    return bytes(state)
+
+
+def forge(fmu: Instance, format_: str, place: int, value: float) -> int:
+    """The status when the state of an instance is read back with another value at a place."""
+    state = fmu.save()
+    forged = bytearray(fmu.serialise(state))
+    fmu.free(state)
+    struct.pack_into(f"<{format_}", forged, place, value)
+    status, copy = fmu.deserialise(signed(forged))
+    if status == OK:
+        fmu.free(copy)
+    return status
+
+
+@pytest.mark.parametrize("name", ["StiffnessEstimator", "AwasPlant"])
+def test_a_course_of_simulation_that_cannot_be_is_refused(name: str) -> None:
+    nan, inf = float("nan"), float("inf")
+    with Instance(sigmahat.fmu(name)) as fmu:
+        fmu.initialise()
+        assert fmu.step(0.0, 1e-3) == OK
+        for format_, place, value in [
+            *(("I", STATE, value) for value in (0, 3, 5, 15, 16)),
+            *(("d", TIME, value) for value in (nan, inf)),
+            ("d", STOP_TIME, nan),
+            *(("d", STEPS, value) for value in (nan, inf)),
+            *(("d", PREVIOUS_STEP, value) for value in (nan, inf)),
+            *(("i", STALE, value) for value in (-1, 2)),
+            *(("i", UNCHECKED, value) for value in (-1, 2)),
+        ]:
+            assert forge(fmu, format_, place, value) == ERROR
+            assert "values that this FMU never saves" in fmu.messages[-1][2]
+        assert forge(fmu, "I", STATE, 4) == OK
+
+
+def test_a_parameter_out_of_its_range_is_refused() -> None:
+    """GIVEN a forged state that claims that its parameters were checked, THEN it is refused."""
+    with Instance(sigmahat.fmu("StiffnessEstimator")) as fmu:
+        fmu.initialise()
+        assert forge(fmu, "d", HEADER, -1.0) == ERROR  # samplePeriod
+        assert "samplePeriod = -1 is out of its range" in fmu.messages[-1][2]
+        # The range of each one is kept, but not the limit between two.
+        fmu.set_all({"filter.V_min": 20.0})
+        assert forge(fmu, "i", UNCHECKED, 1) == OK
+        assert forge(fmu, "i", UNCHECKED, 0) == ERROR
+        assert "filter.V_min = 20" in fmu.messages[-1][2]
+
+
+def test_a_step_has_a_finite_end() -> None:
+    with Instance(sigmahat.fmu("AwasPlant")) as fmu:
+        fmu.initialise({"noise.samplePeriod": 1e300}, start=1e308)
+        assert fmu.step(1e308, 1e308) == ERROR
+        assert "to inf s" in fmu.messages[-1][2]

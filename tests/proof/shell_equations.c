@@ -1,0 +1,85 @@
+/* In place of the equations that CasADi generated for a plant: they write any values to their
+ * results. fmin and fmax are those of the C standard; Eva has none.
+ */
+#include <math.h>
+
+#include "__fc_builtin.h"
+#include "plant_functions.h"
+#include "shell_importer.h"
+
+static int any_results(double *to, int count)
+{
+    Frama_C_make_unknown((char *)to, (size_t)count * sizeof *to);
+    return 0;
+}
+
+/*@ requires \valid_read(x + (0 .. n - 1)) && \initialized(x + (0 .. n - 1)); */
+static void need(const double *x, int n)
+{
+    (void)x;
+    (void)n;
+}
+
+int sh_plant_start(const double **arg, double **res, int *iw, double *w, int mem)
+{
+    need(arg[0], SH_PLANT_PARAMETERS);
+    return any_results(res[0], SH_PLANT_STATES);
+}
+
+int sh_plant_xdot(const double **arg, double **res, int *iw, double *w, int mem)
+{
+    need(arg[0], SH_PLANT_STATES);
+    need(arg[1], SH_PLANT_INPUTS);
+    need(arg[2], SH_PLANT_PARAMETERS);
+    return any_results(res[0], SH_PLANT_STATES);
+}
+
+int sh_plant_outputs(const double **arg, double **res, int *iw, double *w, int mem)
+{
+    need(arg[0], SH_PLANT_STATES);
+    need(arg[1], SH_PLANT_INPUTS);
+    need(arg[2], SH_PLANT_PARAMETERS);
+    need(arg[3], SH_PLANT_NORMALS);
+    return any_results(res[0], SH_PLANT_OUTPUTS);
+}
+
+int sh_plant_factorize(const double **arg, double **res, int *iw, double *w, int mem)
+{
+    need(arg[0], SH_PLANT_STATES);
+    need(arg[1], SH_PLANT_INPUTS);
+    need(arg[2], SH_PLANT_PARAMETERS);
+    need(arg[3], 3);
+    return any_results(res[0], SH_PLANT_FACTORS);
+}
+
+int sh_plant_solve_real(const double **arg, double **res, int *iw, double *w, int mem)
+{
+    need(arg[0], SH_PLANT_FACTORS);
+    need(arg[1], SH_PLANT_STATES);
+    return any_results(res[0], SH_PLANT_STATES);
+}
+
+int sh_plant_solve_complex(const double **arg, double **res, int *iw, double *w, int mem)
+{
+    need(arg[0], SH_PLANT_FACTORS);
+    need(arg[1], SH_PLANT_STATES);
+    need(arg[2], SH_PLANT_STATES);
+    any_results(res[0], SH_PLANT_STATES);
+    return any_results(res[1], SH_PLANT_STATES);
+}
+
+double fmin(double a, double b)
+{
+    if (!(b >= -HUGE_VAL)) { /* not a number */
+        return a;
+    }
+    return a <= b ? a : b;
+}
+
+double fmax(double a, double b)
+{
+    if (!(b >= -HUGE_VAL)) {
+        return a;
+    }
+    return a >= b ? a : b;
+}
