@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import click
 
 from sigmahat.commands.check import check
+from sigmahat.commands.common import printable
 from sigmahat.commands.compare import compare
 from sigmahat.commands.estimate import estimate
 from sigmahat.commands.export import export
@@ -21,6 +22,7 @@ from sigmahat.commands.sweep import sweep
 from sigmahat.commands.validate import validate
 
 _ERROR, _INTERRUPTED = 2, 130
+_LONGEST = 5000  # characters of an error: more than the names of all parameters
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -66,7 +68,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         click.echo(error.format_message(), err=True)
         return _ERROR
     except click.ClickException as error:
-        click.echo(f"sigmahat: error: {' '.join(error.format_message().split())}", err=True)
+        text = printable(" ".join(error.format_message().split()))
+        if len(text) > _LONGEST:
+            text = f"{text[:_LONGEST]} ..."
+        click.echo(f"sigmahat: error: {text}", err=True)
         return _ERROR
     except ModuleNotFoundError as error:
         from sigmahat.fmi.installed import how_to_install

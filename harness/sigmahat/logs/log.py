@@ -15,6 +15,9 @@ from sigmahat.logs.errors import LogError
 from sigmahat.user_input.unknown_name import unknown
 
 Array = NDArray[np.float64]
+_NO_TEXT = r"^\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(?i:nan|inf|infinity))?\s*$"
+"""An empty cell, or a number in the notation of Python."""
+_SHOWN = 100  # characters of a text
 _EXACT = 2**53  # largest magnitude up to which a float64 holds every integer
 
 
@@ -83,14 +86,10 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
         shifted = pa.compute.subtract(nanoseconds, first)
         return numbers(path, name, shifted) / 1e9
     if pa.types.is_string(kind) or pa.types.is_large_string(kind):
-        row, text = next(
-            (
-                (row, x.as_py())
-                for row, x in enumerate(column, 1)
-                if x.is_valid and x.as_py().strip() and not is_number(x.as_py())
-            ),
-            (1, ""),
-        )
+        is_text = pa.compute.invert(pa.compute.match_substring_regex(column, _NO_TEXT))
+        row = pa.compute.index(is_text, True).as_py()
+        text = column[max(row, 0)].as_py() if len(column) else None
+        row, text = max(row, 0) + 1, (text or "")[:_SHOWN]
         raise LogError(
             f"{path}: column {name!r} holds text ({text!r} in row {row}), expected numbers"
         )

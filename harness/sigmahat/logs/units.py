@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from difflib import get_close_matches
 from functools import cache
 from typing import Any
@@ -15,6 +16,9 @@ from sigmahat.logs.log import Array
 
 _USUAL = ("rad", "mrad", "deg", "turn", "counts", "N.m", "mN.m", "kN.m", "lbf.in", "A", "mA", "mm")
 _USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")
+_LONGEST, _MOST_POWERS = 40, 4
+_POWER = re.compile(r"(?:\*\*|\^|(?=[⁻⁰¹²³⁴-⁹]))([^*/. ]*)")
+_DIGIT = re.compile(r"[+-]?[0-9]|⁻?[⁰¹²³⁴-⁹]")
 
 
 def seconds(unit: str) -> float:
@@ -85,6 +89,8 @@ def _needed(where: str, port: Port, key: str, unit: str) -> float:
 
 
 def _is(unit: str, kind: str) -> bool:
+    if not _harmless(unit):
+        return False
     import pint
 
     try:
@@ -96,6 +102,8 @@ def _is(unit: str, kind: str) -> bool:
 def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> float:
     if unit == target:
         return 1.0
+    if not _harmless(unit):
+        raise LogError(f"{where}: unknown unit {unit[:_LONGEST]!r}{_meant('', usual)}")
     import pint
 
     try:
@@ -108,6 +116,13 @@ def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> 
         ) from error
     except Exception as error:  # any: the parser of pint raises many kinds
         raise LogError(f"{where}: unknown unit {unit!r}{_meant(unit, usual)}") from error
+
+
+def _harmless(unit: str) -> bool:
+    """Whether pint, which computes powers of numbers, can read a unit in no time."""
+    powers = _POWER.findall(unit)
+    short = len(unit) <= _LONGEST and len(powers) <= _MOST_POWERS
+    return short and all(_DIGIT.fullmatch(exponent) for exponent in powers)
 
 
 def _meant(unit: str, usual: tuple[str, ...]) -> str:
