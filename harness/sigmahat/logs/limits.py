@@ -11,15 +11,15 @@ from pathlib import Path
 from sigmahat.logs.errors import LogError
 
 MOST_COLUMNS = 2000
-_NUMBERS = 30_000_000
-_NUMBERS_PER_BYTE = 3  # of the file; without compression it is at most one
+_NUMBERS, _SMALL = 15_000_000, 10_000_000  # numbers in a file of so many bytes, or fewer
+_NUMBERS_PER_BYTE = 3  # of the rest of a larger file; without compression it is at most one
 MOST_TEXT = 100_000_000
 """Characters of a column of text at a time."""
 
 
 def most_numbers(path: Path) -> int:
     """How many numbers the columns of a file may hold together."""
-    return max(_NUMBERS, _NUMBERS_PER_BYTE * path.stat().st_size)
+    return _NUMBERS + _NUMBERS_PER_BYTE * max(0, path.stat().st_size - _SMALL)
 
 
 def check_columns(path: Path, columns: int) -> None:

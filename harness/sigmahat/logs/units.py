@@ -16,9 +16,13 @@ from sigmahat.logs.log import Array
 
 _USUAL = ("rad", "mrad", "deg", "turn", "counts", "N.m", "mN.m", "kN.m", "lbf.in", "A", "mA", "mm")
 _USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")
-_LONGEST, _MOST_POWERS = 40, 4
-_POWER = re.compile(r"(?:\*\*|\^|(?=[⁻⁰¹²³⁴-⁹]))([^*/. ]*)")
-_DIGIT = re.compile(r"[+-]?[0-9]|⁻?[⁰¹²³⁴-⁹]")
+_LONGEST = 40  # characters of a unit
+_SMALL = "\u2070\u00b9\u00b2\u00b3\u2074-\u2079"  # digits as exponents are written
+_TOWER = re.compile(
+    rf"[\d){_SMALL}]\s*(\*\*|\^|[{_SMALL}])|(\*\*|\^)\s*[+-]?\s*(\d\d|[^\d\s+-])"
+)
+"""A power of a number or of a power, or one with more than a digit: 9**9**9 would take for ever."""
+
 
 
 def seconds(unit: str) -> float:
@@ -120,9 +124,7 @@ def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> 
 
 def _harmless(unit: str) -> bool:
     """Whether pint, which computes powers of numbers, can read a unit in no time."""
-    powers = _POWER.findall(unit)
-    short = len(unit) <= _LONGEST and len(powers) <= _MOST_POWERS
-    return short and all(_DIGIT.fullmatch(exponent) for exponent in powers)
+    return len(unit) <= _LONGEST and _TOWER.search(unit) is None
 
 
 def _meant(unit: str, usual: tuple[str, ...]) -> str:

@@ -34,7 +34,7 @@ def read(path: Path) -> tomlkit.TOMLDocument:
         content = file.read(_LONGEST + 1)
     if len(content) > _LONGEST:
         raise ValueError(f"expected at most {_LONGEST} bytes")
-    text = content.decode()
+    text = content.decode().replace("\r\n", "\n").replace("\r", "\n")
     # The time that tomlkit takes grows with the square of the keys, and more with their depth.
     try:
         keys = _keys(tomllib.loads(text), 1)

@@ -15,7 +15,7 @@ import pyarrow.parquet
 
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.limits import MOST_TEXT, check_columns, check_numbers
-from sigmahat.logs.log import Array, Log, fits_float64, is_number, numbers
+from sigmahat.logs.log import Array, Log, first_text, fits_float64, holds_text, is_number, numbers
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 _FEW = 100  # rows with text that are looked at at a time
@@ -40,13 +40,22 @@ class ParquetLog(Log):
 
     def _read(self, name: str) -> Array:
         if name in self._texts:
-            for batch in self.batches([name], _FEW):  # all of a long text need not fit the memory
-                numbers(self.path, name, pa.chunked_array([batch.column(0)]))
+            raise self._text(name)
         try:
             column = self._file.read([name], use_threads=False).column(0)
         except (pa.ArrowException, OSError) as error:
             raise LogError(f"{self.path}: damaged at column {name!r} ({error})") from error
         return numbers(self.path, name, column)
+
+    def _text(self, name: str) -> LogError:
+        """The error for a column of text, which need not fit the memory as a whole."""
+        rows = 0
+        for batch in self.batches([name], _FEW):
+            found = first_text(pa.chunked_array([batch.column(0)]))
+            if found is not None:
+                return holds_text(self.path, name, rows + found[0], found[1])
+            rows += len(batch)
+        return holds_text(self.path, name, 1, "")
 
     def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
         texts = [name for name in names if name in self._texts]
@@ -99,7 +108,7 @@ class CsvLog(Log):
         if _numeric(self._types[name]):
             column = self._copy.read([name], use_threads=False).column(0)
         else:
-            column = self._parsed(name)
+            column = self._parsed(self._copy, name)
         return numbers(self.path, name, column)
 
     def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
@@ -119,12 +128,21 @@ class CsvLog(Log):
                 self._write(file, {**kinds, **dict.fromkeys(small, pa.float64())})
         except pa.ArrowInvalid:
             # A column that has text behind its first numbers, or damage, which appears again here.
-            self._write(file, {name: self._parsed(name).type for name in self._names})
+            try:
+                self._write(file, {})
+            except pa.ArrowInvalid as error:
+                raise LogError(
+                    f"{self.path}: {error}; a file cut in the middle ends like this"
+                ) from error
+            texts = pa.parquet.ParquetFile(file, pre_buffer=False)
+            self._write(file, {name: self._parsed(texts, name).type for name in self._names})
         pa.default_memory_pool().release_unused()
         return pa.parquet.ParquetFile(file, pre_buffer=False)
 
     def _write(self, file: IO[bytes], kinds: Mapping[str, pa.DataType]) -> None:
-        types = {name: kind if _numeric(kind) else pa.string() for name, kind in kinds.items()}
+        """Writes the copy; columns without a kind of numbers become text."""
+        types = dict.fromkeys(self._names, pa.string())
+        types |= {name: kind for name, kind in kinds.items() if _numeric(kind)}
         file.seek(0)
         file.truncate()
         with (
@@ -141,15 +159,12 @@ class CsvLog(Log):
         options = pa.csv.ConvertOptions(column_types=types, decimal_point=self._decimal)
         return pa.csv.open_csv(self.path, self._options(), self._parse, options)
 
-    def _parsed(self, name: str) -> pa.ChunkedArray:
-        """A column in the type that fits all of its values."""
-        options = pa.csv.ConvertOptions(include_columns=[name], decimal_point=self._decimal)
-        try:
-            return pa.csv.read_csv(self.path, self._options(), self._parse, options).column(0)
-        except pa.ArrowInvalid as error:
-            raise LogError(
-                f"{self.path}: {error}; a file cut in the middle ends like this"
-            ) from error
+    def _parsed(self, copy: pa.parquet.ParquetFile, name: str) -> pa.ChunkedArray:
+        """A column that a copy holds as text, in the type that fits all of its values."""
+        text = pa.BufferOutputStream()
+        pa.csv.write_csv(copy.read([name], use_threads=False), text)
+        options = pa.csv.ConvertOptions(decimal_point=self._decimal)
+        return pa.csv.read_csv(pa.BufferReader(text.getvalue()), convert_options=options).column(0)
 
     def _options(self) -> pa.csv.ReadOptions:
         return pa.csv.ReadOptions(block_size=_BLOCK, column_names=self._names, skip_rows=1)
