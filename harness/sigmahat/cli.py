@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Sequence
 
 import click
@@ -60,6 +61,13 @@ for command in (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit status; an error is one line on stderr."""
+    with warnings.catch_warnings():
+        # What numpy says of values that are not finite: the commands say it in their words.
+        warnings.simplefilter("ignore", RuntimeWarning)
+        return _main(arguments)
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     try:
         status = int(cli.main(arguments, prog_name="sigmahat", standalone_mode=False) or 0)
         sys.stdout.flush()

@@ -216,8 +216,11 @@ def _is_text(kind: pa.DataType) -> bool:
 def _bytes(metadata: Any) -> int:
     """What the columns of a Parquet file are without compression."""
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
-    return sum(group.column(j).total_uncompressed_size for group in groups
-               for j in range(group.num_columns))
+    return sum(
+        group.column(j).total_uncompressed_size
+        for group in groups
+        for j in range(group.num_columns)
+    )
 
 
 def _numeric(kind: pa.DataType) -> bool:
