@@ -1,4 +1,4 @@
-"""The bill of materials of the release, and archives that are the same bytes wherever they are made."""
+"""The bill of materials of the release; archives that are the same wherever they are packed."""
 
 from __future__ import annotations
 
