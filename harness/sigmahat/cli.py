@@ -76,10 +76,10 @@ def _main(arguments: Sequence[str] | None) -> int:
         click.echo(error.format_message(), err=True)
         return _ERROR
     except click.ClickException as error:
-        text = printable(" ".join(error.format_message().split()))
-        if len(text) > _LONGEST:
-            text = f"{text[:_LONGEST]} ..."
-        click.echo(f"sigmahat: error: {text}", err=True)
+        said = printable(" ".join(error.format_message().split()))
+        if len(said) > _LONGEST:
+            said = f"{said[:_LONGEST]} ..."
+        click.echo(f"sigmahat: error: {said}", err=True)
         return _ERROR
     except ModuleNotFoundError as error:
         from sigmahat.fmi.installed import how_to_install

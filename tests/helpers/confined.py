@@ -1,7 +1,7 @@
 """Commands of sigmahat with files from strangers: each in a process of its own, with limits.
 
-One process imports the package and is forked for every command, so that one takes some hundredths of
-a second. `python confined.py` is that process: a line of JSON comes in, a line of JSON goes out.
+One process imports the package and is forked for every command, so that one takes some hundredths
+of a second. `python confined.py` is that process: a line of JSON comes in, a line of JSON goes out.
 """
 
 from __future__ import annotations

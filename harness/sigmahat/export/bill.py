@@ -1,4 +1,4 @@
-"""The software bill of materials of a release, in CycloneDX: what is in its files, and what made them.
+"""The bill of materials of a release, in CycloneDX: what is in its files, and what made them.
 
 It is made of the files of the release alone, so that the same release gives the same bytes: there
 is no time in it, and its serial number is made from its contents.
@@ -59,7 +59,7 @@ def write(out: Path, release: Path, version: str) -> None:
     bom.register_dependency(product, made)
     digest = hashlib.sha256("".join(map(_sha256, files)).encode()).hexdigest()
     bom.serial_number = uuid5(NAMESPACE_URL, f"sigmahat {version} {digest}")
-    bom.metadata.timestamp = None  # type: ignore[assignment] # the schema does not ask for one
+    bom.metadata.timestamp = None  # the schema does not ask for one
     text = make_outputter(bom, OutputFormat.JSON, SchemaVersion.V1_6).output_as_string(indent=1)
     out.write_text(text + "\n", encoding="utf-8")
 

@@ -92,8 +92,6 @@ def _needed(where: str, port: Port, key: str, unit: str) -> float:
 def _is(unit: str, kind: str) -> bool:
     if not _harmless(unit):
         return False
-    import pint
-
     try:
         return bool(_registry().Unit(_spelled(unit)).is_compatible_with(kind))
     except Exception:  # any: the parser of pint raises many kinds

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from sigmahat.logs.errors import LogError
 from sigmahat.logs.limits import check_columns, check_numbers
-from sigmahat.logs.readers.packed_mat import check_packed
 from sigmahat.logs.log import LogInMemory
+from sigmahat.logs.readers.packed_mat import check_packed
 
 _MOST_COLUMNS = 256  # of one matrix; a larger one is an image, not a log
 _DEEPEST = 32  # groups of HDF5 in groups
