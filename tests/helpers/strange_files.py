@@ -13,46 +13,12 @@ from hypothesis import strategies as st
 from confined import Confined, Done
 from recorded_logs import CONFIGURATION, Array, write_log
 
-NUMBERS = st.sampled_from(
-    [
-        "0",
-        "-1",
-        "1e999",
-        "-1e-999",
-        "nan",
-        "inf",
-        "1e308",
-        "5e-324",
-        "1e-12",
-        "0x7f",
-        "1e300",
-        "true",
-        "[1,2]",
-        "{a=1}",
-        "1979-05-27",
-        "[]",
-    ]
-    + ['"text"', '"\\u0000"', "9" * 30, "9" * 5000]
-)
-TEXTS = st.sampled_from(
-    [
-        "../../x/theta",
-        "/etc/passwd",
-        "~",
-        "{{7*7}}",
-        "$$q$$",
-        "%n%s",
-        "theta",
-        "q",
-        "tau",
-        "theta_c",
-        "0",
-        "time",
-        "A.B/C.d",
-    ]
-    + ["<script>alert(1)</script>", "=cmd|' /C calc'!A0", "\x1b[31mq", "q\u202e", "q" * 5000]
-    + ["theta [9**9**9**9]", "t [rad**999999999]", "t [s]", "x y", "\u00b5"]
-)
+_WORDS = "0 -1 1e999 -1e-999 nan inf 1e308 5e-324 1e-12 0x7f 1e300 true [1,2] {a=1} 1979-05-27 []"
+_NAMES = "../../x/theta /etc/passwd ~ {{7*7}} $$q$$ %n%s theta q tau theta_c 0 time A.B/C.d \u00b5"
+_HOSTILE = ["<script>alert(1)</script>", "=cmd|' /C calc'!A0", "\x1b[31mq", "q\u202e", "q" * 5000]
+_UNITED = ["theta [9**9**9**9]", "t [rad**999999999]", "t [s]", "x y"]
+NUMBERS = st.sampled_from([*_WORDS.split(), '"text"', '"\\u0000"', "9" * 30, "9" * 5000])
+TEXTS = st.sampled_from([*_NAMES.split(), *_HOSTILE, *_UNITED])
 CELLS = st.one_of(
     st.floats().map(repr), st.integers().map(str), st.sampled_from(["", "x", '"', "1e999", "\0"])
 )

@@ -59,7 +59,7 @@ def write(out: Path, release: Path, version: str) -> None:
     bom.register_dependency(product, made)
     digest = hashlib.sha256("".join(map(_sha256, files)).encode()).hexdigest()
     bom.serial_number = uuid5(NAMESPACE_URL, f"sigmahat {version} {digest}")
-    bom.metadata.timestamp = None  # the schema does not ask for one
+    bom.metadata.timestamp = None  # type: ignore[assignment] # the schema does not ask for one
     text = make_outputter(bom, OutputFormat.JSON, SchemaVersion.V1_6).output_as_string(indent=1)
     out.write_text(text + "\n", encoding="utf-8")
 
