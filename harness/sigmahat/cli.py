@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Sequence
 
 import click
 
 from sigmahat.commands.check import check
+from sigmahat.commands.common import printable
 from sigmahat.commands.compare import compare
 from sigmahat.commands.estimate import estimate
 from sigmahat.commands.export import export
@@ -21,6 +23,7 @@ from sigmahat.commands.sweep import sweep
 from sigmahat.commands.validate import validate
 
 _ERROR, _INTERRUPTED = 2, 130
+_LONGEST = 5000  # characters of an error: more than the names of all parameters
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -58,6 +61,13 @@ for command in (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit status; an error is one line on stderr."""
+    with warnings.catch_warnings():
+        # What numpy says of values that are not finite: the commands say it in their words.
+        warnings.simplefilter("ignore", RuntimeWarning)
+        return _main(arguments)
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     try:
         status = int(cli.main(arguments, prog_name="sigmahat", standalone_mode=False) or 0)
         sys.stdout.flush()
@@ -66,7 +76,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         click.echo(error.format_message(), err=True)
         return _ERROR
     except click.ClickException as error:
-        click.echo(f"sigmahat: error: {' '.join(error.format_message().split())}", err=True)
+        said = printable(" ".join(error.format_message().split()))
+        if len(said) > _LONGEST:
+            said = f"{said[:_LONGEST]} ..."
+        click.echo(f"sigmahat: error: {said}", err=True)
         return _ERROR
     except ModuleNotFoundError as error:
         from sigmahat.fmi.installed import how_to_install

@@ -73,7 +73,13 @@ def answer(text: str, values: object = None) -> None:
     if options.get(_JSON):
         print_json(values)
     elif not options.get(_QUIET):
-        click.echo(text)
+        click.echo(printable(text))
+
+
+def printable(text: str) -> str:
+    """A text without what a terminal takes for a command, such as in the name of a column."""
+    kept = "\n\t"
+    return "".join(c if c.isprintable() or c in kept else repr(c)[1:-1] for c in text)
 
 
 def folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | None:

@@ -123,6 +123,16 @@ def distribute(
     distribution.write(out, project, contents, source, include, cache)
 
 
+@main.command("bill")
+@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.option("--version", required=True, help="Version of the release.")
+def write_bill(folder: Path, version: str) -> None:
+    """Write the bill of materials of the release in FOLDER into it."""
+    from sigmahat.export import bill
+
+    bill.write(folder / bill.NAME, folder, version)
+
+
 @main.command()
 @click.argument("out", type=click.Path(file_okay=False, path_type=Path))
 @click.argument("fmus", nargs=-1, required=True, type=click.Path(exists=True, path_type=Path))

@@ -35,6 +35,9 @@ with interrupts_wait():  # FMPy imports it later; while it starts, in C, a Ctrl-
 Value = float | int | bool | str
 """Value of a variable. An enumeration takes the name of its item."""
 
+_TOO_LARGE = 2**31
+"""First whole number that an Integer of FMI cannot hold."""
+
 _log = logging.getLogger("sigmahat")
 
 
@@ -117,11 +120,15 @@ class Fmu:
             return items[value]
         if isinstance(value, str):
             raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {value!r}")
-        if variable.type == "Real":
-            return float(value)
-        if value != int(value):
-            raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {value!r}")
-        return int(value)
+        try:
+            if variable.type == "Real":
+                return float(value)
+            whole = int(value)
+        except (TypeError, ValueError, OverflowError):  # a list or a date, nan, too many digits
+            whole = None
+        if whole is None or whole != value or abs(whole) >= _TOO_LARGE:
+            raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {_shown(value)}")
+        return whole
 
     def items(self, name: str) -> dict[int, str]:
         """Returns the items of an enumeration: their names by their numbers."""
@@ -150,6 +157,13 @@ class Fmu:
                 value = self.items(name)[int(value)]
             values[name] = value
         return values
+
+
+def _shown(value: object) -> str:
+    try:
+        return repr(value)[:100]
+    except ValueError:  # Python writes whole numbers with some thousand digits, not with more
+        return "a number with too many digits"
 
 
 class Slave:

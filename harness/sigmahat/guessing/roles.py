@@ -18,6 +18,7 @@ _CLOSE, _ALIKE, _UNLIKE = 0.98, 0.9, 0.7
 """Correlations of two positions of one joint: surely, likely, and not likely so."""
 _SAME = 0.995  # correlation with a position from which on a column is no torque
 _BETTER = 0.7  # of what motor and link leave unexplained of the torque, to be swapped
+_MOST_COMPARED = 32  # columns of one joint; the time goes with the square of it
 _EXPLAINED = 0.5  # of a torque without a name by the motion
 
 
@@ -46,7 +47,7 @@ class Roles:
 
 def assign(columns: Sequence[Column], T: float) -> Roles:
     """Ports of the columns of one joint, whose windows have samples T apart [s]."""
-    moving = [each for each in columns if each.facts.varies and len(each.window)]
+    moving = _few([each for each in columns if each.facts.varies and len(each.window)])
     positions = _positions(moving, T)
     ports: dict[str, Role] = dict(_pair(positions))
     taken = {role.column.name for role in ports.values()}
@@ -61,6 +62,15 @@ def assign(columns: Sequence[Column], T: float) -> Roles:
         found = _drive(ports, T)
     order = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
     return Roles({port: ports[port] for port in order if port in ports}, found)
+
+
+def _few(columns: list[Column]) -> list[Column]:
+    """Columns to compare, each with each: those whose names say something before the others."""
+    if len(columns) <= _MOST_COMPARED:
+        return columns
+    kept = sorted(columns, key=lambda each: each.meaning.quantity is None)[:_MOST_COMPARED]
+    names = {each.name for each in kept}
+    return [each for each in columns if each.name in names]
 
 
 def chosen_roles(columns: Mapping[str, Column], T: float) -> Roles:

@@ -15,6 +15,9 @@ from sigmahat.logs.errors import LogError
 from sigmahat.user_input.unknown_name import unknown
 
 Array = NDArray[np.float64]
+_NO_TEXT = r"^\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(?i:nan|inf|infinity))?\s*$"
+"""An empty cell, or a number in the notation of Python."""
+_SHOWN = 100  # characters of a text
 _EXACT = 2**53  # largest magnitude up to which a float64 holds every integer
 
 
@@ -83,17 +86,7 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
         shifted = pa.compute.subtract(nanoseconds, first)
         return numbers(path, name, shifted) / 1e9
     if pa.types.is_string(kind) or pa.types.is_large_string(kind):
-        row, text = next(
-            (
-                (row, x.as_py())
-                for row, x in enumerate(column, 1)
-                if x.is_valid and x.as_py().strip() and not is_number(x.as_py())
-            ),
-            (1, ""),
-        )
-        raise LogError(
-            f"{path}: column {name!r} holds text ({text!r} in row {row}), expected numbers"
-        )
+        raise holds_text(path, name, *(first_text(column) or (1, "")))
     if pa.types.is_null(kind):
         return np.full(len(column), np.nan)
     if not (pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)):
@@ -103,6 +96,18 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
         column = pa.compute.subtract(column.cast(pa.int64()), first)
     values: Array = np.array(column.cast(pa.float64(), safe=False).to_numpy())
     return values
+
+
+def first_text(column: pa.ChunkedArray) -> tuple[int, str] | None:
+    """Row, from 1 on, and begin of the first cell of text that is no number; None if none is."""
+    is_text = pa.compute.invert(pa.compute.match_substring_regex(column, _NO_TEXT))
+    row = pa.compute.index(is_text, True).as_py()
+    return None if row < 0 else (row + 1, column[row].as_py()[:_SHOWN])
+
+
+def holds_text(path: Path, name: str, row: int, text: str) -> LogError:
+    """The error for a column with text in this row."""
+    return LogError(f"{path}: column {name!r} holds text ({text!r} in row {row}), expected numbers")
 
 
 def fits_float64(column: pa.ChunkedArray) -> bool:

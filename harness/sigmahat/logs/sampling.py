@@ -20,7 +20,8 @@ from sigmahat.logs.resampling import AT_TICK, Resampled, at_ticks, stretches
 from sigmahat.logs.turns import put_right
 from sigmahat.logs.units import convert, seconds, unwrap
 
-_MOST_TICKS = 200_000_000
+_MOST_TICKS = 5_000_000
+_MOST_TICKS_OF_MANY_ROWS = 2  # per row: the memory for the ticks goes with the size of the log
 _MOST_TICKS_PER_ROW = 200  # else the time has another unit
 _LONG_AGO = 1e6  # [s] A time that is larger counts from 1970, or from the start of a machine.
 
@@ -76,7 +77,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
             f"{log.path}: most rows are {step:g} s apart, the ticks {T:g} s; "
             "check time.unit and samplePeriod"
         )
-    if ticks > _MOST_TICKS:
+    if ticks > max(_MOST_TICKS, _MOST_TICKS_OF_MANY_ROWS * len(rows)):
         raise LogError(
             f"{log.path}: {end - start:g} s in steps of {T:g} s are {ticks} ticks; "
             "check time.unit and samplePeriod"
@@ -94,6 +95,11 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
             t = t - port.delay
             notes.append(f"{name}: moved back by {port.delay:g} s")
         resampled = at_ticks(t, column, T, ticks, configuration.time.longest_gap)
+        if resampled is not None and not np.isfinite(resampled.values).any():
+            raise LogError(
+                f"port {name}: no sample of its column lies in the {end - start:g} s of the log; "
+                "check its delay, and time.longest_gap"
+            )
         if resampled is None:
             raise LogError(f"port {name}: its column holds no number; remove it or name another")
         notes += _notes(name, resampled, T)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from difflib import get_close_matches
 from functools import cache
 from typing import Any
@@ -15,6 +16,10 @@ from sigmahat.logs.log import Array
 
 _USUAL = ("rad", "mrad", "deg", "turn", "counts", "N.m", "mN.m", "kN.m", "lbf.in", "A", "mA", "mm")
 _USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")
+_LONGEST = 40  # characters of a unit
+_SMALL = "\u2070\u00b9\u00b2\u00b3\u2074-\u2079"  # digits as exponents are written
+_TOWER = re.compile(rf"[\d){_SMALL}]\s*(\*\*|\^|[{_SMALL}])|(\*\*|\^)\s*[+-]?\s*(\d\d|[^\d\s+-])")
+"""A power of a number or of a power, or one with more than a digit: 9**9**9 would take for ever."""
 
 
 def seconds(unit: str) -> float:
@@ -85,17 +90,19 @@ def _needed(where: str, port: Port, key: str, unit: str) -> float:
 
 
 def _is(unit: str, kind: str) -> bool:
-    import pint
-
+    if not _harmless(unit):
+        return False
     try:
         return bool(_registry().Unit(_spelled(unit)).is_compatible_with(kind))
-    except (pint.PintError, ValueError, TypeError, AssertionError):
+    except Exception:  # any: the parser of pint raises many kinds
         return False
 
 
 def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> float:
     if unit == target:
         return 1.0
+    if not _harmless(unit):
+        raise LogError(f"{where}: unknown unit {unit[:_LONGEST]!r}{_meant('', usual)}")
     import pint
 
     try:
@@ -108,6 +115,11 @@ def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> 
         ) from error
     except Exception as error:  # any: the parser of pint raises many kinds
         raise LogError(f"{where}: unknown unit {unit!r}{_meant(unit, usual)}") from error
+
+
+def _harmless(unit: str) -> bool:
+    """Whether pint, which computes powers of numbers, can read a unit in no time."""
+    return len(unit) <= _LONGEST and _TOWER.search(unit) is None
 
 
 def _meant(unit: str, usual: tuple[str, ...]) -> str:

@@ -53,6 +53,11 @@ class Plan:
     """By name with owner."""
 
     def __len__(self) -> int:
+        return self.count
+
+    @property
+    def count(self) -> int:
+        """Number of runs, also where it is too large for len()."""
         return len(self.scenarios) * self.seeds * math.prod(map(len, self.listed.values()))
 
     @property

@@ -24,6 +24,7 @@ from sigmahat.user_input.unknown_name import unknown
 
 _KEYS = ("scenario", "seeds", "modality", "parameters")
 _MOST = 1_000_000
+_UNREADABLE = 10**15  # as a number of runs
 
 
 def read_plan(
@@ -61,8 +62,9 @@ def read_plan(
         if not equals:
             raise ValueError(f"--set {setting}: expected NAME=VALUES")
         parameters[name.strip()] = _values(name.strip(), text)
-    if len(plan) > _MOST:
-        raise ValueError(f"{len(plan)} runs; expected at most {_MOST}")
+    if plan.count > _MOST:
+        runs = plan.count if plan.count < _UNREADABLE else f"over {_UNREADABLE}"
+        raise ValueError(f"{runs} runs; expected at most {_MOST}")
     for names in (plan.scenarios, plan.modalities):
         if len(set(names)) < len(names):
             raise ValueError(f"{', '.join(names)}: expected each name once")

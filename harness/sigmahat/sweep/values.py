@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -66,9 +67,9 @@ def values(text: Any) -> Values:
 
 
 def _distinct(items: Sequence[Value]) -> tuple[Value, ...]:
-    for i, item in enumerate(items):
-        if item in items[:i]:
-            raise ValueError(f"{item!r} is given twice")
+    item, count = Counter(items).most_common(1)[0]
+    if count > 1:
+        raise ValueError(f"{item!r} is given twice")
     return tuple(items)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import sys
 from collections.abc import Iterator, Mapping, MutableMapping
 from pathlib import Path
 from typing import Any
@@ -9,13 +11,49 @@ from typing import Any
 import tomlkit
 from tomlkit.items import InlineTable, Item
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+
+_LONGEST = 64_000
+_MOST_KEYS = 200
+_DEEPEST = 6
+
 
 def read(path: Path) -> tomlkit.TOMLDocument:
     """The document, with its comments; its method unwrap() gives plain dictionaries.
 
-    Raises OSError if the file cannot be read, ValueError, which says where, if it is not TOML.
+    Raises OSError if the file cannot be read, ValueError, which says where, if it is not TOML, or
+    if it is far larger than what people write.
     """
-    return tomlkit.parse(path.read_text(encoding="utf-8"))
+    if path.exists() and not path.is_file():  # a pipe would be waited for
+        raise OSError(errno.EINVAL, "expected a file, got a folder, a pipe or a device")
+    with path.open("rb") as file:
+        content = file.read(_LONGEST + 1)
+    if len(content) > _LONGEST:
+        raise ValueError(f"expected at most {_LONGEST} bytes")
+    text = content.decode().replace("\r\n", "\n").replace("\r", "\n")
+    # The time that tomlkit takes grows with the square of the keys, and more with their depth.
+    try:
+        keys = _keys(tomllib.loads(text), 1)
+    except RecursionError:
+        raise ValueError(f"expected at most {_DEEPEST} tables in tables") from None
+    if keys > _MOST_KEYS:
+        raise ValueError(f"expected at most {_MOST_KEYS} keys, got {keys}")
+    return tomlkit.parse(text)
+
+
+def _keys(value: Any, depth: int) -> int:
+    """Keys and tables in a value, at any depth. Raises ValueError for too deep ones."""
+    if not isinstance(value, (dict, list)):
+        return 0
+    if depth > _DEEPEST:
+        raise ValueError(f"expected at most {_DEEPEST} tables in tables")
+    if isinstance(value, dict):
+        return len(value) + sum(_keys(each, depth + 1) for each in value.values())
+    return sum(1 + _keys(each, depth + 1) for each in value if isinstance(each, (dict, list)))
 
 
 def dotted(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+_LONGEST = 200  # characters of a name
+
 
 def unknown(kind: str, name: str, existing: Iterable[str]) -> str:
     """One line with the unknown name, similar names, and the existing ones.
@@ -14,8 +16,9 @@ def unknown(kind: str, name: str, existing: Iterable[str]) -> str:
     kind  what the name stands for, as in "unknown scenario 'tabel1'"
     """
     names = sorted(existing)
-    similar = get_close_matches(name, names, n=3, cutoff=0.6)
-    message = f"unknown {kind} {name!r}"
+    short = len(name) <= _LONGEST
+    similar = get_close_matches(name, names, n=3, cutoff=0.6) if short else []
+    message = f"unknown {kind} {name[:_LONGEST]!r}"
     if similar:
         message += "; did you mean " + " or ".join(map(repr, similar)) + "?"
     if not similar or len(names) <= 20:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from sigmahat.logs.errors import LogError
+from sigmahat.logs.limits import check_columns
 from sigmahat.logs.log import Log
 
 _HEAD = 520  # bytes; in files of MATLAB the signature of HDF5 is at byte 512
@@ -13,7 +14,9 @@ _HEAD = 520  # bytes; in files of MATLAB the signature of HDF5 is at byte 512
 def open_log(path: Path) -> Log:
     """A log in CSV, Parquet, MAT (v5 to v7.3), HDF5, MCAP, or a ROS 2 bag.
 
-    Raises LogError if the file is missing, empty, damaged, or of another format.
+    Only the file itself is read, or the files in the folder of the bag: not what it names
+    elsewhere. Raises LogError if the file is missing, empty, damaged, or of another format, and if
+    it holds more than limits.py allows.
     """
     if path.is_dir():
         if not (path / "metadata.yaml").is_file():
@@ -21,6 +24,8 @@ def open_log(path: Path) -> Log:
         from sigmahat.logs.readers.bags import read_bag
 
         return read_bag(path)
+    if path.exists() and not path.is_file():  # a pipe would be waited for
+        raise LogError(f"{path}: expected a file, got a pipe or a device; name a log")
     try:
         with path.open("rb") as file:
             head = file.read(_HEAD)
@@ -31,6 +36,7 @@ def open_log(path: Path) -> Log:
     log = _reader(path, head)
     if not log.columns or max(log.columns.values()) == 0:
         raise LogError(f"{path}: no rows in it; record it again")
+    check_columns(path, len(log.columns))
     return log
 
 

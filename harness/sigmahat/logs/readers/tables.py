@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import weakref
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import IO
+from typing import IO, Any
 
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
 from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Array, Log, fits_float64, is_number, numbers
+from sigmahat.logs.limits import MOST_TEXT, check_columns, check_numbers
+from sigmahat.logs.log import Array, Log, first_text, fits_float64, holds_text, is_number, numbers
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
+_FEW = 100  # rows with text that are looked at at a time
 
 
 class ParquetLog(Log):
@@ -27,21 +30,56 @@ class ParquetLog(Log):
             self._file = pa.parquet.ParquetFile(path, pre_buffer=False)
         except (pa.ArrowException, OSError) as error:
             raise LogError(f"{path}: not a whole Parquet file ({error}); copy it again") from error
-        flat = [field.name for field in self._file.schema_arrow if not field.type.num_fields]
-        super().__init__(path, dict.fromkeys(flat, self._file.metadata.num_rows))
+        schema, metadata = self._file.schema_arrow, self._file.metadata
+        flat = [field.name for field in schema if _is_flat(field.type)]
+        check_columns(path, len(flat))
+        check_numbers(path, len(flat) * metadata.num_rows)
+        check_numbers(path, _bytes(metadata) // 8)
+        self._texts = {field.name for field in schema if _is_text(field.type)}
+        super().__init__(path, dict.fromkeys(flat, metadata.num_rows))
 
     def _read(self, name: str) -> Array:
+        if name in self._texts:
+            raise self._text(name)
         try:
             column = self._file.read([name], use_threads=False).column(0)
         except (pa.ArrowException, OSError) as error:
             raise LogError(f"{self.path}: damaged at column {name!r} ({error})") from error
         return numbers(self.path, name, column)
 
+    def _text(self, name: str) -> LogError:
+        """The error for a column of text, which need not fit the memory as a whole."""
+        rows = 0
+        for batch in self.batches([name], _FEW):
+            found = first_text(pa.chunked_array([batch.column(0)]))
+            if found is not None:
+                return holds_text(self.path, name, rows + found[0], found[1])
+            rows += len(batch)
+        return holds_text(self.path, name, 1, "")
+
     def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
+        texts = [name for name in names if name in self._texts]
         try:
-            yield from self._file.iter_batches(rows, columns=list(names), use_threads=False)
+            # A text that repeats stays one text, until it is known how long all of them are.
+            file = pa.parquet.ParquetFile(self.path, pre_buffer=False, read_dictionary=texts)
+            for batch in file.iter_batches(rows, columns=list(names), use_threads=False):
+                yield self._with_texts(batch)
         except (pa.ArrowException, OSError) as error:
             raise LogError(f"{self.path}: damaged ({error})") from error
+
+    def _with_texts(self, batch: pa.RecordBatch) -> pa.RecordBatch:
+        """A batch with its texts written out."""
+        for i, field in enumerate(batch.schema):
+            if pa.types.is_dictionary(field.type):
+                texts = batch.column(i).dictionary
+                longest = pa.compute.max(pa.compute.binary_length(texts)).as_py() or 0
+                if longest * len(batch) > MOST_TEXT:
+                    raise LogError(
+                        f"{self.path}: column {field.name!r} holds texts of {longest} characters; "
+                        "save the log without it"
+                    )
+                batch = batch.set_column(i, field.name, batch.column(i).cast(texts.type))
+        return batch
 
 
 class CsvLog(Log):
@@ -63,13 +101,14 @@ class CsvLog(Log):
         file = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
         weakref.finalize(self, file.close)  # which removes it
         self._copy = self._copied(file)
+        self._types = {field.name: field.type for field in self._copy.schema_arrow}
         self.columns = dict.fromkeys(names, self._copy.metadata.num_rows)
 
     def _read(self, name: str) -> Array:
-        if _numeric(self._copy.schema_arrow.field(name).type):
+        if _numeric(self._types[name]):
             column = self._copy.read([name], use_threads=False).column(0)
         else:
-            column = self._parsed(name)
+            column = self._parsed(self._copy, name)
         return numbers(self.path, name, column)
 
     def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
@@ -89,12 +128,21 @@ class CsvLog(Log):
                 self._write(file, {**kinds, **dict.fromkeys(small, pa.float64())})
         except pa.ArrowInvalid:
             # A column that has text behind its first numbers, or damage, which appears again here.
-            self._write(file, {name: self._parsed(name).type for name in self._names})
+            try:
+                self._write(file, {})
+            except pa.ArrowInvalid as error:
+                raise LogError(
+                    f"{self.path}: {error}; a file cut in the middle ends like this"
+                ) from error
+            texts = pa.parquet.ParquetFile(file, pre_buffer=False)
+            self._write(file, {name: self._parsed(texts, name).type for name in self._names})
         pa.default_memory_pool().release_unused()
         return pa.parquet.ParquetFile(file, pre_buffer=False)
 
     def _write(self, file: IO[bytes], kinds: Mapping[str, pa.DataType]) -> None:
-        types = {name: kind if _numeric(kind) else pa.string() for name, kind in kinds.items()}
+        """Writes the copy; columns without a kind of numbers become text."""
+        types = dict.fromkeys(self._names, pa.string())
+        types |= {name: kind for name, kind in kinds.items() if _numeric(kind)}
         file.seek(0)
         file.truncate()
         with (
@@ -111,15 +159,12 @@ class CsvLog(Log):
         options = pa.csv.ConvertOptions(column_types=types, decimal_point=self._decimal)
         return pa.csv.open_csv(self.path, self._options(), self._parse, options)
 
-    def _parsed(self, name: str) -> pa.ChunkedArray:
-        """A column in the type that fits all of its values."""
-        options = pa.csv.ConvertOptions(include_columns=[name], decimal_point=self._decimal)
-        try:
-            return pa.csv.read_csv(self.path, self._options(), self._parse, options).column(0)
-        except pa.ArrowInvalid as error:
-            raise LogError(
-                f"{self.path}: {error}; a file cut in the middle ends like this"
-            ) from error
+    def _parsed(self, copy: pa.parquet.ParquetFile, name: str) -> pa.ChunkedArray:
+        """A column that a copy holds as text, in the type that fits all of its values."""
+        text = pa.BufferOutputStream()
+        pa.csv.write_csv(copy.read([name], use_threads=False), text)
+        options = pa.csv.ConvertOptions(decimal_point=self._decimal)
+        return pa.csv.read_csv(pa.BufferReader(text.getvalue()), convert_options=options).column(0)
 
     def _options(self) -> pa.csv.ReadOptions:
         return pa.csv.ReadOptions(block_size=_BLOCK, column_names=self._names, skip_rows=1)
@@ -129,12 +174,16 @@ def _header(path: Path) -> tuple[list[str], str, str]:
     """Names of the columns, the delimiter between them, and the decimal point."""
     with path.open(encoding="utf-8-sig", newline="") as file:
         try:
-            head, first = file.readline().strip("\r\n"), file.readline().strip("\r\n")
+            lines = [file.readline(_BLOCK), file.readline(_BLOCK)]
         except UnicodeDecodeError as error:
             raise LogError(
                 f"{path}: neither text nor a known binary format; expected CSV, Parquet, MAT, "
                 "HDF5, MCAP or a ROS 2 bag"
             ) from error
+    for i, line in enumerate(lines, 1):
+        if len(line) >= _BLOCK:
+            raise LogError(f"{path}: line {i} is longer than {_BLOCK} characters")
+    head, first = (line.strip("\r\n") for line in lines)
     delimiter = max(",;\t", key=head.count)
     names = [cell.strip().strip('"') for cell in head.split(delimiter)]
     if delimiter not in head:
@@ -144,13 +193,34 @@ def _header(path: Path) -> tuple[list[str], str, str]:
         )
     if all(is_number(name) for name in names):
         raise LogError(f"{path}: line 1 holds numbers, expected the names of the columns")
-    repeated = {name for name in names if names.count(name) > 1}
-    if repeated:
-        raise LogError(f"{path}: line 1 names column {repeated.pop()!r} twice")
+    repeated, count = Counter(names).most_common(1)[0]
+    if count > 1:
+        raise LogError(f"{path}: line 1 names column {repeated!r} twice")
+    check_columns(path, len(names))
     if not first:
         raise LogError(f"{path}: no rows below the names of the columns; record it again")
     comma = delimiter == ";" and "," in first and "." not in first
     return names, delimiter, "," if comma else "."
+
+
+def _is_flat(kind: pa.DataType) -> bool:
+    """Whether a column of this type can be a signal, or a note beside it."""
+    return _is_text(kind) or not (kind.num_fields or pa.types.is_fixed_size_binary(kind))
+
+
+def _is_text(kind: pa.DataType) -> bool:
+    kinds = (pa.types.is_string, pa.types.is_large_string, pa.types.is_dictionary)
+    return any(is_kind(kind) for is_kind in kinds)
+
+
+def _bytes(metadata: Any) -> int:
+    """What the columns of a Parquet file are without compression."""
+    groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
+    return sum(
+        group.column(j).total_uncompressed_size
+        for group in groups
+        for j in range(group.num_columns)
+    )
 
 
 def _numeric(kind: pa.DataType) -> bool:

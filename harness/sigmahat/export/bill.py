@@ -1,0 +1,141 @@
+"""The bill of materials of a release, in CycloneDX: what is in its files, and what made them.
+
+It is made of the files of the release alone, so that the same release gives the same bytes: there
+is no time in it, and its serial number is made from its contents.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable
+from email.parser import Parser
+from importlib.metadata import version as installed_version
+from pathlib import Path
+from uuid import NAMESPACE_URL, uuid5
+from zipfile import ZipFile
+
+from cyclonedx.model import HashAlgorithm, HashType, Property
+from cyclonedx.model.bom import Bom, BomMetaData
+from cyclonedx.model.component import Component, ComponentScope, ComponentType
+from cyclonedx.model.license import DisjunctiveLicense
+from cyclonedx.model.tool import ToolRepository
+from cyclonedx.output import make_outputter
+from cyclonedx.schema import OutputFormat, SchemaVersion
+from packageurl import PackageURL
+
+NAME = "sigmahat.cdx.json"
+_BUILD_TOOLS = ("ziglang", "scikit-build-core", "wheel", "casadi", "cyclonedx-python-lib")
+_HEADERS = "FMI headers"
+_CASADI = "equations that CasADi wrote as C"
+_OWN = "C sources of sigmahat"
+_BSD_2 = "BSD-2-Clause"
+
+
+def write(out: Path, release: Path, version: str) -> None:
+    """Writes the bill of all files in the folder of a release.
+
+    Raises FileNotFoundError if there is no wheel among them.
+    """
+    files = sorted(each for each in release.rglob("*") if each.suffix in _ARCHIVES)
+    product = _component("sigmahat", version, ComponentType.FRAMEWORK, _BSD_2, "pkg:pypi/sigmahat")
+    bom = Bom(metadata=BomMetaData(component=product))
+    bom.metadata.tools = ToolRepository(components=map(_tool, _BUILD_TOOLS))
+    headers = _component(_HEADERS, None, ComponentType.LIBRARY, _BSD_2)
+    headers.properties.add(
+        Property(name="sigmahat:from", value=f"fmpy {installed_version('fmpy')}")
+    )
+    own = _component(_OWN, version, ComponentType.LIBRARY, _BSD_2)
+    equations = _component(_CASADI, version, ComponentType.LIBRARY, _BSD_2)
+    packages = list(_packages(files))
+    for each in (headers, own, equations, *packages):
+        bom.components.add(each)
+    made = []
+    for file in files:
+        entry = _file(file, release)
+        bom.components.add(entry)
+        made.append(entry)
+        bom.register_dependency(entry, _contents(file, own, headers, equations, packages))
+    bom.register_dependency(product, made)
+    digest = hashlib.sha256("".join(map(_sha256, files)).encode()).hexdigest()
+    bom.serial_number = uuid5(NAMESPACE_URL, f"sigmahat {version} {digest}")
+    bom.metadata.timestamp = None  # type: ignore[assignment] # the schema does not ask for one
+    text = make_outputter(bom, OutputFormat.JSON, SchemaVersion.V1_6).output_as_string(indent=1)
+    out.write_text(text + "\n", encoding="utf-8")
+
+
+_ARCHIVES = (".fmu", ".ssp", ".zip", ".whl", ".gz")
+
+
+def _component(
+    name: str,
+    version: str | None,
+    kind: ComponentType,
+    licence: str | None,
+    purl: str | None = None,
+) -> Component:
+    return Component(
+        name=name,
+        version=version,
+        type=kind,
+        bom_ref=name,
+        licenses=[DisjunctiveLicense(id=licence)] if licence else [],
+        purl=PackageURL.from_string(f"{purl}@{version}") if purl else None,
+    )
+
+
+def _tool(name: str) -> Component:
+    found = installed_version(name)
+    tool = _component(name, found, ComponentType.APPLICATION, None, f"pkg:pypi/{name}")
+    tool.bom_ref.value = f"tool {name}"
+    return tool
+
+
+def _sha256(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def _file(file: Path, release: Path) -> Component:
+    name = file.relative_to(release).as_posix()
+    entry = _component(name, None, ComponentType.FILE, None)
+    entry.hashes.add(HashType(alg=HashAlgorithm.SHA_256, content=_sha256(file)))
+    return entry
+
+
+def _packages(files: Iterable[Path]) -> Iterable[Component]:
+    """What pip installs with a wheel; extras are optional. Which versions, pip decides there."""
+    wheel = next((file for file in files if file.suffix == ".whl"), None)
+    if wheel is None:
+        raise FileNotFoundError("the release has no wheel; make it before its bill of materials")
+    with ZipFile(wheel) as archive:
+        (name,) = (each for each in archive.namelist() if each.endswith(".dist-info/METADATA"))
+        metadata = Parser().parsestr(archive.read(name).decode())
+    for requirement in metadata.get_all("Requires-Dist", []):
+        package = re.match(r"[\w.-]+", requirement)
+        assert package is not None
+        yield Component(
+            name=package[0],
+            type=ComponentType.LIBRARY,
+            bom_ref=requirement,
+            scope=ComponentScope.OPTIONAL if "extra ==" in requirement else ComponentScope.REQUIRED,
+            purl=PackageURL("pypi", name=package[0].lower()),
+            properties=[Property(name="sigmahat:requirement", value=requirement)],
+        )
+
+
+def _contents(
+    file: Path,
+    own: Component,
+    headers: Component,
+    equations: Component,
+    packages: list[Component],
+) -> list[Component]:
+    """What a file contains, and what a wheel asks for."""
+    if file.suffix == ".zip":
+        return [own]
+    if file.suffix == ".fmu":
+        with ZipFile(file) as archive:
+            is_plant = any(name.endswith("/plant_functions.c") for name in archive.namelist())
+        return [own, headers, *([equations] if is_plant else [])]
+    of_python = packages if file.suffix in (".whl", ".gz") else []
+    return [own, *([] if file.suffix == ".gz" else [headers, equations]), *of_python]

@@ -1,0 +1,40 @@
+"""How much a log may hold: a small file must not fill the memory of whoever opens it.
+
+A file can be packed so well that some kilobytes become many gigabytes. What a recorder writes is
+far from that. Each limit has a floor, so that it never concerns a file of usual size.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sigmahat.logs.errors import LogError
+
+MOST_COLUMNS = 2000
+_NUMBERS, _SMALL = 15_000_000, 10_000_000  # numbers in a file of so many bytes, or fewer
+_NUMBERS_PER_BYTE = 3  # of the rest of a larger file; without compression it is at most one
+MOST_TEXT = 100_000_000
+"""Characters of a column of text at a time."""
+
+
+def most_numbers(path: Path) -> int:
+    """How many numbers the columns of a file may hold together."""
+    return _NUMBERS + _NUMBERS_PER_BYTE * max(0, path.stat().st_size - _SMALL)
+
+
+def check_columns(path: Path, columns: int) -> None:
+    """Raises LogError for too many columns."""
+    if columns > MOST_COLUMNS:
+        raise LogError(
+            f"{path}: {columns} columns, expected at most {MOST_COLUMNS}; "
+            "save those of one joint alone"
+        )
+
+
+def check_numbers(path: Path, numbers: int) -> None:
+    """Raises LogError for more numbers than a file of this size may hold."""
+    if numbers > most_numbers(path):
+        raise LogError(
+            f"{path}: {numbers} numbers or more in a file of {path.stat().st_size / 1e6:.3g} MB, "
+            f"expected at most {most_numbers(path)}; save it without compression, or in parts"
+        )

@@ -1,0 +1,172 @@
+"""Logs, configurations and plans from strangers: no crash, no hang, no memory, no other file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet
+import pytest
+import scipy.io
+from hypothesis import HealthCheck, Phase, given, settings
+
+from confined import Confined
+from recorded_logs import CONFIGURATION, write_log
+from strange_files import TRIALS, Trial, usual
+
+CONFIGURED = CONFIGURATION.replace("motor.B", "rls.n = 3\nmotor.B")
+
+
+@pytest.fixture(scope="module")
+def confined() -> Iterator[Confined]:
+    with Confined() as process:
+        yield process
+
+
+@pytest.mark.slow("some hundred commands, each in a process of its own")
+@settings(
+    max_examples=150,
+    deadline=None,
+    derandomize=True,
+    database=None,
+    phases=[Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
+@given(trial=TRIALS)
+def test_files_that_are_damaged_or_made_up(trial: Trial, confined: Confined) -> None:
+    assert trial.run(confined).complaint() is None
+
+
+def zeros_in_mat(path: Path) -> None:
+    scipy.io.savemat(path, {"t": np.zeros(20_000_000)}, do_compression=True)
+
+
+def nothing_in_hdf5(path: Path) -> None:
+    with h5py.File(path, "w") as file:
+        file.create_dataset("t", shape=(10**10,), dtype="f8", chunks=(10**6,), compression="gzip")
+
+
+def zeros_in_parquet(path: Path) -> None:
+    pa.parquet.write_table(pa.table({"t": np.zeros(16_000_000)}), path)
+
+
+def circle_in_hdf5(path: Path) -> None:
+    with h5py.File(path, "w") as file:
+        file["a/x"] = np.arange(9.0)
+        file["a/b"] = file["/"]
+
+
+def other_file(path: Path) -> None:
+    with h5py.File(path, "w") as file:
+        file["a"] = h5py.ExternalLink("other.h5", "/x")
+
+
+def bytes_of_another_file(path: Path) -> None:
+    with h5py.File(path, "w") as file:
+        file.create_dataset("a", shape=(9,), dtype="i1", external=[("/etc/passwd", 0, 9)])
+
+
+def virtual(path: Path) -> None:
+    layout = h5py.VirtualLayout(shape=(9,), dtype="f8")
+    layout[:] = h5py.VirtualSource("other.h5", "x", shape=(9,))
+    with h5py.File(path, "w") as file:
+        file.create_virtual_dataset("a", layout)
+
+
+def many_columns(path: Path) -> None:
+    path.write_text(",".join(f"c{i}" for i in range(100_000)) + "\n1\n")
+
+
+def long_line(path: Path) -> None:
+    path.write_text("t,q\n" + "1" * 10_000_000)
+
+
+def pipe(path: Path) -> None:
+    os.mkfifo(path)
+
+
+def device(path: Path) -> None:
+    path.symlink_to("/dev/zero")
+
+
+@pytest.mark.parametrize(
+    ("write", "words"),
+    [
+        (zeros_in_mat, "more than 80 MB in a file of"),
+        (nothing_in_hdf5, "10000000000 numbers or more in a file of"),
+        (zeros_in_parquet, "16000000 numbers or more in a file of"),
+        (circle_in_hdf5, "in a circle"),
+        (other_file, "'a' lies in another file, 'other.h5'"),
+        (bytes_of_another_file, "'a' lies in another file, '/etc/passwd'"),
+        (virtual, "'a' lies in another file, 'other.h5'"),
+        (many_columns, "100000 columns, expected at most 2000"),
+        (long_line, "line 2 is longer than"),
+        (pipe, "expected a file, got a pipe or a device"),
+        (device, "expected a file, got a pipe or a device"),
+    ],
+)
+def test_a_log_that_is_more_than_it_seems(
+    write: Callable[[Path], None], words: str, tmp_path: Path, confined: Confined
+) -> None:
+    write(tmp_path / "log")
+    (tmp_path / "log.toml").write_text(CONFIGURATION)
+    for command in (["init", "log", "--config", "new.toml"], ["check", "log"]):
+        done = confined.run(tmp_path, *command)
+        assert done.complaint() is None
+        assert done.status == 2 and words in done.err
+
+
+def test_many_columns_that_move_are_guessed_in_time(tmp_path: Path, confined: Confined) -> None:
+    values = np.random.default_rng(1).integers(0, 999, (2000, 200)).astype(np.float64)
+    write_log({f"c{i}": column for i, column in enumerate(values.T)}, tmp_path / "log.csv")
+    done = confined.run(tmp_path, "init", "log.csv")
+    assert done.complaint() is None and done.status == 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('column = "q"', 'column = "q"\nunit = "9**9**9**9 rad"', "unknown unit"),
+        ('column = "q"', 'column = "q"\nunit = "rad**99999999"', "unknown unit"),
+        (
+            'column = "t"',
+            'column = "t"\nunit = "9\u2079\u2079\u2079\u2079\u2079 s"',
+            "unknown unit",
+        ),
+        ("rls.n = 3", f"rls.n = {'9' * 4000}", "rls.n: expected Integer, got 999"),
+        ("rls.n = 3", "rls.n = 4294967299", "rls.n: expected Integer, got 4294967299"),
+        ("rls.n = 3", "rls.n = [1]", "rls.n: expected Integer, got [1]"),
+        ("samplePeriod = 0.001", "samplePeriod = 1e-12", "check time.unit and samplePeriod"),
+        ('column = "tau"', 'column = "tau"\ndelay = 1e300', "check its delay"),
+        ("[time]", "".join(f"a.b.c.d{i} = 1\n" for i in range(300)) + "[time]", "at most 200 keys"),
+        ("[time]", f"a = {'[' * 90}{']' * 90}\n[time]", "at most 6 tables in tables"),
+        ("[time]", f"# {'x' * 100_000}\n[time]", "at most 64000 bytes"),
+    ],
+)
+def test_a_configuration_that_would_take_for_ever(
+    old: str, new: str, words: str, tmp_path: Path, confined: Confined
+) -> None:
+    write_log(usual(), tmp_path / "log.csv")
+    assert CONFIGURED.count(old) == 1
+    (tmp_path / "log.toml").write_text(CONFIGURED.replace(old, new), encoding="utf-8")
+    done = confined.run(tmp_path, "check", "log.csv")
+    assert done.complaint() is None
+    assert done.status == 2 and words in done.err
+
+
+def test_names_of_columns_are_no_paths_and_no_commands(tmp_path: Path, confined: Confined) -> None:
+    folder = tmp_path / "in"
+    folder.mkdir()
+    columns = usual()
+    odd = {
+        f"../../{joint}/{n}\x1b[31m": columns[n] for joint in "xy" for n in ("theta", "q", "tau")
+    }
+    write_log({"t": columns["t"], **odd}, folder / "log.csv")
+    done = confined.run(folder, "init", "log.csv")
+    assert done.complaint() is None and "\x1b" not in done.out + done.err
+    assert {each.name for each in tmp_path.iterdir()} == {"in"}
+    assert all(each.name.startswith("log") for each in folder.iterdir())
