@@ -12,8 +12,7 @@ static int row_offset(int size, int i)
 
 sh_real sh_information_sample(const sh_information *a, int i, sh_real *x)
 {
-    const int size = a->size;
-    const sh_real *row = a->U + row_offset(size, i);
+    const int size = a->size, row = row_offset(size, i);
     int j;
 
     for (j = 0; j < i; ++j) {
@@ -21,7 +20,7 @@ sh_real sh_information_sample(const sh_information *a, int i, sh_real *x)
     }
     x[i] = 1;
     for (j = i + 1; j < size + SH_SIDES; ++j) {
-        x[j] = row[j - i - 1];
+        x[j] = a->U[row + j - i - 1];
     }
     return a->D[i];
 }

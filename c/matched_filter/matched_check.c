@@ -17,7 +17,7 @@ static int are_columns(const sh_matched_state *state, const sh_parameters *p)
     }
     sh_columns_list(p, started);
     /*@ loop unroll SH_MAX_COLUMNS; */
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < SH_MAX_COLUMNS; ++i) { /* those behind are zero */
         if (state->column[i].kind != started[i].kind ||
             state->column[i].index != started[i].index) {
             return 0;
@@ -48,7 +48,7 @@ static int is_choice(const sh_matched_state *state, const sh_posterior *posterio
         return 0;
     }
     /*@ loop unroll SH_MAX_COLUMNS; */
-    for (i = 0; i < state->size; ++i) { /* behind those of the choice are those of an earlier one */
+    for (i = 0; i < SH_MAX_COLUMNS; ++i) { /* also behind the choice: of an earlier one, or zero */
         if (posterior->column[i] < 0 || posterior->column[i] >= state->size) {
             return 0;
         }

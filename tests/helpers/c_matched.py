@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -38,14 +39,27 @@ def covariance(estimator: Estimator) -> Array:
 
 
 def coefficients(estimator: Estimator) -> list[tuple[str, int]]:
-    """Kind and index of each column, as 'BASIS', 0."""
+    """Kind and number of each column, as in the oracle: 'BASIS', 0."""
     names = {
         getattr(estimator.library.lib, name): name.removeprefix("SH_COLUMN_")
         for name in dir(estimator.library.lib)
         if name.startswith("SH_COLUMN_")
     }
     matched = estimator.state.method.matched
-    return [(names[column.kind], column.index) for column in matched.column[0 : matched.size]]
+    n, orders = estimator.parameters.rls.n, len(estimator.estimate.eta[0])
+    return [
+        numbered(names[column.kind], *divmod(column.index, orders), n)
+        for column in matched.column[0 : matched.size]
+    ]
+
+
+def numbered(kind: str, i: int, j: int, n: int) -> tuple[str, int]:
+    """Kind and number of a column whose index stands for the coefficient eta[i][j]."""
+    width = re.fullmatch(r"(GAP|PLAY)_(\d)", kind)
+    if width is not None:
+        return width[1], int(width[2]) - 1
+    number = {"BASIS": j * n + i, "POWER": i - n, "DAMPING": j}
+    return kind, number.get(kind, 0)
 
 
 # Priors of all that a joint has besides the model; 0 removes their columns.

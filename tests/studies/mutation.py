@@ -112,7 +112,7 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
         for code in (
             "for (j = 0; j <= size; ++j) { P->D[j] = P_0;",
             "for (j = 0; j + 2 <= size; j += SH_PANEL)",
-            "if (j <= size) multiply_two(P, F, j, last);",
+            "if (j <= size) { multiply_two(P, F, j, last);",
             "for (j = 0; j <= size; ++j) { const sh_real beta",
         )
     ),

@@ -3,7 +3,7 @@
  *
  * The last two are about parameters that passed sh_parameters_check, which calls the same functions
  * with the same parameters: there are 1..SH_MAX_COLUMNS columns, and a curve rls.eta_0 if
- * prior.tau_e is 0. The proof is made for each number of columns.
+ * prior.tau_e is 0.
  */
 #ifndef CONTRACTS_H
 #define CONTRACTS_H
@@ -35,7 +35,7 @@ void sh_information_start(sh_information *a, int size, sh_real precision);
 void sh_information_copy(sh_information *to, const sh_information *from);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires 0 <= i < a->size;
+    requires 0 <= i < SH_MAX_COLUMNS;
     assigns \result, x[0 .. SH_MAX_COLUMNS + SH_SIDES - 1] \from *a;
 */
 sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
@@ -106,7 +106,7 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w);
 sh_real sh_ud_factor_variance(sh_ud_factor *P, const sh_real *F);
 
 /*@ assigns \result \from *p;
-    ensures \result == PROOF_SIZE;
+    ensures 1 <= \result <= SH_MAX_COLUMNS;
 */
 int sh_columns_count(const sh_parameters *p);
 

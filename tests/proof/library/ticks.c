@@ -10,6 +10,7 @@ static sh_estimate estimate;
 
 static void tick(void)
 {
+    /*@ loop widen_hints "all", 63; */ /* SH_MAX_COLUMNS - 1 */
     while (Frama_C_nondet(0, 1)) {
         sh_measurement z;
 
