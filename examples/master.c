@@ -43,12 +43,14 @@ static void attribute(const char *from, const char *name, char *text, size_t siz
     const char *begin = from != NULL ? strstr(from, name) : NULL;
     size_t length;
 
-    if (begin == NULL || end == NULL || begin > end)
+    if (begin == NULL || end == NULL || begin > end) {
         quit("modelDescription.xml: missing", name);
+    }
     begin += strlen(name);
     length = strcspn(begin, "\"");
-    if (length >= size)
+    if (length >= size) {
         quit("modelDescription.xml: too long:", name);
+    }
     memcpy(text, begin, length);
     text[length] = '\0';
 }
@@ -60,8 +62,9 @@ static fmi2ValueReference reference(const char *variable)
 
     snprintf(quoted, sizeof quoted, "<ScalarVariable name=\"%s\"", variable);
     found = strstr(description, quoted);
-    if (found == NULL)
+    if (found == NULL) {
         quit("no variable", variable);
+    }
     attribute(found, "valueReference=\"", number, sizeof number);
     return (fmi2ValueReference)strtoul(number, NULL, 10);
 }
@@ -71,15 +74,17 @@ static void load(const char *name, void *function)
 {
     void *symbol = dlsym(library, name);
 
-    if (symbol == NULL)
+    if (symbol == NULL) {
         quit("the FMU does not export", name);
+    }
     memcpy(function, &symbol, sizeof symbol);
 }
 
 static void check(fmi2Status status, const char *call)
 {
-    if (status > fmi2Warning)
+    if (status > fmi2Warning) {
         quit("failed:", call); /* the message of the FMU went through the logger */
+    }
 }
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String instance, fmi2Status status,
@@ -103,12 +108,14 @@ static void read_description(const char *folder)
 
     snprintf(path, sizeof path, "%s/modelDescription.xml", folder);
     file = fopen(path, "rb");
-    if (file == NULL || fseek(file, 0, SEEK_END) != 0 || (size = ftell(file)) < 0)
+    if (file == NULL || fseek(file, 0, SEEK_END) != 0 || (size = ftell(file)) < 0) {
         quit("cannot read", path);
+    }
     rewind(file);
     description = calloc((size_t)size + 1, 1);
-    if (description == NULL || fread(description, 1, (size_t)size, file) != (size_t)size)
+    if (description == NULL || fread(description, 1, (size_t)size, file) != (size_t)size) {
         quit("cannot read", path);
+    }
     fclose(file);
 }
 
@@ -140,8 +147,9 @@ static fmi2Component start(void)
     attribute(strstr(description, "<fmiModelDescription"), "guid=\"", guid, sizeof guid);
     estimator =
         fmu.instantiate("estimator", fmi2CoSimulation, guid, "", &callbacks, fmi2False, fmi2False);
-    if (estimator == NULL)
+    if (estimator == NULL) {
         quit("failed:", "fmi2Instantiate");
+    }
     check(fmu.setup_experiment(estimator, fmi2False, 0.0, 0.0, fmi2False, 0.0),
           "fmi2SetupExperiment");
     check(fmu.set_integer(estimator, &modality, 1, &sensor), "modality");
@@ -161,12 +169,14 @@ int main(int argc, char **argv)
     fmi2Real u[3], estimate = 0.0;
     int tick;
 
-    if (argc != 3)
+    if (argc != 3) {
         quit("usage:", "master FOLDER LIBRARY");
+    }
     read_description(argv[1]);
     library = dlopen(argv[2], RTLD_NOW | RTLD_LOCAL);
-    if (library == NULL)
+    if (library == NULL) {
         quit("cannot load", dlerror());
+    }
     load_functions();
     inputs[0] = reference("theta");
     inputs[1] = reference("q");
@@ -182,8 +192,9 @@ int main(int argc, char **argv)
         u[0] = 0.5 * sin(two_pi * t); /* theta */
         u[1] = u[0] + phi;            /* q */
         u[2] = k * phi;               /* tau_e_sensor */
-        if (tick == 1000)             /* a tunable parameter; it acts from this tick on */
+        if (tick == 1000) {           /* a tunable parameter; it acts from this tick on */
             check(fmu.set_real(estimator, &V_a, 1, &smoother), "filter.V_a");
+        }
         check(fmu.set_real(estimator, inputs, 3, u), "fmi2SetReal");
         check(fmu.do_step(estimator, t, T, fmi2True), "fmi2DoStep");
         check(fmu.get_real(estimator, &sigma, 1, &estimate), "fmi2GetReal");

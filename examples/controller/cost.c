@@ -61,11 +61,13 @@ static unsigned __attribute__((noinline)) stack(void (*function)(void))
     unsigned depth = PAINTED;
     unsigned i;
 
-    for (i = 64; i < PAINTED; ++i) /* the frame of this function is in the first 64 */
+    for (i = 64; i < PAINTED; ++i) { /* the frame of this function is in the first 64 */
         top[-(int)i] = PAINT;
+    }
     function();
-    while (depth > 64 && top[-(int)depth + 1] == PAINT)
+    while (depth > 64 && top[-(int)depth + 1] == PAINT) {
         --depth;
+    }
     return depth;
 }
 

@@ -30,15 +30,17 @@ void SysTick_Handler(void)
     z.theta = count * (sh_real)sample.theta;
     z.q = count * (sh_real)sample.q;
     z.tau = (sh_real)sample.tau;
-    if (!sh_estimator_tick(&estimator, &parameters, &z, &estimate))
+    if (!sh_estimator_tick(&estimator, &parameters, &z, &estimate)) {
         ++missed; /* a measurement was not finite: the estimate did not change */
+    }
     sigma = estimate.sigma;
     sigma_std = estimate.sigma_std;
     /* Here a controller would use estimate.sigma and set its torque. */
     ++ticks;
     elapsed = hardware_elapsed();
-    if (elapsed > longest)
+    if (elapsed > longest) {
         longest = elapsed;
+    }
 }
 
 /* A joint with one transmission and no second motor that sets its stiffness: order 1 in the
@@ -66,14 +68,16 @@ int main(void)
     }
     sh_estimator_start(&estimator, &parameters, &estimate);
     hardware_start_ticks(RATE);
-    while (ticks < RATE * (SECONDS - 1))
+    while (ticks < RATE * (SECONDS - 1)) {
         hardware_sleep();
+    }
     /* Parameters change between ticks, not in the middle of one. */
     hardware_disable_interrupts();
     parameters.noise.tau = (sh_real)2e-3;
     hardware_enable_interrupts();
-    while (ticks < RATE * SECONDS)
+    while (ticks < RATE * SECONDS) {
         hardware_sleep();
+    }
     hardware_disable_interrupts();
     printf("sigma = %.3f N.m/rad, standard deviation %.3f\n", (double)sigma, (double)sigma_std);
     printf("%lu ticks, %lu missed, the longest took %.1f %% of its period\n", (unsigned long)ticks,

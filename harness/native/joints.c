@@ -24,10 +24,11 @@ void sh_joint_set(sh_joint *joint, unsigned variable, double value)
 {
     void *place = (char *)joint + VARIABLES[variable].offset;
 
-    if (VARIABLES[variable].type == SH_TYPE_REAL)
+    if (VARIABLES[variable].type == SH_TYPE_REAL) {
         *(double *)place = value;
-    else
+    } else {
         *(int *)place = (int)value;
+    }
 }
 
 void sh_joint_default(sh_joint *joint)
@@ -35,8 +36,9 @@ void sh_joint_default(sh_joint *joint)
     unsigned i;
 
     memset(joint, 0, sizeof *joint);
-    for (i = 0; i < sizeof VARIABLES / sizeof VARIABLES[0]; ++i)
+    for (i = 0; i < sizeof VARIABLES / sizeof VARIABLES[0]; ++i) {
         sh_joint_set(joint, i, VARIABLES[i].start);
+    }
 }
 
 int sh_joint_check(const sh_joint *joint, sh_violation *violation)
@@ -58,10 +60,11 @@ static void record(const sh_joint *joint, const sh_joint_output *outputs, size_t
         const sh_variable *variable = &VARIABLES[outputs[i].variable];
         const void *place = (const char *)joint + variable->offset;
 
-        if (variable->type == SH_TYPE_REAL)
+        if (variable->type == SH_TYPE_REAL) {
             ((double *)outputs[i].values)[k] = *(const double *)place;
-        else
+        } else {
             ((int *)outputs[i].values)[k] = *(const int *)place;
+        }
     }
 }
 

@@ -30,8 +30,9 @@ size_t sh_sample_loop(const sh_call *calls, size_t count, size_t first, size_t e
 
     for (k = first; k < end; ++k) {
         for (i = 0; i < count; ++i) {
-            if (make(&calls[i], calls[i].rows + k * calls[i].stride) > fmi2Warning)
+            if (make(&calls[i], calls[i].rows + k * calls[i].stride) > fmi2Warning) {
                 return i;
+            }
         }
     }
     return count;

@@ -92,12 +92,14 @@ int main(int count, char **arguments)
     FILE *in, *out;
 
     if (count != 4 || !configure(&parameters, arguments[3][0]) ||
-        sh_parameters_check(&parameters, &violation))
+        sh_parameters_check(&parameters, &violation)) {
         return 1;
+    }
     in = fopen(arguments[1], "rb");
     out = fopen(arguments[2], "wb");
-    if (in == NULL || out == NULL)
+    if (in == NULL || out == NULL) {
         return 2;
+    }
     sh_estimator_start(&estimator, &parameters, &e);
     while (fread(log, sizeof log, 1, in) == 1) {
         sh_measurement z;
@@ -107,8 +109,9 @@ int main(int count, char **arguments)
         z.tau = (sh_real)log[3];
         z.tau_e_sensor = (sh_real)log[4];
         sh_estimator_tick(&estimator, &parameters, &z, &e);
-        if (!write_outputs(&e, out))
+        if (!write_outputs(&e, out)) {
             return 3;
+        }
     }
     return fclose(out) == 0 ? 0 : 3;
 }

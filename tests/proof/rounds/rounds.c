@@ -19,10 +19,12 @@ static void add(int loop, int begins)
 {
     int i;
 
-    for (i = 0; i < SH_PAIRS; ++i)
+    for (i = 0; i < SH_PAIRS; ++i) {
         if (sh_pairs[i][0] == loop && sh_pairs[i][2] == begins && active[sh_pairs[i][1]] &&
-            ++sum[i] > most_of_pair[i])
+            ++sum[i] > most_of_pair[i]) {
             most_of_pair[i] = sum[i];
+        }
+    }
 }
 
 int sh_begin(int loop)
@@ -31,9 +33,11 @@ int sh_begin(int loop)
 
     now[loop] = 0;
     active[loop] = 1;
-    for (i = 0; i < SH_PAIRS; ++i)
-        if (sh_pairs[i][1] == loop)
+    for (i = 0; i < SH_PAIRS; ++i) {
+        if (sh_pairs[i][1] == loop) {
             sum[i] = 0;
+        }
+    }
     add(loop, 1);
     return 0;
 }
@@ -41,10 +45,12 @@ int sh_begin(int loop)
 int sh_round(int loop, int goes_on)
 {
     active[loop] = goes_on;
-    if (!goes_on)
+    if (!goes_on) {
         return 0;
-    if (++now[loop] > most[loop])
+    }
+    if (++now[loop] > most[loop]) {
         most[loop] = now[loop];
+    }
     add(loop, 0);
     return 1;
 }
@@ -56,10 +62,12 @@ static void use_everything(sh_parameters *p, int optional)
     const int priors = (int)(sizeof p->prior / sizeof *prior);
     int i;
 
-    for (i = 0; i < priors; ++i)
+    for (i = 0; i < priors; ++i) {
         prior[i] = prior[i] > 0 ? prior[i] : 0.1;
-    if (!optional) /* then every column is always used */
+    }
+    if (!optional) { /* then every column is always used */
         p->prior.power = p->prior.gap = p->prior.hysteresis = p->prior.eccentric_motor = 0;
+    }
     p->rls.eta_0[p->rls.n - 1][p->rls.m - 1] = 10;
     p->samplePeriod = 0.0125;
     p->matched.bandwidth = 40;
@@ -87,8 +95,9 @@ int main(int argc, char **argv)
     sh_estimate estimate;
     int k;
 
-    if (argc != 5)
+    if (argc != 5) {
         return 2;
+    }
     sh_parameters_default(&p);
     p.method = atoi(argv[1]);
     p.rls.n = atoi(argv[2]);
@@ -104,9 +113,11 @@ int main(int argc, char **argv)
         tick(&estimator, &p, k, &estimate);
     }
     printf("%d\n", p.method == SH_METHOD_MATCHED_FILTER ? estimator.method.matched.size : 0);
-    for (k = 0; k < SH_LOOPS; ++k)
+    for (k = 0; k < SH_LOOPS; ++k) {
         printf("%ld\n", most[k]);
-    for (k = 0; k < SH_PAIRS; ++k)
+    }
+    for (k = 0; k < SH_PAIRS; ++k) {
         printf("%ld\n", most_of_pair[k]);
+    }
     return 0;
 }

@@ -59,8 +59,9 @@ static void use_everything(sh_parameters *p)
     const int priors = (int)(sizeof p->prior / sizeof *prior);
     int i;
 
-    for (i = 0; i < priors; ++i)
+    for (i = 0; i < priors; ++i) {
         prior[i] = prior[i] > 0 ? prior[i] : (sh_real)0.1;
+    }
     p->rls.n = SH_MAX_N;
     p->rls.m = SH_MAX_M;
     p->rls.eta_0[0][0] = 10;

@@ -36,8 +36,9 @@ static void run(double prior_B, double drift)
         const int ten = (int)(t / 10);
         sim_sample z;
 
-        if (k == 60000)
+        if (k == 60000) {
             p.torque.count = 0;
+        }
         sim_next(&plant, &z);
         setup_tick(&e, &q, &z, setup_theta_c(&p, z.r), &out);
         if (t > 1) {
@@ -47,8 +48,9 @@ static void run(double prior_B, double drift)
         }
     }
     printf("B %g drift %g: ", prior_B, drift);
-    for (k = 0; k < TENS; ++k)
+    for (k = 0; k < TENS; ++k) {
         printf(" %.2f/%.2f", 100 * sqrt(error[k] / n[k]), 100 * sqrt(claim[k] / n[k]));
+    }
     printf("\n");
 }
 

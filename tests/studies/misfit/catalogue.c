@@ -132,8 +132,9 @@ static void multisine(sim_multisine *m, uint64_t *r, double low, double high, do
         m->amplitude[i] = 0.3 + 0.7 * sim_uniform(r);
         sum += m->amplitude[i];
     }
-    for (i = 0; i < m->count; ++i)
+    for (i = 0; i < m->count; ++i) {
         m->amplitude[i] *= amplitude / sum;
+    }
 }
 
 static double peak_deformation(int joint)
@@ -222,8 +223,9 @@ static void make_random(int joint, sim_parameters *p, cat_given *given, uint64_t
         p->k *= f;
         p->k3 = 0;
     }
-    if (clean)
+    if (clean) {
         return;
+    }
     span = peak_of(p, 20);
     p->gain = 1 + 0.02 * sim_gauss(r);
     p->bias = 0.01 * peak * sim_gauss(r);
@@ -259,8 +261,9 @@ static int make_spring(int joint, const cat_condition *c, double duration, sim_p
         p->gap = c->value / 2;
         break;
     case KINEMATIC:
-        if (joint == AWAS && c->value < 0.2e-3)
+        if (joint == AWAS && c->value < 0.2e-3) {
             return 0;
+        }
         p->kin_error = c->value;
         p->kin_order = 2;
         break;
@@ -274,13 +277,15 @@ static int make_spring(int joint, const cat_condition *c, double duration, sim_p
         break;
     case SMALL_N:
     case SMALL_M:
-        if (joint != AWAS)
+        if (joint != AWAS) {
             return 0;
+        }
         *(c->id == SMALL_N ? &given->n : &given->m) = (int)c->value;
         break;
     case HARDENING:
-        if (joint == AWAS)
+        if (joint == AWAS) {
             return 0;
+        }
         p->k3 = 0.3 * p->k / (3 * span * span);
         given->n = (int)c->value;
         break;
@@ -326,8 +331,9 @@ static int make_motor(int joint, const cat_condition *c, double peak, sim_parame
         p->drift_time = 60;
         break;
     case CUBIC:
-        if (joint == SEA5K)
+        if (joint == SEA5K) {
             return 0;
+        }
         p->v_cubic = c->value;
         break;
     case LATE:
@@ -359,8 +365,9 @@ static int make_sensors(int joint, const cat_condition *c, sim_parameters *p)
         p->eccentric_q = c->value;
         break;
     case ECC_M:
-        if (joint == SEA5K)
+        if (joint == SEA5K) {
             return 0;
+        }
         p->eccentric_theta = c->value;
         break;
     case ZERO:
@@ -397,13 +404,15 @@ static void make_control(int joint, int id, double peak, sim_parameters *p)
     }
     p->kp = joint == AWAS ? 2 : 15;
     p->kd = joint == AWAS ? 0.03 : 0.4;
-    if (id == PD_Q)
+    if (id == PD_Q) {
         p->kq = p->kd / 2;
+    }
     if (id == PD_GRAVITY) {
         p->mgl = 12;
         p->reference_0 = PI / 2;
-        for (i = 0; i < p->reference.count; ++i)
+        for (i = 0; i < p->reference.count; ++i) {
             p->reference.amplitude[i] *= 0.6;
+        }
     }
 }
 
@@ -413,10 +422,12 @@ static void make_load(int joint, sim_parameters *p)
     int i;
 
     p->load = joint == AWAS ? -8 : -10;
-    for (i = 0; i < p->torque.count; ++i)
+    for (i = 0; i < p->torque.count; ++i) {
         p->torque.amplitude[i] *= 0.9;
-    if (p->torque.count < SIM_SINES)
+    }
+    if (p->torque.count < SIM_SINES) {
         p->torque.count += 1;
+    }
     i = p->torque.count - 1; /* if there are as many sines as there can be, it replaces the last */
     p->torque.amplitude[i] = -p->load / p->gamma;
     p->torque.omega[i] = 0;
@@ -434,8 +445,9 @@ static int make_operation(int joint, const cat_condition *c, double peak, sim_pa
     case PD:
     case PD_Q:
     case PD_GRAVITY:
-        if (c->id == PD_GRAVITY && joint == AWAS)
+        if (c->id == PD_GRAVITY && joint == AWAS) {
             return 0;
+        }
         make_control(joint, c->id, peak, p);
         break;
     case LOAD:
@@ -462,12 +474,14 @@ double cat_make(int joint, const cat_condition *c, uint64_t seed, sim_parameters
     uint64_t random = seed * 1000003ULL + (uint64_t)joint * 7777ULL;
     int i;
 
-    for (i = 0; i < 4; ++i)
+    for (i = 0; i < 4; ++i) {
         sim_uniform(&random);
+    }
     make_joint(joint, p, given, &random);
     p->seed = seed + 100 * (uint64_t)joint;
-    if (c->id == RANDOM || c->id == RANDOM_CLEAN)
+    if (c->id == RANDOM || c->id == RANDOM_CLEAN) {
         make_random(joint, p, given, &random, c->id == RANDOM_CLEAN);
+    }
     given->D = p->D * (sim_uniform(&random) < 0.5 ? 1.1 : 0.9);
     given->B = p->B * (sim_uniform(&random) < 0.5 ? 1.05 : 0.95);
     if (c->second == 1 || c->second == 4) {

@@ -57,11 +57,13 @@ int main(int argc, char **argv)
         tick(&e, (int)k, &out);
     }
     report("after 21 s", &out);
-    for (k = 0; k < n; ++k)
+    for (k = 0; k < n; ++k) {
         tick(&e, STILL + 100 + (int)(k % 400), &out);
+    }
     report("after the rest", &out);
-    for (k = 0; k < 2000000; ++k)
+    for (k = 0; k < 2000000; ++k) {
         tick(&e, (int)(k % MOVING), &out);
+    }
     report("after 2e6 ticks", &out);
     return 0;
 }

@@ -47,15 +47,20 @@ static void watch(course *c, int k, const sh_estimator *e, const sh_estimate *ou
         c->n[ten] += 1;
         c->wrong += out->confident && fabs(error) > 0.2;
     }
-    if (k == 30000)
+    if (k == 30000) {
         c->kappa2_before = (double)e->method.matched.variance_factor;
-    if (!(t > 30))
+    }
+    if (!(t > 30)) {
         return;
-    if (c->noticed < 0 && (double)e->method.matched.variance_factor > 1.5 * c->kappa2_before + 0.5)
+    }
+    if (c->noticed < 0 &&
+        (double)e->method.matched.variance_factor > 1.5 * c->kappa2_before + 0.5) {
         c->noticed = t - 30;
+    }
     if (!out->confident) {
-        if (c->lost < 0)
+        if (c->lost < 0) {
             c->lost = t - 30;
+        }
         c->back = t - 30;
     }
 }
@@ -78,8 +83,9 @@ static void run(int misfit, int ends, int joint, double memory)
     sim_start(&plant, &p);
     setup_parameters(&p, &given, &q);
     q.prior.torque_gain = 0;
-    if (memory > 0)
+    if (memory > 0) {
         q.matched.memory = (sh_real)memory;
+    }
     sh_estimator_start(&e, &q, &out);
     memset(&c, 0, sizeof c);
     c.noticed = c.lost = c.back = -1;
@@ -94,8 +100,9 @@ static void run(int misfit, int ends, int joint, double memory)
            "s after, wrong by 20 %% in %d ticks, kappa at the end %.1f, error/claim %%:",
            NAMES[misfit], ends ? "ends" : "begins", CAT_JOINTS[joint], sqrt(c.kappa2_before),
            c.noticed, c.lost, c.back, c.wrong, sqrt((double)e.method.matched.variance_factor));
-    for (k = 0; k < TENS; ++k)
+    for (k = 0; k < TENS; ++k) {
         printf(" %.2f/%.2f", 100 * sqrt(c.error[k] / c.n[k]), 100 * sqrt(c.claim[k] / c.n[k]));
+    }
     printf("\n");
     fflush(stdout);
 }
@@ -105,9 +112,12 @@ int main(int argc, char **argv)
     const double memory = argc > 1 ? atof(argv[1]) : 0;
     int misfit, ends, joint;
 
-    for (misfit = 0; misfit < MISFITS; ++misfit)
-        for (ends = 0; ends < 2; ++ends)
-            for (joint = 0; joint < JOINTS; ++joint)
+    for (misfit = 0; misfit < MISFITS; ++misfit) {
+        for (ends = 0; ends < 2; ++ends) {
+            for (joint = 0; joint < JOINTS; ++joint) {
                 run(misfit, ends, joint, memory);
+            }
+        }
+    }
     return 0;
 }

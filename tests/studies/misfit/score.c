@@ -42,8 +42,9 @@ static void merge(score *a, const score *b)
     const double *y = (const double *)b;
     size_t i;
 
-    for (i = 0; i < sizeof *a / sizeof(double); ++i)
+    for (i = 0; i < sizeof *a / sizeof(double); ++i) {
         x[i] += y[i];
+    }
 }
 
 enum { MAX_OVERRIDES = 40 };
@@ -78,9 +79,12 @@ static void override(sh_parameters *q)
         const char *equals = strchr(overrides[i], '=');
         const size_t length = (size_t)(equals - overrides[i]);
 
-        for (k = 0; k < sizeof keys / sizeof keys[0]; ++k)
-            if (strlen(keys[k].name) == length && strncmp(overrides[i], keys[k].name, length) == 0)
+        for (k = 0; k < sizeof keys / sizeof keys[0]; ++k) {
+            if (strlen(keys[k].name) == length &&
+                strncmp(overrides[i], keys[k].name, length) == 0) {
                 *keys[k].value = (sh_real)atof(equals + 1);
+            }
+        }
     }
 }
 
@@ -109,8 +113,9 @@ static void run(int joint, const cat_condition *c, uint64_t seed, score *found)
     const double from = p.rest + 2;
     int k;
 
-    if (!(duration > 0))
+    if (!(duration > 0)) {
         return;
+    }
     sim_start(&plant, &p);
     setup_parameters(&p, &given, &q);
     override(&q);
@@ -120,10 +125,12 @@ static void run(int joint, const cat_condition *c, uint64_t seed, score *found)
 
         sim_next(&plant, &z);
         setup_tick(&estimator, &q, &z, setup_theta_c(&p, z.r), &estimate);
-        if (trace > 0 && k % trace == 0)
+        if (trace > 0 && k % trace == 0) {
             print_trace(k * p.T, &z, &q, &estimate);
-        if (k * p.T < from || z.in_gap || k % 5 != 0)
+        }
+        if (k * p.T < from || z.in_gap || k % 5 != 0) {
             continue;
+        }
         add(found, z.sigma, (double)estimate.sigma, (double)estimate.sigma_std, estimate.confident);
         found->misfit += (double)estimate.misfit;
     }
@@ -158,11 +165,13 @@ static void run_row(const options *o, const cat_condition *c, summary *sum)
         score found;
         uint64_t seed;
 
-        if (o->joint >= 0 && joint != o->joint)
+        if (o->joint >= 0 && joint != o->joint) {
             continue;
+        }
         memset(&found, 0, sizeof found);
-        for (seed = o->first; seed <= o->last; ++seed)
+        for (seed = o->first; seed <= o->last; ++seed) {
             run(joint, c, seed, &found);
+        }
         if (!(found.n > 0)) {
             printf(" %44s|", "");
             continue;
@@ -183,14 +192,17 @@ static void print_summary(int class_, const summary *s)
     const score *all = &s->all;
     int joint;
 
-    if (!(all->n > 0))
+    if (!(all->n > 0)) {
         return;
+    }
     printf("class %d:", class_);
-    for (joint = 0; joint < JOINTS; ++joint)
-        if (s->rows[joint] > 0)
+    for (joint = 0; joint < JOINTS; ++joint) {
+        if (s->rows[joint] > 0) {
             printf("  %s rows %2.0f mean error %5.2f coverage %5.1f", CAT_JOINTS[joint],
                    s->rows[joint], s->errors[joint] / s->rows[joint],
                    s->coverage[joint] / s->rows[joint]);
+        }
+    }
     printf("  dangerous %.2f wrong20 %.3f wrong10 %.3f confident %.1f\n",
            100 * all->dangerous / all->n, 100 * all->wrong20 / all->n, 100 * all->wrong10 / all->n,
            100 * all->confident / all->n);
@@ -203,26 +215,29 @@ static int parse(int argc, char **argv, options *o)
 
     o->row = NULL;
     o->joint = o->class_ = -1;
-    if (argc < 3)
+    if (argc < 3) {
         return 0;
+    }
     o->first = strtoull(argv[1], NULL, 10);
     o->last = strtoull(argv[2], NULL, 10);
     for (i = 3; i < argc; ++i) {
-        if (i + 1 >= argc)
+        if (i + 1 >= argc) {
             return 0;
-        if (strcmp(argv[i], "-r") == 0)
+        }
+        if (strcmp(argv[i], "-r") == 0) {
             o->row = argv[++i];
-        else if (strcmp(argv[i], "-j") == 0)
+        } else if (strcmp(argv[i], "-j") == 0) {
             o->joint = atoi(argv[++i]);
-        else if (strcmp(argv[i], "-c") == 0)
+        } else if (strcmp(argv[i], "-c") == 0) {
             o->class_ = atoi(argv[++i]);
-        else if (strcmp(argv[i], "-v") == 0)
+        } else if (strcmp(argv[i], "-v") == 0) {
             trace = atoi(argv[++i]);
-        else if (strcmp(argv[i], "-o") == 0 && n_overrides < MAX_OVERRIDES &&
-                 strchr(argv[i + 1], '='))
+        } else if (strcmp(argv[i], "-o") == 0 && n_overrides < MAX_OVERRIDES &&
+                   strchr(argv[i + 1], '=')) {
             overrides[n_overrides++] = argv[++i];
-        else
+        } else {
             return 0;
+        }
     }
     return 1;
 }
@@ -242,10 +257,12 @@ int main(int argc, char **argv)
     for (i = 0; i < CAT_COUNT; ++i) {
         const cat_condition *c = &CAT_CONDITIONS[i];
 
-        if ((!o.row || strstr(c->name, o.row)) && (o.class_ < 0 || c->class_ == o.class_))
+        if ((!o.row || strstr(c->name, o.row)) && (o.class_ < 0 || c->class_ == o.class_)) {
             run_row(&o, c, &classes[c->class_]);
+        }
     }
-    for (i = 0; i < CLASSES; ++i)
+    for (i = 0; i < CLASSES; ++i) {
         print_summary(i, &classes[i]);
+    }
     return 0;
 }

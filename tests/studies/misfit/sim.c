@@ -32,8 +32,9 @@ double sim_sum(const sim_multisine *m, double t)
     double sum = 0;
     int i;
 
-    for (i = 0; i < m->count; ++i)
+    for (i = 0; i < m->count; ++i) {
         sum += m->amplitude[i] * sin(m->omega[i] * t + m->phase[i]);
+    }
     return sum;
 }
 
@@ -45,8 +46,9 @@ static int acts(const sim_parameters *p, double t)
 
 static double ramp(const sim_parameters *p, double t, double change)
 {
-    if (p->drift_time < 0) /* from -drift_time on, as long again */
+    if (p->drift_time < 0) { /* from -drift_time on, as long again */
         return 1 + change * fmin(fmax(t / -p->drift_time - 1, 0), 1);
+    }
     return p->drift_time > 0 ? 1 + change * fmin(t / p->drift_time, 1) : 1;
 }
 
@@ -78,14 +80,16 @@ static spring spring_of(const sim_parameters *p, const double *s, double t)
     }
     f.tau_e *= factor;
     f.sigma *= factor;
-    if (f.in_gap)
+    if (f.in_gap) {
         f.sigma = 0;
+    }
     f.tau_e += p->damping * f.sigma * v;
     f.dahl_dot = 0;
     if (p->dahl > 0) {
         f.dahl_dot = (v - fabs(v) * s[4]) / p->dahl_phi;
-        if (acts(p, t))
+        if (acts(p, t)) {
             f.tau_e += p->dahl * s[4];
+        }
     }
     return f;
 }
@@ -98,10 +102,12 @@ static double friction(const sim_parameters *p, double t, double v, double tau_e
     const double C = p->tau_coulomb * ramp(p, t, p->C_drift);
     double viscous = D * p->gamma * v, coulomb = C * (sign + on * p->uneven);
 
-    if (p->v_cubic > 0)
+    if (p->v_cubic > 0) {
         viscous /= sqrt(1 + v * v / (p->v_cubic * p->v_cubic));
-    if (p->stribeck > 0)
+    }
+    if (p->stribeck > 0) {
         coulomb += C * on * p->stribeck * exp(-v * v / (p->v_stribeck * p->v_stribeck)) * sign;
+    }
     return viscous + coulomb + on * p->load_friction * fabs(tau_e) / p->gamma * sign;
 }
 
@@ -132,8 +138,9 @@ static double torque_at(const sim *s, double t)
 {
     const double T = s->p->T, k = floor(t / T), share = t / T - k;
 
-    if (s->p->hold)
+    if (s->p->hold) {
         return s->u[0];
+    }
     return (1 - share) * command(s->p, k * T) + share * command(s->p, (k + 1) * T);
 }
 
@@ -144,23 +151,28 @@ static void advance(sim *s, double until)
     double a[5], b[5], c[5], d[5], y[5];
     int n, i;
 
-    if (!(h > 0))
+    if (!(h > 0)) {
         return;
+    }
     for (n = 0; n < p->substeps; ++n) {
         const double t = s->t + n * h, middle = torque_at(s, t + h / 2);
 
         derivative(p, s->x, t, torque_at(s, t), a);
-        for (i = 0; i < 5; ++i)
+        for (i = 0; i < 5; ++i) {
             y[i] = s->x[i] + h / 2 * a[i];
+        }
         derivative(p, y, t + h / 2, middle, b);
-        for (i = 0; i < 5; ++i)
+        for (i = 0; i < 5; ++i) {
             y[i] = s->x[i] + h / 2 * b[i];
+        }
         derivative(p, y, t + h / 2, middle, c);
-        for (i = 0; i < 5; ++i)
+        for (i = 0; i < 5; ++i) {
             y[i] = s->x[i] + h * c[i];
+        }
         derivative(p, y, t + h, torque_at(s, t + h), d);
-        for (i = 0; i < 5; ++i)
+        for (i = 0; i < 5; ++i) {
             s->x[i] += h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]);
+        }
     }
     s->t = until;
 }
@@ -178,14 +190,17 @@ void sim_start(sim *s, const sim_parameters *p)
     s->p = p;
     s->random = p->seed * 7919 + 12345;
     /* At rest; a constant load has deformed the spring. */
-    if (!(p->k_s > 0))
+    if (!(p->k_s > 0)) {
         s->x[2] = p->reference_0;
+    }
     s->x[0] = s->x[2];
-    if (p->mgl > 0)
+    if (p->mgl > 0) {
         s->x[0] = s->x[2] - p->mgl * sin(s->x[2]) / p->k;
-    if (fabs(p->load) > 0)
+    }
+    if (fabs(p->load) > 0) {
         s->x[0] =
             s->x[2] + (p->k_s > 0 ? p->load / (2 * p->k_s * p->r_0 * p->r_0) : p->load / p->k);
+    }
     s->theta_0 = s->x[2];
     s->q_0 = s->x[0];
 }

@@ -58,8 +58,9 @@ static void start(const motor *given, int columns, sh_parameters *p)
     p->prior.tau_coulomb = (sh_real)given->prior_C;
     p->prior.torque_gain = 0;
     p->prior.reversal = (sh_real)reversal;
-    if (columns != ALL)
+    if (columns != ALL) {
         setup_without_candidates(p);
+    }
     if (columns == NONE) {
         setup_without_new_columns(p);
         p->matched.memory = 0;
@@ -157,8 +158,9 @@ static void cell(int runs, uint64_t key, double f, double low, double high, int 
         sim_parameters p;
         double d, b, C;
 
-        for (j = 0; j < 3; ++j)
+        for (j = 0; j < 3; ++j) {
             sim_uniform(&random);
+        }
         d = 0.2 * sim_gauss(&random);
         b = 0.1 * sim_gauss(&random);
         C = low + (high - low) * sim_uniform(&random);
@@ -182,14 +184,16 @@ static void cells(int runs)
     static const double FREQUENCIES[] = {0.3, 1, 3, 8}, FRICTION[] = {0, 0.005, 0.02, 0.05};
     int i, c, with_B;
 
-    for (with_B = 0; with_B < 2; ++with_B)
+    for (with_B = 0; with_B < 2; ++with_B) {
         for (i = 0; i < 4; ++i) {
             printf("%s %4.1f Hz:", with_B ? "with B" : "      ", FREQUENCIES[i]);
-            for (c = 0; c < 3; ++c)
+            for (c = 0; c < 3; ++c) {
                 cell(runs, (uint64_t)(1000 * c + 10000 * i + 100000 * with_B), FREQUENCIES[i],
                      FRICTION[c], FRICTION[c + 1], with_B);
+            }
             printf("\n");
         }
+    }
 }
 
 int main(int argc, char **argv)
@@ -201,11 +205,13 @@ int main(int argc, char **argv)
         return 1;
     }
     mode = argc > 3 ? atoi(argv[3]) : 0;
-    if (argc > 4)
+    if (argc > 4) {
         reversal = atof(argv[4]);
-    if (is_table)
+    }
+    if (is_table) {
         table(atoi(argv[2]));
-    else
+    } else {
         cells(atoi(argv[2]));
+    }
     return 0;
 }

@@ -31,8 +31,9 @@ static int by_size(const void *a, const void *b)
 
 static void keep(int run, int k, double time)
 {
-    if (run == 0 || time < least[k])
+    if (run == 0 || time < least[k]) {
         least[k] = time;
+    }
 }
 
 static void report(const char *name, int p)
@@ -41,8 +42,9 @@ static void report(const char *name, int p)
     double mean = 0;
     int k;
 
-    for (k = FIRST; k < N; ++k)
+    for (k = FIRST; k < N; ++k) {
         mean += least[k] / n;
+    }
     qsort(least + FIRST, (size_t)n, sizeof *least, by_size);
     printf("%-24s p %2d mean %7.0f ns median %7.0f  99.9 %% %7.0f  worst %7.0f\n", name, p, mean,
            least[FIRST + n / 2], least[FIRST + (int)(n * 0.999)], least[N - 1]);

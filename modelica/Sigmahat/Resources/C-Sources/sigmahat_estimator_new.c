@@ -25,12 +25,13 @@ static const sh_estimate *sigmahat_tick(sigmahat_object *o, double t, const sh_m
     }
     o->t = t;
     o->ticked = 1;
-    if (!sh_estimator_tick(&o->now, &o->parameters, z, &o->estimate) && o->estimate_before.valid)
+    if (!sh_estimator_tick(&o->now, &o->parameters, z, &o->estimate) && o->estimate_before.valid) {
         ModelicaFormatMessage(
             "StiffnessEstimator: tick at t = %.9g s skipped, the estimate is kept: expected "
             "inputs that are finite and at most 1e12 in magnitude, received theta = %g, q = %g, "
             "theta_c = %g, tau = %g, tau_e_sensor = %g.\n",
             t, z->theta, z->q, z->theta_c, z->tau, z->tau_e_sensor);
+    }
     if (!o->strained && (o->estimate.phi > largest || o->estimate.phi < -largest)) {
         o->strained = 1;
         ModelicaFormatMessage(
@@ -110,9 +111,11 @@ void *sigmahat_estimator_new(double samplePeriod, int method, int modality, int 
     p.rls.P_0 = rls[0];
     p.rls.c = rls[1];
     p.rls.a = rls[2];
-    for (i = 0; i < SH_MAX_N; ++i)
-        for (j = 0; j < SH_MAX_M; ++j)
+    for (i = 0; i < SH_MAX_N; ++i) {
+        for (j = 0; j < SH_MAX_M; ++j) {
             p.rls.eta_0[i][j] = eta_0[i * SH_MAX_M + j];
+        }
+    }
     p.model.k_s = nominal[0];
     p.model.r_0 = nominal[1];
     p.model.b = nominal[2];
