@@ -78,7 +78,7 @@ static sh_real mean_row(sh_matched_state *state)
 
 static void take_mean_row(sh_matched_state *state, sh_information *a, sh_real w)
 {
-    mean_row(state);
+    (void)mean_row(state);
     (void)sh_information_take(a, state->work.row, w);
 }
 

@@ -28,7 +28,7 @@ size_t sh_block_size(void)
     return sizeof(state_header) + sh_fmu_model.size;
 }
 
-/* FNV-1a, 64 bit: https://datatracker.ietf.org/doc/html/draft-eastlake-fnv */
+/* FNV-1a, 64 bit: datatracker.ietf.org/doc/html/draft-eastlake-fnv */
 static uint64_t checksum(const unsigned char *block, size_t size)
 {
     uint64_t hash = UINT64_C(14695981039346656037);

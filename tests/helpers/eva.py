@@ -39,13 +39,19 @@ class Analysis:
 
 
 def analyse(
-    sources: Sequence[Path], main: str, folders: Sequence[Path], *options: str, **macros: object
+    sources: Sequence[Path],
+    main: str,
+    folders: Sequence[Path],
+    *options: str,
+    before: str | None = None,
+    **macros: object,
 ) -> Analysis:
     """Analyses a program from `main` on.
 
     sources  all C files of the program
     folders  of its headers
     options  of Frama-C
+    before   header that every file includes before all others
     macros   for the preprocessor
     """
     program = shutil.which("frama-c")
@@ -54,6 +60,7 @@ def analyse(
     preprocessor = [
         *(f"-I{folder}" for folder in folders),
         *(f"-D{name}={value}" for name, value in macros.items()),
+        *(() if before is None else ("-include", before)),
         "-U__SSE2__",  # vectors are no standard C: pair.h has the same in plain C
     ]
     done = subprocess.run(
@@ -66,6 +73,14 @@ def analyse(
         text=True,
     )
     return read(done.stdout + done.stderr)
+
+
+def library_source(name: str) -> Path:
+    """A source of the C library that comes with Frama-C."""
+    done = subprocess.run(
+        ["frama-c", "-print-share-path"], capture_output=True, text=True, check=True
+    )
+    return Path(done.stdout.strip()) / "libc" / name
 
 
 def read(text: str) -> Analysis:

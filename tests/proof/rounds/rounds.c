@@ -112,6 +112,16 @@ int main(int argc, char **argv)
         p.matched.drift = k > 1500 ? 0.1 : 0;
         tick(&estimator, &p, k, &estimate);
     }
+    if (p.method == SH_METHOD_PAPER2011) { /* every column is cleared */
+        for (k = 0; k < p.rls.n * p.rls.m; ++k) {
+            estimator.method.paper2011.rls.P.D[k] = 0;
+        }
+        tick(&estimator, &p, 1600, &estimate);
+    }
+    if (sh_estimator_check(&estimator, &p)) {
+        printf("the estimator has a state that it refuses\n");
+        return 1;
+    }
     printf("%d\n", p.method == SH_METHOD_MATCHED_FILTER ? estimator.method.matched.size : 0);
     for (k = 0; k < SH_LOOPS; ++k) {
         printf("%ld\n", most[k]);
