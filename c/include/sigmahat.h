@@ -234,7 +234,9 @@ typedef struct {
     sh_real tau_e_sensor;      /* flexibility torque from a sensor, SH_MODALITY_SENSOR [N.m] */
 } sh_measurement;
 
-/* The outputs of a tick. */
+/* The outputs of a tick. Where one would overflow it is at most 1e300 in magnitude, or 1e38 in single
+ * precision; but sigma_std is infinite then.
+ */
 typedef struct {
     sh_real sigma;                   /* stiffness, (23): slope of the torque where the spring is
                                         engaged, without hysteresis [N.m/rad] */
@@ -310,8 +312,8 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  *
  * Returns 1, or 0 if the tick is skipped: a measurement is not finite or beyond
  * SH_LARGEST_MEASUREMENT, or the numbers overflow. A skipped tick sets estimate->valid to 0, is
- * counted, and changes nothing else. What happens at the first good sample after such a gap
- * depends on the method:
+ * counted, and changes nothing else of the estimate; nor of the state, unless the numbers overflow.
+ * What happens at the first good sample after such a gap depends on the method:
  *
  * SH_METHOD_PAPER2011 filters over the time that has passed. If the gap is shorter than 2 / K_I,
  * the residual integrates over it as over one long sample. After a longer gap it starts from its

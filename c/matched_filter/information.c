@@ -4,6 +4,9 @@
 
 #include "real_math.h"
 
+/* Where one over an entry of D would overflow; such an entry is not changed any more. */
+static const sh_real SMALLEST = SH_FOR(SH_REAL, 1e-300, 1e-37f);
+
 /* Where row i begins in U. */
 static int row_offset(int size, int i)
 {
@@ -99,7 +102,7 @@ sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
         const sh_real xi = x[i], before = a->D[i], after = before + w * xi * xi;
         const int count = size - 1 - i + SH_SIDES;
 
-        if (sh_fabs(xi) > 0 && after > 0) {
+        if (sh_fabs(xi) > 0 && after > SMALLEST) {
             const sh_real share = 1 / after;
 
             combine(row, x + i + 1, count, xi, w * xi * share);
@@ -240,7 +243,7 @@ void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real
         vAv += scaled * along;
         of_U += count + SH_SIDES;
     }
-    if (!(vAv > 0)) { /* nothing is known along v; or an overflow */
+    if (!(vAv > 0) || !isfinite(vAv)) { /* nothing is known along v; or an overflow */
         return;
     }
     c = sh_fmin(c, LARGEST_GROWTH / vAv);

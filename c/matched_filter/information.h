@@ -39,6 +39,9 @@ void sh_information_copy(sh_information *to, const sh_information *from);
  * w  weight. If it is negative, a sample of this weight is removed; U' D U must stay positive
  *    definite
  *
+ * A row whose entry of D would fall below 1e-300, or 1e-37 in single precision, is left as it is, and
+ * `rest` grows by at most SH_LARGE.
+ *
  * Returns w / (1 + w rho), where rho = x' (U' D U)^-1 x is from before the sample.
  */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
@@ -69,7 +72,8 @@ sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
 /* Multiplies the weights of all samples by keep, 0..1. No entry of D falls below least. */
 void sh_information_fade(sh_information *a, sh_real keep, sh_real least);
 
-/* Lets the parameters change by a random step along v of variance c: (U' D U)^-1 += c v v'.
+/* Lets the parameters change by a random step along v of variance c: (U' D U)^-1 += c v v'. The
+ * variance along v grows by a factor of at most 1e12, or 1e6 in single precision.
  *
  * v    [size: size]
  * c    >= 0

@@ -55,7 +55,13 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
      * some add up their time, whose error grows with the number of steps.
      */
     tolerance = 1e-3 * fmax(instance->previous_step, h) + DBL_EPSILON * fabs(t) * instance->steps;
-    if (t + h > instance->stop_time + tolerance || isinf(t + h)) {
+    if (isinf(t + h)) {
+        sh_log(instance, SH_ERROR,
+               "%s: a step from t = %.15g s of %.15g s ends beyond the largest number.", function,
+               t, h);
+        return SH_ERROR;
+    }
+    if (t + h > instance->stop_time + tolerance) {
         sh_log(instance, SH_ERROR,
                "%s: a step from t = %.15g s to %.15g s; expected an end not after stopTime = %.15g "
                "s.",

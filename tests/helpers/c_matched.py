@@ -48,7 +48,7 @@ def coefficients(estimator: Estimator) -> list[tuple[str, int]]:
     matched = estimator.state.method.matched
     n, orders = estimator.parameters.rls.n, len(estimator.estimate.eta[0])
     return [
-        numbered(names[column.kind], *divmod(column.index, orders), n)
+        numbered(names[column.kind], column.index // orders, column.index % orders, n)
         for column in matched.column[0 : matched.size]
     ]
 

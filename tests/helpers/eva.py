@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,16 +43,16 @@ def analyse(
     main: str,
     folders: Sequence[Path],
     *options: str,
+    macros: Mapping[str, object],
     before: str | None = None,
-    **macros: object,
 ) -> Analysis:
     """Analyses a program from `main` on.
 
     sources  all C files of the program
     folders  of its headers
     options  of Frama-C
-    before   header that every file includes before all others
     macros   for the preprocessor
+    before   header that every file includes before all others
     """
     program = shutil.which("frama-c")
     if program is None:

@@ -51,7 +51,7 @@ def library(program: str, main: str, *options: str, **macros: object) -> Analysi
         main,
         [*c_sources.FOLDERS, HERE],
         *options,
-        **{**MACROS, **macros},
+        macros={**MACROS, **macros},
     )
 
 
@@ -74,7 +74,7 @@ def triangle(
         main,
         [with_guards(folder), of, of / "matched_filter", HERE],
         *UNROLLED,
-        **{**MACROS, "SH_REAL": real, "SH_MAX_COLUMNS": columns},
+        macros={**MACROS, "SH_REAL": real, "SH_MAX_COLUMNS": columns},
     )
 
 
@@ -85,7 +85,7 @@ def factor(real: str, parameters: int, folder: Path, of: Path = c_sources.LIBRAR
         "parameters",
         [with_guards(folder), of, of / "matched_filter", HERE],
         *UNROLLED,
-        **{**MACROS, "SH_REAL": real, "SH_MAX_N": parameters, "SH_MAX_M": 1},
+        macros={**MACROS, "SH_REAL": real, "SH_MAX_N": parameters, "SH_MAX_M": 1},
     )
 
 
@@ -188,7 +188,7 @@ def test_an_index_one_too_far_is_found(tmp_path: Path) -> None:
 
 def test_information_that_is_not_checked_is_found(tmp_path: Path) -> None:
     of = with_fault(
-        *(tmp_path, "matched_filter/information.c", "if (sh_fabs(xi) > 0 && after > 0) {"),
+        *(tmp_path, "matched_filter/information.c", "if (sh_fabs(xi) > 0 && after > SMALLEST) {"),
         "if (sh_fabs(xi) > 0) {",
     )
     (alarm,) = triangle("positive", "double", 1, tmp_path, of).alarms

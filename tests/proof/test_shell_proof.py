@@ -86,7 +86,7 @@ def alarms_of(
         [REPOSITORY / "c" / "include", SOURCES, SHELL, build / "fmu" / fmu, PROOF, FMI_HEADERS],
         *("-eva-alloc-builtin", "fresh", "-eva-use-spec", "sh_log", *options),
         before=header,
-        MODEL=struct,
+        macros={"MODEL": struct},
     )
     return found.alarms
 
