@@ -6,6 +6,7 @@ SIGMAHAT_PROMISES=100 runs a hundred times as many examples.
 from __future__ import annotations
 
 import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,8 +31,12 @@ often = settings(
 
 
 @pytest.fixture(scope="module", params=REALS)
-def c(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Library:
-    """The library in double and in single precision."""
+def c(
+    request: pytest.FixtureRequest, build: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Library:
+    """The library in double, that of the build, and in single precision."""
+    if request.param == "double":
+        return Library(build)
     return compile_library(tmp_path_factory.getbasetemp(), request.param)
 
 
