@@ -16,6 +16,10 @@ from hypothesis import HealthCheck, Phase, given, settings
 
 from confined import Confined
 from recorded_logs import CONFIGURATION, write_log
+from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.errors import LogError
+from sigmahat.logs.readers.formats import open_log
+from sigmahat.logs.sampling import sample
 from strange_files import TRIALS, Trial, usual
 
 CONFIGURED = CONFIGURATION.replace("motor.B", "rls.n = 3\nmotor.B")
@@ -170,3 +174,21 @@ def test_names_of_columns_are_no_paths_and_no_commands(tmp_path: Path, confined:
     assert done.complaint() is None and "\x1b" not in done.out + done.err
     assert {each.name for each in tmp_path.iterdir()} == {"in"}
     assert all(each.name.startswith("log") for each in folder.iterdir())
+
+
+def test_a_slow_log_and_one_with_a_pause(tmp_path: Path) -> None:
+    rows = 510_000
+    columns = {name: np.arange(rows, dtype=np.float64) for name in ("theta", "q", "theta_c", "tau")}
+    (tmp_path / "log.toml").write_text(CONFIGURATION)
+    configuration = read_configuration(tmp_path / "log.toml")
+    slow = write_log({"t": 0.01 * np.arange(rows), **columns}, tmp_path / "slow.parquet")
+    assert len(sample(open_log(slow), configuration, 1e-3).values) == 10 * (rows - 1) + 1
+    t = 1e-3 * np.arange(rows)
+    t[9000:] += 5000
+    paused = write_log({"t": t, **columns}, tmp_path / "paused.parquet")
+    assert len(sample(open_log(paused), configuration, 1e-3).values) == rows + 5_000_000
+    t[9000:] += 50_000
+    too_long = write_log({"t": t, **columns}, tmp_path / "log.parquet")
+    words = r"expected at most 10200000; the longest gap is 55000 s: split the log at the pause"
+    with pytest.raises(LogError, match=words):
+        sample(open_log(too_long), configuration, 1e-3)
