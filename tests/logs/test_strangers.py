@@ -14,8 +14,12 @@ import pytest
 import scipy.io
 from hypothesis import HealthCheck, Phase, given, settings
 
-from confined import Confined
+from confined import MOST_MEMORY, Confined
 from recorded_logs import CONFIGURATION, write_log
+from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.errors import LogError
+from sigmahat.logs.readers.formats import open_log
+from sigmahat.logs.sampling import sample
 from strange_files import TRIALS, Trial, usual
 
 CONFIGURED = CONFIGURATION.replace("motor.B", "rls.n = 3\nmotor.B")
@@ -96,7 +100,7 @@ def device(path: Path) -> None:
 @pytest.mark.parametrize(
     ("write", "words"),
     [
-        (zeros_in_mat, "more than 80 MB in a file of"),
+        (zeros_in_mat, "20000000 numbers or more in a file of"),
         (nothing_in_hdf5, "10000000000 numbers or more in a file of"),
         (zeros_in_parquet, "16000000 numbers or more in a file of"),
         (circle_in_hdf5, "in a circle"),
@@ -170,3 +174,44 @@ def test_names_of_columns_are_no_paths_and_no_commands(tmp_path: Path, confined:
     assert done.complaint() is None and "\x1b" not in done.out + done.err
     assert {each.name for each in tmp_path.iterdir()} == {"in"}
     assert all(each.name.startswith("log") for each in folder.iterdir())
+
+
+def test_a_slow_log_and_one_with_a_pause(tmp_path: Path) -> None:
+    rows = 510_000
+    columns = {name: np.arange(rows, dtype=np.float64) for name in ("theta", "q", "theta_c", "tau")}
+    (tmp_path / "log.toml").write_text(CONFIGURATION)
+    configuration = read_configuration(tmp_path / "log.toml")
+    slow = write_log({"t": 0.01 * np.arange(rows), **columns}, tmp_path / "slow.parquet")
+    assert len(sample(open_log(slow), configuration, 1e-3).values) == 10 * (rows - 1) + 1
+    t = 1e-3 * np.arange(rows)
+    t[9000:] += 5000
+    paused = write_log({"t": t, **columns}, tmp_path / "paused.parquet")
+    assert len(sample(open_log(paused), configuration, 1e-3).values) == rows + 5_000_000
+    t[9000:] += 50_000
+    too_long = write_log({"t": t, **columns}, tmp_path / "log.parquet")
+    words = r"expected at most 10200000; the longest gap is 55000 s: split the log at the pause"
+    with pytest.raises(LogError, match=words):
+        sample(open_log(too_long), configuration, 1e-3)
+
+
+def test_many_columns_that_repeat_are_few_bytes_and_no_bomb(
+    tmp_path: Path, confined: Confined
+) -> None:
+    t = 1e-3 * np.arange(100_000)
+    motion = np.sin(0.01 * (np.arange(100_000) % 628))
+    used = {"t": t, "theta": motion, "q": motion, "theta_c": motion, "tau": motion}
+    columns = {**used, **{f"c{i}": motion for i in range(195)}}
+    write_log(columns, tmp_path / "log.parquet")
+    (tmp_path / "log.toml").write_text(CONFIGURATION)
+    for command in (["check", "log.parquet"], ["init", "log.parquet", "--config", "new.toml"]):
+        done = confined.run(tmp_path, *command)
+        assert done.status in (0, 1) and done.megabytes < MOST_MEMORY, done.err
+
+
+def test_many_columns_that_are_packed_well(tmp_path: Path) -> None:
+    values = np.zeros((100_000, 200))
+    with h5py.File(tmp_path / "log.h5", "w") as file:
+        file.create_dataset("x", data=values, compression="gzip", chunks=(100_000, 1))
+    assert len(open_log(tmp_path / "log.h5").columns) == 200
+    scipy.io.savemat(tmp_path / "log.mat", {"x": values[:, :70]}, do_compression=True)
+    assert len(open_log(tmp_path / "log.mat").columns) == 70

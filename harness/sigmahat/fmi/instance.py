@@ -126,7 +126,7 @@ class Fmu:
             whole = int(value)
         except (TypeError, ValueError, OverflowError):  # a list or a date, nan, too many digits
             whole = None
-        if whole is None or whole != value or abs(whole) >= _TOO_LARGE:
+        if whole is None or whole != value or not -_TOO_LARGE <= whole < _TOO_LARGE:
             raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {_shown(value)}")
         return whole
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from sigmahat.guessing import clock
 from sigmahat.guessing.facts import Facts, look_at
 from sigmahat.guessing.words import Meaning, meaning
+from sigmahat.logs.limits import check_together
 from sigmahat.logs.log import Array, Log
 from sigmahat.logs.units import seconds
 
@@ -47,6 +48,7 @@ class Columns:
 
 def read_columns(log: Log) -> Columns:
     """Looks at every column of a log, once."""
+    check_together(log.path, sum(log.columns.values()))
     facts: dict[str, Facts] = {}
     values: dict[str, Array] = {}
     for name in log.columns:
@@ -109,40 +111,46 @@ def _windows(
     T: float,
 ) -> dict[str, Array]:
     """Where the log moves most, the values of columns at the same times, T apart."""
-    samples: dict[str, tuple[Array, Array]] = {}
-    for name in names:
+
+    def samples(name: str) -> tuple[Array, Array]:
+        """Made again each time: those of all columns would fill the memory."""
         column = clocks[name]
         t = times[column] if column else np.arange(len(values[name]), dtype=np.float64) * T
-        good = np.isfinite(t) & np.isfinite(values[name])
-        t, x = t[good], values[name][good]
+        x = values[name]
+        good = np.isfinite(t) & np.isfinite(x)
+        if not good.all():
+            t, x = t[good], x[good]
         if len(t) and not np.all(np.diff(t) > 0):
             order = np.argsort(t, kind="stable")
             t, x = t[order], x[order]
-        samples[name] = (t, x)
-    if not samples:
+        return t, x
+
+    if not names:
         return {}
-    start = max(float(t[0]) for t, _ in samples.values())
-    end = min(float(t[-1]) for t, _ in samples.values())
+    ends = [(float(t[0]), float(t[-1])) for t, _ in map(samples, names)]
+    start, end = max(a for a, _ in ends), min(b for _, b in ends)
     if end <= start:  # signals that were never recorded together
         return {}
-    first = _liveliest(list(samples.values()), start, end, _WINDOW * T)
+    first = _liveliest(lambda: map(samples, names), start, end, _WINDOW * T)
     last = min(end, first + _WINDOW * T)
     grid = np.arange(first, last, T)
-    return {name: np.interp(grid, t, x) for name, (t, x) in samples.items()}
+    return {name: np.interp(grid, *samples(name)) for name in names}
 
 
 def _liveliest(
-    samples: Sequence[tuple[Array, Array]], start: float, end: float, length: float
+    samples: Callable[[], Iterable[tuple[Array, Array]]], start: float, end: float, length: float
 ) -> float:
     """Begin of the stretch of a length in which the columns together vary most."""
     if end - start < 2 * length:
         return start
     # Only stretches with samples: a clock that was set during the log jumps by years.
-    inside = [t[(t >= start) & (t < end)] for t, _ in samples]
-    occupied = [((t - start) // length).astype(np.int64) for t in inside]
+    occupied = [
+        np.unique((t[(t >= start) & (t < end)] - start) // length).astype(np.int64)
+        for t, _ in samples()
+    ]
     begins = start + length * np.unique(np.concatenate(occupied))
     motion = np.zeros(len(begins))
-    for t, x in samples:
+    for t, x in samples():
         ends = zip(np.searchsorted(t, begins), np.searchsorted(t, begins + length), strict=True)
         spread = [float(np.std(x[a:b])) if b > a else 0.0 for a, b in ends]
         motion += np.array(spread) / (max(spread) or 1.0)

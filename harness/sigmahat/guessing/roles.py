@@ -14,6 +14,7 @@ from sigmahat.guessing.relations import Drive, drive, is_copy, line, scale_of_de
 # Points of a column for being the one that a port needs.
 _SAID, _SUGGESTED, _QUANTITY = 4.0, 2.0, 1.0
 _REFERENCE, _COMPUTED, _COPY, _APART = -6.0, -3.0, -5.0, -2.0
+_OF_PORTS, _NO_PORT = ("position", "torque", "current"), -8.0
 _CLOSE, _ALIKE, _UNLIKE = 0.98, 0.9, 0.7
 """Correlations of two positions of one joint: surely, likely, and not likely so."""
 _SAME = 0.995  # correlation with a position from which on a column is no torque
@@ -65,12 +66,21 @@ def assign(columns: Sequence[Column], T: float) -> Roles:
 
 
 def _few(columns: list[Column]) -> list[Column]:
-    """Columns to compare, each with each: those whose names say something before the others."""
+    """Columns to compare, each with each: those whose names say most before the others."""
     if len(columns) <= _MOST_COMPARED:
         return columns
-    kept = sorted(columns, key=lambda each: each.meaning.quantity is None)[:_MOST_COMPARED]
+    kept = sorted(columns, key=_said, reverse=True)[:_MOST_COMPARED]
     names = {each.name for each in kept}
     return [each for each in columns if each.name in names]
+
+
+def _said(column: Column) -> float:
+    """Points of a name for being any port; those without a meaning are between good and bad."""
+    meaning = column.meaning
+    points = _SAID * (meaning.side is not None) + _SUGGESTED * (meaning.suggested is not None)
+    points += _QUANTITY * (meaning.quantity in _OF_PORTS)
+    points += _NO_PORT * (meaning.quantity not in (*_OF_PORTS, None))
+    return points + _REFERENCE * meaning.reference + _COMPUTED * meaning.computed
 
 
 def chosen_roles(columns: Mapping[str, Column], T: float) -> Roles:

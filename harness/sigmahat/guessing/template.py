@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from itertools import accumulate
 
 import tomlkit
 from tomlkit.items import Item, Table
@@ -31,6 +32,7 @@ _MEANING = {
 _MOTOR_UNITS = {"motor.B": "kg.m2", "motor.D_theta": "N.m.s/rad"}
 _TORQUES = {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3, "N.cm": 1e-2}
 _RANGE = (1.0, 100.0)  # of the set-point
+_MOST_LISTED, _LONGEST_LIST = 200, 40_000  # columns, and bytes of their lines together
 _HEAD = """\
 Configuration for {log}{joint}, guessed from names and values of its columns.
 Lines with FILL IN need a value of your data sheet; lines with CHECK are less sure than others.
@@ -51,7 +53,7 @@ def write(log: Log, guess: JointGuess, fmu_defaults: Mapping[str, float]) -> str
 
     fmu_defaults  start values of motor.B and motor.D_theta of the estimator
     """
-    columns = "\n".join(f"  {_seen(each)}" for each in guess.columns)
+    columns = "\n".join(_listed(guess))
     joint = f", joint {guess.name}" if guess.name else ""
     document = tomlkit.document()
     for line in _HEAD.format(log=log.path.name, joint=joint, columns=columns).splitlines():
@@ -76,6 +78,16 @@ def write(log: Log, guess: JointGuess, fmu_defaults: Mapping[str, float]) -> str
     document.add("ports", ports)
     document.add("parameters", _parameters(guess, fmu_defaults))
     return tomlkit.dumps(document)
+
+
+def _listed(guess: JointGuess) -> Iterator[str]:
+    """A line for each column, no more of them than fit a configuration."""
+    lines = [f"  {_seen(each)}" for each in guess.columns]
+    ends = accumulate(len(line.encode()) for line in lines)
+    shown = min(_MOST_LISTED, sum(end < _LONGEST_LIST for end in ends))
+    yield from lines[:shown]
+    if shown < len(lines):
+        yield f"  and {len(lines) - shown} more, left out here"
 
 
 def _seen(column: Seen) -> str:

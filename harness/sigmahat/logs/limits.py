@@ -12,14 +12,30 @@ from sigmahat.logs.errors import LogError
 
 MOST_COLUMNS = 2000
 _NUMBERS, _SMALL = 15_000_000, 10_000_000  # numbers in a file of so many bytes, or fewer
+_TOGETHER = 2  # times as many in all columns, where they are needed at the same time
 _NUMBERS_PER_BYTE = 3  # of the rest of a larger file; without compression it is at most one
+_BYTES = 400_000_000  # of all columns of a file that is read as a whole
 MOST_TEXT = 100_000_000
 """Characters of a column of text at a time."""
 
 
 def most_numbers(path: Path) -> int:
-    """How many numbers the columns of a file may hold together."""
-    return _NUMBERS + _NUMBERS_PER_BYTE * max(0, path.stat().st_size - _SMALL)
+    """How many numbers a column of a file may hold."""
+    files = path.iterdir() if path.is_dir() else (path,)  # the folder of a bag
+    size = sum(file.stat().st_size for file in files)
+    return _NUMBERS + _NUMBERS_PER_BYTE * max(0, size - _SMALL)
+
+
+def check_together(path: Path, numbers: int) -> None:
+    """Raises LogError for more numbers than all columns that are compared may hold."""
+    most = _TOGETHER * _NUMBERS
+    if numbers > most:  # else the size of the file does not matter
+        most = _TOGETHER * most_numbers(path)
+    if numbers > most:
+        raise LogError(
+            f"{path}: {numbers} numbers, expected at most {most} to guess from; "
+            "save the columns of one joint alone, or fewer rows"
+        )
 
 
 def check_columns(path: Path, columns: int) -> None:
@@ -37,4 +53,14 @@ def check_numbers(path: Path, numbers: int) -> None:
         raise LogError(
             f"{path}: {numbers} numbers or more in a file of {path.stat().st_size / 1e6:.3g} MB, "
             f"expected at most {most_numbers(path)}; save it without compression, or in parts"
+        )
+
+
+def check_bytes(path: Path, size: int) -> None:
+    """Raises LogError for more bytes than all columns that are read at once may take."""
+    most = max(_BYTES, 8 * most_numbers(path))
+    if size > most:
+        raise LogError(
+            f"{path}: {size / 1e6:.0f} MB in a file of {path.stat().st_size / 1e6:.3g} MB, "
+            f"expected at most {most / 1e6:.0f} MB; save it without compression, or in parts"
         )

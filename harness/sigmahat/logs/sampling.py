@@ -21,7 +21,7 @@ from sigmahat.logs.turns import put_right
 from sigmahat.logs.units import convert, seconds, unwrap
 
 _MOST_TICKS = 5_000_000
-_MOST_TICKS_OF_MANY_ROWS = 2  # per row: the memory for the ticks goes with the size of the log
+_MOST_TICKS_OF_MANY_ROWS = 20  # per row: the memory for the ticks goes with the size of the log
 _MOST_TICKS_PER_ROW = 200  # else the time has another unit
 _LONG_AGO = 1e6  # [s] A time that is larger counts from 1970, or from the start of a machine.
 
@@ -77,10 +77,13 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
             f"{log.path}: most rows are {step:g} s apart, the ticks {T:g} s; "
             "check time.unit and samplePeriod"
         )
-    if ticks > max(_MOST_TICKS, _MOST_TICKS_OF_MANY_ROWS * len(rows)):
+    most = max(_MOST_TICKS, _MOST_TICKS_OF_MANY_ROWS * len(rows))
+    if ticks > most:
+        gap = float(np.max(np.diff(rows[np.isfinite(rows)])))
         raise LogError(
-            f"{log.path}: {end - start:g} s in steps of {T:g} s are {ticks} ticks; "
-            "check time.unit and samplePeriod"
+            f"{log.path}: {end - start:g} s in steps of {T:g} s are {ticks} ticks, expected at "
+            f"most {most}; the longest gap is {gap:g} s: split the log at the pause, or take a "
+            "longer samplePeriod"
         )
     notes.insert(0, f"{len(rows)} rows over {end - start:.6g} s; {ticks} ticks of {T:g} s")
     rows -= start

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.logs.errors import LogError
-from sigmahat.logs.limits import check_columns, check_numbers
+from sigmahat.logs.limits import check_bytes, check_columns, check_numbers
 from sigmahat.logs.log import LogInMemory
 from sigmahat.logs.readers.packed_mat import check_packed
 
@@ -70,7 +70,7 @@ def read_hdf5(path: Path) -> LogInMemory:
                 others = item.virtual_sources() if item.is_virtual else item.external
                 raise _elsewhere(path, f"{above}{name}", str(others[0][0 if item.external else 1]))
             elif item.dtype.names and item.ndim == 1:
-                check_numbers(path, item.size * item.dtype.itemsize // 8)
+                check_bytes(path, item.size * item.dtype.itemsize)
                 for field in item.dtype.names:
                     yield from _columns(path, f"{above}{name}.{field}", item[field])
             else:
@@ -98,7 +98,8 @@ def _columns(path: Path, name: str, array: Any) -> Named:
         return
     if min(array.shape) > _MOST_COLUMNS and array.ndim == 2:
         return
-    check_numbers(path, array.size)
+    check_numbers(path, max(array.shape))
+    check_bytes(path, array.size * array.dtype.itemsize)
     values = np.asarray(array[...])
     if values.ndim == 2 and values.shape[0] < values.shape[1]:  # as in version 7.3
         values = values.T
@@ -110,12 +111,12 @@ def _columns(path: Path, name: str, array: Any) -> Named:
 
 
 def _log(path: Path, columns: Named) -> LogInMemory:
-    arrays, numbers = {}, 0
+    arrays, size = {}, 0
     for name, values in columns:
         arrays[name] = values
-        numbers += len(values)
+        size += values.nbytes
         check_columns(path, len(arrays))
-        check_numbers(path, numbers)
+        check_bytes(path, size)
     if not arrays:
         raise LogError(f"{path}: no vector or matrix of numbers in it")
     return LogInMemory(path, arrays)

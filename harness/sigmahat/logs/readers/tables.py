@@ -33,14 +33,14 @@ class ParquetLog(Log):
         schema, metadata = self._file.schema_arrow, self._file.metadata
         flat = [field.name for field in schema if _is_flat(field.type)]
         check_columns(path, len(flat))
-        check_numbers(path, len(flat) * metadata.num_rows)
-        check_numbers(path, _bytes(metadata) // 8)
+        check_numbers(path, metadata.num_rows)
         self._texts = {field.name for field in schema if _is_text(field.type)}
         super().__init__(path, dict.fromkeys(flat, metadata.num_rows))
 
     def _read(self, name: str) -> Array:
         if name in self._texts:
             raise self._text(name)
+        check_numbers(self.path, _bytes(self._file.metadata, name) // 8)
         try:
             column = self._file.read([name], use_threads=False).column(0)
         except (pa.ArrowException, OSError) as error:
@@ -59,6 +59,8 @@ class ParquetLog(Log):
 
     def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
         texts = [name for name in names if name in self._texts]
+        for name in names:
+            check_numbers(self.path, _bytes(self._file.metadata, name) // 8)
         try:
             # A text that repeats stays one text, until it is known how long all of them are.
             file = pa.parquet.ParquetFile(self.path, pre_buffer=False, read_dictionary=texts)
@@ -213,14 +215,11 @@ def _is_text(kind: pa.DataType) -> bool:
     return any(is_kind(kind) for is_kind in kinds)
 
 
-def _bytes(metadata: Any) -> int:
-    """What the columns of a Parquet file are without compression."""
+def _bytes(metadata: Any, name: str) -> int:
+    """What a column of a Parquet file is without compression."""
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
-    return sum(
-        group.column(j).total_uncompressed_size
-        for group in groups
-        for j in range(group.num_columns)
-    )
+    places = [j for j in range(metadata.num_columns) if metadata.schema.column(j).path == name]
+    return sum(group.column(j).total_uncompressed_size for group in groups for j in places)
 
 
 def _numeric(kind: pa.DataType) -> bool:
