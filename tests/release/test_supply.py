@@ -114,6 +114,7 @@ def test_the_python_packages_made_elsewhere_are_the_same(
             (name,) = (n for n in opened.namelist() if "/sigmahat_native." in n)
             library = stem.with_name(Path(name).name)
             library.write_bytes(opened.read(name))
+        library.chmod(0o755)  # as a compiler writes it
         return library
 
     monkeypatch.setattr(distribution, "compile_shared", compiled)
