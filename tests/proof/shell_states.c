@@ -1,4 +1,6 @@
-/* The de-serialiser: any bytes of any length, then the state that they make, then a step. */
+/* The de-serialiser: any bytes of any length, then the state that they make, then a step; and every
+ * call of an instance in any state that can be restored.
+ */
 #include <stdlib.h>
 #include <string.h>
 
@@ -98,4 +100,78 @@ int main(void)
     of_this_size(SH_STEP, any_int(), 0, 0);
     of_this_size(SH_STEP, any_int(), 1, 0);
     return 0;
+}
+
+/* One call of every kind, with any arguments. */
+static void call(int which, sh_instance *instance)
+{
+    const sh_experiment experiment = {any_int(), any_real(), any_real(), any_int(), any_real()};
+    void *state = NULL;
+    size_t size = 0;
+
+    switch (which) {
+    case 0:
+        sh_set_up(instance, &experiment, "proof");
+        break;
+    case 1:
+        sh_begin_initialization(instance, "proof");
+        break;
+    case 2:
+        sh_end_initialization(instance, "proof");
+        break;
+    case 3:
+        sh_communication_step(instance, any_real(), any_real(), "proof");
+        break;
+    case 4:
+        sh_terminate(instance, "proof");
+        break;
+    case 5:
+        sh_reset(instance);
+        break;
+    case 6:
+        sh_initialize(instance);
+        break;
+    default:
+        sh_save_state(instance, &state, "proof");
+        sh_state_size(instance, state, &size, "proof");
+        sh_free_state(instance, &state, "proof");
+        break;
+    }
+}
+
+static void calls_of(unsigned course, int stale, int unchecked)
+{
+    const int flags[2] = {stale, unchecked};
+    int which;
+
+    //@ loop unroll 8;
+    for (which = 0; which < 8; ++which) {
+        sh_instance instance = instance_with(&model, 1);
+        const size_t size = sh_block_size();
+        char *bytes = any_bytes(size);
+
+        (void)memcpy(bytes + PLACE_OF_STATE, &course, sizeof course);
+        (void)memcpy(bytes + PLACE_OF_FLAGS, flags, sizeof flags);
+        if (sh_restore_state(&instance, bytes, "proof") == SH_OK) {
+            call(which, &instance);
+        }
+        free(bytes);
+    }
+}
+
+/* Every call, from every state that an instance can have. */
+void calls(void)
+{
+    Frama_C_make_unknown((char *)&model, sizeof model);
+    calls_of(SH_INSTANTIATED, 1, 0);
+    calls_of(SH_INSTANTIATED, 1, 1);
+    calls_of(SH_TERMINATED, 0, 0);
+    calls_of(SH_TERMINATED, 0, 1);
+    calls_of(SH_INITIALIZATION, 1, 0);
+    calls_of(SH_INITIALIZATION, 1, 1);
+    calls_of(SH_INITIALIZATION, 0, 0);
+    calls_of(SH_INITIALIZATION, 0, 1);
+    calls_of(SH_STEP, 0, 0);
+    calls_of(SH_STEP, 0, 1);
+    //@ assert reached: \true;
 }

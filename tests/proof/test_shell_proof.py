@@ -67,6 +67,7 @@ def alarms_of(
     *,
     shell: Path = SHELL,
     version: str | None = None,
+    main: str = "main",
 ) -> tuple[str, ...]:
     """The alarms of Eva for a program `shell_*.c`, and what it could not prove.
 
@@ -82,7 +83,7 @@ def alarms_of(
             *(SOURCES / name for name in own),
             library_source("string.c"),
         ],
-        "main",
+        main,
         [REPOSITORY / "c" / "include", SOURCES, SHELL, build / "fmu" / fmu, PROOF, FMI_HEADERS],
         *("-eva-alloc-builtin", "fresh", "-eva-use-spec", "sh_log", *options),
         before=header,
@@ -92,7 +93,11 @@ def alarms_of(
 
 
 def analyse_course(
-    build: Path, fmu: str, program: str = "shell_states.c", shell: Path = SHELL
+    build: Path,
+    fmu: str,
+    program: str = "shell_states.c",
+    shell: Path = SHELL,
+    main: str = "main",
 ) -> tuple[str, ...]:
     """The alarms of a program that goes through states, initialisation and steps."""
     estimator = fmu == "StiffnessEstimator"
@@ -103,7 +108,7 @@ def analyse_course(
         *("-eva-auto-loop-unroll", "0" if estimator else "8"),
         *("-eva-split-return-function", ",".join(f"{name}:0" for name in outcomes)),
     ]
-    return alarms_of(build, program, fmu, options, shell=shell)
+    return alarms_of(build, program, fmu, options, shell=shell, main=main)
 
 
 @pytest.mark.slow("the analysis of an estimator's shell")
@@ -147,6 +152,11 @@ def test_any_value_reference_is_harmless(build: Path, version: str) -> None:
     # NaN as an integer: only a Float64 can be NaN, and no Float64 is written to an integer.
     expected = ["value.c"] if version == "fmi3" else []
     assert [alarm.split(":")[0] for alarm in alarms] == expected
+
+
+@by_hand
+def test_every_call_in_every_state_is_harmless(build: Path) -> None:
+    assert analyse_course(build, "StiffnessEstimator", main="calls") == ()
 
 
 @by_hand
