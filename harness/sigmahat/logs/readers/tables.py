@@ -18,6 +18,7 @@ from sigmahat.logs.limits import MOST_TEXT, check_columns, check_numbers
 from sigmahat.logs.log import Array, Log, first_text, fits_float64, holds_text, is_number, numbers
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
+_ALWAYS_READ = 100_000_000  # bytes without compression that every file may have
 _FEW = 100  # rows with text that are looked at at a time
 
 
@@ -216,8 +217,12 @@ def _is_text(kind: pa.DataType) -> bool:
 
 
 def _bytes(metadata: Any, name: str) -> int:
-    """What a column of a Parquet file is without compression."""
+    """What a column of a Parquet file is without compression, at most."""
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
+    whole = sum(group.total_byte_size for group in groups)
+    # Only where it matters: pyarrow aborts the process if what is said of a column is damaged.
+    if whole <= _ALWAYS_READ:
+        return int(whole)
     places = [j for j in range(metadata.num_columns) if metadata.schema.column(j).path == name]
     return sum(group.column(j).total_uncompressed_size for group in groups for j in places)
 
