@@ -23,7 +23,7 @@ def test_every_exemption_is_of_code_that_exists(file: str, code: str) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="the mutants are tested in forks")
-@pytest.mark.slow("some mutants of the library are compiled and tested")
+@pytest.mark.slow("a dozen mutants of the library are compiled and tested")
 def test_nearly_every_wrong_token_is_noticed() -> None:
     if shutil.which("gcc") is None:
         missing("gcc", "apt-get install gcc")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
+import subprocess
+import tarfile
 import os
 import shutil
 from pathlib import Path
@@ -120,5 +122,22 @@ def test_the_python_packages_made_elsewhere_are_the_same(
     monkeypatch.setattr(distribution, "compile_shared", compiled)
     contents = [*(released / f"{name}.fmu" for name in FMUS), released / "sigmahat-awas.ssp"]
     distribution.write(tmp_path / "python", REPOSITORY, contents, [], [], tmp_path)
-    for file in (released / "python").iterdir():
+    for file in (released / "python").glob("*.whl"):
         assert (tmp_path / "python" / file.name).read_bytes() == file.read_bytes(), file.name
+    # The source distribution has every file of the folder: only those of the repository are compared.
+    (name,) = (file.name for file in (released / "python").glob("*.tar.gz"))
+    first, again = (members(folder / "python" / name) for folder in (released, tmp_path))
+    assert len(first) > 500 and first == again
+
+
+def members(distribution: Path) -> dict[str, tuple[int, float, bytes]]:
+    """Mode, time and content of the files of a source distribution that git knows."""
+    git = ["git", "-C", str(REPOSITORY), "ls-files"]
+    known = subprocess.run(git, capture_output=True, text=True, check=True).stdout.splitlines()
+    with tarfile.open(distribution) as opened:
+        files = {member.name.partition("/")[2]: member for member in opened if member.isfile()}
+        return {
+            name: (files[name].mode, files[name].mtime, opened.extractfile(files[name]).read())  # type: ignore[union-attr]
+            for name in known
+            if name in files
+        }
