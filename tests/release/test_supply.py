@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-import subprocess
-import tarfile
 import os
 import shutil
+import subprocess
+import tarfile
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -124,7 +124,7 @@ def test_the_python_packages_made_elsewhere_are_the_same(
     distribution.write(tmp_path / "python", REPOSITORY, contents, [], [], tmp_path)
     for file in (released / "python").glob("*.whl"):
         assert (tmp_path / "python" / file.name).read_bytes() == file.read_bytes(), file.name
-    # The source distribution has every file of the folder: only those of the repository are compared.
+    # A source distribution has every file of the folder; those of the repository are compared.
     (name,) = (file.name for file in (released / "python").glob("*.tar.gz"))
     first, again = (members(folder / "python" / name) for folder in (released, tmp_path))
     assert len(first) > 500 and first == again
