@@ -150,9 +150,9 @@ def test_reset_forgets_and_keeps_what_was_tuned(z: dict[str, NDArray[np.float64]
         ([], "one joint or more"),
         ("Paper2011", "parameters of one joint or more, got 'Paper2011'"),
         ([None], r"parameters of one joint or more, got \[None\]"),
-        ({"rls.n": float("inf")}, r"rls\.n: expected a number, got inf"),
-        ({"rls.n": 2**40}, r"rls\.n: expected at most 2147483647, got 1099511627776"),
-        ({"method": None}, "method: expected a number, got None"),
+        ({"rls.n": float("inf")}, r"rls\.n: expected Integer, got inf"),
+        ({"rls.n": 2**40}, r"rls\.n: expected Integer of 32 bits, got 1099511627776"),
+        ({"method": None}, "method: expected Enumeration, got None"),
     ],
 )
 def test_parameters_that_do_not_fit(parameters: Any, message: str) -> None:

@@ -126,9 +126,12 @@ class Fmu:
             whole = int(value)
         except (TypeError, ValueError, OverflowError):  # a list or a date, nan, too many digits
             whole = None
-        if whole is None or whole != value or not -_TOO_LARGE <= whole < _TOO_LARGE:
-            raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {_shown(value)}")
-        return whole
+        expected = variable.type
+        if whole is not None and whole == value:
+            if -_TOO_LARGE <= whole < _TOO_LARGE:
+                return whole
+            expected += " of 32 bits"
+        raise ValueError(f"{self.name}.{name}: expected {expected}, got {_shown(value)}")
 
     def items(self, name: str) -> dict[int, str]:
         """Returns the items of an enumeration: their names by their numbers."""
