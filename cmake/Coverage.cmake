@@ -10,7 +10,7 @@ add_custom_target(
   coverage
   COMMAND
     ${CMAKE_COMMAND} -E env SIGMAHAT_BUILD=${PROJECT_BINARY_DIR}
-    ${SIGMAHAT_PYTHON} -m pytest -q -n auto --dist loadscope -m "not slow" ${tests}
+    ${SIGMAHAT_PYTHON} -m pytest -q -n auto --dist loadscope -m "not slow" -k "not table1" ${tests}
   COMMAND
     ${SIGMAHAT_PYTHON} -m gcovr --object-directory ${PROJECT_BINARY_DIR} --filter c/
     --filter fmu_src/ --gcov-exclude-directories .*/CompilerIdC --txt - --txt-metric branch

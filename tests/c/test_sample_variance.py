@@ -97,6 +97,19 @@ def test_the_excess_is_measured_from_the_positions(c: Library, noise: float) -> 
     )
 
 
+@pytest.mark.parametrize(("rough", "theta"), [(0.0, COUNT**2 / 12), (1e-6, 1e-6)])
+def test_the_share_of_the_error_that_is_of_the_torque(
+    c: Library, rough: float, theta: float
+) -> None:
+    """The other share is that of theta: its noise, or its rounding if that is more."""
+    sample = Sample(c)
+    sample.matched.history.rough = rough
+    of_theta = (GAMMA**2 * B) ** 2 * sample.matched.gain_second * theta
+    of_torque = sample.white * (GAMMA * NOISE) ** 2
+    share = c.lib.sh_sample_variance_of_torque(sample.matched, sample.p)
+    assert share == pytest.approx(of_torque / (of_torque + of_theta), rel=1e-12)
+
+
 def test_the_information_about_the_inertia_that_is_rounding(c: Library) -> None:
     """The measured noise of theta, and in motion what fourth differences miss of its rounding."""
     sample = Sample(c)

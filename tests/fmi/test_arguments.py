@@ -45,6 +45,37 @@ def test_a_call_without_an_instance_is_an_error(function: str, estimator_fmu: Pa
         assert getattr(fmu.dll, function)(None, *arguments) == ERROR
 
 
+@pytest.mark.parametrize(
+    ("function", "name", "kind"),
+    [
+        ("fmi2SetReal", "modality", "Integer or Enumeration"),
+        ("fmi2SetReal", "rls.symmetric", "Boolean"),
+        ("fmi2GetInteger", "theta", "Real"),
+        ("fmi2GetBoolean", "rls.n", "Integer or Enumeration"),
+    ],
+)
+def test_a_variable_of_another_type_is_named_with_its_type(
+    function: str, name: str, kind: str, estimator_fmu: Path
+) -> None:
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise()
+        value = ((ctypes.c_double if function == "fmi2SetReal" else ctypes.c_int) * 1)()
+        assert fmu.call(function, fmu.references([name]), SIZE, value) == ERROR
+        assert f"is {name}, which is {kind}." in fmu.messages[-1][2]
+
+
+def test_derivatives_of_inputs_need_their_order(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
+        fmu.initialise()
+        value = (ctypes.c_double * 1)(1.0)
+        theta = fmu.references(["theta"])
+        assert fmu.call("fmi2SetRealInputDerivatives", theta, SIZE, None, value) == ERROR
+        assert "argument order is NULL" in fmu.messages[-1][2]
+        none = ctypes.c_size_t(0)
+        assert fmu.call("fmi2SetRealInputDerivatives", None, none, None, None) == OK
+        assert fmu.call("fmi2GetRealOutputDerivatives", None, none, None, None) == OK
+
+
 def test_freeing_a_null_pointer_is_no_error(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         assert fmu.call("fmi2FreeFMUstate", None) == OK

@@ -91,11 +91,11 @@ def test_valgrind_finds_nothing(fmu: str, version: str, build: Path, folder: Pat
 
 @pytest.mark.slow("the fuzzer has a fixed time to try inputs")
 def test_fuzzer_finds_nothing(build: Path, folder: Path) -> None:
-    """An estimator and a plant at the same time, for ten seconds in each version."""
+    """An estimator and a plant at the same time, for five seconds in each version."""
     compiler = compiler_with(FUZZER, folder)
     # Long sequences from the first second on: short ones do not get far.
     lengths = ["-max_len=512", "-len_control=0"]
-    options = ["-max_total_time=10", *lengths, "-timeout=20", f"-artifact_prefix={folder}/"]
+    options = ["-max_total_time=5", *lengths, "-timeout=20", f"-artifact_prefix={folder}/"]
     for version in VERSIONS:
         programs = [
             compile_driver("fuzz", fmu, version, build, folder, compiler, FUZZER) for fmu in IN_FMI3

@@ -100,6 +100,38 @@ def test_without_an_instance_every_function_fails_quietly(estimator_twin: Path) 
 
 
 @pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("modality", "an Enumeration (Int64)"),
+        ("rls.symmetric", "Boolean"),
+        ("rls.n", "Int32"),
+    ],
+)
+def test_a_variable_of_another_type_is_named_with_its_type(
+    name: str, kind: str, estimator_twin: Path
+) -> None:
+    with Instance3(estimator_twin) as fmu:
+        value = (ctypes.c_double * 1)()
+        assert fmu.call("fmi3GetFloat64", fmu.references([name]), SIZE(1), value, SIZE(1)) == ERROR
+        assert f"is {name}, which is {kind}." in fmu.last_message
+
+
+STEP_RESULTS = ["eventHandlingNeeded", "terminateSimulation", "earlyReturn", "lastSuccessfulTime"]
+
+
+@pytest.mark.parametrize("missing", range(4))
+def test_a_step_needs_a_place_for_each_of_its_results(missing: int, estimator_twin: Path) -> None:
+    with Instance3(estimator_twin) as fmu:
+        fmu.initialise()
+        time, step = ctypes.c_double(0.0), ctypes.c_double(1e-3)
+        places = [ctypes.byref(ctypes.c_double()) for _ in STEP_RESULTS]
+        given = [None if i == missing else place for i, place in enumerate(places)]
+        assert fmu.call("fmi3DoStep", time, step, True, *given) == ERROR
+        assert f"argument {STEP_RESULTS[missing]} is NULL" in fmu.last_message
+        assert fmu.step(0.0, 1e-3) == OK
+
+
+@pytest.mark.parametrize(
     ("options", "expected"),
     [
         ({"event_mode": True}, "hasEventMode is false"),

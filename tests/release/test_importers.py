@@ -6,7 +6,6 @@ import csv
 import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import fmpy
@@ -15,6 +14,7 @@ import pytest
 
 from gate import missing
 from released_fmus import FMUS, STEP, TWINS, Run
+from sigmahat.export.cross_compiler import HEADERS, compile_files
 
 each_fmu = pytest.mark.parametrize("run", FMUS, indirect=True)
 
@@ -102,17 +102,14 @@ def test_libcosim_gives_the_same_trajectories(run: Run, capfd: pytest.CaptureFix
 
 def compiled(driver: str, target: str, build: Path, program: Path) -> Path:
     """``drivers/DRIVER.c``, compiled for a target of the cross compiler."""
-    cache = str((build / "cross-compiler").resolve())
-    subprocess.run(
-        [
-            *(sys.executable, "-m", "ziglang", "cc", "-target", target),
-            # With -s as the binaries of the release: so what the compiler made of its C library for
-            # them is used again, which takes minutes to make.
-            *("-std=c99", "-O2", "-s", f"-I{Path(fmpy.__file__).parent / 'c-code'}"),
-            *(str(Path(__file__).parents[1] / "drivers" / f"{driver}.c"), "-o", str(program)),
-        ],
-        env={**os.environ, "ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache},
-        check=True,
+    source = Path(__file__).parents[1] / "drivers" / f"{driver}.c"
+    # With -s and in a folder outside of the sources as the binaries of the release: so what the
+    # compiler made of its C library for them is used again, which takes minutes to make.
+    compile_files(
+        target,
+        ["-std=c99", "-O2", "-s", f"-I{HEADERS}", source, "-o", program],
+        build / "cross-compiler",
+        program.parent,
     )
     return program
 

@@ -269,10 +269,10 @@ def finished(running: dict[int, Path]) -> tuple[int, bool]:
 
 
 def shares(number: int) -> dict[str, int]:
-    """Number of mutants of each file: at least three, else proportional to its number of places."""
+    """Number of mutants of each file: at least two, else proportional to its number of places."""
     places = {name: len(candidates(file, "")) for name, file in SOURCES.items()}
     total = sum(places.values())
-    return {file: max(3, round(number * count / total)) for file, count in places.items()}
+    return {file: max(2, round(number * count / total)) for file, count in places.items()}
 
 
 def mutants(bench: Bench, file: str, number: int, seed: str) -> Iterator[tuple[Mutant, Path]]:
