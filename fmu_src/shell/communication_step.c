@@ -32,6 +32,7 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
     if (instance == NULL) {
         return SH_ERROR;
     }
+    /*@ dynamic_split instance->parameters_unchecked; */ /* for the proof of docs/proof/shell.md */
     if (!(h > 0.0) || !isfinite(h)) {
         sh_log(instance, SH_ERROR,
                "%s: communicationStepSize = %.9g s; expected a finite number above 0.", function,

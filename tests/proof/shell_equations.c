@@ -83,3 +83,24 @@ double fmax(double a, double b)
     }
     return a >= b ? a : b;
 }
+
+/* A plant needs no marks: whatever its numbers are, they lead to no other memory. */
+void mark_checked(sh_plant *model)
+{
+    (void)model;
+}
+
+void mark_sound(sh_plant *model)
+{
+    (void)model;
+}
+
+void expect_checked(const sh_plant *model)
+{
+    (void)model;
+}
+
+void expect_sound(const sh_plant *model)
+{
+    (void)model;
+}

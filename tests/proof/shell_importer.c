@@ -18,9 +18,22 @@ int any_int(void)
     return unknown_int;
 }
 
+size_t any_size(void)
+{
+    return Frama_C_size_t_interval(0, SIZE_MAX);
+}
+
 double any_real(void)
 {
     return unknown_real;
+}
+
+const char *any_text(void)
+{
+    static char text[16];
+
+    Frama_C_make_unknown(text, sizeof text - 1);
+    return text;
 }
 
 void *any_bytes(size_t size)

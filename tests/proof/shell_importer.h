@@ -10,9 +10,14 @@
 
 #include "instance.h"
 
+/* Places in a saved state. */
+enum { HEADER = 136, PLACE_OF_STATE = 12, PLACE_OF_FLAGS = 120 };
+
 int any_choice(void); /* 0 or 1 */
 int any_int(void);
-double any_real(void); /* infinities and NaN, too */
+size_t any_size(void);
+double any_real(void);      /* infinities and NaN, too */
+const char *any_text(void); /* at most 15 bytes of any value, then 0 */
 
 /* Memory of exactly this size with any bytes. */
 void *any_bytes(size_t size);

@@ -1,6 +1,9 @@
 /* What the functions do that work on triangles: with them, a tick is analysed without the loops over
  * all entries, and for any numbers. Their bodies are analysed in information.c and ud_factor.c.
  *
+ * Each \from names all that the requirements read: Eva uses the results of a caller again where what it
+ * reads is the same.
+ *
  * The last two are about parameters that passed sh_parameters_check, which calls the same functions
  * with the same parameters: there are 1..SH_MAX_COLUMNS columns, and a curve rls.eta_0 if
  * prior.tau_e is 0.
@@ -16,7 +19,8 @@
     requires \valid(x + (0 .. a->size + SH_SIDES - 1));
     requires \initialized(x + (0 .. a->size + SH_SIDES - 1));
     assigns \result, a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->rest,
-            x[0 .. SH_MAX_COLUMNS + SH_SIDES - 1] \from w;
+            x[0 .. SH_MAX_COLUMNS + SH_SIDES - 1]
+            \from *a, x[0 .. SH_MAX_COLUMNS + SH_SIDES - 1], w;
 */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 
@@ -47,7 +51,7 @@ sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
 void sh_information_side(const sh_information *a, int side, sh_real *z);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    assigns \result \from a;
+    assigns \result \from a, *a;
     ensures \subset(\result, a->U + (0 .. SH_MAX_TRIANGLE - SH_SIDES));
 */
 sh_real *sh_information_last(sh_information *a);
@@ -74,7 +78,8 @@ sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
     requires \initialized(v + (0 .. a->size - 1));
     requires \valid(row + (0 .. a->size + SH_SIDES - 1));
     assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->rest,
-            row[0 .. SH_MAX_COLUMNS + SH_SIDES - 1] \from c;
+            row[0 .. SH_MAX_COLUMNS + SH_SIDES - 1]
+            \from *a, v[0 .. SH_MAX_COLUMNS - 1], row[0 .. SH_MAX_COLUMNS + SH_SIDES - 1], c;
 */
 void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real *row);
 
@@ -94,7 +99,7 @@ sh_real sh_ud_factor_project(sh_ud_factor *P, const sh_real *F);
 
 /*@ requires 1 <= P->size <= SH_MAX_PARAMETERS;
     assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work \from *P, w;
-    assigns \result \from P;
+    assigns \result \from P, *P;
     ensures \result == P->work.g;
 */
 const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w);

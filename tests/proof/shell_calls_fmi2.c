@@ -1,0 +1,151 @@
+/* Every function of FMI 2.0 for Co-Simulation. */
+#include "fmi2Functions.h"
+#include "shell_calls.h"
+
+static void call(int which, course here)
+{
+    const fmi2String categories[] = {"logAll", NULL, any_text()};
+    const fmi2StatusKind kind = (fmi2StatusKind)any_int();
+    fmi2FMUstate state = NULL;
+    size_t size = 0;
+    int integer;
+    double real;
+
+    //@ dynamic_split instance.parameters_unchecked;
+    //@ dynamic_split instance.state;
+    switch (which) {
+    case 0:
+        fmi2SetDebugLogging(&instance, any_choice(), any_choice() ? 3 : 0, categories);
+        break;
+    case 1:
+        fmi2SetDebugLogging(&instance, any_choice(), any_size(), NULL);
+        break;
+    case 2:
+        fmi2SetupExperiment(&instance, any_int(), any_real(), any_real(), any_int(), any_real());
+        break;
+    case 3:
+        fmi2EnterInitializationMode(&instance);
+        break;
+    case 4:
+        fmi2ExitInitializationMode(&instance);
+        break;
+    case 5:
+        fmi2Terminate(&instance);
+        break;
+    case 6:
+        fmi2Reset(&instance);
+        break;
+    case 7:
+        fmi2DoStep(&instance, any_real(), any_real(), any_int());
+        break;
+    case 8:
+        fmi2CancelStep(&instance);
+        break;
+    case 9:
+        fmi2GetStatus(&instance, kind, any_choice() ? (fmi2Status *)&integer : NULL);
+        break;
+    case 10:
+        fmi2GetRealStatus(&instance, kind, any_choice() ? &real : NULL);
+        break;
+    case 11:
+        fmi2GetIntegerStatus(&instance, kind, any_choice() ? &integer : NULL);
+        break;
+    case 12:
+        fmi2GetBooleanStatus(&instance, kind, any_choice() ? &integer : NULL);
+        break;
+    case 13:
+        fmi2GetStringStatus(&instance, kind, NULL);
+        break;
+    case 14:
+        fmi2GetDirectionalDerivative(&instance, NULL, any_size(), NULL, any_size(), NULL, NULL);
+        break;
+    case 15:
+        fmi2GetFMUstate(&instance, any_choice() ? &state : NULL);
+        fmi2SerializedFMUstateSize(&instance, state, any_choice() ? &size : NULL);
+        fmi2FreeFMUstate(&instance, any_choice() ? &state : NULL);
+        break;
+    case 16:
+        fmi2SetFMUstate(&instance, any_choice() ? any_state(here) : NULL);
+        break;
+    case 17:
+        fmi2DeSerializeFMUstate(&instance, any_state(here), sh_block_size(), &state);
+        break;
+    default:
+        fmi2SerializeFMUstate(&instance, any_state(here), any_block(), any_size());
+        fmi2SerializeFMUstate(&instance, any_state(here), NULL, any_size());
+        break;
+    }
+}
+
+static void access(int which, const uint32_t vr[], size_t n, int way)
+{
+    fmi2Integer *order = any_array(n * sizeof *order);
+    fmi2Real *reals = any_array(n * sizeof *reals);
+    fmi2Integer *integers = any_array(n * sizeof *integers);
+    fmi2String *strings = any_array(n * sizeof *strings);
+
+    (void)way; /* one value for each reference */
+    switch (which) {
+    case 0:
+        fmi2GetReal(&instance, vr, n, reals);
+        break;
+    case 1:
+        fmi2SetReal(&instance, vr, n, reals);
+        break;
+    case 2:
+        fmi2GetInteger(&instance, vr, n, integers);
+        break;
+    case 3:
+        fmi2SetInteger(&instance, vr, n, integers);
+        break;
+    case 4:
+        fmi2GetBoolean(&instance, vr, n, integers);
+        break;
+    case 5:
+        fmi2SetBoolean(&instance, vr, n, integers);
+        break;
+    case 6:
+        fmi2GetString(&instance, vr, n, strings);
+        break;
+    case 7:
+        fmi2SetString(&instance, vr, n, strings);
+        break;
+    case 8:
+        fmi2SetRealInputDerivatives(&instance, vr, n, order, reals);
+        break;
+    default:
+        fmi2GetRealOutputDerivatives(&instance, vr, n, order, reals);
+        break;
+    }
+}
+
+/* The begin of the induction, and its end: what was created is freed, once. */
+static void create(const fmi2CallbackFunctions *functions, const char *guid)
+{
+    sh_instance *created =
+        fmi2Instantiate(any_choice() ? "joint" : NULL, any_choice() ? fmi2CoSimulation : any_int(),
+                        any_choice() ? guid : NULL, NULL, functions, any_int(), any_int());
+
+    if (created != NULL) {
+        //@ assert created: created->state == SH_INSTANTIATED;
+        //@ assert to_compute: created->outputs_stale == 1 && created->parameters_unchecked == 1;
+        fmi2FreeInstance(created);
+    }
+}
+
+int main(void)
+{
+    static const fmi2CallbackFunctions OWN = {NULL, allocate, release, NULL, NULL};
+    static const fmi2CallbackFunctions NONE = {NULL, NULL, NULL, NULL, NULL};
+    static const version FMI2 = {.calls = 19, .accesses = 10, .ways = 1};
+    static const sh_importer MEMORY = {NULL, NULL, allocate, release};
+
+    create(NULL, "another");
+    create(&NONE, "another");
+    create(&NONE, sh_fmu_model.guid);
+    create(&OWN, sh_fmu_model.guid);
+    fmi2FreeInstance(NULL);
+    fmi2DoStep(NULL, any_real(), any_real(), any_int());
+    every_call(MEMORY, FMI2);
+    return 0;
+}
