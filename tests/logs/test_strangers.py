@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import struct
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -47,6 +49,31 @@ def test_files_that_are_damaged_or_made_up(trial: Trial, confined: Confined) -> 
 
 def zeros_in_mat(path: Path) -> None:
     scipy.io.savemat(path, {"t": np.zeros(20_000_000)}, do_compression=True)
+
+
+def _mat_with(kind: int, packed: bool, path: Path) -> None:
+    """A vector whose numbers are said to be of another kind."""
+    scipy.io.savemat(path, {"t": np.arange(1000.0)})
+    content = bytearray(path.read_bytes())
+    place = content.index(struct.pack("<II", 9, 8000))
+    content[place : place + 4] = struct.pack("<I", kind)
+    if packed:
+        variable = zlib.compress(bytes(content[128:]))
+        content[128:] = struct.pack("<II", 15, len(variable)) + variable
+    path.write_bytes(content)
+
+
+def unknown_kind_in_mat(path: Path) -> None:
+    _mat_with(39945, False, path)
+
+
+def unknown_kind_in_packed_mat(path: Path) -> None:
+    _mat_with(8, True, path)
+
+
+def many_cells_in_mat(path: Path) -> None:
+    cells = np.array([*range(300_000)], dtype=object)
+    scipy.io.savemat(path, {"t": cells}, do_compression=True)
 
 
 def nothing_in_hdf5(path: Path) -> None:
@@ -101,6 +128,9 @@ def device(path: Path) -> None:
     ("write", "words"),
     [
         (zeros_in_mat, "20000000 numbers or more in a file of"),
+        (unknown_kind_in_mat, "damaged MAT file (no element is of the kind 39945)"),
+        (unknown_kind_in_packed_mat, "damaged MAT file (no element is of the kind 8)"),
+        (many_cells_in_mat, "more than 1000000 cells and fields"),
         (nothing_in_hdf5, "10000000000 numbers or more in a file of"),
         (zeros_in_parquet, "16000000 numbers or more in a file of"),
         (circle_in_hdf5, "in a circle"),
@@ -122,6 +152,29 @@ def test_a_log_that_is_more_than_it_seems(
         done = confined.run(tmp_path, *command)
         assert done.complaint() is None
         assert done.status == 2 and words in done.err
+
+
+@pytest.mark.parametrize("T", ["5e-324", "1e-12"])
+def test_a_sample_period_far_below_that_of_the_log(
+    T: str, tmp_path: Path, confined: Confined
+) -> None:
+    write_log(usual(), tmp_path / "log.csv")
+    text = CONFIGURATION.replace("samplePeriod = 0.001", f"samplePeriod = {T}")
+    (tmp_path / "log.toml").write_text(text)
+    done = confined.run(tmp_path, "estimate", "log.csv")
+    assert done.complaint() is None
+    assert done.status == 2 and "check time.unit and samplePeriod" in done.err
+
+
+def test_a_log_of_which_no_tick_can_be_used(tmp_path: Path, confined: Confined) -> None:
+    """GIVEN a scale that makes every value too large, THEN there are results, and all say so."""
+    write_log(usual(), tmp_path / "log.csv")
+    (tmp_path / "log.toml").write_text(
+        CONFIGURATION.replace('column = "theta_c"', 'column = "theta_c"\nscale = 1e300')
+    )
+    done = confined.run(tmp_path, "estimate", "log.csv", "--out", "results")
+    assert done.complaint() is None and done.status == 0, done
+    assert "300 of 300 ticks skipped" in done.out
 
 
 def test_many_columns_that_move_are_guessed_in_time(tmp_path: Path, confined: Confined) -> None:

@@ -19,7 +19,7 @@ _FADED = 0.35
 def draw_curve(torque: Axes, stiffness: Axes, curve: Curve, points: MeasuredPoints) -> None:
     """Both panels; the measured points stand behind the torque, faintly."""
     several = len(curve.branches) > 1
-    colors = cycle(len(curve.branches)) if several else [BLUE]
+    colors = cycle(len(curve.branches)) if several else [BLUE] * len(curve.branches)
     measured: list[Array] = []
     band = None if several else "95 % band"
     for i, (branch, color) in enumerate(zip(curve.branches, colors, strict=True)):

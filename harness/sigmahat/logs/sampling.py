@@ -70,13 +70,13 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     notes: list[str] = []
     rows = _times(log, configuration, configuration.time.column, T, notes)
     start, end = float(np.nanmin(rows)), float(np.nanmax(rows))
-    ticks = int(np.floor((end - start) / T + AT_TICK)) + 1
     step = float(np.nanmedian(np.diff(rows))) if len(rows) > 1 else T
     if step > _MOST_TICKS_PER_ROW * T:
         raise LogError(
             f"{log.path}: most rows are {step:g} s apart, the ticks {T:g} s; "
             "check time.unit and samplePeriod"
         )
+    ticks = int(np.floor((end - start) / T + AT_TICK)) + 1
     most = max(_MOST_TICKS, _MOST_TICKS_OF_MANY_ROWS * len(rows))
     if ticks > most:
         gap = float(np.max(np.diff(rows[np.isfinite(rows)])))
