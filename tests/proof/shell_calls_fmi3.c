@@ -4,6 +4,49 @@
 
 enum { ACCESSES = 14 };
 
+/* What the FMU does not have: these functions use only the instance. */
+static void call_refused(int which)
+{
+    switch (which) {
+    case 11:
+        fmi3EnterEventMode(&instance);
+        fmi3EnterStepMode(&instance);
+        fmi3EvaluateDiscreteStates(&instance);
+        fmi3UpdateDiscreteStates(&instance, NULL, NULL, NULL, NULL, NULL, NULL);
+        fmi3EnterConfigurationMode(&instance);
+        fmi3ExitConfigurationMode(&instance);
+        fmi3GetNumberOfVariableDependencies(&instance, 0, NULL);
+        fmi3GetVariableDependencies(&instance, 0, NULL, NULL, NULL, NULL, any_size());
+        fmi3GetDirectionalDerivative(&instance, NULL, 1, NULL, 1, NULL, 1, NULL, any_size());
+        fmi3GetAdjointDerivative(&instance, NULL, 1, NULL, 1, NULL, 1, NULL, any_size());
+        fmi3GetOutputDerivatives(&instance, NULL, 1, NULL, NULL, any_size());
+        break;
+    case 12:
+        fmi3GetIntervalDecimal(&instance, NULL, any_size(), NULL, NULL);
+        fmi3GetIntervalFraction(&instance, NULL, any_size(), NULL, NULL, NULL);
+        fmi3GetShiftDecimal(&instance, NULL, any_size(), NULL);
+        fmi3GetShiftFraction(&instance, NULL, any_size(), NULL, NULL);
+        fmi3SetIntervalDecimal(&instance, NULL, any_size(), NULL);
+        fmi3SetIntervalFraction(&instance, NULL, any_size(), NULL, NULL);
+        fmi3SetShiftDecimal(&instance, NULL, any_size(), NULL);
+        fmi3SetShiftFraction(&instance, NULL, any_size(), NULL, NULL);
+        fmi3ActivateModelPartition(&instance, 0, any_real());
+        break;
+    default:
+        fmi3EnterContinuousTimeMode(&instance);
+        fmi3CompletedIntegratorStep(&instance, any_choice(), NULL, NULL);
+        fmi3SetTime(&instance, any_real());
+        fmi3SetContinuousStates(&instance, NULL, any_size());
+        fmi3GetContinuousStateDerivatives(&instance, NULL, any_size());
+        fmi3GetEventIndicators(&instance, NULL, any_size());
+        fmi3GetContinuousStates(&instance, NULL, any_size());
+        fmi3GetNominalsOfContinuousStates(&instance, NULL, any_size());
+        fmi3GetNumberOfEventIndicators(&instance, NULL);
+        fmi3GetNumberOfContinuousStates(&instance, NULL);
+        break;
+    }
+}
+
 static void call(int which, course here)
 {
     const fmi3String categories[] = {"logAll", NULL, any_text()};
@@ -54,41 +97,8 @@ static void call(int which, course here)
         fmi3SerializeFMUState(&instance, any_state(here), any_block(), any_size());
         fmi3SerializeFMUState(&instance, any_state(here), NULL, any_size());
         break;
-    case 11: /* what the FMU does not have: these functions use only the instance */
-        fmi3EnterEventMode(&instance);
-        fmi3EnterStepMode(&instance);
-        fmi3EvaluateDiscreteStates(&instance);
-        fmi3UpdateDiscreteStates(&instance, NULL, NULL, NULL, NULL, NULL, NULL);
-        fmi3EnterConfigurationMode(&instance);
-        fmi3ExitConfigurationMode(&instance);
-        fmi3GetNumberOfVariableDependencies(&instance, 0, NULL);
-        fmi3GetVariableDependencies(&instance, 0, NULL, NULL, NULL, NULL, any_size());
-        fmi3GetDirectionalDerivative(&instance, NULL, 1, NULL, 1, NULL, 1, NULL, any_size());
-        fmi3GetAdjointDerivative(&instance, NULL, 1, NULL, 1, NULL, 1, NULL, any_size());
-        fmi3GetOutputDerivatives(&instance, NULL, 1, NULL, NULL, any_size());
-        break;
-    case 12:
-        fmi3GetIntervalDecimal(&instance, NULL, any_size(), NULL, NULL);
-        fmi3GetIntervalFraction(&instance, NULL, any_size(), NULL, NULL, NULL);
-        fmi3GetShiftDecimal(&instance, NULL, any_size(), NULL);
-        fmi3GetShiftFraction(&instance, NULL, any_size(), NULL, NULL);
-        fmi3SetIntervalDecimal(&instance, NULL, any_size(), NULL);
-        fmi3SetIntervalFraction(&instance, NULL, any_size(), NULL, NULL);
-        fmi3SetShiftDecimal(&instance, NULL, any_size(), NULL);
-        fmi3SetShiftFraction(&instance, NULL, any_size(), NULL, NULL);
-        fmi3ActivateModelPartition(&instance, 0, any_real());
-        break;
     default:
-        fmi3EnterContinuousTimeMode(&instance);
-        fmi3CompletedIntegratorStep(&instance, any_choice(), NULL, NULL);
-        fmi3SetTime(&instance, any_real());
-        fmi3SetContinuousStates(&instance, NULL, any_size());
-        fmi3GetContinuousStateDerivatives(&instance, NULL, any_size());
-        fmi3GetEventIndicators(&instance, NULL, any_size());
-        fmi3GetContinuousStates(&instance, NULL, any_size());
-        fmi3GetNominalsOfContinuousStates(&instance, NULL, any_size());
-        fmi3GetNumberOfEventIndicators(&instance, NULL);
-        fmi3GetNumberOfContinuousStates(&instance, NULL);
+        call_refused(which);
         break;
     }
 }
