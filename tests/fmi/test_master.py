@@ -220,3 +220,38 @@ def test_a_file_that_is_no_fmu_is_refused(content: bytes, tmp_path: Path) -> Non
     file.write_bytes(content)
     with pytest.raises(FmuError, match=r"broken\.fmu: not a readable FMU"):
         Fmu(file)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="each try is a fork")
+def test_threads_may_read_their_first_fmus_at_the_same_time() -> None:
+    """Each of 200 new processes reads descriptions in four threads at once. The fault that this
+    looks for shows in one of some hundred tries, more often on a busy machine."""
+    program = """
+import os, threading
+import fmpy, sigmahat
+from sigmahat.fmi.instance import Fmu
+
+path, failed = sigmahat.fmu("AwasPlant"), 0
+
+def read(begin, failures):
+    begin.wait()
+    try:
+        fmpy.read_model_description(path)
+    except Exception as error:
+        failures.append(error)
+
+for _ in range(200):
+    child = os.fork()
+    if child == 0:
+        begin, failures = threading.Barrier(4), []
+        threads = [threading.Thread(target=read, args=(begin, failures)) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        os._exit(bool(failures))
+    failed += os.waitpid(child, 0)[1] != 0
+print(failed)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "0\n", "")

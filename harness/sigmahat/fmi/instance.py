@@ -30,7 +30,11 @@ except (ImportError, OSError):
     addLoggerProxy = None
 
 with interrupts_wait():  # FMPy imports it later; while it starts, in C, a Ctrl-C would be lost
-    import_module("lxml.etree")
+    _etree = import_module("lxml.etree")
+
+# With the first schema libxml2 sets up its types, without a lock. Two threads that read the first
+# two FMUs at the same time could fail, or end the process.
+_etree.XMLSchema(_etree.XML('<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"/>'))
 
 Value = float | int | bool | str
 """Value of a variable. An enumeration takes the name of its item."""
