@@ -154,6 +154,22 @@ def test_a_log_that_is_more_than_it_seems(
         assert done.status == 2 and words in done.err
 
 
+@pytest.mark.parametrize("value", [0x00, 0xFF])
+def test_a_parquet_file_with_a_damaged_description(
+    value: int, tmp_path: Path, confined: Confined
+) -> None:
+    """GIVEN one wrong byte in what the file says of its columns, THEN there is an answer or an error.
+    pyarrow ends the process for some of them, if it is asked for the size of a column."""
+    whole = write_log(usual(), tmp_path / "whole.parquet").read_bytes()
+    begin = len(whole) - 8 - int.from_bytes(whole[-8:-4], "little")
+    (tmp_path / "log.toml").write_text(CONFIGURATION)
+    for place in range(begin, begin + 70):
+        (tmp_path / "log").write_bytes(whole[:place] + bytes([value]) + whole[place + 1 :])
+        done = confined.run(tmp_path, "check", "log")
+        assert done.complaint() is None
+        assert "codec" not in done.err or "not a whole Parquet file" in done.err
+
+
 @pytest.mark.parametrize("T", ["5e-324", "1e-12"])
 def test_a_sample_period_far_below_that_of_the_log(
     T: str, tmp_path: Path, confined: Confined

@@ -29,10 +29,10 @@ class ParquetLog(Log):
         """Raises LogError for a file that is damaged."""
         try:
             self._file = pa.parquet.ParquetFile(path, pre_buffer=False)
-        except (pa.ArrowException, OSError) as error:
+            schema, metadata = self._file.schema_arrow, self._file.metadata
+            flat = [field.name for field in schema if _is_flat(field.type)]
+        except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
             raise LogError(f"{path}: not a whole Parquet file ({error}); copy it again") from error
-        schema, metadata = self._file.schema_arrow, self._file.metadata
-        flat = [field.name for field in schema if _is_flat(field.type)]
         check_columns(path, len(flat))
         check_numbers(path, metadata.num_rows)
         self._texts = {field.name for field in schema if _is_text(field.type)}
