@@ -158,7 +158,7 @@ def test_a_log_that_is_more_than_it_seems(
 def test_a_parquet_file_with_a_damaged_description(
     value: int, tmp_path: Path, confined: Confined
 ) -> None:
-    """GIVEN one wrong byte in what the file says of its columns, THEN there is an answer or an error.
+    """GIVEN one wrong byte in what the file says of its columns, THEN it is read or refused.
     pyarrow ends the process for some of them, if it is asked for the size of a column."""
     whole = write_log(usual(), tmp_path / "whole.parquet").read_bytes()
     begin = len(whole) - 8 - int.from_bytes(whole[-8:-4], "little")
