@@ -33,9 +33,9 @@ def confined() -> Iterator[Confined]:
         yield process
 
 
-@pytest.mark.slow("some hundred commands, each in a process of its own")
+@pytest.mark.slow("a minute of commands, each in a process of its own")
 @settings(
-    max_examples=150,
+    max_examples=800,
     deadline=None,
     derandomize=True,
     database=None,
