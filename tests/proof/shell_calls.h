@@ -7,7 +7,6 @@
 #define SHELL_CALLS_H
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "shell_invariant.h"
 #include "state_block.h"
@@ -44,13 +43,9 @@ static void *any_array(size_t size)
 static void *any_state(course here)
 {
     static char block[HEADER + sizeof(MODEL)];
-    const int flags[2] = {here.outputs_stale, here.parameters_unchecked};
-    const unsigned state = here.state;
 
     Frama_C_make_unknown(block, sizeof block);
-    (void)memcpy(block + PLACE_OF_STATE, &state, sizeof state);
-    (void)memcpy(block + PLACE_OF_FLAGS, flags, sizeof flags);
-    return block;
+    return with_course(block, here.state, here.outputs_stale, here.parameters_unchecked);
 }
 
 /* Memory for exactly one saved state. */

@@ -77,44 +77,50 @@ static void call(int which, course here)
     }
 }
 
+enum { ACCESSES = 10 };
+
 static void access(int which, const uint32_t vr[], size_t n, int way)
 {
-    fmi2Integer *order = any_array(n * sizeof *order);
-    fmi2Real *reals = any_array(n * sizeof *reals);
-    fmi2Integer *integers = any_array(n * sizeof *integers);
-    fmi2String *strings = any_array(n * sizeof *strings);
+    static const size_t SIZES[ACCESSES] = {
+        sizeof(fmi2Real),    sizeof(fmi2Real),    sizeof(fmi2Integer), sizeof(fmi2Integer),
+        sizeof(fmi2Boolean), sizeof(fmi2Boolean), sizeof(fmi2String),  sizeof(fmi2String),
+        sizeof(fmi2Real),    sizeof(fmi2Real)};
+    static fmi2Integer orders[2];
+    const fmi2Integer *order = orders + (2 - n); /* ends with its memory, too */
+    void *values = any_array(n * SIZES[which]);
 
+    Frama_C_make_unknown((char *)orders, sizeof orders);
     (void)way; /* one value for each reference */
     switch (which) {
     case 0:
-        fmi2GetReal(&instance, vr, n, reals);
+        fmi2GetReal(&instance, vr, n, values);
         break;
     case 1:
-        fmi2SetReal(&instance, vr, n, reals);
+        fmi2SetReal(&instance, vr, n, values);
         break;
     case 2:
-        fmi2GetInteger(&instance, vr, n, integers);
+        fmi2GetInteger(&instance, vr, n, values);
         break;
     case 3:
-        fmi2SetInteger(&instance, vr, n, integers);
+        fmi2SetInteger(&instance, vr, n, values);
         break;
     case 4:
-        fmi2GetBoolean(&instance, vr, n, integers);
+        fmi2GetBoolean(&instance, vr, n, values);
         break;
     case 5:
-        fmi2SetBoolean(&instance, vr, n, integers);
+        fmi2SetBoolean(&instance, vr, n, values);
         break;
     case 6:
-        fmi2GetString(&instance, vr, n, strings);
+        fmi2GetString(&instance, vr, n, values);
         break;
     case 7:
-        fmi2SetString(&instance, vr, n, strings);
+        fmi2SetString(&instance, vr, n, values);
         break;
     case 8:
-        fmi2SetRealInputDerivatives(&instance, vr, n, order, reals);
+        fmi2SetRealInputDerivatives(&instance, vr, n, order, values);
         break;
     default:
-        fmi2GetRealOutputDerivatives(&instance, vr, n, order, reals);
+        fmi2GetRealOutputDerivatives(&instance, vr, n, order, values);
         break;
     }
 }
@@ -137,7 +143,7 @@ int main(void)
 {
     static const fmi2CallbackFunctions OWN = {NULL, allocate, release, NULL, NULL};
     static const fmi2CallbackFunctions NONE = {NULL, NULL, NULL, NULL, NULL};
-    static const version FMI2 = {.calls = 19, .accesses = 10, .ways = 1};
+    static const version FMI2 = {.calls = 19, .accesses = ACCESSES, .ways = 1};
     static const sh_importer MEMORY = {NULL, NULL, allocate, release};
 
     create(NULL, "another");

@@ -10,9 +10,6 @@
 
 #include "instance.h"
 
-/* Places in a saved state. */
-enum { HEADER = 136, PLACE_OF_STATE = 12, PLACE_OF_FLAGS = 120 };
-
 int any_choice(void); /* 0 or 1 */
 int any_int(void);
 size_t any_size(void);

@@ -1,9 +1,8 @@
 /* The de-serialiser: any bytes of any length, then the state that they make, then a step. */
 #include <stdlib.h>
-#include <string.h>
 
-#include "shell_invariant.h"
 #include "saved_state.h"
+#include "shell_invariant.h"
 #include "state_block.h"
 
 static const sh_importer NONE = {NULL, NULL, NULL, NULL};
@@ -30,12 +29,7 @@ static void of_changed_memory(void)
 /* A state of the right size. Where its simulation stands is given; the rest may be anything. */
 static void *block_of(unsigned state, int outputs_stale, int parameters_unchecked)
 {
-    const int flags[2] = {outputs_stale, parameters_unchecked};
-    char *bytes = any_bytes(sh_block_size());
-
-    (void)memcpy(bytes + PLACE_OF_STATE, &state, sizeof state);
-    (void)memcpy(bytes + PLACE_OF_FLAGS, flags, sizeof flags);
-    return bytes;
+    return with_course(any_bytes(sh_block_size()), state, outputs_stale, parameters_unchecked);
 }
 
 static void of_course(course here, sh_importer importer)

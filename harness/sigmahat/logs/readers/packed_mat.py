@@ -43,15 +43,15 @@ def check_packed(path: Path) -> None:
         while len(tag := file.read(_TAG)) == _TAG:
             kind, length = struct.unpack(f"{order}II", tag)
             end = file.tell() + length
-            element = _Elements(order)
-            for piece in _pieces(file, length, packed=kind == _COMPRESSED):
-                unpacked += len(piece) if kind == _COMPRESSED else 0
+            packed, variable = kind == _COMPRESSED, _Elements(order)
+            for piece in _pieces(file, length, packed=packed):
+                unpacked += len(piece) if packed else 0
                 if unpacked > most:
                     raise LogError(
                         f"{path}: more than {most / 1e6:.0f} MB in a file of {size / 1e6:.3g} MB; "
                         "save it without compression (-v6), or in parts"
                     )
-                for found in element.kinds(piece):
+                for found in variable.kinds(piece):
                     elements += 1
                     if found not in _KINDS:
                         raise LogError(
