@@ -113,7 +113,7 @@ def estimate(folder: Path) -> Iterator[Row]:
     pa.parquet.write_table(pa.table({"t": T * np.arange(samples), **columns}), log)
     table = np.column_stack([columns[name] for name in PORTS])
     ports = "\n".join(f'[ports.{name}]\ncolumn = "{name}"' for name in PORTS)
-    for method in ("Paper2011", "MatchedFilter"):
+    for method in ("Paper2011", "FilteredRegression"):
         configuration = folder / f"{method}.toml"
         configuration.write_text(CONFIGURATION.format(ports=ports, method=method))
         runs, loops = [], []

@@ -79,9 +79,9 @@ def _requirements(
         1.5,
         "x",
     )
-    alone = "tick MatchedFilter, 21 columns"
+    alone = "tick FilteredRegression, 21 columns"
     at_most(
-        "tick of MatchedFilter with 21 columns, relative to Paper2011",
+        "tick of FilteredRegression with 21 columns, relative to Paper2011",
         ratio(times, alone, tick),
         5.0,
         "x",

@@ -18,15 +18,15 @@ static int choose(sh_parameters *p, const char *method)
     if (strcmp(method, "Paper2011") == 0) {
         return 1;
     }
-    p->method = SH_METHOD_MATCHED_FILTER;
+    p->method = SH_METHOD_FILTERED_REGRESSION;
     prior->B = 0.03;
-    if (strcmp(method, "MatchedFilter") == 0) {
+    if (strcmp(method, "FilteredRegression") == 0) {
         return 1;
     }
     prior->bias = prior->damping = prior->load_friction = prior->eccentric = 0;
     prior->delay = prior->reversal = 0;
     prior->power = prior->gap = prior->hysteresis = prior->eccentric_motor = 0;
-    return strcmp(method, "MatchedFilter, 21 columns") == 0;
+    return strcmp(method, "FilteredRegression, 21 columns") == 0;
 }
 
 void *tick_start(const char *method)

@@ -11,7 +11,7 @@ extern "C" {
 enum { BENCH_MEASUREMENTS = 5 }; /* theta, q, theta_c, tau, tau_e_sensor */
 
 /* A new estimator of the AwAS with n = 6, m = 3, in the modality Residual: "Paper2011", or
- * "MatchedFilter" with all three motor data estimated. NULL if there is no such method. It exists
+ * "FilteredRegression" with all three motor data estimated. NULL if there is no such method. It exists
  * until the end of the process.
  */
 BENCH_EXPORT void *tick_start(const char *method);

@@ -56,7 +56,7 @@ SH_METHODS(SH_METHOD_DECLARATION)
 /* The method that the parameters choose, NULL if there is none of this number. */
 const sh_method *sh_method_of(const sh_parameters *p);
 
-/* Numbers and names of all methods: "1 (Paper2011) or 2 (MatchedFilter)". */
+/* Numbers and names of all methods: "1 (Paper2011) or 2 (FilteredRegression)". */
 const char *sh_method_names(void);
 
 /* Describes a violation. Returns 1. */

@@ -41,11 +41,11 @@ void sh_parameters_default(sh_parameters *p)
     p->model.b = (sh_real)(0.0025 / (2 * SH_PI));
     p->noise.tau = (sh_real)3.2e-3;
     p->noise.tau_e = (sh_real)3.2e-2;
-    p->confidence = (sh_real)0.1;
-    p->matched.bandwidth = 350;
-    p->matched.slow = (sh_real)0.05;
-    p->matched.drift = 0;
-    p->matched.memory = 20;
+    p->limit.relative_std = (sh_real)0.1;
+    p->regression.bandwidth = 350;
+    p->regression.slow = (sh_real)0.05;
+    p->regression.drift = 0;
+    p->regression.memory = 20;
     p->range.phi = (sh_real)0.3;
     p->range.setPoint = 100;
     p->prior.tau_e = 45;
@@ -112,11 +112,11 @@ static const real_range REALS[] = {
     {AT(model.b), "finite", -INFINITY, INFINITY},
     {AT(noise.tau), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12},
     {AT(noise.tau_e), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12},
-    {AT(confidence), ">= 1e-15", (sh_real)1e-15, INFINITY},
-    {AT(matched.bandwidth), ">= 1e-15", (sh_real)1e-15, INFINITY},
-    {AT(matched.slow), ">= 1e-15", (sh_real)1e-15, INFINITY},
-    {AT(matched.drift), "0 to 1e12", 0, (sh_real)1e12},
-    {AT(matched.memory), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(limit.relative_std), ">= 1e-15", (sh_real)1e-15, INFINITY},
+    {AT(regression.bandwidth), ">= 1e-15", (sh_real)1e-15, INFINITY},
+    {AT(regression.slow), ">= 1e-15", (sh_real)1e-15, INFINITY},
+    {AT(regression.drift), "0 to 1e12", 0, (sh_real)1e12},
+    {AT(regression.memory), "0 to 1e12", 0, (sh_real)1e12},
     {AT(range.phi), "1e-6 to 1e6", (sh_real)1e-6, (sh_real)1e6},
     {AT(range.setPoint), "1e-12 to 1e12", (sh_real)1e-12, (sh_real)1e12},
     {AT(prior.tau_e), "0 to 1e12", 0, (sh_real)1e12},

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 import sigmahat
 
-MATCHED_FILTER = 2  # item of the parameter `method`
+FILTERED_REGRESSION = 2  # item of the parameter `method`
 T, DURATION = 1e-3, 45.0  # [s]
 K_S, R_0, LEAD = 14220.0, 0.1, 0.0025 / (2 * math.pi)  # data sheet [N/m, m, m/rad]
 START = 2.0  # until then the lever arm rests and the estimate settles [s]
@@ -97,7 +97,7 @@ def run(with_estimate: bool) -> NDArray[np.float64]:
     plant = Slave("AwasPlant", spring__k_s=0.85 * K_S, initial__theta_c=0.0)
     # The torque is exact here, but for noise: no gain error.
     estimator = Slave(
-        "StiffnessEstimator", {"method": MATCHED_FILTER, "rls.n": 3}, prior__torque_gain=0.0
+        "StiffnessEstimator", {"method": FILTERED_REGRESSION, "rls.n": 3}, prior__torque_gain=0.0
     )
     correction = 1.0  # of the data sheet, by the last estimate that was confident
     rows = []

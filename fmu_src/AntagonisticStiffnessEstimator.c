@@ -41,7 +41,7 @@ static int doubt_of_sum(const AntagonisticStiffnessEstimator *fmu)
     if (worst != SH_DOUBT_NOT_EXCITED && worst != SH_DOUBT_MISFIT && worst != SH_DOUBT_NONE) {
         return worst;
     }
-    if (fmu->sigma_std < fmu->side[0].parameters.confidence * fabs(fmu->sigma)) {
+    if (fmu->sigma_std < fmu->side[0].parameters.limit.relative_std * fabs(fmu->sigma)) {
         return SH_DOUBT_NONE;
     }
     return worst != SH_DOUBT_NONE ? worst : SH_DOUBT_NOT_EXCITED;

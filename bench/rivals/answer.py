@@ -8,7 +8,7 @@ from rivals.records import Array, Estimate, JointLog
 
 CONFIDENT = 0.1
 """A rival is confident while its standard deviation is below this share of a positive stiffness, as
-MatchedFilter is at most."""
+FilteredRegression is at most."""
 
 
 def answer(log: JointLog, stiffness: Array, std: Array, seconds: float) -> Estimate:

@@ -38,12 +38,12 @@ typedef SH_REAL sh_real;
  * This is the only list of them: method.h says how one is added.
  *
  * Paper2011      the paper: Kalman filter (9)-(11), residual (6)-(8), least squares (25)-(27)
- * MatchedFilter  one regression for the torque and the errors of the motor data, from signals
+ * FilteredRegression  one regression for the torque and the errors of the motor data, from signals
  *                that all passed the same filter: columns.h
  */
 #define SH_METHODS(METHOD)                                                                         \
     METHOD(SH_METHOD_PAPER2011, 1, "Paper2011", sh_paper2011)                                      \
-    METHOD(SH_METHOD_MATCHED_FILTER, 2, "MatchedFilter", sh_matched_filter)                        \
+    METHOD(SH_METHOD_FILTERED_REGRESSION, 2, "FilteredRegression", sh_filtered_regression)         \
     /* the next method here */
 #define SH_METHOD_CONSTANT(constant, number, name, block) constant = number,
 enum { SH_METHODS(SH_METHOD_CONSTANT) };
@@ -201,9 +201,11 @@ typedef struct {
         sh_real tau_e; /* std deviation of the noise of tau_e_sensor, and of the error of the
                           model of SH_MODALITY_MODEL [N.m], 1e-12..1e12 */
     } noise;
-    sh_real confidence; /* sigma_std / |sigma| below which the estimate can be confident [1],
-                           >= 1e-15 */
-    /* All below for SH_METHOD_MATCHED_FILTER. */
+    struct {
+        sh_real relative_std; /* sigma_std / |sigma| below which the estimate can be confident [1],
+                                 >= 1e-15 */
+    } limit;
+    /* All below for SH_METHOD_FILTERED_REGRESSION. */
     struct {
         int held; /* 1: a drive holds each tau until the next sample; 0: tau is linear between
                      samples */
@@ -211,14 +213,14 @@ typedef struct {
     struct {
         sh_real bandwidth; /* w of the filter [rad/s], fixed; 1e-4 <= w T < 2 with this
                               method. A smaller one is used if the rounding of theta needs it:
-                              sh_matched_bandwidth in signals.h */
+                              sh_regression_bandwidth in signals.h */
         sh_real slow;      /* |theta'| below which the sign of friction is unknown [rad/s],
                               >= 1e-15 */
         sh_real drift;     /* share of its prior variance by which the torque curve drifts in a
                               second [1/s], 0..1e12; 0: it does not change */
         sh_real memory;    /* time constant with which data are forgotten while they contradict
                               the model [s], 0..1e12; 0: the misfit has no effect */
-    } matched;
+    } regression;
     sh_range_parameters range; /* fixed */
     sh_prior_parameters prior; /* fixed */
 } sh_parameters;
@@ -320,7 +322,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  * last value, and with SH_MODALITY_RESIDUAL the regression learns nothing, a = 0, until that value
  * is forgotten, ten time constants 1 / K_I later.
  *
- * SH_METHOD_MATCHED_FILTER starts its filters again and learns nothing for 12 / matched.bandwidth.
+ * SH_METHOD_FILTERED_REGRESSION starts its filters again and learns nothing for 12 / regression.bandwidth.
  * It does the same after a change of the modality.
  */
 int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,

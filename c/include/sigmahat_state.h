@@ -69,7 +69,7 @@ typedef struct {
     } work;
 } sh_paper2011_state;
 
-/* Method MatchedFilter: state_variable_filter.h, motion_sign.h, information.h, columns.h,
+/* Method FilteredRegression: state_variable_filter.h, motion_sign.h, information.h, columns.h,
  * signals.h, sample_variance.h, blocks.h, posterior.h, forgetting.h, passes.h
  */
 
@@ -226,7 +226,7 @@ typedef struct {
         sh_real own[SH_MAX_COLUMNS], v[SH_MAX_COLUMNS];
         sh_real basis[SH_MAX_BASIS], slope[SH_MAX_BASIS]; /* scaled_basis.h */
     } work;
-} sh_matched_state;
+} sh_regression_state;
 
 /* The estimator. */
 struct sh_estimator {
@@ -234,7 +234,7 @@ struct sh_estimator {
     sh_real skipped; /* ticks skipped since the last good sample */
     union {
         sh_paper2011_state paper2011;
-        sh_matched_state matched;
+        sh_regression_state regression;
     } method;
 };
 

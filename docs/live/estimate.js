@@ -53,7 +53,7 @@ class LogEstimate {
 
   /**
    * What it says at a deformation, without learning: a sample is missing before it, and after such a
-   * gap MatchedFilter learns nothing until its filters have settled.
+   * gap FilteredRegression learns nothing until its filters have settled.
    */
   #at(phi, thetaC) {
     for (const theta of [NaN, 0]) {

@@ -23,7 +23,7 @@ function checkMotion({ theta, q, tau }) {
 /** A message of the FMU, and what to do where it names a value that the user has not typed. */
 function withAdvice(message, typed) {
   if (/samplePeriod/.test(message)) return `${message} Is the unit of the time right? `
-    + "A log with steps of more than 5.7 ms needs a smaller matched.bandwidth, which the command sigmahat estimate takes.";
+    + "A log with steps of more than 5.7 ms needs a smaller regression.bandwidth, which the command sigmahat estimate takes.";
   const guess = Object.keys(GUESSES).find((name) => message.includes(`${name} = `) && !(name in typed));
   return guess ? `${message} It is guessed from the log: look at the units and gear ratios, or fill it in.` : message;
 }

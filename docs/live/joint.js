@@ -111,7 +111,7 @@ const joint = {
         this.simulation.advance();
         const [sigma, torque] = recorded.plant.values;
         const [estimate, torqueEstimate, std] = recorded.estimator.values;
-        const claims = this.simulation.start.estimator.method === METHODS.MatchedFilter;
+        const claims = this.simulation.start.estimator.method === METHODS.FilteredRegression;
         const half = claims ? NORMAL_95 * std : NaN;
         this.history.push(t, sigma, torque, estimate, torqueEstimate, estimate - half, estimate + half);
         made += 1;

@@ -151,7 +151,7 @@ const log = {
       "rls.m": 1,
       ...values,
       samplePeriod: T,
-      method: METHODS.MatchedFilter,
+      method: METHODS.FilteredRegression,
       modality: SCENARIO.estimator.modality,
       "encoder.theta": counts("theta"),
       "encoder.q": counts("q"),

@@ -129,10 +129,10 @@ int main(void)
     configure(SH_METHOD_PAPER2011);
     printf("orders %d and %d\n", parameters.rls.n, parameters.rls.m);
     report("Paper2011", per_count);
-    configure(SH_METHOD_MATCHED_FILTER);
-    report("MatchedFilter, all columns", per_count);
+    configure(SH_METHOD_FILTERED_REGRESSION);
+    report("FilteredRegression, all columns", per_count);
     remove_columns();
-    report("MatchedFilter, few columns", per_count);
+    report("FilteredRegression, few columns", per_count);
     printf("RAM: %u bytes: state %u, parameters %u, estimate %u\n",
            (unsigned)(sizeof estimator + sizeof parameters + sizeof estimate),
            (unsigned)sizeof estimator, (unsigned)sizeof parameters, (unsigned)sizeof estimate);

@@ -49,7 +49,7 @@ void SysTick_Handler(void)
 static void configure(sh_parameters *p)
 {
     sh_parameters_default(p);
-    p->method = SH_METHOD_MATCHED_FILTER;
+    p->method = SH_METHOD_FILTERED_REGRESSION;
     p->samplePeriod = (sh_real)1 / RATE;
     p->rls.n = 2;
     p->rls.m = 1;

@@ -22,7 +22,7 @@ package Types "Units and choices"
 
   type Method = enumeration(
       Paper2011 "Kalman filter, residual and recursive least squares of the paper",
-      MatchedFilter
+      FilteredRegression
         "One filter for all signals; the errors of the motor data are estimated together with the stiffness")
     "How the stiffness is estimated";
 

@@ -16,7 +16,7 @@ from controllers import HOST, REPOSITORY, TARGETS, Target, cross_build, replay, 
 from gate import missing
 from reference_plant import table1_recording
 
-PAPER, MATCHED = "abcdef", "ghi"
+PAPER, REGRESSION = "abcdef", "ghi"
 """Configurations of replay.c, by method."""
 ROUNDING = {"double": 1e-10, "float": 1e-5}
 """Tolerance relative to the largest value: exp and sin of two C libraries may differ in their last
@@ -60,7 +60,7 @@ def deviation(
 
 @each_target
 @each_real
-@pytest.mark.parametrize("configuration", PAPER + MATCHED)
+@pytest.mark.parametrize("configuration", PAPER + REGRESSION)
 def test_a_processor_computes_what_the_host_computes(
     target: Target, real: str, configuration: str, folder: Path, ninja: Path, tmp_path: Path
 ) -> None:
@@ -70,8 +70,8 @@ def test_a_processor_computes_what_the_host_computes(
         for t in (HOST, target)
     )
     assert 0 < np.count_nonzero(here["valid"] == 0) < 30
-    # Torque and stiffness of MatchedFilter are sums of up to 44 terms that nearly cancel.
-    terms = 10 if configuration in MATCHED else 1
+    # Torque and stiffness of FilteredRegression are sums of up to 44 terms that nearly cancel.
+    terms = 10 if configuration in REGRESSION else 1
     for name, expected in here.items():
         atol = terms * ROUNDING[real] * np.abs(expected).max()
         np.testing.assert_allclose(there[name], expected, rtol=0, atol=atol, err_msg=name)
@@ -105,7 +105,7 @@ def test_a_microcontroller_in_single_precision_gives_the_stiffness_of_table1(
     assert deviation(single, double) < 1e-3
 
 
-# Without a unit for double, a tick of MatchedFilter takes longer than a millisecond.
+# Without a unit for double, a tick of FilteredRegression takes longer than a millisecond.
 @pytest.mark.parametrize(
     ("name", "real"), [("Cortex-M4F", "float"), ("Cortex-M7", "float"), ("Cortex-M7", "double")]
 )
@@ -141,8 +141,8 @@ def test_memory_and_stack_are_within_their_limits(
     ("sizes", "row"),
     [
         (("SH_MAX_N=6", "SH_MAX_M=3", "SH_MAX_COLUMNS=1"), "Paper2011"),
-        (("SH_MAX_N=2", "SH_MAX_M=1", "SH_MAX_COLUMNS=20"), "MatchedFilter, all columns"),
-        (("SH_MAX_N=3", "SH_MAX_M=1", "SH_MAX_COLUMNS=6"), "MatchedFilter, few columns"),
+        (("SH_MAX_N=2", "SH_MAX_M=1", "SH_MAX_COLUMNS=20"), "FilteredRegression, all columns"),
+        (("SH_MAX_N=3", "SH_MAX_M=1", "SH_MAX_COLUMNS=6"), "FilteredRegression, few columns"),
     ],
 )
 def test_smaller_sizes_cost_what_the_page_says(

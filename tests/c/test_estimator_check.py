@@ -11,14 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from c_library import Estimator, Library, load
-from matched_joint import Joint
+from regression_joint import Joint
 
-PAPER2011, MATCHED_FILTER = 1, 2
+PAPER2011, FILTERED_REGRESSION = 1, 2
 JOINTS: list[dict[str, Any]] = [
     {},
     {"rls.n": 8, "rls.m": 5},
     {"rls.symmetric": 0, "rls.n": 4, "rls.m": 1},
-    {"rls.n": 3, "prior.B": 0.1, "matched.drift": 0.01},
+    {"rls.n": 3, "prior.B": 0.1, "regression.drift": 0.01},
     {"rls.n": 2, "prior.tau_coulomb": 0.0, "prior.D_theta": 0.0},
 ]
 
@@ -34,7 +34,7 @@ def passes(e: Estimator) -> bool:
     return bool(answer == 0)
 
 
-@pytest.mark.parametrize("method", [PAPER2011, MATCHED_FILTER])
+@pytest.mark.parametrize("method", [PAPER2011, FILTERED_REGRESSION])
 @pytest.mark.parametrize("joint", JOINTS)
 def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, Any]) -> None:
     """GIVEN a run with gaps, refused samples and changes of the modality, THEN each of its 1500
@@ -54,7 +54,7 @@ def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, A
         assert passes(e)
 
 
-INTEGERS_OF_MATCHED_FILTER = [
+INTEGERS_OF_FILTERED_REGRESSION = [
     *("modality", "begun", "has_nominal", "size", "alternate", "row", "trial", "last_trial"),
     *("friction_drifts", "stiffness_known", "used", "data.size", "frozen.size"),
     *("blocks.all.size", "blocks.walking.size", "blocks.recent.size"),
@@ -78,15 +78,15 @@ def damage(part: Any, member: str, place: int, value: int) -> None:
 
 
 @settings(max_examples=20, deadline=None)
-@pytest.mark.parametrize("member", INTEGERS_OF_MATCHED_FILTER)
+@pytest.mark.parametrize("member", INTEGERS_OF_FILTERED_REGRESSION)
 @given(
     place=st.integers(0, 5), value=st.one_of(st.integers(-(2**31), -2), st.integers(65, 2**31 - 1))
 )
 def test_a_damaged_member_is_found(c: Library, member: str, place: int, value: int) -> None:
-    """GIVEN a state of MatchedFilter, WHEN an integer of it is out of all that it can be, THEN it
-    does not pass."""
-    e = Estimator(c, {"method": MATCHED_FILTER, "rls.n": 3, "prior.B": 0.1})
-    damage(e.state.method.matched, member, place, value)
+    """GIVEN a state of FilteredRegression, WHEN an integer of it is out of all that it can be, THEN
+    it does not pass."""
+    e = Estimator(c, {"method": FILTERED_REGRESSION, "rls.n": 3, "prior.B": 0.1})
+    damage(e.state.method.regression, member, place, value)
     assert not passes(e)
 
 

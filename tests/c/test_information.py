@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from c_library import Array, Library, load
-from c_matched import SIDES, dense, factors
+from c_regression import SIDES, dense, factors
 
 SIZES = [1, 2, 3, 4, 5, 9, 31, 63]
 Y = 1  # the side of y

@@ -15,10 +15,10 @@ from scipy import signal
 
 import c_sources
 from c_library import Estimator, Library, load
-from c_matched import PLAIN, coefficients, covariance
+from c_regression import PLAIN, coefficients, covariance
 from gate import missing
-from matched_joint import Joint
 from misfit_joint import SETTINGS, STIFFNESS, MisfitJoint
+from regression_joint import Joint
 
 T = 1e-3
 GAP, HYSTERESIS = 3, 4
@@ -31,10 +31,10 @@ def c(build: Path) -> Library:
 
 def accuracy(estimator: Estimator, *kinds: str) -> float:
     """Standard deviation of the sum of the coefficients of some kinds, in their own unit."""
-    matched = estimator.state.method.matched
+    regression = estimator.state.method.regression
     names = coefficients(estimator)
-    own = list(matched.live.column[0 : matched.live.information.size])
-    chosen = np.array([matched.column[i].prior * (names[i][0] in kinds) for i in own])
+    own = list(regression.live.column[0 : regression.live.information.size])
+    chosen = np.array([regression.column[i].prior * (names[i][0] in kinds) for i in own])
     return float(np.sqrt(chosen @ covariance(estimator) @ chosen))
 
 
@@ -85,7 +85,7 @@ def test_a_dead_zone_is_left_out_of_the_stiffness(c: Library) -> None:
     joint = MisfitJoint(gap=4e-3)
     estimator = Estimator(c, SETTINGS)
     found = estimator.run(joint.measurements())
-    assert estimator.state.method.matched.used[GAP]
+    assert estimator.state.method.regression.used[GAP]
     late = slice(-3000, None)
     engaged = np.abs(joint.phi[0][late]) > 8e-3
     error = np.abs(found["sigma"][late] - STIFFNESS)[engaged]
@@ -97,7 +97,7 @@ def test_a_dead_zone_is_left_out_of_the_stiffness(c: Library) -> None:
 def test_a_joint_without_a_misfit_has_no_columns_of_one(c: Library, group: int) -> None:
     estimator = Estimator(c, SETTINGS)
     found = estimator.run(MisfitJoint().measurements())
-    assert not estimator.state.method.matched.used[group]
+    assert not estimator.state.method.regression.used[group]
     assert found["hysteresis_hat"][-1] == 0.0 or group != HYSTERESIS
     assert found["misfit"][-1] < 1.2
 
@@ -184,7 +184,7 @@ def test_data_that_contradict_the_model_are_a_doubt(c: Library) -> None:
     joint = Joint(duration=6.0, deformation=0.01)
     z = joint.measurements()
     z[:, 3] += 0.1 * np.sin(3 * 50 * joint.motion[0])
-    found = Estimator(c, {"method": 2, "rls.n": 3, "confidence": 0.02}).run(z)[-1]
+    found = Estimator(c, {"method": 2, "rls.n": 3, "limit.relative_std": 0.02}).run(z)[-1]
     assert found["misfit"] > 2
     assert found["doubt"] == DOUBTS["MISFIT"]
 
@@ -306,7 +306,7 @@ int main(void)
     double z[5];
 
     sh_parameters_default(&p);
-    p.method = SH_METHOD_MATCHED_FILTER;
+    p.method = SH_METHOD_FILTERED_REGRESSION;
     p.rls.n = 3;
     p.rls.m = 1;
     p.prior.power = 0;

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from c_library import Array, Estimator, Library, load
-from c_matched import PLAIN, SIDES, coefficients, dense, factors
+from c_regression import PLAIN, SIDES, coefficients, dense, factors
 
 PRIOR_B = 0.1
 VALUES = {"method": 2, "rls.n": 2, "rls.m": 1, "rls.symmetric": 1, "prior.B": PRIOR_B, **PLAIN}
@@ -28,20 +28,22 @@ class Posterior:
     def __init__(self, c: Library, weight: float = 1.0) -> None:
         self.c, self.weight = c, weight
         self.estimator = Estimator(c, VALUES)
-        self.matched = c.ffi.addressof(self.estimator.state.method, "matched")
+        self.regression = c.ffi.addressof(self.estimator.state.method, "regression")
         assert [kind for kind, _ in coefficients(self.estimator)] == [
             *("BASIS", "BASIS", "VISCOUS", "COULOMB", "INERTIA")
         ]
         self.size = 5
         self.c_struct = c.new("sh_posterior")
-        c.lib.sh_posterior_start(self.matched, self.estimator.parameters, self.c_struct, 0, weight)
+        c.lib.sh_posterior_start(
+            self.regression, self.estimator.parameters, self.c_struct, 0, weight
+        )
         for i, slope in enumerate(dF):
-            self.matched.work.dF[i] = slope
+            self.regression.work.dF[i] = slope
 
     def take(self, row: Array, w: float) -> float:
         memory = np.zeros(self.size + SIDES)
         share: float = self.c.lib.sh_posterior_take(
-            self.matched, self.c_struct, self.c.pointer(row), w, self.c.pointer(memory)
+            self.regression, self.c_struct, self.c.pointer(row), w, self.c.pointer(memory)
         )
         return share
 
@@ -49,8 +51,8 @@ class Posterior:
         self.c.lib.sh_posterior_remove(self.c_struct, information, PRIOR_B)
 
     def evaluate(self) -> tuple[Array, Any]:
-        fit = self.c.lib.sh_posterior_evaluate(self.matched, self.c_struct)
-        return np.array(list(self.matched.beta[0 : self.size])), fit
+        fit = self.c.lib.sh_posterior_evaluate(self.regression, self.c_struct)
+        return np.array(list(self.regression.beta[0 : self.size])), fit
 
 
 def rows(seed: int, samples: int = 60) -> Array:
@@ -183,7 +185,7 @@ def test_the_error_of_the_inertia_agrees_with_its_variance(c: Library, excitatio
         y = (X + noise) - (1 + b) * X + np.sqrt(1 - V) * rng.normal(size=samples)
         posterior = Posterior(c)
         for i in range(5):
-            posterior.matched.work.dF[i] = float(i == 4)
+            posterior.regression.work.dF[i] = float(i == 4)
         row = np.zeros(5 + SIDES)
         for k in range(samples):
             row[0], row[4], row[-1] = 1.0, -PRIOR_B * (X[k] + noise[k]), y[k]
@@ -207,25 +209,25 @@ def test_the_variance_of_the_removal_is_that_of_its_effect_on_the_inertia(c: Lib
     surplus = [0.0]
     for sample in z:
         estimator.tick(sample)
-        surplus.append(estimator.state.method.matched.surplus)
-    matched = estimator.state.method.matched
-    assert matched.spread == pytest.approx(6 * np.sum((np.diff(surplus) / PRIOR_B) ** 2))
-    assert matched.live.spread == pytest.approx(matched.spread)
-    assert matched.variance_factor == 1.0
-    removed = matched.live.surplus + matched.live.removed
+        surplus.append(estimator.state.method.regression.surplus)
+    regression = estimator.state.method.regression
+    assert regression.spread == pytest.approx(6 * np.sum((np.diff(surplus) / PRIOR_B) ** 2))
+    assert regression.live.spread == pytest.approx(regression.spread)
+    assert regression.variance_factor == 1.0
+    removed = regression.live.surplus + regression.live.removed
     assert removed == pytest.approx(surplus[-1])
 
 
 def test_a_trial_puts_its_group_behind_all_other_columns(c: Library) -> None:
     estimator = Estimator(c, {**VALUES, "prior.power": 1.0})
-    matched = c.ffi.addressof(estimator.state.method, "matched")
+    regression = c.ffi.addressof(estimator.state.method, "regression")
     names = coefficients(estimator)
     posterior = c.new("sh_posterior")
     used: dict[tuple[int, int], list[str]] = {}
     for is_used in (0, 1):
-        matched.used[1] = is_used  # the group of more powers
+        regression.used[1] = is_used  # the group of more powers
         for trial in (0, 1):
-            c.lib.sh_posterior_start(matched, estimator.parameters, posterior, trial, 1.0)
+            c.lib.sh_posterior_start(regression, estimator.parameters, posterior, trial, 1.0)
             columns = list(posterior.column[0 : posterior.information.size])
             used[is_used, trial] = [names[i][0] for i in columns]
             motor = used[is_used, trial].index("INERTIA")

@@ -26,7 +26,7 @@ def test_paper2011_scales_P_with_the_noise(c: Library, kind: int) -> None:
     assert estimate.sigma_std == pytest.approx(want, rel=1e-12)
 
 
-def test_matched_filter_scales_the_prior_with_the_ranges(c: Library) -> None:
+def test_filtered_regression_scales_the_prior_with_the_ranges(c: Library) -> None:
     values = {"method": 2, "setPoint.offset": 70.0}
     r = 0.7  # set-point relative to range.setPoint
     want = 45.0 / 0.3 * math.sqrt(1.0 + r**2 + r**4)

@@ -1,4 +1,4 @@
-"""Signals of MatchedFilter: start, bandwidth, rest, unknown sign of friction."""
+"""Signals of FilteredRegression: start, bandwidth, rest, unknown sign of friction."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from c_library import Estimator, Library, load
-from c_matched import covariance
-from matched_joint import Joint, T
+from c_regression import covariance
+from regression_joint import Joint, T
 
 VALUES = {"method": 2, "rls.n": 2, "rls.m": 1, "prior.B": 0.1, "prior.tau_coulomb": 0.02}
 SENSOR = 2
@@ -29,22 +29,22 @@ def test_samples_with_unknown_sign_of_friction_are_counted(c: Library) -> None:
     z[1000:, :2] = z[999, :2]
     estimator = Estimator(c, VALUES)
     estimator.run(z[:1000])
-    assert estimator.state.method.matched.history.unsure == 0.0
+    assert estimator.state.method.regression.history.unsure == 0.0
     estimator.run(z[1000:])
     count, slow = 2 * np.pi / 40000, 0.05 * T
     known = int(count / slow)  # one count in this number of samples is not slower than `slow`
-    unsure = estimator.state.method.matched.history.unsure
+    unsure = estimator.state.method.regression.history.unsure
     assert unsure == pytest.approx(200 - known, abs=1)
 
 
 def test_the_largest_basis_has_all_columns(c: Library) -> None:
     eta_0 = np.arange(1.0, 41.0).reshape(8, 5)
     values = {**VALUES, "rls.n": 8, "rls.m": 5, "rls.eta_0": eta_0.tolist()}
-    estimator = Estimator(c, {**values, "matched.drift": 1e-3, "prior.nominal": 0.1})
+    estimator = Estimator(c, {**values, "regression.drift": 1e-3, "prior.nominal": 0.1})
     estimator.run(Joint(duration=0.05).measurements())
     # 40 of the basis, 1 of the nominal curve, 10 always, 8 if the data ask for them, 3 of the
     # motor, but no more powers
-    assert estimator.state.method.matched.size == 40 + 1 + 10 + 8 + 3 - 1
+    assert estimator.state.method.regression.size == 40 + 1 + 10 + 8 + 3 - 1
     assert np.all(np.isfinite(covariance(estimator)))
 
 
@@ -84,7 +84,7 @@ def test_the_bandwidth_is_limited_where_rounding_exceeds_the_noise_of_the_torque
     if counts > 0 and p.modality != SENSOR:
         rounding = 2.3e-5 * 50.0 * 2 * np.pi / counts / np.sqrt(12)
         want = min(want, 1.42 * np.sqrt(p.noise.tau / rounding))
-    assert c.lib.sh_matched_bandwidth(p) == pytest.approx(want, rel=1e-12)
+    assert c.lib.sh_regression_bandwidth(p) == pytest.approx(want, rel=1e-12)
     assert (want < 350.0) == (
         "noise.tau" in values and len(values) == 1 + ("motor.gamma" in values)
     )
@@ -96,11 +96,11 @@ def test_the_roughness_is_the_variance_of_white_noise(c: Library) -> None:
     t = T * np.arange(len(z))
     z[:, 0] = np.sin(2 * np.pi * t) + 1e-4 * np.random.default_rng(1).normal(size=len(z))
     estimator = Estimator(c, VALUES)
-    matched = c.ffi.addressof(estimator.state.method, "matched")
+    regression = c.ffi.addressof(estimator.state.method, "regression")
     found = []
     for sample in z:
         estimator.tick(sample)
-        found.append(c.lib.sh_signals_roughness(matched))
+        found.append(c.lib.sh_signals_roughness(regression))
     assert np.mean(found[10:]) == pytest.approx(1e-8, rel=0.1)
 
 
@@ -115,9 +115,9 @@ def test_the_plays_are_elastic_up_to_their_widths(c: Library) -> None:
     for k, sample in enumerate(z):
         estimator.tick(sample)
         want = np.clip(want + (phi[k] - phi[k - 1] if k else 0.0), -widths, widths)
-        found = list(estimator.state.method.matched.history.play)
+        found = list(estimator.state.method.regression.history.play)
         assert found == pytest.approx(want.tolist(), abs=1e-12)
-    history = estimator.state.method.matched.history
+    history = estimator.state.method.regression.history
     assert (history.phi_min, history.phi_max) == (phi.min(), phi.max())
 
 
@@ -129,14 +129,14 @@ def test_a_gap_does_not_end_what_is_known_of_the_deformation(c: Library) -> None
     for bad in (np.nan, 1e11):
         estimator = Estimator(c, {**VALUES, "rls.n": 8, "range.phi": 1e-6})
         estimator.run(z[:500])
-        history = c.ffi.new("sh_history *", estimator.state.method.matched.history)
+        history = c.ffi.new("sh_history *", estimator.state.method.regression.history)
         before = bytes(c.ffi.buffer(history))
         broken = z[500].copy()
         broken[1] = bad
         assert not estimator.tick(broken)
-        after = c.ffi.new("sh_history *", estimator.state.method.matched.history)
+        after = c.ffi.new("sh_history *", estimator.state.method.regression.history)
         assert bytes(c.ffi.buffer(after)) == before
         assert estimator.tick(z[501])
-        assert estimator.state.method.matched.history.phi_max == np.max(z[:502, 1] - z[:502, 0])
+        assert estimator.state.method.regression.history.phi_max == np.max(z[:502, 1] - z[:502, 0])
         states.append(estimator.lasting())
     assert states[0] == states[1]

@@ -77,8 +77,8 @@ LEAST = {
     "rls.P_0": 1e-30,
     "rls.c": 1e-30,
     "rls.a": 1e-15,
-    "confidence": 1e-15,
-    "matched.slow": 1e-15,
+    "limit.relative_std": 1e-15,
+    "regression.slow": 1e-15,
 }
 NOT_NEGATIVE = [
     "motor.D_theta",
@@ -95,7 +95,7 @@ BOUNDED = {
     "noise.tau_e": (1e-12, 1e12),
     "range.phi": (1e-6, 1e6),
     "range.setPoint": (1e-12, 1e12),
-    "matched.drift": (0.0, 1e12),
+    "regression.drift": (0.0, 1e12),
     "prior.tau_e": (0.0, 1e12),
     "prior.nominal": (0.0, 1e12),
     "prior.D_theta": (0.0, 1e12),
@@ -130,7 +130,7 @@ OUTSIDE: list[tuple[str, float]] = [
     ("motor.gamma", 0.0),
     ("rls.a", math.nextafter(1.0, 2.0)),
     ("residual.K_I", 2000.0),  # K_I T = 2
-    *(("matched.bandwidth", bad) for bad in (-1.0, 0.0, 0.0999, 2000.0, math.nan, math.inf)),
+    *(("regression.bandwidth", bad) for bad in (-1.0, 0.0, 0.0999, 2000.0, math.nan, math.inf)),
     *((name, bad) for name, last in CHOICES.items() for bad in (0, -1, last + 1, 2**31 - 1)),
     *(("rls.symmetric", bad) for bad in (-1, 2, 2**31 - 1)),
 ]
@@ -138,7 +138,7 @@ OUTSIDE: list[tuple[str, float]] = [
 
 @pytest.mark.parametrize(("name", "value"), OUTSIDE)
 def test_a_parameter_outside_its_range_is_named(c: Library, name: str, value: float) -> None:
-    method = {"method": 2} if name.startswith("matched.") else {}
+    method = {"method": 2} if name.startswith("regression.") else {}
     problem = c.violation(c.parameters({**method, name: value}))
     assert problem is not None
     named, received, allowed = problem
@@ -170,11 +170,11 @@ def test_a_parameter_at_its_limit_is_accepted(c: Library, name: str, value: floa
 
 @pytest.mark.parametrize("value", [0.1, math.nextafter(2000.0, 0.0)])
 def test_the_bandwidth_at_its_limit_is_accepted(c: Library, value: float) -> None:
-    assert c.violation(c.parameters({"method": 2, "matched.bandwidth": value})) is None
+    assert c.violation(c.parameters({"method": 2, "regression.bandwidth": value})) is None
 
 
 def test_limits_by_the_sample_period_apply_to_their_method_only(c: Library) -> None:
-    for method, name in ((1, "residual.K_I"), (2, "matched.bandwidth")):
+    for method, name in ((1, "residual.K_I"), (2, "regression.bandwidth")):
         problem = c.violation(c.parameters({"method": method, "samplePeriod": 0.01}))
         assert problem is not None and problem[0] == name
         mended = {"method": method, "samplePeriod": 0.01, name: 100.0}
@@ -182,8 +182,8 @@ def test_limits_by_the_sample_period_apply_to_their_method_only(c: Library) -> N
 
 
 def test_a_curve_of_exact_shape_needs_a_nominal_curve_and_its_uncertainty(c: Library) -> None:
-    """GIVEN prior.tau_e = 0, so that the shape of the torque curve is exact, THEN MatchedFilter
-    requires a nominal curve and the uncertainty of the curve as a whole."""
+    """GIVEN prior.tau_e = 0, so that the shape of the torque curve is exact, THEN
+    FilteredRegression requires a nominal curve and the uncertainty of the curve as a whole."""
     exact = {"method": 2, "prior.tau_e": 0.0}
     for values in (exact, {**exact, "prior.nominal": 0.3}):
         problem = c.violation(c.parameters(values))

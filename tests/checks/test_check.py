@@ -74,7 +74,7 @@ column = "t"
 {ports}
 [parameters]
 samplePeriod = {T}
-method = "MatchedFilter"
+method = "FilteredRegression"
 motor.B = {1.05 * plant["motor.B"]}
 motor.D_theta = {0.9 * plant["motor.D_theta"]}
 motor.gamma = {plant["motor.gamma"]}
@@ -112,7 +112,7 @@ def test_no_false_alarm(name: str, tmp_path: Path) -> None:
 
 
 def test_no_false_alarm_with_a_set_point(tmp_path: Path) -> None:
-    text = CONFIGURATION.replace("[parameters]", '[parameters]\nmethod = "MatchedFilter"')
+    text = CONFIGURATION.replace("[parameters]", '[parameters]\nmethod = "FilteredRegression"')
     found = checked(awas_log(1.0, 0.3), text, tmp_path)
     assert [sentence(each) for each in found.of(Severity.WRONG)] == []
 

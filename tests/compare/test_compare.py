@@ -1,4 +1,4 @@
-"""The results of `sigmahat compare` and their text. Bounds are those asked of MatchedFilter."""
+"""The results of `sigmahat compare` and their text. The bounds of FilteredRegression."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import calibration
 from misfit_priors import WITHOUT_MISFITS
 from sigmahat.cli import main
 from sigmahat.compare import conditions, labels
-from sigmahat.compare.conditions import JOINTS, MATCHED, METHODS, Joint
+from sigmahat.compare.conditions import JOINTS, METHODS, REGRESSION, Joint
 from sigmahat.compare.figure import draw
 from sigmahat.compare.job import Row, compare
 from sigmahat.compare.table import table
@@ -58,7 +58,7 @@ def test_asked_rows_and_columns_are_met(runs: list[list[Row]]) -> None:
         group, motion, case = labels.group(row), labels.motion(row.joint), labels.case(row.case)
         if (group, case) in BOUNDS:
             bound = BOUNDS[group, case][FREQUENCIES.index(motion)]
-            assert mean(runs, k, MATCHED) <= bound, row
+            assert mean(runs, k, REGRESSION) <= bound, row
             assert row.judged_from == (1.0 if group == FRICTION else 0.0)
             met.add((group, case, motion))
     assert len(met) == len(BOUNDS) * len(FREQUENCIES)
@@ -67,7 +67,7 @@ def test_asked_rows_and_columns_are_met(runs: list[list[Row]]) -> None:
 def test_better_than_the_paper_in_every_row_with_wrong_motor_data(runs: list[list[Row]]) -> None:
     for k, row in enumerate(runs[0]):
         if labels.motion(row.joint) != "table1":
-            assert mean(runs, k, MATCHED) < mean(runs, k, "Paper2011"), row
+            assert mean(runs, k, REGRESSION) < mean(runs, k, "Paper2011"), row
 
 
 def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
@@ -81,7 +81,7 @@ def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
             continue
         bounds = BOUNDS[labels.group(row), labels.case(row.case)]
         if math.isfinite(bounds[FREQUENCIES.index(motion)]):
-            D_theta = row.performance[MATCHED].D_theta
+            D_theta = row.performance[REGRESSION].D_theta
             share = 0.25 if motion == "20 Hz" else 0.1
             assert D_theta == pytest.approx(1e-3, abs=share * 1e-4), row
 
@@ -92,11 +92,11 @@ def test_start_up_with_exact_motor_data() -> None:
     near the bound of information; with the columns for what it may have, it takes longer."""
     (table1,) = (joint for joint in JOINTS if joint.scenario.name == "table1")
     unknown, nominal = compare([without_misfits(table1)], range(1, 21), processes=2)
-    assert unknown.error(MATCHED) <= 0.30
-    assert nominal.error(MATCHED) <= 0.06
+    assert unknown.error(REGRESSION) <= 0.30
+    assert nominal.error(REGRESSION) <= 0.06
     unknown, nominal = compare([table1], range(1, 21), processes=2)
-    assert unknown.error(MATCHED) <= 2.5 * 0.247
-    assert nominal.error(MATCHED) <= 2.5 * 0.037
+    assert unknown.error(REGRESSION) <= 2.5 * 0.247
+    assert nominal.error(REGRESSION) <= 2.5 * 0.037
 
 
 @pytest.mark.parametrize("with_inertia", [False, True])
@@ -116,22 +116,22 @@ def test_claims_the_right_uncertainty(with_inertia: bool) -> None:
 def test_printed_table(runs: list[list[Row]]) -> None:
     rows = runs[0]
     head, *lines = table(rows).splitlines()
-    assert head.split()[:4] == ["Paper2011", "[%]", "MatchedFilter", "[%]"]
+    assert head.split()[:4] == ["Paper2011", "[%]", "FilteredRegression", "[%]"]
     assert [line for line in lines if line and not line.startswith(" ")] == list(
         dict.fromkeys(map(labels.group, rows))
     )
     of_joints = [line for line in lines if line.startswith(" ")]
     for row, line in zip(rows, of_joints, strict=True):
         name, *cells = [cell for cell in line.split("  ") if cell]
-        matched = row.performance[MATCHED]
+        regression = row.performance[REGRESSION]
         assert name.startswith(f"{labels.motion(row.joint)}, {labels.case_and_part(row)}")
         assert ("after" in name) == (row.judged_from > 0)
         assert [float(cell) for cell in cells[:2]] == pytest.approx(
             [row.error(method) for method in METHODS], rel=0.005
         )
-        assert float(cells[2]) == pytest.approx(matched.sigma_std, abs=0.005)
-        assert float(cells[3]) == pytest.approx(matched.inside, abs=0.5)
-        motors = [matched.D_theta, matched.B, matched.tau_coulomb]
+        assert float(cells[2]) == pytest.approx(regression.sigma_std, abs=0.005)
+        assert float(cells[3]) == pytest.approx(regression.inside, abs=0.5)
+        motors = [regression.D_theta, regression.B, regression.tau_coulomb]
         for cell, value in zip(cells[4:], motors, strict=True):
             assert (
                 cell.strip() == "-"
@@ -153,9 +153,11 @@ def test_figure(runs: list[list[Row]], tmp_path: Path) -> None:
     texts = [text.get_text() for text in legend.get_texts()]
     assert sorted(texts) == sorted(str(each.get_label()) for each in shown)
     assert len(set(texts)) == len(texts)
-    (curve,) = [s for s in shown if s.get_label() == "MatchedFilter: r(0) = 130 mm, D_theta +10 %"]
+    (curve,) = [
+        s for s in shown if s.get_label() == "FilteredRegression: r(0) = 130 mm, D_theta +10 %"
+    ]
     np.testing.assert_array_equal(np.asarray(curve.get_xdata()), [0.1, 0.3, 1, 3, 8, 20])
-    expected = [row.error(MATCHED) for row in rows if labels.group(row) == "r(0) = 130 mm"]
+    expected = [row.error(REGRESSION) for row in rows if labels.group(row) == "r(0) = 130 mm"]
     np.testing.assert_array_equal(np.asarray(curve.get_ydata()), expected)
     save(draw, rows, tmp_path / "compare")
     assert {path.name for path in tmp_path.iterdir()} == {"compare.png", "compare.svg"}

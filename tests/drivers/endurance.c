@@ -30,8 +30,8 @@ static int positive(const sh_real *D, int size)
 static int definite(const sh_estimator *estimator, const sh_parameters *p)
 {
     const sh_ud_factor *P = &estimator->method.paper2011.rls.P;
-    const sh_matched_state *matched = &estimator->method.matched;
-    const sh_information *posterior = &matched->live.information, *data = &matched->data;
+    const sh_regression_state *regression = &estimator->method.regression;
+    const sh_information *posterior = &regression->live.information, *data = &regression->data;
 
     if (p->method == SH_METHOD_PAPER2011) {
         return positive(P->D, P->size);
@@ -82,7 +82,7 @@ int main(int argc, char **argv)
     p.encoder.theta = p.encoder.q = INPUT_COUNTS;
     p.prior.B = 0.1;
     p.prior.tau_coulomb = 0.02;
-    p.matched.drift = 1e-3;
+    p.regression.drift = 1e-3;
     if (sh_parameters_check(&p, &violation)) {
         fprintf(stderr, "%s has to be %s\n", violation.name, violation.range);
         return 2;

@@ -60,7 +60,7 @@ def doubt_of_sum(pair: Instance, one: Instance, two: Instance) -> float:
     worst = max(one.get("doubt"), two.get("doubt"))
     if worst not in (CONFIDENT, NOT_EXCITED, MISFIT):
         return worst
-    if pair.get("sigma_std") < pair.get("confidence") * abs(pair.get("sigma")):
+    if pair.get("sigma_std") < pair.get("limit.relative_std") * abs(pair.get("sigma")):
         return CONFIDENT
     return max(worst, NOT_EXCITED)
 

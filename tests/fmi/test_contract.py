@@ -91,7 +91,7 @@ PARAMETERS = {
     "prior.hysteresis": ("fixed", "1", None),
     "prior.eccentric_motor": ("fixed", "rad", None),
     "torque.held": ("tunable", None, 0),
-    "matched.memory": ("tunable", "s", 20),
+    "regression.memory": ("tunable", "s", 20),
 }
 ONE, COUNTS = "1", "1"
 PLANT_IN = ("input", None)
@@ -134,7 +134,7 @@ PLANT = {  # AwasPlant: causality, variability, unit, start (None: any)
     ),
 }
 ITEMS = {
-    "method": ["Paper2011", "MatchedFilter"],
+    "method": ["Paper2011", "FilteredRegression"],
     "modality": ["Residual", "Sensor", "Model"],
     "filter.kind": ["ModifiedKalman", "Kalman", "FiniteDifference"],
     "filter.weighting": ["Normalized", "AsPrinted"],

@@ -90,11 +90,13 @@ def test_estimators_do_not_influence_each_other() -> None:
 
 
 def test_an_enumeration_is_recorded_by_the_names_of_its_items() -> None:
-    matched = replace(changed({"method": "MatchedFilter"}), record=["sigma", "doubt", "confident"])
+    regression = replace(
+        changed({"method": "FilteredRegression"}), record=["sigma", "doubt", "confident"]
+    )
     paper = replace(RESIDUAL, record=["doubt"])
-    recording = simulate(PLANT, {"matched": matched, "paper": paper}, T, 6000)
-    doubt = recording.estimators["matched"]["doubt"]
-    assert np.array_equal(doubt == "None", recording.estimators["matched"]["confident"] == 1)
+    recording = simulate(PLANT, {"regression": regression, "paper": paper}, T, 6000)
+    doubt = recording.estimators["regression"]["doubt"]
+    assert np.array_equal(doubt == "None", recording.estimators["regression"]["confident"] == 1)
     assert {"None", "NotExcited"} <= set(doubt)
     assert set(recording.estimators["paper"]["doubt"]) == {"NoClaim"}
 

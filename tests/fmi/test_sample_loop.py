@@ -24,7 +24,7 @@ from sigmahat.paper.scenarios import SCENARIOS, scenario
 from sigmahat.runs.scenario import Scenario, T
 
 TABLE1 = scenario("table1")
-MATCHED = {"method": "MatchedFilter"}
+REGRESSION = {"method": "FilteredRegression"}
 
 
 @pytest.fixture

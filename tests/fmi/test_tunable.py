@@ -30,8 +30,11 @@ CONFIGURATION: dict[str, dict[str, float]] = {
     "noise.tau_e": {"modality": 2},
     "motor.uneven": {"motor.tau_coulomb": 0.02},
     "motor.stribeck": {"motor.tau_coulomb": 0.02, "motor.v_stribeck": 5.0},
-    "confidence": {"confidence": 1e12, "modality": 2},  # by tau the stiffness is negative
-    "matched.drift": {  # so few columns that a pass takes less than the run
+    "limit.relative_std": {
+        "limit.relative_std": 1e12,
+        "modality": 2,
+    },  # by tau the stiffness is negative
+    "regression.drift": {  # so few columns that a pass takes less than the run
         "rls.n": 1,
         "rls.m": 1,
         **{f"prior.{name}": 0 for name in ("bias", "damping", "load_friction", "eccentric")},
@@ -40,17 +43,17 @@ CONFIGURATION: dict[str, dict[str, float]] = {
     },
 }
 # Start values for each method. SIGNALS start in motion, from which a fast filter soon settles; the
-# estimator makes it slower than matched.bandwidth unless the encoder is fine.
-FAST = {"method": 2, "matched.bandwidth": 1900, "encoder.theta": 4e6}
+# estimator makes it slower than regression.bandwidth unless the encoder is fine.
+FAST = {"method": 2, "regression.bandwidth": 1900, "encoder.theta": 4e6}
 METHODS: dict[int, dict[str, float]] = {1: {}, 2: FAST}
 # Has its effect at the end of a pass, and not already at the next tick.
-LATER = "matched.drift"
+LATER = "regression.drift"
 # The new value if 1.5 times the start value is the same, or has too little effect.
 CHANGED = {
     "modality": 2,
-    "confidence": 1e-12,
-    "matched.slow": 1e3,
-    "matched.drift": 1.0,
+    "limit.relative_std": 1e-12,
+    "regression.slow": 1e3,
+    "regression.drift": 1.0,
     "torque.held": 1,
     "motor_c.B": 1.29e-6,
     "spring.k_3": 1e4,
@@ -157,9 +160,9 @@ def methods(name: str) -> list[int]:
     """The methods in which a parameter has an effect."""
     if name.startswith(("residual.", "filter.")):
         return [1]
-    if name == "matched.memory":
+    if name == "regression.memory":
         return []  # it acts on a misfit, which takes 20 blocks of 50 ms to be seen
-    return [2] if name.startswith(("matched.", "torque.", "confidence")) else [1, 2]
+    return [2] if name.startswith(("regression.", "torque.", "limit.relative_std")) else [1, 2]
 
 
 @pytest.mark.parametrize(

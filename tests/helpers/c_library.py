@@ -149,9 +149,9 @@ class Estimator:
         """The state as bytes, without the work arrays, which have no meaning between ticks."""
         ffi = self.library.ffi
         state = ffi.new("sh_estimator *", self.state[0])
-        paper2011, matched = state.method.paper2011, state.method.matched
+        paper2011, regression = state.method.paper2011, state.method.regression
         is_paper2011 = self.parameters.method == self.library.lib.SH_METHOD_PAPER2011
-        for part in (paper2011, paper2011.rls.P) if is_paper2011 else (matched,):
+        for part in (paper2011, paper2011.rls.P) if is_paper2011 else (regression,):
             size = ffi.sizeof(part.work)
             ffi.memmove(ffi.addressof(part, "work"), bytes(size), size)
         return bytes(ffi.buffer(state))

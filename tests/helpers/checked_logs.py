@@ -48,7 +48,7 @@ unit = "A"
 torque_constant = 0.05
 [parameters]
 samplePeriod = 0.001
-method = "MatchedFilter"
+method = "FilteredRegression"
 motor.B = 1.05e-4
 motor.D_theta = 5.5e-4
 motor.gamma = 100

@@ -1,4 +1,4 @@
-"""The signals of MatchedFilter from whole records, with the filters of scipy.
+"""The signals of FilteredRegression from whole records, with the filters of scipy.
 
 A record is cut into runs of samples without a gap; in each of them the filters begin anew.
 """
@@ -42,8 +42,8 @@ def bandwidth(p: Parameters) -> float:
     """Corner frequency of the filters [rad/s]."""
     rounding = p["motor.B"] * abs(p["motor.gamma"]) * resolution(p["encoder.theta"]) / math.sqrt(12)
     if p["modality"] == SENSOR or rounding == 0:
-        return float(p["matched.bandwidth"])
-    return float(min(p["matched.bandwidth"], 1.42 * math.sqrt(p["noise.tau"] / rounding)))
+        return float(p["regression.bandwidth"])
+    return float(min(p["regression.bandwidth"], 1.42 * math.sqrt(p["noise.tau"] / rounding)))
 
 
 def direction(c: Library, theta: Array, count: float, slow: float) -> tuple[Array, Array]:
@@ -178,7 +178,7 @@ class Filtered:
         self.gamma, self.of_velocity, self.of_acceleration = gamma, gamma**2 * D, gamma**2 * B
         theta = z[run, 0]
         self.moved = theta - theta[0]
-        slow = p["matched.slow"] * self.T
+        slow = p["regression.slow"] * self.T
         self.sign, self.unknown = direction(c, theta, resolution(p["encoder.theta"]), slow)
         self.unknown_f = self.filtered(np.append(self.unknown[1:], 0.0), 0, True)
         self.torque = z[run, 4 if measured else 3]

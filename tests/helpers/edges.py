@@ -38,10 +38,10 @@ RANGES: Mapping[str, tuple[float, float]] = {
     "model.b": (0, LARGEST),
     "noise.tau": (1e-12, LARGEST),
     "noise.tau_e": (1e-12, LARGEST),
-    "confidence": (1e-15, LARGEST),
-    "matched.slow": (1e-15, LARGEST),
-    "matched.drift": (0, LARGEST),
-    "matched.memory": (0, LARGEST),
+    "limit.relative_std": (1e-15, LARGEST),
+    "regression.slow": (1e-15, LARGEST),
+    "regression.drift": (0, LARGEST),
+    "regression.memory": (0, LARGEST),
     "range.phi": (1e-6, 1e6),
     "range.setPoint": (1e-12, LARGEST),
     **{
@@ -89,7 +89,7 @@ def parameters(draw: st.DrawFn, method: int, real: str) -> dict[str, Any]:
     values |= {name: draw(st.sampled_from(choice)) for name, choice in _CHOICES.items()}
     period = draw(st.one_of(st.just(1e-3), magnitudes(1e-9, 1e3)))
     wT = draw(st.sampled_from([0.35, 1.001e-4, 1.99]))
-    values |= {"method": method, "samplePeriod": period, "matched.bandwidth": wT / period}
+    values |= {"method": method, "samplePeriod": period, "regression.bandwidth": wT / period}
     if method == 1:
         values["residual.K_I"] = min(values.get("residual.K_I", 300.0), 1.99 / period)
     elif not values.get("prior.tau_e", 45.0) > 0:

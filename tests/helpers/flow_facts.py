@@ -28,7 +28,7 @@ class Sizes:
     m: int
     """rls.m."""
     columns: int
-    """Columns of MatchedFilter."""
+    """Columns of FilteredRegression."""
     real: int
     """Bytes of a number."""
 
@@ -126,7 +126,7 @@ def _condition(graph: Graph, block: int) -> str:
 
 
 def read_facts(method: str) -> Facts:
-    """Reads the file, for an estimator of this method: "paper2011" or "matched_filter"."""
+    """Reads the file, for an estimator of this method: "paper2011" or "filtered_regression"."""
     data = tomlkit.parse(BOUNDS.read_text(encoding="utf-8")).unwrap()
     return Facts(
         data["loops"],

@@ -1,4 +1,4 @@
-"""Measurements of a joint with one thing that the model of MatchedFilter does not have.
+"""Measurements of a joint with one thing that the model of FilteredRegression does not have.
 
 Positions are prescribed, and the torque of the motor follows from them by inverse dynamics.
 """

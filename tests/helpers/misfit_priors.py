@@ -9,4 +9,4 @@ WITHOUT_MISFITS = {
         *("power", "gap", "hysteresis", "eccentric_motor"),
     )
 }
-"""Parameters of MatchedFilter without the columns for misfits."""
+"""Parameters of FilteredRegression without the columns for misfits."""

@@ -45,8 +45,8 @@ PARAMETERS: dict[str, Value] = {
     "rls.P_0": 1e32,
 }
 PAPER2011: dict[str, Value] = {}
-MATCHED_FILTER: dict[str, Value] = {
-    "method": "MatchedFilter",
+FILTERED_REGRESSION: dict[str, Value] = {
+    "method": "FilteredRegression",
     "range.phi": 0.25,
     "range.setPoint": 45.0,
     "prior.tau_e": 1000.0,
@@ -55,10 +55,14 @@ MATCHED_FILTER: dict[str, Value] = {
     # The joint turns by 0.4 rad only, where an encoder that is not centred looks like the spring.
     "prior.eccentric": 0.0,
     # The six logs take 86 s.
-    "matched.memory": 100.0,
+    "regression.memory": 100.0,
 }
-SPRING_ALONE: dict[str, Value] = {**MATCHED_FILTER, **WITHOUT_MISFITS, "matched.memory": 0.0}
-"""MatchedFilter without the columns for misfits, and without their effect."""
+SPRING_ALONE: dict[str, Value] = {
+    **FILTERED_REGRESSION,
+    **WITHOUT_MISFITS,
+    "regression.memory": 0.0,
+}
+"""FilteredRegression without the columns for misfits, and without their effect."""
 BIN = 5e-3  # width over which the measured curve is averaged [rad]
 POINTS = (-0.1, 0.1)  # where the stiffness is compared [rad]
 HALF_WIDTH = 0.05  # of the window in which the slope is taken, see docs/real-joint.md [rad]

@@ -47,7 +47,7 @@ column = "a{axis}_motor_torque_Nm"
 unit = "N.m"
 [parameters]
 samplePeriod = 0.004
-method = "MatchedFilter"
+method = "FilteredRegression"
 motor.gamma = {gear}
 motor.B = {inertia}
 prior.B = 0.05

@@ -15,14 +15,14 @@ from flow_facts import Sizes, read_facts
 from longest_path import LongestPath
 from program_functions import Functions
 
-METHODS = {"paper2011": "Paper2011", "matched_filter": "MatchedFilter"}
+METHODS = {"paper2011": "Paper2011", "filtered_regression": "FilteredRegression"}
 REDUCTION = {"float": "__kernel_rem_pio2f", "double": "__kernel_rem_pio2"}
 """The function of newlib that sin and cos call for angles above 201 rad, in double 823549 rad."""
 N, M, COLUMNS = 8, 5, 64
 """SH_MAX_N, SH_MAX_M and SH_MAX_COLUMNS, if nothing else is given to the compiler."""
-DEFAULT = {"paper2011": (6, 3, 0), "matched_filter": (6, 3, 40)}
+DEFAULT = {"paper2011": (6, 3, 0), "filtered_regression": (6, 3, 40)}
 """Orders and columns of the start values."""
-LARGEST = {"paper2011": (N, M, 0), "matched_filter": (N, M, COLUMNS)}
+LARGEST = {"paper2011": (N, M, 0), "filtered_regression": (N, M, COLUMNS)}
 """Those of the largest estimator; with 8 x 5 there are 61 columns, with every prior above 0."""
 
 

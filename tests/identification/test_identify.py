@@ -235,14 +235,14 @@ def test_ranges_hold_what_the_log_shows(found: dict[float, Identified], tmp_path
 
 
 @pytest.mark.parametrize("f", [1.0, 8.0])
-def test_matched_filter_with_what_was_identified(
+def test_filtered_regression_with_what_was_identified(
     f: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     # GIVEN motor data wrong by 20 %, and friction that is in no configuration
     monkeypatch.chdir(tmp_path)
     log = awas_log(f, AMPLITUDES[f])
     write_log(log, Path("log.parquet"))
-    Path("log.toml").write_text(CONFIGURATION + 'method = "MatchedFilter"\n')
+    Path("log.toml").write_text(CONFIGURATION + 'method = "FilteredRegression"\n')
     assert main(["identify", "log.parquet", "--quiet"]) == 0
     assert main(["estimate", "log.parquet", "--out", "out", "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)

@@ -44,7 +44,7 @@ theta_c = {column = "theta_c"}
 tau = {column = "tau"}
 [parameters]
 samplePeriod = 0.001
-method = "MatchedFilter"
+method = "FilteredRegression"
 motor.B = 2.3e-5
 motor.D_theta = 1e-3
 motor.gamma = 50
@@ -120,7 +120,7 @@ def awas(tmp_path_factory: pytest.TempPathFactory) -> tuple[Estimate, Columns, P
         patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
         folder = tmp_path_factory.mktemp("awas")
         log = awas_log(1.0, 0.3, 10.0)
-        configuration = CONFIGURATION + 'method = "MatchedFilter"\nprior.B = 0.2\nrls.n = 3\n'
+        configuration = CONFIGURATION + 'method = "FilteredRegression"\nprior.B = 0.2\nrls.n = 3\n'
         return estimated(log, configuration, folder), log, folder
 
 

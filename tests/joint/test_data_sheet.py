@@ -20,7 +20,7 @@ from recorded_logs import CONFIGURATION, LEAD, awas_log, read_estimate, write_lo
 from sigmahat.cli import main
 from sigmahat.files.digest import sha256
 
-MATCHED = CONFIGURATION + 'method = "MatchedFilter"\nprior.B = 0.2\n'
+REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nprior.B = 0.2\n'
 CASES = {
     "powers that suffice": "rls.n = 3\n",
     "powers that do not": "rls.n = 1\nrls.m = 2\n",
@@ -47,12 +47,12 @@ def estimated(folder: Path, configuration: str, duration: float = 10.0) -> Path:
 
 @pytest.fixture(scope="module", params=list(CASES.values()), ids=list(CASES))
 def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return estimated(tmp_path_factory.mktemp("case"), MATCHED + request.param)
+    return estimated(tmp_path_factory.mktemp("case"), REGRESSION + request.param)
 
 
 @pytest.fixture(scope="module")
 def original(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return estimated(tmp_path_factory.mktemp("original"), MATCHED + "rls.n = 3\n")
+    return estimated(tmp_path_factory.mktemp("original"), REGRESSION + "rls.n = 3\n")
 
 
 @pytest.fixture
@@ -154,7 +154,7 @@ def test_intervals_of_the_parameters(tmp_path: Path) -> None:
         'D_theta = {value = "cannot tell", half_width = 1e-4, unit = "N.m.s/rad"}\n'
         "tau_noise = 1e-3\n"
     )
-    text = MATCHED + "prior.delay = 0\n" + identified
+    text = REGRESSION + "prior.delay = 0\n" + identified
     parameters = sheet_of(estimated(tmp_path, text, duration=2.0))["parameters"]
     kinds = {name: (p["interval"], p["interval_from"]) for name, p in parameters.items()}
     assert kinds["B"] == (pytest.approx([2.2e-5, 2.4e-5]), "identify")
@@ -174,7 +174,7 @@ def test_paper2011_claims_no_interval(tmp_path: Path) -> None:
 
 
 def test_the_log_of_a_motor_at_rest_has_a_sheet(tmp_path: Path) -> None:
-    text = MATCHED.replace("[ports.theta_c]", "[ports.theta_c]\nscale = 0.01")
+    text = REGRESSION.replace("[ports.theta_c]", "[ports.theta_c]\nscale = 0.01")
     sheet = sheet_of(estimated(tmp_path, text, duration=0.02))
     assert sheet["logs"][0]["ticks"] == 21
     assert not sheet["confident"]
@@ -238,7 +238,7 @@ def test_the_fmu_begins_with_what_was_learned_to_the_last_bit(case: Path, tmp_pa
 def test_higher_powers_that_the_data_asked_for_are_part_of_the_curve(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
-    folder = estimated(tmp_path_factory.mktemp("powers"), MATCHED + CASES["powers that do not"])
+    folder = estimated(tmp_path_factory.mktemp("powers"), REGRESSION + CASES["powers that do not"])
     start, answer = (
         sheet_of(folder)["start_values"],
         json.loads((folder / "answer.json").read_text()),
@@ -340,7 +340,7 @@ def test_the_ssv_has_every_start_value_that_importers_agree_on(case: Path, tmp_p
     """Booleans and enumerations are in it where the FMU has another value itself."""
     path = export(case, "ssv", tmp_path)
     found, expected = from_ssv(path), sheet_of(case)["start_values"]
-    assert found["method"] == "MatchedFilter"
+    assert found["method"] == "FilteredRegression"
     assert found.items() <= expected.items()
     defaults = {"modality": "Residual", "rls.symmetric": True, "torque.held": False}
     defaults |= {"filter.kind": "ModifiedKalman", "filter.weighting": "Normalized"}
@@ -367,7 +367,7 @@ def test_the_name_of_a_log_cannot_end_a_comment(kind: str, knee: Path) -> None:
     path.write_text(json.dumps(sheet))
     found = export(knee, kind, knee)
     if kind == "ssv":
-        assert from_ssv(found)["method"] == "MatchedFilter"
+        assert from_ssv(found)["method"] == "FilteredRegression"
     else:
         read = {"matlab": from_matlab, "modelica": from_modelica}[kind]
         assert read(found) == for_fmpy(sheet["start_values"])
@@ -432,7 +432,7 @@ def started(**values: Any) -> Callable[[dict[str, Any]], None]:
         (edited(mine=1), "damaged: mine"),
         (started(**{"motor.b": 1.0}), "did you mean 'motor.B'"),
         (started(**{"motor.B": "1; quit"}), "expected Real"),
-        (started(method="Matched"), "did you mean 'MatchedFilter'"),
+        (started(method="Regression"), "did you mean 'FilteredRegression'"),
         (started(**{"rls.n": 2.5}), "expected Integer"),
     ],
 )

@@ -23,7 +23,7 @@ def test_the_commands_and_the_program_of_the_page(
     monkeypatch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
     write_log(awas_log(1.0, 0.3, 3.0), Path("knee.csv"))
     write_log(awas_log(1.3, 0.3, 3.0, seed=2), Path("second.csv"))
-    Path("knee.toml").write_text(CONFIGURATION + 'method = "MatchedFilter"\nrls.n = 3\n')
+    Path("knee.toml").write_text(CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\n')
     text = PAGE.read_text(encoding="utf-8")
     (commands,) = re.findall(r"^```sh\n(.*?)^```$", text, re.M | re.S)
     for line in commands.splitlines():

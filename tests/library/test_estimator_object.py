@@ -27,8 +27,13 @@ INPUTS = ("theta", "q", "tau", "theta_c")
 SETTINGS: list[dict[str, Any]] = [
     {},
     {"deformation": "Filtered", "rls.kind": "ConstantFactor", "filter.kind": "Kalman"},
-    {"method": "MatchedFilter"},
-    {"method": "MatchedFilter", "rls.n": 3, "prior.tau_coulomb": 0.02, "matched.drift": 1e-3},
+    {"method": "FilteredRegression"},
+    {
+        "method": "FilteredRegression",
+        "rls.n": 3,
+        "prior.tau_coulomb": 0.02,
+        "regression.drift": 1e-3,
+    },
 ]
 
 
@@ -141,7 +146,7 @@ def test_reset_forgets_and_keeps_what_was_tuned(z: dict[str, NDArray[np.float64]
     ("parameters", "message"),
     [
         ({"motor.b": 1.0}, r"parameter of StiffnessEstimator.*motor\.b.*motor\.B"),
-        ({"method": "Matched"}, "Matched.*MatchedFilter"),
+        ({"method": "Regression"}, "Regression.*FilteredRegression"),
         ({"motor.B": -1.0}, r"motor\.B: expected >= 1e-15, got -1"),
         ({"motor.B": float("nan")}, r"motor\.B: expected .*got nan"),
         ({"rls.n": 2.5}, r"rls\.n: expected Integer, got 2\.5"),
@@ -219,9 +224,9 @@ def test_a_copy_goes_on_by_itself(copied: Any, z: dict[str, NDArray[np.float64]]
 def test_tuned_parameters_have_their_effect_while_it_runs(
     z: dict[str, NDArray[np.float64]],
 ) -> None:
-    estimator = sigmahat.Estimator({"method": "MatchedFilter"})
+    estimator = sigmahat.Estimator({"method": "FilteredRegression"})
     with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "one") as slave:
-        slave.initialize({"method": "MatchedFilter"})
+        slave.initialize({"method": "FilteredRegression"})
         for k in range(1500):
             row = {name: float(each[k]) for name, each in z.items()}
             if k == 1000:
@@ -259,7 +264,7 @@ def test_ctrl_c_ends_a_long_run() -> None:
     program = """
 import os, signal, threading, numpy as np, sigmahat
 zeros = np.zeros(50_000_000)
-estimator = sigmahat.Estimator({"method": "MatchedFilter"})
+estimator = sigmahat.Estimator({"method": "FilteredRegression"})
 threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
 try:
     estimator.run(zeros, zeros, zeros)

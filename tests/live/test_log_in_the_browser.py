@@ -38,7 +38,7 @@ def page(site: Path) -> Iterator[LivePage]:
 def parameters(page: LivePage) -> dict[str, Value]:
     """What the page gives to the estimator, as `sigmahat.Estimator` takes it."""
     start = dict(page.page.run("return log.starts(log.read())"))
-    return {**start, "method": "MatchedFilter", "modality": "Residual"}
+    return {**start, "method": "FilteredRegression", "modality": "Residual"}
 
 
 def test_the_log_of_the_tutorial(page: LivePage) -> None:

@@ -47,7 +47,7 @@ def page(site: Path) -> Iterator[LivePage]:
         yield page
 
 
-@pytest.mark.parametrize("method", ["Paper2011", "MatchedFilter"])
+@pytest.mark.parametrize("method", ["Paper2011", "FilteredRegression"])
 def test_table1_in_the_browser_is_that_of_the_fmus(
     method: str, page: LivePage, estimator_fmu: Path, plant_fmu: Path
 ) -> None:

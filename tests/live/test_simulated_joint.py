@@ -64,22 +64,22 @@ def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
     page.sets("coulomb", 0)
 
 
-def test_wrong_friction_misleads_paper2011_and_not_matched_filter(page: LivePage) -> None:
+def test_wrong_friction_misleads_paper2011_and_not_filtered_regression(page: LivePage) -> None:
     errors = {}
-    for method in ("Paper2011", "MatchedFilter"):
+    for method in ("Paper2011", "FilteredRegression"):
         page.page.run("joint.form.elements.method.value = METHODS[arguments[0]]", method)
         for friction in (0, 20):
             page.sets("friction", friction)
             simulate(page, 15)
             errors[method, friction] = abs(error(page))
-    assert errors["Paper2011", 20] > 20 > 5 > errors["MatchedFilter", 20]
-    assert max(errors["Paper2011", 0], errors["MatchedFilter", 0]) < 5
+    assert errors["Paper2011", 20] > 20 > 5 > errors["FilteredRegression", 20]
+    assert max(errors["Paper2011", 0], errors["FilteredRegression", 0]) < 5
     page.sets("friction", 0)
 
 
 def test_the_band_holds_without_noise(page: LivePage) -> None:
     """The estimator is told that there is next to none; it was once told that of the paper."""
-    page.page.run("joint.form.elements.method.value = METHODS.MatchedFilter")
+    page.page.run("joint.form.elements.method.value = METHODS.FilteredRegression")
     for noise in (0, 1):
         page.sets("noise", noise)
         simulate(page, 45)
@@ -92,7 +92,7 @@ def test_the_band_holds_without_noise(page: LivePage) -> None:
 
 
 def test_only_a_method_that_claims_a_band_gets_one(page: LivePage) -> None:
-    for method, claims in (("Paper2011", False), ("MatchedFilter", True)):
+    for method, claims in (("Paper2011", False), ("FilteredRegression", True)):
         page.page.run("joint.form.elements.method.value = METHODS[arguments[0]]", method)
         simulate(page, 10)
         assert ("±" in page.text("value-sigma")) == claims

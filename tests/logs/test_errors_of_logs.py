@@ -189,3 +189,19 @@ def test_identify_needs_its_ports(folder: Path, capsys: pytest.CaptureFixture[st
     assert "tau_e_sensor" in line
     write_log(columns(rows=200), folder / "log.csv")
     assert "without a gap" in refused(["log.csv"], capsys, "identify")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("matched.memory = 5.0", "regression.memory"),
+        ("confidence = 0.2", "limit.relative_std"),
+        ('method = "MatchedFilter"', "FilteredRegression"),
+    ],
+)
+def test_a_name_of_before_is_answered_with_the_new_one(
+    old: str, new: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_log(columns(), folder / "log.csv")
+    Path("log.toml").write_text(f"{CONFIGURATION}\n[parameters]\n{old}\n")
+    assert f"it is called '{new}' now" in refused(["log.csv"], capsys)

@@ -196,7 +196,7 @@ def test_json_and_quiet(
     assert (captured.out, captured.err) == ("", "")
 
 
-MATCHED = CONFIGURATION + 'method = "MatchedFilter"\nrls.n = 3\n'
+REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\n'
 
 
 def test_why_and_how_often_the_estimate_is_not_confident(
@@ -204,7 +204,7 @@ def test_why_and_how_often_the_estimate_is_not_confident(
 ) -> None:
     # GIVEN a limit that only part of the estimates meets
     path = write_log(awas_log(1.0, 0.3), tmp_path / "log.parquet")
-    configuration = MATCHED + "confidence = 0.022\nprior.torque_gain = 0.01\n"
+    configuration = REGRESSION + "limit.relative_std = 0.022\nprior.torque_gain = 0.01\n"
     assert estimate(path, tmp_path, configuration, "--json") == 0
     result = json.loads(capsys.readouterr().out)
     table = read_estimate(tmp_path / "out")
@@ -237,7 +237,7 @@ def test_what_is_absent_because_its_prior_is_0_is_listed(
 ) -> None:
     path = write_log(awas_log(1.0, 0.3, duration=2.0), tmp_path / "log.parquet")
     absent = "prior.B = 0.1\nprior.delay = 0\nprior.load_friction = 0\nprior.tau_coulomb = 0\n"
-    assert estimate(path, tmp_path, MATCHED + absent) == 0
+    assert estimate(path, tmp_path, REGRESSION + absent) == 0
     text = capsys.readouterr().out
     assert "no Coulomb friction, no load friction, no delay (priors of 0)" in text
     assert "exactly" not in text
@@ -254,7 +254,7 @@ def test_paper2011_makes_no_claim(
     assert set(read_estimate(tmp_path / "out")["estimate.doubt"].to_pylist()) == {"NoClaim"}
     band = "95 % band"
     assert band not in (tmp_path / "out" / "estimate.svg").read_text()
-    assert estimate(path, tmp_path, AS_IN_THE_FMU + 'method = "MatchedFilter"\n') == 0
+    assert estimate(path, tmp_path, AS_IN_THE_FMU + 'method = "FilteredRegression"\n') == 0
     assert band in (tmp_path / "out" / "estimate.svg").read_text()
 
 

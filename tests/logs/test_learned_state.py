@@ -16,7 +16,7 @@ from recorded_logs import CONFIGURATION, Array, awas_log, read_estimate, write_l
 from sigmahat.cli import main
 from sigmahat.files.digest import sha256
 
-MATCHED = CONFIGURATION + 'method = "MatchedFilter"\nrls.n = 3\n'
+REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\n'
 HALF = 2000
 SIGMA = "estimate.sigma [N.m/rad]"
 
@@ -46,7 +46,7 @@ def original(log: dict[str, Array], tmp_path_factory: pytest.TempPathFactory) ->
         patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
         write_log(part(log, slice(0, HALF)), Path("first.parquet"))
         write_log(part(log, slice(HALF, None)), Path("second.parquet"))
-        Path("joint.toml").write_text(MATCHED)
+        Path("joint.toml").write_text(REGRESSION)
         assert estimate("first") == 0
     return folder
 
@@ -84,8 +84,8 @@ def with_gap(log: Mapping[str, Array], ticks: int) -> dict[str, Array]:
 
 @pytest.mark.parametrize(
     ("configuration", "ticks"),
-    [(MATCHED, 1), (CONFIGURATION, 7), (MATCHED + 'modality = "Sensor"\n', 1)],
-    ids=["MatchedFilter", "Paper2011", "Sensor"],
+    [(REGRESSION, 1), (CONFIGURATION, 7), (REGRESSION + 'modality = "Sensor"\n', 1)],
+    ids=["FilteredRegression", "Paper2011", "Sensor"],
 )
 def test_two_logs_give_what_one_log_with_a_gap_gives(
     configuration: str,
@@ -123,7 +123,7 @@ def test_the_file_says_what_it_is_of(learned: Path) -> None:
     state = json.loads((learned / "first" / "state.json").read_text())
     assert (state["format"], state["version"]) == ("sigmahat learned state", 1)
     assert state["fmu"]["name"] == "StiffnessEstimator"
-    assert state["method"] == state["parameters"]["method"] == "MatchedFilter"
+    assert state["method"] == state["parameters"]["method"] == "FilteredRegression"
     assert state["parameters"]["motor.B"] == 1.84e-5
     (log,) = state["logs"]
     assert (log["file"], log["ticks"], log["skipped"]) == ("first.parquet", HALF, 0)
@@ -157,7 +157,7 @@ def test_columns_of_the_second_log_may_differ(
     renamed = {**second, "angle_deg": np.degrees(second["q"])}
     del renamed["q"]
     write_log(renamed, learned / "second.parquet")
-    text = MATCHED.replace('column = "q"', 'column = "angle_deg"\nunit = "deg"')
+    text = REGRESSION.replace('column = "q"', 'column = "angle_deg"\nunit = "deg"')
     (learned / "joint.toml").write_text(text)
     assert estimate("second", "--start-from", "first") == 0
     found = read_estimate(learned / "second")[SIGMA].to_numpy()
@@ -186,10 +186,10 @@ def refused(capsys: pytest.CaptureFixture[str], *options: str) -> str:
         ("rls.n = 3", "rls.n = 3\nprior.delay = 0.001", "prior.delay = 0.001, but"),
         ("rls.n = 3", "rls.n = 3\nrls.eta_0[0,1] = 1.0", "rls.eta_0[0,1] = 1.0, but"),
         ("rls.n = 3", "rls.n = 3\ntorque.held = true", "torque.held = 1, but"),
-        ('"MatchedFilter"', '"Paper2011"', "method = Paper2011, but"),
-        ('"MatchedFilter"', '"Paper2011"', "was learned with MatchedFilter"),
+        ('"FilteredRegression"', '"Paper2011"', "method = Paper2011, but"),
+        ('"FilteredRegression"', '"Paper2011"', "was learned with FilteredRegression"),
         (
-            'method = "MatchedFilter"',
+            'method = "FilteredRegression"',
             'method = "Paper2011"\nmotor.D_theta = 2e-3',
             "method = Paper2011",
         ),
@@ -200,7 +200,7 @@ def test_another_configuration_is_refused(
 ) -> None:
     """The state contains the parameters, so that none of them may differ."""
     new = new.replace("rls.eta_0[0,1]", 'rls."eta_0[0,1]"')
-    text = MATCHED.replace("motor.D_theta = 1.2e-3\n", "") if "D_theta" in new else MATCHED
+    text = REGRESSION.replace("motor.D_theta = 1.2e-3\n", "") if "D_theta" in new else REGRESSION
     assert old in text
     Path("joint.toml").write_text(text.replace(old, new))
     line = refused(capsys, "--start-from", "first")
@@ -265,7 +265,7 @@ def test_the_parameters_in_the_state_count(
     state = json.loads(path.read_text())
     other_parameters(state)
     path.write_text(json.dumps(state))
-    Path("joint.toml").write_text(MATCHED.replace("1.84e-5", "2e-5"))
+    Path("joint.toml").write_text(REGRESSION.replace("1.84e-5", "2e-5"))
     assert "was learned with 1.84e-05" in refused(capsys, "--start-from", "first")
 
 
@@ -293,7 +293,7 @@ def test_a_refusal_leaves_earlier_results_as_they_are(
 ) -> None:
     """The results to start from are not lost where the new ones would replace them."""
     first = {path.name: path.read_bytes() for path in Path("first").iterdir()}
-    Path("joint.toml").write_text(MATCHED + "prior.bias = 0.2\n")
+    Path("joint.toml").write_text(REGRESSION + "prior.bias = 0.2\n")
     arguments = ["estimate", "second.parquet", "--config", "joint.toml", "--out", "first"]
     assert main([*arguments, "--start-from", "first"]) == 2
     assert "prior.bias" in capsys.readouterr().err

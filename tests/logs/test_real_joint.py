@@ -105,19 +105,21 @@ def test_stiffness_is_the_slope_of_the_measured_curve(
     assert real_joint.worst(measured, odd, real_joint.HALF_WIDTH) > 50.0
 
 
-def test_matched_filter_is_no_worse(fmu: Fmu, measured: list[Log], general: Fit) -> None:
-    matched = real_joint.replay(fmu, measured, False, real_joint.SPRING_ALONE)
+def test_filtered_regression_is_no_worse(fmu: Fmu, measured: list[Log], general: Fit) -> None:
+    regression = real_joint.replay(fmu, measured, False, real_joint.SPRING_ALONE)
     for log in measured:
-        assert log.rms(matched) <= 1.001 * log.rms(general)
-    assert real_joint.worst(measured, matched, real_joint.HALF_WIDTH) <= real_joint.worst(
+        assert log.rms(regression) <= 1.001 * log.rms(general)
+    assert real_joint.worst(measured, regression, real_joint.HALF_WIDTH) <= real_joint.worst(
         measured, general, real_joint.HALF_WIDTH
     )
 
 
-def test_matched_filter_claims_what_it_knows(fmu: Fmu, measured: list[Log], general: Fit) -> None:
+def test_filtered_regression_claims_what_it_knows(
+    fmu: Fmu, measured: list[Log], general: Fit
+) -> None:
     """The joint has hysteresis of several N.m. With the columns for misfits the torque is hardly
     worse, and the interval contains the slope of the mean curve."""
-    matched = real_joint.replay(fmu, measured, False, real_joint.MATCHED_FILTER)
+    regression = real_joint.replay(fmu, measured, False, real_joint.FILTERED_REGRESSION)
     for log in measured:
-        assert log.rms(matched) <= 1.3 * log.rms(general)
-    assert real_joint.coverage(fmu, measured, real_joint.MATCHED_FILTER) >= 90.0
+        assert log.rms(regression) <= 1.3 * log.rms(general)
+    assert real_joint.coverage(fmu, measured, real_joint.FILTERED_REGRESSION) >= 90.0

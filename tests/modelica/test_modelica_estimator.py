@@ -108,7 +108,7 @@ def numbers(parameters: Mapping[str, Any]) -> dict[str, Any]:
 
 SETTINGS: list[dict[str, Any]] = [
     {},
-    {"method": "MatchedFilter"},
+    {"method": "FilteredRegression"},
     {
         "modality": "Sensor",
         "deformation": "Filtered",
@@ -118,7 +118,13 @@ SETTINGS: list[dict[str, Any]] = [
         "rls.symmetric": False,
         "torque.held": True,
     },
-    {"method": "MatchedFilter", "modality": "Model", "torque.held": True, "rls.n": 3, "rls.m": 2},
+    {
+        "method": "FilteredRegression",
+        "modality": "Model",
+        "torque.held": True,
+        "rls.n": 3,
+        "rls.m": 2,
+    },
 ]
 
 
@@ -178,7 +184,9 @@ def tool(folder: Path, objects: list[Path], parameters: Mapping[str, Any], *flag
     return program
 
 
-@pytest.mark.parametrize("setting", SETTINGS, ids=["default", "matched", "sensor", "matched-model"])
+@pytest.mark.parametrize(
+    "setting", SETTINGS, ids=["default", "regression", "sensor", "regression-model"]
+)
 def test_the_outputs_are_those_of_the_library_to_the_last_bit(
     setting: dict[str, Any], samples: NDArray[np.float64], objects: list[Path], tmp_path: Path
 ) -> None:
@@ -227,7 +235,7 @@ def test_a_parameter_out_of_its_range_is_an_error_of_the_model(
 def test_skipped_ticks_and_too_large_deformations_are_told_once(
     samples: NDArray[np.float64], objects: list[Path], tmp_path: Path
 ) -> None:
-    parameters = otherwise({"method": "MatchedFilter", "range.phi": 1e-5})
+    parameters = otherwise({"method": "FilteredRegression", "range.phi": 1e-5})
     program = tool(tmp_path, objects, parameters)
     with_gap = samples[1500:2500].copy()
     with_gap[400:600, 1] = np.inf
@@ -242,7 +250,7 @@ def test_the_address_sanitizer_finds_no_error_and_no_leak(
 ) -> None:
     flags = ("-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
     checked = [unit(tmp_path, c_sources, text, *flags) for text in includes()]
-    run(tool(tmp_path, checked, otherwise({"method": "MatchedFilter"}), *flags), samples[:300])
+    run(tool(tmp_path, checked, otherwise({"method": "FilteredRegression"}), *flags), samples[:300])
 
 
 def test_the_block_takes_the_outputs_in_the_order_of_the_function() -> None:

@@ -27,7 +27,7 @@ SEEN = [
     "start",
     "parameters",
     "api",
-    "matched-filter",
+    "filtered-regression",
     "gallery",
     "how-to-log",
     "genindex",

@@ -39,7 +39,7 @@ TRIANGLES = (
 # A path of the check that refuses a state must stay apart from the one that accepts it.
 APART = (
     *("-eva-split-return", "full", "-eva-slevel-function"),
-    "restored:9999,sh_estimator_check:9999,sh_matched_filter_check_state:9999,are_columns:99,"
+    "restored:9999,sh_estimator_check:9999,sh_filtered_regression_check_state:9999,are_columns:99,"
     "are_data:30,is_choice:1000,knows_motor:4,is_pass:30,are_flags:30",
 )
 
@@ -70,9 +70,13 @@ def triangle(
 ) -> Analysis:
     """Analyses information.c from `main` on, in an estimator with so many columns at most."""
     return analyse(
-        [HERE / "information.c", HERE / "mathematics.c", of / "matched_filter" / "information.c"],
+        [
+            HERE / "information.c",
+            HERE / "mathematics.c",
+            of / "filtered_regression" / "information.c",
+        ],
         main,
-        [with_guards(folder), of, of / "matched_filter", HERE],
+        [with_guards(folder), of, of / "filtered_regression", HERE],
         *UNROLLED,
         macros={**MACROS, "SH_REAL": real, "SH_MAX_COLUMNS": columns},
     )
@@ -83,7 +87,7 @@ def factor(real: str, parameters: int, folder: Path, of: Path = c_sources.LIBRAR
     return analyse(
         [HERE / "ud_factor.c", of / "ud_factor.c"],
         "parameters",
-        [with_guards(folder), of, of / "matched_filter", HERE],
+        [with_guards(folder), of, of / "filtered_regression", HERE],
         *UNROLLED,
         macros={**MACROS, "SH_REAL": real, "SH_MAX_N": parameters, "SH_MAX_M": 1},
     )
@@ -135,14 +139,14 @@ def test_paper2011(main: str, real: str) -> None:
     assert_proven(ticks(main, real, method=1, curve=True), 97)
 
 
-@pytest.mark.slow("the analysis of a tick by MatchedFilter")
+@pytest.mark.slow("the analysis of a tick by FilteredRegression")
 @pytest.mark.parametrize(
     ("main", "real", "curve"),
     [(main, real, curve) for main in BOTH for real in REALS for curve in (True, False)]
     if ALL
     else [("started", "double", True), ("restored", "float", False)],
 )
-def test_matched_filter(main: str, real: str, curve: bool) -> None:
+def test_filtered_regression(main: str, real: str, curve: bool) -> None:
     assert_proven(ticks(main, real, method=2, curve=curve), 98)
 
 
@@ -188,7 +192,11 @@ def test_an_index_one_too_far_is_found(tmp_path: Path) -> None:
 
 def test_information_that_is_not_checked_is_found(tmp_path: Path) -> None:
     of = with_fault(
-        *(tmp_path, "matched_filter/information.c", "if (sh_fabs(xi) > 0 && after > SMALLEST) {"),
+        *(
+            tmp_path,
+            "filtered_regression/information.c",
+            "if (sh_fabs(xi) > 0 && after > SMALLEST) {",
+        ),
         "if (sh_fabs(xi) > 0) {",
     )
     (alarm,) = triangle("positive", "double", 1, tmp_path, of).alarms

@@ -16,7 +16,7 @@ from c_sources import FOLDERS, HEADERS, SOURCES
 from flow_facts import Facts, Sizes, read_facts
 from gate import missing
 
-FACTS = read_facts("matched_filter")
+FACTS = read_facts("filtered_regression")
 PAGE = (c_sources.REPOSITORY / "docs" / "proof" / "bounds.md").read_text(encoding="utf-8")
 RUNS = ((1, 8, 5, 0), (1, 4, 1, 0), (2, 8, 5, 1), (2, 8, 5, 0), (2, 6, 3, 1), (2, 2, 1, 0))
 """Arguments of rounds.c."""
@@ -103,7 +103,7 @@ def test_there_is_no_recursion_and_no_heap(tmp_path: Path) -> None:
 
     for function in list(graph):
         visit(function, ())
-    assert {"sh_estimator_tick", "tick_matched_filter", "sh_information_take"} <= done
+    assert {"sh_estimator_tick", "tick_filtered_regression", "sh_information_take"} <= done
 
 
 def instrumented(file: Path, number: dict[str, int]) -> str:

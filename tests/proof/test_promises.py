@@ -18,7 +18,7 @@ from promises import c, often
 
 __all__ = ["c"]  # a fixture
 
-PAPER2011, MATCHED = 1, 2
+PAPER2011, REGRESSION = 1, 2
 
 
 def check_outputs(record: NDArray[np.void], largest_a: float, confidence: float) -> None:
@@ -59,38 +59,44 @@ def check_paper2011(state: Any, P_0: float) -> None:
 
 def informations(state: Any) -> Iterator[tuple[Any, float]]:
     """The factors of the information, each with a bound that no entry of D may go below."""
-    matched = state.method.matched
-    for posterior in (matched.live, matched.build):
+    regression = state.method.regression
+    for posterior in (regression.live, regression.build):
         yield posterior.information, 1.0
-    yield matched.blocks.recent, 1.0
-    for data in (matched.data, matched.blocks.all, matched.blocks.walking):
+    yield regression.blocks.recent, 1.0
+    for data in (regression.data, regression.blocks.all, regression.blocks.walking):
         yield data, 0.0  # a random walk may reduce it below what it began with
 
 
-def check_matched(state: Any) -> None:
-    matched = state.method.matched
+def check_regression(state: Any) -> None:
+    regression = state.method.regression
     for a, least in informations(state):
         used = a.size * (a.size - 1) // 2 + 2 * a.size
         D, U = np.array(list(a.D)[: a.size]), np.array(list(a.U)[:used])
         assert np.all(np.isfinite(D) & (D > 0) & (least <= D))
         assert np.all(np.isfinite(U))
         assert math.isfinite(a.rest)
-    numbers = (*matched.beta, *matched.blocks.sum, matched.sigma, matched.y, matched.delay)
+    numbers = (
+        *regression.beta,
+        *regression.blocks.sum,
+        regression.sigma,
+        regression.y,
+        regression.delay,
+    )
     assert all(map(math.isfinite, numbers))
-    for posterior in (matched.live, matched.build):
+    for posterior in (regression.live, regression.build):
         assert 0 < posterior.weight <= 1
         assert min(posterior.removed, posterior.spread, posterior.surplus) >= 0
         assert max(posterior.removed, posterior.spread, posterior.surplus) < math.inf
-    assert 1 <= matched.variance_factor < math.inf
-    assert 0 <= matched.q < math.inf
-    assert 1 <= matched.history.excess < math.inf
-    assert 1 <= matched.history.excess_mean < math.inf
-    assert abs(matched.motion.direction) <= 1
+    assert 1 <= regression.variance_factor < math.inf
+    assert 0 <= regression.q < math.inf
+    assert 1 <= regression.history.excess < math.inf
+    assert 1 <= regression.history.excess_mean < math.inf
+    assert abs(regression.motion.direction) <= 1
 
 
 @often
 @given(data=st.data())
-@pytest.mark.parametrize("method", [PAPER2011, MATCHED])
+@pytest.mark.parametrize("method", [PAPER2011, REGRESSION])
 def test_every_output_and_the_state_stay_in_their_bounds(
     c: Library, method: int, data: st.DataObject
 ) -> None:
@@ -100,22 +106,22 @@ def test_every_output_and_the_state_stay_in_their_bounds(
     for part in np.array_split(z, 3):
         before = np.frombuffer(c.ffi.buffer(estimator.estimate), c.dtype("sh_estimate")).copy()
         record = estimator.run(part)
-        check_outputs(np.concatenate([before, record]), max(1.0, p.rls.c), p.confidence)
+        check_outputs(np.concatenate([before, record]), max(1.0, p.rls.c), p.limit.relative_std)
         check_skipped(before, record)
         if method == PAPER2011:
             check_paper2011(estimator.state, p.rls.P_0)
         else:
-            check_matched(estimator.state)
+            check_regression(estimator.state)
 
 
 @often
 @given(data=st.data())
-def test_matched_filter_takes_samples_again_after_any_others(
+def test_filtered_regression_takes_samples_again_after_any_others(
     c: Library, data: st.DataObject
 ) -> None:
     gentle = np.zeros((20, 5))
     gentle[:, :2] = 0.01 * np.sin(0.1 * np.arange(20))[:, None] * [1.0, 1.1]
-    values, z = data.draw(parameters(MATCHED, c.real)), data.draw(measurements())
+    values, z = data.draw(parameters(REGRESSION, c.real)), data.draw(measurements())
     fresh, used = Estimator(c, values), Estimator(c, values)
     used.run(z)
     assert used.repeat(gentle, 20) > 0 or fresh.repeat(gentle, 20) == 0
@@ -123,7 +129,7 @@ def test_matched_filter_takes_samples_again_after_any_others(
 
 @often
 @given(data=st.data())
-@pytest.mark.parametrize("method", [PAPER2011, MATCHED])
+@pytest.mark.parametrize("method", [PAPER2011, REGRESSION])
 def test_a_gap_changes_nothing_in_the_state(c: Library, method: int, data: st.DataObject) -> None:
     values, z = data.draw(parameters(method, c.real)), data.draw(measurements())
     estimator = Estimator(c, values)

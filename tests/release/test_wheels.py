@@ -135,7 +135,7 @@ import json, math, sys
 sys.path += sys.argv[1:]
 import sigmahat
 run = sigmahat.run(sigmahat.scenario("single-linear"), seed=1)
-estimator = sigmahat.Estimator({"method": "MatchedFilter"})
+estimator = sigmahat.Estimator({"method": "FilteredRegression"})
 theta = [math.sin(0.01 * k) for k in range(2000)]
 q = [1.002 * x for x in theta]
 sigma = estimator.run(theta, q, [-0.04 * x for x in theta])["sigma"]

@@ -36,21 +36,21 @@ static int configure(sh_parameters *p, char configuration)
         p->rls.kind = SH_RLS_CONSTANT_FACTOR;
         return 1;
     case 'g':
-        p->method = SH_METHOD_MATCHED_FILTER;
+        p->method = SH_METHOD_FILTERED_REGRESSION;
         return 1;
     case 'h':
-        p->method = SH_METHOD_MATCHED_FILTER;
+        p->method = SH_METHOD_FILTERED_REGRESSION;
         p->modality = SH_MODALITY_SENSOR;
         p->rls.symmetric = 0;
         return 1;
     case 'i':
-        p->method = SH_METHOD_MATCHED_FILTER;
+        p->method = SH_METHOD_FILTERED_REGRESSION;
         p->rls.n = 2;
         p->rls.eta_0[0][1] = 3;
         p->prior.nominal = (sh_real)0.3;
         p->prior.B = (sh_real)0.2;
         p->prior.tau_coulomb = (sh_real)0.02;
-        p->matched.drift = (sh_real)1e-3;
+        p->regression.drift = (sh_real)1e-3;
         return 1;
     default:
         return 0;

@@ -18,7 +18,7 @@ from sigmahat.joint.curve_file import CURVE
 from sigmahat.plotting.scale import limits
 from sigmahat.report.findings import FINDINGS, ShownFinding, write_findings
 
-MATCHED = CONFIGURATION + 'method = "MatchedFilter"\nprior.B = 0.2\nrls.n = 3\n'
+REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nprior.B = 0.2\nrls.n = 3\n'
 GAP = slice(20_000, 20_200)
 SPIKE = 5.0
 
@@ -37,7 +37,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         answers: list[Any] = []
         patch.setattr("sigmahat.commands.common.print_json", answers.append)
         write_log(columns, Path("knee.parquet"))
-        Path("knee.toml").write_text(MATCHED)
+        Path("knee.toml").write_text(REGRESSION)
         assert main(["estimate", "knee.parquet", "--out", "out", "--json"]) == 0
         Path("answer.json").write_text(json.dumps(answers[0]))
         write_findings([ShownFinding("wrong", "motor.gamma: 50, expected <100>")], Path("out"))
@@ -102,7 +102,7 @@ def test_ticks_notes_parameters_and_findings(folder: Path) -> None:
     low, high = inertia["interval"]
     (row,) = (row for row in parameters if " B " in row)
     assert f"{inertia['value']:.4g} kg·m² {low:.4g} to {high:.4g}" in row
-    assert "method MatchedFilter" in every
+    assert "method FilteredRegression" in every
     assert not any("eta_0" in row for row in every)
 
 

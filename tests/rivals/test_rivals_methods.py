@@ -16,7 +16,7 @@ from rivals.spring import spring
 
 KINDS = ("series_elastic", "variable_stiffness")
 ERRORS = {
-    "MatchedFilter": 0.5,
+    "FilteredRegression": 0.5,
     "least_squares": 0.1,
     "total_least_squares": 0.1,
     "idim_iv": 0.1,
@@ -38,7 +38,7 @@ def test_the_stiffness_of_an_ideal_joint_is_found(method: str, log: JointLog) ->
     assert found.wrong == 0
 
 
-@pytest.mark.parametrize("method", ["MatchedFilter", "kalman"])
+@pytest.mark.parametrize("method", ["FilteredRegression", "kalman"])
 def test_on_line_intervals_hold_the_truth(method: str, log: JointLog) -> None:
     assert score(log, METHODS[method](log)).coverage > 90
 

@@ -22,9 +22,9 @@ def of(method: str, seed: int, interval_score: float, wrong: float = 0.0) -> Res
 
 FAILED = Result("arm", "drake", 2, "idim_iv", 0.1, None, "not converged")
 RESULTS = [
-    of("MatchedFilter", 1, 8.0),
+    of("FilteredRegression", 1, 8.0),
     of("kalman", 1, 9.0),
-    of("MatchedFilter", 2, 6.0),
+    of("FilteredRegression", 2, 6.0),
     of("kalman", 2, 4.0, wrong=25.0),
     of("idim_iv", 1, float("nan")),
     FAILED,
@@ -36,14 +36,17 @@ def cells(line: str) -> list[str]:
 
 
 def test_the_best_of_a_log_has_the_lowest_interval_score() -> None:
-    assert best(RESULTS) == {("arm", "drake", 1): "MatchedFilter", ("arm", "drake", 2): "kalman"}
+    assert best(RESULTS) == {
+        ("arm", "drake", 1): "FilteredRegression",
+        ("arm", "drake", 2): "kalman",
+    }
 
 
 def test_a_row_has_medians_and_means_over_the_logs() -> None:
     lines = page(RESULTS).splitlines()
-    row = next(line for line in lines if line.startswith("| MatchedFilter"))
+    row = next(line for line in lines if line.startswith("| FilteredRegression"))
     assert cells(row) == [
-        *("MatchedFilter", "2 of 2", "3.0", "5.0", "90", "7.0", "50 %", "0.50", "100", "0.0"),
+        *("FilteredRegression", "2 of 2", "3.0", "5.0", "90", "7.0", "50 %", "0.50", "100", "0.0"),
     ]
     row = next(line for line in lines if line.startswith("| IDIM-IV | 1"))
     assert cells(row)[:6] == ["IDIM-IV", "1 of 2", "2.0", "5.0", "90", "-"]

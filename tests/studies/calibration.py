@@ -1,4 +1,4 @@
-"""How often the true stiffness is within 1.96 sigma_std of the estimate of MatchedFilter.
+"""How often the true stiffness is within 1.96 sigma_std of the estimate of FilteredRegression.
 
     python tests/studies/calibration.py RUNS
 
@@ -25,7 +25,7 @@ from sigmahat.runs.engine import measured, run_all
 from sigmahat.runs.metrics import mean_interval
 from sigmahat.runs.scenario import Scenario, Sine
 
-METHOD = "MatchedFilter"
+METHOD = "FilteredRegression"
 
 
 def drawn(run: int, with_inertia: bool) -> Scenario:

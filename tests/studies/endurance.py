@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 REPOSITORY = Path(__file__).resolve().parents[2]
 LIBRARY = REPOSITORY / "c"
 DRIVERS = REPOSITORY / "tests" / "drivers"
-METHODS = {1: "Paper2011", 2: "MatchedFilter"}
+METHODS = {1: "Paper2011", 2: "FilteredRegression"}
 OUTPUTS = (
     "sigma", "tau_e", "sigma_std", "tau_e_residual", "theta_dot", "D_theta", "B", "tau_coulomb",
 )  # fmt: skip

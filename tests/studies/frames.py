@@ -56,7 +56,7 @@ def main() -> None:
     for width in (1400, 360):
         with live_page(folder, width) as page:
             page.page.run(_MEASURE)
-            for method in ("Paper2011", "MatchedFilter"):
+            for method in ("Paper2011", "FilteredRegression"):
                 for speed in ("1", "10"):
                     print(f"{width:5}  {measure(page, method, speed)}")
 

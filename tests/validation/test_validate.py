@@ -21,7 +21,7 @@ from sigmahat.logs.learned import read_learned
 from sigmahat.validation.agreement import agreement
 from sigmahat.validation.torque import TorqueError
 
-MATCHED = CONFIGURATION + 'method = "MatchedFilter"\nrls.n = 3\nprior.B = 0.2\n'
+REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\nprior.B = 0.2\n'
 DURATION = 10.0
 SOFT = {"spring.k_s": 0.8 * 14220.0}
 
@@ -36,7 +36,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     at_rest = awas_log(1.0, 0.3, 3.0, seed=3)
     still = {name: np.full_like(values, values[0]) for name, values in at_rest.items()}
     write_log({**still, "t": at_rest["t"]}, folder / "still.parquet")
-    (folder / "knee.toml").write_text(MATCHED)
+    (folder / "knee.toml").write_text(REGRESSION)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
@@ -159,8 +159,8 @@ def test_wrong_arguments(
     folder: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    (folder / "other.toml").write_text(MATCHED)
-    (folder / "b.toml").write_text(MATCHED.replace("1.84e-5", "2e-5"))
+    (folder / "other.toml").write_text(REGRESSION)
+    (folder / "b.toml").write_text(REGRESSION.replace("1.84e-5", "2e-5"))
     (folder / "paper.toml").write_text(CONFIGURATION)
     given = ["sigmahat-results/knee" if each == "L" else each for each in arguments]
     assert main(["validate", *given]) == 2

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rivals.methods import (
+    filtered_regression,
     idim_iv,
     kalman,
     least_squares,
-    matched_filter,
     mujoco_sysid,
     paper2011,
     total_least_squares,
@@ -16,7 +16,7 @@ from rivals.methods import (
 from rivals.records import Estimate, JointLog
 
 METHODS: dict[str, Callable[[JointLog], Estimate]] = {
-    "MatchedFilter": matched_filter.estimate,
+    "FilteredRegression": filtered_regression.estimate,
     "Paper2011": paper2011.estimate,
     "least_squares": least_squares.estimate,
     "total_least_squares": total_least_squares.estimate,

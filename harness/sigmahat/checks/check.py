@@ -80,7 +80,7 @@ def _view(log: Log, configuration: Configuration) -> View:
 
 def _per_gain(outputs: Outputs, method: object) -> float:
     """Relative change of the stiffness with a relative change of the gain of the torque."""
-    return float(outputs["sigma_per_gain"][-1]) if method == "MatchedFilter" else 1.0
+    return float(outputs["sigma_per_gain"][-1]) if method == "FilteredRegression" else 1.0
 
 
 def _contradictions(seen: View) -> Iterator[Finding]:

@@ -80,8 +80,8 @@ def _zero(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | Non
 
 
 def _is_more_than_bias(seen: View, found: Fitted, zero: float) -> bool:
-    """Whether the torque of the spring at the zero is more than MatchedFilter takes for a bias."""
-    if seen.every["method"] != "MatchedFilter":
+    """Whether the torque of the spring at the zero is more than a bias of FilteredRegression."""
+    if seen.every["method"] != "FilteredRegression":
         return True
     torque = abs(seen.gamma * found.linear.value[LINEAR] * zero / found.spring.units[0])
     return torque > _STD * float(seen.every["prior.bias"]) * float(seen.every["prior.tau_e"])

@@ -51,7 +51,7 @@ def rests_on(
     if every["modality"] == "Residual" and all(every[name] == start[name] for name in _AWAS):
         gamma = float(every["motor.gamma"])
         yield Finding(Kind.OTHER_ROBOT, Severity.RESTS_ON, "motor.gamma", gamma, "")
-    if every["method"] != "MatchedFilter":
+    if every["method"] != "FilteredRegression":
         return
     for name in exact(every):
         value = float(every[f"motor.{name}"])

@@ -48,20 +48,20 @@ def replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
     learned = float(np.mean(valid & (outputs["a"] > 0)))
     if learned < _LEARNED:
         yield Finding(Kind.LEARNED, Severity.NOTE, "time.longest_gap", learned, "", 1.0)
-    if seen.every["method"] == "MatchedFilter":
+    if seen.every["method"] == "FilteredRegression":
         yield from _claims(outputs)
 
 
 def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:
-    every, is_matched = seen.every, seen.every["method"] == "MatchedFilter"
+    every, is_regression = seen.every, seen.every["method"] == "FilteredRegression"
     phi, given = float(np.max(np.abs(outputs["phi"]))), float(every["range.phi"])
-    if is_matched and not given / _WIDE < phi < given:
+    if is_regression and not given / _WIDE < phi < given:
         severity = Severity.WRONG if phi > _ROOM * given else Severity.NOTE
         proposed = float(f"{_ROOM * phi:.3g}")
         yield Finding(Kind.RANGE, severity, "range.phi", phi, "rad", given, proposed)
     torque = max((float(np.max(np.abs(p.tau))) for p in seen.pieces), default=0.0)
     torque, given = abs(seen.gamma) * torque, float(every["prior.tau_e"])
-    if is_matched and torque > _TORQUE * given > 0:
+    if is_regression and torque > _TORQUE * given > 0:
         proposed = float(f"{_ROOM * torque:.3g}")
         key = "prior.tau_e"
         yield Finding(Kind.RANGE, Severity.WRONG, key, torque, "N.m", given, proposed)

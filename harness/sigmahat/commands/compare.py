@@ -13,7 +13,7 @@ from sigmahat.commands import common
 @click.option(
     "--misfits",
     is_flag=True,
-    help="MatchedFilter on joints with hysteresis, backlash, uneven friction, wrong sensors, ..., "
+    help="FilteredRegression on joints with hysteresis, backlash, bad friction and sensors, ..., "
     "in place of both methods.",
 )
 @click.option(
@@ -68,7 +68,7 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
         write(rows, seeds, folder / "compare.csv")
 
     common.answer(
-        f"MSREP [%] of both methods, and of MatchedFilter: sigma_std relative to the true "
+        f"MSREP [%] of both methods, and of FilteredRegression: sigma_std relative to the true "
         f"stiffness and share of instants\nwithin 1.96 sigma_std, from {CALIBRATED:g} s on; motor "
         f"data found at the end, true {TRUE['D_theta']:g} N.m.s/rad, {TRUE['B']:g} kg.m2.\n"
         f"Mean over {_counted(seeds)}. {MSREP_IN_WORDS}.\n\n"
@@ -79,7 +79,7 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
 
 
 def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
-    """MatchedFilter on the catalogue of misfits."""
+    """FilteredRegression on the catalogue of misfits."""
     from sigmahat.compare.misfits.conditions import CONDITIONS
     from sigmahat.compare.misfits.job import ESTIMATOR, compare, pairs
     from sigmahat.compare.misfits.joints import JOINTS
@@ -101,7 +101,7 @@ def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
         write(rows, seeds, folder / "misfits.csv")
 
     common.answer(
-        f"MatchedFilter on a catalogue of joints and misfits. Error and claim (sigma_std): RMS, "
+        f"FilteredRegression on a catalogue of joints and misfits. Error, claim (sigma_std): RMS, "
         f"relative to the true\nstiffness. Coverage: share of instants with the truth within "
         f"1.96 sigma_std. Dangerous: over 10 % off while\nclaiming under 2 %. Wrong: "
         f"confident and over 20 % off. Instants after {SETTLED:g} s, outside of a dead zone, of\n"

@@ -17,7 +17,7 @@ from sigmahat.paper.awas import R_0, awas, estimator
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.scenario import Comparison, Scenario, Sine
 
-PAPER2011, MATCHED = METHODS = ("Paper2011", "MatchedFilter")
+PAPER2011, REGRESSION = METHODS = ("Paper2011", "FilteredRegression")
 TRUE = {"D_theta": 1e-3, "B": 2.3e-5}
 """Motor data of every joint here [N.m.s/rad], [kg.m2]."""
 
@@ -38,11 +38,11 @@ class Case:
 
     motor_errors: Mapping[str, float] = field(default_factory=dict)
     """Relative errors of motor data [1], by the name of the parameter; empty: none, and
-    MatchedFilter takes them as exact."""
+    FilteredRegression takes them as exact."""
     nominal_error: float | None = None
     """Relative error of a nominal stiffness [1]; None: the estimators are given none."""
-    matched: Mapping[str, Value] = field(default_factory=dict)
-    """Further start values of MatchedFilter: what it is given of uncertainties."""
+    regression: Mapping[str, Value] = field(default_factory=dict)
+    """Further start values of FilteredRegression: what it is given of uncertainties."""
 
 
 @dataclass(frozen=True)
@@ -105,14 +105,14 @@ def _methods(
         for output in (*_STIFFNESS, *(_MOTOR_DATA if part or len(parts) == 1 else ()))
     ]
     paper = replace(base, start={**base.start, **given}, record=record)
-    matched = {
-        "method": MATCHED,
+    regression = {
+        "method": REGRESSION,
         "rls.n": 3,
         "prior.tau_coulomb": 0.0,
         "prior.torque_gain": 0.0,  # that of the joints is exact
-        **case.matched,
+        **case.regression,
     }
-    return {PAPER2011: paper, MATCHED: replace(paper, start={**paper.start, **matched})}
+    return {PAPER2011: paper, REGRESSION: replace(paper, start={**paper.start, **regression})}
 
 
 def _compared(
@@ -147,8 +147,8 @@ def _awas_joints() -> list[Joint]:
     high, low = Case({"D_theta": 0.1}), Case({"D_theta": -0.1})
     friction: Mapping[str, Value] = {"prior.tau_coulomb": _COULOMB}
     with_friction = [
-        replace(high, matched=friction),
-        Case({"D_theta": 0.1, "B": 0.1}, matched={**friction, "prior.B": 0.1}),
+        replace(high, regression=friction),
+        Case({"D_theta": 0.1, "B": 0.1}, regression={**friction, "prior.B": 0.1}),
     ]
     kinds: Sequence[tuple[float, float, Sequence[Case], str]] = (
         (0.030, 0.0, [high, low], _WHOLE),
@@ -181,11 +181,11 @@ def _awas_joint(
 
 
 def _table1() -> Joint:
-    """Table I: the motor data are right, and MatchedFilter takes them as exact."""
+    """Table I: the motor data are right, and FilteredRegression takes them as exact."""
     exact: Mapping[str, Value] = {"prior.D_theta": 0.0}
     cases = [
-        Case(matched=exact),
-        Case(nominal_error=0.3, matched={**exact, "prior.nominal": 0.3, "prior.tau_e": 0.0}),
+        Case(regression=exact),
+        Case(nominal_error=0.3, regression={**exact, "prior.nominal": 0.3, "prior.tau_e": 0.0}),
     ]
     table1 = SCENARIOS["table1"]
     return Joint(
@@ -200,7 +200,7 @@ def _table1() -> Joint:
 
 
 def _single_joint(scenario: Scenario) -> Joint:
-    cases = [Case({"D_theta": 0.1}, matched={"range.phi": 0.1})]
+    cases = [Case({"D_theta": 0.1}, regression={"range.phi": 0.1})]
     base = scenario.estimators["RESIDUAL"]
     return Joint(
         Device.SINGLE,
@@ -221,7 +221,7 @@ def _frequency(scenario: Scenario) -> float:
 
 def _antagonistic_joint() -> Joint:
     scenario = SCENARIOS["antagonistic"]
-    cases = [Case({"D_theta": 0.1}, matched={"range.phi": 1.0, "rls.n": 6})]
+    cases = [Case({"D_theta": 0.1}, regression={"range.phi": 1.0, "rls.n": 6})]
     parts, motors = ("", "_1", "_2"), ("motor_1", "motor_2")
     base = scenario.estimators["RESIDUAL"]
     return Joint(

@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from sigmahat.compare import labels
-from sigmahat.compare.conditions import MATCHED, METHODS, PAPER2011, Device
+from sigmahat.compare.conditions import METHODS, PAPER2011, REGRESSION, Device
 from sigmahat.compare.job import Row
 from sigmahat.plotting.colors import BLUE, VERMILION
 
-_COLORS = {PAPER2011: VERMILION, MATCHED: BLUE}
+_COLORS = {PAPER2011: VERMILION, REGRESSION: BLUE}
 _MARKERS = "ovsD^"
 
 

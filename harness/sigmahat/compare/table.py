@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from sigmahat.compare import labels
-from sigmahat.compare.conditions import MATCHED, METHODS
+from sigmahat.compare.conditions import METHODS, REGRESSION
 from sigmahat.compare.job import Row
 from sigmahat.compare.performance import Performance
 from sigmahat.files.csv_table import write_csv
@@ -18,8 +18,8 @@ from sigmahat.files.text_table import aligned
 def table(rows: Sequence[Row]) -> str:
     """Both methods side by side, as text, a part for each group of joints; "-": not defined.
 
-    Of MatchedFilter alone: the standard deviation that it claims, how often the error stays within
-    that, and its motor data at the end.
+    Of FilteredRegression alone: the standard deviation that it claims, how often the error stays
+    within that, and its motor data at the end.
     """
     cells = [
         [
@@ -33,15 +33,15 @@ def table(rows: Sequence[Row]) -> str:
         ]
     ]
     for row in rows:
-        matched = row.performance[MATCHED]
-        motor = (matched.D_theta, matched.B, matched.tau_coulomb)
+        regression = row.performance[REGRESSION]
+        motor = (regression.D_theta, regression.B, regression.tau_coulomb)
         after = f", after {row.judged_from:g} s" if row.index.settled else ""
         cells.append(
             [
                 f"  {labels.motion(row.joint)}, {labels.case_and_part(row)}{after}",
                 *(f"{row.error(method):.3g}" for method in METHODS),
-                f"{matched.sigma_std:.2f}",
-                f"{matched.inside:.0f}",
+                f"{regression.sigma_std:.2f}",
+                f"{regression.inside:.0f}",
                 *("-" if math.isnan(value) else f"{value:.4g}" for value in motor),
             ]
         )

@@ -162,7 +162,7 @@ def _parameters(guess: JointGuess, defaults: Mapping[str, float]) -> Table:
     _comment(table, "of StiffnessEstimator.fmu, by their names; others keep their start values")
     period = "[s]" if guess.time is not None else "[s] FILL IN: no column says it"
     _add(table, "samplePeriod", guess.T, period)
-    _add(table, "method", "MatchedFilter", "or Paper2011, which needs exact motor data")
+    _add(table, "method", "FilteredRegression", "or Paper2011, which needs exact motor data")
     sensor = _is_sensor(guess)
     _add(table, "modality", "Sensor" if sensor else "Residual", "Residual, Sensor or Model")
     if sensor:

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 WIDE = 1.0
-"""Relative prior of motor data that the log does not determine. MatchedFilter would take a prior of
-0, the start value of prior.B, as exact; with 1 it accepts up to 4 times the value."""
+"""Relative prior of motor data that the log does not determine. FilteredRegression would take a
+prior of 0, the start value of prior.B, as exact; with 1 it accepts up to 4 times the value."""
 
 
 @dataclass(frozen=True)

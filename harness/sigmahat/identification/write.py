@@ -25,7 +25,7 @@ from sigmahat.logs.units import factor
 from sigmahat.user_input import toml_file
 
 _ABOVE = 1.4
-"""matched.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
+"""regression.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
 _ROOM = 1.2
 """Ranges over the largest values of the log: another motion may go further."""
 _MIDDLE = "not known: the middle of what identify holds possible"
@@ -47,7 +47,7 @@ def write(found: Identified, path: Path) -> list[str]:
         "rls.n": found.n,
         "rls.m": found.m,
         "noise.tau": math.sqrt(found.tau_variance),
-        "matched.bandwidth": _ABOVE * found.bandwidth,
+        "regression.bandwidth": _ABOVE * found.bandwidth,
         "range.phi": _ROOM * found.phi,
         "range.setPoint": _ROOM * found.set_point,
         "prior.tau_e": _ROOM * found.torque,

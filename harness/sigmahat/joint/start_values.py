@@ -22,9 +22,9 @@ _LARGEST = 1e12
 def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
     """Start values of an FMU whose curve and motor data are those that a slave has now.
 
-    The curve is a polynomial of the orders that it needs: MatchedFilter may use higher powers than
-    rls.n and rls.m have. Priors stay as they are: the new FMU begins with the curve as the mean of
-    its prior, and does not know how certain it is.
+    The curve is a polynomial of the orders that it needs: FilteredRegression may use higher powers
+    than rls.n and rls.m have. Priors stay as they are: the new FMU begins with the curve as the
+    mean of its prior, and does not know how certain it is.
 
     every  parameters of the slave
     """
@@ -53,13 +53,13 @@ def as_fixed_curve(start: Mapping[str, Value]) -> dict[str, Value]:
 
     Only what differs from run to run is estimated, by a fit to all samples: bias of the torque or
     zero of the deformation, friction, and the time between the encoders, which is a damping. What
-    else MatchedFilter can estimate would hide a stiffness that is wrong: in a motion of one
+    else FilteredRegression can estimate would hide a stiffness that is wrong: in a motion of one
     frequency, for example, a delay of the torque looks like it.
 
-    start  from start_values, of the method MatchedFilter
+    start  from start_values, of the method FilteredRegression
     """
     fixed = {**start, **{f"prior.{name}": 0.0 for name in _NOT_IN_A_RUN}}
-    fixed |= {"matched.memory": 0.0, "matched.drift": 0.0}
+    fixed |= {"regression.memory": 0.0, "regression.drift": 0.0}
     tau_e = float(start["prior.tau_e"])
     if not tau_e:
         return {**fixed, "prior.nominal": _NONE}

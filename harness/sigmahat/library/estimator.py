@@ -30,7 +30,7 @@ class Estimator:
     used by one thread at a time, and cannot be pickled. Memory: 135 kB a joint.
 
     >>> import numpy as np, sigmahat
-    >>> estimator = sigmahat.Estimator({"method": "MatchedFilter", "motor.gamma": 100})
+    >>> estimator = sigmahat.Estimator({"method": "FilteredRegression", "motor.gamma": 100})
     >>> found = estimator.run(theta=np.zeros(1000), q=np.zeros(1000), tau=np.zeros(1000))
     >>> found["sigma"].shape, found.units["sigma"]
     ((1000,), 'N.m/rad')

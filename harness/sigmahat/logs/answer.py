@@ -39,6 +39,6 @@ def answer(
     method = str(every["method"])
     points = statistics.points(method)
     found = curve(slave, every, logs, points)
-    if method == "MatchedFilter":
+    if method == "FilteredRegression":
         points = with_what_was_learned(slave, every, samples)
     return Answer(found, points)

@@ -1,4 +1,4 @@
-"""What the parameters of MatchedFilter take for granted, so that no data show it."""
+"""What the parameters of FilteredRegression take for granted, so that no data show it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ UNITS = {
     "delay": "s",
     "hysteresis": "N.m",
 }
-"""Of what MatchedFilter estimates besides the motor data: output bias_hat, parameter prior.bias."""
+"""Of what FilteredRegression estimates beside motor data: output bias_hat, parameter prior.bias."""
 MOTOR = {"B": "kg.m2", "D_theta": "N.m.s/rad"}
 """Units of the motor data: parameter motor.B, output B_hat."""
 

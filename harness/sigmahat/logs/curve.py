@@ -29,11 +29,12 @@ def curve(
 ) -> Curve:
     """Torque and stiffness over the deformation, at each set-point that the data reach.
 
-    The slave does not change. Of the method MatchedFilter it says how certain the stiffness is at
-    each point, sigma_std. The torque of a spring is the integral of its stiffness, so its standard
-    deviation is at most the integral of sigma_std, from where the torque is known: at 0 for an odd
-    polynomial. A general one has a constant. No motor torque tells it from a bias, so the interval
-    is that of the torque relative to the one at 0, or at the end of the reach next to it.
+    The slave does not change. Of the method FilteredRegression it says how certain the stiffness is
+    at each point, sigma_std. The torque of a spring is the integral of its stiffness, so its
+    standard deviation is at most the integral of sigma_std, from where the torque is known: at 0
+    for an odd polynomial. A general one has a constant. No motor torque tells it from a bias, so
+    the interval is that of the torque relative to the one at 0, or at the end of the reach next to
+    it.
 
     every   parameters of the slave
     logs    that it has learned from, the last of them now
@@ -44,7 +45,7 @@ def curve(
     reach = reaches(points, logs[:-1], not polynomial.is_of_set_point)
     grids = [_grid(each, polynomial) for each in reach]
     stds: list[Array | None] = [None] * len(grids)
-    if every["method"] == "MatchedFilter" and grids:
+    if every["method"] == "FilteredRegression" and grids:
         stds = list(_sigma_std(slave, every, reach, grids))
     branches = []
     for each, phi, std in zip(reach, grids, stds, strict=True):

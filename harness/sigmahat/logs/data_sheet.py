@@ -42,7 +42,7 @@ def data_sheet(
     curve          that it has learned
     """
     start = start_values(slave, every)
-    claims = every["method"] == "MatchedFilter"
+    claims = every["method"] == "FilteredRegression"
     return sheet.Sheet(
         format=sheet.FORMAT.name,
         version=sheet.FORMAT.version,
@@ -107,12 +107,12 @@ def _check(fmu: Fmu, start: Mapping[str, Value]) -> sheet.Check:
 def _parameters(
     every: Mapping[str, Value], last: Mapping[str, float], configuration: Path
 ) -> dict[str, sheet.Parameter]:
-    """Motor data, and what else MatchedFilter estimated.
+    """Motor data, and what else FilteredRegression estimated.
 
     The FMU gives no interval of them. `identify` has written some; else it is that of the prior.
     """
     found = {"gamma": sheet.Parameter(float(every["motor.gamma"]), "1", None, "exact")}
-    claims = every["method"] == "MatchedFilter"
+    claims = every["method"] == "FilteredRegression"
     measured = claims and every["modality"] == "Residual"
     identified = _identified(configuration)
     for name, unit in assumptions.MOTOR.items():

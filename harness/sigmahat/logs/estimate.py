@@ -66,7 +66,7 @@ class Estimate:
     eta: Sequence[Sequence[float]]
     """Coefficients at the end, [size: rls.n x rls.m], (21)."""
     motor: dict[str, float]
-    """Motor data that the method MatchedFilter estimated, at the end, by output of the FMU."""
+    """Motor data that the method FilteredRegression estimated, at the end, by output of the FMU."""
     joint: dict[str, float]
     """What else it estimated, at the end, by output of the FMU: bias_hat, damping_hat and so on."""
     sigma_per_gain: float

@@ -74,7 +74,7 @@ def draw(replay: Replay) -> Figure:
             )
             settled = line.ends[int(_SETTLED * len(line.ends)) :]
             limits += _limits(settled, line.outer)
-        if axes is every[0] and replay.method == "MatchedFilter":
+        if axes is every[0] and replay.method == "FilteredRegression":
             limits += _interval(axes, replay)
         _scale(axes, min(limits), max(limits))
         _shade(axes, skipped)
@@ -98,7 +98,7 @@ def _panels(replay: Replay) -> dict[str, list[_Line]]:
     torque = _Line(r"residual $\gamma r_e$", SKY, ends("tau_e_residual"))
     if replay.modality == "Sensor":
         torque = _Line("sensor", SKY, _sensor(replay))
-    elif replay.method == "MatchedFilter":
+    elif replay.method == "FilteredRegression":
         torque = torque._replace(label="by the motor data, with friction")
     panels = {
         math_axis("sigma"): [_Line(r"estimate $\hat\sigma$", BLUE, ends("sigma"), _OUTER)],

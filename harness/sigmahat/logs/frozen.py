@@ -20,11 +20,11 @@ def stiffness_at(
 ) -> dict[str, Array]:
     """sigma, sigma_std, sigma_per_gain, phi and setPoint at each point, [size: points].
 
-    Before each point a sample is missing. After such a gap MatchedFilter learns nothing until its
-    filters have settled, and they never do: its answers are those of what it has learned before.
-    The slave cannot be used for anything else afterwards.
+    Before each point a sample is missing. After such a gap FilteredRegression learns nothing until
+    its filters have settled, and they never do: its answers are those of what it has learned
+    before. The slave cannot be used for anything else afterwards.
 
-    slave   of the method MatchedFilter, that has reached the time t_0 [s]
+    slave   of the method FilteredRegression, that has reached the time t_0 [s]
     names   of inputs, theta and q among them
     points  values of these inputs, finite [size: points x names]
     T       samplePeriod [s]

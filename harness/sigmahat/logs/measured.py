@@ -39,22 +39,23 @@ class MeasuredPoints:
 def points_of(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPoints:
     """The points at the ticks from which the estimator has learned.
 
-    MatchedFilter filters all signals and estimates friction, inertia and bias with the curve. What
-    it leaves unexplained, its prediction error, is added to the torque of the curve: a partial
+    FilteredRegression filters all signals and estimates friction, inertia and bias with the curve.
+    What it leaves unexplained, its prediction error, is added to the torque of the curve: a partial
     residual. Paper2011 measures the torque itself, by its residual.
 
     outputs  of the estimator by name, of one size
     """
     used = outputs["valid"].astype(bool) & (outputs["a"] > 0)
-    matched = method == "MatchedFilter"
-    tau_e = outputs["tau_e"] + outputs["epsilon"] if matched else outputs["tau_e_residual"]
+    regression = method == "FilteredRegression"
+    tau_e = outputs["tau_e"] + outputs["epsilon"] if regression else outputs["tau_e_residual"]
     return MeasuredPoints(outputs["phi"][used], outputs["setPoint"][used], tau_e[used])
 
 
 def with_what_was_learned(
     slave: Slave, every: Mapping[str, Value], samples: Samples
 ) -> MeasuredPoints:
-    """About 3000 points of up to 60000 samples, as MatchedFilter sees them at the end of a log.
+    """About 3000 points of up to 60000 samples, as FilteredRegression sees them at the end of a
+    log.
 
     At the start it does not yet know friction and bias, and sees other torques. So a copy of it,
     with all that it has learned, is given up to 12 parts of the log again. The slave does not
@@ -76,7 +77,7 @@ def with_what_was_learned(
                 found += play(other, part, _TICKS, t)
             t += len(part.values) * samples.T
     columns = {name: np.concatenate([each[name] for each in found]) for name in NEEDED}
-    every_point = points_of(columns, "MatchedFilter")
+    every_point = points_of(columns, "FilteredRegression")
     stride = -(-len(every_point.phi) // _POINTS) or 1
     shown = spread(0, len(every_point.phi), stride)
     return MeasuredPoints(

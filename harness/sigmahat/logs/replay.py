@@ -123,8 +123,8 @@ def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
 def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:
     """Samples that are missing, at the time t_0 [s]: the filters start again with the next sample.
 
-    What is learned stays. It is as after a gap in a log: MatchedFilter needs one missing sample,
-    Paper2011 as many as its residual needs to give up what it has integrated (sigmahat.h).
+    What is learned stays. It is as after a gap in a log: FilteredRegression needs one missing
+    sample, Paper2011 as many as its residual needs to give up what it has integrated (sigmahat.h).
 
     every  parameters of the slave
 

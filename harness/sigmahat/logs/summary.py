@@ -33,7 +33,7 @@ def summary(result: Estimate) -> str:
         f"{result.skipped} of {result.ticks} ticks skipped",
     ]
     lines += curve_text(result.curve)
-    if p["method"] == "MatchedFilter":
+    if p["method"] == "FilteredRegression":
         lines += [*_found(result), "this answer rests on:"]
         lines += [f"  {each}" for each in _rests_on(result)]
     return "\n".join(lines)
@@ -48,20 +48,20 @@ def _second_half(result: Estimate) -> Iterator[str]:
     yield f"  torque tau_e, fitted  {least:10.4g} to {most:10.4g} N.m"
     yield f"  deformation phi       {result.phi_range[0]:10.4g} to {result.phi_range[1]:10.4g} rad"
     yield f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative} of the torque)"
-    if result.parameters["method"] == "MatchedFilter":
+    if result.parameters["method"] == "FilteredRegression":
         reasons = ", ".join(f"{item} {100 * share:.3g} %" for item, share in result.doubt.items())
         why = f" ({reasons})" if reasons else ""
         yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time{why}"
 
 
 def _uncertainty(result: Estimate) -> str:
-    if result.parameters["method"] == "MatchedFilter":
+    if result.parameters["method"] == "FilteredRegression":
         return f"standard deviation {result.sigma_std:.2g} N.m/rad"
     return "of which the method claims no uncertainty"
 
 
 def _found(result: Estimate) -> Iterator[str]:
-    """What MatchedFilter estimated besides the stiffness, unless it is negligible."""
+    """What FilteredRegression estimated besides the stiffness, unless it is negligible."""
     B, D_theta, tau_coulomb = (
         result.motor[name] for name in ("B_hat", "D_theta_hat", "tau_coulomb_hat")
     )

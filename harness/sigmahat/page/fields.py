@@ -61,6 +61,6 @@ PARAMETERS = (
 """Of the estimator."""
 CHOICES: Mapping[str, Sequence[str]] = {
     "modality": ("Residual", "Sensor", "Model"),
-    "method": ("Paper2011", "MatchedFilter"),
+    "method": ("Paper2011", "FilteredRegression"),
 }
 """Parameters with a few values; the first one is the start value of the FMU."""

@@ -7,15 +7,26 @@ from difflib import get_close_matches
 
 _LONGEST = 200  # characters of a name
 
+_RENAMED = {
+    "MatchedFilter": "FilteredRegression",
+    "confidence": "limit.relative_std",
+    "matched.bandwidth": "regression.bandwidth",
+    "matched.drift": "regression.drift",
+    "matched.memory": "regression.memory",
+    "matched.slow": "regression.slow",
+}
+
 
 def unknown(kind: str, name: str, existing: Iterable[str]) -> str:
-    """One line with the unknown name, similar names, and the existing ones.
+    """One line with the unknown name, similar names, and the existing ones; or with its new name.
 
     A list of more than 20 existing names is left out if a similar one was found.
 
     kind  what the name stands for, as in "unknown scenario 'tabel1'"
     """
     names = sorted(existing)
+    if _RENAMED.get(name) in names:
+        return f"unknown {kind} {name!r}: it is called {_RENAMED[name]!r} now"
     short = len(name) <= _LONGEST
     similar = get_close_matches(name, names, n=3, cutoff=0.6) if short else []
     message = f"unknown {kind} {name[:_LONGEST]!r}"

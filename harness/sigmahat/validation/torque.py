@@ -54,7 +54,7 @@ def torque_errors(
     """The error over all instants that count, and below 2 Hz; None where there are none.
 
     The log is played twice: at the first time the estimator finds the friction and the bias of this
-    log; the second time counts. Where the motor is slower than matched.slow the sign of its
+    log; the second time counts. Where the motor is slower than regression.slow the sign of its
     friction is unknown, and so is the torque of the spring: these instants do not count.
 
     start  values of the FMU with which the curve does not change, start_values.as_fixed_curve
@@ -68,7 +68,7 @@ def torque_errors(
     used = played["valid"] & (played["a"] > 0)
     moving = used
     if start["modality"] == "Residual":
-        moving = used & (np.abs(played["theta_dot"]) >= float(start["matched.slow"]))
+        moving = used & (np.abs(played["theta_dot"]) >= float(start["regression.slow"]))
     both = played["epsilon"], played["tau_e_residual"]
     error, torque = (values[moving] for values in both)
     ticks = len(samples.values)

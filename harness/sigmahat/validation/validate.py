@@ -104,10 +104,10 @@ def validate(log: Log, configuration: Configuration, start_from: Path) -> Valida
     learned = read_learned(start_from)
     fmu = installed("StiffnessEstimator")
     every = fmu.parameters(parameters(fmu, configuration))
-    if every["method"] != "MatchedFilter":
+    if every["method"] != "FilteredRegression":
         raise LogError(
             f"{configuration.path}: method = {every['method']} claims no interval, by which to "
-            "validate; expected method = MatchedFilter"
+            "validate; expected method = FilteredRegression"
         )
     configuration.need_ports(str(every["modality"]))
     with Slave(fmu, "learned") as slave:

@@ -38,19 +38,19 @@ block AntagonisticStiffnessEstimator
   Interfaces.BooleanOutput valid "True if both sides are valid"
     annotation (Placement(transformation(extent={{100,-90},{120,-70}})));
   output Types.Doubt doubt
-    "Why the estimate of the device is not confident: what contradicts the estimate of a side, or that sigma_std is not below confidence |sigma|";
+    "Why the estimate of the device is not confident: what contradicts the estimate of a side, or that sigma_std is not below limit.relative_std |sigma|";
 
   StiffnessEstimator side_1(
     final samplePeriod=samplePeriod, final startTime=startTime, final method=method, final modality=modality,
-    final confidence=confidence, final encoder=encoder, final setPoint=setPoint, final nominal=nominal,
+    final limit=limit, final encoder=encoder, final setPoint=setPoint, final nominal=nominal,
     final noise=noise, final rls=rls, final deformation=deformation, final residual=residual, final filter=filter,
-    final torque=torque, final matched=matched, final range=range, final prior=prior, final motor=motor_1)
+    final torque=torque, final regression=regression, final range=range, final prior=prior, final motor=motor_1)
     "Estimator of transmission 1" annotation (Placement(transformation(extent={{-20,20},{20,60}})));
   StiffnessEstimator side_2(
     final samplePeriod=samplePeriod, final startTime=startTime, final method=method, final modality=modality,
-    final confidence=confidence, final encoder=encoder, final setPoint=setPoint, final nominal=nominal,
+    final limit=limit, final encoder=encoder, final setPoint=setPoint, final nominal=nominal,
     final noise=noise, final rls=rls, final deformation=deformation, final residual=residual, final filter=filter,
-    final torque=torque, final matched=matched, final range=range, final prior=prior, final motor=motor_2)
+    final torque=torque, final regression=regression, final range=range, final prior=prior, final motor=motor_2)
     "Estimator of transmission 2" annotation (Placement(transformation(extent={{-20,-60},{20,-20}})));
 
 protected
@@ -78,7 +78,7 @@ equation
   // That one side alone is not certain enough is no reason.
   worse = if side_1.doubt > side_2.doubt then side_1.doubt else side_2.doubt;
   doubt = if worse <> Types.Doubt.None and worse <> Types.Doubt.NotExcited and worse <> Types.Doubt.Misfit then worse
-    elseif sigma_std < confidence*abs(sigma) then Types.Doubt.None
+    elseif sigma_std < limit.relative_std*abs(sigma) then Types.Doubt.None
     elseif worse <> Types.Doubt.None then worse else Types.Doubt.NotExcited;
   confident = doubt == Types.Doubt.None;
 

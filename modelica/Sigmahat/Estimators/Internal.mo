@@ -18,7 +18,7 @@ package Internal "Calls of the C library"
       input Integer n;
       input Integer m;
       input Boolean held;
-      input Real confidence;
+      input Real relativeStd;
       input Real motor[3] "B, D_theta, gamma";
       input Real K_I;
       input Real filter[6] "V_a, V_max, V_min, alpha, R, P_0";
@@ -28,14 +28,14 @@ package Internal "Calls of the C library"
       input Real eta_0[8, 5];
       input Real nominal[3] "k_s, r_0, b";
       input Real noise[2] "tau, tau_e";
-      input Real matched[4] "bandwidth, slow, drift, memory";
+      input Real regression[4] "bandwidth, slow, drift, memory";
       input Real range[2] "phi, setPoint";
       input Real prior[16] "In the order of Parameters.Prior";
       output Estimator estimator;
 
       external "C" estimator = sigmahat_estimator_new(samplePeriod, method, modality, deformation, filterKind,
-        weighting, rlsKind, symmetric, n, m, held, confidence, motor, K_I, filter, encoder, setPoint, rls, eta_0,
-        nominal, noise, matched, range, prior)
+        weighting, rlsKind, symmetric, n, m, held, relativeStd, motor, K_I, filter, encoder, setPoint, rls, eta_0,
+        nominal, noise, regression, range, prior)
         annotation (
           Include="#include \"sigmahat_estimator_new.c\"",
           IncludeDirectory="modelica://Sigmahat/Resources/C-Sources");

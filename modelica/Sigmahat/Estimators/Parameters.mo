@@ -32,7 +32,7 @@ package Parameters "Groups of parameters of the estimators"
   record Encoder "Resolution of the encoders"
     extends Icons.Record;
     parameter Types.Ratio theta(min=0) = 40000
-      "Counts per turn of theta, 0: not quantised; Paper2011 compares the velocity with it, (11), and MatchedFilter computes the rounding error from it; for a sensor with noise of standard deviation s rad, set 2 pi / (sqrt(12) s)";
+      "Counts per turn of theta, 0: not quantised; Paper2011 compares the velocity with it, (11), and FilteredRegression computes the rounding error from it; for a sensor with noise of standard deviation s rad, set 2 pi / (sqrt(12) s)";
     parameter Types.Ratio q(min=0) = 40000 "Counts per turn of q, 0: not quantised; Paper2011 uses it with deformation = Filtered only";
     annotation (Documentation(info="<html><p>Counts per turn, behind the gear.</p></html>"));
   end Encoder;
@@ -54,7 +54,7 @@ package Parameters "Groups of parameters of the estimators"
     parameter Types.Ratio c(min=1e-30) = 1e-20 "Constant c of (27), for rls.kind Enhanced";
     parameter Types.Ratio a(min=1e-15, max=1) = 0.1 "Stability factor of rls.kind ConstantFactor, (25)";
     parameter Real eta_0[8, 5] = zeros(8, 5)
-      "Initial estimate of eta; MatchedFilter: its prior mean, the nominal curve";
+      "Initial estimate of eta; FilteredRegression: its prior mean, the nominal curve";
     annotation (Documentation(info="<html><p>Of both methods, where a parameter does not name one.</p></html>"));
   end Rls;
 
@@ -65,6 +65,12 @@ package Parameters "Groups of parameters of the estimators"
     parameter Types.Lead b = 0.0025/(2*Constants.pi) "Lever arm per theta_c, (30), for modality Model";
     annotation (Documentation(info="<html><p>The FMU calls this group <code>model</code>, which is a keyword of Modelica.</p></html>"));
   end Nominal;
+
+  record Limit "When the estimate is confident"
+    extends Icons.Record;
+    parameter Types.Ratio relative_std(min=1e-15) = 0.1 "Ratio sigma_std / |sigma| below which the estimate is confident";
+    annotation (Documentation(info="<html><p>Limits of the uncertainty.</p></html>"));
+  end Limit;
 
   record Noise "Noise of the torques"
     extends Icons.Record;
@@ -78,64 +84,64 @@ package Parameters "Groups of parameters of the estimators"
   record Torque "How the torque is held"
     extends Icons.Record;
     parameter Boolean held = false
-      "MatchedFilter: true if a drive holds each value of tau until the next sample; false: tau is linear between samples";
-    annotation (Documentation(info="<html><p>Of method MatchedFilter.</p></html>"));
+      "FilteredRegression: true if a drive holds each value of tau until the next sample; false: tau is linear between samples";
+    annotation (Documentation(info="<html><p>Of method FilteredRegression.</p></html>"));
   end Torque;
 
-  record Matched "Method MatchedFilter"
+  record Regression "Method FilteredRegression"
     extends Icons.Record;
     parameter Types.AngularVelocity bandwidth(min=1e-15) = 350
-      "MatchedFilter: corner w of the filter (w/(s + w))^3 that all signals pass; w T from 1e-4 to below 2; a smaller one is used if the rounding of theta needs it";
+      "FilteredRegression: corner w of the filter (w/(s + w))^3 that all signals pass; w T from 1e-4 to below 2; a smaller one is used if the rounding of theta needs it";
     parameter Types.AngularVelocity slow(min=1e-15) = 0.05
-      "MatchedFilter: motor velocity below which the sign of Coulomb friction is unknown";
+      "FilteredRegression: motor velocity below which the sign of Coulomb friction is unknown";
     parameter Types.Rate drift(min=0, max=1e12) = 0
-      "MatchedFilter: share of its prior variance by which the torque curve drifts in a second; 0: it does not change";
+      "FilteredRegression: share of its prior variance by which the torque curve drifts in a second; 0: it does not change";
     parameter Types.Time memory(min=0, max=1e12) = 20
-      "MatchedFilter: time constant with which data are forgotten while they contradict the model; 0: the misfit has no effect";
+      "FilteredRegression: time constant with which data are forgotten while they contradict the model; 0: the misfit has no effect";
     annotation (Documentation(info="<html><p>Its filter and its memory.</p></html>"));
-  end Matched;
+  end Regression;
 
   record Range "Ranges of the operating point"
     extends Icons.Record;
     parameter Types.Angle phi(min=1e-6, max=1e6) = 0.3
-      "MatchedFilter: largest expected deformation; far beyond it (from 2 to 32 times, by rls.n), a warning is logged once";
-    parameter Types.Ratio setPoint(min=1e-12, max=1e12) = 100 "MatchedFilter: largest expected set-point";
+      "FilteredRegression: largest expected deformation; far beyond it (from 2 to 32 times, by rls.n), a warning is logged once";
+    parameter Types.Ratio setPoint(min=1e-12, max=1e12) = 100 "FilteredRegression: largest expected set-point";
     annotation (Documentation(info="<html><p>Deformation and set-point are scaled by them.</p></html>"));
   end Range;
 
   record Prior "What is not known exactly"
     extends Icons.Record;
     parameter Types.Torque tau_e(min=0, max=1e12) = 45
-      "MatchedFilter: prior standard deviation of each coefficient of the flexibility torque, for deformation and set-point in units of their ranges; 0: the shape of the curve rls.eta_0 is exact, and prior.nominal must be above 0";
-    parameter Types.Ratio nominal(min=0, max=1e12) = 0 "MatchedFilter: relative prior standard deviation of the curve rls.eta_0 as a whole";
+      "FilteredRegression: prior standard deviation of each coefficient of the flexibility torque, for deformation and set-point in units of their ranges; 0: the shape of the curve rls.eta_0 is exact, and prior.nominal must be above 0";
+    parameter Types.Ratio nominal(min=0, max=1e12) = 0 "FilteredRegression: relative prior standard deviation of the curve rls.eta_0 as a whole";
     parameter Types.Ratio D_theta(min=0, max=1e12) = 0.2
-      "MatchedFilter: relative prior standard deviation of the viscous friction D_theta; 0: it is exact, and so is a D_theta of 0";
-    parameter Types.Ratio B(min=0, max=1e12) = 0 "MatchedFilter: relative prior standard deviation of the rotor inertia B; 0: it is exact";
+      "FilteredRegression: relative prior standard deviation of the viscous friction D_theta; 0: it is exact, and so is a D_theta of 0";
+    parameter Types.Ratio B(min=0, max=1e12) = 0 "FilteredRegression: relative prior standard deviation of the rotor inertia B; 0: it is exact";
     parameter Types.Torque tau_coulomb(min=0, max=1e12) = 0.02
-      "MatchedFilter: prior standard deviation of the Coulomb friction of the motor, on its axis: its expected size; 0: there is none";
+      "FilteredRegression: prior standard deviation of the Coulomb friction of the motor, on its axis: its expected size; 0: there is none";
     parameter Types.Ratio torque_gain(min=0, max=1e12) = 0.02
-      "MatchedFilter: relative standard deviation of the gain of the torque: torque constant, current sensor, gear efficiency; no data show it, so it is part of sigma_std and not estimated";
+      "FilteredRegression: relative standard deviation of the gain of the torque: torque constant, current sensor, gear efficiency; no data show it, so it is part of sigma_std and not estimated";
     parameter Types.Ratio bias(min=0, max=1e12) = 0.05
-      "MatchedFilter: standard deviation of a constant torque, as a share of prior.tau_e: bias of the torque, zero of the deformation, uneven friction; 0: there is none";
+      "FilteredRegression: standard deviation of a constant torque, as a share of prior.tau_e: bias of the torque, zero of the deformation, uneven friction; 0: there is none";
     parameter Types.Time damping(min=0, max=1e12) = 4e-3
-      "MatchedFilter: standard deviation of the damping of the spring over the stiffness prior.tau_e / range.phi; also of encoders read at different times; 0: there is none";
+      "FilteredRegression: standard deviation of the damping of the spring over the stiffness prior.tau_e / range.phi; also of encoders read at different times; 0: there is none";
     parameter Types.Ratio load_friction(min=0, max=1e12) = 0.05
-      "MatchedFilter: standard deviation of the friction per flexibility torque, and, where prior.tau_coulomb is not 0, per torque of the motor behind the gear; 0: there is none";
+      "FilteredRegression: standard deviation of the friction per flexibility torque, and, where prior.tau_coulomb is not 0, per torque of the motor behind the gear; 0: there is none";
     parameter Types.Angle eccentric(min=0, max=1e12) = 3e-4
-      "MatchedFilter: standard deviation of the once-per-turn error of the link encoder; 0: there is none";
+      "FilteredRegression: standard deviation of the once-per-turn error of the link encoder; 0: there is none";
     parameter Types.Time delay(min=0, max=1e12) = 2e-3
-      "MatchedFilter: standard deviation of the delay of the torque against the positions; 0: there is none";
+      "FilteredRegression: standard deviation of the delay of the torque against the positions; 0: there is none";
     parameter Types.Time reversal(min=0, max=1e12) = 2e-3
-      "MatchedFilter: standard deviation of the delay of the reversals of friction; 0: there is none";
+      "FilteredRegression: standard deviation of the delay of the reversals of friction; 0: there is none";
     parameter Types.Ratio power(min=0, max=1e12) = 1
-      "MatchedFilter: standard deviation of higher powers of the torque, as a share of prior.tau_e; used if the data ask for them; 0: never";
+      "FilteredRegression: standard deviation of higher powers of the torque, as a share of prior.tau_e; used if the data ask for them; 0: never";
     parameter Types.Ratio gap(min=0, max=1e12) = 0.02
-      "MatchedFilter: standard deviation of the torque lost in a dead zone (backlash), as a share of prior.tau_e; used if the data ask for it; 0: never";
+      "FilteredRegression: standard deviation of the torque lost in a dead zone (backlash), as a share of prior.tau_e; used if the data ask for it; 0: never";
     parameter Types.Ratio hysteresis(min=0, max=1e12) = 0.01
-      "MatchedFilter: standard deviation of the torque of hysteresis, as a share of prior.tau_e; used if the data ask for it; 0: never";
+      "FilteredRegression: standard deviation of the torque of hysteresis, as a share of prior.tau_e; used if the data ask for it; 0: never";
     parameter Types.Angle eccentric_motor(min=0, max=1e12) = 1e-4
-      "MatchedFilter: standard deviation of the once-per-turn error of the motor encoder, behind the gear; used if the data ask for it; 0: never";
-    annotation (Documentation(info="<html><p>Of method MatchedFilter: standard deviations of what it estimates. With 0 a quantity is exact, or there is none of it.</p></html>"));
+      "FilteredRegression: standard deviation of the once-per-turn error of the motor encoder, behind the gear; used if the data ask for it; 0: never";
+    annotation (Documentation(info="<html><p>Of method FilteredRegression: standard deviations of what it estimates. With 0 a quantity is exact, or there is none of it.</p></html>"));
   end Prior;
 
   annotation (Documentation(info="<html>

@@ -27,7 +27,7 @@ equation
     Documentation(info="<html>
 <p>The simulation of section VI.B, estimator RESIDUAL, which needs no torque sensor. Plot <code>plant.sigma</code> and
 <code>estimator.sigma</code>: after about a second the estimate follows the stiffness, with an error of about 1 %.</p>
-<p>Change <code>estimator.modality</code> to Sensor for an estimate from the torque sensor, <code>estimator.method</code> to MatchedFilter for the
+<p>Change <code>estimator.modality</code> to Sensor for an estimate from the torque sensor, <code>estimator.method</code> to FilteredRegression for the
 second method.</p>
 </html>"));
 end Table1;

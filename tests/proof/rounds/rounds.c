@@ -70,7 +70,7 @@ static void use_everything(sh_parameters *p, int optional)
     }
     p->rls.eta_0[p->rls.n - 1][p->rls.m - 1] = 10;
     p->samplePeriod = 0.0125;
-    p->matched.bandwidth = 40;
+    p->regression.bandwidth = 40;
     p->residual.K_I = 50;
 }
 
@@ -109,7 +109,7 @@ int main(int argc, char **argv)
     }
     sh_estimator_start(&estimator, &p, &estimate);
     for (k = 0; k < 1600; ++k) {
-        p.matched.drift = k > 1500 ? 0.1 : 0;
+        p.regression.drift = k > 1500 ? 0.1 : 0;
         tick(&estimator, &p, k, &estimate);
     }
     if (p.method == SH_METHOD_PAPER2011) { /* every column is cleared */
@@ -122,7 +122,8 @@ int main(int argc, char **argv)
         printf("the estimator has a state that it refuses\n");
         return 1;
     }
-    printf("%d\n", p.method == SH_METHOD_MATCHED_FILTER ? estimator.method.matched.size : 0);
+    printf("%d\n",
+           p.method == SH_METHOD_FILTERED_REGRESSION ? estimator.method.regression.size : 0);
     for (k = 0; k < SH_LOOPS; ++k) {
         printf("%ld\n", most[k]);
     }

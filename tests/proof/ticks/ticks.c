@@ -66,7 +66,7 @@ static void use_everything(sh_parameters *p)
     p->rls.m = SH_MAX_M;
     p->rls.eta_0[0][0] = 10;
     p->samplePeriod = (sh_real)0.0125;
-    p->matched.bandwidth = 40;
+    p->regression.bandwidth = 40;
     p->deformation = SH_DEFORMATION_FILTERED;
     p->residual.K_I = 50;
 }
@@ -90,7 +90,8 @@ static void report(const char *name, uint32_t per_loop)
         longest = now > longest ? now : longest;
     }
     printf("%s %d %d %d %.0f\n", name, parameters.rls.n, parameters.rls.m,
-           parameters.method == SH_METHOD_MATCHED_FILTER ? estimator.method.matched.size : 0,
+           parameters.method == SH_METHOD_FILTERED_REGRESSION ? estimator.method.regression.size
+                                                              : 0,
            200000.0 * longest / per_loop);
 }
 
@@ -98,8 +99,8 @@ static void report_both(uint32_t per_loop)
 {
     parameters.method = SH_METHOD_PAPER2011;
     report("paper2011", per_loop);
-    parameters.method = SH_METHOD_MATCHED_FILTER;
-    report("matched_filter", per_loop);
+    parameters.method = SH_METHOD_FILTERED_REGRESSION;
+    report("filtered_regression", per_loop);
 }
 
 int main(void)

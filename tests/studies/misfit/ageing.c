@@ -8,7 +8,7 @@
 
 enum { TENS = 11 };
 
-/* One run. prior_B is prior.B, drift is matched.drift. */
+/* One run. prior_B is prior.B, drift is regression.drift. */
 static void run(double prior_B, double drift)
 {
     static sh_estimator e;
@@ -24,12 +24,12 @@ static void run(double prior_B, double drift)
     p.drift_time = -20; /* from 20 to 40 s */
     sim_start(&plant, &p);
     sh_parameters_default(&q);
-    q.method = SH_METHOD_MATCHED_FILTER;
+    q.method = SH_METHOD_FILTERED_REGRESSION;
     q.rls.n = 3;
     q.motor.D_theta = (sh_real)1.1e-3;
     q.prior.torque_gain = 0;
     q.prior.B = (sh_real)prior_B;
-    q.matched.drift = (sh_real)drift;
+    q.regression.drift = (sh_real)drift;
     sh_estimator_start(&e, &q, &out);
     for (k = 0; k < 105000; ++k) {
         const double t = k * 1e-3;

@@ -1,6 +1,6 @@
 /* late [MEMORY]: a misfit that begins at 30 s, and one that ends at 30 s, on each joint. Prints
  * when it is noticed, when the estimate is not confident, and RMS error and claim of each 10 s.
- * MEMORY is matched.memory [s].
+ * MEMORY is regression.memory [s].
  */
 #include <math.h>
 #include <stdio.h>
@@ -48,13 +48,13 @@ static void watch(course *c, int k, const sh_estimator *e, const sh_estimate *ou
         c->wrong += out->confident && fabs(error) > 0.2;
     }
     if (k == 30000) {
-        c->kappa2_before = (double)e->method.matched.variance_factor;
+        c->kappa2_before = (double)e->method.regression.variance_factor;
     }
     if (!(t > 30)) {
         return;
     }
     if (c->noticed < 0 &&
-        (double)e->method.matched.variance_factor > 1.5 * c->kappa2_before + 0.5) {
+        (double)e->method.regression.variance_factor > 1.5 * c->kappa2_before + 0.5) {
         c->noticed = t - 30;
     }
     if (!out->confident) {
@@ -84,7 +84,7 @@ static void run(int misfit, int ends, int joint, double memory)
     setup_parameters(&p, &given, &q);
     q.prior.torque_gain = 0;
     if (memory > 0) {
-        q.matched.memory = (sh_real)memory;
+        q.regression.memory = (sh_real)memory;
     }
     sh_estimator_start(&e, &q, &out);
     memset(&c, 0, sizeof c);
@@ -99,7 +99,7 @@ static void run(int misfit, int ends, int joint, double memory)
     printf("%s %s, %s: kappa at 30 s %.1f, noticed after %.2f s, not confident from %.2f to %.2f "
            "s after, wrong by 20 %% in %d ticks, kappa at the end %.1f, error/claim %%:",
            NAMES[misfit], ends ? "ends" : "begins", CAT_JOINTS[joint], sqrt(c.kappa2_before),
-           c.noticed, c.lost, c.back, c.wrong, sqrt((double)e.method.matched.variance_factor));
+           c.noticed, c.lost, c.back, c.wrong, sqrt((double)e.method.regression.variance_factor));
     for (k = 0; k < TENS; ++k) {
         printf(" %.2f/%.2f", 100 * sqrt(c.error[k] / c.n[k]), 100 * sqrt(c.claim[k] / c.n[k]));
     }

@@ -68,9 +68,9 @@ static void override(sh_parameters *q)
         {"prior.gap", &q->prior.gap},
         {"prior.hysteresis", &q->prior.hysteresis},
         {"prior.eccentric_motor", &q->prior.eccentric_motor},
-        {"matched.memory", &q->matched.memory},
-        {"matched.slow", &q->matched.slow},
-        {"matched.bandwidth", &q->matched.bandwidth},
+        {"regression.memory", &q->regression.memory},
+        {"regression.slow", &q->regression.slow},
+        {"regression.bandwidth", &q->regression.bandwidth},
     };
     size_t k;
     int i;

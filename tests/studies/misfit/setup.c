@@ -28,7 +28,7 @@ void setup_without_new_columns(sh_parameters *q)
 void setup_parameters(const sim_parameters *p, const cat_given *given, sh_parameters *q)
 {
     sh_parameters_default(q);
-    q->method = SH_METHOD_MATCHED_FILTER;
+    q->method = SH_METHOD_FILTERED_REGRESSION;
     q->samplePeriod = (sh_real)p->T;
     q->rls.n = given->n;
     q->rls.m = given->m;

@@ -16,7 +16,7 @@ void setup_without_candidates(sh_parameters *q);
 /* Switches off the columns that are always on, but for those of the torque and the motor data. */
 void setup_without_new_columns(sh_parameters *q);
 
-/* Parameters of MatchedFilter for a joint of the catalogue. */
+/* Parameters of FilteredRegression for a joint of the catalogue. */
 void setup_parameters(const sim_parameters *p, const cat_given *given, sh_parameters *q);
 
 /* Runs a tick with a sample. */

@@ -1,5 +1,5 @@
 /* sines table SEEDS [MODE [REVERSAL]], sines cells RUNS [MODE [REVERSAL]]: single sines on the
- * AwAS, MatchedFilter without the columns for misfits -> MODE, as in docs/matched-filter.md.
+ * AwAS, FilteredRegression without the columns for misfits -> MODE, as in docs/filtered-regression.md.
  *
  * table     the table of frequencies and wrong motor data
  * cells     errors of the motor data drawn from their priors, by frequency and friction
@@ -49,7 +49,7 @@ static void add(sums *s, double t, double from, double truth, double sigma, doub
 static void start(const motor *given, int columns, sh_parameters *p)
 {
     sh_parameters_default(p);
-    p->method = SH_METHOD_MATCHED_FILTER;
+    p->method = SH_METHOD_FILTERED_REGRESSION;
     p->rls.n = 3;
     p->motor.D_theta = (sh_real)given->D;
     p->motor.B = (sh_real)given->B;
@@ -63,7 +63,7 @@ static void start(const motor *given, int columns, sh_parameters *p)
     }
     if (columns == NONE) {
         setup_without_new_columns(p);
-        p->matched.memory = 0;
+        p->regression.memory = 0;
     }
 }
 

@@ -65,7 +65,7 @@ static void time_ticks(const char *name, const sh_parameters *p, int columns)
             keep(run, k, now() - start);
         }
     }
-    report(name, columns > 0 ? columns : estimator.method.matched.size);
+    report(name, columns > 0 ? columns : estimator.method.regression.size);
 }
 
 int main(void)
@@ -84,7 +84,7 @@ int main(void)
     }
     sh_parameters_default(&q);
     time_ticks("Paper2011", &q, q.rls.n * q.rls.m);
-    q.method = SH_METHOD_MATCHED_FILTER;
+    q.method = SH_METHOD_FILTERED_REGRESSION;
     q.rls.n = 3;
     q.prior.B = (sh_real)0.1;
     time_ticks("all columns", &q, 0);

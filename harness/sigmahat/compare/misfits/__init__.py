@@ -1,1 +1,1 @@
-"""MatchedFilter on a catalogue of misfits: joints that have what real joints have."""
+"""FilteredRegression on a catalogue of misfits: joints that have what real joints have."""

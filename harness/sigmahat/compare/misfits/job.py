@@ -73,11 +73,11 @@ def run_once(condition: int, joint: int, seed: int) -> Score:
 
 
 def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Score:
-    """The score of MatchedFilter on the samples of a run; torque_gain as for settings()."""
+    """The score of FilteredRegression on the samples of a run; torque_gain as for settings()."""
     names = list(motion.measured)
     values = np.column_stack(list(motion.measured.values()))
     samples = Samples(experiment.T, names, values, np.arange(len(values), dtype=np.int32), ())
-    with Slave(installed(ESTIMATOR), "MatchedFilter") as slave:
+    with Slave(installed(ESTIMATOR), "FilteredRegression") as slave:
         start = settings(experiment, torque_gain)
         (found,) = replay(slave, samples, start, len(values))
     t = experiment.T * np.arange(len(values))

@@ -7,13 +7,13 @@ from sigmahat.fmi.instance import Value
 
 
 def settings(experiment: Experiment, torque_gain: float) -> dict[str, Value]:
-    """Start values of StiffnessEstimator, with method MatchedFilter.
+    """Start values of StiffnessEstimator, with method FilteredRegression.
 
     torque_gain  prior standard deviation of the gain of the measured torque [1]
     """
     joint, plant, errors = experiment.joint, experiment.plant, experiment.errors
     given: dict[str, Value] = {
-        "method": "MatchedFilter",
+        "method": "FilteredRegression",
         "modality": "Residual",
         "samplePeriod": experiment.T,
         "rls.n": joint.order,
@@ -31,6 +31,6 @@ def settings(experiment: Experiment, torque_gain: float) -> dict[str, Value]:
         # What is known of the kind of joint, not of this one, whose friction may be another.
         "prior.tau_coulomb": joint.plant["motor.tau_coulomb"],
         "prior.torque_gain": torque_gain,
-        "matched.bandwidth": 350.0,
+        "regression.bandwidth": 350.0,
     }
     return {**given, **experiment.estimator}

@@ -77,10 +77,10 @@ static void sigmahat_set_prior(sh_prior_parameters *p, const double *prior)
  */
 void *sigmahat_estimator_new(double samplePeriod, int method, int modality, int deformation,
                              int filterKind, int weighting, int rlsKind, int symmetric, int n,
-                             int m, int held, double confidence, const double *motor, double K_I,
+                             int m, int held, double relativeStd, const double *motor, double K_I,
                              const double *filter, const double *encoder, const double *setPoint,
                              const double *rls, const double *eta_0, const double *nominal,
-                             const double *noise, const double *matched, const double *range,
+                             const double *noise, const double *regression, const double *range,
                              const double *prior)
 {
     sh_parameters p;
@@ -121,12 +121,12 @@ void *sigmahat_estimator_new(double samplePeriod, int method, int modality, int 
     p.model.b = nominal[2];
     p.noise.tau = noise[0];
     p.noise.tau_e = noise[1];
-    p.confidence = confidence;
+    p.limit.relative_std = relativeStd;
     p.torque.held = held != 0;
-    p.matched.bandwidth = matched[0];
-    p.matched.slow = matched[1];
-    p.matched.drift = matched[2];
-    p.matched.memory = matched[3];
+    p.regression.bandwidth = regression[0];
+    p.regression.slow = regression[1];
+    p.regression.drift = regression[2];
+    p.regression.memory = regression[3];
     p.range.phi = range[0];
     p.range.setPoint = range[1];
     sigmahat_set_prior(&p.prior, prior);

@@ -1,4 +1,4 @@
-"""MatchedFilter, every output of every tick, against a second implementation.
+"""FilteredRegression, every output of every tick, against a second implementation.
 
 That one, in helpers/dense_*.py, has dense matrices in extended precision and the filters of scipy.
 Decisions compare a number with a threshold. In these runs the numbers are far from it, so that
@@ -16,19 +16,19 @@ import pytest
 from numpy.typing import NDArray
 
 from c_library import Array, Estimator, Library, load
-from c_matched import PLAIN
-from dense_matched import Oracle
-from matched_joint import GAMMA, Joint
+from c_regression import PLAIN
+from dense_regression import Oracle
 from oracle import RESIDUAL, SENSOR
 from reference_plant import table1_recording
+from regression_joint import GAMMA, Joint
 
 START: Mapping[str, float] = {  # start values, with rls.n for the AwAS and an unknown inertia
     **{"method": 2, "modality": RESIDUAL, "samplePeriod": 1e-3, "torque.held": 0},
     **{"rls.n": 3, "rls.m": 3, "rls.symmetric": 1, "range.phi": 0.3, "range.setPoint": 100.0},
     **{"encoder.theta": 40000.0, "encoder.q": 40000.0, "noise.tau": 3.2e-3, "noise.tau_e": 3.2e-2},
     **{"motor.D_theta": 1e-3, "motor.B": 2.3e-5, "motor.gamma": 50.0},
-    **{"matched.bandwidth": 350.0, "matched.slow": 0.05, "matched.drift": 0.0},
-    **{"matched.memory": 20.0, "prior.tau_e": 45.0, "prior.nominal": 0.0, "prior.D_theta": 0.2},
+    **{"regression.bandwidth": 350.0, "regression.slow": 0.05, "regression.drift": 0.0},
+    **{"regression.memory": 20.0, "prior.tau_e": 45.0, "prior.nominal": 0.0, "prior.D_theta": 0.2},
     **{"prior.B": 0.1, "prior.tau_coulomb": 0.02, "prior.torque_gain": 0.02, "prior.bias": 0.05},
     **{"prior.damping": 7.5e-3, "prior.load_friction": 0.1, "prior.eccentric": 5e-4},
     **{"prior.delay": 2e-3, "prior.reversal": 2e-3, "prior.power": 1.0, "prior.gap": 0.02},
@@ -73,9 +73,9 @@ def check(
     good = np.all(np.isfinite(z), axis=1)
     assert np.array_equal(found["valid"] == 1, good)
     compare(found[good], oracle.run())
-    matched = estimator.state.method.matched
-    assert list(matched.used)[1:] == oracle.used[1:]
-    assert bool(matched.friction_drifts) == oracle.friction_drifts
+    regression = estimator.state.method.regression
+    assert list(regression.used)[1:] == oracle.used[1:]
+    assert bool(regression.friction_drifts) == oracle.friction_drifts
     return oracle, found
 
 
@@ -91,19 +91,24 @@ LONG_CASES: Mapping[str, tuple[Joint, Mapping[str, float]]] = {
     "all columns": (JOINT, {"motor.D_theta": 1.1e-3, "motor.B": 2.5e-5}),
     "exact inertia": (JOINT, {"prior.B": 0.0}),
     "sensor with all columns": (JOINT, {"modality": SENSOR}),
-    "drift": (FAST, {"matched.drift": 1e-2}),
-    "strong drift": (FAST, {"matched.drift": 1e3}),
+    "drift": (FAST, {"regression.drift": 1e-2}),
+    "strong drift": (FAST, {"regression.drift": 1e3}),
     "creeping": (CREEPS, {}),
     "fast": (FAST, {"motor.B": 2.5e-5}),
     "turned round, fast, held": (FAST, {"motor.gamma": -50.0, "torque.held": 1}),
     "other parameters": (
         FAST,
-        {"matched.bandwidth": 200.0, "matched.slow": 0.2, "range.phi": 0.1, "noise.tau": 0.01},
+        {
+            "regression.bandwidth": 200.0,
+            "regression.slow": 0.2,
+            "range.phi": 0.1,
+            "noise.tau": 0.01,
+        },
     ),
     "limited bandwidth": (JOINT, {"noise.tau": 3e-4}),
     "other encoder of the link": (FAST, {"encoder.q": 10000.0}),
     "coarse encoders": (JOINT, {"encoder.theta": 4000.0, "encoder.q": 4000.0}),
-    "no memory": (JOINT, {"matched.memory": 0.0, "motor.B": 3.5e-5}),
+    "no memory": (JOINT, {"regression.memory": 0.0, "motor.B": 3.5e-5}),
 }
 
 
@@ -189,8 +194,8 @@ MISFITS: Mapping[str, tuple[Callable[[Joint, Array], Array], Mapping[str, float]
     ),
     "powers of the set-point": (set_powers, {"prior.gap": 0.0, "rls.m": 2}, SET_POWER),
     "encoder of the motor": (ripple_of_the_motor, {}, MOTOR_ENCODER),
-    "Stribeck friction": (stribeck, {"matched.memory": 2.0}, 0),
-    "cogging": (cogging, {"matched.memory": 2.0}, 0),
+    "Stribeck friction": (stribeck, {"regression.memory": 2.0}, 0),
+    "cogging": (cogging, {"regression.memory": 2.0}, 0),
     "friction that warms up": (friction_that_warms_up, {}, 0),
     "load friction and delay": (load_and_delay, {}, 0),
 }
@@ -244,7 +249,7 @@ def test_every_tick_with_gaps_rest_and_changes_of_the_modality(c: Library) -> No
 @pytest.mark.parametrize("tau_e", [0.0, 1.0])
 def test_every_tick_with_a_nominal_curve(c: Library, tau_e: float) -> None:
     z = table1_recording().measurements()[:1500]
-    p = {**START, "prior.nominal": 0.3, "prior.tau_e": tau_e, "matched.drift": 1e-2, "rls.n": 2}
+    p = {**START, "prior.nominal": 0.3, "prior.tau_e": tau_e, "regression.drift": 1e-2, "rls.n": 2}
     p |= {"prior.hysteresis": 0.0, "prior.gap": 0.0, "prior.eccentric": 0.0}
     eta_0 = np.zeros((8, 5))
     eta_0[0][2] = 0.037  # 2 k_s 1e-6, 30 % too high

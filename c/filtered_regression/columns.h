@@ -1,4 +1,4 @@
-/* The columns of the regression of the method MatchedFilter.
+/* The columns of the regression of the method FilteredRegression.
  *
  * Take the motor (3) with Coulomb friction, and let its data B and D_theta have the relative errors
  * b and d:
@@ -69,7 +69,7 @@ int sh_columns_count(const sh_parameters *p);
 void sh_columns_list(const sh_parameters *p, sh_column *column);
 
 /* Sets the columns and the nominal curve. There must not be more than SH_MAX_COLUMNS. */
-void sh_columns_start(sh_matched_state *state, const sh_parameters *p);
+void sh_columns_start(sh_regression_state *state, const sh_parameters *p);
 
 /* The group of a column, 0: it is always used. */
 int sh_column_group(const sh_column *column);
@@ -77,7 +77,7 @@ int sh_column_group(const sh_column *column);
 /* Whether the column is one of the group, and the deformation has been large enough to distinguish
  * it from the spring.
  */
-int sh_column_can_join(const sh_matched_state *state, const sh_parameters *p,
+int sh_column_can_join(const sh_regression_state *state, const sh_parameters *p,
                        const sh_column *column, int group);
 
 /* Whether the column is part of the torque of the spring. */
@@ -96,11 +96,11 @@ int sh_column_is_of_equation(const sh_column *column);
  * phi        deformation [rad]
  * set_point  [1]
  */
-void sh_columns_input(sh_matched_state *state, const sh_parameters *p, sh_real theta, sh_real q,
+void sh_columns_input(sh_regression_state *state, const sh_parameters *p, sh_real theta, sh_real q,
                       sh_real phi, sh_real set_point);
 
 /* Moves the elements of hysteresis by a change of the deformation [rad]. */
-void sh_columns_move_plays(sh_matched_state *state, const sh_parameters *p, sh_real change);
+void sh_columns_move_plays(sh_regression_state *state, const sh_parameters *p, sh_real change);
 
 /* How the filter of a column takes its signal. */
 enum {
@@ -115,7 +115,7 @@ int sh_column_signal(const sh_column *column);
  *
  * Returns y [N.m]. The last entry of x is y less the torque of the nominal curve.
  */
-sh_real sh_columns_row(const sh_matched_state *state, const sh_parameters *p, sh_real *x);
+sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x);
 
 /* Removes from the row x what is noise of the torque, as far as it is known, where it would be
  * mistaken for friction: the noise of y and that of |tau_f| are the same.
@@ -124,10 +124,10 @@ sh_real sh_columns_row(const sh_matched_state *state, const sh_parameters *p, sh
  *
  * Returns by how much this changes the prediction of y [N.m].
  */
-sh_real sh_columns_remove_noise(const sh_matched_state *state, const sh_parameters *p,
+sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_parameters *p,
                                 sh_real noise, sh_real *x);
 
 /* Torque of the spring for the estimate beta at the signals in work.F [N.m]. */
-sh_real sh_columns_torque(const sh_matched_state *state);
+sh_real sh_columns_torque(const sh_regression_state *state);
 
 #endif

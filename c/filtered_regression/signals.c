@@ -6,24 +6,25 @@
 #include "real_math.h"
 #include "state_variable_filter.h"
 
-sh_real sh_matched_bandwidth(const sh_parameters *p)
+sh_real sh_regression_bandwidth(const sh_parameters *p)
 {
     const sh_real count = sh_encoder_count(p->encoder.theta);
     const sh_real rounding = p->motor.B * sh_fabs(p->motor.gamma) * count / sh_sqrt(12);
 
     if (sh_is_measured(p) || !(rounding > 0)) {
-        return p->matched.bandwidth;
+        return p->regression.bandwidth;
     }
-    return sh_fmax(sh_fmin(p->matched.bandwidth, (sh_real)1.42 * sh_sqrt(p->noise.tau / rounding)),
-                   (sh_real)1e-4 / p->samplePeriod);
+    return sh_fmax(
+        sh_fmin(p->regression.bandwidth, (sh_real)1.42 * sh_sqrt(p->noise.tau / rounding)),
+        (sh_real)1e-4 / p->samplePeriod);
 }
 
-void sh_signals_start(sh_matched_state *state, const sh_parameters *p)
+void sh_signals_start(sh_regression_state *state, const sh_parameters *p)
 {
     state->modality = p->modality;
     state->count = sh_encoder_count(p->encoder.theta);
     state->count_q = sh_encoder_count(p->encoder.q);
-    state->design = sh_state_variable_filter_design(sh_matched_bandwidth(p), p->samplePeriod);
+    state->design = sh_state_variable_filter_design(sh_regression_bandwidth(p), p->samplePeriod);
     state->gain_second = sh_state_variable_filter_noise(&state->design);
     state->history.starting = SH_FORGOTTEN / state->design.w;
     state->history.excess = state->history.excess_mean = 1;
@@ -31,19 +32,19 @@ void sh_signals_start(sh_matched_state *state, const sh_parameters *p)
     state->history.phi_max = -SH_LARGE;
 }
 
-void sh_signals_unsettle(sh_matched_state *state)
+void sh_signals_unsettle(sh_regression_state *state)
 {
     state->history.starting = 0;
     state->history.settling = SH_FORGOTTEN / state->design.w;
 }
 
-void sh_signals_resume(sh_matched_state *state)
+void sh_signals_resume(sh_regression_state *state)
 {
     state->begun = 0;
     sh_signals_unsettle(state);
 }
 
-void sh_signals_deform(sh_matched_state *state, const sh_parameters *p, sh_real phi)
+void sh_signals_deform(sh_regression_state *state, const sh_parameters *p, sh_real phi)
 {
     sh_history *history = &state->history;
     const sh_real change = state->begun ? phi - history->phi : 0;
@@ -59,7 +60,7 @@ void sh_signals_deform(sh_matched_state *state, const sh_parameters *p, sh_real 
 /* The first sample of the filters. They assume a motor at rest, at any torque. So theta starts at
  * its value, and the signals of the equation start from zero: the equation holds from now on.
  */
-static void begin_all(sh_matched_state *state, sh_real theta, sh_real torque)
+static void begin_all(sh_regression_state *state, sh_real theta, sh_real torque)
 {
     int i;
 
@@ -85,7 +86,7 @@ static void begin_all(sh_matched_state *state, sh_real theta, sh_real torque)
 }
 
 /* Friction that a load adds acts against the motion: its signal is the mean over the sample. */
-static sh_real load_friction(const sh_matched_state *state)
+static sh_real load_friction(const sh_regression_state *state)
 {
     /* Before the stiffness is known, the torque of the spring is taken from the motor data. */
     const sh_real tau_e = state->stiffness_known ? sh_columns_torque(state) : state->y;
@@ -93,7 +94,7 @@ static sh_real load_friction(const sh_matched_state *state)
     return -sh_fabs(tau_e) * state->motion.sign;
 }
 
-static void advance_columns(sh_matched_state *state)
+static void advance_columns(sh_regression_state *state)
 {
     const sh_filter_design *design = &state->design;
     int i;
@@ -110,7 +111,7 @@ static void advance_columns(sh_matched_state *state)
     }
 }
 
-static void advance_all(sh_matched_state *state, const sh_parameters *p, sh_real theta,
+static void advance_all(sh_regression_state *state, const sh_parameters *p, sh_real theta,
                         sh_real torque)
 {
     const sh_filter_design *design = &state->design;
@@ -129,14 +130,15 @@ static void advance_all(sh_matched_state *state, const sh_parameters *p, sh_real
     if (state->has_nominal) {
         sh_state_variable_filter_step(&state->nominal, design, state->tau_nominal);
     }
-    sh_motion_sign_step(&state->motion, theta, state->count, p->matched.slow * design->T);
+    sh_motion_sign_step(&state->motion, theta, state->count, p->regression.slow * design->T);
     state->history.unsure = state->motion.unknown > 0 ? state->history.unsure + 1 : 0;
     sh_state_variable_filter_step_mean(&state->friction, design, state->motion.sign);
     sh_state_variable_filter_step_mean(&state->unknown, design, state->motion.unknown);
     advance_columns(state);
 }
 
-void sh_signals_step(sh_matched_state *state, const sh_parameters *p, sh_real theta, sh_real torque)
+void sh_signals_step(sh_regression_state *state, const sh_parameters *p, sh_real theta,
+                     sh_real torque)
 {
     if (state->begun) {
         advance_all(state, p, theta, torque);
@@ -146,7 +148,7 @@ void sh_signals_step(sh_matched_state *state, const sh_parameters *p, sh_real th
     state->torque_before = torque;
 }
 
-sh_real sh_signals_roughness(const sh_matched_state *state)
+sh_real sh_signals_roughness(const sh_regression_state *state)
 {
     const sh_real *theta = state->theta_before;
     const sh_real fourth = theta[0] - 4 * theta[1] + 6 * theta[2] - 4 * theta[3] + theta[4];

@@ -191,7 +191,7 @@ void sh_columns_list(const sh_parameters *p, sh_column *column)
     list_columns(p, &list);
 }
 
-void sh_columns_start(sh_matched_state *state, const sh_parameters *p)
+void sh_columns_start(sh_regression_state *state, const sh_parameters *p)
 {
     const int n = p->rls.n, m = p->rls.m;
     int i, j;
@@ -207,7 +207,7 @@ void sh_columns_start(sh_matched_state *state, const sh_parameters *p)
     }
 }
 
-int sh_column_can_join(const sh_matched_state *state, const sh_parameters *p,
+int sh_column_can_join(const sh_regression_state *state, const sh_parameters *p,
                        const sh_column *column, int group)
 {
     /* What is wider than a quarter of the covered range looks like the spring. */
@@ -238,7 +238,7 @@ static sh_real clip(sh_real x, sh_real limit)
     return sh_fmin(sh_fmax(x, -limit), limit);
 }
 
-void sh_columns_move_plays(sh_matched_state *state, const sh_parameters *p, sh_real change)
+void sh_columns_move_plays(sh_regression_state *state, const sh_parameters *p, sh_real change)
 {
     int i;
 
@@ -253,7 +253,7 @@ typedef struct {
 } joint_point;
 
 /* Signal of a column, and its slope over phi. */
-static sh_real input_of(const sh_matched_state *state, const sh_parameters *p,
+static sh_real input_of(const sh_regression_state *state, const sh_parameters *p,
                         const sh_column *column, const joint_point *at, sh_real *slope)
 {
     const int kind = column->kind;
@@ -301,7 +301,7 @@ static sh_real input_of(const sh_matched_state *state, const sh_parameters *p,
     }
 }
 
-void sh_columns_input(sh_matched_state *state, const sh_parameters *p, sh_real theta, sh_real q,
+void sh_columns_input(sh_regression_state *state, const sh_parameters *p, sh_real theta, sh_real q,
                       sh_real phi, sh_real set_point)
 {
     const joint_point at = {theta, q, phi, phi / p->range.phi, set_point / p->range.setPoint};
@@ -342,7 +342,7 @@ typedef struct {
     int is_measured;
 } motor_terms;
 
-static motor_terms motor_terms_of(const sh_matched_state *state, const sh_parameters *p)
+static motor_terms motor_terms_of(const sh_regression_state *state, const sh_parameters *p)
 {
     const sh_motor_parameters *motor = &p->motor;
     const sh_real gamma2 = motor->gamma * motor->gamma;
@@ -360,14 +360,14 @@ static motor_terms motor_terms_of(const sh_matched_state *state, const sh_parame
 }
 
 /* Filtered torque in y [N.m]. */
-static sh_real filtered_torque(const sh_matched_state *state, const motor_terms *motor)
+static sh_real filtered_torque(const sh_regression_state *state, const motor_terms *motor)
 {
     return motor->gain * (motor->is_measured ? sh_state_variable_filter_output(&state->torque)
                                              : as_if_smooth(&state->torque, &state->design));
 }
 
 /* Friction by a torque of the motor behind the gear, filtered [N.m]. */
-static sh_real drive_friction(const sh_matched_state *state, sh_real torque)
+static sh_real drive_friction(const sh_regression_state *state, sh_real torque)
 {
     return -sh_fabs(torque) * as_if_smooth(&state->friction, &state->design);
 }
@@ -378,7 +378,7 @@ static sh_real drive_friction(const sh_matched_state *state, sh_real torque)
 static const sh_real LARGEST_ENCODER_ERROR = SH_FOR(SH_REAL, 1e74, 1e14f); /* [N.m] */
 
 /* Error of y by an encoder of the motor that is wrong by the signal of a filter [N.m]. */
-static sh_real encoder_error(const sh_matched_state *state, const sh_parameters *p,
+static sh_real encoder_error(const sh_regression_state *state, const sh_parameters *p,
                              const sh_state_variable_filter *filter)
 {
     const sh_motor_parameters *motor = &p->motor;
@@ -391,7 +391,7 @@ static sh_real encoder_error(const sh_matched_state *state, const sh_parameters 
 }
 
 /* Entry of a column in the row. */
-static sh_real entry_of(const sh_matched_state *state, const sh_parameters *p,
+static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p,
                         const motor_terms *motor, const sh_column *column,
                         const sh_state_variable_filter *filter)
 {
@@ -432,7 +432,7 @@ static sh_real entry_of(const sh_matched_state *state, const sh_parameters *p,
     }
 }
 
-sh_real sh_columns_row(const sh_matched_state *state, const sh_parameters *p, sh_real *x)
+sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x)
 {
     const motor_terms motor = motor_terms_of(state, p);
     const sh_real torque = filtered_torque(state, &motor);
@@ -450,7 +450,7 @@ sh_real sh_columns_row(const sh_matched_state *state, const sh_parameters *p, sh
     return y;
 }
 
-sh_real sh_columns_remove_noise(const sh_matched_state *state, const sh_parameters *p,
+sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_parameters *p,
                                 sh_real noise, sh_real *x)
 {
     const sh_real torque = x[state->size + SH_SIDE_GAIN];
@@ -470,7 +470,7 @@ sh_real sh_columns_remove_noise(const sh_matched_state *state, const sh_paramete
 
 /* ---- what the estimate means ------------------------------------------------------------- */
 
-sh_real sh_columns_torque(const sh_matched_state *state)
+sh_real sh_columns_torque(const sh_regression_state *state)
 {
     sh_real torque = state->tau_nominal;
     int i;

@@ -1,4 +1,4 @@
-"""MatchedFilter of this package, with parameters as docs/matched-filter.md tells to choose them.
+"""FilteredRegression of this package, with parameters as docs/filtered-regression.md advises.
 
 What the data sheet says becomes ranges, priors and noise; all else keeps its start value.
 """
@@ -16,7 +16,7 @@ def estimate(log: JointLog) -> Estimate:
     found, seconds = replayed(
         log,
         {
-            "method": "MatchedFilter",
+            "method": "FilteredRegression",
             "range.phi": known.range_phi,
             "range.setPoint": spring(log).range_theta_c,
             "prior.tau_e": known.range_tau_e,

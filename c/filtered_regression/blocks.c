@@ -22,7 +22,7 @@ static sh_real window(sh_real k, sh_real length)
     return 16 * sh_square(x * (1 - x));
 }
 
-void sh_blocks_start(sh_matched_state *state)
+void sh_blocks_start(sh_regression_state *state)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_filter_design *design = &state->design;
@@ -63,7 +63,7 @@ void sh_blocks_interrupt(sh_blocks *blocks, int size)
 }
 
 /* Sets work.row to the mean row of the block. Returns its sum of squares. */
-static sh_real mean_row(sh_matched_state *state)
+static sh_real mean_row(sh_regression_state *state)
 {
     sh_real *const row = state->work.row;
     sh_real squares = 0;
@@ -76,7 +76,7 @@ static sh_real mean_row(sh_matched_state *state)
     return squares;
 }
 
-static void take_mean_row(sh_matched_state *state, sh_information *a, sh_real w)
+static void take_mean_row(sh_regression_state *state, sh_information *a, sh_real w)
 {
     (void)mean_row(state);
     (void)sh_information_take(a, state->work.row, w);
@@ -90,7 +90,7 @@ void sh_blocks_fade(sh_blocks *blocks, sh_real keep)
 }
 
 /* A block is full. Rounding of theta enters as if all samples had the same weight. */
-static void end(sh_matched_state *state, const sh_parameters *p)
+static void end(sh_regression_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_motor_parameters *motor = &p->motor;
@@ -118,7 +118,7 @@ static void end(sh_matched_state *state, const sh_parameters *p)
     sh_blocks_interrupt(blocks, state->size);
 }
 
-void sh_blocks_take(sh_matched_state *state, const sh_parameters *p, const sh_real *x, sh_real w,
+void sh_blocks_take(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w,
                     sh_real last)
 {
     sh_blocks *blocks = &state->blocks;
@@ -148,14 +148,14 @@ sh_real sh_blocks_threshold(sh_real N)
 /* Mean square of the errors of the recent blocks, if it is beyond chance; else 0, and while friction
  * or the curve changes, which they do not contain. The prior, which is among them, is subtracted.
  */
-static sh_real recent_misfit(sh_matched_state *state, const sh_parameters *p)
+static sh_real recent_misfit(sh_regression_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->recent_count;
     sh_real squares;
     int i;
 
-    if (N < SH_BLOCKS_FIRST || state->friction_drifts || p->matched.drift > 0) {
+    if (N < SH_BLOCKS_FIRST || state->friction_drifts || p->regression.drift > 0) {
         return 0;
     }
     squares = sh_information_squares(&blocks->recent, state->beta);
@@ -165,7 +165,7 @@ static sh_real recent_misfit(sh_matched_state *state, const sh_parameters *p)
     return squares > sh_blocks_threshold(N) ? squares / N : 0;
 }
 
-void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p)
+void sh_blocks_judge(sh_regression_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->count;
@@ -180,7 +180,7 @@ void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p)
         (N - (sh_real)state->live.information.size / 2);
     t = sh_blocks_threshold(N) / N;
     state->q = sh_fmax(q, recent_misfit(state, p));
-    if (!(p->matched.memory > 0)) { /* switched off */
+    if (!(p->regression.memory > 0)) { /* switched off */
         return;
     }
     state->variance_factor = sh_fmax(1, state->q);

@@ -1,4 +1,4 @@
-"""Numerical promises of the blocks of MatchedFilter: docs/proof/promises.md."""
+"""Numerical promises of the blocks of FilteredRegression: docs/proof/promises.md."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from c_library import Array, Estimator, Library
-from c_matched import factors
+from c_regression import factors
 from edges import LARGEST, SUBNORMAL, magnitudes
 from promises import c, often, reals
 
@@ -123,7 +123,7 @@ def test_a_weight_whose_square_overflows_leaves_the_blocks_finite(c: Library) ->
     z = np.zeros((2000, 5))
     z[:, 1], z[:, 4] = 1e-4 * np.sin(0.01 * k), 1e-2 * np.sin(0.01 * k)
     estimator.run(z)
-    blocks = estimator.state.method.matched.blocks
+    blocks = estimator.state.method.regression.blocks
     assert np.all(np.isfinite(factors(blocks.all)[1]))
 
 

@@ -1,4 +1,4 @@
-"""The method MatchedFilter: wrong motor data, drift, unknown errors, start and gaps."""
+"""The method FilteredRegression: wrong motor data, drift, unknown errors, start and gaps."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import pytest
 
 import c_library
 from c_library import Estimator, Library, load
-from c_matched import PLAIN, covariance
-from matched_joint import GAMMA, Joint, T
+from c_regression import PLAIN, covariance
 from oracle import MODEL, RESIDUAL, SENSOR
 from reference_plant import table1_recording
+from regression_joint import GAMMA, Joint, T
 
-PAPER2011, MATCHED_FILTER = 1, 2
-MATCHED = {"method": MATCHED_FILTER, "rls.n": 3}
-ALL = {**MATCHED, "prior.B": 0.1}
+PAPER2011, FILTERED_REGRESSION = 1, 2
+REGRESSION = {"method": FILTERED_REGRESSION, "rls.n": 3}
+ALL = {**REGRESSION, "prior.B": 0.1}
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def test_before_the_first_tick_the_estimate_is_the_prior(c: Library) -> None:
 def test_a_nominal_curve_is_the_prior_mean(c: Library) -> None:
     """GIVEN a nominal curve with an uncertainty of 30 % as a whole and an exact shape, THEN the
     stiffness before the first tick is that of the curve, with a standard deviation of 30 %."""
-    estimator = Estimator(c, {**MATCHED, "prior.nominal": 0.3})
+    estimator = Estimator(c, {**REGRESSION, "prior.nominal": 0.3})
     estimator.parameters.rls.eta_0[0][2] = 2 * 14220e-6
     estimator.parameters.prior.tau_e = 0.0
     c.lib.sh_estimator_start(estimator.state, estimator.parameters, estimator.estimate)
@@ -62,7 +62,7 @@ def test_errors_of_the_friction_are_estimated(c: Library, frequency: float, wron
     """GIVEN a parameter of viscous friction that is wrong by 10 %, and unknown Coulomb friction,
     THEN both are estimated, and the stiffness is right."""
     joint = Joint(frequency=frequency, amplitude=0.8 / frequency, tau_coulomb=0.015)
-    found = Estimator(c, {**MATCHED, "motor.D_theta": wrong * 1e-3}).run(joint.measurements())
+    found = Estimator(c, {**REGRESSION, "motor.D_theta": wrong * 1e-3}).run(joint.measurements())
     assert found["D_theta_hat"][-1] == pytest.approx(1e-3, abs=0.1 * abs(wrong - 1) * 1e-3)
     assert found["tau_coulomb_hat"][-1] == pytest.approx(0.015, rel=0.1)
     assert error(found, joint, 2.0) < 0.02
@@ -91,7 +91,7 @@ def test_rounding_alone_does_not_change_the_inertia(c: Library) -> None:
 @pytest.mark.parametrize("modality", [SENSOR, MODEL])
 def test_stiffness_is_estimated_from_other_sources_of_the_torque(c: Library, modality: int) -> None:
     joint = Joint(duration=4.0)
-    found = Estimator(c, {**MATCHED, "modality": modality}).run(joint.measurements())
+    found = Estimator(c, {**REGRESSION, "modality": modality}).run(joint.measurements())
     assert error(found, joint, 1.0) < 0.02
 
 
@@ -102,7 +102,7 @@ def test_stiffness_is_estimated_with_the_general_basis(c: Library, m: int) -> No
     if m == 1:  # a single transmission
         z[:, 2] = 0.0
         z[:, 3] += (joint.tau_e - 100 * joint.motion[3]) / GAMMA
-    values = {**MATCHED, "rls.symmetric": 0, "rls.n": 4, "rls.m": m}
+    values = {**REGRESSION, "rls.symmetric": 0, "rls.n": 4, "rls.m": m}
     found = Estimator(c, values).run(z)
     sigma = joint.sigma if m == 3 else np.full(len(z), 100.0)
     assert np.sqrt(np.mean((found["sigma"][3000:] / sigma[3000:] - 1) ** 2)) < 0.03
@@ -122,20 +122,22 @@ def test_the_error_agrees_with_the_standard_deviation(c: Library) -> None:
         )
         # The gain of the torque is exact here.
         exact = {"prior.torque_gain": 0.0}
-        values = {**MATCHED, **exact, "motor.D_theta": 1e-3 / (1 + 0.2 * rng.uniform(-1.7, 1.7))}
+        values = {**REGRESSION, **exact, "motor.D_theta": 1e-3 / (1 + 0.2 * rng.uniform(-1.7, 1.7))}
         found = Estimator(c, values).run(joint.measurements())[2000:]
         inside.append(np.abs(found["sigma"] - joint.sigma[2000:]) < 1.96 * found["sigma_std"])
     assert 0.85 < np.mean(inside) < 1.0
 
 
 def test_confident_compares_the_standard_deviation_with_the_threshold(c: Library) -> None:
-    found = Estimator(c, {**MATCHED, "confidence": 0.05}).run(Joint(duration=2.0).measurements())
+    found = Estimator(c, {**REGRESSION, "limit.relative_std": 0.05}).run(
+        Joint(duration=2.0).measurements()
+    )
     assert np.array_equal(found["confident"] == 1, found["sigma_std"] < 0.05 * found["sigma"])
     assert not found["confident"][0]
     assert found["confident"][-1]
 
 
-@pytest.mark.parametrize("method", [PAPER2011, MATCHED_FILTER])
+@pytest.mark.parametrize("method", [PAPER2011, FILTERED_REGRESSION])
 def test_a_stiffness_of_zero_is_not_confident(c: Library, method: int) -> None:
     """GIVEN a basis without slope, so that the stiffness and its standard deviation are 0, THEN
     the estimate is not confident."""
@@ -151,11 +153,11 @@ def test_a_stiffness_of_zero_is_not_confident(c: Library, method: int) -> None:
 
 def test_the_estimate_follows_a_spring_that_ages_and_does_not_change_at_rest(c: Library) -> None:
     joint = Joint(duration=30.0, stiffness=lambda t: 1 - 0.3 * np.clip((t - 10) / 10, 0, 1))
-    estimator = Estimator(c, {**MATCHED, "matched.drift": 1e-3})
+    estimator = Estimator(c, {**REGRESSION, "regression.drift": 1e-3})
     z = joint.measurements()
     found = estimator.run(z)
     assert error(found, joint, 20.0) < 0.05
-    assert error(Estimator(c, MATCHED).run(z), joint, 20.0) > 0.2
+    assert error(Estimator(c, REGRESSION).run(z), joint, 20.0) > 0.2
 
     rest = z[-1:].repeat(1000, 0)
     rest[:, 1] = rest[:, 0]
@@ -170,7 +172,7 @@ def test_the_estimate_follows_a_spring_that_ages_and_does_not_change_at_rest(c: 
 
 
 def test_no_variance_grows_beyond_the_prior(c: Library) -> None:
-    estimator = Estimator(c, {**ALL, "matched.drift": 1e3})
+    estimator = Estimator(c, {**ALL, "regression.drift": 1e3})
     estimator.run(Joint(deformation=0.005).measurements())
     assert np.all(np.diag(covariance(estimator)) <= 1 + 1e-9)
     assert np.all(np.linalg.eigvalsh(covariance(estimator)) > 0)
@@ -188,7 +190,7 @@ def test_a_long_rest_does_not_make_the_estimate_more_certain_than_its_rounding(c
     z = np.zeros((1000, 5))
     z[:, 1] = count
     z[:, 3] = -sigma * 0.6 * count / GAMMA
-    values = {**MATCHED, **constant, "prior.D_theta": 0.0, "prior.tau_coulomb": 0.0}
+    values = {**REGRESSION, **constant, "prior.D_theta": 0.0, "prior.tau_coulomb": 0.0}
     estimator = Estimator(c, values)
     estimator.repeat(z, 1_000_000)
     assert estimator.estimate.sigma == pytest.approx(0.6 * sigma, rel=0.2)
@@ -202,7 +204,7 @@ def test_the_last_digit_of_a_position_does_not_matter(c: Library, modality: int)
     z = table1_recording().measurements()[:2000]
     other = z.copy()
     other[:, 1] += 1e-13 * np.random.default_rng(4).normal(size=len(z))
-    values = {**MATCHED, "modality": modality}
+    values = {**REGRESSION, "modality": modality}
     one, two = (Estimator(c, values).run(samples)["sigma"][1000:] for samples in (z, other))
     np.testing.assert_allclose(one, two, rtol=1e-7)
 
@@ -211,7 +213,7 @@ def test_friction_of_unknown_sign_increases_the_standard_deviation(c: Library) -
     """GIVEN a motor that creeps, so that the friction has an unknown share of the torque, THEN
     the stiffness is less exact, and its standard deviation covers the error."""
     joint = Joint(frequency=0.1, amplitude=0.03, tau_coulomb=0.02)
-    found = Estimator(c, MATCHED).run(joint.measurements())[2000:]
+    found = Estimator(c, REGRESSION).run(joint.measurements())[2000:]
     error = np.abs(found["sigma"] - joint.sigma[2000:])
     assert np.mean(error < 1.96 * found["sigma_std"]) > 0.9
 
@@ -224,7 +226,7 @@ def test_the_estimate_of_a_joint_that_already_moves_is_updated_later(c: Library)
     filters have settled from their wrong initial state."""
     joint = Joint(duration=5.0)
     z = joint.measurements()[100:]
-    found = Estimator(c, MATCHED).run(z)
+    found = Estimator(c, REGRESSION).run(z)
     assert np.all(found["sigma"][1:30] == 0)
     sigma = joint.sigma[100:]
     assert np.max(np.abs(found["sigma"][1000:] / sigma[1000:] - 1)) < 0.03
@@ -234,7 +236,7 @@ def test_the_estimate_continues_after_lost_samples(c: Library) -> None:
     joint = Joint(duration=6.0)
     z = joint.measurements()
     z[3000:3050, 0] = math.nan
-    found = Estimator(c, MATCHED).run(z)
+    found = Estimator(c, REGRESSION).run(z)
     assert not np.any(found["valid"][3000:3050])
     assert np.all(found["valid"][3050:])
     assert np.all(found["a"][3052:3080] == 0)  # no update while the filters settle
@@ -244,7 +246,7 @@ def test_the_estimate_continues_after_lost_samples(c: Library) -> None:
 def test_the_filters_start_again_when_the_modality_changes(c: Library) -> None:
     joint = Joint(duration=6.0)
     z = joint.measurements()
-    estimator = Estimator(c, MATCHED)
+    estimator = Estimator(c, REGRESSION)
     estimator.run(z[:3000])
     c.set(estimator.parameters, "modality", SENSOR)
     found = estimator.run(z[3000:])
@@ -257,7 +259,7 @@ def test_the_filters_start_again_when_the_modality_changes(c: Library) -> None:
 def test_outputs_stay_finite_after_huge_measurements(c: Library, huge: float) -> None:
     z = Joint(duration=1.0).measurements()
     z[300] = huge
-    estimator = Estimator(c, {**ALL, "matched.drift": 1e-2})
+    estimator = Estimator(c, {**ALL, "regression.drift": 1e-2})
     found = estimator.run(z)
     assert all(np.all(np.isfinite(found[name])) for name in ("sigma", "sigma_std", "eta", "tau_e"))
     assert np.all(np.isfinite(covariance(estimator)))
@@ -309,13 +311,19 @@ def test_the_standard_deviation_of_the_paper_is_that_of_white_noise(c: Library) 
 def test_torque_and_stiffness_are_those_of_the_coefficients(c: Library, symmetric: int) -> None:
     """GIVEN a nominal curve, a spring with more powers than rls.n and rls.m have, and a joint with
     damping and a bias, THEN tau_e and sigma are the polynomial with eta, of the spring alone."""
-    values = {**MATCHED, "rls.symmetric": symmetric, "rls.n": 2, "rls.m": 2, "prior.nominal": 0.3}
+    values = {
+        **REGRESSION,
+        "rls.symmetric": symmetric,
+        "rls.n": 2,
+        "rls.m": 2,
+        "prior.nominal": 0.3,
+    }
     estimator = Estimator(c, {**values, "prior.gap": 0.0})
     for (i, j), value in np.ndenumerate(np.array([[5.0, 0.2], [30.0, 0.4]])):
         estimator.parameters.rls.eta_0[i][j] = value
     c.lib.sh_estimator_start(estimator.state, estimator.parameters, estimator.estimate)
-    matched = estimator.state.method.matched
-    matched.used[1] = matched.used[2] = 1  # powers of the deformation and of the set-point
+    regression = estimator.state.method.regression
+    regression.used[1] = regression.used[2] = 1  # powers of the deformation and of the set-point
     joint = Joint(duration=0.9)
     z = joint.measurements()
     for sample in z:
@@ -336,6 +344,6 @@ def test_it_learns_at_once_only_from_a_motor_at_rest(c: Library, velocity: float
     z = np.zeros((len(t), 5))
     z[:, 0] = z[:, 1] = np.round(velocity * t / (2 * np.pi / 40000)) * (2 * np.pi / 40000)
     z[:, 3] = GAMMA * 1e-3 * velocity
-    a = Estimator(c, MATCHED).run(z)["a"]
+    a = Estimator(c, REGRESSION).run(z)["a"]
     assert a[-1] == 1.0
     assert np.count_nonzero(a == 0.0) == (0 if velocity == 0 else math.ceil(12 / 350 / T))

@@ -1,4 +1,4 @@
-"""The state of MatchedFilter in C as dense numpy arrays."""
+"""The state of FilteredRegression in C as dense numpy arrays."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def dense(a: Any) -> tuple[Array, Array]:
 
 def covariance(estimator: Estimator) -> Array:
     """Covariance of the posterior, with prior variances of 1, in the order of `live.column`."""
-    matrix, _ = dense(estimator.state.method.matched.live.information)
+    matrix, _ = dense(estimator.state.method.regression.live.information)
     return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
 
@@ -45,11 +45,11 @@ def coefficients(estimator: Estimator) -> list[tuple[str, int]]:
         for name in dir(estimator.library.lib)
         if name.startswith("SH_COLUMN_")
     }
-    matched = estimator.state.method.matched
+    regression = estimator.state.method.regression
     n, orders = estimator.parameters.rls.n, len(estimator.estimate.eta[0])
     return [
         numbered(names[column.kind], column.index // orders, column.index % orders, n)
-        for column in matched.column[0 : matched.size]
+        for column in regression.column[0 : regression.size]
     ]
 
 

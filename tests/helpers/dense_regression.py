@@ -1,4 +1,5 @@
-"""MatchedFilter in numpy, written from the headers in c/matched_filter/, with dense matrices.
+"""FilteredRegression in numpy, written from the headers in c/filtered_regression/, with dense
+matrices.
 
 It shares nothing with the C code except the direction of motion, which has its own tests.
 """
@@ -244,7 +245,7 @@ class Oracle:
     def recent_misfit(self) -> float:
         """Of the recent blocks without the prior, if it is beyond chance."""
         N = self.blocks.recent_count
-        if N < 20 or self.friction_drifts or self.p["matched.drift"] > 0:
+        if N < 20 or self.friction_drifts or self.p["regression.drift"] > 0:
             return 0.0
         squares = self.blocks.recent.squares(self.beta) - float(self.beta @ self.beta)
         return squares / N if squares > threshold(N) else 0.0
@@ -256,7 +257,7 @@ class Oracle:
             return
         whole = self.whole_misfit()
         self.q = max(whole, self.recent_misfit())
-        if self.p["matched.memory"] > 0:
+        if self.p["regression.memory"] > 0:
             self.factor = max(1.0, self.q)
             t = threshold(N) / N
             if whole > t:
@@ -292,7 +293,7 @@ class Oracle:
             self.walk_friction(self.data, time)
 
     def forget(self, time: float) -> None:
-        blocks, memory, drift = self.blocks, self.p["matched.memory"], self.p["matched.drift"]
+        blocks, memory, drift = self.blocks, self.p["regression.memory"], self.p["regression.drift"]
         gained, blocks.gained = blocks.gained, 0.0
         keep = math.exp(-10 * gained / memory) if memory else 1.0
         blocks.recent.fade(keep)

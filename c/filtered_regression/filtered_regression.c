@@ -1,4 +1,4 @@
-/* Method MatchedFilter: one tick, and what its estimate means. The regression is that of columns.h.
+/* Method FilteredRegression: one tick, and what its estimate means. The regression is that of columns.h.
  */
 #include <stddef.h>
 
@@ -22,12 +22,12 @@ static const sh_real KNOWN = (sh_real)0.2;
  */
 static const sh_real LARGEST_POWER = 32, LEAST_LIMIT = 2;
 
-static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
+static int check_filtered_regression(const sh_parameters *p, sh_violation *violation)
 {
-    const sh_real wT = p->matched.bandwidth * p->samplePeriod;
+    const sh_real wT = p->regression.bandwidth * p->samplePeriod;
 
     if (wT < (sh_real)1e-4 || wT >= 2) {
-        return sh_violates(violation, "matched.bandwidth", p->matched.bandwidth,
+        return sh_violates(violation, "regression.bandwidth", p->regression.bandwidth,
                            ">= 1e-4 / samplePeriod and < 2 / samplePeriod");
     }
     if (!(p->prior.tau_e > 0) && !(sh_has_nominal_curve(p) && p->prior.nominal > 0)) {
@@ -42,7 +42,7 @@ static int check_matched_filter(const sh_parameters *p, sh_violation *violation)
     return 0;
 }
 
-static sh_real largest_deformation_matched_filter(const sh_parameters *p)
+static sh_real largest_deformation_filtered_regression(const sh_parameters *p)
 {
     const int highest = sh_scaled_basis_power(p->rls.symmetric, p->rls.n - 1);
 
@@ -85,7 +85,7 @@ static sh_real *coefficient_of(joint_coefficients *joint, int kind)
 /* Sets the coefficients eta of setPoint^j phi^e in the estimate, and returns those of all columns
  * that are not products of powers.
  */
-static joint_coefficients read_columns(const sh_matched_state *state, const sh_parameters *p,
+static joint_coefficients read_columns(const sh_regression_state *state, const sh_parameters *p,
                                        sh_real set_point, sh_estimate *estimate)
 {
     const sh_real l = set_point / p->range.setPoint;
@@ -126,8 +126,8 @@ static joint_coefficients read_columns(const sh_matched_state *state, const sh_p
 /* Adds the curve rls.eta_0, whose relative error is `error`. Without one, and without columns of the
  * basis, the coefficients stay 0.
  */
-static void add_nominal_curve(const sh_matched_state *state, const sh_parameters *p, sh_real error,
-                              sh_estimate *estimate)
+static void add_nominal_curve(const sh_regression_state *state, const sh_parameters *p,
+                              sh_real error, sh_estimate *estimate)
 {
     const int is_basis = p->prior.tau_e > 0;
     int i, j;
@@ -143,7 +143,7 @@ static void add_nominal_curve(const sh_matched_state *state, const sh_parameters
     }
 }
 
-static void report_joint(const sh_matched_state *state, const sh_parameters *p,
+static void report_joint(const sh_regression_state *state, const sh_parameters *p,
                          const joint_coefficients *joint, sh_estimate *estimate)
 {
     const sh_real stiffness = p->prior.tau_e / p->range.phi;
@@ -168,12 +168,12 @@ static void report_joint(const sh_matched_state *state, const sh_parameters *p,
 /* Why the estimate is not confident. Misfit and priors make sigma_std right; so there is no limit of
  * the misfit itself.
  */
-static int doubt_of(const sh_matched_state *state, const sh_parameters *p,
+static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
                     const joint_coefficients *joint, const sh_estimate *estimate)
 {
     int doubt = SH_DOUBT_NONE;
 
-    if (!(estimate->sigma_std < p->confidence * sh_fabs(estimate->sigma))) {
+    if (!(estimate->sigma_std < p->limit.relative_std * sh_fabs(estimate->sigma))) {
         doubt = state->variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
     }
     if (sh_fabs(estimate->phi) > state->largest_deformation) {
@@ -195,13 +195,13 @@ static int doubt_of(const sh_matched_state *state, const sh_parameters *p,
  * this instant in all samples. sigma is not corrected by it: slopes differ, and rounding is not
  * quite white. It widens the interval.
  */
-static sh_real attenuation(const sh_matched_state *state, const sh_stiffness_fit *fit)
+static sh_real attenuation(const sh_regression_state *state, const sh_stiffness_fit *fit)
 {
     return state->rounding * state->live.weight * fit->variance;
 }
 
 /* Sets all that follows from the fit. */
-static void report(const sh_matched_state *state, const sh_parameters *p, sh_real set_point,
+static void report(const sh_regression_state *state, const sh_parameters *p, sh_real set_point,
                    const sh_stiffness_fit *fit, sh_estimate *estimate)
 {
     const sh_real by_gain = p->prior.torque_gain * fit->by_gain;
@@ -223,13 +223,13 @@ static void report(const sh_matched_state *state, const sh_parameters *p, sh_rea
 
 /* ---- start and tick ---------------------------------------------------------------------- */
 
-static void start_matched_filter(sh_estimator *estimator, const sh_parameters *p,
-                                 sh_estimate *estimate)
+static void start_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
+                                      sh_estimate *estimate)
 {
-    sh_matched_state *state = &estimator->method.matched;
+    sh_regression_state *state = &estimator->method.regression;
     sh_stiffness_fit fit;
 
-    state->largest_deformation = largest_deformation_matched_filter(p);
+    state->largest_deformation = largest_deformation_filtered_regression(p);
     sh_signals_start(state, p);
     sh_columns_start(state, p);
     sh_information_start(&state->data, state->size, SH_INFORMATION_LEAST);
@@ -253,7 +253,7 @@ static sh_real sum_of_squares(const sh_real *x, int size)
 }
 
 /* Whether torque and stiffness do not overflow at the signals in work. */
-static int are_acceptable_signals(const sh_matched_state *state)
+static int are_acceptable_signals(const sh_regression_state *state)
 {
     return sum_of_squares(state->work.F, state->size) <= SH_LARGE &&
            sum_of_squares(state->work.dF, state->size) <= SH_LARGE &&
@@ -268,7 +268,7 @@ typedef struct {
 /* Learns from the row x in work, whose sum of squares is `size2`. Sets what follows from the
  * prediction. Returns 0 if the numbers are too large.
  */
-static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
+static int learn(sh_regression_state *state, const sh_parameters *p, sh_real size2,
                  innovation_of_sample *innovation)
 {
     sh_real *const x = state->work.x, *const row = state->work.row;
@@ -325,7 +325,7 @@ static int learn(sh_matched_state *state, const sh_parameters *p, sh_real size2,
 /* Whether the estimate may learn from this sample: the filters have settled, and at the start the
  * motor was at rest.
  */
-static int is_settled(sh_matched_state *state, const sh_parameters *p)
+static int is_settled(sh_regression_state *state, const sh_parameters *p)
 {
     state->history.settling = sh_fmax(state->history.settling - p->samplePeriod, 0);
     if (state->history.settling > 0) {
@@ -342,10 +342,11 @@ static int is_settled(sh_matched_state *state, const sh_parameters *p)
     return 0;
 }
 
-static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
-                               const sh_measurement *z, sh_real set_point, sh_estimate *estimate)
+static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
+                                    const sh_measurement *z, sh_real set_point,
+                                    sh_estimate *estimate)
 {
-    sh_matched_state *state = &estimator->method.matched;
+    sh_regression_state *state = &estimator->method.regression;
     const sh_real phi = z->q - z->theta;
     const sh_history before = state->history;
     innovation_of_sample innovation = {0, 0, 0};
@@ -398,9 +399,9 @@ static int tick_matched_filter(sh_estimator *estimator, const sh_parameters *p,
     return 1;
 }
 
-const sh_method sh_matched_filter = {
-    .largest_deformation = largest_deformation_matched_filter,
-    .check = check_matched_filter,
-    .start = start_matched_filter,
-    .tick = tick_matched_filter,
+const sh_method sh_filtered_regression = {
+    .largest_deformation = largest_deformation_filtered_regression,
+    .check = check_filtered_regression,
+    .start = start_filtered_regression,
+    .tick = tick_filtered_regression,
 };

@@ -1,4 +1,4 @@
-"""MatchedFilter on logs of the AwAS: motions it was not made for, odd beginnings, held torque,
+"""FilteredRegression on logs of the AwAS: motions it was not made for, odd beginnings, held torque,
 springs that age, long rest."""
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from scipy.signal import lfilter
 
 import sigmahat
 from c_library import Array, Estimator, Library, load
-from c_matched import covariance
+from c_regression import covariance
 from plant_runs import run_awas, times
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.fmi.recorder import Recorder
@@ -156,15 +156,15 @@ def test_follows_a_spring_that_ages_and_keeps_what_it_knows_at_rest(
     c: Library, ageing: tuple[Array, Array]
 ) -> None:
     z, sigma = ageing
-    values = {**SETTINGS, "prior.B": 0.1, "prior.tau_coulomb": 0.02, "matched.drift": 1e-3}
+    values = {**SETTINGS, "prior.B": 0.1, "prior.tau_coulomb": 0.02, "regression.drift": 1e-3}
     estimator = Estimator(c, values)
     estimates = estimator.run(z)
     late = slice(40_000, 60_001)
     assert msrep(sigma[late], estimates["sigma"][late]) <= 1.0
-    without = {**values, "matched.drift": 0.0}
+    without = {**values, "regression.drift": 0.0}
     # The misfit lets it forget the springs as they were, but later.
     forgets = msrep(sigma[late], Estimator(c, without).run(z)["sigma"][late])
-    keeps = Estimator(c, {**without, "matched.memory": 0.0}).run(z)["sigma"][late]
+    keeps = Estimator(c, {**without, "regression.memory": 0.0}).run(z)["sigma"][late]
     assert 1.0 < forgets < 10.0 < msrep(sigma[late], keeps)
 
     # The last second, with its noise, again and again: 10 minutes, then on to 1e6 ticks.

@@ -10,18 +10,18 @@ static const sh_real WALK = (sh_real)1e-3;
 
 static void fade_recent(sh_blocks *blocks, const sh_parameters *p, sh_real time)
 {
-    const sh_real keep = p->matched.memory > 0 ? sh_exp(-10 * time / p->matched.memory) : 1;
+    const sh_real keep = p->regression.memory > 0 ? sh_exp(-10 * time / p->regression.memory) : 1;
 
     sh_information_fade(&blocks->recent, keep, 1);
     blocks->recent_count *= keep;
 }
 
-static void forget(sh_matched_state *state, const sh_parameters *p, sh_real time)
+static void forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->recent_count;
     const int has_changed = N > SH_BLOCKS_FIRST && blocks->recent.rest < sh_blocks_threshold(N);
-    const sh_real memory = has_changed ? p->matched.memory / 5 : p->matched.memory;
+    const sh_real memory = has_changed ? p->regression.memory / 5 : p->regression.memory;
     const sh_real keep = sh_exp(-time / memory);
 
     sh_information_fade(&state->data, keep, SH_INFORMATION_LEAST);
@@ -31,7 +31,7 @@ static void forget(sh_matched_state *state, const sh_parameters *p, sh_real time
     state->rounding *= keep;
 }
 
-static void walk_friction(sh_matched_state *state, sh_information *a, sh_real variance)
+static void walk_friction(sh_regression_state *state, sh_information *a, sh_real variance)
 {
     sh_real *const v = state->work.own;
     int i, k;
@@ -49,7 +49,7 @@ static void walk_friction(sh_matched_state *state, sh_information *a, sh_real va
     }
 }
 
-void sh_forgetting_of_friction(sh_matched_state *state, sh_real time)
+void sh_forgetting_of_friction(sh_regression_state *state, sh_real time)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->count, parameters = (sh_real)state->size;
@@ -76,7 +76,8 @@ static int is_curve(const sh_column *column)
     return sh_column_is_torque(column) && !sh_column_is_gap(column);
 }
 
-static void drift(sh_matched_state *state, const sh_parameters *p, const sh_real *x, sh_real time)
+static void drift(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
+                  sh_real time)
 {
     sh_real *const v = state->work.own;
     sh_real power = 0, variance;
@@ -89,13 +90,13 @@ static void drift(sh_matched_state *state, const sh_parameters *p, const sh_real
     if (!(power > 0)) {
         return;
     }
-    variance = p->matched.drift * time / (power + state->R);
+    variance = p->regression.drift * time / (power + state->R);
     sh_information_walk(&state->data, v, variance, state->work.row);
     sh_information_walk(&state->blocks.all, v, variance, state->work.row);
     sh_information_walk(&state->blocks.walking, v, variance, state->work.row);
 }
 
-void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, const sh_real *x,
+void sh_forgetting_step(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
                         sh_real time)
 {
     const sh_real gained = state->blocks.gained;
@@ -105,7 +106,7 @@ void sh_forgetting_step(sh_matched_state *state, const sh_parameters *p, const s
     if (state->variance_factor > SH_CONTRADICTION) {
         forget(state, p, gained);
     }
-    if (p->matched.drift > 0) {
+    if (p->regression.drift > 0) {
         drift(state, p, x, time);
     }
 }

@@ -1,4 +1,4 @@
-"""Each column of MatchedFilter against its definition, by scipy on a motion that is given.
+"""Each column of FilteredRegression against its definition, by scipy on a motion that is given.
 
 The row of the regression of a joint that has what a column stands for is the column times its
 coefficient: so also the sign of every column, and of what it means, is tested.
@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from c_library import Array, Estimator, Library, load
-from c_matched import coefficients
+from c_regression import coefficients
 from dense_signals import GAPS, PLAYS, through
 
 T, W = 1e-3, 350.0
@@ -46,15 +46,15 @@ def rows(c: Library, **values: float) -> tuple[dict[tuple[str, int], Array], Arr
     eta_0 = np.zeros((8, 5))
     eta_0[0, 0], eta_0[1, 1] = 100.0, 3.0
     estimator = Estimator(c, {**VALUES, "rls.eta_0": eta_0.tolist(), **values})
-    matched = c.ffi.addressof(estimator.state.method, "matched")
-    row, found = np.zeros(matched.size + 2), []
+    regression = c.ffi.addressof(estimator.state.method, "regression")
+    row, found = np.zeros(regression.size + 2), []
     for sample in np.column_stack([theta, q, theta_c, tau, 5 * tau]):
         assert estimator.tick(sample)
-        c.lib.sh_columns_row(matched, estimator.parameters, c.pointer(row))
+        c.lib.sh_columns_row(regression, estimator.parameters, c.pointer(row))
         found.append(row.copy())
     array = np.array(found)
     names = coefficients(estimator)
-    by_name = {name: array[:, i] / matched.column[i].prior for i, name in enumerate(names)}
+    by_name = {name: array[:, i] / regression.column[i].prior for i, name in enumerate(names)}
     return by_name, array[:, -2], array[:, -1]
 
 
@@ -214,12 +214,12 @@ def test_a_prior_of_zero_removes_its_columns_and_no_other(c: Library, prior: str
 def test_the_slope_of_a_column_of_the_torque_is_its_derivative(c: Library, symmetric: int) -> None:
     """Dead zone, hysteresis and all that is not of the spring have none."""
     estimator = Estimator(c, {**VALUES, "rls.symmetric": symmetric})
-    matched = c.ffi.addressof(estimator.state.method, "matched")
+    regression = c.ffi.addressof(estimator.state.method, "regression")
 
     def signals(phi: float) -> tuple[Array, Array]:
-        c.lib.sh_columns_input(matched, estimator.parameters, 0.3, 0.2, phi, 80.0)
+        c.lib.sh_columns_input(regression, estimator.parameters, 0.3, 0.2, phi, 80.0)
         inputs, slopes = (
-            np.array(list(a[0 : matched.size])) for a in (matched.work.F, matched.work.dF)
+            np.array(list(a[0 : regression.size])) for a in (regression.work.F, regression.work.dF)
         )
         return inputs, slopes
 

@@ -10,8 +10,8 @@
 static const sh_real REMOVAL_ERROR = (sh_real)0.05;
 
 /* Whether a column is used, and not one of the trial. */
-static int is_used(const sh_matched_state *state, const sh_parameters *p, const sh_column *column,
-                   int trial)
+static int is_used(const sh_regression_state *state, const sh_parameters *p,
+                   const sh_column *column, int trial)
 {
     const int group = sh_column_group(column);
 
@@ -19,7 +19,7 @@ static int is_used(const sh_matched_state *state, const sh_parameters *p, const 
            (group != trial && state->used[group] && sh_column_can_join(state, p, column, group));
 }
 
-void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
+void sh_posterior_start(const sh_regression_state *state, const sh_parameters *p,
                         sh_posterior *posterior, int trial, sh_real weight)
 {
     int size = 0, i;
@@ -66,8 +66,8 @@ void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
     to->spread = from->spread;
 }
 
-sh_real sh_posterior_take(const sh_matched_state *state, sh_posterior *posterior, const sh_real *x,
-                          sh_real w, sh_real *row)
+sh_real sh_posterior_take(const sh_regression_state *state, sh_posterior *posterior,
+                          const sh_real *x, sh_real w, sh_real *row)
 {
     const int size = posterior->information.size;
     const sh_real weight = w * posterior->weight;
@@ -129,7 +129,7 @@ static sh_real square_over(sh_real v, sh_real D)
     return square <= SH_LARGEST_OUTPUT ? square / D : v / D * v;
 }
 
-sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *posterior)
+sh_stiffness_fit sh_posterior_evaluate(sh_regression_state *state, sh_posterior *posterior)
 {
     sh_information *a = &posterior->information;
     const int size = a->size, b = posterior->inertia;

@@ -1,11 +1,11 @@
-/* Method MatchedFilter: which states can be its own. Each condition is an `if` about a member, so that
+/* Method FilteredRegression: which states can be its own. Each condition is an `if` about a member, so that
  * an analyser knows the member behind it.
  */
 #include "columns.h"
 #include "method.h"
 
 /* Columns never change after the start. */
-static int are_columns(const sh_matched_state *state, const sh_parameters *p)
+static int are_columns(const sh_regression_state *state, const sh_parameters *p)
 {
     sh_column started[SH_MAX_COLUMNS] = {{0, 0, 0, 0}};
     const int count = sh_columns_count(p);
@@ -27,7 +27,7 @@ static int are_columns(const sh_matched_state *state, const sh_parameters *p)
 }
 
 /* The data of all samples have every column. */
-static int are_data(const sh_matched_state *state)
+static int are_data(const sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;
 
@@ -40,7 +40,7 @@ static int are_data(const sh_matched_state *state)
 }
 
 /* A posterior has a choice of the columns. */
-static int is_choice(const sh_matched_state *state, const sh_posterior *posterior)
+static int is_choice(const sh_regression_state *state, const sh_posterior *posterior)
 {
     int i;
 
@@ -57,7 +57,7 @@ static int is_choice(const sh_matched_state *state, const sh_posterior *posterio
 }
 
 /* A posterior knows where two of its columns are. */
-static int knows_motor(const sh_matched_state *state, const sh_posterior *posterior)
+static int knows_motor(const sh_regression_state *state, const sh_posterior *posterior)
 {
     int coulomb = -1, inertia = -1, i;
 
@@ -78,7 +78,7 @@ static int knows_motor(const sh_matched_state *state, const sh_posterior *poster
 }
 
 /* Where the present pass stands: passes.c takes the rows of the data, and then three more steps. */
-static int is_pass(const sh_matched_state *state)
+static int is_pass(const sh_regression_state *state)
 {
     if (state->row < 0 || state->row > state->size + 3 || state->alternate < 0 ||
         state->alternate > 1 || state->trial < 0 || state->trial >= SH_GROUPS ||
@@ -88,7 +88,7 @@ static int is_pass(const sh_matched_state *state)
     return 1;
 }
 
-static int are_flags(const sh_matched_state *state)
+static int are_flags(const sh_regression_state *state)
 {
     int i;
 
@@ -104,9 +104,9 @@ static int are_flags(const sh_matched_state *state)
     return 1;
 }
 
-int sh_matched_filter_check_state(const sh_estimator *estimator, const sh_parameters *p)
+int sh_filtered_regression_check_state(const sh_estimator *estimator, const sh_parameters *p)
 {
-    const sh_matched_state *state = &estimator->method.matched;
+    const sh_regression_state *state = &estimator->method.regression;
 
     if (state->modality < SH_MODALITY_RESIDUAL || state->modality > SH_MODALITY_MODEL ||
         !are_columns(state, p) || !are_data(state) || !is_choice(state, &state->live) ||

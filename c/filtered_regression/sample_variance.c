@@ -23,19 +23,19 @@ static const sh_real MEAN = 5;             /* time constant of the mean excess [
 /* Share of the variance of white noise that the filter leaves: T times the integral of h^2, for the
  * impulse response h of the filter, whose integral is 1.
  */
-static sh_real white(const sh_matched_state *state)
+static sh_real white(const sh_regression_state *state)
 {
     return (sh_real)(3.0 / 16) * state->design.w * state->design.T;
 }
 
 /* Sum over both encoders [rad2]: rounding of phi has a twelfth of it as its variance. */
-static sh_real counts_squared(const sh_matched_state *state)
+static sh_real counts_squared(const sh_regression_state *state)
 {
     return sh_square(state->count) + sh_square(state->count_q);
 }
 
 /* Variance of the friction whose sign is unknown [(N.m)2]. */
-static sh_real friction_variance(sh_matched_state *state, const sh_parameters *p)
+static sh_real friction_variance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_posterior *live = &state->live;
     const int C = live->coulomb;
@@ -64,7 +64,7 @@ static sh_real friction_variance(sh_matched_state *state, const sh_parameters *p
  * independent and c for what is the same, n samples have the information 1 / (R / n + c): so the
  * n-th sample has the variance R (1 + c n / R)^2.
  */
-sh_sample_variance sh_sample_variance_of(sh_matched_state *state, const sh_parameters *p)
+sh_sample_variance sh_sample_variance_of(sh_regression_state *state, const sh_parameters *p)
 {
     const sh_real rounding = sh_square(state->sigma) * counts_squared(state) / 12;
     sh_real R = rounding + sh_square(p->noise.tau_e), stays = rounding * state->history.resting;
@@ -84,18 +84,18 @@ sh_sample_variance sh_sample_variance_of(sh_matched_state *state, const sh_param
 }
 
 /* Noise of the torque after the filter, behind the gear [(N.m)2]. */
-static sh_real torque_noise(const sh_matched_state *state, const sh_parameters *p)
+static sh_real torque_noise(const sh_regression_state *state, const sh_parameters *p)
 {
     return white(state) * sh_square(p->motor.gamma * p->noise.tau);
 }
 
 /* Noise of the inertial torque after the filter by noise of theta [(N.m/rad)2]. */
-static sh_real inertial_noise(const sh_matched_state *state, const sh_parameters *p)
+static sh_real inertial_noise(const sh_regression_state *state, const sh_parameters *p)
 {
     return sh_square(sh_square(p->motor.gamma) * p->motor.B) * state->gain_second;
 }
 
-sh_real sh_sample_variance_of_torque(const sh_matched_state *state, const sh_parameters *p)
+sh_real sh_sample_variance_of_torque(const sh_regression_state *state, const sh_parameters *p)
 {
     const sh_real theta = sh_fmax(state->history.rough, sh_square(state->count) / 12);
     const sh_real torque = torque_noise(state, p);
@@ -104,7 +104,7 @@ sh_real sh_sample_variance_of_torque(const sh_matched_state *state, const sh_par
     return sum > 0 ? torque / sum : 0;
 }
 
-void sh_sample_variance_watch(sh_matched_state *state, const sh_parameters *p)
+void sh_sample_variance_watch(sh_regression_state *state, const sh_parameters *p)
 {
     const sh_real T = state->design.T;
     const sh_real torque = torque_noise(state, p);
@@ -121,12 +121,12 @@ void sh_sample_variance_watch(sh_matched_state *state, const sh_parameters *p)
         sh_fmin(T / MEAN, 1) * (state->history.excess - state->history.excess_mean);
 }
 
-sh_real sh_sample_variance_of_deformation(const sh_matched_state *state)
+sh_real sh_sample_variance_of_deformation(const sh_regression_state *state)
 {
     return white(state) * counts_squared(state) / 12;
 }
 
-sh_real sh_sample_variance_of_inertia(const sh_matched_state *state, const sh_parameters *p)
+sh_real sh_sample_variance_of_inertia(const sh_regression_state *state, const sh_parameters *p)
 {
     const sh_real *theta = state->theta_before;
     const sh_real moved = sh_fabs(theta[0] - theta[1]) > 0 ? 1 : 0;
@@ -138,7 +138,7 @@ sh_real sh_sample_variance_of_inertia(const sh_matched_state *state, const sh_pa
            (sh_signals_roughness(state) + ROUNDING * moved * sh_square(state->count) / 12);
 }
 
-int sh_sample_variance_contradicts_rest(sh_matched_state *state, const sh_parameters *p,
+int sh_sample_variance_contradicts_rest(sh_regression_state *state, const sh_parameters *p,
                                         const sh_real *x)
 {
     sh_posterior *live = &state->live;

@@ -16,13 +16,13 @@
 #include "sigmahat.h"
 
 /* Begins the first pass. */
-void sh_passes_start(sh_matched_state *state, const sh_parameters *p);
+void sh_passes_start(sh_regression_state *state, const sh_parameters *p);
 
 /* Takes a sample into the next posterior, and advances the pass in every second call.
  *
  * x  [size: state->size + SH_SIDES] row of the sample; used as memory
  * w  weight of the sample [1/(N.m)2]
  */
-void sh_passes_step(sh_matched_state *state, const sh_parameters *p, sh_real *x, sh_real w);
+void sh_passes_step(sh_regression_state *state, const sh_parameters *p, sh_real *x, sh_real w);
 
 #endif

@@ -22,7 +22,7 @@
 #include "sigmahat.h"
 
 /* Starts, after the filters and the columns. */
-void sh_blocks_start(sh_matched_state *state);
+void sh_blocks_start(sh_regression_state *state);
 
 /* Takes a sample that the estimate used.
  *
@@ -31,7 +31,7 @@ void sh_blocks_start(sh_matched_state *state);
  * last  factor by which errors that last increase its variance, >= 1: samples with the same error
  *       count as fewer
  */
-void sh_blocks_take(sh_matched_state *state, const sh_parameters *p, const sh_real *x, sh_real w,
+void sh_blocks_take(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w,
                     sh_real last);
 
 /* Leaves out the samples of the present block: they are not in sequence with the next one. */
@@ -41,7 +41,7 @@ void sh_blocks_interrupt(sh_blocks *blocks, int size);
 void sh_blocks_fade(sh_blocks *blocks, sh_real keep);
 
 /* Sets state->q and state->variance_factor by the estimate beta. */
-void sh_blocks_judge(sh_matched_state *state, const sh_parameters *p);
+void sh_blocks_judge(sh_regression_state *state, const sh_parameters *p);
 
 /* Sum of squares that is beyond chance for N blocks with no misfit: N (1 + 3 sqrt(2 / N)). */
 sh_real sh_blocks_threshold(sh_real N);

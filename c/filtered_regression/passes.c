@@ -14,7 +14,7 @@
 static const sh_real FIRST_GAIN = 3, GAIN_PER_BLOCK = (sh_real)0.05;
 
 /* Whether a group has a column that can be told from the spring. */
-static int has_columns(const sh_matched_state *state, const sh_parameters *p, int group)
+static int has_columns(const sh_regression_state *state, const sh_parameters *p, int group)
 {
     int i;
 
@@ -27,7 +27,7 @@ static int has_columns(const sh_matched_state *state, const sh_parameters *p, in
 }
 
 /* The next group that can be tried, 0 if there is none. */
-static int next_trial(sh_matched_state *state, const sh_parameters *p)
+static int next_trial(sh_regression_state *state, const sh_parameters *p)
 {
     int tries;
 
@@ -40,7 +40,7 @@ static int next_trial(sh_matched_state *state, const sh_parameters *p)
     return 0;
 }
 
-static void start_pass(sh_matched_state *state, const sh_parameters *p)
+static void start_pass(sh_regression_state *state, const sh_parameters *p)
 {
     sh_posterior *build = &state->build;
     /* Noise that is correlated is no evidence for columns. */
@@ -56,7 +56,7 @@ static void start_pass(sh_matched_state *state, const sh_parameters *p)
 }
 
 /* Chooses what the next pass is: a trial after every one that changes the estimate. */
-static void plan(sh_matched_state *state, const sh_parameters *p)
+static void plan(sh_regression_state *state, const sh_parameters *p)
 {
     const int was_trial = state->trial != 0;
 
@@ -67,13 +67,13 @@ static void plan(sh_matched_state *state, const sh_parameters *p)
     }
 }
 
-void sh_passes_start(sh_matched_state *state, const sh_parameters *p)
+void sh_passes_start(sh_regression_state *state, const sh_parameters *p)
 {
     state->variance_factor = state->q = 1;
     start_pass(state, p);
 }
 
-static void decide(sh_matched_state *state)
+static void decide(sh_regression_state *state)
 {
     sh_posterior *build = &state->build;
     const sh_information *a = &build->information;
@@ -95,7 +95,7 @@ static void decide(sh_matched_state *state)
     }
 }
 
-static void end_pass(sh_matched_state *state, const sh_parameters *p)
+static void end_pass(sh_regression_state *state, const sh_parameters *p)
 {
     if (state->trial != 0) {
         decide(state);
@@ -108,7 +108,7 @@ static void end_pass(sh_matched_state *state, const sh_parameters *p)
 }
 
 /* Takes the next row of the copy of the data. */
-static void take_row(sh_matched_state *state, sh_real *x)
+static void take_row(sh_regression_state *state, sh_real *x)
 {
     const sh_real w = sh_information_sample(&state->frozen, state->row, x);
 
@@ -117,12 +117,12 @@ static void take_row(sh_matched_state *state, sh_real *x)
 }
 
 /* Time since the data were last treated [s]. */
-static sh_real time_since(const sh_matched_state *state)
+static sh_real time_since(const sh_regression_state *state)
 {
     return state->since * state->design.T;
 }
 
-void sh_passes_step(sh_matched_state *state, const sh_parameters *p, sh_real *x, sh_real w)
+void sh_passes_step(sh_regression_state *state, const sh_parameters *p, sh_real *x, sh_real w)
 {
     state->since += 1;
     (void)sh_posterior_take(state, &state->build, x, w, state->work.row);

@@ -26,7 +26,7 @@
  * trial   group of columns that are put behind all others, so that they can be judged; 0: none
  * weight  of the data, one over the variance factor of the misfit, 0..1
  */
-void sh_posterior_start(const sh_matched_state *state, const sh_parameters *p,
+void sh_posterior_start(const sh_regression_state *state, const sh_parameters *p,
                         sh_posterior *posterior, int trial, sh_real weight);
 
 /* to = from, as far as it is used. */
@@ -40,8 +40,8 @@ void sh_posterior_copy(sh_posterior *to, const sh_posterior *from);
  *
  * Returns 1 / (1 + rho), where rho is the variance of the prediction over that of the sample.
  */
-sh_real sh_posterior_take(const sh_matched_state *state, sh_posterior *posterior, const sh_real *x,
-                          sh_real w, sh_real *row);
+sh_real sh_posterior_take(const sh_regression_state *state, sh_posterior *posterior,
+                          const sh_real *x, sh_real w, sh_real *row);
 
 /* Adds information [1] about b that is only rounding, and removes as much as possible.
  *
@@ -58,7 +58,7 @@ typedef struct {
 /* Computes the estimate beta of all columns, and how uncertain the stiffness is at the slopes in
  * work.dF.
  */
-sh_stiffness_fit sh_posterior_evaluate(sh_matched_state *state, sh_posterior *posterior);
+sh_stiffness_fit sh_posterior_evaluate(sh_regression_state *state, sh_posterior *posterior);
 
 /* Variance of a combination c [size: of the posterior] of its parameters.
  *
