@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -13,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from controllers import HOST, REPOSITORY, TARGETS, Target, cross_build, replay, run
-from gate import missing
+from gate import need
 from reference_plant import table1_recording
 
 PAPER, REGRESSION = "abcdef", "ghi"
@@ -179,8 +178,8 @@ def test_the_library_needs_only_memory_and_math_functions(
     """In single precision it also calls no function of the compiler for double."""
     tree = cross_build("tests/replay", TARGETS["Cortex-M4F"], real, ninja, folder)
     (library,) = tree.rglob("libsigmahat.a")
-    needed = set(re.findall(r" U (\w+)", run("arm-none-eabi-nm", str(library))))
-    own = set(re.findall(r" [TtDdRrBb] (\w+)", run("arm-none-eabi-nm", str(library))))
+    needed = set(re.findall(r" U (\w+)", run(need("arm-none-eabi-nm"), str(library))))
+    own = set(re.findall(r" [TtDdRrBb] (\w+)", run(need("arm-none-eabi-nm"), str(library))))
     suffix = "f" if real == "float" else ""
     names = ("exp", "log", "sin", "cos", "floor", "sqrt", "fmin", "fmax")
     functions = {name + suffix for name in names}
@@ -192,14 +191,13 @@ def test_the_library_needs_only_memory_and_math_functions(
 def test_the_library_has_no_globals(real: str, folder: Path, ninja: Path) -> None:
     tree = cross_build("tests/replay", TARGETS["Cortex-M4F"], real, ninja, folder)
     (library,) = tree.rglob("libsigmahat.a")
-    assert not re.findall(r" [DdBbCSs] \w+", run("arm-none-eabi-nm", str(library)))
+    assert not re.findall(r" [DdBbCSs] \w+", run(need("arm-none-eabi-nm"), str(library)))
 
 
 def test_the_commands_of_the_page_work(build: Path, tmp_path: Path) -> None:
     """Runs those of docs/controller.md in a new folder, with the build tool of the environment."""
     for tool in TARGETS["Cortex-M4F"].tools:
-        if shutil.which(tool) is None:
-            missing(tool, TARGETS["Cortex-M4F"].packages)
+        need(tool)
     for name in ("c", "cmake", "examples", "pyproject.toml"):
         (tmp_path / name).symlink_to(REPOSITORY / name)
     page = (REPOSITORY / "docs" / "controller.md").read_text(encoding="utf-8")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -11,15 +10,14 @@ import pytest
 import endurance
 from c_programs import compiler_with
 from endurance import BOUND, Case
-from gate import missing
+from gate import need
 
 INPUT_CYCLE = 10**5  # ticks; they contain all phases of the input
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    if shutil.which("gcc") is None:
-        missing("gcc", "apt-get install gcc")
+    need("gcc")
     return tmp_path_factory.mktemp("endurance")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -17,7 +16,7 @@ from hypothesis import strategies as st
 import oracle
 from c_library import Array, Library, covariance, load
 from c_sources import FOLDERS, LIBRARY
-from gate import missing
+from gate import need
 from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
 from reference_plant import table1_recording
 
@@ -36,14 +35,11 @@ def c(build: Path) -> Library:
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Library:
     """The recursion in the plain C that pair.h has for processors without pairs of doubles."""
-    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    if compiler is None:
-        missing("a C compiler", "apt-get install gcc")
     folder = tmp_path_factory.mktemp("plain")
     suffix = ".dylib" if sys.platform == "darwin" else ".so"
     subprocess.run(
         [
-            *(compiler, "-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared"),
+            *(need("cc"), "-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared"),
             *("-U__SSE2__", "-U__aarch64__"),
             *(f"-I{each}" for each in FOLDERS),
             *(str(LIBRARY / name) for name in ("least_squares.c", "ud_factor.c")),

@@ -7,13 +7,12 @@ import re
 import shlex
 import shutil
 import subprocess
-import sysconfig
 from pathlib import Path
 
 import pytest
 
 from c_library import Estimator, load
-from gate import missing
+from gate import need, need_of_environment
 from reference_plant import table1_recording
 
 REPOSITORY = Path(__file__).parents[2]
@@ -66,13 +65,6 @@ def run(*command: str | Path, **environment: str) -> str:
     return done.stdout
 
 
-def need(tool: str, package: str) -> str:
-    """Returns the tool. Ends the test if it is not installed."""
-    if shutil.which(tool) is None:
-        missing(tool, f"apt-get install {package}")
-    return tool
-
-
 def check(program: Path, build: Path, size: int) -> None:
     """Checks that the program gives the result of the library, in double to the last bit."""
     log = table1_recording().measurements()[:2000].copy()
@@ -119,13 +111,13 @@ def test_pkg_config_describes_the_installed_library(
     installed: tuple[Path, int], build: Path, tmp_path: Path
 ) -> None:
     prefix, size = installed
-    need("pkg-config", "pkg-config")
     (described,) = prefix.rglob("sigmahat.pc")
     flags = run(
-        *("pkg-config", "--cflags", "--libs", "sigmahat"), PKG_CONFIG_PATH=str(described.parent)
+        *(need("pkg-config"), "--cflags", "--libs", "sigmahat"),
+        PKG_CONFIG_PATH=str(described.parent),
     )
     (tmp_path / "main.c").write_text(PROGRAM.format(header="sigmahat.h"))
-    run("cc", tmp_path / "main.c", "-o", tmp_path / "consumer", *shlex.split(flags))
+    run(need("cc"), tmp_path / "main.c", "-o", tmp_path / "consumer", *shlex.split(flags))
     check(tmp_path / "consumer", build, size)
 
 
@@ -146,7 +138,7 @@ def test_the_pair_of_files_works_in_c_and_cpp(
     run(need(c, c), *alone, "-c", tmp_path / "sigmahat.c", "-o", library)
     for compiler, options, file in (
         (c, ["-std=c99", "-Wno-double-promotion"], "main.c"),
-        (need(cpp, cpp.replace("clang++", "clang")), ["-Wno-double-promotion"], "main.cpp"),
+        (need(cpp), ["-Wno-double-promotion"], "main.cpp"),
     ):
         (tmp_path / file).write_text(PROGRAM.format(header="sigmahat.h"))
         program = tmp_path / f"{file}.exe"
@@ -158,10 +150,7 @@ class Conan:
     """Conan of the environment, with a cache of its own that is empty."""
 
     def __init__(self, build: Path, home: Path) -> None:
-        found = shutil.which("conan", path=sysconfig.get_path("scripts"))
-        if found is None:
-            missing("Conan of the environment", "cmake --build build --target packages_test")
-        self._program = found
+        self._program = need_of_environment("conan")
         self._environment = {
             **os.environ,
             "CONAN_HOME": str(home),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 import subprocess
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +15,7 @@ from scipy import signal
 import c_sources
 from c_library import Estimator, Library, load
 from c_regression import PLAIN, coefficients, covariance
-from gate import missing
+from gate import need
 from misfit_joint import SETTINGS, STIFFNESS, MisfitJoint
 from regression_joint import Joint
 
@@ -327,21 +326,28 @@ int main(void)
 
 def compiled(folder: Path, *flags: str) -> list[str]:
     """What the program prints if it is compiled with these options, as words."""
-    if shutil.which("gcc") is None:
-        missing("gcc", "apt-get install gcc")
-    source, program = folder / "main.c", folder / "program"
+    source, main = folder / "main.c", folder / "program"
     source.write_text(PROGRAM)
     subprocess.run(
         [
-            *("gcc", "-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror", *flags),
+            *(
+                need("gcc"),
+                "-std=c99",
+                "-O2",
+                "-ffp-contract=off",
+                "-Wall",
+                "-Wextra",
+                "-Werror",
+                *flags,
+            ),
             *(f"-I{path}" for path in c_sources.FOLDERS),
             *map(str, [source, *c_sources.SOURCES]),
-            *("-lm", "-o", str(program)),
+            *("-lm", "-o", str(main)),
         ],
         check=True,
     )
     z = MisfitJoint(duration=3.0).measurements()
-    done = subprocess.run([program], input=z.tobytes(), capture_output=True, check=True)
+    done = subprocess.run([main], input=z.tobytes(), capture_output=True, check=True)
     return done.stdout.decode().split()
 
 

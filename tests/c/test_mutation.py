@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from gate import missing
+from gate import need
 from mutation import EQUIVALENT, SOURCES, candidates
 
 REPOSITORY = Path(__file__).parents[2]
@@ -25,8 +24,7 @@ def test_every_exemption_is_of_code_that_exists(file: str, code: str) -> None:
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="the mutants are tested in forks")
 @pytest.mark.slow("a dozen mutants of the library are compiled and tested")
 def test_nearly_every_wrong_token_is_noticed() -> None:
-    if shutil.which("gcc") is None:
-        missing("gcc", "apt-get install gcc")
+    need("gcc")
     command = [sys.executable, str(REPOSITORY / "tests" / "studies" / "mutation.py")]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
-import sysconfig
 from pathlib import Path
 
 import fmpy
 import pytest
 
 import c_sources
-from gate import missing
+from gate import need, need_of_environment
 
 REPOSITORY = Path(__file__).parents[2]
 SOURCES = [*c_sources.SOURCES, *c_sources.OTHERS]
@@ -49,9 +47,7 @@ def run(*command: str | Path) -> str:
 
 @every_source
 def test_clang_tidy(source: Path, build: Path) -> None:
-    if shutil.which("clang-tidy") is None:
-        missing("clang-tidy", "apt-get install clang-tidy")
-    text = run("clang-tidy", "--quiet", source, "--", *flags(source, build))
+    text = run(need("clang-tidy"), "--quiet", source, "--", *flags(source, build))
     found = re.findall(
         r"^\S+?([\w.]+):\d+:\d+: error: (.*) \[([^\n]*)\]\n(.*)$", text, re.MULTILINE
     )
@@ -68,11 +64,14 @@ def test_clang_tidy(source: Path, build: Path) -> None:
 
 
 def test_cppcheck(build: Path) -> None:
-    if shutil.which("cppcheck") is None:
-        missing("cppcheck", "apt-get install cppcheck")
     folders = [*c_sources.FOLDERS, *c_sources.OTHER_FOLDERS, build / "fmu" / "AwasPlant"]
     text = run(
-        *("cppcheck", "--quiet", "--std=c99", "--enable=warning,style,performance,portability"),
+        *(
+            need("cppcheck"),
+            "--quiet",
+            "--std=c99",
+            "--enable=warning,style,performance,portability",
+        ),
         *("--inconclusive", "--error-exitcode=1"),
         # A static variable without an initial value is zero, as these are meant to be.
         "--suppress=unassignedVariable",
@@ -86,11 +85,17 @@ def test_cppcheck(build: Path) -> None:
 
 @every_source
 def test_gcc_analyzer(source: Path, build: Path, tmp_path: Path) -> None:
-    if shutil.which("gcc") is None:
-        missing("gcc", "apt-get install gcc")
     output = tmp_path / "object.o"
     text = run(
-        "gcc", "-O2", "-fanalyzer", "-Werror", *flags(source, build), "-c", source, "-o", output
+        need("gcc"),
+        "-O2",
+        "-fanalyzer",
+        "-Werror",
+        *flags(source, build),
+        "-c",
+        source,
+        "-o",
+        output,
     )
     assert text == "", text
 
@@ -108,10 +113,7 @@ def c_files() -> list[Path]:
 
 def test_clang_format() -> None:
     """The layout is that of .clang-format, by the version that the environment pins."""
-    program = shutil.which("clang-format", path=sysconfig.get_path("scripts"))
-    if program is None:
-        missing("clang-format of the environment", "pip install clang-format")
-    text = run(program, "--dry-run", "--Werror", *c_files())
+    text = run(need_of_environment("clang-format"), "--dry-run", "--Werror", *c_files())
     assert text == "", text
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from command_line import one_line
-from gate import missing
+from gate import need
 from sigmahat.cli import cli, main
 from sigmahat.fmi import installed
 from sigmahat.paper.scenarios import SCENARIOS
@@ -167,9 +167,7 @@ def test_json_of_scenarios(tmp_path: Path) -> None:
 )
 def test_bash_completes(words: str, expected: set[str], tmp_path: Path) -> None:
     """With the line that the page says belongs into .bashrc."""
-    bash = shutil.which("bash")
-    if bash is None:
-        missing("bash", "apt-get install bash")
+    bash = need("bash")
     page = (Path(__file__).parents[2] / "docs" / "start.md").read_text(encoding="utf-8")
     (line,) = re.findall(r"`(eval [^`]*bash_source[^`]*)`", page)
     script = f"{line}\nCOMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n"

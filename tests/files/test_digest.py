@@ -7,8 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-import pytest
-
+from gate import need
 from sigmahat.files.digest import sha256
 
 
@@ -35,9 +34,9 @@ def test_of_a_folder(tmp_path: Path) -> None:
     assert sha256(bag) != found
 
 
-@pytest.mark.skipif(shutil.which("sha256sum") is None, reason="no sha256sum")
 def test_of_a_folder_is_that_of_the_list_of_sha256sum(tmp_path: Path) -> None:
     for name in ("b", "a"):
         (tmp_path / name).write_text(name)
-    listed = subprocess.run(["sha256sum", "a", "b"], cwd=tmp_path, capture_output=True, check=True)
+    command = [need("sha256sum"), "a", "b"]
+    listed = subprocess.run(command, cwd=tmp_path, capture_output=True, check=True)
     assert sha256(tmp_path) == hashlib.sha256(listed.stdout).hexdigest()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import pytest
 
 from c_programs import VERSIONS, compile_driver, compiler_with
 from fmi_runs import ESTIMATORS, PLANTS
-from gate import missing
+from gate import need
 
 # The versions of FMI share all code but their functions. One estimator and one plant go through
 # those of FMI 3.0.
@@ -64,9 +63,9 @@ def test_instances_do_not_influence_each_other_in_turn_and_in_threads(
 @one_of_each_kind
 @pytest.mark.slow("twenty thousand life cycles of an instance")
 def test_memory_does_not_grow(fmu: str, version: str, build: Path, folder: Path) -> None:
-    program = compile_driver("cycles", fmu, version, build, folder, compiler_with((), folder))
+    cycles = compile_driver("cycles", fmu, version, build, folder, compiler_with((), folder))
     # If only one byte were lost in each cycle, it would be more.
-    assert int(run(program, str(CYCLES))) * 1024 < 0.9 * CYCLES
+    assert int(run(cycles, str(CYCLES))) * 1024 < 0.9 * CYCLES
 
 
 @every_fmu_in_one_version
@@ -82,11 +81,10 @@ def test_sanitizers_find_no_leak_and_no_undefined_behaviour(
 @pytest.mark.slow("valgrind executes a hundred life cycles of an instance, tens of times slower")
 @one_of_each_kind
 def test_valgrind_finds_nothing(fmu: str, version: str, build: Path, folder: Path) -> None:
-    if shutil.which("valgrind") is None:
-        missing("valgrind", "apt-get install valgrind")
-    program = compile_driver("cycles", fmu, version, build, folder, compiler_with((), folder))
+    valgrind = need("valgrind")
+    cycles = compile_driver("cycles", fmu, version, build, folder, compiler_with((), folder))
     leaks = ["--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all"]
-    run("valgrind", "-q", "--error-exitcode=1", *leaks, program, "100")
+    run(valgrind, "-q", "--error-exitcode=1", *leaks, cycles, "100")
 
 
 @pytest.mark.slow("the fuzzer has a fixed time to try inputs")

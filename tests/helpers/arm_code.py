@@ -7,6 +7,8 @@ import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from gate import need
+
 _FUNCTION = re.compile(r"^([0-9a-f]+) <(.+)>:$")
 _PLACE = re.compile(r"^(?P<inlined>inlined by )?(?P<file>/.*):(?P<line>\d+)(?: \(.*\))?$")
 _INSTRUCTION = re.compile(r"^ +([0-9a-f]+):\t(\S+)(?:\t(.*))?$")
@@ -60,7 +62,7 @@ class Program:
 def read_program(elf: Path) -> Program:
     """Disassembles a program that was compiled with -g."""
     text = subprocess.run(
-        ["arm-none-eabi-objdump", "-d", "-l", "--inlines", "--no-show-raw-insn", str(elf)],
+        [need("arm-none-eabi-objdump"), "-d", "-l", "--inlines", "--no-show-raw-insn", str(elf)],
         capture_output=True,
         text=True,
         check=True,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import Any
 from selenium.webdriver import Chrome, ChromeOptions
 from selenium.webdriver.chrome.service import Service
 
-from gate import missing
+from gate import need
 
 _IDLE = """
 const done = arguments[0];
@@ -69,9 +68,7 @@ class Page:
 @contextmanager
 def opened(file: Path | str, width: int = 1400, dark: bool = False) -> Iterator[Page]:
     """Opens a file or an address, and waits until its plots are drawn, if it has some."""
-    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
-    if chromium is None or driver is None:
-        missing("chromium", "apt-get install chromium chromium-driver")
+    chromium, driver = need("chromium"), need("chromedriver")
     options = ChromeOptions()
     options.binary_location = chromium
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage"):

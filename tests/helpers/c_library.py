@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -16,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from c_sources import FOLDERS, HEADERS
-from gate import missing
+from gate import need
 
 Array = NDArray[np.float64]
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -30,11 +29,8 @@ MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 def declarations(*headers: Path) -> str:
     """The declarations of headers and of all that they include, from the C preprocessor."""
     folders = {*FOLDERS, *(header.parent for header in headers)}
-    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    if compiler is None:
-        missing("a C compiler", "apt-get install gcc")
     done = subprocess.run(
-        [compiler, "-E", "-P", "-x", "c", *(f"-I{folder}" for folder in folders), "-"],
+        [need("cc"), "-E", "-P", "-x", "c", *(f"-I{folder}" for folder in folders), "-"],
         input="".join(f'#include "{header.name}"\n' for header in headers),
         capture_output=True,
         text=True,

@@ -6,7 +6,6 @@ it fails.
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import tempfile
 from functools import cache
@@ -16,7 +15,7 @@ import fmpy
 
 from c_sources import FOLDERS, SOURCES
 from fmi_runs import ESTIMATORS
-from gate import missing
+from gate import is_installed, missing
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 FMU_SOURCES = REPOSITORY / "fmu_src"
@@ -101,7 +100,7 @@ def compiler_with(flags: tuple[str, ...], folder: Path) -> str:
     if any("fuzzer" in flag for flag in flags):
         text = "int LLVMFuzzerTestOneInput(void) { return 0; }\n"
     for compiler in ("clang", "gcc"):
-        if shutil.which(compiler) and _works(compiler, flags, folder, text):
+        if is_installed(compiler) and _works(compiler, flags, folder, text):
             return compiler
     missing(
         f"a compiler that builds programs with {' '.join(flags) or 'no options'}",

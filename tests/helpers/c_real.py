@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -11,7 +10,7 @@ from pathlib import Path
 
 from c_library import REPOSITORY, Library
 from c_sources import FOLDERS, SOURCES
-from gate import missing
+from gate import need
 
 REALS = ("double", "float")
 
@@ -20,14 +19,11 @@ REALS = ("double", "float")
 def compile_library(parent: Path, real: str) -> Library:
     """The library with `real` as the type of its numbers, compiled in a new folder of `parent`."""
     folder = Path(tempfile.mkdtemp(dir=parent))
-    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    if compiler is None:
-        missing("a C compiler", "apt-get install gcc")
     suffix = ".dylib" if sys.platform == "darwin" else ".so"
     drivers = REPOSITORY / "tests" / "drivers"
     subprocess.run(
         [
-            *(compiler, "-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared"),
+            *(need("cc"), "-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared"),
             *(f"-DSH_REAL={real}", f"-I{drivers}", *(f"-I{each}" for each in FOLDERS)),
             *map(str, [*SOURCES, drivers / "run.c"]),
             *("-lm", "-o", str(folder / f"libsigmahat_test_driver{suffix}")),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gate import missing
+from gate import need
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 OUTPUTS = (
@@ -29,22 +28,14 @@ class Target:
     toolchain: str | None
     """File in cmake/toolchains; None for this machine."""
     tools: tuple[str, ...] = ()
-    packages: str = ""
 
 
-_CORTEX_M = (
-    ("arm-none-eabi-gcc", "qemu-system-arm"),
-    ("apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm"),
-)
-_AARCH64 = (
-    ("aarch64-linux-gnu-gcc", "qemu-aarch64"),
-    ("apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"),
-)
+_CORTEX_M = ("arm-none-eabi-gcc", "qemu-system-arm")
 HOST = Target(None)
 TARGETS = {
-    "Cortex-M4F": Target("cortex-m4", *_CORTEX_M),
-    "Cortex-M7": Target("cortex-m7", *_CORTEX_M),
-    "aarch64": Target("aarch64", *_AARCH64),
+    "Cortex-M4F": Target("cortex-m4", _CORTEX_M),
+    "Cortex-M7": Target("cortex-m7", _CORTEX_M),
+    "aarch64": Target("aarch64", ("aarch64-linux-gnu-gcc", "qemu-aarch64")),
 }
 
 
@@ -57,8 +48,7 @@ def cross_build(
     sizes  each as SH_MAX_N=2; those of an estimator, see sigmahat.h
     """
     for tool in target.tools:
-        if shutil.which(tool) is None:
-            missing(tool, target.packages)
+        need(tool)
     tree = Path(tempfile.mkdtemp(dir=folder))
     toolchain = REPOSITORY / "cmake" / "toolchains" / f"{target.toolchain}.cmake"
     run(

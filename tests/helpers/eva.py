@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from gate import missing
+from gate import need
 
 OPTIONS = (
     *("-eva", "-machdep", "gcc_x86_64"),
@@ -54,9 +53,6 @@ def analyse(
     macros   for the preprocessor
     before   header that every file includes before all others
     """
-    program = shutil.which("frama-c")
-    if program is None:
-        missing("frama-c", "apt-get install frama-c-base")
     preprocessor = [
         *(f"-I{folder}" for folder in folders),
         *(f"-D{name}={value}" for name, value in macros.items()),
@@ -65,7 +61,13 @@ def analyse(
     ]
     done = subprocess.run(
         [
-            *(program, *OPTIONS, "-main", main, f"-cpp-extra-args={' '.join(preprocessor)}"),
+            *(
+                need("frama-c"),
+                *OPTIONS,
+                "-main",
+                main,
+                f"-cpp-extra-args={' '.join(preprocessor)}",
+            ),
             *options,
             *map(str, sources),
         ],
@@ -78,7 +80,7 @@ def analyse(
 def library_source(name: str) -> Path:
     """A source of the C library that comes with Frama-C."""
     done = subprocess.run(
-        ["frama-c", "-print-share-path"], capture_output=True, text=True, check=True
+        [need("frama-c"), "-print-share-path"], capture_output=True, text=True, check=True
     )
     return Path(done.stdout.strip()) / "libc" / name
 

@@ -14,7 +14,7 @@ import fmpy
 
 import c_sources
 from c_sources import REPOSITORY
-from gate import missing
+from gate import missing, need
 
 LIBRARY = ("c",)
 FMU = ("c", "fmu_src")
@@ -50,15 +50,15 @@ class Finding:
 
 def version() -> str:
     """Version of cppcheck, such as 2.10."""
-    if shutil.which("cppcheck") is None:
-        missing("cppcheck", "apt-get install cppcheck")
-    done = subprocess.run(["cppcheck", "--version"], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [need("cppcheck"), "--version"], capture_output=True, text=True, check=True
+    )
     return done.stdout.split()[1]
 
 
 def addons() -> Path:
     """The folder with misra.py. `cppcheck --addon` shows only one of the findings of a line."""
-    prefix = Path(shutil.which("cppcheck") or "").resolve().parents[1]
+    prefix = Path(need("cppcheck")).resolve().parents[1]
     for pattern in ("lib/*/cppcheck/addons/misra.py", "share/cppcheck/addons/misra.py"):
         for file in prefix.glob(pattern):
             return file.parent
@@ -71,7 +71,7 @@ def dump(
     """Writes what cppcheck knows of each source beside the source, into FILE.dump."""
     subprocess.run(
         [
-            *("cppcheck", "--dump", "--quiet", "--std=c99"),
+            *(need("cppcheck"), "--dump", "--quiet", "--std=c99"),
             *(f"-D{macro}" for macro in macros),
             *(f"-I{folder}" for folder in folders),
             *map(str, sources),
@@ -81,11 +81,11 @@ def dump(
     )
 
 
-def ask(tree: Path, pattern: str, *program: str | Path) -> set[Finding]:
+def ask(tree: Path, pattern: str, *script: str | Path) -> set[Finding]:
     """The findings in files of c/ and fmu_src/ that the program prints for all files `pattern`."""
     files = sorted(str(file.relative_to(tree)) for file in tree.rglob(pattern))
     done = subprocess.run(
-        [sys.executable, *program, "--cli", *files],
+        [sys.executable, *script, "--cli", *files],
         cwd=tree,
         capture_output=True,
         text=True,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
 import subprocess
 import tempfile
 from collections.abc import Mapping
@@ -17,7 +16,7 @@ import pytest
 from numpy.typing import NDArray
 
 import sigmahat
-from gate import missing
+from gate import need
 from modelica_calls import INPUTS, calls, constructor_arguments, outputs
 from modelica_package import FILES, classes, external_arguments
 from recordings import one_seed
@@ -44,9 +43,7 @@ def c_sources(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def gcc(*arguments: str | Path) -> None:
     """Runs the compiler, with all warnings as errors."""
-    if shutil.which("gcc") is None:
-        missing("gcc", "apt-get install gcc")
-    command = ["gcc", *FLAGS, *WARNINGS, *map(str, arguments)]
+    command = [need("gcc"), *FLAGS, *WARNINGS, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -11,7 +10,7 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from gate import missing
+from gate import missing, need
 
 BENCH = Path(__file__).parents[2] / "bench"
 SIGMAHAT_FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
@@ -22,8 +21,7 @@ def test_all_subjects_work_and_compute_the_same(build: Path, tmp_path: Path) -> 
     for module in ("padasip", "pythonfmu"):
         if find_spec(module) is None:
             missing(module, "cmake --build build --target packages_bench")
-    if shutil.which("c++") is None:
-        missing("a C++ compiler", "apt-get install g++")
+    need("c++")
     if not sys.platform.startswith("linux"):
         pytest.skip("the bench is for Linux")
     configured = subprocess.run(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +13,7 @@ import c_loops
 import c_sources
 from c_sources import FOLDERS, HEADERS, SOURCES
 from flow_facts import Facts, Sizes, read_facts
-from gate import missing
+from gate import need
 
 FACTS = read_facts("filtered_regression")
 PAGE = (c_sources.REPOSITORY / "docs" / "proof" / "bounds.md").read_text(encoding="utf-8")
@@ -26,8 +25,7 @@ HEAP = {"malloc", "calloc", "realloc", "free", "aligned_alloc", "alloca"}
 @pytest.fixture(scope="module", autouse=True)
 def compiler() -> None:
     """The compiler of this machine, which prints the graph of calls."""
-    if shutil.which("gcc") is None:
-        missing("gcc", "apt-get install gcc")
+    need("gcc")
 
 
 def compile_all(folder: Path, *flags: str) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import os
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import fmpy
 import numpy as np
 import pytest
 
-from gate import missing
+from gate import missing, need
 from released_fmus import FMUS, STEP, TWINS, Run
 from sigmahat.export.cross_compiler import HEADERS, compile_files
 
@@ -35,8 +34,8 @@ def run(request: pytest.FixtureRequest, released: Path, runs: dict[str, Run]) ->
 
 @each_fmu
 def test_fmi_sim_gives_the_same_trajectories(run: Run, build: Path, tmp_path: Path) -> None:
-    program = shutil.which("fmi-sim", path=build / "checkers" / "bin")
-    if program is None:
+    fmi_sim = build / "checkers" / "bin" / "fmi-sim"
+    if not fmi_sim.exists():
         missing(
             "fmi-sim", f"cargo install --locked --version 0.7.0 --root {build / 'checkers'} fmi-sim"
         )
@@ -45,7 +44,7 @@ def test_fmi_sim_gives_the_same_trajectories(run: Run, build: Path, tmp_path: Pa
         csv.writer(file).writerows([table.dtype.names or (), *table.tolist()])
     done = subprocess.run(
         [
-            *(program, "--model", str(run.fmu)),
+            *(fmi_sim, "--model", str(run.fmu)),
             *("-i", str(tmp_path / "in.csv"), "-o", str(tmp_path / "out.csv")),
             *("co-simulation", "--output-interval", str(STEP), "-f", str(run.time[-1])),
         ],
@@ -142,10 +141,7 @@ def assert_same_in(run: Run, command: list[str], build: Path, cwd: Path) -> None
 
 def wine() -> str:
     # Debian installs it in a folder that is not on the PATH.
-    program = shutil.which("wine64", path=f"{os.environ['PATH']}{os.pathsep}/usr/lib/wine")
-    if program is None:
-        missing("wine64", "apt-get install wine64")
-    return program
+    return need("wine64", folder="/usr/lib/wine")
 
 
 @pytest.fixture(scope="module")
@@ -183,9 +179,9 @@ def test_the_windows_binary_of_a_twin_gives_the_same_trajectories(
 def test_the_binary_for_arm_gives_the_same_trajectories(
     name: str, released: Path, build: Path, tmp_path: Path
 ) -> None:
-    emulator, libraries = shutil.which("qemu-aarch64"), Path("/usr/aarch64-linux-gnu")
-    if emulator is None or not libraries.is_dir():
-        missing("qemu-aarch64", "apt-get install qemu-user libc6-dev-arm64-cross")
+    emulator, libraries = need("qemu-aarch64"), Path("/usr/aarch64-linux-gnu")
+    if not libraries.is_dir():
+        missing("the C library for aarch64", "apt-get install libc6-dev-arm64-cross")
     run = Run(released / f"{name}.fmu")
     master = compiled("fmi3_master", "aarch64-linux-gnu.2.34", build, tmp_path / "master")
     fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))

@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 import sigmahat
-from gate import missing
+from gate import missing, need
 from recorded_logs import CONFIGURATION, awas_log, write_log
 
 REPOSITORY = Path(__file__).parents[2]
@@ -69,10 +69,8 @@ def pip(programs: Path, *arguments: str | Path) -> None:
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Fresh clone of what is committed."""
-    if shutil.which("git") is None:
-        missing("git", "apt-get install git")
     folder = tmp_path_factory.mktemp("clone") / "sigmahat"
-    subprocess.run(["git", "clone", "-q", REPOSITORY, folder], check=True)
+    subprocess.run([need("git"), "clone", "-q", REPOSITORY, folder], check=True)
     return folder
 
 
@@ -146,7 +144,7 @@ def test_source_distribution_holds_what_git_holds(clone: Path, tmp_path: Path) -
     with tarfile.open(path) as archive:
         files = {name.split("/", 1)[1] for name in archive.getnames()}
     tracked = subprocess.run(
-        ["git", "ls-files", "-z"], cwd=clone, capture_output=True, text=True, check=True
+        [need("git"), "ls-files", "-z"], cwd=clone, capture_output=True, text=True, check=True
     ).stdout.split("\0")
     assert files == {*tracked, "PKG-INFO"} - {""}
 

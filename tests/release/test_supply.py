@@ -17,6 +17,7 @@ from cyclonedx.schema import SchemaVersion
 from cyclonedx.validation.json import JsonStrictValidator
 
 import sigmahat
+from gate import need
 from released_fmus import FMUS, TWINS
 from sigmahat.export import archive, bill, distribution, modelica
 
@@ -132,7 +133,7 @@ def test_the_python_packages_made_elsewhere_are_the_same(
 
 def members(distribution: Path) -> dict[str, tuple[int, float, bytes]]:
     """Mode, time and content of the files of a source distribution that git knows."""
-    git = ["git", "-C", str(REPOSITORY), "ls-files"]
+    git = [need("git"), "-C", str(REPOSITORY), "ls-files"]
     known = subprocess.run(git, capture_output=True, text=True, check=True).stdout.splitlines()
     with tarfile.open(distribution) as opened:
         files = {member.name.partition("/")[2]: member for member in opened if member.isfile()}
