@@ -1,1 +1,1 @@
-"""FilteredRegression beside other methods, on the logs of joints in MuJoCo and Drake."""
+"""FilteredRegression beside other methods, on the logs of joints in MuJoCo."""

@@ -33,7 +33,7 @@ class JointLog:
     """One run of one joint. All arrays have one entry a sample."""
 
     kind: str  # series_elastic, variable_stiffness or arm
-    engine: str  # mujoco or drake
+    engine: str  # the physics engine: mujoco
     seed: int
     sample_period: float  # [s]
     theta: Array  # measured motor position behind the gear [rad]

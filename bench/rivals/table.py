@@ -13,7 +13,6 @@ from rivals.score import Score
 
 LABELS = {
     "least_squares": "least squares (IDIM-LS)",
-    "total_least_squares": "total least squares",
     "idim_iv": "IDIM-IV",
     "kalman": "extended Kalman filter",
     "mujoco_sysid": "`mujoco.sysid`",
@@ -23,7 +22,7 @@ KINDS = {
     "variable_stiffness": "Variable-stiffness pair",
     "arm": "Arm under gravity with contact",
 }
-ENGINES = {"mujoco": "MuJoCo", "drake": "Drake"}
+ENGINES = {"mujoco": "MuJoCo"}
 _T = TypeVar("_T")
 _HEAD = (
     "method",

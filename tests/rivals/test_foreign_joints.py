@@ -1,4 +1,4 @@
-"""The joints in MuJoCo and in Drake are what their parameters say, and their logs what they do.
+"""The joints in MuJoCo are what their parameters say, and their logs what they do.
 
 The seeds of the comparison stay unused here: these are others.
 """
@@ -24,15 +24,16 @@ from rivals.records import Array
 SECONDS = 4.0  # of a run here
 SEED = 1
 HARDENING = 2  # a seed of springs that harden
-TOUCHING = 3  # a seed of an arm that touches the floor soon, in both engines
+TOUCHING = 3  # a seed of an arm that touches the floor soon
 BUILDS = [*catalogue.BUILDS]
 
 
-def need(engine: str) -> None:
-    """Skips where the engine is missing. They are too large for every run of the tests."""
-    if find_spec({"mujoco": "mujoco", "drake": "pydrake"}[engine]) is None:
+@pytest.fixture(scope="module", autouse=True)
+def engine() -> None:
+    """Skips where MuJoCo is missing. It is too large for every run of the tests."""
+    if find_spec("mujoco") is None:
         how = "cmake --build build --target packages_rivals"
-        pytest.skip(f"{engine} is not installed; to install it: {how}")
+        pytest.skip(f"MuJoCo is not installed; to install it: {how}")
 
 
 def shortened(joint: Any) -> Any:
@@ -63,7 +64,6 @@ def instruments(joint: Any) -> Instruments:
 @pytest.fixture(scope="module", params=BUILDS, ids="-".join)
 def build_of(request: pytest.FixtureRequest) -> tuple[str, str]:
     kind, engine = request.param
-    need(engine)
     return kind, engine
 
 
@@ -91,11 +91,6 @@ def differenced(x: Array) -> Array:
     return second
 
 
-def sharp(motor: Motor) -> Motor:
-    """With dry friction that stops it soon, as in Drake."""
-    return replace(motor, stiction_time=5 * STEP)
-
-
 def rms(x: Array) -> float:
     return float(np.sqrt(np.mean(x**2)))
 
@@ -105,7 +100,7 @@ def test_the_motor_obeys_its_equation(joint: Any, run: Run) -> None:
     motor, x = observed(joint), run.signals
     left = motor.inertia * x["theta_ddot"] + motor.D * motor.gear**2 * x["theta_dot"]
     right = motor.gear * run.torque + x["friction"] + x["tau_e"] + x["damper"]
-    # Drake takes the damping at the end of a step; and an elbow's flange moves with the arm.
+    # The flange of an elbow moves with the arm.
     assert rms(left - right) < 2e-3 * rms(right - x["tau_e"])
 
 
@@ -145,7 +140,7 @@ def test_the_true_stiffness_is_the_slope_of_the_torque(run: Run) -> None:
     assert (x["stiffness"] > 0).all()
 
 
-@pytest.mark.slow("the steps of a joint in Drake are slow, and here are three times as many")
+@pytest.mark.slow("three times as many steps")
 def test_smaller_steps_give_the_same_motion(
     build_of: tuple[str, str], joint: Any, run: Run
 ) -> None:
@@ -160,66 +155,42 @@ def test_smaller_steps_give_the_same_motion(
         assert rms(change) < limit * rms(half.signals[name])
 
 
-@pytest.mark.parametrize("kind", ["series_elastic", "arm"])
-def test_both_engines_move_alike(kind: str) -> None:
-    """The same parameters; but for the floor, and for the time in which MuJoCo's friction stops."""
-    need("mujoco")
-    need("drake")
-    joint = shortened(catalogue.drawn(kind, "drake", SEED))
-    if isinstance(joint, Arm):
-        shoulder, elbow = (sharp(motor) for motor in joint.motors)
-        joint = replace(joint, motors=(shoulder, elbow), floor=-10.0)
-    else:
-        joint = replace(joint, motor=sharp(joint.motor))
-    one, other = (catalogue.simulate(kind, engine, joint).signals for engine in catalogue.ENGINES)
-    for name in ("theta", "phi", "tau_e"):
-        assert rms(one[name] - other[name]) < 5e-3 * rms(one[name])
-
-
-def pulled(tendons: Tendons, engine: str, phi: Array, theta_c: Array) -> Array:
+def pulled(tendons: Tendons, phi: Array, theta_c: Array) -> Array:
     """Torque of two tendons on the motor, in closed form."""
     x = tendons.travel * theta_c
-    straight = engine == "drake"
-    a, r = tendons.lever, tendons.eyelet + straight * x
+    a, r = tendons.lever, tendons.eyelet
     torque = np.zeros_like(phi)
     for side in (-1, 1):
         alpha = phi + side * tendons.spread
         d = np.sqrt(a**2 + r**2 - 2 * a * r * np.cos(alpha))
-        longer = d - tendons.length(tendons.spread) + (not straight) * x
+        longer = d - tendons.length(tendons.spread) + x
         force = np.maximum(tendons.tension + tendons.stiffness * longer, 0)
         torque += force * a * r * np.sin(alpha) / d
     return torque
 
 
-@pytest.mark.parametrize("engine", catalogue.ENGINES)
-def test_the_tendons_pull_as_their_geometry_says(engine: str) -> None:
-    need(engine)
-    joint = shortened(catalogue.drawn("variable_stiffness", engine, SEED))
-    x = catalogue.simulate("variable_stiffness", engine, joint).signals
+def test_the_tendons_pull_as_their_geometry_says() -> None:
+    joint = shortened(catalogue.drawn("variable_stiffness", "mujoco", SEED))
+    x = catalogue.simulate("variable_stiffness", "mujoco", joint).signals
     step = 1e-5
-    torques = [
-        pulled(joint.tendons, engine, x["phi"] + shift, x["theta_c"]) for shift in (-step, 0, step)
-    ]
+    torques = [pulled(joint.tendons, x["phi"] + shift, x["theta_c"]) for shift in (-step, 0, step)]
     np.testing.assert_allclose(x["tau_e"], torques[1], atol=1e-6 * np.abs(torques[1]).max())
     np.testing.assert_allclose(x["stiffness"], (torques[2] - torques[0]) / 2 / step, rtol=1e-5)
     assert np.ptp(x["theta_c"]) > 0.1 * joint.tendons.range_theta_c
     assert np.ptp(x["stiffness"]) > 0.05 * x["stiffness"].mean()
 
 
-@pytest.mark.parametrize("engine", catalogue.ENGINES)
-def test_the_tip_touches_the_floor(engine: str) -> None:
+def test_the_tip_touches_the_floor() -> None:
     """The torque of a joint in contact is another one than without the floor."""
-    need(engine)
-    joint = shortened(catalogue.drawn("arm", engine, TOUCHING))
-    touching = catalogue.simulate("arm", engine, joint).signals["tau_e"]
-    free = catalogue.simulate("arm", engine, replace(joint, floor=-10.0)).signals["tau_e"]
+    joint = shortened(catalogue.drawn("arm", "mujoco", TOUCHING))
+    touching = catalogue.simulate("arm", "mujoco", joint).signals["tau_e"]
+    free = catalogue.simulate("arm", "mujoco", replace(joint, floor=-10.0)).signals["tau_e"]
     assert rms(touching - free) > 0.02 * rms(free)
 
 
 @pytest.mark.parametrize("kind", ["series_elastic", "arm"])
 def test_a_spring_of_mujoco_hardens(kind: str) -> None:
     """Linear and cubic, as its polynomial says."""
-    need("mujoco")
     joint = shortened(catalogue.drawn(kind, "mujoco", HARDENING))
     spring = joint.springs[joint.observed] if isinstance(joint, Arm) else joint.spring
     x = catalogue.simulate(kind, "mujoco", joint).signals
@@ -261,7 +232,6 @@ def test_the_torque_in_the_log_is_early_or_late(joint: Any, run: Run) -> None:
 
 
 def test_make_gives_the_same_log_every_time() -> None:
-    need("mujoco")
     one, other = (catalogue.make("series_elastic", "mujoco", SEED) for _ in range(2))
     assert (one.kind, one.engine, one.seed) == ("series_elastic", "mujoco", SEED)
     assert one.sample_period == 1e-3

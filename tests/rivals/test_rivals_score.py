@@ -22,7 +22,7 @@ def log() -> JointLog:
     """A log of 4 s, every half second; four samples are judged."""
     zero, true = np.zeros(8), np.full(8, 100.0)
     known = closed_form_log("series_elastic").known
-    return JointLog("arm", "drake", 1, 0.5, zero, zero, zero, zero, zero, true, known)
+    return JointLog("arm", "mujoco", 1, 0.5, zero, zero, zero, zero, zero, true, known)
 
 
 def estimate(stiffness: list[float], std: list[float], confident: list[bool]) -> Estimate:

@@ -17,10 +17,10 @@ from rivals.table import best, page
 
 def of(method: str, seed: int, interval_score: float, wrong: float = 0.0) -> Result:
     found = Score(2.0 * seed, 5.0, 90.0, interval_score, 100.0, wrong)
-    return Result("arm", "drake", seed, method, 0.5, found, "")
+    return Result("arm", "mujoco", seed, method, 0.5, found, "")
 
 
-FAILED = Result("arm", "drake", 2, "idim_iv", 0.1, None, "not converged")
+FAILED = Result("arm", "mujoco", 2, "idim_iv", 0.1, None, "not converged")
 RESULTS = [
     of("FilteredRegression", 1, 8.0),
     of("kalman", 1, 9.0),
@@ -37,8 +37,8 @@ def cells(line: str) -> list[str]:
 
 def test_the_best_of_a_log_has_the_lowest_interval_score() -> None:
     assert best(RESULTS) == {
-        ("arm", "drake", 1): "FilteredRegression",
-        ("arm", "drake", 2): "kalman",
+        ("arm", "mujoco", 1): "FilteredRegression",
+        ("arm", "mujoco", 2): "kalman",
     }
 
 
@@ -50,16 +50,16 @@ def test_a_row_has_medians_and_means_over_the_logs() -> None:
     ]
     row = next(line for line in lines if line.startswith("| IDIM-IV | 1"))
     assert cells(row)[:6] == ["IDIM-IV", "1 of 2", "2.0", "5.0", "90", "-"]
-    assert "### Arm under gravity with contact, Drake" in lines
+    assert "### Arm under gravity with contact, MuJoCo" in lines
 
 
 def test_what_was_confident_and_wrong_and_what_has_no_answer_is_listed() -> None:
     lines = page(RESULTS).splitlines()
     wrong = lines.index("### Confident and over 20 % wrong")
-    row = ["arm", "drake", "2", "extended Kalman filter", "25.0", "4.0", "5.0"]
+    row = ["arm", "mujoco", "2", "extended Kalman filter", "25.0", "4.0", "5.0"]
     assert cells(lines[wrong + 4]) == row
     none = lines.index("### No answer")
-    assert cells(lines[none + 4]) == ["IDIM-IV", "arm", "drake", "2", "not converged"]
+    assert cells(lines[none + 4]) == ["IDIM-IV", "arm", "mujoco", "2", "not converged"]
 
 
 def test_without_failures_the_page_says_so() -> None:
@@ -93,7 +93,7 @@ def test_a_method_that_fails_has_a_row_with_its_reason() -> None:
 @pytest.mark.parametrize("value", [12345.0, 123.4, 1.234, 0.01234, 0.0])
 def test_numbers_have_two_digits_or_all_before_the_point(value: float) -> None:
     found = Score(value, 5.0, 90.0, 1.0, 100.0, 0.0)
-    text = page([Result("arm", "drake", 1, "kalman", 0.5, found, "")])
+    text = page([Result("arm", "mujoco", 1, "kalman", 0.5, found, "")])
     row = next(line for line in text.splitlines() if line.startswith("| extended"))
     expected = {12345.0: "1.2e+04", 123.4: "123", 1.234: "1.2", 0.01234: "0.012", 0.0: "0"}
     assert cells(row)[2] == expected[value]

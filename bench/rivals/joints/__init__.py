@@ -1,1 +1,1 @@
-"""Joints in physics engines that we did not write: MuJoCo and Drake."""
+"""Joints in a physics engine that we did not write: MuJoCo."""

@@ -20,14 +20,11 @@ from rivals.records import JointLog
 SEEDS = range(9001, 9041)
 
 KINDS = ("series_elastic", "variable_stiffness", "arm")
-ENGINES = ("mujoco", "drake")
+ENGINES = ("mujoco",)
 BUILDS = {
     ("series_elastic", "mujoco"): "mujoco_series_elastic",
     ("variable_stiffness", "mujoco"): "mujoco_tendons",
     ("arm", "mujoco"): "mujoco_arm",
-    ("series_elastic", "drake"): "drake_series_elastic",
-    ("variable_stiffness", "drake"): "drake_springs",
-    ("arm", "drake"): "drake_arm",
 }
 """The module that builds each kind in each engine."""
 
@@ -38,13 +35,13 @@ def rng(kind: str, engine: str, seed: int) -> np.random.Generator:
 
 
 def drawn(kind: str, engine: str, seed: int) -> Any:
-    """Parameters of a joint. Drake's springs are linear."""
+    """Parameters of a joint."""
     numbers = rng(kind, engine, seed)
     if kind == "series_elastic":
-        return draw.series_elastic(numbers, hardens=engine == "mujoco")
+        return draw.series_elastic(numbers)
     if kind == "variable_stiffness":
-        return draw.variable_stiffness(numbers, straight=engine == "drake")
-    return draw.arm(numbers, hardens=engine == "mujoco")
+        return draw.variable_stiffness(numbers)
+    return draw.arm(numbers)
 
 
 def simulate(kind: str, engine: str, joint: Any, step: float = STEP) -> Run:

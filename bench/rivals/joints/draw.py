@@ -68,8 +68,6 @@ EYELET_BY_LEVER: Range = (2.0, 3.0)
 SPREAD: Range = (0.3, 0.7)  # [rad]
 STIFFEST: Range = (1.5, 4.0)  # stiffness at the highest tension by that at the lowest
 OF_TENDONS: Range = (0.1, 0.4)  # share of their stiffness in that of the joint at the lowest
-LARGEST_STRETCH = 0.8  # of springs that run straight, by their length
-LARGEST_TRAVEL = 0.6  # of their ends, by the radius where they end
 RANGE_THETA_C: Range = (1.0, 6.0)  # [rad]
 KNOTS = 2.5  # between them the stiffness motor turns evenly [s]
 
@@ -177,9 +175,9 @@ def _motor(rng: Rng, load: float, holds: float = 0.0) -> Motor:
     return _until(draw, good)
 
 
-def _spring(rng: Rng, stiffness: float, load: float, torque: float, hardens: bool) -> Spring:
-    """A spring that hardens at the deformation under this torque [N.m]."""
-    more = _even(rng, HARDENING) * int(rng.integers(2)) if hardens else 0.0
+def _spring(rng: Rng, stiffness: float, load: float, torque: float) -> Spring:
+    """A spring that is linear, or hardens at the deformation under this torque [N.m]."""
+    more = _even(rng, HARDENING) * int(rng.integers(2))
     damping = 2 * _even(rng, DAMPING_RATIO) * math.sqrt(stiffness * load)
     return Spring(stiffness, stiffness * more / 3 / (torque / stiffness) ** 2, damping)
 
@@ -303,12 +301,12 @@ def _single(
     return motor, link, gravity, drive, _instruments(rng, motor.peak, phi), _sheet(rng)
 
 
-def series_elastic(rng: Rng, hardens: bool) -> SeriesElastic:
+def series_elastic(rng: Rng) -> SeriesElastic:
     """A series elastic joint, whose spring may harden or is linear."""
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS, load)
     motor, link, gravity, drive, instruments, sheet = _single(rng, load, stiffness)
-    spring = _spring(rng, stiffness, load, motor.gear * motor.peak, hardens)
+    spring = _spring(rng, stiffness, load, motor.gear * motor.peak)
     return SeriesElastic(motor, spring, link, gravity, drive, instruments, sheet)
 
 
@@ -328,22 +326,11 @@ def _tendons(rng: Rng, stiffness: float, load: float) -> Tendons:
     return Tendons(lever, eyelet, spread, k, tension, travel, range_theta_c, damping)
 
 
-def _is_spring(tendons: Tendons) -> bool:
-    length, stretched = tendons.length(tendons.spread), tendons.tension / tendons.stiffness
-    travel = tendons.travel * tendons.range_theta_c
-    return stretched < LARGEST_STRETCH * length and travel < LARGEST_TRAVEL * tendons.eyelet
-
-
-def variable_stiffness(rng: Rng, straight: bool) -> VariableStiffness:
-    """A joint with two tendons, whose stiffness motor turns during the run.
-
-    If the tendons are springs that run straight, they are longer than what stretches them.
-    """
+def variable_stiffness(rng: Rng) -> VariableStiffness:
+    """A joint with two tendons, whose stiffness motor turns during the run."""
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS_VARIABLE, load)
-    tendons = _until(
-        lambda: _tendons(rng, stiffness, load), lambda drawn: not straight or _is_spring(drawn)
-    )
+    tendons = _tendons(rng, stiffness, load)
     motor, link, gravity, drive, instruments, sheet = _single(rng, load, stiffness)
     knots = np.arange(0, DURATION + KNOTS, KNOTS)
     theta_c = np.interp(TIMES, knots, rng.uniform(0, tendons.range_theta_c, len(knots)))
@@ -383,12 +370,12 @@ def _floor(rng: Rng, links: tuple[Link, Link], q_1: Array, q_2: Array) -> float 
     return floor if height[0] > floor + TIP else None
 
 
-def arm(rng: Rng, hardens: bool) -> Arm:
+def arm(rng: Rng) -> Arm:
     """An arm with two flexible joints; which one is in the log is drawn."""
-    return _until(lambda: _arm(rng, hardens), lambda drawn: drawn is not None)  # type: ignore
+    return _until(lambda: _arm(rng), lambda drawn: drawn is not None)  # type: ignore
 
 
-def _arm(rng: Rng, hardens: bool) -> Arm | None:
+def _arm(rng: Rng) -> Arm | None:
     links = _links(rng)
     loads = _loads(links)
     quarter = np.full(1, math.pi / 2)
@@ -412,7 +399,7 @@ def _arm(rng: Rng, hardens: bool) -> Arm | None:
         known = _even(rng, GRAVITY_KNOWN) * weight / motor.gear
         drives.append(replace(drive, feed_forward=known))
         instruments.append(_instruments(rng, motor.peak, phi + float(np.ptp(weight)) / 2 / k))
-        springs.append(_spring(rng, k, load, motor.gear * motor.peak, hardens))
+        springs.append(_spring(rng, k, load, motor.gear * motor.peak))
     return Arm(
         motors=(motors[0], motors[1]),
         springs=(springs[0], springs[1]),

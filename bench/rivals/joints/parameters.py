@@ -23,7 +23,7 @@ class Motor:
     D: float  # viscous friction [N.m.s/rad]
     peak: float  # largest torque [N.m]
     friction: Friction
-    stiction_time: float  # in which MuJoCo's dry friction stops a motor; Drake stops it at once [s]
+    stiction_time: float  # in which MuJoCo's dry friction stops a motor [s]
 
     @property
     def inertia(self) -> float:

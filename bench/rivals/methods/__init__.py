@@ -11,7 +11,6 @@ from rivals.methods import (
     least_squares,
     mujoco_sysid,
     paper2011,
-    total_least_squares,
 )
 from rivals.records import Estimate, JointLog
 
@@ -19,7 +18,6 @@ METHODS: dict[str, Callable[[JointLog], Estimate]] = {
     "FilteredRegression": filtered_regression.estimate,
     "Paper2011": paper2011.estimate,
     "least_squares": least_squares.estimate,
-    "total_least_squares": total_least_squares.estimate,
     "idim_iv": idim_iv.estimate,
     "kalman": kalman.estimate,
     "mujoco_sysid": mujoco_sysid.estimate,

@@ -1,7 +1,4 @@
-"""The conditions of the catalogue, as data: what each adds to an experiment without misfits.
-
-Origin: ``tests/studies/misfit/catalogue.c``.
-"""
+"""The conditions of the catalogue, as data: what each adds to an experiment without misfits."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The joints of the catalogue, as data: their plants, their usual motion, and the estimator's view.
-
-Origin: ``tests/studies/misfit/catalogue.c``.
-"""
+"""The joints of the catalogue, as data: their plants, their usual motion, and the estimator's view."""
 
 from __future__ import annotations
 
