@@ -35,9 +35,7 @@ def test_the_longest_ticks_are_those_of_the_page(
         f"{METHODS[method]}, {n} x {m}" + (f", {columns} columns" if columns != "0" else ""): (
             1.5 * float(longest)
         )
-        for method, n, m, columns, longest in re.findall(
-            r"^(\w+)" + r" (\d+)" * 4 + "$", text, re.M
-        )
+        for method, n, m, columns, longest in re.findall(ROW, text, re.M)
     }
     # Another compiler may differ a little.
     assert table(f"{name}, {real}") == pytest.approx(found, rel=0.1)

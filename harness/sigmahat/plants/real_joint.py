@@ -1,8 +1,8 @@
 """A joint with what real joints have and the models of the estimators do not: their misfits.
 
 The link (2), the motor (3) and the torque sensors (32), (33) are as in the other plants. Each
-departure is a parameter, which starts at the value for "none". The spring is linear and cubic, or the AwAS (28) with its lever arm
-as an input, or a sum of both.
+departure is a parameter, which starts at the value for "none". The spring is linear and cubic, or
+the AwAS (28) with its lever arm as an input, or a sum of both.
 """
 
 import casadi as ca

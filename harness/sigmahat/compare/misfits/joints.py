@@ -1,4 +1,4 @@
-"""The joints of the catalogue, as data: their plants, their usual motion, and the estimator's view."""
+"""The joints of the catalogue, as data: plants, their usual motion, and the estimator's view."""
 
 from __future__ import annotations
 
