@@ -40,6 +40,10 @@ typedef struct {
      */
     int (*tick)(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                 sh_real set_point, sh_estimate *estimate);
+
+    /* Torque and stiffness at a deformation [rad] and a set-point [1] by the present estimate. */
+    void (*evaluate)(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,
+                     sh_real set_point, sh_point *point);
 } sh_method;
 
 /* Besides the constant each method has a function that checks a state that comes from elsewhere, as

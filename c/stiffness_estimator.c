@@ -74,3 +74,16 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
     judge(set_point, estimate);
     return 1;
 }
+
+int sh_estimator_evaluate(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,
+                          sh_real setPoint, sh_point *point)
+{
+    if (isfinite(phi) && isfinite(setPoint)) {
+        sh_method_of(p)->evaluate(estimator, p, phi, setPoint, point);
+        if (isfinite(point->tau_e) && isfinite(point->sigma)) {
+            return 0;
+        }
+    }
+    point->tau_e = point->tau_e_std = point->sigma = point->sigma_std = INFINITY;
+    return 1;
+}

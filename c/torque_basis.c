@@ -4,10 +4,9 @@ void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi
                      sh_real *restrict F, sh_real *restrict dF)
 {
     const sh_real step = symmetric ? phi * phi : phi; /* from one power to the next */
-    const int size = n * m;
-    sh_real lower = 1;    /* phi^(exponent - 1) */
-    sh_real exponent = 1; /* of the first i with an exponent above 0 */
-    int i = 0;
+    sh_real lower = 1;                                /* phi^(exponent - 1) */
+    sh_real exponent = 1;                             /* of the first i with an exponent above 0 */
+    int i = 0, j;
 
     if (!symmetric) {
         F[0] = 1;
@@ -20,9 +19,11 @@ void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi
         lower *= step;
         exponent += symmetric ? 2 : 1;
     }
-    for (; i < size; ++i) { /* from l^j to l^(j+1) */
-        F[i] = F[i - n] * set_point;
-        dF[i] = dF[i - n] * set_point;
+    for (j = 1; j < m; ++j) { /* from l^(j-1) to l^j */
+        for (i = 0; i < n; ++i) {
+            F[j * n + i] = F[(j - 1) * n + i] * set_point;
+            dF[j * n + i] = dF[(j - 1) * n + i] * set_point;
+        }
     }
 }
 

@@ -73,11 +73,12 @@ static inline sh_pair upper_panel_product(const sh_real *u, sh_pair F_0)
     return sh_pair_multiply(sh_pair_load(u), F_0);
 }
 
-/* work.f = U' F for the columns j .. j + 3.
+/* f = U' F for the columns j .. j + 3.
  *
  * diagonal  F in the panel that begins at row j
  */
-static void multiply_four(sh_ud_factor *P, const sh_real *F, int j, const sh_real *diagonal)
+static void multiply_four(const sh_ud_factor *P, const sh_real *F, int j, const sh_real *diagonal,
+                          sh_real *f)
 {
     const sh_real *const end = F + j, *u = P->U + place(P->size, 0, j);
     sh_pair sum_0 = sh_pair_both(0), sum_1 = sum_0, sum_2 = sum_0, sum_3 = sum_0;
@@ -100,12 +101,13 @@ static void multiply_four(sh_ud_factor *P, const sh_real *F, int j, const sh_rea
     sum_1 = sh_pair_add(sum_1, upper_panel_product(u + SH_PANEL, F_0));
     sum_2 = sh_pair_add(sum_2, panel_product(u + TWO_COLUMNS, F_0, F_1));
     sum_3 = sh_pair_add(sum_3, panel_product(u + THREE_COLUMNS, F_0, F_1));
-    sh_pair_store(P->work.f + j, sh_pair_sums(sum_0, sum_1));
-    sh_pair_store(P->work.f + j + 2, sh_pair_sums(sum_2, sum_3));
+    sh_pair_store(f + j, sh_pair_sums(sum_0, sum_1));
+    sh_pair_store(f + j + 2, sh_pair_sums(sum_2, sum_3));
 }
 
 /* The same for the columns j and j + 1. */
-static void multiply_two(sh_ud_factor *P, const sh_real *F, int j, const sh_real *diagonal)
+static void multiply_two(const sh_ud_factor *P, const sh_real *F, int j, const sh_real *diagonal,
+                         sh_real *f)
 {
     const sh_real *const end = F + j, *u = P->U + place(P->size, 0, j);
     sh_pair sum_0 = sh_pair_both(0), sum_1 = sum_0, F_0;
@@ -123,13 +125,13 @@ static void multiply_two(sh_ud_factor *P, const sh_real *F, int j, const sh_real
     F_0 = sh_pair_load(diagonal);
     sum_0 = sh_pair_add(sum_0, upper_panel_product(u, F_0));
     sum_1 = sh_pair_add(sum_1, upper_panel_product(u + SH_PANEL, F_0));
-    sh_pair_store(P->work.f + j, sh_pair_sums(sum_0, sum_1));
+    sh_pair_store(f + j, sh_pair_sums(sum_0, sum_1));
 }
 
-/* work.f = U' F. The last columns may be one less than are computed at once: what is computed for
+/* f = U' F. The last columns may be one less than are computed at once: what is computed for
  * the other one is not used, as the next panel is in memory there.
  */
-static void multiply(sh_ud_factor *P, const sh_real *F)
+static void multiply(const sh_ud_factor *P, const sh_real *F, sh_real *f)
 {
     const int size = P->size, rest = size % SH_PANEL, full = size - rest;
     const sh_real last[SH_PANEL] = {rest > 0 ? F[full] : 0, rest > 1 ? F[full + 1] : 0,
@@ -137,21 +139,22 @@ static void multiply(sh_ud_factor *P, const sh_real *F)
     int j;
 
     for (j = 0; j + 2 < size; j += SH_PANEL) {
-        multiply_four(P, F, j, j < full ? F + j : last);
+        multiply_four(P, F, j, j < full ? F + j : last, f);
     }
     if (j < size) {
-        multiply_two(P, F, j, last);
+        multiply_two(P, F, j, last, f);
     }
 }
 
-sh_real sh_ud_factor_variance(sh_ud_factor *P, const sh_real *F)
+sh_real sh_ud_factor_variance(const sh_ud_factor *P, const sh_real *F)
 {
-    const sh_real *f = P->work.f, *D = P->D;
+    const sh_real *D = P->D;
+    sh_real f[SH_MAX_ROWS];
     sh_real even = 0, odd = 0; /* two sums, so that one does not wait for the other */
     const int size = P->size;
     int j;
 
-    multiply(P, F);
+    multiply(P, F, f);
     for (j = 0; j + 1 < size; j += 2) {
         even += f[j] * (D[j] * f[j]);
         odd += f[j + 1] * (D[j + 1] * f[j + 1]);
@@ -172,7 +175,7 @@ sh_real sh_ud_factor_project(sh_ud_factor *P, const sh_real *F)
     const int size = P->size;
     int j;
 
-    multiply(P, F);
+    multiply(P, F, P->work.f);
     for (j = 0; j + 1 < size; j += 2) { /* in pairs: the sum is waited for half as often */
         const sh_real g_0 = D[j] * f[j], g_1 = D[j + 1] * f[j + 1];
         const sh_real one = f[j] * g_0, both = one + f[j + 1] * g_1;
@@ -206,15 +209,20 @@ static inline void rotate(sh_real *u, sh_pair s, sh_pair g, sh_pair *p_0, sh_pai
     *p_1 = sh_pair_add(*p_1, sh_pair_multiply(g, u_1));
 }
 
-/* Column j when D_j underflows to 0: the column has no part in P any more. It would go on to change
- * by rounding errors alone, which grow until they overflow; so it is cleared.
+/* Columns whose D_j has underflowed to 0 have no part in P any more. They would go on to change by
+ * rounding errors alone, which grow until they overflow; so they are cleared.
  */
-static void clear_column(sh_ud_factor *P, int j)
+static void clear_underflowed(sh_ud_factor *P)
 {
-    int i;
+    int i, j;
 
-    for (i = 0; i < j; ++i) {
-        P->U[place(P->size, i, j)] = 0;
+    for (j = 0; j < P->size; ++j) {
+        for (i = 0; i < j && !(P->D[j] > 0); ++i) {
+            P->U[place(P->size, i, j)] = 0;
+        }
+        if (!(P->D[j] > 0)) {
+            P->work.f[j] = 0;
+        }
     }
 }
 
@@ -232,17 +240,17 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
     const int size = P->size;
     sh_real *u = P->U, *g = P->work.g, *s = P->work.f;
     int stride = size * SH_PANEL; /* from the begin of a panel to that of the next */
-    int i, j;
+    int are_positive = 1, i, j;
 
     for (j = 0; j < size; ++j) {
         const sh_real beta = 1 + w * P->work.rho[j];
 
         P->D[j] *= beta / (1 + w * P->work.rho[j + 1]);
         P->work.f[j] = w * P->work.f[j] / beta; /* s_j */
-        if (!(P->D[j] > 0)) {
-            clear_column(P, j);
-            P->work.f[j] = 0;
-        }
+        are_positive &= P->D[j] > 0;
+    }
+    if (!are_positive) { /* outside of the loop, which is faster without a branch */
+        clear_underflowed(P);
     }
     /* Panel after panel, as an entry of p depends on its own row of U alone; two at a time, as they
      * share the factors of the columns. In the first column of a panel only the one on the diagonal

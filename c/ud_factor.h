@@ -27,6 +27,6 @@ sh_real sh_ud_factor_project(sh_ud_factor *P, const sh_real *F);
 const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w);
 
 /* F' P F, as a variance that is wanted and not as the begin of an update. */
-sh_real sh_ud_factor_variance(sh_ud_factor *P, const sh_real *F);
+sh_real sh_ud_factor_variance(const sh_ud_factor *P, const sh_real *F);
 
 #endif

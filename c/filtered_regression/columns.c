@@ -1,48 +1,30 @@
-#include "columns.h"
-
+/* The columns of the regression, and the row of a sample.
+ *
+ * Take the motor (3) with Coulomb friction, and let its data B and D_theta have the relative errors
+ * b and d. With all signals through the filter H (index f), and tau_e = F' eta of (21), it is the
+ * regression
+ *
+ *     y = gamma (B gamma theta''_f + D_theta gamma theta'_f - tau_f)
+ *       = F_f' eta - gamma^2 D_theta theta'_f d - gamma^2 B theta''_f b
+ *         - |gamma| sign(theta')_f tau_C .
+ *
+ * Where the torque of the spring is measured or modelled, y is that torque through H, and the columns
+ * of the motor are 0. Real joints have more than this equation, so there are further columns. Every
+ * column is multiplied by the std deviation of its coefficient: all coefficients beta have the prior
+ * N(0, 1). With a prior of 0 there is no such column.
+ *
+ * To add a kind of column: its row in KINDS, and its line in list_columns.
+ */
 #include <stddef.h>
+#include <string.h>
 
-#include "real_math.h"
-#include "scalar_product.h"
-#include "scaled_basis.h"
+#include "constants.h"
+#include "regression.h"
 #include "state_variable_filter.h"
 #include "torque_basis.h"
 
-/* Half widths of dead zones and of plays, in units of range.phi. They do not follow the range that
- * the deformation has covered, so that the columns are the same for all samples.
- */
-static const sh_real GAPS[SH_PLAYS] = {(sh_real)0.01, (sh_real)0.04, (sh_real)0.16};
-static const sh_real PLAYS[SH_PLAYS] = {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08};
-
-enum { ALWAYS = 0, POWERS, SET_POWER, GAP, HYSTERESIS, MOTOR_ENCODER };
-
-static const struct {
-    int group, is_torque, is_of_equation, signal;
-} TRAITS[SH_COLUMN_KINDS] = {
-    [SH_COLUMN_BASIS] = {ALWAYS, 1, 1, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_NOMINAL] = {ALWAYS, 1, 1, SH_SIGNAL_NONE},
-    [SH_COLUMN_BIAS] = {ALWAYS, 0, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_DAMPING] = {ALWAYS, 0, 0, SH_SIGNAL_STEADY},
-    [SH_COLUMN_SIN_Q] = {ALWAYS, 0, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_COS_Q] = {ALWAYS, 0, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_LOAD] = {ALWAYS, 0, 0, SH_SIGNAL_MEAN},
-    [SH_COLUMN_DRIVE] = {ALWAYS, 0, 0, SH_SIGNAL_NONE},
-    [SH_COLUMN_DELAY] = {ALWAYS, 0, 0, SH_SIGNAL_NONE},
-    [SH_COLUMN_REVERSAL] = {ALWAYS, 0, 0, SH_SIGNAL_NONE},
-    [SH_COLUMN_POWER] = {POWERS, 1, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_SET_POWER] = {SET_POWER, 1, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_GAP_1] = {GAP, 1, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_GAP_2] = {GAP, 1, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_GAP_3] = {GAP, 1, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_PLAY_1] = {HYSTERESIS, 0, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_PLAY_2] = {HYSTERESIS, 0, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_PLAY_3] = {HYSTERESIS, 0, 0, SH_SIGNAL_LINEAR},
-    [SH_COLUMN_SIN_M] = {MOTOR_ENCODER, 0, 0, SH_SIGNAL_STEADY},
-    [SH_COLUMN_COS_M] = {MOTOR_ENCODER, 0, 0, SH_SIGNAL_STEADY},
-    [SH_COLUMN_VISCOUS] = {ALWAYS, 0, 1, SH_SIGNAL_NONE},
-    [SH_COLUMN_COULOMB] = {ALWAYS, 0, 1, SH_SIGNAL_NONE},
-    [SH_COLUMN_INERTIA] = {ALWAYS, 0, 1, SH_SIGNAL_NONE},
-};
+static const sh_real DEAD_ZONES[SH_WIDTHS] = SH_DEAD_ZONES;
+static const sh_real HYSTERESES[SH_WIDTHS] = SH_HYSTERESES;
 
 int sh_is_measured(const sh_parameters *p)
 {
@@ -63,73 +45,138 @@ int sh_has_nominal_curve(const sh_parameters *p)
     return 0;
 }
 
-int sh_column_group(const sh_column *column)
+/* ---- the table --------------------------------------------------------------------------- */
+
+/* A std deviation of sh_parameters.prior is given in this unit. */
+enum { ONE, TAU_E, K_0, TAU_C };
+
+#define PRIOR(member) offsetof(sh_parameters, prior.member)
+#define CURVE (SH_IS_SPRING | SH_IS_CURVE)
+#define MOTOR (SH_IS_MOTOR | SH_IS_EQUATION)
+
+/* Of a column: its prior, how the filter takes its signal, the quantity that its coefficient is, its
+ * group, and what it is. The signal is in signal_of, the entry of the row in set_terms or own_entry.
+ */
+static const struct {
+    size_t prior;
+    int unit, taken, quantity, group;
+    unsigned is;
+} KINDS[SH_COLUMN_KINDS] = {
+    [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, SH_SIGNAL_LINEAR, SH_OF_CURVE, 0,
+                         CURVE | SH_IS_EQUATION},
+    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), ONE, SH_SIGNAL_NONE, SH_OF_NOMINAL, 0,
+                           CURVE | SH_IS_EQUATION},
+    [SH_COLUMN_BIAS] = {PRIOR(bias), TAU_E, SH_SIGNAL_LINEAR, SH_OF_BIAS, 0, 0},
+    [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, SH_SIGNAL_STEADY, SH_OF_DAMPING, 0, 0},
+    [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, SH_OF_SIN_Q, 0, 0},
+    [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, SH_OF_COS_Q, 0, 0},
+    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, SH_SIGNAL_MEAN, SH_OF_LOAD_FRICTION, 0,
+                        SH_IS_MOTOR},
+    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, SH_SIGNAL_NONE, SH_OF_LOAD_FRICTION, 0,
+                         SH_IS_MOTOR},
+    [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, SH_SIGNAL_NONE, SH_OF_DELAY, 0, 0},
+    [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, SH_SIGNAL_NONE, SH_OF_NOTHING, 0, SH_IS_MOTOR},
+    [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_CURVE, 1, CURVE},
+    [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_CURVE, 2, CURVE},
+    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 3, SH_IS_SPRING},
+    [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, SH_SIGNAL_LINEAR, SH_OF_HYSTERESIS, 4, 0},
+    [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, SH_OF_NOTHING, 5,
+                         SH_IS_MOTOR},
+    [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, SH_OF_NOTHING, 5,
+                         SH_IS_MOTOR},
+    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, SH_SIGNAL_NONE, SH_OF_VISCOUS, 0,
+                           MOTOR | SH_IS_FRICTION},
+    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, SH_SIGNAL_NONE, SH_OF_COULOMB, 0,
+                           MOTOR | SH_IS_FRICTION | SH_IS_COULOMB},
+    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, SH_SIGNAL_NONE, SH_OF_INERTIA, 0, MOTOR | SH_IS_INERTIA},
+};
+
+int sh_column_is(const sh_column *column, unsigned what)
 {
-    return TRAITS[column->kind].group;
+    return (KINDS[column->kind].is & what) != 0;
 }
 
-int sh_column_is_torque(const sh_column *column)
+int sh_column_quantity(const sh_column *column)
 {
-    return TRAITS[column->kind].is_torque;
-}
-
-int sh_column_is_gap(const sh_column *column)
-{
-    return TRAITS[column->kind].group == GAP;
-}
-
-int sh_column_is_of_equation(const sh_column *column)
-{
-    return TRAITS[column->kind].is_of_equation;
+    return KINDS[column->kind].quantity;
 }
 
 int sh_column_signal(const sh_column *column)
 {
-    return TRAITS[column->kind].signal;
+    return KINDS[column->kind].taken;
+}
+
+int sh_column_group(const sh_column *column)
+{
+    return KINDS[column->kind].group;
+}
+
+/* Half width of a dead zone or an element of hysteresis over range.phi; 0: of another column [1]. */
+static sh_real half_width(const sh_column *column)
+{
+    return column->kind == SH_COLUMN_DEAD_ZONE    ? DEAD_ZONES[column->i % SH_WIDTHS]
+           : column->kind == SH_COLUMN_HYSTERESIS ? HYSTERESES[column->i % SH_WIDTHS]
+                                                  : 0;
+}
+
+int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_real phi_min,
+                          sh_real phi_max)
+{
+    return half_width(column) <= SH_LOOKS_LIKE_SPRING * (phi_max - phi_min) / p->range.phi;
 }
 
 /* ---- which columns there are ------------------------------------------------------------- */
 
-/* A list of columns that is filled, or only counted. */
+int sh_power_of_phi(int symmetric, int i)
+{
+    return symmetric ? 2 * i + 1 : i;
+}
+
+/* What the coefficient of l^j x^e / e is multiplied by to get that of setPoint^j phi^e. */
+static sh_real unit_of_power(const sh_parameters *p, int i, int j)
+{
+    const int e = sh_power_of_phi(p->rls.symmetric, i);
+    sh_real unit = e > 0 ? 1 / (sh_real)e : 1;
+    int k;
+
+    for (k = 0; k < e; ++k) {
+        unit /= p->range.phi;
+    }
+    for (k = 0; k < j; ++k) {
+        unit /= p->range.setPoint;
+    }
+    return sh_fmin(unit, SH_LARGEST_OUTPUT); /* single precision: phi^15 of a stiff joint */
+}
+
+/* Columns that are listed, or only counted. */
 typedef struct {
     sh_column *column; /* NULL: counted */
     int size;
 } column_list;
 
-static void add_as(column_list *list, int kind, int index, sh_real prior, sh_real unit)
+static void add(column_list *list, const sh_parameters *p, int kind, int i, int j)
 {
-    if (!(prior > 0)) {
+    const sh_real units[] = {1, p->prior.tau_e, p->prior.tau_e / p->range.phi,
+                             p->prior.tau_coulomb};
+    sh_column column = {kind, i, j, 0, 0};
+    sh_real prior;
+
+    (void)memcpy(&prior, (const char *)p + KINDS[kind].prior, sizeof prior);
+    column.prior = prior * units[KINDS[kind].unit];
+    if (!(column.prior > 0)) {
         return;
     }
+    if (KINDS[kind].quantity == SH_OF_CURVE) {
+        column.unit = unit_of_power(p, i, j);
+    }
     if (list->column != NULL) {
-        sh_column *column = list->column + list->size;
-
-        column->kind = kind;
-        column->index = index;
-        column->prior = prior;
-        column->unit = unit;
+        list->column[list->size] = column;
     }
     list->size += 1;
 }
 
-static void add(column_list *list, int kind, sh_real prior)
-{
-    add_as(list, kind, 0, prior, 0);
-}
-
-/* The product of powers whose coefficient is eta[i][j]. */
-static void add_powers(column_list *list, int kind, const sh_parameters *p, int i, int j,
-                       sh_real prior)
-{
-    add_as(list, kind, i * SH_MAX_M + j, prior,
-           sh_scaled_basis_unit(&p->range, p->rls.symmetric, i, j));
-}
-
-/* Those of the torque that are always used, then others, then the motor's. */
 static void list_columns(const sh_parameters *p, column_list *list)
 {
-    const sh_prior_parameters *prior = &p->prior;
-    const sh_real tau_e = prior->tau_e, K_0 = tau_e / p->range.phi;
     const int n = p->rls.n, m = p->rls.m, linear = sh_torque_basis_linear(p->rls.symmetric);
     int i, j;
 
@@ -137,43 +184,45 @@ static void list_columns(const sh_parameters *p, column_list *list)
     for (j = 0; j < m; ++j) {
         /*@ loop unroll SH_MAX_N; */
         for (i = 0; i < n; ++i) {
-            add_powers(list, SH_COLUMN_BASIS, p, i, j, tau_e);
+            add(list, p, SH_COLUMN_POWER, i, j);
         }
     }
-    add(list, SH_COLUMN_NOMINAL, sh_has_nominal_curve(p) ? prior->nominal : 0);
-    add(list, SH_COLUMN_BIAS, prior->bias * tau_e);
-    add(list, SH_COLUMN_DAMPING, prior->damping * K_0);
+    if (sh_has_nominal_curve(p)) {
+        add(list, p, SH_COLUMN_NOMINAL, 0, 0);
+    }
+    add(list, p, SH_COLUMN_BIAS, 0, 0);
+    add(list, p, SH_COLUMN_DAMPING, 0, 0);
     if (m > 1) {
-        add_as(list, SH_COLUMN_DAMPING, m - 1, prior->damping * K_0, 0);
+        add(list, p, SH_COLUMN_DAMPING, 0, m - 1);
     }
-    add(list, SH_COLUMN_SIN_Q, prior->eccentric * K_0);
-    add(list, SH_COLUMN_COS_Q, prior->eccentric * K_0);
-    add(list, SH_COLUMN_LOAD, prior->load_friction);
-    if (prior->tau_coulomb > 0) { /* else the motor has no dry friction */
-        add(list, SH_COLUMN_DRIVE, prior->load_friction);
+    add(list, p, SH_COLUMN_SIN_Q, 0, 0);
+    add(list, p, SH_COLUMN_COS_Q, 0, 0);
+    add(list, p, SH_COLUMN_LOAD, 0, 0);
+    if (p->prior.tau_coulomb > 0) { /* else the motor has no dry friction */
+        add(list, p, SH_COLUMN_DRIVE, 0, 0);
     }
-    add(list, SH_COLUMN_DELAY, prior->delay);
-    add(list, SH_COLUMN_REVERSAL, prior->reversal * prior->tau_coulomb);
+    add(list, p, SH_COLUMN_DELAY, 0, 0);
+    add(list, p, SH_COLUMN_REVERSAL, 0, 0);
     /*@ loop unroll 2; */
     for (i = 0; i < 2 && n + i < SH_MAX_N; ++i) {
-        add_powers(list, SH_COLUMN_POWER, p, n + i, 0, prior->power * tau_e);
+        add(list, p, SH_COLUMN_HIGHER_POWER, n + i, 0);
     }
     if (m > 1 && m < SH_MAX_M && linear < n) {
-        add_powers(list, SH_COLUMN_SET_POWER, p, linear, m, prior->power * tau_e);
+        add(list, p, SH_COLUMN_SET_POWER, linear, m);
     }
-    /*@ loop unroll SH_PLAYS; */
-    for (i = 0; i < SH_PLAYS; ++i) {
-        add(list, SH_COLUMN_GAP_1 + i, prior->gap * tau_e);
+    /*@ loop unroll SH_WIDTHS; */
+    for (i = 0; i < SH_WIDTHS; ++i) {
+        add(list, p, SH_COLUMN_DEAD_ZONE, i, 0);
     }
-    /*@ loop unroll SH_PLAYS; */
-    for (i = 0; i < SH_PLAYS; ++i) {
-        add(list, SH_COLUMN_PLAY_1 + i, prior->hysteresis * tau_e);
+    /*@ loop unroll SH_WIDTHS; */
+    for (i = 0; i < SH_WIDTHS; ++i) {
+        add(list, p, SH_COLUMN_HYSTERESIS, i, 0);
     }
-    add(list, SH_COLUMN_SIN_M, prior->eccentric_motor);
-    add(list, SH_COLUMN_COS_M, prior->eccentric_motor);
-    add(list, SH_COLUMN_VISCOUS, prior->D_theta);
-    add(list, SH_COLUMN_COULOMB, prior->tau_coulomb);
-    add(list, SH_COLUMN_INERTIA, prior->B);
+    add(list, p, SH_COLUMN_SIN_M, 0, 0);
+    add(list, p, SH_COLUMN_COS_M, 0, 0);
+    add(list, p, SH_COLUMN_VISCOUS, 0, 0);
+    add(list, p, SH_COLUMN_COULOMB, 0, 0);
+    add(list, p, SH_COLUMN_INERTIA, 0, 0);
 }
 
 int sh_columns_count(const sh_parameters *p)
@@ -184,301 +233,268 @@ int sh_columns_count(const sh_parameters *p)
     return list.size;
 }
 
-void sh_columns_list(const sh_parameters *p, sh_column *column)
+void sh_columns_start(sh_columns *columns, const sh_parameters *p)
 {
-    column_list list = {column, 0};
-
-    list_columns(p, &list);
-}
-
-void sh_columns_start(sh_regression_state *state, const sh_parameters *p)
-{
-    const int n = p->rls.n, m = p->rls.m;
+    column_list list = {columns->column, 0};
     int i, j;
 
-    sh_columns_list(p, state->column);
-    state->size = sh_columns_count(p);
-    state->has_nominal = sh_has_nominal_curve(p);
-    for (j = 0; j < m; ++j) {
-        for (i = 0; i < n; ++i) {
-            state->nominal_curve[j * n + i] =
-                p->rls.eta_0[i][j] / sh_scaled_basis_unit(&p->range, p->rls.symmetric, i, j);
+    list_columns(p, &list);
+    columns->size = sh_columns_count(p);
+    columns->has_nominal = sh_has_nominal_curve(p);
+    for (i = 0; i < p->rls.n; ++i) {
+        for (j = 0; j < p->rls.m; ++j) {
+            columns->nominal[i][j] = p->rls.eta_0[i][j] / unit_of_power(p, i, j);
         }
     }
 }
 
-int sh_column_can_join(const sh_regression_state *state, const sh_parameters *p,
-                       const sh_column *column, int group)
-{
-    /* What is wider than a quarter of the covered range looks like the spring. */
-    const sh_real covered = (state->history.phi_max - state->history.phi_min) / 4 / p->range.phi;
-    const int kind = column->kind;
-
-    if (sh_column_group(column) != group) {
-        return 0;
-    }
-    switch (kind) {
-    case SH_COLUMN_GAP_1:
-    case SH_COLUMN_GAP_2:
-    case SH_COLUMN_GAP_3:
-        return GAPS[kind - SH_COLUMN_GAP_1] < covered;
-    case SH_COLUMN_PLAY_1:
-    case SH_COLUMN_PLAY_2:
-    case SH_COLUMN_PLAY_3:
-        return PLAYS[kind - SH_COLUMN_PLAY_1] < covered;
-    default:
-        return 1;
-    }
-}
-
-/* ---- signals before the filter ----------------------------------------------------------- */
+/* ---- the signals of a sample ------------------------------------------------------------- */
 
 static sh_real clip(sh_real x, sh_real limit)
 {
     return sh_fmin(sh_fmax(x, -limit), limit);
 }
 
-void sh_columns_move_plays(sh_regression_state *state, const sh_parameters *p, sh_real change)
+/* Signal of a column before its filter. Sets its slope over phi if it has one. */
+static sh_real signal_of(const sh_column *column, const sh_parameters *p, const sh_joint_point *at,
+                         sh_real *slope)
 {
-    int i;
+    const int i = column->i, j = column->j;
 
-    for (i = 0; i < SH_PLAYS; ++i) {
-        state->history.play[i] = clip(state->history.play[i] + change, PLAYS[i] * p->range.phi);
-    }
-}
-
-/* What the signals depend on. */
-typedef struct {
-    sh_real theta, q, phi, x, l; /* x and l: deformation and set-point over their ranges */
-} joint_point;
-
-/* Signal of a column, and its slope over phi. */
-static sh_real input_of(const sh_regression_state *state, const sh_parameters *p,
-                        const sh_column *column, const joint_point *at, sh_real *slope)
-{
-    const int kind = column->kind;
-    const int i = column->index / SH_MAX_M, j = column->index % SH_MAX_M; /* of powers */
-    int e;
-
-    *slope = 0;
-    switch (kind) {
-    case SH_COLUMN_BASIS:
-        *slope = state->work.slope[j * p->rls.n + i];
-        return state->work.basis[j * p->rls.n + i];
+    switch (column->kind) {
+    case SH_COLUMN_POWER:
+    case SH_COLUMN_HIGHER_POWER:
+    case SH_COLUMN_SET_POWER: /* l^j x^e / e, detail 1 */
+        *slope = at->slope[i] * at->l[j];
+        return at->power[i] * at->l[j];
     case SH_COLUMN_NOMINAL:
-        *slope = state->sigma_nominal;
-        return state->tau_nominal;
+        *slope = at->sigma_nominal;
+        return at->tau_nominal;
     case SH_COLUMN_BIAS:
         return 1;
-    case SH_COLUMN_DAMPING: /* as the stiffness, it may depend on the set-point */
-        return at->phi * sh_power(at->l, column->index);
+    case SH_COLUMN_DAMPING: /* phi l^j: as the stiffness, the damping may depend on the set-point */
+        return at->phi * sh_limited(at->l[j], SH_LARGE);
     case SH_COLUMN_SIN_Q:
         return sh_sin(at->q);
     case SH_COLUMN_COS_Q:
         return sh_cos(at->q);
-    case SH_COLUMN_POWER:
-        e = sh_scaled_basis_power(p->rls.symmetric, i);
-        *slope = sh_power(at->x, e - 1) / p->range.phi;
-        return sh_power(at->x, e) / (sh_real)e;
-    case SH_COLUMN_SET_POWER:
-        *slope = sh_power(at->l, p->rls.m) / p->range.phi;
-        return at->x * sh_power(at->l, p->rls.m);
-    case SH_COLUMN_GAP_1: /* no slope: sigma is that of the spring where it is engaged */
-    case SH_COLUMN_GAP_2:
-    case SH_COLUMN_GAP_3:
-        return clip(at->x, GAPS[kind - SH_COLUMN_GAP_1]) / GAPS[kind - SH_COLUMN_GAP_1];
-    case SH_COLUMN_PLAY_1:
-    case SH_COLUMN_PLAY_2:
-    case SH_COLUMN_PLAY_3:
-        return state->history.play[kind - SH_COLUMN_PLAY_1] /
-               (PLAYS[kind - SH_COLUMN_PLAY_1] * p->range.phi);
+    case SH_COLUMN_DEAD_ZONE: /* clip(x, h) / h without a slope: it does not count in sigma */
+        return clip(at->phi / p->range.phi, half_width(column)) / half_width(column);
+    case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- clip(z + dphi, h) */
+        return at->play[i % SH_WIDTHS] / (half_width(column) * p->range.phi);
     case SH_COLUMN_SIN_M:
         return sh_sin(p->motor.gamma * at->theta);
     case SH_COLUMN_COS_M:
         return sh_cos(p->motor.gamma * at->theta);
-    default:
+    default: /* it has no filter, or sh_signals_step knows its signal */
         return 0;
     }
 }
 
-void sh_columns_input(sh_regression_state *state, const sh_parameters *p, sh_real theta, sh_real q,
-                      sh_real phi, sh_real set_point)
+/* Sets x^e / e and x^(e - 1) / range, for x = phi / range; for e = 0 it is 1 and 0. */
+static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real set_point)
 {
-    const joint_point at = {theta, q, phi, phi / p->range.phi, set_point / p->range.setPoint};
-    int i;
+    const int symmetric = p->rls.symmetric;
+    const sh_real x = point->phi / p->range.phi, l = set_point / p->range.setPoint;
+    const sh_real step = symmetric ? x * x : x;
+    sh_real power = symmetric ? x : 1, slope = symmetric ? 1 / p->range.phi : 0;
+    int i, j;
 
-    sh_scaled_basis(&p->range, p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi,
-                    state->work.basis, state->work.slope);
-    if (state->has_nominal) {
-        sh_scalar_products(state->nominal_curve, state->work.basis, state->work.slope,
-                           p->rls.n * p->rls.m, &state->tau_nominal, &state->sigma_nominal);
+    for (i = 0; i < SH_MAX_N; ++i) {
+        const int e = sh_power_of_phi(symmetric, i);
+
+        point->power[i] = e > 0 ? power / (sh_real)e : power;
+        point->slope[i] = slope;
+        power *= step;
+        slope = e > 0 ? slope * step : 1 / p->range.phi;
     }
-    for (i = 0; i < state->size; ++i) {
-        const sh_column *column = &state->column[i];
-        sh_real slope;
-
-        state->work.F[i] = column->prior * input_of(state, p, column, &at, &slope);
-        state->work.dF[i] = column->prior * slope;
+    point->l[0] = 1;
+    for (j = 1; j < SH_MAX_M; ++j) {
+        point->l[j] = point->l[j - 1] * l;
     }
 }
 
-/* ---- row of the regression --------------------------------------------------------------- */
+static void set_nominal(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p)
+{
+    int i, j;
 
-/* Output of the filter of a signal that is not smooth. The filter treats theta and the columns of
- * the torque as linear between samples although they are smooth, which reduces them by the share
- * (Omega T)^2 / 12 at the frequency Omega. The torque and the sign are treated exactly.
- * T^2 / 12 s^2 reduces them by the same share, so that the equation between all signals holds.
- */
+    for (i = 0; i < p->rls.n && columns->has_nominal; ++i) {
+        for (j = 0; j < p->rls.m; ++j) {
+            point->tau_nominal += columns->nominal[i][j] * point->power[i] * point->l[j];
+            point->sigma_nominal += columns->nominal[i][j] * point->slope[i] * point->l[j];
+        }
+    }
+}
+
+void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p,
+                       sh_real theta, sh_real q, sh_real phi, sh_real set_point,
+                       const sh_real *play)
+{
+    int i;
+
+    (void)memset(point, 0, sizeof *point);
+    point->theta = theta;
+    point->q = q;
+    point->phi = phi;
+    point->play = play;
+    set_powers(point, p, set_point);
+    set_nominal(point, columns, p);
+    for (i = 0; i < columns->size; ++i) {
+        sh_real slope = 0;
+
+        point->F[i] = columns->column[i].prior * signal_of(&columns->column[i], p, point, &slope);
+        point->dF[i] = columns->column[i].prior * slope;
+    }
+}
+
+void sh_columns_move_plays(sh_real *play, const sh_parameters *p, sh_real change)
+{
+    int i;
+
+    for (i = 0; i < SH_WIDTHS; ++i) {
+        play[i] = clip(play[i] + change, HYSTERESES[i] * p->range.phi);
+    }
+}
+
+sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta)
+{
+    sh_real torque = at->tau_nominal;
+    int i;
+
+    for (i = 0; i < columns->size; ++i) {
+        if (sh_column_is(&columns->column[i], SH_IS_SPRING)) {
+            torque += at->F[i] * beta[i];
+        }
+    }
+    return torque;
+}
+
+/* ---- the row ----------------------------------------------------------------------------- */
+
+/* H x + T^2/12 s^2 H x of a signal that is not smooth, detail 2. */
 static sh_real as_if_smooth(const sh_state_variable_filter *filter, const sh_filter_design *design)
 {
     return sh_state_variable_filter_output(filter) +
            design->T * design->T / 12 * sh_state_variable_filter_second(filter, design);
 }
 
-/* What the entries of the motor consist of; all 0 where the torque is measured. */
-typedef struct {
-    sh_real viscous, inertial; /* gamma^2 D_theta theta'_f, gamma^2 B theta''_f [N.m] */
-    sh_real gain;              /* y contains the torque times this: -gamma, or 1 if measured */
-    int is_measured;
-} motor_terms;
-
-static motor_terms motor_terms_of(const sh_regression_state *state, const sh_parameters *p)
+/* Filtered torque in y: -gamma tau_f, or the measured torque of the spring [N.m]. */
+static sh_real torque_in_y(const sh_regression_state *state, const sh_parameters *p)
 {
-    const sh_motor_parameters *motor = &p->motor;
-    const sh_real gamma2 = motor->gamma * motor->gamma;
-    motor_terms terms = {0, 0, 1, sh_is_measured(p)};
+    const sh_state_variable_filter *tau = &state->signals.torque;
 
-    if (terms.is_measured) {
-        return terms;
-    }
-    terms.gain = -motor->gamma;
-    terms.viscous =
-        gamma2 * motor->D_theta * sh_state_variable_filter_first(&state->theta, &state->design);
-    terms.inertial =
-        gamma2 * motor->B * sh_state_variable_filter_second(&state->theta, &state->design);
-    return terms;
+    return sh_is_measured(p) ? sh_state_variable_filter_output(tau)
+                             : -p->motor.gamma * as_if_smooth(tau, &state->signals.design);
 }
 
-/* Filtered torque in y [N.m]. */
-static sh_real filtered_torque(const sh_regression_state *state, const motor_terms *motor)
+/* -|gamma tau_f| s_f for a torque -gamma tau_f in y [N.m]. */
+static sh_real drive_friction(const sh_signals *signals, sh_real torque)
 {
-    return motor->gain * (motor->is_measured ? sh_state_variable_filter_output(&state->torque)
-                                             : as_if_smooth(&state->torque, &state->design));
+    return -sh_fabs(torque) * as_if_smooth(&signals->sign, &signals->design);
 }
 
-/* Friction by a torque of the motor behind the gear, filtered [N.m]. */
-static sh_real drive_friction(const sh_regression_state *state, sh_real torque)
+/* Sets the entries over their priors of all columns without a filter of their own. */
+static void set_terms(const sh_regression_state *state, const sh_parameters *p, sh_real torque,
+                      sh_real *term)
 {
-    return -sh_fabs(torque) * as_if_smooth(&state->friction, &state->design);
+    const sh_signals *signals = &state->signals;
+    const sh_filter_design *design = &signals->design;
+    const sh_real gamma = p->motor.gamma, gain = sh_is_measured(p) ? 1 : -gamma;
+
+    /* gamma (tau' + delay tau''/2) */
+    term[SH_COLUMN_DELAY] =
+        -gain * (sh_state_variable_filter_first(&signals->torque, design) +
+                 state->delay / 2 * sh_state_variable_filter_second(&signals->torque, design));
+    term[SH_COLUMN_NOMINAL] = sh_state_variable_filter_output(&signals->nominal);
+    /* -gamma^2 D_theta theta'_f, -gamma^2 B theta''_f, -|gamma| s_f, |gamma| s'_f */
+    term[SH_COLUMN_VISCOUS] =
+        -gamma * gamma * p->motor.D_theta * sh_state_variable_filter_first(&signals->theta, design);
+    term[SH_COLUMN_INERTIA] =
+        -gamma * gamma * p->motor.B * sh_state_variable_filter_second(&signals->theta, design);
+    term[SH_COLUMN_COULOMB] = -sh_fabs(gamma) * as_if_smooth(&signals->sign, design);
+    term[SH_COLUMN_REVERSAL] =
+        sh_fabs(gamma) * sh_state_variable_filter_first(&signals->sign, design);
+    term[SH_COLUMN_DRIVE] = drive_friction(signals, torque);
 }
 
-/* A stiffness that is wrong by many orders must not make the row too large to be learned from: then
- * every sample would be refused, and the stiffness would never be corrected.
+/* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta; 0 while sigma is not
+ * known, detail 13.
  */
-static const sh_real LARGEST_ENCODER_ERROR = SH_FOR(SH_REAL, 1e74, 1e14f); /* [N.m] */
-
-/* Error of y by an encoder of the motor that is wrong by the signal of a filter [N.m]. */
 static sh_real encoder_error(const sh_regression_state *state, const sh_parameters *p,
-                             const sh_state_variable_filter *filter)
+                             const sh_state_variable_filter *S)
 {
     const sh_motor_parameters *motor = &p->motor;
-    const sh_filter_design *design = &state->design;
+    const sh_filter_design *design = &state->signals.design;
+    const sh_real inertial = motor->B * sh_state_variable_filter_second(S, design);
+    const sh_real viscous = motor->D_theta * sh_state_variable_filter_first(S, design);
+    const sh_real error = state->sigma * sh_state_variable_filter_output(S) +
+                          motor->gamma * motor->gamma * (viscous + inertial);
 
-    return state->sigma * sh_state_variable_filter_output(filter) +
-           motor->gamma * motor->gamma *
-               (motor->D_theta * sh_state_variable_filter_first(filter, design) +
-                motor->B * sh_state_variable_filter_second(filter, design));
+    return state->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
 }
 
-/* Entry of a column in the row. */
-static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p,
-                        const motor_terms *motor, const sh_column *column,
-                        const sh_state_variable_filter *filter)
+/* Entry of a column with a filter of its own, which contains the prior. */
+static sh_real own_entry(const sh_regression_state *state, const sh_parameters *p, int kind,
+                         const sh_state_variable_filter *filter)
 {
-    const sh_filter_design *design = &state->design;
-    const sh_real prior = column->prior, gamma = sh_fabs(p->motor.gamma);
-
-    switch (column->kind) {
-    case SH_COLUMN_NOMINAL:
-        return prior * sh_state_variable_filter_output(&state->nominal);
-    case SH_COLUMN_DAMPING:
-        return sh_state_variable_filter_first(filter, design);
-    case SH_COLUMN_DELAY:
-        return -prior * motor->gain *
-               (sh_state_variable_filter_first(&state->torque, design) +
-                state->delay / 2 * sh_state_variable_filter_second(&state->torque, design));
-    case SH_COLUMN_LOAD:
-        return motor->is_measured ? 0 : as_if_smooth(filter, design);
-    case SH_COLUMN_DRIVE:
-        return motor->is_measured ? 0
-                                  : prior * drive_friction(state, filtered_torque(state, motor));
-    case SH_COLUMN_REVERSAL:
-        return motor->is_measured
-                   ? 0
-                   : prior * gamma * sh_state_variable_filter_first(&state->friction, design);
+    switch (kind) {
+    case SH_COLUMN_DAMPING: /* phi' l^j */
+        return sh_state_variable_filter_first(filter, &state->signals.design);
+    case SH_COLUMN_LOAD: /* -|tau_e| s through the filter */
+        return as_if_smooth(filter, &state->signals.design);
     case SH_COLUMN_SIN_M:
-    case SH_COLUMN_COS_M: /* prior is already in the signal */
-        return motor->is_measured || !state->stiffness_known
-                   ? 0
-                   : sh_limited(encoder_error(state, p, filter), LARGEST_ENCODER_ERROR);
-    case SH_COLUMN_VISCOUS:
-        return -prior * motor->viscous;
-    case SH_COLUMN_COULOMB:
-        return motor->is_measured ? 0 : -prior * gamma * as_if_smooth(&state->friction, design);
-    case SH_COLUMN_INERTIA:
-        return -prior * motor->inertial;
+    case SH_COLUMN_COS_M:
+        return encoder_error(state, p, filter);
     default:
         return sh_state_variable_filter_output(filter);
     }
 }
 
+/* y = gamma^2 B theta''_f + gamma^2 D_theta theta'_f - gamma tau_f, or the torque of the spring */
 sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x)
 {
-    const motor_terms motor = motor_terms_of(state, p);
-    const sh_real torque = filtered_torque(state, &motor);
-    const sh_real y = motor.inertial + motor.viscous + torque;
+    const int size = state->columns.size, is_measured = sh_is_measured(p);
+    const sh_real torque = torque_in_y(state, p);
+    sh_real term[SH_COLUMN_KINDS] = {0}, y = torque;
     int i;
 
-    for (i = 0; i < state->size; ++i) {
-        x[i] = entry_of(state, p, &motor, &state->column[i], &state->filter[i]);
+    set_terms(state, p, torque, term);
+    for (i = 0; i < size; ++i) {
+        const sh_column *column = &state->columns.column[i];
+        const int kind = column->kind;
+
+        if (is_measured && sh_column_is(column, SH_IS_MOTOR)) {
+            x[i] = 0;
+        } else if (KINDS[kind].taken == SH_SIGNAL_NONE) {
+            x[i] = column->prior * term[kind];
+        } else {
+            x[i] = own_entry(state, p, kind, &state->signals.column[i]);
+        }
     }
-    x[state->size + SH_SIDE_GAIN] = torque;
-    x[state->size + SH_SIDE_Y] = y;
-    if (state->has_nominal) {
-        x[state->size + SH_SIDE_Y] -= sh_state_variable_filter_output(&state->nominal);
+    if (!is_measured) {
+        y -= term[SH_COLUMN_INERTIA] + term[SH_COLUMN_VISCOUS];
     }
+    x[size + SH_RIGHT_GAIN] = torque;
+    x[size + SH_RIGHT_Y] = state->columns.has_nominal ? y - term[SH_COLUMN_NOMINAL] : y;
     return y;
 }
 
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_parameters *p,
                                 sh_real noise, sh_real *x)
 {
-    const sh_real torque = x[state->size + SH_SIDE_GAIN];
+    const sh_real torque = torque_in_y(state, p) - noise;
     sh_real change = 0;
     int i;
 
-    for (i = 0; i < state->size; ++i) {
-        if (state->column[i].kind == SH_COLUMN_DRIVE && !sh_is_measured(p)) {
-            const sh_real entry = state->column[i].prior * drive_friction(state, torque - noise);
+    for (i = 0; i < state->columns.size && !sh_is_measured(p); ++i) {
+        const sh_column *column = &state->columns.column[i];
+
+        if (column->kind == SH_COLUMN_DRIVE) {
+            const sh_real entry = column->prior * drive_friction(&state->signals, torque);
 
             change += (entry - x[i]) * state->beta[i];
             x[i] = entry;
         }
     }
     return change;
-}
-
-/* ---- what the estimate means ------------------------------------------------------------- */
-
-sh_real sh_columns_torque(const sh_regression_state *state)
-{
-    sh_real torque = state->tau_nominal;
-    int i;
-
-    for (i = 0; i < state->size; ++i) {
-        if (sh_column_is_torque(&state->column[i])) {
-            torque += state->work.F[i] * state->beta[i];
-        }
-    }
-    return torque;
 }

@@ -1,26 +1,10 @@
-/* Method FilteredRegression: one tick, and what its estimate means. The regression is that of columns.h.
- */
-#include <stddef.h>
-
-#include "blocks.h"
-#include "columns.h"
+/* Method FilteredRegression: one tick, and what its estimate means. */
+#include "constants.h"
 #include "information.h"
 #include "method.h"
-#include "passes.h"
 #include "posterior.h"
-#include "real_math.h"
-#include "sample_variance.h"
-#include "scaled_basis.h"
-#include "signals.h"
+#include "regression.h"
 #include "state_variable_filter.h"
-
-/* Relative uncertainty of the stiffness below which columns that need it have an effect. */
-static const sh_real KNOWN = (sh_real)0.2;
-
-/* Where the highest power of the curve is this many times as large as at range.phi, nothing is
- * claimed. But up to LEAST_LIMIT range.phi, something is.
- */
-static const sh_real LARGEST_POWER = 32, LEAST_LIMIT = 2;
 
 static int check_filtered_regression(const sh_parameters *p, sh_violation *violation)
 {
@@ -42,147 +26,117 @@ static int check_filtered_regression(const sh_parameters *p, sh_violation *viola
     return 0;
 }
 
+/* Largest |phi|: there the highest power e is 32 times as large as at range.phi; at least twice it. */
 static sh_real largest_deformation_filtered_regression(const sh_parameters *p)
 {
-    const int highest = sh_scaled_basis_power(p->rls.symmetric, p->rls.n - 1);
+    const int e = sh_power_of_phi(p->rls.symmetric, p->rls.n - 1);
 
-    return p->range.phi * sh_fmax(LEAST_LIMIT, sh_exp(sh_log(LARGEST_POWER) / (sh_real)highest));
+    return p->range.phi * sh_fmax(SH_LEAST_LIMIT, sh_exp(sh_log(SH_LARGEST_POWER) / (sh_real)e));
 }
 
-/* ---- what the estimate means ------------------------------------------------------------- */
+/* ---- torque and stiffness at a point ------------------------------------------------------ */
 
-/* Coefficients of the columns, in the units of their priors. */
-typedef struct {
-    sh_real nominal, viscous, inertia, coulomb; /* relative errors; friction [N.m] */
-    sh_real bias, damping, sin_q, cos_q, load, delay, plays, unused;
-} joint_coefficients;
-
-/* Where the coefficient of a kind that has one column is returned. */
-static sh_real *coefficient_of(joint_coefficients *joint, int kind)
-{
-    switch (kind) {
-    case SH_COLUMN_NOMINAL:
-        return &joint->nominal;
-    case SH_COLUMN_BIAS:
-        return &joint->bias;
-    case SH_COLUMN_SIN_Q:
-        return &joint->sin_q;
-    case SH_COLUMN_COS_Q:
-        return &joint->cos_q;
-    case SH_COLUMN_DELAY:
-        return &joint->delay;
-    case SH_COLUMN_VISCOUS:
-        return &joint->viscous;
-    case SH_COLUMN_COULOMB:
-        return &joint->coulomb;
-    case SH_COLUMN_INERTIA:
-        return &joint->inertia;
-    default:
-        return &joint->unused;
-    }
-}
-
-/* Sets the coefficients eta of setPoint^j phi^e in the estimate, and returns those of all columns
- * that are not products of powers.
+/* Share by which the rounding of phi makes the stiffness too small: v sum V_phi / R, where v is its
+ * variance, to first order and as if it were the same in all samples (point 5). The estimate is not
+ * corrected by it, because slopes differ; it widens the interval.
  */
-static joint_coefficients read_columns(const sh_regression_state *state, const sh_parameters *p,
-                                       sh_real set_point, sh_estimate *estimate)
+static sh_real attenuation(const sh_regression_state *state, const sh_uncertainty *stiffness)
 {
-    const sh_real l = set_point / p->range.setPoint;
-    joint_coefficients joint = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    return state->rounding * state->posterior.weight * stiffness->variance;
+}
+
+/* sqrt(c' P c + (s_g d(c' beta)/dg)^2 + (attenuation c' beta)^2) with the gain g of the torque, point 8 */
+static sh_real std_deviation(const sh_parameters *p, const sh_uncertainty *found,
+                             sh_real attenuated)
+{
+    return sh_std_deviation(found->variance + sh_square(p->prior.torque_gain * found->by_gain) +
+                            sh_square(attenuated));
+}
+
+/* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Returns how uncertain
+ * the stiffness is.
+ */
+static sh_uncertainty evaluate_at(const sh_regression_state *state, const sh_parameters *p,
+                                  const sh_joint_point *at, sh_point *point)
+{
+    const sh_columns *columns = &state->columns;
+    sh_real F[SH_MAX_COLUMNS] = {0}; /* of the spring alone */
+    sh_uncertainty torque, stiffness;
+    sh_real attenuated;
     int i;
 
-    for (i = 0; i < state->size; ++i) {
-        const sh_column *column = &state->column[i];
-        const sh_real value = column->prior * state->beta[i];
-        const sh_real coefficient = sh_limited(value * column->unit, SH_LARGEST_OUTPUT);
-
-        switch (column->kind) {
-        case SH_COLUMN_BASIS:
-        case SH_COLUMN_POWER:
-        case SH_COLUMN_SET_POWER:
-            estimate->eta[column->index / SH_MAX_M][column->index % SH_MAX_M] = coefficient;
-            break;
-        case SH_COLUMN_DAMPING:
-            joint.damping += value * sh_limited(sh_power(l, column->index), SH_LARGE);
-            break;
-        case SH_COLUMN_LOAD:
-        case SH_COLUMN_DRIVE: /* both torques are nearly the same where the motion is slow */
-            joint.load += value;
-            break;
-        case SH_COLUMN_PLAY_1:
-        case SH_COLUMN_PLAY_2:
-        case SH_COLUMN_PLAY_3:
-            joint.plays += value;
-            break;
-        default:
-            *coefficient_of(&joint, column->kind) = value;
-            break;
-        }
+    point->tau_e = at->tau_nominal;
+    point->sigma = at->sigma_nominal;
+    for (i = 0; i < columns->size; ++i) {
+        F[i] = sh_column_is(&columns->column[i], SH_IS_SPRING) ? at->F[i] : 0;
+        point->tau_e += F[i] * state->beta[i];
+        point->sigma += at->dF[i] * state->beta[i];
     }
-    return joint;
+    stiffness = sh_posterior_uncertainty(&state->posterior, p->prior.B, at->dF);
+    torque = sh_posterior_uncertainty(&state->posterior, p->prior.B, F);
+    attenuated = attenuation(state, &stiffness);
+    point->sigma_std = std_deviation(p, &stiffness, attenuated * point->sigma);
+    point->tau_e_std = std_deviation(p, &torque, attenuated * point->tau_e);
+    return stiffness;
 }
 
-/* Adds the curve rls.eta_0, whose relative error is `error`. Without one, and without columns of the
- * basis, the coefficients stay 0.
- */
-static void add_nominal_curve(const sh_regression_state *state, const sh_parameters *p,
-                              sh_real error, sh_estimate *estimate)
+static void evaluate_filtered_regression(const sh_estimator *estimator, const sh_parameters *p,
+                                         sh_real phi, sh_real set_point, sh_point *point)
 {
-    const int is_basis = p->prior.tau_e > 0;
+    const sh_regression_state *state = &estimator->method.regression;
+    const sh_real at_rest[SH_WIDTHS] = {0};
+    sh_joint_point at;
+
+    sh_joint_point_at(&at, &state->columns, p, 0, 0, phi, set_point, at_rest);
+    (void)evaluate_at(state, p, &at, point);
+}
+
+/* ---- report ------------------------------------------------------------------------------- */
+
+/* Sets the coefficients eta, and adds up the coefficients of each other quantity, SH_OF_*, in sum. */
+static void read_coefficients(const sh_regression_state *state, const sh_parameters *p,
+                              const sh_joint_point *at, sh_real *sum, sh_estimate *estimate)
+{
     int i, j;
 
-    if (!state->has_nominal) {
-        return;
+    for (i = 0; i < state->columns.size; ++i) {
+        const sh_column *column = &state->columns.column[i];
+        const sh_real value = column->prior * state->beta[i];
+        const int quantity = sh_column_quantity(column);
+
+        if (quantity == SH_OF_CURVE) {
+            estimate->eta[column->i][column->j] =
+                sh_limited(value * column->unit, SH_LARGEST_OUTPUT);
+        }
+        sum[quantity] +=
+            quantity == SH_OF_DAMPING ? value * sh_limited(at->l[column->j], SH_LARGE) : value;
     }
-    for (i = 0; i < p->rls.n; ++i) {
+    for (i = 0; i < p->rls.n && state->columns.has_nominal; ++i) {
         for (j = 0; j < p->rls.m; ++j) {
-            estimate->eta[i][j] =
-                (is_basis ? estimate->eta[i][j] : 0) + (1 + error) * p->rls.eta_0[i][j];
+            estimate->eta[i][j] = (p->prior.tau_e > 0 ? estimate->eta[i][j] : 0) +
+                                  (1 + sum[SH_OF_NOMINAL]) * p->rls.eta_0[i][j];
         }
     }
 }
 
-static void report_joint(const sh_regression_state *state, const sh_parameters *p,
-                         const joint_coefficients *joint, sh_estimate *estimate)
-{
-    const sh_real stiffness = p->prior.tau_e / p->range.phi;
-
-    estimate->D_theta_hat = p->motor.D_theta * (1 + joint->viscous);
-    estimate->B_hat = p->motor.B * (1 + joint->inertia);
-    estimate->tau_coulomb_hat = joint->coulomb;
-    estimate->bias_hat = joint->bias;
-    estimate->damping_hat = joint->damping;
-    estimate->load_friction_hat = joint->load;
-    estimate->eccentric_hat =
-        stiffness > 0
-            ? sh_limited(sh_sqrt(joint->sin_q * joint->sin_q + joint->cos_q * joint->cos_q) /
-                             stiffness,
-                         SH_LARGEST_OUTPUT)
-            : 0;
-    estimate->delay_hat = joint->delay;
-    estimate->hysteresis_hat = joint->plays;
-    estimate->misfit = sh_sqrt(sh_fmax(1, state->q));
-}
-
-/* Why the estimate is not confident. Misfit and priors make sigma_std right; so there is no limit of
+/* Why the estimate is not confident. Misfit and priors make sigma_std right, so there is no limit of
  * the misfit itself.
  */
-static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
-                    const joint_coefficients *joint, const sh_estimate *estimate)
+static int doubt_of(const sh_regression_state *state, const sh_parameters *p, const sh_real *sum,
+                    const sh_estimate *estimate)
 {
     int doubt = SH_DOUBT_NONE;
 
     if (!(estimate->sigma_std < p->limit.relative_std * sh_fabs(estimate->sigma))) {
         doubt = state->variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
     }
-    if (sh_fabs(estimate->phi) > state->largest_deformation) {
+    if (sh_fabs(estimate->phi) > largest_deformation_filtered_regression(p)) {
         doubt = SH_DOUBT_OUT_OF_RANGE;
     }
-    if (sh_fabs(joint->viscous) > 3 * p->prior.D_theta) {
+    if (sh_fabs(sum[SH_OF_VISCOUS]) > SH_OUTSIDE_PRIOR * p->prior.D_theta) {
         doubt = SH_DOUBT_FRICTION;
     }
-    if (sh_fabs(joint->inertia) > 3 * p->prior.B) {
+    if (sh_fabs(sum[SH_OF_INERTIA]) > SH_OUTSIDE_PRIOR * p->prior.B) {
         doubt = SH_DOUBT_INERTIA;
     }
     if (estimate->sigma < 0) {
@@ -191,55 +145,60 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
     return doubt;
 }
 
-/* Share by which the rounding of phi reduces sigma, to first order, if the spring has the slope of
- * this instant in all samples. sigma is not corrected by it: slopes differ, and rounding is not
- * quite white. It widens the interval.
- */
-static sh_real attenuation(const sh_regression_state *state, const sh_stiffness_fit *fit)
+/* Sets all outputs that follow from the estimate at a point. */
+static void report(const sh_regression_state *state, const sh_parameters *p,
+                   const sh_joint_point *at, const sh_point *point, const sh_uncertainty *stiffness,
+                   sh_estimate *estimate)
 {
-    return state->rounding * state->live.weight * fit->variance;
-}
+    const sh_real K_0 = p->prior.tau_e / p->range.phi;
+    sh_real sum[SH_QUANTITIES] = {0};
 
-/* Sets all that follows from the fit. */
-static void report(const sh_regression_state *state, const sh_parameters *p, sh_real set_point,
-                   const sh_stiffness_fit *fit, sh_estimate *estimate)
-{
-    const sh_real by_gain = p->prior.torque_gain * fit->by_gain;
-    joint_coefficients joint;
-
-    const sh_real by_rounding = attenuation(state, fit) * estimate->sigma;
-
-    estimate->sigma_std =
-        sh_std_deviation(fit->variance + by_gain * by_gain + by_rounding * by_rounding);
+    read_coefficients(state, p, at, sum, estimate);
+    estimate->sigma_std = point->sigma_std;
+    estimate->tau_e_std = point->tau_e_std;
     estimate->sigma_per_gain =
-        sh_fabs(estimate->sigma) > 0
-            ? sh_limited(fit->by_gain / sh_fabs(estimate->sigma), SH_LARGEST_OUTPUT)
+        sh_fabs(point->sigma) > 0
+            ? sh_limited(stiffness->by_gain / sh_fabs(point->sigma), SH_LARGEST_OUTPUT)
             : 0;
-    joint = read_columns(state, p, set_point, estimate);
-    add_nominal_curve(state, p, joint.nominal, estimate);
-    report_joint(state, p, &joint, estimate);
-    estimate->doubt = doubt_of(state, p, &joint, estimate);
+    estimate->D_theta_hat = p->motor.D_theta * (1 + sum[SH_OF_VISCOUS]);
+    estimate->B_hat = p->motor.B * (1 + sum[SH_OF_INERTIA]);
+    estimate->tau_coulomb_hat = sum[SH_OF_COULOMB];
+    estimate->bias_hat = sum[SH_OF_BIAS];
+    estimate->damping_hat = sum[SH_OF_DAMPING];
+    estimate->load_friction_hat = sum[SH_OF_LOAD_FRICTION];
+    estimate->eccentric_hat =
+        K_0 > 0
+            ? sh_limited(sh_sqrt(sh_square(sum[SH_OF_SIN_Q]) + sh_square(sum[SH_OF_COS_Q])) / K_0,
+                         SH_LARGEST_OUTPUT)
+            : 0;
+    estimate->delay_hat = sum[SH_OF_DELAY];
+    estimate->hysteresis_hat = sum[SH_OF_HYSTERESIS];
+    estimate->misfit = sh_sqrt(sh_fmax(1, state->misfit));
+    estimate->doubt = doubt_of(state, p, sum, estimate);
 }
 
-/* ---- start and tick ---------------------------------------------------------------------- */
+/* ---- start -------------------------------------------------------------------------------- */
 
 static void start_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
                                       sh_estimate *estimate)
 {
     sh_regression_state *state = &estimator->method.regression;
-    sh_stiffness_fit fit;
+    sh_joint_point at;
+    sh_point point;
+    sh_uncertainty stiffness;
 
-    state->largest_deformation = largest_deformation_filtered_regression(p);
-    sh_signals_start(state, p);
-    sh_columns_start(state, p);
-    sh_information_start(&state->data, state->size, SH_INFORMATION_LEAST);
+    state->modality = p->modality;
+    sh_columns_start(&state->columns, p);
+    sh_signals_start(&state->signals, &state->history, p);
+    sh_information_start(&state->data, state->columns.size, SH_LEAST_INFORMATION);
     sh_blocks_start(state);
-    sh_posterior_start(state, p, &state->live, 0, 1);
-    sh_passes_start(state, p);
-    sh_columns_input(state, p, 0, 0, 0, p->setPoint.offset);
-    fit = sh_posterior_evaluate(state, &state->live);
-    report(state, p, p->setPoint.offset, &fit, estimate);
+    sh_refit_start(state, p);
+    sh_joint_point_at(&at, &state->columns, p, 0, 0, 0, p->setPoint.offset, state->history.play);
+    stiffness = evaluate_at(state, p, &at, &point);
+    report(state, p, &at, &point, &stiffness, estimate);
 }
+
+/* ---- tick --------------------------------------------------------------------------------- */
 
 static sh_real sum_of_squares(const sh_real *x, int size)
 {
@@ -252,12 +211,73 @@ static sh_real sum_of_squares(const sh_real *x, int size)
     return sum;
 }
 
-/* Whether torque and stiffness do not overflow at the signals in work. */
-static int are_acceptable_signals(const sh_regression_state *state)
+/* Whether no result overflows by the signals and the row of a sample; not if one is not a number. */
+static int are_acceptable(const sh_joint_point *at, const sh_real *x, int size)
 {
-    return sum_of_squares(state->work.F, state->size) <= SH_LARGE &&
-           sum_of_squares(state->work.dF, state->size) <= SH_LARGE &&
-           sh_fabs(state->tau_nominal) <= SH_LARGE && sh_fabs(state->sigma_nominal) <= SH_LARGE;
+    return sum_of_squares(at->F, size) <= SH_LARGE && sum_of_squares(at->dF, size) <= SH_LARGE &&
+           sh_fabs(at->tau_nominal) <= SH_LARGE && sh_fabs(at->sigma_nominal) <= SH_LARGE &&
+           sum_of_squares(x, size + SH_RIGHT_SIDES) <= SH_LARGE;
+}
+
+/* Whether the estimate may use this sample: the filters have settled, and at the start the motor was at
+ * rest (detail 12).
+ */
+static int is_settled(sh_regression_state *state, const sh_parameters *p, const sh_real *x)
+{
+    sh_history *history = &state->history;
+
+    history->settling = sh_fmax(history->settling - p->samplePeriod, 0);
+    if (history->settling > 0) {
+        return 0;
+    }
+    if (sh_is_measured(p) || !(history->starting > 0)) {
+        return 1;
+    }
+    history->starting -= p->samplePeriod;
+    if (!sh_noise_contradicts_rest(state, p, x)) {
+        return 1;
+    }
+    sh_signals_unsettle(&state->signals, history);
+    return 0;
+}
+
+/* epsilon = y - x' beta. The share of epsilon that is noise of the torque is removed from the column
+ * of the motor's torque, which contains it too; then epsilon is computed again (detail 14).
+ */
+static sh_real prediction_error(const sh_regression_state *state, const sh_parameters *p,
+                                sh_real *x)
+{
+    sh_real epsilon = x[state->columns.size + SH_RIGHT_Y];
+    int i;
+
+    for (i = 0; i < state->columns.size; ++i) {
+        epsilon -= x[i] * state->beta[i];
+    }
+    return epsilon -
+           sh_columns_remove_noise(state, p, sh_noise_share_of_torque(state, p) * epsilon, x);
+}
+
+/* Updates what is rounding in the columns of b (detail 7) and of the spring (point 5). */
+static void update_rounding(sh_regression_state *state, const sh_parameters *p, sh_real w)
+{
+    sh_posterior *const both[] = {&state->posterior, &state->refit.posterior};
+    const sh_real N = sh_limited(sh_noise_of_inertia(state, p) * w, SH_LARGE);
+    sh_real Q;
+    int i;
+
+    state->rounding += sh_limited(sh_noise_of_deformation(&state->signals) * w, SH_LARGE);
+    if (state->posterior.inertia < 0) {
+        return;
+    }
+    Q = sh_limited(SH_SPREAD_OF_SQUARE * sh_square(N / p->prior.B), SH_LARGE);
+    state->surplus += N;
+    state->spread += Q;
+    for (i = 0; i < 2; ++i) {
+        both[i]->spread += Q * both[i]->weight * both[i]->weight;
+    }
+    state->refit.posterior.surplus += N * state->refit.posterior.weight;
+    /* Also without new rounding: what could not be removed before may be removed now. */
+    sh_posterior_remove(&state->posterior, N * state->posterior.weight, p->prior.B);
 }
 
 /* As the outputs of the same names. */
@@ -265,81 +285,48 @@ typedef struct {
     sh_real a, rho, epsilon;
 } innovation_of_sample;
 
-/* Learns from the row x in work, whose sum of squares is `size2`. Sets what follows from the
- * prediction. Returns 0 if the numbers are too large.
- */
-static int learn(sh_regression_state *state, const sh_parameters *p, sh_real size2,
-                 innovation_of_sample *innovation)
+/* Uses the row x. Returns 0 if its numbers are too large. */
+static int use_sample(sh_regression_state *state, const sh_parameters *p, sh_real *x,
+                      innovation_of_sample *innovation)
 {
-    sh_real *const x = state->work.x, *const row = state->work.row;
-    sh_sample_variance variance;
-    sh_real w, epsilon, rounding, share;
+    const int size = state->columns.size;
+    sh_sample_noise noise;
+    sh_real w, share, row[SH_MAX_ROW] = {0};
     int i;
 
-    sh_sample_variance_watch(state, p);
-    variance = sh_sample_variance_of(state, p);
-    w = 1 / variance.R;
-    if (!(w > 0) || !(w * size2 <= SH_LARGE)) {
+    /* 3. Weigh the row. */
+    sh_noise_watch(&state->history, &state->signals, p);
+    noise = sh_noise_of_sample(state, p);
+    w = 1 / noise.R;
+    if (!(w > 0) || !(w * sum_of_squares(x, size + SH_RIGHT_SIDES) <= SH_LARGE)) {
         return 0;
     }
-    state->R = variance.R;
-    epsilon = x[state->size + SH_SIDE_Y];
-    for (i = 0; i < state->size; ++i) {
-        epsilon -= x[i] * state->beta[i];
-    }
-    epsilon -=
-        sh_columns_remove_noise(state, p, sh_sample_variance_of_torque(state, p) * epsilon, x);
-    share = sh_posterior_take(state, &state->live, x, w, row);
-    innovation->a = 1;
-    innovation->rho =
-        share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
-    innovation->epsilon = epsilon;
-
-    state->rounding += sh_limited(sh_sample_variance_of_deformation(state) * w, SH_LARGE);
-    rounding = sh_limited(sh_sample_variance_of_inertia(state, p) * w, SH_LARGE);
-    if (state->live.inertia >= 0) { /* what could not be removed before may be removed now */
-        /* 6: variance of the square of a noise that is correlated from sample to sample. The
-         * removal acts on b over prior.B, see sh_posterior_remove.
-         */
-        const sh_real by_removal = rounding / p->prior.B;
-        const sh_real spread = sh_limited(6 * by_removal * by_removal, SH_LARGE);
-        sh_posterior *const both[] = {&state->live, &state->build};
-
-        state->surplus += rounding;
-        state->spread += spread;
-        for (i = 0; i < 2; ++i) {
-            both[i]->spread += spread * both[i]->weight * both[i]->weight;
-        }
-        state->build.surplus += rounding * state->build.weight;
-        sh_posterior_remove(&state->live, rounding * state->live.weight, p->prior.B);
-    }
-    for (i = 0; i < state->size + SH_SIDES; ++i) {
+    state->R = noise.R;
+    /* 4. Predict and compare. */
+    innovation->epsilon = prediction_error(state, p, x);
+    /* 5. Update. */
+    share = sh_posterior_take(&state->posterior, x, size, w);
+    update_rounding(state, p, w);
+    for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
         row[i] = x[i];
     }
     (void)sh_information_take(&state->data, row, w);
-    sh_blocks_take(state, p, x, w, variance.last);
-    sh_passes_step(state, p, x, w);
+    sh_blocks_take(state, p, x, w, noise.lasting);
+    /* 6. Choose columns, and weigh the data by their misfit. */
+    sh_refit_step(state, p, x, w);
+    innovation->a = 1;
+    innovation->rho =
+        share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     return 1;
 }
 
-/* Whether the estimate may learn from this sample: the filters have settled, and at the start the
- * motor was at rest.
- */
-static int is_settled(sh_regression_state *state, const sh_parameters *p)
+/* Forgets what the last row depended on: the next one must not be as large because of it. */
+static void refuse(sh_regression_state *state, const sh_history *before)
 {
-    state->history.settling = sh_fmax(state->history.settling - p->samplePeriod, 0);
-    if (state->history.settling > 0) {
-        return 0;
-    }
-    if (sh_is_measured(p) || !(state->history.starting > 0)) {
-        return 1;
-    }
-    state->history.starting -= p->samplePeriod;
-    if (!sh_sample_variance_contradicts_rest(state, p, state->work.x)) {
-        return 1;
-    }
-    sh_signals_unsettle(state);
-    return 0;
+    state->signals.begun = 0; /* the filters start again, so their old state does not matter */
+    state->history = *before;
+    state->sigma = state->delay = state->y = 0;
+    state->stiffness_known = 0;
 }
 
 static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
@@ -347,55 +334,53 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
                                     sh_estimate *estimate)
 {
     sh_regression_state *state = &estimator->method.regression;
-    const sh_real phi = z->q - z->theta;
     const sh_history before = state->history;
+    const sh_real largest_delay = SH_LARGEST_DELAY * p->prior.delay;
     innovation_of_sample innovation = {0, 0, 0};
-    sh_stiffness_fit fit = {0, 0};
-    sh_real y, size2, sigma;
-    int good, i;
+    sh_joint_point at;
+    sh_point point;
+    sh_uncertainty stiffness;
+    sh_real x[SH_MAX_ROW] = {0}, y;
 
     if (estimator->started && (estimator->skipped > 0 || state->modality != p->modality)) {
-        sh_signals_resume(state);
-        sh_blocks_interrupt(&state->blocks, state->size);
+        state->signals.begun = 0;
+        sh_signals_unsettle(&state->signals, &state->history);
+        sh_blocks_interrupt(&state->blocks);
     }
-    sh_signals_deform(state, p, phi);
-    sh_columns_input(state, p, z->theta, z->q, phi, set_point);
-    sh_signals_step(state, p, z->theta, sh_regression_torque(p, z, z->tau));
-    y = sh_columns_row(state, p, state->work.x);
-    size2 = sum_of_squares(state->work.x, state->size + SH_SIDES);
-    good = are_acceptable_signals(state) && size2 <= SH_LARGE; /* false if not a number */
-    if (good && is_settled(state, p)) {
-        good = learn(state, p, size2, &innovation);
+    /* 1. Filter the signals. */
+    sh_history_deform(&state->history, &state->signals, p, z->q - z->theta);
+    sh_joint_point_at(&at, &state->columns, p, z->theta, z->q, z->q - z->theta, set_point,
+                      state->history.play);
+    sh_signals_step(state, p, &at, sh_regression_torque(p, z, z->tau));
+    /* 2. Build the row. */
+    y = sh_columns_row(state, p, x);
+    if (!are_acceptable(&at, x, state->columns.size) ||
+        (is_settled(state, p, x) && !use_sample(state, p, x, &innovation))) {
+        refuse(state, &before);
+        return 0;
     }
-    if (good) {
-        fit = sh_posterior_evaluate(state, &state->live);
-    }
-    sigma = state->sigma_nominal;
-    for (i = 0; i < state->size; ++i) {
-        sigma += state->work.dF[i] * state->beta[i];
-    }
-    if (!good || !isfinite(sigma) || !isfinite(fit.variance) || !isfinite(fit.by_gain)) {
-        state->begun = 0; /* the filters start again, so their old state does not matter */
-        state->history = before;
-        /* The next row must not be as large as this one because of what the last one left. */
-        state->sigma = state->delay = state->y = 0;
-        state->stiffness_known = 0;
+    /* 7. Report. */
+    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
+    stiffness = evaluate_at(state, p, &at, &point);
+    if (!isfinite(point.sigma) || !isfinite(stiffness.variance) || !isfinite(stiffness.by_gain)) {
+        refuse(state, &before);
         return 0;
     }
     state->modality = p->modality;
     state->y = y;
-    state->sigma = sigma;
-    state->stiffness_known = sh_sqrt(fit.variance) < KNOWN * sigma;
-    estimate->sigma = sigma;
-    estimate->tau_e = sh_columns_torque(state);
+    state->sigma = point.sigma;
+    state->stiffness_known = sh_sqrt(stiffness.variance) < SH_KNOWN_STIFFNESS * point.sigma;
+    estimate->sigma = point.sigma;
+    estimate->tau_e = point.tau_e;
     estimate->tau_e_residual = y;
-    estimate->phi = phi;
-    estimate->theta_dot = sh_state_variable_filter_first(&state->theta, &state->design);
+    estimate->phi = at.phi;
+    estimate->theta_dot =
+        sh_state_variable_filter_first(&state->signals.theta, &state->signals.design);
     estimate->a = innovation.a;
     estimate->rho = innovation.rho;
     estimate->epsilon = innovation.epsilon;
-    report(state, p, set_point, &fit, estimate);
-    state->delay = sh_fmin(sh_fmax(estimate->delay_hat, -3 * p->prior.delay), 3 * p->prior.delay);
+    report(state, p, &at, &point, &stiffness, estimate);
+    state->delay = sh_fmin(sh_fmax(estimate->delay_hat, -largest_delay), largest_delay);
     return 1;
 }
 
@@ -404,4 +389,5 @@ const sh_method sh_filtered_regression = {
     .check = check_filtered_regression,
     .start = start_filtered_regression,
     .tick = tick_filtered_regression,
+    .evaluate = evaluate_filtered_regression,
 };

@@ -1,25 +1,29 @@
 /* Method FilteredRegression: which states can be its own. Each condition is an `if` about a member, so that
  * an analyser knows the member behind it.
  */
-#include "columns.h"
+#include <string.h>
+
 #include "method.h"
+#include "regression.h"
 
 /* Columns never change after the start. */
-static int are_columns(const sh_regression_state *state, const sh_parameters *p)
+static int are_columns(const sh_columns *columns, const sh_parameters *p)
 {
-    sh_column started[SH_MAX_COLUMNS] = {{0, 0, 0, 0}};
     const int count = sh_columns_count(p);
+    sh_columns started;
     int i;
 
-    if (count < 1 || count > SH_MAX_COLUMNS || state->size != count ||
-        state->has_nominal != sh_has_nominal_curve(p)) {
+    if (count < 1 || count > SH_MAX_COLUMNS || columns->size != count ||
+        columns->has_nominal != sh_has_nominal_curve(p)) {
         return 0;
     }
-    sh_columns_list(p, started);
+    (void)memset(&started, 0, sizeof started);
+    sh_columns_start(&started, p);
     /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < SH_MAX_COLUMNS; ++i) { /* those behind are zero */
-        if (state->column[i].kind != started[i].kind ||
-            state->column[i].index != started[i].index) {
+        if (columns->column[i].kind != started.column[i].kind ||
+            columns->column[i].i != started.column[i].i ||
+            columns->column[i].j != started.column[i].j) {
             return 0;
         }
     }
@@ -30,10 +34,11 @@ static int are_columns(const sh_regression_state *state, const sh_parameters *p)
 static int are_data(const sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;
+    const int size = state->columns.size;
 
-    if (state->data.size != state->size || state->frozen.size != state->size ||
-        blocks->all.size != state->size || blocks->walking.size != state->size ||
-        blocks->recent.size != state->size) {
+    if (state->data.size != size || state->refit.frozen.size != size ||
+        blocks->constant.size != size || blocks->drifting.size != size ||
+        blocks->recent.size != size) {
         return 0;
     }
     return 1;
@@ -44,12 +49,12 @@ static int is_choice(const sh_regression_state *state, const sh_posterior *poste
 {
     int i;
 
-    if (posterior->information.size < 1 || posterior->information.size > state->size) {
+    if (posterior->information.size < 1 || posterior->information.size > state->columns.size) {
         return 0;
     }
     /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < SH_MAX_COLUMNS; ++i) { /* also behind the choice: of an earlier one, or zero */
-        if (posterior->column[i] < 0 || posterior->column[i] >= state->size) {
+        if (posterior->column[i] < 0 || posterior->column[i] >= state->columns.size) {
             return 0;
         }
     }
@@ -62,12 +67,12 @@ static int knows_motor(const sh_regression_state *state, const sh_posterior *pos
     int coulomb = -1, inertia = -1, i;
 
     for (i = 0; i < posterior->information.size; ++i) {
-        const int kind = state->column[posterior->column[i]].kind;
+        const sh_column *column = &state->columns.column[posterior->column[i]];
 
-        if (kind == SH_COLUMN_COULOMB) {
+        if (sh_column_is(column, SH_IS_COULOMB)) {
             coulomb = i;
         }
-        if (kind == SH_COLUMN_INERTIA) {
+        if (sh_column_is(column, SH_IS_INERTIA)) {
             inertia = i;
         }
     }
@@ -77,27 +82,27 @@ static int knows_motor(const sh_regression_state *state, const sh_posterior *pos
     return 1;
 }
 
-/* Where the present pass stands: passes.c takes the rows of the data, and then three more steps. */
-static int is_pass(const sh_regression_state *state)
+/* Where the present refit stands: refit.c takes the rows of the data, and then three more steps. */
+static int is_refit(const sh_refit *refit, int size)
 {
-    if (state->row < 0 || state->row > state->size + 3 || state->alternate < 0 ||
-        state->alternate > 1 || state->trial < 0 || state->trial >= SH_GROUPS ||
-        state->last_trial < 0 || state->last_trial >= SH_GROUPS) {
+    int i;
+
+    if (refit->row < 0 || refit->row > size + 3 || refit->waits < 0 || refit->waits > 1 ||
+        refit->trial < 0 || refit->trial >= SH_GROUPS || refit->last_trial < 0 ||
+        refit->last_trial >= SH_GROUPS) {
         return 0;
+    }
+    for (i = 0; i < SH_GROUPS; ++i) {
+        if (refit->used[i] < 0 || refit->used[i] > 1) {
+            return 0;
+        }
     }
     return 1;
 }
 
 static int are_flags(const sh_regression_state *state)
 {
-    int i;
-
-    for (i = 0; i < SH_GROUPS; ++i) {
-        if (state->used[i] < 0 || state->used[i] > 1) {
-            return 0;
-        }
-    }
-    if (state->begun < 0 || state->begun > 1 || state->friction_drifts < 0 ||
+    if (state->signals.begun < 0 || state->signals.begun > 1 || state->friction_drifts < 0 ||
         state->friction_drifts > 1 || state->stiffness_known < 0 || state->stiffness_known > 1) {
         return 0;
     }
@@ -109,9 +114,11 @@ int sh_filtered_regression_check_state(const sh_estimator *estimator, const sh_p
     const sh_regression_state *state = &estimator->method.regression;
 
     if (state->modality < SH_MODALITY_RESIDUAL || state->modality > SH_MODALITY_MODEL ||
-        !are_columns(state, p) || !are_data(state) || !is_choice(state, &state->live) ||
-        !knows_motor(state, &state->live) || !is_choice(state, &state->build) ||
-        !knows_motor(state, &state->build) || !is_pass(state) || !are_flags(state)) {
+        !are_columns(&state->columns, p) || !are_data(state) ||
+        !is_choice(state, &state->posterior) || !knows_motor(state, &state->posterior) ||
+        !is_choice(state, &state->refit.posterior) ||
+        !knows_motor(state, &state->refit.posterior) ||
+        !is_refit(&state->refit, state->columns.size) || !are_flags(state)) {
         return 1;
     }
     return 0;

@@ -2,15 +2,12 @@
 
 #include <string.h>
 
-#include "real_math.h"
-
-/* Where one over an entry of D would overflow; such an entry is not changed any more. */
-static const sh_real SMALLEST = SH_FOR(SH_REAL, 1e-300, 1e-37f);
+#include "constants.h"
 
 /* Where row i begins in U. */
 static int row_offset(int size, int i)
 {
-    return i * (size - 1 + SH_SIDES) - i * (i - 1) / 2;
+    return i * (size - 1 + SH_RIGHT_SIDES) - i * (i - 1) / 2;
 }
 
 sh_real sh_information_sample(const sh_information *a, int i, sh_real *x)
@@ -22,25 +19,25 @@ sh_real sh_information_sample(const sh_information *a, int i, sh_real *x)
         x[j] = 0;
     }
     x[i] = 1;
-    for (j = i + 1; j < size + SH_SIDES; ++j) {
+    for (j = i + 1; j < size + SH_RIGHT_SIDES; ++j) {
         x[j] = a->U[row + j - i - 1];
     }
     return a->D[i];
 }
 
-void sh_information_side(const sh_information *a, int side, sh_real *z)
+void sh_information_right_side(const sh_information *a, int right, sh_real *z)
 {
     const int size = a->size;
     int i;
 
     for (i = 0; i < size; ++i) {
-        z[i] = a->U[row_offset(size, i) + size - 1 - i + side];
+        z[i] = a->U[row_offset(size, i) + size - 1 - i + right];
     }
 }
 
-sh_real *sh_information_last(sh_information *a)
+int sh_information_last(const sh_information *a)
 {
-    return a->U + row_offset(a->size, a->size - 1);
+    return row_offset(a->size, a->size - 1);
 }
 
 void sh_information_start(sh_information *a, int size, sh_real precision)
@@ -48,7 +45,7 @@ void sh_information_start(sh_information *a, int size, sh_real precision)
     int i;
 
     a->size = size;
-    a->rest = 0;
+    a->squares = 0;
     (void)memset(a->U, 0, sizeof(sh_real) * (size_t)row_offset(size, size));
     for (i = 0; i < size; ++i) {
         a->D[i] = precision;
@@ -60,7 +57,7 @@ void sh_information_copy(sh_information *to, const sh_information *from)
     const int size = from->size;
 
     to->size = size;
-    to->rest = from->rest;
+    to->squares = from->squares;
     (void)memcpy(to->D, from->D, sizeof(sh_real) * (size_t)size);
     (void)memcpy(to->U, from->U, sizeof(sh_real) * (size_t)row_offset(size, size));
 }
@@ -92,17 +89,21 @@ static void combine(sh_real *restrict row, sh_real *restrict x, int count, sh_re
     }
 }
 
+/* Gentleman, for each row i, with the sample x and its weight w that the rows before left:
+ *
+ *     D_i += w x_i^2 ,   x -= x_i U_i ,   U_i += (w x_i / D_i) x ,   w *= D_i before / D_i .
+ */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
 {
     const int size = a->size;
-    sh_real *row = a->U, squares;
+    sh_real *row = a->U, sum;
     int i;
 
     for (i = 0; i < size; ++i) {
         const sh_real xi = x[i], before = a->D[i], after = before + w * xi * xi;
-        const int count = size - 1 - i + SH_SIDES;
+        const int count = size - 1 - i + SH_RIGHT_SIDES;
 
-        if (sh_fabs(xi) > 0 && after > SMALLEST) {
+        if (sh_fabs(xi) > 0 && after > SH_SMALLEST_D) {
             const sh_real share = 1 / after;
 
             combine(row, x + i + 1, count, xi, w * xi * share);
@@ -111,8 +112,8 @@ sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
         }
         row += count;
     }
-    squares = w * x[size + SH_SIDE_Y] * x[size + SH_SIDE_Y];
-    a->rest += squares < SH_LARGE ? squares : SH_LARGE;
+    sum = w * x[size + SH_RIGHT_Y] * x[size + SH_RIGHT_Y];
+    a->squares += sum < SH_LARGE ? sum : SH_LARGE;
     return w;
 }
 
@@ -134,21 +135,23 @@ static sh_real sum_of_products(const sh_real *a, const sh_real *b, int count)
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-void sh_information_solve(const sh_information *a, int side, sh_real *beta)
+/* beta_i = z_i - sum over j > i of U_ij beta_j */
+void sh_information_solve(const sh_information *a, int right, sh_real last, sh_real *beta)
 {
     const int size = a->size;
-    const sh_real *row = a->U + row_offset(size, size); /* behind the last one */
+    const sh_real *row = a->U + row_offset(size, size - 1);
     int i;
 
-    for (i = size - 1; i >= 0; --i) {
+    beta[size - 1] = last;
+    for (i = size - 2; i >= 0; --i) {
         const int count = size - 1 - i;
 
-        row -= count + SH_SIDES;
-        beta[i] = row[count + side] - sum_of_products(row, beta + i + 1, count);
+        row -= count + SH_RIGHT_SIDES;
+        beta[i] = row[count + right] - sum_of_products(row, beta + i + 1, count);
     }
 }
 
-/* x -= factor row. */
+/* x -= factor row */
 static void subtract(sh_real *restrict x, const sh_real *restrict row, int count, sh_real factor)
 {
     int k;
@@ -183,7 +186,7 @@ void sh_information_project(const sh_information *a, const sh_real *c, sh_real *
         if (sh_fabs(v[i]) > 0) {
             subtract(v + i + 1, row, count, v[i]);
         }
-        row += count + SH_SIDES;
+        row += count + SH_RIGHT_SIDES;
     }
 }
 
@@ -191,61 +194,55 @@ sh_real sh_information_squares(const sh_information *a, const sh_real *beta)
 {
     const int size = a->size;
     const sh_real *row = a->U;
-    sh_real sum = a->rest;
+    sh_real sum = a->squares;
     int i;
 
     for (i = 0; i < size; ++i) {
         const int count = size - 1 - i;
         const sh_real error =
-            row[count + SH_SIDE_Y] - beta[i] - sum_of_products(row, beta + i + 1, count);
+            row[count + SH_RIGHT_Y] - beta[i] - sum_of_products(row, beta + i + 1, count);
 
         sum += a->D[i] * error * error;
-        row += count + SH_SIDES;
+        row += count + SH_RIGHT_SIDES;
     }
     return sum;
 }
 
-void sh_information_fade(sh_information *a, sh_real keep, sh_real least)
+void sh_information_forget(sh_information *a, sh_real factor, sh_real least)
 {
     int i;
 
     for (i = 0; i < a->size; ++i) {
-        a->D[i] = sh_fmax(a->D[i] * keep, least);
+        a->D[i] = sh_fmax(a->D[i] * factor, least);
     }
-    a->rest *= keep;
+    a->squares *= factor;
 }
-
-/* Largest factor by which one step may increase the variance along v. With more, what is left of D
- * would consist of rounding errors.
- */
-static const sh_real LARGEST_GROWTH = SH_FOR(SH_REAL, 1e12, 1e6f);
 
 /* In terms of the information A = U' D U, the step is A -= A v v' A c / (1 + c v' A v): a sample of
  * negative weight with the regressor v' A.
  */
-void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real *row)
+void sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
 {
     const int size = a->size;
     const sh_real *of_U = a->U;
-    sh_real vAv = 0;
+    sh_real row[SH_MAX_ROW] = {0}, vAv = 0;
     int i, j;
 
-    (void)memset(row, 0, sizeof(sh_real) * (size_t)(size + SH_SIDES));
     for (i = 0; i < size; ++i) { /* row = v' U' D [U, U z] */
         const int count = size - 1 - i;
         const sh_real along = v[i] + sum_of_products(of_U, v + i + 1, count);
         const sh_real scaled = a->D[i] * along;
 
         row[i] += scaled;
-        for (j = 0; j < count + SH_SIDES; ++j) {
+        for (j = 0; j < count + SH_RIGHT_SIDES; ++j) {
             row[i + 1 + j] += scaled * of_U[j];
         }
         vAv += scaled * along;
-        of_U += count + SH_SIDES;
+        of_U += count + SH_RIGHT_SIDES;
     }
     if (!(vAv > 0) || !isfinite(vAv)) { /* nothing is known along v; or an overflow */
         return;
     }
-    c = sh_fmin(c, LARGEST_GROWTH / vAv);
+    c = sh_fmin(c, SH_LARGEST_GROWTH / vAv);
     (void)sh_information_take(a, row, -c / (1 + c * vAv));
 }

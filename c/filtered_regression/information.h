@@ -19,9 +19,6 @@
 
 #include "sigmahat.h"
 
-/* Precision with which data begin, where a prior has 1; needs real_math.h. */
-#define SH_INFORMATION_LEAST SH_FOR(SH_REAL, 1e-9, 1e-5f)
-
 /* Starts with the estimate 0 of the given precision for each parameter.
  *
  * size       number of parameters, 1..SH_MAX_COLUMNS
@@ -34,19 +31,19 @@ void sh_information_copy(sh_information *to, const sh_information *from);
 
 /* Takes a sample.
  *
- * x  [size: size + SH_SIDES] regressor, then the right-hand sides; used as memory. Afterwards the
+ * x  [size: size + SH_RIGHT_SIDES] regressor, then the right-hand sides; used as memory. Afterwards the
  *    last entry is the prediction error of y before the sample
  * w  weight. If it is negative, a sample of this weight is removed; U' D U must stay positive
  *    definite
  *
  * A row whose entry of D would fall below 1e-300, or 1e-37 in single precision, is left as it is, and
- * `rest` grows by at most SH_LARGE.
+ * `squares` grows by at most SH_LARGE.
  *
  * Returns w / (1 + w rho), where rho = x' (U' D U)^-1 x is from before the sample.
  */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 
-/* Row i of U' D U as a sample: sets x [size: size + SH_SIDES] to row i of [U, U z].
+/* Row i of U' D U as a sample: sets x [size: size + SH_RIGHT_SIDES] to row i of [U, U z].
  *
  * i  0..size - 1
  *
@@ -54,14 +51,16 @@ sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
  */
 sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
 
-/* The entries of U z in row i of a side, SH_SIDE_*, for all rows: z [size: size]. */
-void sh_information_side(const sh_information *a, int side, sh_real *z);
+/* The entries of U z in row i of a side, SH_RIGHT_*, for all rows: z [size: size]. */
+void sh_information_right_side(const sh_information *a, int right, sh_real *z);
 
-/* Right-hand sides [size: SH_SIDES] of the last row. */
-sh_real *sh_information_last(sh_information *a);
+/* Where in U the right-hand sides of the last row stand. */
+int sh_information_last(const sh_information *a);
 
-/* The estimate of all parameters [size: size] for a right-hand side, SH_SIDE_*. */
-void sh_information_solve(const sh_information *a, int side, sh_real *beta);
+/* The estimate of all parameters [size: size] for a right-hand side, SH_RIGHT_*, and the estimate of
+ * the last parameter.
+ */
+void sh_information_solve(const sh_information *a, int right, sh_real last, sh_real *beta);
 
 /* v = U'^-1 c [size: size]. Then c' beta = v' z, and its variance is the sum of v_i^2 / D_i. */
 void sh_information_project(const sh_information *a, const sh_real *c, sh_real *v);
@@ -69,16 +68,17 @@ void sh_information_project(const sh_information *a, const sh_real *c, sh_real *
 /* Weighted sum of squares of y - x' beta over all samples, and of the first precision. */
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
 
-/* Multiplies the weights of all samples by keep, 0..1. No entry of D falls below least. */
-void sh_information_fade(sh_information *a, sh_real keep, sh_real least);
+/* Multiplies the weights of all samples by a forgetting factor, 0..1. No entry of D falls below
+ * least.
+ */
+void sh_information_forget(sh_information *a, sh_real factor, sh_real least);
 
-/* Lets the parameters change by a random step along v of variance c: (U' D U)^-1 += c v v'. The
+/* Process noise: the parameters change by a random step along v of variance c, (U' D U)^-1 += c v v'. The
  * variance along v grows by a factor of at most 1e12, or 1e6 in single precision.
  *
- * v    [size: size]
- * c    >= 0
- * row  [size: size + SH_SIDES] memory
+ * v  [size: size]
+ * c  >= 0
  */
-void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real *row);
+void sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
 #endif

@@ -1,48 +1,25 @@
 #include "posterior.h"
 
-#include <string.h>
-
-#include "columns.h"
+#include "constants.h"
 #include "information.h"
-#include "real_math.h"
+#include "regression.h"
 
-/* Relative error of the removed information. Rounding depends on the motion, and repeats with it. */
-static const sh_real REMOVAL_ERROR = (sh_real)0.05;
-
-/* Whether a column is used, and not one of the trial. */
-static int is_used(const sh_regression_state *state, const sh_parameters *p,
-                   const sh_column *column, int trial)
+void sh_posterior_start(sh_posterior *posterior, const sh_columns *columns, const int *chosen,
+                        int size, sh_real weight)
 {
-    const int group = sh_column_group(column);
-
-    return group == 0 ||
-           (group != trial && state->used[group] && sh_column_can_join(state, p, column, group));
-}
-
-void sh_posterior_start(const sh_regression_state *state, const sh_parameters *p,
-                        sh_posterior *posterior, int trial, sh_real weight)
-{
-    int size = 0, i;
+    int i;
 
     posterior->coulomb = posterior->inertia = -1;
     /*@ loop unroll SH_MAX_COLUMNS; */
-    for (i = 0; i < state->size; ++i) {
-        const sh_column *column = &state->column[i];
+    for (i = 0; i < size; ++i) {
+        const sh_column *column = &columns->column[chosen[i]];
 
-        if (!is_used(state, p, column, trial)) {
-            continue;
+        posterior->column[i] = chosen[i];
+        if (sh_column_is(column, SH_IS_COULOMB)) {
+            posterior->coulomb = i;
         }
-        if (column->kind == SH_COLUMN_COULOMB) {
-            posterior->coulomb = size;
-        }
-        if (column->kind == SH_COLUMN_INERTIA) {
-            posterior->inertia = size;
-        }
-        posterior->column[size++] = i;
-    }
-    for (i = 0; i < state->size && size < state->size && trial != 0; ++i) {
-        if (sh_column_can_join(state, p, &state->column[i], trial)) {
-            posterior->column[size++] = i;
+        if (sh_column_is(column, SH_IS_INERTIA)) {
+            posterior->inertia = i;
         }
     }
     sh_information_start(&posterior->information, size, 1);
@@ -66,59 +43,88 @@ void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
     to->spread = from->spread;
 }
 
-sh_real sh_posterior_take(const sh_regression_state *state, sh_posterior *posterior,
-                          const sh_real *x, sh_real w, sh_real *row)
+sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w)
 {
-    const int size = posterior->information.size;
+    const int own = posterior->information.size;
     const sh_real weight = w * posterior->weight;
+    sh_real row[SH_MAX_ROW] = {0};
     int i;
 
-    for (i = 0; i < size; ++i) {
+    for (i = 0; i < own; ++i) {
         row[i] = x[posterior->column[i]];
     }
-    for (i = 0; i < SH_SIDES; ++i) {
-        row[size + i] = x[state->size + i];
+    for (i = 0; i < SH_RIGHT_SIDES; ++i) {
+        row[own + i] = x[size + i];
     }
     return sh_information_take(&posterior->information, row, weight) / weight;
 }
 
+/* D_b -= N, and so for the right-hand sides s = D_b z: s_y += N / prior.B, because N is biased towards
+ * b = -1, which is beta = -1 / prior.B.
+ */
 void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B)
 {
     const int b = posterior->inertia;
-    sh_real *D = posterior->information.D;
-    sh_real back, left, *z;
+    sh_real *D = posterior->information.D, *z;
+    sh_real N, left;
 
     posterior->surplus += information;
     if (b < 0 || b != posterior->information.size - 1) {
         return;
     }
-    back = sh_fmin(posterior->surplus, D[b] - 1); /* 1: the prior */
-    if (!(back > 0)) {
+    N = sh_fmin(posterior->surplus, D[b] - 1); /* 1: the prior */
+    if (!(N > 0)) {
         return;
     }
-    left = sh_fmax(D[b] - back, 1); /* D[b] - 1 is rounded where D[b] is larger than 1 / epsilon */
-    z = sh_information_last(&posterior->information);
-    z[SH_SIDE_GAIN] *= D[b] / left;
-    z[SH_SIDE_Y] = (z[SH_SIDE_Y] * D[b] + back / prior_B) / left; /* biased towards b = -1 */
+    left = sh_fmax(D[b] - N, 1); /* D[b] - 1 is rounded where D[b] is larger than 1 / epsilon */
+    z = &posterior->information.U[sh_information_last(&posterior->information)];
+    z[SH_RIGHT_GAIN] *= D[b] / left;
+    z[SH_RIGHT_Y] = (z[SH_RIGHT_Y] * D[b] + N / prior_B) / left;
     D[b] = left;
-    posterior->surplus -= back;
-    posterior->removed += back;
+    posterior->surplus -= N;
+    posterior->removed += N;
 }
 
-/* Gives the data about b, the last one, the weight that they have after the removal: D[b], and both sides z. */
-static void weigh_inertia(sh_posterior *posterior, int b, sh_real prior_B)
-{
-    sh_real *const D = &posterior->information.D[b];
-    sh_real *const z = sh_information_last(&posterior->information);
-    const sh_real of_data = sh_fmax(*D - 1, 0);
-    const sh_real unsure = REMOVAL_ERROR / prior_B * posterior->removed;
-    const sh_real share =
-        of_data / (of_data + posterior->removed + posterior->spread + unsure * unsure);
-    const sh_real weighted = 1 + of_data * share;
+/* The last entry of D, and its right-hand sides. */
+typedef struct {
+    sh_real D, z[SH_RIGHT_SIDES];
+} last_row;
 
-    z[SH_SIDE_GAIN] *= *D * share / weighted;
-    z[SH_SIDE_Y] *= *D * share / weighted;
-    *D = weighted;
+/* The last row with the weight that the data about b have after the removal:
+ * D = 1 + I^2 / (I + N + Q), with I = D_b - 1 and Q = spread + (0.05 N / prior.B)^2.
+ */
+static last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
+{
+    const sh_information *a = &posterior->information;
+    const sh_real D = a->D[a->size - 1], *z = &a->U[sh_information_last(a)];
+    const sh_real I = sh_fmax(D - 1, 0), N = posterior->removed;
+    last_row last = {D, {z[SH_RIGHT_GAIN], z[SH_RIGHT_Y]}};
+
+    if (posterior->inertia >= 0 && N > 0) {
+        const sh_real Q = posterior->spread + sh_square(SH_REMOVAL_ERROR / prior_B * N);
+        const sh_real share = I / (I + N + Q);
+
+        last.D = 1 + I * share;
+        last.z[SH_RIGHT_GAIN] *= D * share / last.D;
+        last.z[SH_RIGHT_Y] *= D * share / last.D;
+    }
+    return last;
+}
+
+void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta, int size)
+{
+    const sh_information *a = &posterior->information;
+    const last_row last = weighed_last(posterior, prior_B);
+    sh_real own[SH_MAX_COLUMNS] = {0};
+    int i;
+
+    sh_information_solve(a, SH_RIGHT_Y, last.z[SH_RIGHT_Y], own);
+    for (i = 0; i < size; ++i) {
+        beta[i] = 0;
+    }
+    for (i = 0; i < a->size; ++i) {
+        beta[posterior->column[i]] = own[i];
+    }
 }
 
 /* v^2 / D, also where v^2 overflows: in single precision D can be as large. */
@@ -129,46 +135,34 @@ static sh_real square_over(sh_real v, sh_real D)
     return square <= SH_LARGEST_OUTPUT ? square / D : v / D * v;
 }
 
-sh_stiffness_fit sh_posterior_evaluate(sh_regression_state *state, sh_posterior *posterior)
-{
-    sh_information *a = &posterior->information;
-    const int size = a->size, b = posterior->inertia;
-    sh_real *const own = state->work.own, *const v = state->work.v;
-    sh_real D_b = 0, z_b[SH_SIDES] = {0, 0};
-    sh_stiffness_fit fit = {0, 0};
-    int i;
-
-    if (b >= 0 && posterior->removed > 0) {
-        D_b = a->D[b];
-        (void)memcpy(z_b, sh_information_last(a), sizeof z_b);
-        weigh_inertia(posterior, b, state->column[posterior->column[b]].prior);
-    }
-    for (i = 0; i < size; ++i) {
-        own[i] = state->work.dF[posterior->column[i]];
-    }
-    fit.variance = sh_posterior_variance(posterior, own, v);
-    sh_information_side(a, SH_SIDE_GAIN, own);
-    for (i = 0; i < size; ++i) {
-        fit.by_gain += v[i] * own[i];
-    }
-    sh_information_solve(a, SH_SIDE_Y, own);
-    for (i = 0; i < state->size; ++i) {
-        state->beta[i] = 0;
-    }
-    for (i = 0; i < size; ++i) {
-        state->beta[posterior->column[i]] = own[i];
-    }
-    if (b >= 0 && posterior->removed > 0) {
-        a->D[b] = D_b;
-        (void)memcpy(sh_information_last(a), z_b, sizeof z_b);
-    }
-    return fit;
-}
-
-sh_real sh_posterior_variance(const sh_posterior *posterior, const sh_real *c, sh_real *v)
+/* With A = U' D U and v = U'^-1 c: c' A^-1 c = sum of v_i^2 / D_i, and c' beta = v' z. */
+sh_uncertainty sh_posterior_uncertainty(const sh_posterior *posterior, sh_real prior_B,
+                                        const sh_real *c)
 {
     const sh_information *a = &posterior->information;
-    sh_real variance = 0;
+    const last_row last = weighed_last(posterior, prior_B);
+    sh_real own[SH_MAX_COLUMNS] = {0}, v[SH_MAX_COLUMNS] = {0}, z[SH_MAX_COLUMNS] = {0};
+    sh_uncertainty found = {0, 0};
+    int i;
+
+    for (i = 0; i < a->size; ++i) {
+        own[i] = c[posterior->column[i]];
+    }
+    sh_information_project(a, own, v);
+    sh_information_right_side(a, SH_RIGHT_GAIN, z);
+    for (i = 0; i < a->size - 1; ++i) {
+        found.variance += square_over(v[i], a->D[i]);
+        found.by_gain += v[i] * z[i];
+    }
+    found.variance += square_over(v[i], last.D);
+    found.by_gain += v[i] * last.z[SH_RIGHT_GAIN];
+    return found;
+}
+
+sh_real sh_posterior_variance(const sh_posterior *posterior, const sh_real *c)
+{
+    const sh_information *a = &posterior->information;
+    sh_real v[SH_MAX_COLUMNS] = {0}, variance = 0;
     int i;
 
     sh_information_project(a, c, v);

@@ -1,157 +1,152 @@
-#include "signals.h"
-
-#include "columns.h"
+/* The filters: all signals of the regression pass the same H. */
+#include "constants.h"
 #include "method.h"
 #include "motion_sign.h"
-#include "real_math.h"
+#include "regression.h"
 #include "state_variable_filter.h"
 
+/* W_c = sqrt(s_tau / (B |gamma| s_n)), s_n = count / sqrt(12), is where the noise of the torque and the
+ * rounding of theta contribute equally to y; point 1 of the page.
+ */
 sh_real sh_regression_bandwidth(const sh_parameters *p)
 {
-    const sh_real count = sh_encoder_count(p->encoder.theta);
-    const sh_real rounding = p->motor.B * sh_fabs(p->motor.gamma) * count / sh_sqrt(12);
+    const sh_real s_n = sh_encoder_count(p->encoder.theta) / sh_sqrt(12);
+    const sh_real rounding = p->motor.B * sh_fabs(p->motor.gamma) * s_n;
 
     if (sh_is_measured(p) || !(rounding > 0)) {
         return p->regression.bandwidth;
     }
     return sh_fmax(
-        sh_fmin(p->regression.bandwidth, (sh_real)1.42 * sh_sqrt(p->noise.tau / rounding)),
+        sh_fmin(p->regression.bandwidth, SH_LARGEST_CORNER * sh_sqrt(p->noise.tau / rounding)),
         (sh_real)1e-4 / p->samplePeriod);
 }
 
-void sh_signals_start(sh_regression_state *state, const sh_parameters *p)
+void sh_signals_start(sh_signals *signals, sh_history *history, const sh_parameters *p)
 {
-    state->modality = p->modality;
-    state->count = sh_encoder_count(p->encoder.theta);
-    state->count_q = sh_encoder_count(p->encoder.q);
-    state->design = sh_state_variable_filter_design(sh_regression_bandwidth(p), p->samplePeriod);
-    state->gain_second = sh_state_variable_filter_noise(&state->design);
-    state->history.starting = SH_FORGOTTEN / state->design.w;
-    state->history.excess = state->history.excess_mean = 1;
-    state->history.phi_min = SH_LARGE; /* no deformation yet */
-    state->history.phi_max = -SH_LARGE;
+    signals->count = sh_encoder_count(p->encoder.theta);
+    signals->count_q = sh_encoder_count(p->encoder.q);
+    signals->design = sh_state_variable_filter_design(sh_regression_bandwidth(p), p->samplePeriod);
+    signals->gain_second = sh_state_variable_filter_noise(&signals->design);
+    history->starting = SH_FORGOTTEN / signals->design.w;
+    history->excess = history->excess_mean = 1;
+    history->phi_min = SH_LARGE; /* no deformation yet */
+    history->phi_max = -SH_LARGE;
 }
 
-void sh_signals_unsettle(sh_regression_state *state)
+void sh_signals_unsettle(sh_signals *signals, sh_history *history)
 {
-    state->history.starting = 0;
-    state->history.settling = SH_FORGOTTEN / state->design.w;
+    history->starting = 0;
+    history->settling = SH_FORGOTTEN / signals->design.w;
 }
 
-void sh_signals_resume(sh_regression_state *state)
+void sh_history_deform(sh_history *history, const sh_signals *signals, const sh_parameters *p,
+                       sh_real phi)
 {
-    state->begun = 0;
-    sh_signals_unsettle(state);
-}
+    const sh_real change = signals->begun ? phi - history->phi : 0;
+    const sh_real least = SH_RESTS * sh_fmin(signals->count, signals->count_q);
 
-void sh_signals_deform(sh_regression_state *state, const sh_parameters *p, sh_real phi)
-{
-    sh_history *history = &state->history;
-    const sh_real change = state->begun ? phi - history->phi : 0;
-    const sh_real least = sh_fmin(state->count, state->count_q) / 4;
-
-    sh_columns_move_plays(state, p, change);
+    sh_columns_move_plays(history->play, p, change);
     history->phi_min = sh_fmin(history->phi_min, phi);
     history->phi_max = sh_fmax(history->phi_max, phi);
     history->resting = sh_fabs(change) > least ? 0 : history->resting + 1;
     history->phi = phi;
 }
 
-/* The first sample of the filters. They assume a motor at rest, at any torque. So theta starts at
- * its value, and the signals of the equation start from zero: the equation holds from now on.
+/* The first sample. The motor is assumed to be at rest, at any torque: theta starts at its value, and
+ * the signals of the equation start from zero, because the equation holds from now on (detail 12).
  */
-static void begin_all(sh_regression_state *state, sh_real theta, sh_real torque)
+static void begin_filters(sh_regression_state *state, const sh_joint_point *at, sh_real torque)
 {
+    sh_signals *signals = &state->signals;
     int i;
 
-    sh_state_variable_filter_start(&state->theta, theta);
-    sh_state_variable_filter_begin(&state->torque, torque);
-    sh_state_variable_filter_begin(&state->nominal, state->tau_nominal);
-    sh_state_variable_filter_start(&state->friction, 0);
-    sh_state_variable_filter_start(&state->unknown, 0);
-    for (i = 0; i < state->size; ++i) {
-        const int signal = sh_column_signal(&state->column[i]);
-
-        if (signal == SH_SIGNAL_LINEAR) {
-            sh_state_variable_filter_begin(&state->filter[i], state->work.F[i]);
+    sh_state_variable_filter_start(&signals->theta, at->theta);
+    sh_state_variable_filter_begin(&signals->torque, torque);
+    sh_state_variable_filter_begin(&signals->nominal, at->tau_nominal);
+    sh_state_variable_filter_start(&signals->sign, 0);
+    sh_state_variable_filter_start(&signals->unknown, 0);
+    for (i = 0; i < state->columns.size; ++i) {
+        if (sh_column_signal(&state->columns.column[i]) == SH_SIGNAL_LINEAR) {
+            sh_state_variable_filter_begin(&signals->column[i], at->F[i]);
         } else {
-            sh_state_variable_filter_start(&state->filter[i], state->work.F[i]);
+            sh_state_variable_filter_start(&signals->column[i], at->F[i]);
         }
     }
-    sh_motion_sign_start(&state->motion, theta);
+    sh_motion_sign_start(&signals->motion, at->theta);
     for (i = 0; i < 5; ++i) {
-        state->theta_before[i] = theta;
+        signals->theta_before[i] = at->theta;
     }
-    state->begun = 1;
+    signals->begun = 1;
 }
 
-/* Friction that a load adds acts against the motion: its signal is the mean over the sample. */
-static sh_real load_friction(const sh_regression_state *state)
+static void advance_measured(sh_signals *signals, const sh_parameters *p, sh_real theta,
+                             sh_real torque)
 {
-    /* Before the stiffness is known, the torque of the spring is taken from the motor data. */
-    const sh_real tau_e = state->stiffness_known ? sh_columns_torque(state) : state->y;
-
-    return -sh_fabs(tau_e) * state->motion.sign;
-}
-
-static void advance_columns(sh_regression_state *state)
-{
-    const sh_filter_design *design = &state->design;
-    int i;
-
-    for (i = 0; i < state->size; ++i) {
-        const int signal = sh_column_signal(&state->column[i]);
-
-        if (signal == SH_SIGNAL_MEAN) {
-            sh_state_variable_filter_step_mean(&state->filter[i], design,
-                                               load_friction(state) * state->column[i].prior);
-        } else if (signal != SH_SIGNAL_NONE) {
-            sh_state_variable_filter_step(&state->filter[i], design, state->work.F[i]);
-        }
-    }
-}
-
-static void advance_all(sh_regression_state *state, const sh_parameters *p, sh_real theta,
-                        sh_real torque)
-{
-    const sh_filter_design *design = &state->design;
+    const sh_filter_design *design = &signals->design;
     int i;
 
     for (i = 4; i > 0; --i) {
-        state->theta_before[i] = state->theta_before[i - 1];
+        signals->theta_before[i] = signals->theta_before[i - 1];
     }
-    state->theta_before[0] = theta;
-    sh_state_variable_filter_step(&state->theta, design, theta);
+    signals->theta_before[0] = theta;
+    sh_state_variable_filter_step(&signals->theta, design, theta);
     if (p->torque.held && !sh_is_measured(p)) {
-        sh_state_variable_filter_step_mean(&state->torque, design, state->torque_before);
+        sh_state_variable_filter_step_mean(&signals->torque, design, signals->torque_before);
     } else {
-        sh_state_variable_filter_step(&state->torque, design, torque);
+        sh_state_variable_filter_step(&signals->torque, design, torque);
     }
-    if (state->has_nominal) {
-        sh_state_variable_filter_step(&state->nominal, design, state->tau_nominal);
-    }
-    sh_motion_sign_step(&state->motion, theta, state->count, p->regression.slow * design->T);
-    state->history.unsure = state->motion.unknown > 0 ? state->history.unsure + 1 : 0;
-    sh_state_variable_filter_step_mean(&state->friction, design, state->motion.sign);
-    sh_state_variable_filter_step_mean(&state->unknown, design, state->motion.unknown);
-    advance_columns(state);
+    sh_motion_sign_step(&signals->motion, theta, signals->count, p->regression.slow * design->T);
+    sh_state_variable_filter_step_mean(&signals->sign, design, signals->motion.sign);
+    sh_state_variable_filter_step_mean(&signals->unknown, design, signals->motion.unknown);
 }
 
-void sh_signals_step(sh_regression_state *state, const sh_parameters *p, sh_real theta,
+/* The friction by load acts against the motion. Before the stiffness is known, the load is taken from
+ * the motor data: it is the last y (detail 13).
+ */
+static void advance_columns(sh_regression_state *state, const sh_joint_point *at)
+{
+    const sh_columns *columns = &state->columns;
+    sh_signals *signals = &state->signals;
+    const sh_filter_design *design = &signals->design;
+    const sh_real load =
+        state->stiffness_known ? sh_columns_torque(columns, at, state->beta) : state->y;
+    const sh_real friction = -sh_fabs(load) * signals->motion.sign;
+    int i;
+
+    for (i = 0; i < columns->size; ++i) {
+        const int signal = sh_column_signal(&columns->column[i]);
+
+        if (signal == SH_SIGNAL_MEAN) {
+            sh_state_variable_filter_step_mean(&signals->column[i], design,
+                                               friction * columns->column[i].prior);
+        } else if (signal != SH_SIGNAL_NONE) {
+            sh_state_variable_filter_step(&signals->column[i], design, at->F[i]);
+        }
+    }
+}
+
+void sh_signals_step(sh_regression_state *state, const sh_parameters *p, const sh_joint_point *at,
                      sh_real torque)
 {
-    if (state->begun) {
-        advance_all(state, p, theta, torque);
+    sh_signals *signals = &state->signals;
+
+    if (signals->begun) {
+        advance_measured(signals, p, at->theta, torque);
+        if (state->columns.has_nominal) {
+            sh_state_variable_filter_step(&signals->nominal, &signals->design, at->tau_nominal);
+        }
+        state->history.unsure = signals->motion.unknown > 0 ? state->history.unsure + 1 : 0;
+        advance_columns(state, at);
     } else {
-        begin_all(state, theta, torque);
+        begin_filters(state, at, torque);
     }
-    state->torque_before = torque;
+    signals->torque_before = torque;
 }
 
-sh_real sh_signals_roughness(const sh_regression_state *state)
+/* The fourth difference of white noise of variance 1 has the variance 70. */
+sh_real sh_signals_roughness(const sh_signals *signals)
 {
-    const sh_real *theta = state->theta_before;
-    const sh_real fourth = theta[0] - 4 * theta[1] + 6 * theta[2] - 4 * theta[3] + theta[4];
+    const sh_real *theta = signals->theta_before;
 
-    return fourth * fourth / 70;
+    return sh_square(theta[0] - 4 * theta[1] + 6 * theta[2] - 4 * theta[3] + theta[4]) / 70;
 }

@@ -1,6 +1,6 @@
 #include "state_variable_filter.h"
 
-#include "real_math.h"
+#include "constants.h"
 
 /* Far below the resolution of any signal, and far above the numbers that processors compute slowly
  * with, to which a filter at rest would decay.

@@ -17,11 +17,6 @@
 
 #include "sigmahat.h"
 
-/* Limit of loops over the samples of a response: more than 60 time constants have with the least
- * w T, 1e-4.
- */
-enum { SH_MOST_SAMPLES = 1000000 };
-
 /* Filter with the corner frequency w [rad/s] and the sample period T [s]. w T >= 1e-4: below,
  * digits are lost.
  */

@@ -253,6 +253,7 @@ typedef struct {
                                         or of setPoint^j phi^i if not symmetric */
     sh_real sigma_std;               /* std deviation of sigma by the model of the method
                                         [N.m/rad]; infinite if its square overflows */
+    sh_real tau_e_std;               /* the same of tau_e [N.m] */
     sh_real D_theta_hat, B_hat;      /* corrected motor data [N.m.s/rad, kg.m2] */
     sh_real tau_coulomb_hat;         /* Coulomb friction obtained, on the motor axis [N.m] */
     sh_real misfit;                  /* square root of how much larger the slow part of the
@@ -271,6 +272,14 @@ typedef struct {
     int confident;                   /* 1: doubt is SH_DOUBT_NONE */
     int valid;                       /* 0: the last tick was skipped, see sh_estimator_tick */
 } sh_estimate;
+
+/* Torque and stiffness of the spring at a deformation and a set-point. */
+typedef struct {
+    sh_real tau_e;     /* flexibility torque, (21) [N.m] */
+    sh_real tau_e_std; /* its std deviation by the model of the method; may be infinite [N.m] */
+    sh_real sigma;     /* stiffness, (23) [N.m/rad] */
+    sh_real sigma_std; /* its std deviation; may be infinite [N.m/rad] */
+} sh_point;
 
 /* A parameter outside its range. */
 typedef struct {
@@ -327,6 +336,19 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  */
 int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                       sh_estimate *estimate);
+
+/* Evaluates the present estimate at any deformation, (21) and (23). Nothing is learned, and the
+ * estimator does not change. A tick gives the same numbers for its own phi and setPoint.
+ *
+ * p         parameters that pass sh_parameters_check; the fixed ones as they were at the start
+ * phi       deformation [rad]
+ * setPoint  set-point [1]
+ *
+ * Returns 0, or 1 if phi or setPoint is not finite, or torque or stiffness overflows: then every
+ * number of the point is infinite.
+ */
+int sh_estimator_evaluate(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,
+                          sh_real setPoint, sh_point *point);
 
 /* Checks a state that comes from elsewhere, as from a file: its sizes, places and choices must be
  * those of a state that sh_estimator_start and sh_estimator_tick make with these parameters. Then a

@@ -28,12 +28,32 @@ static sh_real unit_of_covariance(const sh_parameters *p)
     return noise * noise * (p->rls.kind == SH_RLS_ENHANCED ? p->rls.c : 1);
 }
 
-/* Sets what follows from the recursion but torque and stiffness, at the regressor in `work`. The
- * variance contains the white noise of the torque only: neither the errors of the motor data nor the
- * lag of the residual. So the method makes no claim.
+/* Torque and stiffness F' eta and dF' eta, (21) and (23). The variances contain the white noise of the
+ * torque only: neither the errors of the motor data nor the lag of the residual. So the method is never
+ * confident.
  */
-static void report_paper2011(sh_paper2011_state *state, const sh_parameters *p,
-                             sh_estimate *estimate)
+static void evaluate_regressors(const sh_paper2011_state *state, const sh_parameters *p,
+                                const sh_real *F, const sh_real *dF, sh_point *point)
+{
+    const sh_real unit = unit_of_covariance(p);
+
+    sh_scalar_products(state->rls.eta, F, dF, p->rls.n * p->rls.m, &point->tau_e, &point->sigma);
+    point->tau_e_std = sh_std_deviation(unit * sh_ud_factor_variance(&state->rls.P, F));
+    point->sigma_std = sh_std_deviation(unit * sh_ud_factor_variance(&state->rls.P, dF));
+}
+
+static void evaluate_paper2011(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,
+                               sh_real set_point, sh_point *point)
+{
+    sh_real F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
+
+    sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, F, dF);
+    evaluate_regressors(&estimator->method.paper2011, p, F, dF, point);
+}
+
+/* Sets what follows from the recursion but torque and stiffness. */
+static void report_paper2011(const sh_paper2011_state *state, const sh_parameters *p,
+                             const sh_point *point, sh_estimate *estimate)
 {
     const int n = p->rls.n, m = p->rls.m;
     int i, j;
@@ -43,8 +63,8 @@ static void report_paper2011(sh_paper2011_state *state, const sh_parameters *p,
             estimate->eta[i][j] = state->rls.eta[j * n + i];
         }
     }
-    estimate->sigma_std = sh_std_deviation(unit_of_covariance(p) *
-                                           sh_ud_factor_variance(&state->rls.P, state->work.dF));
+    estimate->sigma_std = point->sigma_std;
+    estimate->tau_e_std = point->tau_e_std;
     estimate->D_theta_hat = p->motor.D_theta;
     estimate->B_hat = p->motor.B;
     estimate->misfit = 1;
@@ -57,6 +77,7 @@ static void start_paper2011(sh_estimator *estimator, const sh_parameters *p, sh_
     sh_paper2011_state *const state = &estimator->method.paper2011;
     const int n = p->rls.n, m = p->rls.m;
     sh_real eta_0[SH_MAX_BASIS] = {0};
+    sh_point point;
     int i, j;
 
     for (j = 0; j < m; ++j) {
@@ -66,9 +87,9 @@ static void start_paper2011(sh_estimator *estimator, const sh_parameters *p, sh_
     }
     state->filters.theta_w_s = sh_encoder_count(p->encoder.theta) / p->samplePeriod;
     state->filters.q_w_s = sh_encoder_count(p->encoder.q) / p->samplePeriod;
-    sh_torque_basis(p->rls.symmetric, n, m, p->setPoint.offset, 0, state->work.F, state->work.dF);
     sh_least_squares_start(&state->rls, n * m, eta_0, p->rls.P_0);
-    report_paper2011(state, p, estimate);
+    evaluate_paper2011(estimator, p, 0, p->setPoint.offset, &point);
+    report_paper2011(state, p, &point, estimate);
 }
 
 /* First stage: filters and residual. Returns gamma r_e [N.m].
@@ -112,41 +133,41 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
     sh_paper2011_state *const state = &estimator->method.paper2011;
     const sh_paper2011_filters before = state->filters;
     const sh_real tau_e_residual = track(&state->filters, p, z, dt);
-    sh_real phi = z->q - z->theta, factor, torque, stiffness;
+    sh_real F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0}, factor;
+    sh_real phi = z->q - z->theta;
     int kind = p->rls.kind;
     sh_innovation innovation = {0, 0, 0};
+    sh_point point;
 
     if (p->deformation == SH_DEFORMATION_FILTERED) {
         phi += state->filters.q.lag - state->filters.theta.lag;
     }
-    sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, state->work.F,
-                    state->work.dF);
+    sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, F, dF);
     factor = kind == SH_RLS_ENHANCED ? p->rls.c : p->rls.a;
     if (p->modality == SH_MODALITY_RESIDUAL && state->filters.settling > 0) {
         kind = SH_RLS_CONSTANT_FACTOR; /* with a = 0 nothing changes, (25) */
         factor = 0;
     }
     if (!isfinite(tau_e_residual) || !isfinite(state->filters.theta.x_dot) ||
-        !sh_least_squares_update(&state->rls, kind, factor, state->work.F,
+        !sh_least_squares_update(&state->rls, kind, factor, F,
                                  sh_regression_torque(p, z, tau_e_residual), &innovation)) {
         state->filters = before;
         return 0;
     }
-    sh_scalar_products(state->rls.eta, state->work.F, state->work.dF, p->rls.n * p->rls.m, &torque,
-                       &stiffness);
-    if (!isfinite(torque) || !isfinite(stiffness)) {
+    evaluate_regressors(state, p, F, dF, &point);
+    if (!isfinite(point.tau_e) || !isfinite(point.sigma)) {
         state->filters = before;
         return 0;
     }
-    estimate->tau_e = torque;
-    estimate->sigma = stiffness;
+    estimate->tau_e = point.tau_e;
+    estimate->sigma = point.sigma;
     estimate->phi = phi;
     estimate->tau_e_residual = tau_e_residual;
     estimate->theta_dot = state->filters.theta.x_dot;
     estimate->a = innovation.a;
     estimate->rho = innovation.rho;
     estimate->epsilon = innovation.epsilon;
-    report_paper2011(state, p, estimate);
+    report_paper2011(state, p, &point, estimate);
     return 1;
 }
 
@@ -161,4 +182,5 @@ const sh_method sh_paper2011 = {
     .check = check_paper2011,
     .start = start_paper2011,
     .tick = tick_paper2011,
+    .evaluate = evaluate_paper2011,
 };

@@ -55,12 +55,16 @@ def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, A
 
 
 INTEGERS_OF_FILTERED_REGRESSION = [
-    *("modality", "begun", "has_nominal", "size", "alternate", "row", "trial", "last_trial"),
-    *("friction_drifts", "stiffness_known", "used", "data.size", "frozen.size"),
-    *("blocks.all.size", "blocks.walking.size", "blocks.recent.size"),
-    *("live.information.size", "live.column", "live.coulomb", "live.inertia"),
-    *("build.information.size", "build.column", "build.coulomb", "build.inertia"),
-    *("column.kind", "column.index"),
+    *("modality", "friction_drifts", "stiffness_known", "signals.begun", "data.size"),
+    *("columns.size", "columns.has_nominal", "columns.column.kind", "columns.column.i"),
+    *("columns.column.j", "refit.row", "refit.waits", "refit.trial", "refit.last_trial"),
+    *("refit.used", "refit.frozen.size"),
+    *("blocks.constant.size", "blocks.drifting.size", "blocks.recent.size"),
+    *(
+        f"{posterior}.{member}"
+        for posterior in ("posterior", "refit.posterior")
+        for member in ("information.size", "column", "coulomb", "inertia")
+    ),
 ]
 
 

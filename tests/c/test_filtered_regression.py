@@ -323,7 +323,8 @@ def test_torque_and_stiffness_are_those_of_the_coefficients(c: Library, symmetri
         estimator.parameters.rls.eta_0[i][j] = value
     c.lib.sh_estimator_start(estimator.state, estimator.parameters, estimator.estimate)
     regression = estimator.state.method.regression
-    regression.used[1] = regression.used[2] = 1  # powers of the deformation and of the set-point
+    used = regression.refit.used
+    used[1] = used[2] = 1  # powers of the deformation and of the set-point
     joint = Joint(duration=0.9)
     z = joint.measurements()
     for sample in z:

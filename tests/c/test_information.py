@@ -48,7 +48,8 @@ class Information:
 
     def solve(self, side: int) -> Array:
         beta = np.zeros(self.size)
-        self.c.lib.sh_information_solve(self.a, side, self.c.pointer(beta))
+        last = self.a.U[self.c.lib.sh_information_last(self.a) + side]
+        self.c.lib.sh_information_solve(self.a, side, last, self.c.pointer(beta))
         return beta
 
     def check(self, rel: float = 1e-9) -> None:
@@ -80,7 +81,7 @@ def test_a_negative_weight_removes_a_sample(c: Library, size: int) -> None:
     rng = np.random.default_rng(size)
     a = Information(c, size)
     a.fill(rng, 2 * size)
-    matrix, squares = a.matrix.copy(), a.a.rest
+    matrix, squares = a.matrix.copy(), a.a.squares
     x, sides = rng.normal(size=size), rng.normal(size=SIDES)
     a.take(x, sides, 2.0)
     rho = x @ np.linalg.inv(a.matrix) @ x
@@ -88,17 +89,17 @@ def test_a_negative_weight_removes_a_sample(c: Library, size: int) -> None:
     assert returned == pytest.approx(-2.0 / (1 - 2.0 * rho), rel=1e-8)
     assert a.matrix == pytest.approx(matrix)
     a.check()
-    assert a.a.rest == pytest.approx(squares, rel=1e-8)
+    assert a.a.squares == pytest.approx(squares, rel=1e-8)
 
 
-def test_a_sample_of_zeros_changes_only_the_rest(c: Library) -> None:
+def test_a_sample_of_zeros_changes_only_the_residual(c: Library) -> None:
     a = Information(c, 4)
     a.fill(np.random.default_rng(1), 9)
-    before, rest = [part.copy() for part in factors(a.a)], a.a.rest
+    before, rest = [part.copy() for part in factors(a.a)], a.a.squares
     assert a.take(np.zeros(4), np.array([3.0, 5.0]), 2.0) == (2.0, 5.0)
     for part, of_before in zip(factors(a.a), before, strict=True):
         assert np.array_equal(part, of_before)
-    assert a.a.rest == pytest.approx(rest + 2.0 * 5.0**2)
+    assert a.a.squares == pytest.approx(rest + 2.0 * 5.0**2)
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -124,19 +125,21 @@ def test_the_squares_are_those_of_all_samples_and_of_the_start(c: Library, size:
     assert c.lib.sh_information_squares(a.a, c.pointer(beta)) == pytest.approx(want, rel=1e-9)
     best = a.solve(Y)
     least = a.squares - a.right[:, Y] @ best
-    assert a.a.rest == pytest.approx(least, rel=1e-8)
-    assert c.lib.sh_information_squares(a.a, c.pointer(best)) == pytest.approx(a.a.rest, rel=1e-9)
+    assert a.a.squares == pytest.approx(least, rel=1e-8)
+    assert c.lib.sh_information_squares(a.a, c.pointer(best)) == pytest.approx(
+        a.a.squares, rel=1e-9
+    )
 
 
 def test_fading_scales_all_weights(c: Library) -> None:
     a = Information(c, 5, 1e-9)
     a.fill(np.random.default_rng(2), 20)
-    estimate, rest = a.solve(Y), a.a.rest
-    c.lib.sh_information_fade(a.a, 0.25, 1e-9)
+    estimate, rest = a.solve(Y), a.a.squares
+    c.lib.sh_information_forget(a.a, 0.25, 1e-9)
     a.matrix *= 0.25
     a.right *= 0.25
     a.check()
-    assert a.a.rest == pytest.approx(0.25 * rest)
+    assert a.a.squares == pytest.approx(0.25 * rest)
     assert a.solve(Y) == pytest.approx(estimate, rel=1e-12)
 
 
@@ -144,40 +147,40 @@ def test_fading_keeps_the_least_precision(c: Library) -> None:
     a = Information(c, 5)
     a.fill(np.random.default_rng(3), 20)
     for _ in range(100):
-        c.lib.sh_information_fade(a.a, 0.5, 1.0)
+        c.lib.sh_information_forget(a.a, 0.5, 1.0)
     assert factors(a.a)[1].tolist() == [1.0] * 5
 
 
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("variance", [0.0, 1e-6, 0.3, 1e6])
-def test_a_walk_adds_to_the_covariance_and_keeps_the_estimate(
+def test_process_noise_adds_to_the_covariance_and_keeps_the_estimate(
     c: Library, size: int, variance: float
 ) -> None:
     rng = np.random.default_rng(size)
     a = Information(c, size)
     a.fill(rng, 2 * size)
     estimate = [a.solve(side) for side in range(SIDES)]
-    v, row = rng.normal(size=size), np.zeros(size + SIDES)
+    v = rng.normal(size=size)
     want = np.linalg.inv(a.matrix) + variance * np.outer(v, v)
     # The information along v that is left is this number of times smaller than before.
     lost = 1 + variance * float(v @ a.matrix @ v)
-    rel, rest = 1e-8 + 1e-14 * lost, a.a.rest
-    c.lib.sh_information_walk(a.a, c.pointer(v), variance, c.pointer(row))
+    rel, rest = 1e-8 + 1e-14 * lost, a.a.squares
+    c.lib.sh_information_drift(a.a, c.pointer(v), variance)
     matrix, _ = dense(a.a)
     assert np.linalg.inv(matrix) == pytest.approx(want, abs=rel * np.max(abs(want)))
     assert np.all(factors(a.a)[1] > 0)
     for side in range(SIDES):
         assert a.solve(side) == pytest.approx(estimate[side], abs=rel)
-    assert a.a.rest == pytest.approx(rest, rel=rel)
+    assert a.a.squares == pytest.approx(rest, rel=rel)
 
 
-def test_a_walk_of_any_size_leaves_the_information_positive(c: Library) -> None:
+def test_process_noise_of_any_size_leaves_the_information_positive(c: Library) -> None:
     a = Information(c, 6, 1e-9)
     rng = np.random.default_rng(4)
     a.fill(rng, 4)  # fewer samples than parameters
     for _ in range(200):
-        v, row = rng.normal(size=6), np.zeros(6 + SIDES)
-        c.lib.sh_information_walk(a.a, c.pointer(v), 10.0 ** rng.uniform(-12, 12), c.pointer(row))
+        v = rng.normal(size=6)
+        c.lib.sh_information_drift(a.a, c.pointer(v), 10.0 ** rng.uniform(-12, 12))
         assert np.all(factors(a.a)[1] > 0)
         assert all(np.all(np.isfinite(part)) for part in factors(a.a))
 
@@ -269,7 +272,7 @@ def test_a_copy_is_equal_and_independent(c: Library) -> None:
     before = factors(copy)
     for part, other in zip(before, factors(a.a), strict=True):
         assert np.array_equal(part, other)
-    assert (copy.size, copy.rest) == (a.a.size, a.a.rest)
+    assert (copy.size, copy.squares) == (a.a.size, a.a.squares)
     a.take(np.ones(4), np.ones(SIDES), 1.0)
     for part, other in zip(before, factors(copy), strict=True):
         assert np.array_equal(part, other)

@@ -32,8 +32,8 @@ def accuracy(estimator: Estimator, *kinds: str) -> float:
     """Standard deviation of the sum of the coefficients of some kinds, in their own unit."""
     regression = estimator.state.method.regression
     names = coefficients(estimator)
-    own = list(regression.live.column[0 : regression.live.information.size])
-    chosen = np.array([regression.column[i].prior * (names[i][0] in kinds) for i in own])
+    own = list(regression.posterior.column[0 : regression.posterior.information.size])
+    chosen = np.array([regression.columns.column[i].prior * (names[i][0] in kinds) for i in own])
     return float(np.sqrt(chosen @ covariance(estimator) @ chosen))
 
 
@@ -43,7 +43,7 @@ OUTPUTS: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
     "load_friction_hat": ({"load_friction": 0.1}, ("LOAD", "DRIVE")),
     "delay_hat": ({"delay": 3e-3}, ("DELAY",)),
     "damping_hat": ({"damping": 0.6}, ("DAMPING",)),
-    "hysteresis_hat": ({"hysteresis": 0.25}, ("PLAY",)),
+    "hysteresis_hat": ({"hysteresis": 0.25}, ("HYSTERESIS",)),
 }
 NO_HYSTERESIS = ("hysteresis_hat", -1)
 
@@ -84,7 +84,7 @@ def test_a_dead_zone_is_left_out_of_the_stiffness(c: Library) -> None:
     joint = MisfitJoint(gap=4e-3)
     estimator = Estimator(c, SETTINGS)
     found = estimator.run(joint.measurements())
-    assert estimator.state.method.regression.used[GAP]
+    assert estimator.state.method.regression.refit.used[GAP]
     late = slice(-3000, None)
     engaged = np.abs(joint.phi[0][late]) > 8e-3
     error = np.abs(found["sigma"][late] - STIFFNESS)[engaged]
@@ -96,7 +96,7 @@ def test_a_dead_zone_is_left_out_of_the_stiffness(c: Library) -> None:
 def test_a_joint_without_a_misfit_has_no_columns_of_one(c: Library, group: int) -> None:
     estimator = Estimator(c, SETTINGS)
     found = estimator.run(MisfitJoint().measurements())
-    assert not estimator.state.method.regression.used[group]
+    assert not estimator.state.method.regression.refit.used[group]
     assert found["hysteresis_hat"][-1] == 0.0 or group != HYSTERESIS
     assert found["misfit"][-1] < 1.2
 

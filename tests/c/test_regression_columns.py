@@ -47,14 +47,16 @@ def rows(c: Library, **values: float) -> tuple[dict[tuple[str, int], Array], Arr
     eta_0[0, 0], eta_0[1, 1] = 100.0, 3.0
     estimator = Estimator(c, {**VALUES, "rls.eta_0": eta_0.tolist(), **values})
     regression = c.ffi.addressof(estimator.state.method, "regression")
-    row, found = np.zeros(regression.size + 2), []
+    row, found = np.zeros(regression.columns.size + 2), []
     for sample in np.column_stack([theta, q, theta_c, tau, 5 * tau]):
         assert estimator.tick(sample)
         c.lib.sh_columns_row(regression, estimator.parameters, c.pointer(row))
         found.append(row.copy())
     array = np.array(found)
     names = coefficients(estimator)
-    by_name = {name: array[:, i] / regression.column[i].prior for i, name in enumerate(names)}
+    by_name = {
+        name: array[:, i] / regression.columns.column[i].prior for i, name in enumerate(names)
+    }
     return by_name, array[:, -2], array[:, -1]
 
 
@@ -91,7 +93,7 @@ def definitions(gamma: float) -> dict[tuple[str, int], Array]:
         play = np.clip(play + (phi[k] - phi[k - 1] if k else 0.0), -widths, widths)
         plays.append(play / widths)
     want = {
-        **{("BASIS", 3 * j + i): filtered(x ** (2 * i + 1) / (2 * i + 1) * lever**j)
+        **{("POWER", 3 * j + i): filtered(x ** (2 * i + 1) / (2 * i + 1) * lever**j)
            for i in range(3) for j in range(3)},
         ("NOMINAL", 0): filtered(nominal()),
         ("BIAS", 0): filtered(np.ones(len(t))),
@@ -99,11 +101,11 @@ def definitions(gamma: float) -> dict[tuple[str, int], Array]:
         ("DAMPING", 2): steady(phi * lever**2, 1),
         ("SIN_Q", 0): filtered(np.sin(q)),
         ("COS_Q", 0): filtered(np.cos(q)),
-        ("POWER", 0): filtered(x**7 / 7),
-        ("POWER", 1): filtered(x**9 / 9),
+        ("HIGHER_POWER", 0): filtered(x**7 / 7),
+        ("HIGHER_POWER", 1): filtered(x**9 / 9),
         ("SET_POWER", 0): filtered(x * lever**3),
-        **{("GAP", i): filtered(np.clip(x, -GAPS[i], GAPS[i]) / GAPS[i]) for i in range(3)},
-        **{("PLAY", i): filtered(np.array(plays)[:, i]) for i in range(3)},
+        **{("DEAD_ZONE", i): filtered(np.clip(x, -GAPS[i], GAPS[i]) / GAPS[i]) for i in range(3)},
+        **{("HYSTERESIS", i): filtered(np.array(plays)[:, i]) for i in range(3)},
         ("VISCOUS", 0): -(gamma**2) * D * steady(theta, 1),
         ("INERTIA", 0): -(gamma**2) * B * steady(theta, 2),
         ("COULOMB", 0): -abs(gamma) * as_if_smooth(sign, held=True),
@@ -178,7 +180,7 @@ def test_friction_of_the_load_acts_against_the_motion(c: Library, gamma: float) 
 def test_the_order_has_the_inertia_last(c: Library) -> None:
     names = [kind for kind, _ in coefficients(Estimator(c, {**VALUES}))]
     assert names[-3:] == ["VISCOUS", "COULOMB", "INERTIA"]
-    assert names[:9] == ["BASIS"] * 9
+    assert names[:9] == ["POWER"] * 9
 
 
 NEW: dict[str, tuple[str, ...]] = {
@@ -189,9 +191,9 @@ NEW: dict[str, tuple[str, ...]] = {
     "prior.load_friction": ("LOAD", "DRIVE"),
     "prior.delay": ("DELAY",),
     "prior.reversal": ("REVERSAL",),
-    "prior.power": ("POWER", "SET_POWER"),
-    "prior.gap": ("GAP",),
-    "prior.hysteresis": ("PLAY",),
+    "prior.power": ("HIGHER_POWER", "SET_POWER"),
+    "prior.gap": ("DEAD_ZONE",),
+    "prior.hysteresis": ("HYSTERESIS",),
     "prior.eccentric_motor": ("SIN_M", "COS_M"),
     "prior.D_theta": ("VISCOUS",),
     "prior.tau_coulomb": ("COULOMB", "DRIVE", "REVERSAL"),
@@ -217,15 +219,15 @@ def test_the_slope_of_a_column_of_the_torque_is_its_derivative(c: Library, symme
     regression = c.ffi.addressof(estimator.state.method, "regression")
 
     def signals(phi: float) -> tuple[Array, Array]:
-        c.lib.sh_columns_input(regression, estimator.parameters, 0.3, 0.2, phi, 80.0)
-        inputs, slopes = (
-            np.array(list(a[0 : regression.size])) for a in (regression.work.F, regression.work.dF)
-        )
-        return inputs, slopes
+        at, columns = c.new("sh_joint_point"), c.ffi.addressof(regression, "columns")
+        history, size = c.ffi.addressof(regression, "history"), regression.columns.size
+        position = (0.3, 0.2, phi, 80.0, history.play)
+        c.lib.sh_joint_point_at(at, columns, estimator.parameters, *position)
+        return np.array(list(at.F[0:size])), np.array(list(at.dF[0:size]))
 
     small = 1e-5
     above, below = signals(0.15 + small)[0], signals(0.15 - small)[0]
-    curve = [kind in ("BASIS", "POWER", "SET_POWER") for kind, _ in coefficients(estimator)]
+    curve = [kind in ("POWER", "HIGHER_POWER", "SET_POWER") for kind, _ in coefficients(estimator)]
     assert sum(curve) == 12
     slopes = np.where(curve, (above - below) / (2 * small), 0.0)
     assert signals(0.15)[1] == pytest.approx(slopes, rel=1e-6)

@@ -74,7 +74,7 @@ def check(
     assert np.array_equal(found["valid"] == 1, good)
     compare(found[good], oracle.run())
     regression = estimator.state.method.regression
-    assert list(regression.used)[1:] == oracle.used[1:]
+    assert list(regression.refit.used)[1:] == oracle.used[1:]
     assert bool(regression.friction_drifts) == oracle.friction_drifts
     return oracle, found
 

@@ -31,7 +31,7 @@ static int definite(const sh_estimator *estimator, const sh_parameters *p)
 {
     const sh_ud_factor *P = &estimator->method.paper2011.rls.P;
     const sh_regression_state *regression = &estimator->method.regression;
-    const sh_information *posterior = &regression->live.information, *data = &regression->data;
+    const sh_information *posterior = &regression->posterior.information, *data = &regression->data;
 
     if (p->method == SH_METHOD_PAPER2011) {
         return positive(P->D, P->size);
@@ -42,8 +42,8 @@ static int definite(const sh_estimator *estimator, const sh_parameters *p)
 static int finite_outputs(const sh_estimate *e)
 {
     return isfinite(e->sigma + e->tau_e + e->tau_e_residual + e->theta_dot + e->phi + e->setPoint +
-                    e->a + e->rho + e->epsilon + e->sigma_std + e->D_theta_hat + e->B_hat +
-                    e->tau_coulomb_hat + e->misfit + e->bias_hat + e->damping_hat +
+                    e->a + e->rho + e->epsilon + e->sigma_std + e->tau_e_std + e->D_theta_hat +
+                    e->B_hat + e->tau_coulomb_hat + e->misfit + e->bias_hat + e->damping_hat +
                     e->load_friction_hat + e->eccentric_hat + e->delay_hat + e->hysteresis_hat +
                     e->sigma_per_gain);
 }

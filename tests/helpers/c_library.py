@@ -19,7 +19,7 @@ from gate import need
 
 Array = NDArray[np.float64]
 REPOSITORY = Path(__file__).resolve().parents[2]
-_WITHOUT_DECLARATIONS = ("real_math.h", "pair.h", "scalar_product.h")
+_WITHOUT_DECLARATIONS = ("constants.h", "real_math.h", "pair.h", "scalar_product.h")
 """Headers with nothing but macros and inline functions. They include those of the C library, which
 cffi cannot read."""
 
@@ -145,11 +145,9 @@ class Estimator:
         """The state as bytes, without the work arrays, which have no meaning between ticks."""
         ffi = self.library.ffi
         state = ffi.new("sh_estimator *", self.state[0])
-        paper2011, regression = state.method.paper2011, state.method.regression
-        is_paper2011 = self.parameters.method == self.library.lib.SH_METHOD_PAPER2011
-        for part in (paper2011, paper2011.rls.P) if is_paper2011 else (regression,):
-            size = ffi.sizeof(part.work)
-            ffi.memmove(ffi.addressof(part, "work"), bytes(size), size)
+        if self.parameters.method == self.library.lib.SH_METHOD_PAPER2011:
+            P = state.method.paper2011.rls.P
+            ffi.memmove(ffi.addressof(P, "work"), bytes(ffi.sizeof(P.work)), ffi.sizeof(P.work))
         return bytes(ffi.buffer(state))
 
     def run(self, measurements: Array) -> NDArray[np.void]:

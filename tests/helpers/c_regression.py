@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
@@ -33,33 +32,28 @@ def dense(a: Any) -> tuple[Array, Array]:
 
 
 def covariance(estimator: Estimator) -> Array:
-    """Covariance of the posterior, with prior variances of 1, in the order of `live.column`."""
-    matrix, _ = dense(estimator.state.method.regression.live.information)
+    """Covariance of the posterior, with prior variances of 1, in its own order."""
+    matrix, _ = dense(estimator.state.method.regression.posterior.information)
     return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
 
 def coefficients(estimator: Estimator) -> list[tuple[str, int]]:
-    """Kind and number of each column, as in the oracle: 'BASIS', 0."""
+    """Kind and number of each column, as in the oracle: 'POWER', 0."""
     names = {
         getattr(estimator.library.lib, name): name.removeprefix("SH_COLUMN_")
         for name in dir(estimator.library.lib)
         if name.startswith("SH_COLUMN_")
     }
-    regression = estimator.state.method.regression
-    n, orders = estimator.parameters.rls.n, len(estimator.estimate.eta[0])
+    columns, n = estimator.state.method.regression.columns, estimator.parameters.rls.n
     return [
-        numbered(names[column.kind], column.index // orders, column.index % orders, n)
-        for column in regression.column[0 : regression.size]
+        (names[c.kind], numbered(names[c.kind], c, n)) for c in columns.column[0 : columns.size]
     ]
 
 
-def numbered(kind: str, i: int, j: int, n: int) -> tuple[str, int]:
-    """Kind and number of a column whose index stands for the coefficient eta[i][j]."""
-    width = re.fullmatch(r"(GAP|PLAY)_(\d)", kind)
-    if width is not None:
-        return width[1], int(width[2]) - 1
-    number = {"BASIS": j * n + i, "POWER": i - n, "DAMPING": j}
-    return kind, number.get(kind, 0)
+def numbered(kind: str, column: Any, n: int) -> int:
+    """Number of a column among those of its kind."""
+    number = {"POWER": column.j * n + column.i, "HIGHER_POWER": column.i - n, "DAMPING": column.j}
+    return int(number.get(kind, column.i if kind in ("DEAD_ZONE", "HYSTERESIS") else 0))
 
 
 # Priors of all that a joint has besides the model; 0 removes their columns.

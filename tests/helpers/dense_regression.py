@@ -31,7 +31,7 @@ from dense_signals import (
 )
 
 LEAST = 1e-9
-EQUATION = ("BASIS", "NOMINAL", "VISCOUS", "COULOMB", "INERTIA")
+EQUATION = ("POWER", "NOMINAL", "VISCOUS", "COULOMB", "INERTIA")
 
 
 class Posterior:
@@ -184,7 +184,7 @@ class Oracle:
     def is_distinct(self, i: int) -> bool:
         kind, index, _ = self.columns[i]
         covered = (self.phi_max - self.phi_min) / 4 / self.p["range.phi"]
-        widths = {"GAP": GAPS, "PLAY": PLAYS}.get(kind)
+        widths = {"DEAD_ZONE": GAPS, "HYSTERESIS": PLAYS}.get(kind)
         return widths is None or widths[index] < covered
 
     def group(self, i: int) -> int:
@@ -529,12 +529,18 @@ class Oracle:
         self.delay = min(max(delay, -3 * p["prior.delay"]), 3 * p["prior.delay"])
         K_0 = p["prior.tau_e"] / p["range.phi"]
         eccentric = math.hypot(of.get("SIN_Q", 0.0), of.get("COS_Q", 0.0))
+        of_spring = [kind in TORQUE for kind, _, _ in self.columns]
+        F = np.where(of_spring, self.inputs.F[k], 0.0)[self.live.chosen]
+        attenuation = self.rounding * self.live.weight * variance
         values = {
+            "tau_e_std": math.sqrt(
+                float(F @ P @ F)
+                + (p["prior.torque_gain"] * float(F @ beta[:, 0])) ** 2
+                + (attenuation * self.torque(k)) ** 2
+            ),
             "sigma": self.sigma,
             "sigma_std": math.sqrt(
-                variance
-                + (p["prior.torque_gain"] * by_gain) ** 2
-                + (self.rounding * self.live.weight * variance * self.sigma) ** 2
+                variance + (p["prior.torque_gain"] * by_gain) ** 2 + (attenuation * self.sigma) ** 2
             ),
             "sigma_per_gain": by_gain / abs(self.sigma) if self.sigma else 0.0,
             "tau_e": self.torque(k),
@@ -552,7 +558,7 @@ class Oracle:
             "load_friction_hat": of.get("LOAD", 0.0) + of.get("DRIVE", 0.0),
             "eccentric_hat": eccentric / K_0 if K_0 else 0.0,
             "delay_hat": delay,
-            "hysteresis_hat": of.get("PLAY", 0.0),
+            "hysteresis_hat": of.get("HYSTERESIS", 0.0),
         }
         for name, value in values.items():
             self.out.setdefault(name, []).append(value)
@@ -564,8 +570,8 @@ class Oracle:
             eta[: self.eta_0.shape[0], : self.eta_0.shape[1]] = (1 + error) * self.eta_0
         for i, (kind, index, prior) in enumerate(self.columns):
             places = {
-                "BASIS": (index % n, index // n),
-                "POWER": (n + index, 0),
+                "POWER": (index % n, index // n),
+                "HIGHER_POWER": (n + index, 0),
                 "SET_POWER": (0 if self.p["rls.symmetric"] else 1, self.p["rls.m"]),
             }
             if kind in places:

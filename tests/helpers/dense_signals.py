@@ -70,7 +70,7 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
     def of(name: str) -> float:
         return float(p[f"prior.{name}"])
 
-    found: list[Column] = [("BASIS", i, tau_e) for i in range(n * m)]
+    found: list[Column] = [("POWER", i, tau_e) for i in range(n * m)]
     found += [("NOMINAL", 0, of("nominal") if nominal else 0.0), ("BIAS", 0, of("bias") * tau_e)]
     found += [("DAMPING", j, of("damping") * K_0) for j in sorted({0, m - 1})]
     found += [(f"{name}_Q", 0, of("eccentric") * K_0) for name in ("SIN", "COS")]
@@ -78,21 +78,28 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
     found += [("LOAD", 0, of("load_friction")), ("DRIVE", 0, of("load_friction") if dry else 0.0)]
     found += [("DELAY", 0, of("delay"))]
     found += [("REVERSAL", 0, of("reversal") * of("tau_coulomb"))]
-    found += [("POWER", i, of("power") * tau_e) for i in range(2) if n + i < most_n]
+    found += [("HIGHER_POWER", i, of("power") * tau_e) for i in range(2) if n + i < most_n]
     linear = 0 if p["rls.symmetric"] else 1
     if 1 < m < most_m and linear < n:
         found += [("SET_POWER", 0, of("power") * tau_e)]
-    found += [("GAP", i, of("gap") * tau_e) for i in range(3)]
-    found += [("PLAY", i, of("hysteresis") * tau_e) for i in range(3)]
+    found += [("DEAD_ZONE", i, of("gap") * tau_e) for i in range(3)]
+    found += [("HYSTERESIS", i, of("hysteresis") * tau_e) for i in range(3)]
     found += [(f"{name}_M", 0, of("eccentric_motor")) for name in ("SIN", "COS")]
     found += [("VISCOUS", 0, of("D_theta")), ("COULOMB", 0, of("tau_coulomb"))]
     found += [("INERTIA", 0, of("B"))]
     return [column for column in found if column[2] > 0]
 
 
-GROUPS = {"POWER": 1, "SET_POWER": 2, "GAP": 3, "PLAY": 4, "SIN_M": 5, "COS_M": 5}
-TORQUE = ("BASIS", "NOMINAL", "POWER", "SET_POWER", "GAP")
-CURVE = ("BASIS", "NOMINAL", "POWER", "SET_POWER")
+GROUPS = {
+    "HIGHER_POWER": 1,
+    "SET_POWER": 2,
+    "DEAD_ZONE": 3,
+    "HYSTERESIS": 4,
+    "SIN_M": 5,
+    "COS_M": 5,
+}
+TORQUE = ("POWER", "NOMINAL", "HIGHER_POWER", "SET_POWER", "DEAD_ZONE")
+CURVE = ("POWER", "NOMINAL", "HIGHER_POWER", "SET_POWER")
 
 
 def plays(phi: Array, runs: list[slice], range_phi: float) -> Array:
@@ -141,10 +148,10 @@ class Inputs:
 
     def signal(self, kind: str, index: int) -> tuple[Array, Array]:
         n, m, zero = self.p["rls.n"], self.p["rls.m"], np.zeros(len(self.x))
-        if kind == "BASIS":
+        if kind == "POWER":
             f, slope = self.power(self.exponent(index % n))
             return f * self.l ** (index // n), slope * self.l ** (index // n)
-        if kind == "POWER":
+        if kind == "HIGHER_POWER":
             return self.power(self.exponent(n + index))
         if kind == "SET_POWER":
             return self.x * self.l**m, self.l**m / self.p["range.phi"]
@@ -156,8 +163,8 @@ class Inputs:
             "DAMPING": lambda: self.phi * self.l**index,
             "SIN_Q": lambda: np.sin(self.q),
             "COS_Q": lambda: np.cos(self.q),
-            "GAP": lambda: np.clip(self.x / GAPS[index], -1, 1),
-            "PLAY": lambda: self.plays[:, index] / (PLAYS[index] * self.p["range.phi"]),
+            "DEAD_ZONE": lambda: np.clip(self.x / GAPS[index], -1, 1),
+            "HYSTERESIS": lambda: self.plays[:, index] / (PLAYS[index] * self.p["range.phi"]),
             "SIN_M": lambda: np.sin(gamma * self.theta),
             "COS_M": lambda: np.cos(gamma * self.theta),
         }

@@ -29,9 +29,9 @@ UNROLLED = ("-eva-min-loop-unroll", str(MAX_COLUMNS + 6))
 
 TRIANGLES = (
     *("sh_information_take", "sh_information_start", "sh_information_copy"),
-    *("sh_information_sample", "sh_information_side", "sh_information_last"),
+    *("sh_information_sample", "sh_information_right_side", "sh_information_last"),
     *("sh_information_solve", "sh_information_project", "sh_information_squares"),
-    *("sh_information_walk", "sh_ud_factor_start", "sh_ud_factor_project"),
+    *("sh_information_drift", "sh_ud_factor_start", "sh_ud_factor_project"),
     *("sh_ud_factor_update", "sh_ud_factor_variance"),
 )
 """Functions that contracts.h stands for."""
@@ -40,7 +40,7 @@ TRIANGLES = (
 APART = (
     *("-eva-split-return", "full", "-eva-slevel-function"),
     "restored:9999,sh_estimator_check:9999,sh_filtered_regression_check_state:9999,are_columns:99,"
-    "are_data:30,is_choice:1000,knows_motor:4,is_pass:30,are_flags:30",
+    "are_data:30,is_choice:1000,knows_motor:4,is_refit:60,are_flags:30",
 )
 
 
@@ -195,7 +195,7 @@ def test_information_that_is_not_checked_is_found(tmp_path: Path) -> None:
         *(
             tmp_path,
             "filtered_regression/information.c",
-            "if (sh_fabs(xi) > 0 && after > SMALLEST) {",
+            "if (sh_fabs(xi) > 0 && after > SH_SMALLEST_D) {",
         ),
         "if (sh_fabs(xi) > 0) {",
     )

@@ -24,9 +24,10 @@ PAPER2011, REGRESSION = 1, 2
 def check_outputs(record: NDArray[np.void], largest_a: float, confidence: float) -> None:
     """What holds for the outputs of every tick."""
     for name in record.dtype.names or ():
-        if name != "sigma_std":
+        if name in ("sigma_std", "tau_e_std"):  # infinite if their squares overflow, never NaN
+            assert np.all(record[name] >= 0), name
+        else:
             assert np.all(np.isfinite(record[name])), name
-    assert np.all(record["sigma_std"] >= 0)  # infinite if its square overflows, never NaN
     assert np.all(record["rho"] >= 0)
     assert np.all((record["a"] >= 0) & (record["a"] <= largest_a))
     assert np.all(record["misfit"] >= 1)
@@ -60,11 +61,11 @@ def check_paper2011(state: Any, P_0: float) -> None:
 def informations(state: Any) -> Iterator[tuple[Any, float]]:
     """The factors of the information, each with a bound that no entry of D may go below."""
     regression = state.method.regression
-    for posterior in (regression.live, regression.build):
+    for posterior in (regression.posterior, regression.refit.posterior):
         yield posterior.information, 1.0
     yield regression.blocks.recent, 1.0
-    for data in (regression.data, regression.blocks.all, regression.blocks.walking):
-        yield data, 0.0  # a random walk may reduce it below what it began with
+    for data in (regression.data, regression.blocks.constant, regression.blocks.drifting):
+        yield data, 0.0  # process noise may reduce it below what it began with
 
 
 def check_regression(state: Any) -> None:
@@ -74,7 +75,7 @@ def check_regression(state: Any) -> None:
         D, U = np.array(list(a.D)[: a.size]), np.array(list(a.U)[:used])
         assert np.all(np.isfinite(D) & (D > 0) & (least <= D))
         assert np.all(np.isfinite(U))
-        assert math.isfinite(a.rest)
+        assert math.isfinite(a.squares)
     numbers = (
         *regression.beta,
         *regression.blocks.sum,
@@ -83,15 +84,15 @@ def check_regression(state: Any) -> None:
         regression.delay,
     )
     assert all(map(math.isfinite, numbers))
-    for posterior in (regression.live, regression.build):
+    for posterior in (regression.posterior, regression.refit.posterior):
         assert 0 < posterior.weight <= 1
         assert min(posterior.removed, posterior.spread, posterior.surplus) >= 0
         assert max(posterior.removed, posterior.spread, posterior.surplus) < math.inf
     assert 1 <= regression.variance_factor < math.inf
-    assert 0 <= regression.q < math.inf
+    assert 0 <= regression.misfit < math.inf
     assert 1 <= regression.history.excess < math.inf
     assert 1 <= regression.history.excess_mean < math.inf
-    assert abs(regression.motion.direction) <= 1
+    assert abs(regression.signals.motion.direction) <= 1
 
 
 @often

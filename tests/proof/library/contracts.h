@@ -11,28 +11,28 @@
 #ifndef CONTRACTS_H
 #define CONTRACTS_H
 
-#include "columns.h"
 #include "information.h"
+#include "regression.h"
 #include "ud_factor.h"
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires \valid(x + (0 .. a->size + SH_SIDES - 1));
-    requires \initialized(x + (0 .. a->size + SH_SIDES - 1));
-    assigns \result, a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->rest,
-            x[0 .. SH_MAX_COLUMNS + SH_SIDES - 1]
-            \from *a, x[0 .. SH_MAX_COLUMNS + SH_SIDES - 1], w;
+    requires \valid(x + (0 .. a->size + SH_RIGHT_SIDES - 1));
+    requires \initialized(x + (0 .. a->size + SH_RIGHT_SIDES - 1));
+    assigns \result, a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->squares,
+            x[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1]
+            \from *a, x[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1], w;
 */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 
 /*@ requires 1 <= size <= SH_MAX_COLUMNS;
-    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->rest \from precision;
+    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->squares \from precision;
     assigns a->size \from size;
     ensures a->size == size;
 */
 void sh_information_start(sh_information *a, int size, sh_real precision);
 
 /*@ requires 1 <= from->size <= SH_MAX_COLUMNS;
-    assigns to->D[0 .. SH_MAX_COLUMNS - 1], to->U[0 .. SH_MAX_TRIANGLE - 1], to->rest \from *from;
+    assigns to->D[0 .. SH_MAX_COLUMNS - 1], to->U[0 .. SH_MAX_TRIANGLE - 1], to->squares \from *from;
     assigns to->size \from from->size;
     ensures to->size == from->size;
 */
@@ -40,27 +40,27 @@ void sh_information_copy(sh_information *to, const sh_information *from);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires 0 <= i < SH_MAX_COLUMNS;
-    assigns \result, x[0 .. SH_MAX_COLUMNS + SH_SIDES - 1] \from *a;
+    assigns \result, x[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1] \from *a;
 */
 sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires side == SH_SIDE_GAIN || side == SH_SIDE_Y;
+    requires right == SH_RIGHT_GAIN || right == SH_RIGHT_Y;
     assigns z[0 .. SH_MAX_COLUMNS - 1] \from *a;
 */
-void sh_information_side(const sh_information *a, int side, sh_real *z);
+void sh_information_right_side(const sh_information *a, int right, sh_real *z);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    assigns \result \from a, *a;
-    ensures \subset(\result, a->U + (0 .. SH_MAX_TRIANGLE - SH_SIDES));
+    assigns \result \from a->size;
+    ensures 0 <= \result <= SH_MAX_TRIANGLE - SH_RIGHT_SIDES;
 */
-sh_real *sh_information_last(sh_information *a);
+int sh_information_last(const sh_information *a);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires side == SH_SIDE_GAIN || side == SH_SIDE_Y;
-    assigns beta[0 .. SH_MAX_COLUMNS - 1] \from *a;
+    requires right == SH_RIGHT_GAIN || right == SH_RIGHT_Y;
+    assigns beta[0 .. SH_MAX_COLUMNS - 1] \from *a, last;
 */
-void sh_information_solve(const sh_information *a, int side, sh_real *beta);
+void sh_information_solve(const sh_information *a, int right, sh_real last, sh_real *beta);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \initialized(c + (0 .. a->size - 1));
@@ -76,12 +76,10 @@ sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \initialized(v + (0 .. a->size - 1));
-    requires \valid(row + (0 .. a->size + SH_SIDES - 1));
-    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->rest,
-            row[0 .. SH_MAX_COLUMNS + SH_SIDES - 1]
-            \from *a, v[0 .. SH_MAX_COLUMNS - 1], row[0 .. SH_MAX_COLUMNS + SH_SIDES - 1], c;
+    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->squares
+            \from *a, v[0 .. SH_MAX_COLUMNS - 1], c;
 */
-void sh_information_walk(sh_information *a, const sh_real *v, sh_real c, sh_real *row);
+void sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
 /*@ requires 1 <= size <= SH_MAX_PARAMETERS;
     assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work \from P_0;
@@ -106,9 +104,9 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w);
 
 /*@ requires 1 <= P->size <= SH_MAX_PARAMETERS;
     requires \initialized(F + (0 .. P->size - 1));
-    assigns \result, P->work \from *P, F[0 .. SH_MAX_ROWS - 1];
+    assigns \result \from *P, F[0 .. SH_MAX_ROWS - 1];
 */
-sh_real sh_ud_factor_variance(sh_ud_factor *P, const sh_real *F);
+sh_real sh_ud_factor_variance(const sh_ud_factor *P, const sh_real *F);
 
 /*@ assigns \result \from *p;
     ensures 1 <= \result <= SH_MAX_COLUMNS;

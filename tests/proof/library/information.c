@@ -5,7 +5,7 @@
 #include "anything.h"
 #include "contracts.h"
 
-static sh_real x[SH_MAX_ENTRIES], v[SH_MAX_COLUMNS], c[SH_MAX_COLUMNS];
+static sh_real x[SH_MAX_ROW], v[SH_MAX_COLUMNS], c[SH_MAX_COLUMNS];
 
 static void any_vectors(void)
 {
@@ -21,18 +21,18 @@ void columns(void)
 
     ANYTHING(a.D);
     ANYTHING(a.U);
-    ANYTHING(a.rest);
+    ANYTHING(a.squares);
     a.size = SH_MAX_COLUMNS;
     any_vectors();
     sh_information_take(&a, x, any_real());
     sh_information_project(&a, c, v);
     sh_information_squares(&a, c);
-    sh_information_fade(&a, any_real(), any_real());
-    sh_information_walk(&a, v, any_real(), x);
-    sh_information_solve(&a, SH_SIDE_GAIN, v);
-    sh_information_solve(&a, SH_SIDE_Y, v);
-    sh_information_side(&a, SH_SIDE_GAIN, v);
-    sh_information_side(&a, SH_SIDE_Y, v);
+    sh_information_forget(&a, any_real(), any_real());
+    sh_information_drift(&a, v, any_real());
+    sh_information_solve(&a, SH_RIGHT_GAIN, any_real(), v);
+    sh_information_solve(&a, SH_RIGHT_Y, any_real(), v);
+    sh_information_right_side(&a, SH_RIGHT_GAIN, v);
+    sh_information_right_side(&a, SH_RIGHT_Y, v);
     for (i = 0; i < SH_MAX_COLUMNS; ++i) {
         sh_information_sample(&a, i, x);
     }
@@ -70,7 +70,7 @@ void positive(void)
     sh_information a;
 
     ANYTHING(a.U);
-    ANYTHING(a.rest);
+    ANYTHING(a.squares);
     any_vectors();
     a.size = 1;
     a.D[0] = (sh_real)Frama_C_float_interval(1e-38f, 1e37f);

@@ -1,0 +1,144 @@
+/* Every constant of the method FilteredRegression that is a choice: its unit, and why this value. */
+#ifndef SH_CONSTANTS_H
+#define SH_CONSTANTS_H
+
+#include "real_math.h"
+
+/* ---- filters, signals.c ------------------------------------------------------------------ */
+
+/* Largest corner frequency over the one at which both noises of y are equal [1]. From 1 to 2 the
+ * results hardly differ; above, the noise of y is not white.
+ */
+#define SH_LARGEST_CORNER ((sh_real)1.42)
+
+/* Time constants 1/w after which a filter has forgotten its start: 5e-4 of it are left [1]. */
+#define SH_FORGOTTEN ((sh_real)12)
+
+/* Change of phi in a sample, over the finer resolution, below which phi rests [1]. */
+#define SH_RESTS ((sh_real)0.25)
+
+/* ---- columns, columns.c ------------------------------------------------------------------ */
+
+/* Half widths of dead zones and of elements of hysteresis, over range.phi [1]: each four times the
+ * one before, so that three of them come near any width.
+ */
+#define SH_DEAD_ZONES {(sh_real)0.01, (sh_real)0.04, (sh_real)0.16}
+#define SH_HYSTERESES {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08}
+
+/* Share of the covered range from which such an element looks like the spring [1]. */
+#define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
+
+/* Relative std deviation of sigma below which columns that need sigma have an effect [1]. */
+#define SH_KNOWN_STIFFNESS ((sh_real)0.2)
+
+/* Largest delay that the column of the delay corrects, in std deviations of its prior [1]. */
+#define SH_LARGEST_DELAY ((sh_real)3)
+
+/* Largest entry of a column of the motor encoder [N.m]. A stiffness that is wrong by many orders must
+ * not make the row too large to be used: then the stiffness would never be corrected.
+ */
+#define SH_LARGEST_ENCODER_ERROR SH_FOR(SH_REAL, 1e74, 1e14f)
+
+/* ---- weight of a sample, noise.c --------------------------------------------------------- */
+
+/* Share of the excess noise by which samples weigh less [1]. With 0.1 the interval of a stiff joint
+ * with jitter holds the truth too rarely, with 1 the interval is too wide.
+ */
+#define SH_EXCESS ((sh_real)0.3)
+
+/* Share of count^2/12 that fourth differences of rounding lack [1]: mean over motions of 1 to 100
+ * counts in a sample.
+ */
+#define SH_ROUNDING_IS_NOT_WHITE ((sh_real)0.056)
+
+/* Time constants of the measured noise, and of the mean of its excess [s]. */
+#define SH_NOISE_TIME ((sh_real)0.1)
+#define SH_EXCESS_TIME ((sh_real)5)
+
+/* Std deviations by which the first samples may contradict a motor at rest [1]. */
+#define SH_AT_REST ((sh_real)5)
+
+/* ---- rounding in the column of the inertia, posterior.c ---------------------------------- */
+
+/* Variance of the squared noise over the square of its mean [1]: the noise is correlated. */
+#define SH_SPREAD_OF_SQUARE ((sh_real)6)
+
+/* Relative error of the removed information [1]: rounding repeats with the motion. */
+#define SH_REMOVAL_ERROR ((sh_real)0.05)
+
+/* ---- misfit and forgetting, misfit.c ----------------------------------------------------- */
+
+/* Duration of a block [s]: several times 1/w, and short beside a motion. */
+#define SH_BLOCK ((sh_real)0.05)
+
+/* Least and largest number of samples of a block [1]; the start has as many steps. */
+#define SH_SHORTEST_BLOCK ((sh_real)4)
+#define SH_LONGEST_BLOCK ((sh_real)100000)
+
+/* Number of blocks below which nothing is judged [1]. */
+#define SH_FIRST_BLOCKS ((sh_real)20)
+
+/* Number of blocks that count [1]: 100 s, so that a misfit that begins after hours is noticed as soon
+ * as one that begins after a minute.
+ */
+#define SH_MOST_BLOCKS ((sh_real)2000)
+
+/* Std deviations beyond which a sum of squares is no chance [1]. */
+#define SH_CHANCE ((sh_real)3)
+
+/* Number of blocks that are as good as one, because a misfit repeats with the motion [1]. */
+#define SH_REPEATS ((sh_real)5)
+
+/* Variance factor above which data are forgotten, and the doubt is a misfit [1]. */
+#define SH_CONTRADICTION ((sh_real)1.5)
+
+/* regression.memory over the time constant of the recent blocks [1]. */
+#define SH_RECENT ((sh_real)10)
+
+/* How much faster data are forgotten if the recent ones agree: the joint has changed [1]. */
+#define SH_FASTER ((sh_real)5)
+
+/* Process noise of friction that drifts, in variances of its prior [1/s]. */
+#define SH_FRICTION_DRIFT ((sh_real)1e-3)
+
+/* Residual of drifting over that of constant friction, below and above which friction drifts [1]. */
+#define SH_DRIFTS ((sh_real)0.8)
+#define SH_IS_CONSTANT ((sh_real)0.95)
+
+/* ---- choice of columns, refit.c ---------------------------------------------------------- */
+
+/* Gain of the logarithm of the evidence from which a group is used: at first, and for each block [1].
+ * So it reduces the variance of the error by a tenth: rounding of a periodic motion repeats, and is a
+ * small evidence for any column. The group is dropped below half of the second one.
+ */
+#define SH_FIRST_GAIN ((sh_real)3)
+#define SH_GAIN_PER_BLOCK ((sh_real)0.05)
+
+/* ---- what is reported, filtered_regression.c --------------------------------------------- */
+
+/* Where the highest power of the curve is as many times as large as at range.phi, the estimate is
+ * not confident; but up to as many times range.phi it may be [1].
+ */
+#define SH_LARGEST_POWER ((sh_real)32)
+#define SH_LEAST_LIMIT ((sh_real)2)
+
+/* Std deviations of its prior beyond which a corrected motor parameter is doubted [1]. */
+#define SH_OUTSIDE_PRIOR ((sh_real)3)
+
+/* ---- limits of arithmetic ---------------------------------------------------------------- */
+
+/* Precision with which data begin, where a prior has 1: far less, but no rounding error [1]. */
+#define SH_LEAST_INFORMATION SH_FOR(SH_REAL, 1e-9, 1e-5f)
+
+/* One over a smaller entry of D would overflow; such an entry is not changed. */
+#define SH_SMALLEST_D SH_FOR(SH_REAL, 1e-300, 1e-37f)
+
+/* Largest factor by which one step may increase a variance. With more, what is left of D would
+ * consist of rounding errors.
+ */
+#define SH_LARGEST_GROWTH SH_FOR(SH_REAL, 1e12, 1e6f)
+
+/* Steps of the loops over the response of a filter: over 60 time constants with the least w T, 1e-4. */
+enum { SH_MOST_SAMPLES = 1000000 };
+
+#endif

@@ -1,0 +1,292 @@
+/* Misfit: what no column explains. Blocks of samples show it, and data that contradict the model are
+ * forgotten.
+ */
+#include "constants.h"
+#include "information.h"
+#include "regression.h"
+#include "state_variable_filter.h"
+
+/* ---- blocks, detail 8 -------------------------------------------------------------------- */
+
+/* h = 16 x^2 (1 - x)^2 at sample k of a block */
+static sh_real window(sh_real k, sh_real length)
+{
+    const sh_real x = (k + (sh_real)0.5) / length;
+
+    return 16 * sh_square(x * (1 - x));
+}
+
+void sh_blocks_start(sh_regression_state *state)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_filter_design *design = &state->signals.design;
+    sh_state_variable_filter filter;
+    sh_real of_window = 0, output = 0, second = 0, samples;
+    int k;
+
+    sh_information_start(&blocks->constant, state->columns.size, SH_LEAST_INFORMATION);
+    sh_information_start(&blocks->drifting, state->columns.size, SH_LEAST_INFORMATION);
+    sh_information_start(&blocks->recent, state->columns.size, 1);
+    blocks->length = sh_floor(SH_BLOCK / design->T + (sh_real)0.5);
+    blocks->length = sh_fmin(sh_fmax(blocks->length, SH_SHORTEST_BLOCK), SH_LONGEST_BLOCK);
+    samples = blocks->length + sh_floor(30 / (design->w * design->T));
+    /* What H and s^2 H leave of white noise under the window: the energy of the filtered window. */
+    sh_state_variable_filter_start(&filter, 0);
+    for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < samples; ++k) {
+        const sh_real h = (sh_real)k < blocks->length ? window((sh_real)k, blocks->length) : 0;
+
+        sh_state_variable_filter_step(&filter, design, h);
+        of_window += sh_square(h);
+        output += sh_square(sh_state_variable_filter_output(&filter));
+        second += sh_square(sh_state_variable_filter_second(&filter, design));
+    }
+    blocks->energy = output / of_window;
+    blocks->energy_second = second / of_window;
+}
+
+void sh_blocks_interrupt(sh_blocks *blocks)
+{
+    int i;
+
+    for (i = 0; i < SH_MAX_ROW; ++i) {
+        blocks->sum[i] = 0;
+    }
+    blocks->samples = blocks->weight = blocks->weight_window = 0;
+    blocks->window = blocks->window_square = blocks->independent = blocks->rounding = 0;
+}
+
+/* The mean row of the block, sum h w x / sum h w. Each information uses its row up. */
+static void take_mean(const sh_blocks *blocks, sh_information *a, sh_real weight)
+{
+    sh_real mean[SH_MAX_ROW] = {0};
+    int i;
+
+    for (i = 0; i < a->size + SH_RIGHT_SIDES; ++i) {
+        mean[i] = blocks->sum[i] / blocks->weight;
+    }
+    (void)sh_information_take(a, mean, weight);
+}
+
+static int is_acceptable(const sh_blocks *blocks, int size, sh_real variance)
+{
+    sh_real squares = 0;
+    int i;
+
+    for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
+        squares += sh_square(blocks->sum[i] / blocks->weight);
+    }
+    return variance > 0 && squares / variance <= SH_LARGE; /* false if not a number */
+}
+
+static void forget_blocks(sh_blocks *blocks, sh_real factor)
+{
+    sh_information_forget(&blocks->constant, factor, SH_LEAST_INFORMATION);
+    sh_information_forget(&blocks->drifting, factor, SH_LEAST_INFORMATION);
+    blocks->count *= factor;
+}
+
+/* A block is full. Its variance is sum h^2 w / (sum h w)^2 times the share of white noise that H leaves,
+ * plus the variance of (gamma^2 B theta'')_f by the rounding of theta.
+ */
+static void end_block(sh_regression_state *state, const sh_parameters *p)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_real inertia = sh_is_measured(p) ? 0 : sh_square(p->motor.gamma) * p->motor.B;
+    const sh_real rounding = sh_square(inertia) * blocks->rounding / blocks->samples;
+    const sh_real variance =
+        blocks->weight_window / sh_square(blocks->weight) * blocks->energy +
+        rounding * blocks->energy_second * blocks->window_square / sh_square(blocks->window);
+    const sh_real count = blocks->independent / blocks->window_square;
+
+    if (is_acceptable(blocks, state->columns.size, variance)) {
+        take_mean(blocks, &blocks->constant, 1 / variance);
+        take_mean(blocks, &blocks->drifting, 1 / variance);
+        take_mean(blocks, &blocks->recent, 1 / variance);
+        blocks->count += count;
+        blocks->recent_count += count;
+        blocks->duration += count * blocks->length * state->signals.design.T;
+        if (blocks->count > SH_MOST_BLOCKS) {
+            forget_blocks(blocks, SH_MOST_BLOCKS / blocks->count);
+        }
+    }
+    sh_blocks_interrupt(blocks);
+}
+
+void sh_blocks_take(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w,
+                    sh_real lasting)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_real h = window(blocks->samples, blocks->length), wh = w * h;
+    int i;
+
+    for (i = 0; i < state->columns.size + SH_RIGHT_SIDES; ++i) {
+        blocks->sum[i] += wh * x[i];
+    }
+    blocks->weight += wh;
+    blocks->weight_window += wh * h;
+    blocks->window += h;
+    blocks->window_square += sh_square(h);
+    blocks->independent += sh_square(h) / lasting; /* samples with the same error count as fewer */
+    blocks->rounding += sh_signals_roughness(&state->signals);
+    blocks->samples += 1;
+    if (blocks->samples >= blocks->length) {
+        end_block(state, p);
+    }
+}
+
+/* ---- the variance factor, detail 8 ------------------------------------------------------- */
+
+/* Largest sum of squares of N errors that is chance: N t, t = 1 + 3 sqrt(2 / N) */
+static sh_real chance(sh_real N)
+{
+    return N + SH_CHANCE * sh_sqrt(2 * N);
+}
+
+/* Reduced chi-square of the recent blocks, if it is beyond chance; else 0, and while friction or the
+ * curve drifts, which these blocks do not contain. Their prior is subtracted.
+ */
+static sh_real recent_misfit(const sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_blocks *blocks = &state->blocks;
+    const sh_real N = blocks->recent_count;
+    sh_real squares;
+    int i;
+
+    if (N < SH_FIRST_BLOCKS || state->friction_drifts || p->regression.drift > 0) {
+        return 0;
+    }
+    squares = sh_information_squares(&blocks->recent, state->beta);
+    for (i = 0; i < state->columns.size; ++i) {
+        squares -= state->beta[i] * state->beta[i];
+    }
+    return squares > chance(N) ? squares / N : 0;
+}
+
+/* q = (sum of the squares of the errors of N blocks over their variances) / (N - p / 2), p parameters,
+ *
+ *     kappa^2 = max(q, 1 + (q - t) max(1, N / 5))  if q > t, else max(1, q) .
+ *
+ * A misfit is a function of the state: it repeats with the motion, so that five blocks are as one.
+ */
+void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_blocks *blocks = &state->blocks;
+    const sh_real N = blocks->count, parameters = (sh_real)state->posterior.information.size;
+    sh_real q, t;
+
+    state->misfit = state->variance_factor = 1;
+    if (N < SH_FIRST_BLOCKS || N <= parameters) {
+        return;
+    }
+    q = sh_information_squares(state->friction_drifts ? &blocks->drifting : &blocks->constant,
+                               state->beta) /
+        (N - parameters / 2);
+    t = chance(N) / N;
+    state->misfit = sh_fmax(q, recent_misfit(state, p));
+    if (!(p->regression.memory > 0)) { /* switched off */
+        return;
+    }
+    state->variance_factor = sh_fmax(1, state->misfit);
+    if (q > t) {
+        state->variance_factor =
+            sh_fmax(state->variance_factor, 1 + (q - t) * sh_fmax(1, N / SH_REPEATS));
+    }
+}
+
+/* ---- drift of friction, detail 10 -------------------------------------------------------- */
+
+/* Process noise of viscous and Coulomb friction. */
+static void let_friction_drift(const sh_columns *columns, sh_information *a, sh_real variance)
+{
+    sh_real v[SH_MAX_COLUMNS] = {0};
+    int i;
+
+    for (i = 0; i < columns->size; ++i) {
+        if (sh_column_is(&columns->column[i], SH_IS_FRICTION)) {
+            v[i] = 1;
+            sh_information_drift(a, v, variance);
+            v[i] = 0;
+        }
+    }
+}
+
+void sh_friction_drift(sh_regression_state *state, sh_real time)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_real N = blocks->count, parameters = (sh_real)state->columns.size;
+    const sh_real variance = SH_FRICTION_DRIFT * time;
+
+    let_friction_drift(&state->columns, &blocks->drifting, variance);
+    if (N > 2 * parameters) {
+        const sh_real constant = blocks->constant.squares, drifting = blocks->drifting.squares;
+
+        if (drifting < SH_DRIFTS * constant && constant > (N - parameters) * chance(N) / N) {
+            state->friction_drifts = 1;
+        } else if (drifting > SH_IS_CONSTANT * constant) {
+            state->friction_drifts = 0;
+        }
+    }
+    if (state->friction_drifts) {
+        let_friction_drift(&state->columns, &state->data, variance);
+    }
+}
+
+/* ---- forgetting, details 9 and 11 -------------------------------------------------------- */
+
+/* Forgets data of `time` [s]: five times as fast if the recent blocks agree by themselves, because then
+ * the joint has changed.
+ */
+static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_real time)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_real N = blocks->recent_count;
+    const int has_changed = N > SH_FIRST_BLOCKS && blocks->recent.squares < chance(N);
+    const sh_real memory = p->regression.memory / (has_changed ? SH_FASTER : 1);
+    const sh_real factor = sh_exp(-time / memory);
+
+    sh_information_forget(&state->data, factor, SH_LEAST_INFORMATION);
+    forget_blocks(blocks, factor);
+    state->surplus *= factor;
+    state->spread *= factor * factor;
+    state->rounding *= factor;
+}
+
+/* P += drift time / (v'v + R) v v', where v are the columns of the curve in the last row */
+static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
+                            sh_real time)
+{
+    sh_real v[SH_MAX_COLUMNS] = {0}, power = 0, variance;
+    int i;
+
+    for (i = 0; i < state->columns.size; ++i) {
+        v[i] = sh_column_is(&state->columns.column[i], SH_IS_CURVE) ? x[i] : 0;
+        power += v[i] * v[i];
+    }
+    if (power > 0) {
+        variance = p->regression.drift * time / (power + state->R);
+        sh_information_drift(&state->data, v, variance);
+        sh_information_drift(&state->blocks.constant, v, variance);
+        sh_information_drift(&state->blocks.drifting, v, variance);
+    }
+}
+
+/* Time counts as far as blocks do: nothing is forgotten at rest. */
+void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real time)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_real moving = blocks->duration;
+
+    blocks->duration = 0;
+    if (p->regression.memory > 0) {
+        const sh_real factor = sh_exp(-SH_RECENT * moving / p->regression.memory);
+
+        sh_information_forget(&blocks->recent, factor, 1);
+        blocks->recent_count *= factor;
+    }
+    if (state->variance_factor > SH_CONTRADICTION) {
+        forget_data(state, p, moving);
+    }
+    if (p->regression.drift > 0) {
+        let_curve_drift(state, p, x, time);
+    }
+}

@@ -1,0 +1,151 @@
+/* The variance of a sample, and what of the row is only noise. */
+#include "constants.h"
+#include "posterior.h"
+#include "regression.h"
+#include "state_variable_filter.h"
+
+/* Share of the variance of white noise that H leaves: T integral of h^2 = 3/16 w T, for the impulse
+ * response h of H.
+ */
+static sh_real white(const sh_signals *signals)
+{
+    return (sh_real)(3.0 / 16) * signals->design.w * signals->design.T;
+}
+
+/* Sum over both encoders [rad2]: the rounding of phi has a twelfth of it as its variance. */
+static sh_real counts_squared(const sh_signals *signals)
+{
+    return sh_square(signals->count) + sh_square(signals->count_q);
+}
+
+/* N_tau = 3/16 w T (gamma s_tau)^2: noise of the torque in y, after the filter [(N.m)2] */
+static sh_real torque_noise(const sh_signals *signals, const sh_parameters *p)
+{
+    return white(signals) * sh_square(p->motor.gamma * p->noise.tau);
+}
+
+/* (gamma^2 B)^2 G: noise of y after the filter by noise of theta [(N.m/rad)2] */
+static sh_real inertial_noise(const sh_signals *signals, const sh_parameters *p)
+{
+    return sh_square(sh_square(p->motor.gamma) * p->motor.B) * signals->gain_second;
+}
+
+/* gamma^2 (tau_C^2 + P_CC) u_f^2: variance of the friction whose sign is unknown [(N.m)2] */
+static sh_real friction_variance(const sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_posterior *posterior = &state->posterior;
+    const int C = posterior->coulomb;
+    const sh_real u_f = sh_state_variable_filter_output(&state->signals.unknown);
+    sh_real c[SH_MAX_COLUMNS] = {0}, tau_C;
+
+    if (C < 0 || !(sh_fabs(u_f) > 0)) {
+        return 0;
+    }
+    c[C] = 1;
+    tau_C = sh_square(state->beta[posterior->column[C]]) + sh_posterior_variance(posterior, c);
+    return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * tau_C;
+}
+
+/* R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
+ *     + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
+ *
+ * White noise enters as it is before the filter (point 1). A wrong sign of friction in one sample leaves
+ * the filter as its impulse response, in many samples, so its variance is divided by 3/16 w T.
+ *
+ * Errors that do not average out (point 5): with the variance R of what is independent and c of what
+ * stays, n samples have the information 1 / (R / n + c), so the n-th one has the variance
+ *
+ *     R (1 + c n / R)^2 .
+ */
+sh_sample_noise sh_noise_of_sample(const sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_history *history = &state->history;
+    const sh_real rounding = sh_square(state->sigma) * counts_squared(&state->signals) / 12;
+    sh_real R = rounding + sh_square(p->noise.tau_e), stays = rounding * history->resting;
+    sh_sample_noise noise;
+
+    if (!sh_is_measured(p)) {
+        const sh_real friction = friction_variance(state, p);
+
+        R = (rounding + sh_square(p->motor.gamma * p->noise.tau)) *
+                (1 + SH_EXCESS * (history->excess - 1)) +
+            friction / white(&state->signals);
+        stays += friction * history->unsure;
+    }
+    noise.lasting = sh_square(1 + stays / R);
+    noise.R = R * noise.lasting;
+    return noise;
+}
+
+/* X = (N_tau + N_theta) / (N_tau + (gamma^2 B)^2 G count^2/12) >= 1, where N_theta has the mean square of
+ * the noise of theta over 0.1 s in place of count^2/12; detail 4. Jitter of the sample times makes X
+ * larger.
+ */
+void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p)
+{
+    const sh_real T = signals->design.T;
+    const sh_real torque = torque_noise(signals, p), inertial = inertial_noise(signals, p);
+    const sh_real rounded = torque + inertial * sh_square(signals->count) / 12;
+
+    if (sh_is_measured(p)) {
+        return;
+    }
+    history->rough +=
+        sh_fmin(T / SH_NOISE_TIME, 1) * (sh_signals_roughness(signals) - history->rough);
+    history->excess = sh_fmax(1, (torque + inertial * history->rough) / rounded);
+    history->excess_mean +=
+        sh_fmin(T / SH_EXCESS_TIME, 1) * (history->excess - history->excess_mean);
+}
+
+/* N_tau / (N_tau + N_theta) */
+sh_real sh_noise_share_of_torque(const sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_real theta = sh_fmax(state->history.rough, sh_square(state->signals.count) / 12);
+    const sh_real torque = torque_noise(&state->signals, p);
+    const sh_real sum = torque + inertial_noise(&state->signals, p) * theta;
+
+    return sum > 0 ? torque / sum : 0;
+}
+
+sh_real sh_noise_of_deformation(const sh_signals *signals)
+{
+    return white(signals) * counts_squared(signals) / 12;
+}
+
+/* N R = (gamma^2 B prior.B)^2 G V, where V is the squared fourth difference over 70, and 0.056 count^2/12
+ * more in a sample in which the position changes.
+ */
+sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_signals *signals = &state->signals;
+    const sh_real moved = sh_fabs(signals->theta_before[0] - signals->theta_before[1]) > 0 ? 1 : 0;
+    const sh_real V = sh_signals_roughness(signals) +
+                      SH_ROUNDING_IS_NOT_WHITE * moved * sh_square(signals->count) / 12;
+
+    if (sh_is_measured(p) || state->posterior.inertia < 0) {
+        return 0;
+    }
+    return sh_square(p->prior.B) * inertial_noise(signals, p) * V;
+}
+
+/* epsilon^2 > 25 (x' P x + N_tau + N_theta + gamma^2 (tau_C^2 + P_CC) u_f^2), where x contains only the
+ * columns of the equation: a bias, or another thing that a joint may have, would hide a slow motion.
+ */
+int sh_noise_contradicts_rest(const sh_regression_state *state, const sh_parameters *p,
+                              const sh_real *x)
+{
+    const sh_posterior *posterior = &state->posterior;
+    sh_real own[SH_MAX_COLUMNS] = {0}, epsilon = x[state->columns.size + SH_RIGHT_Y], variance;
+    int i;
+
+    for (i = 0; i < posterior->information.size; ++i) {
+        const int column = posterior->column[i];
+
+        epsilon -= x[column] * state->beta[column];
+        own[i] = sh_column_is(&state->columns.column[column], SH_IS_EQUATION) ? x[column] : 0;
+    }
+    variance = sh_posterior_variance(posterior, own) + torque_noise(&state->signals, p) +
+               inertial_noise(&state->signals, p) * sh_square(state->signals.count) / 12 +
+               friction_variance(state, p);
+    return sh_square(epsilon) > sh_square(SH_AT_REST) * variance;
+}

@@ -1,0 +1,206 @@
+/* Refits: how the misfit, and the choice of columns, act on past samples in bounded time; detail 6.
+ *
+ * The data of all samples are a triangular matrix of n rows. A row with its weight is a sample for
+ * another triangle. So a new posterior is computed beside the present one: every second tick it takes
+ * one row of a copy of the data, weighted by the misfit, and every tick the new sample. After n rows it
+ * replaces the present one. No tick takes more than O(n^2).
+ *
+ * Every second refit is a trial of a group of columns, and its estimate is not used.
+ */
+#include "constants.h"
+#include "information.h"
+#include "posterior.h"
+#include "regression.h"
+
+static int is_distinct(const sh_regression_state *state, const sh_parameters *p, int i)
+{
+    return sh_column_is_distinct(&state->columns.column[i], p, state->history.phi_min,
+                                 state->history.phi_max);
+}
+
+/* Whether column i is used, and not one of the trial. */
+static int is_used(const sh_regression_state *state, const sh_parameters *p, int i)
+{
+    const int group = sh_column_group(&state->columns.column[i]);
+
+    return group == 0 ||
+           (group != state->refit.trial && state->refit.used[group] && is_distinct(state, p, i));
+}
+
+/* Column i is tried: its group stands behind all columns that are used. */
+static int is_tried(const sh_regression_state *state, const sh_parameters *p, int i)
+{
+    const int group = sh_column_group(&state->columns.column[i]);
+
+    return group != 0 && group == state->refit.trial && is_distinct(state, p, i);
+}
+
+static int choose_columns(const sh_regression_state *state, const sh_parameters *p, int *chosen)
+{
+    int size = 0, i;
+
+    /*@ loop unroll SH_MAX_COLUMNS; */
+    for (i = 0; i < state->columns.size; ++i) {
+        if (is_used(state, p, i)) {
+            chosen[size++] = i;
+        }
+    }
+    for (i = 0; i < state->columns.size && size < state->columns.size; ++i) {
+        if (is_tried(state, p, i)) {
+            chosen[size++] = i;
+        }
+    }
+    return size;
+}
+
+/* The weight of the data is 1 / kappa^2. In a trial it is 1 / max(1, q, mean of X): noise that is
+ * correlated is no evidence for columns.
+ */
+static void start_refit(sh_regression_state *state, const sh_parameters *p)
+{
+    sh_refit *refit = &state->refit;
+    const sh_real noise = sh_fmax(sh_fmax(1, state->misfit), state->history.excess_mean);
+    const sh_real weight = 1 / (refit->trial == 0 ? state->variance_factor : noise);
+    int chosen[SH_MAX_COLUMNS] = {0};
+    const int size = choose_columns(state, p, chosen);
+
+    sh_posterior_start(&refit->posterior, &state->columns, chosen, size, weight);
+    refit->posterior.surplus = state->surplus * weight;
+    refit->posterior.spread = state->spread * weight * weight;
+    sh_information_copy(&refit->frozen, &state->data);
+    refit->row = 0;
+}
+
+void sh_refit_start(sh_regression_state *state, const sh_parameters *p)
+{
+    state->variance_factor = state->misfit = 1;
+    start_refit(state, p);
+    sh_posterior_copy(&state->posterior, &state->refit.posterior);
+}
+
+/* The next group that can be tried, 0 if there is none. */
+static int next_trial(sh_regression_state *state, const sh_parameters *p)
+{
+    sh_refit *refit = &state->refit;
+    int tries, i;
+
+    for (tries = 1; tries < SH_GROUPS; ++tries) {
+        refit->last_trial = refit->last_trial % (SH_GROUPS - 1) + 1;
+        for (i = 0; i < state->columns.size; ++i) {
+            if (sh_column_group(&state->columns.column[i]) == refit->last_trial &&
+                is_distinct(state, p, i)) {
+                return refit->last_trial;
+            }
+        }
+    }
+    return 0;
+}
+
+/* ln p(y | with the group) - ln p(y | without) = sum over its columns of (D z^2 - ln D) / 2 */
+static sh_real gain_of_evidence(const sh_regression_state *state)
+{
+    const sh_posterior *posterior = &state->refit.posterior;
+    const sh_information *a = &posterior->information;
+    sh_real z[SH_MAX_COLUMNS] = {0}, gain = 0;
+    int i;
+
+    sh_information_right_side(a, SH_RIGHT_Y, z);
+    for (i = 0; i < a->size; ++i) {
+        const sh_column *column = &state->columns.column[posterior->column[i]];
+
+        if (sh_column_group(column) == state->refit.trial) {
+            gain += (a->D[i] * z[i] * z[i] - sh_log(a->D[i])) / 2;
+        }
+    }
+    return gain;
+}
+
+/* A group is used above 3 + 0.05 N, and no longer below 0.025 N. */
+static void decide_about_group(sh_regression_state *state)
+{
+    sh_refit *refit = &state->refit;
+    const sh_real gain = gain_of_evidence(state),
+                  per_blocks = SH_GAIN_PER_BLOCK * state->blocks.count;
+
+    if (gain > SH_FIRST_GAIN + per_blocks) {
+        refit->used[refit->trial] = 1;
+    }
+    if (gain < per_blocks / 2) {
+        refit->used[refit->trial] = 0;
+    }
+}
+
+/* All rows have been taken. The next refit is a trial after every one that changed the estimate. */
+static void end_refit(sh_regression_state *state, const sh_parameters *p)
+{
+    sh_refit *refit = &state->refit;
+    const int was_trial = refit->trial != 0;
+
+    if (was_trial) {
+        decide_about_group(state);
+    } else {
+        sh_posterior_copy(&state->posterior, &refit->posterior);
+        if (state->posterior.inertia >= 0) {
+            sh_posterior_remove(&state->posterior, 0, p->prior.B);
+        }
+    }
+    sh_misfit_judge(state, p);
+    refit->trial = 0;
+    if (!was_trial && state->blocks.count >= SH_FIRST_BLOCKS) {
+        refit->trial = next_trial(state, p);
+    }
+}
+
+static void take_row(sh_regression_state *state)
+{
+    sh_refit *refit = &state->refit;
+    sh_real x[SH_MAX_ROW] = {0};
+    const sh_real w = sh_information_sample(&refit->frozen, refit->row, x);
+
+    (void)sh_posterior_take(&refit->posterior, x, state->columns.size, w);
+}
+
+/* What a refit needs beside the rows is spread over ticks, too. */
+static void advance(sh_regression_state *state, const sh_parameters *p, const sh_real *x)
+{
+    sh_refit *refit = &state->refit;
+    const sh_real time = refit->samples * state->signals.design.T;
+
+    if (refit->row < state->columns.size) {
+        take_row(state);
+        refit->row += 1;
+        return;
+    }
+    switch (refit->row - state->columns.size) {
+    case 0:
+        end_refit(state, p);
+        break;
+    case 1:
+        if (refit->trial == 0) {
+            sh_friction_drift(state, time);
+        }
+        break;
+    case 2:
+        if (refit->trial == 0) {
+            sh_forget(state, p, x, time);
+            refit->samples = 0;
+        }
+        break;
+    default:
+        start_refit(state, p);
+        return;
+    }
+    refit->row += 1;
+}
+
+void sh_refit_step(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w)
+{
+    sh_refit *refit = &state->refit;
+
+    refit->samples += 1;
+    (void)sh_posterior_take(&refit->posterior, x, state->columns.size, w);
+    refit->waits = !refit->waits;
+    if (!refit->waits) {
+        advance(state, p, x);
+    }
+}

@@ -1,0 +1,221 @@
+/* The steps of a tick of the method FilteredRegression, in their order: signals.c filters the
+ * signals, columns.c builds the row, noise.c weighs it, posterior.c updates the estimate, misfit.c and
+ * refit.c see what no column explains. "Detail" and its number are those of
+ * docs/filtered-regression.md.
+ */
+#ifndef SH_REGRESSION_H
+#define SH_REGRESSION_H
+
+#include "sigmahat.h"
+
+/* Where the joint is, and the signals of the columns there, before the filter. */
+typedef struct {
+    sh_real theta, q, phi;      /* positions and deformation [rad] */
+    sh_real power[SH_MAX_N];    /* (phi / range.phi)^e / e, where e belongs to number i [1] */
+    sh_real slope[SH_MAX_N];    /* and its derivative by phi [1/rad] */
+    sh_real l[SH_MAX_M];        /* (set-point / range.setPoint)^j [1] */
+    sh_real tau_nominal;        /* torque of the curve rls.eta_0 [N.m] */
+    sh_real sigma_nominal;      /* and its stiffness [N.m/rad] */
+    const sh_real *play;        /* [size: SH_WIDTHS] states of the elements of hysteresis [rad] */
+    sh_real F[SH_MAX_COLUMNS];  /* signals */
+    sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
+} sh_joint_point;
+
+/* ---- columns.c --------------------------------------------------------------------------- */
+
+enum {
+    SH_COLUMN_POWER,   /* torque of the spring: powers of deformation and set-point */
+    SH_COLUMN_NOMINAL, /* the curve rls.eta_0, whose error as a whole is estimated */
+    SH_COLUMN_BIAS,    /* bias of the torque, zero of the deformation, uneven friction */
+    SH_COLUMN_DAMPING, /* damping of the spring, encoders that are read at different times */
+    SH_COLUMN_SIN_Q,   /* link encoder that is not centred */
+    SH_COLUMN_COS_Q,
+    SH_COLUMN_LOAD,         /* friction that grows with the torque of the spring */
+    SH_COLUMN_DRIVE,        /* friction that grows with the torque of the motor */
+    SH_COLUMN_DELAY,        /* torque that is late or early */
+    SH_COLUMN_REVERSAL,     /* friction that reverses late or early */
+    SH_COLUMN_HIGHER_POWER, /* two more powers of the deformation */
+    SH_COLUMN_SET_POWER,    /* one more power of the set-point */
+    SH_COLUMN_DEAD_ZONE,    /* backlash */
+    SH_COLUMN_HYSTERESIS,
+    SH_COLUMN_SIN_M, /* motor encoder that is not centred */
+    SH_COLUMN_COS_M,
+    SH_COLUMN_VISCOUS, /* d */
+    SH_COLUMN_COULOMB, /* tau_C */
+    SH_COLUMN_INERTIA, /* b. It is the last one, see posterior.h */
+    SH_COLUMN_KINDS
+};
+
+/* What a column is. */
+enum {
+    SH_IS_SPRING = 1, /* a part of the torque of the spring */
+    SH_IS_CURVE = 2,  /* a part of its smooth curve, which has a slope */
+    SH_IS_EQUATION =
+        4,           /* in the equation of the motor, and for nothing that a joint has beside it */
+    SH_IS_MOTOR = 8, /* 0 where the torque of the spring is measured or modelled */
+    SH_IS_FRICTION = 16, /* friction of the motor that may drift */
+    SH_IS_COULOMB = 32,  /* tau_C */
+    SH_IS_INERTIA = 64   /* b */
+};
+
+/* Which quantity of the joint a coefficient is, or contributes to. */
+enum {
+    SH_OF_CURVE,
+    SH_OF_NOMINAL,
+    SH_OF_BIAS,
+    SH_OF_DAMPING,
+    SH_OF_SIN_Q,
+    SH_OF_COS_Q,
+    SH_OF_LOAD_FRICTION,
+    SH_OF_DELAY,
+    SH_OF_HYSTERESIS,
+    SH_OF_VISCOUS,
+    SH_OF_COULOMB,
+    SH_OF_INERTIA,
+    SH_OF_NOTHING,
+    SH_QUANTITIES
+};
+
+/* How the filter of a column takes its signal. */
+enum {
+    SH_SIGNAL_NONE,   /* it has no filter */
+    SH_SIGNAL_LINEAR, /* linear between samples; it begins with a jump from 0, as the torque */
+    SH_SIGNAL_STEADY, /* linear between samples; it begins as if it had been so before */
+    SH_SIGNAL_MEAN    /* given by its mean over the sample */
+};
+
+/* Whether the torque of the spring is measured or modelled, and not computed from the motor's. */
+int sh_is_measured(const sh_parameters *p);
+
+/* Whether a nominal curve rls.eta_0 is given. */
+int sh_has_nominal_curve(const sh_parameters *p);
+
+/* Power e of phi that belongs to number i: 2 i + 1, or i if the torque is not symmetric. */
+int sh_power_of_phi(int symmetric, int i);
+
+/* Number of columns for these parameters. May be larger than SH_MAX_COLUMNS. */
+int sh_columns_count(const sh_parameters *p);
+
+/* The columns for these parameters; there must not be more than SH_MAX_COLUMNS. */
+void sh_columns_start(sh_columns *columns, const sh_parameters *p);
+
+/* Whether the column is one of SH_IS_*, which may be added up. */
+int sh_column_is(const sh_column *column, unsigned what);
+
+/* SH_OF_*, SH_SIGNAL_* and the group of a column. */
+int sh_column_quantity(const sh_column *column);
+int sh_column_signal(const sh_column *column);
+int sh_column_group(const sh_column *column);
+
+/* Whether the column can be told from the spring after deformations of phi_min..phi_max [rad]. */
+int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_real phi_min,
+                          sh_real phi_max);
+
+/* Sets the point of positions [rad], set-point [1] and hysteresis [size: SH_WIDTHS], which is kept. */
+void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p,
+                       sh_real theta, sh_real q, sh_real phi, sh_real set_point,
+                       const sh_real *play);
+
+/* Moves the elements of hysteresis [size: SH_WIDTHS] by a change of the deformation [rad]. */
+void sh_columns_move_plays(sh_real *play, const sh_parameters *p, sh_real change);
+
+/* Torque of the spring for coefficients beta [N.m]. */
+sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta);
+
+/* The row x [size: SH_MAX_ROW] at the present state of the filters: columns, then right-hand sides.
+ * Returns y [N.m]; the last entry of x is y less the torque of the nominal curve.
+ */
+sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x);
+
+/* Detail 14: removes noise [N.m] from the column of the motor's torque in x, which y contains too.
+ * Returns by how much the prediction of y grows [N.m].
+ */
+sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_parameters *p,
+                                sh_real noise, sh_real *x);
+
+/* ---- signals.c --------------------------------------------------------------------------- */
+
+/* Corner frequency of the filters [rad/s]: regression.bandwidth, but at most 1.42 W_c of point 1 of
+ * the page, and at least 1e-4 / samplePeriod.
+ */
+sh_real sh_regression_bandwidth(const sh_parameters *p);
+
+/* Designs the filters for columns that are known; they start with the next sample. */
+void sh_signals_start(sh_signals *signals, sh_history *history, const sh_parameters *p);
+
+/* Lets the estimate wait until the filters have settled. */
+void sh_signals_unsettle(sh_signals *signals, sh_history *history);
+
+/* Takes the deformation [rad] of a sample into the history: its range, hysteresis, rest. */
+void sh_history_deform(sh_history *history, const sh_signals *signals, const sh_parameters *p,
+                       sh_real phi);
+
+/* Takes a sample into all filters. The torque is of the motor, or the measured or modelled one of the
+ * spring [N.m].
+ */
+void sh_signals_step(sh_regression_state *state, const sh_parameters *p, const sh_joint_point *at,
+                     sh_real torque);
+
+/* Variance of the noise of theta in the last sample by its fourth difference [rad2]. */
+sh_real sh_signals_roughness(const sh_signals *signals);
+
+/* ---- noise.c ----------------------------------------------------------------------------- */
+
+/* Variance of a sample, whose inverse is its weight. */
+typedef struct {
+    sh_real R;       /* [(N.m)2] */
+    sh_real lasting; /* factor in R by errors that last, >= 1 */
+} sh_sample_noise;
+
+/* Detail 4: variance of a sample. */
+sh_sample_noise sh_noise_of_sample(const sh_regression_state *state, const sh_parameters *p);
+
+/* Measures how much larger the noise of theta is than its rounding, from the last samples. */
+void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p);
+
+/* Detail 14: share of the torque's noise in the variance of y after the filter, 0..1. */
+sh_real sh_noise_share_of_torque(const sh_regression_state *state, const sh_parameters *p);
+
+/* Variance of the rounding of phi after the filter [rad2], of which 1/R is information about sigma
+ * that is only rounding.
+ */
+sh_real sh_noise_of_deformation(const sh_signals *signals);
+
+/* Detail 7: R times the information about b in this sample that is only rounding [(N.m)2]. */
+sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
+
+/* Detail 12: whether the row x shows that the motor was not at rest at the start. */
+int sh_noise_contradicts_rest(const sh_regression_state *state, const sh_parameters *p,
+                              const sh_real *x);
+
+/* ---- misfit.c ---------------------------------------------------------------------------- */
+
+void sh_blocks_start(sh_regression_state *state);
+
+/* Detail 8: takes a row x of weight w [1/(N.m)2] into the present block. */
+void sh_blocks_take(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w,
+                    sh_real lasting);
+
+/* Leaves out the samples of the present block: they are not in sequence with the next one. */
+void sh_blocks_interrupt(sh_blocks *blocks);
+
+/* Detail 8: sets misfit and variance_factor by the estimate beta. */
+void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
+
+/* Detail 10: lets friction drift for `time` [s] if the blocks contradict each other less with it. */
+void sh_friction_drift(sh_regression_state *state, sh_real time);
+
+/* Details 9 and 11: forgets data that contradict the model, and lets the curve drift for `time` [s]
+ * along the row x.
+ */
+void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real time);
+
+/* ---- refit.c ----------------------------------------------------------------------------- */
+
+/* Starts posterior and refit from the prior. */
+void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
+
+/* Detail 6: takes a row x of weight w [1/(N.m)2], and advances the refit in every second call. */
+void sh_refit_step(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w);
+
+#endif
