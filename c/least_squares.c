@@ -85,11 +85,14 @@ int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, con
     const sh_real epsilon = prediction_error(rls, F, y);
     const sh_real rho = sh_ud_factor_project(&rls->P, F); /* rho = F' P F, (14) */
 
-    if (!take(rls, sample_weight(kind, factor, rho), rho, epsilon)) {
+    const sh_real w = sample_weight(kind, factor, rho);
+
+    if (!take(rls, w, rho, epsilon)) {
         return 0;
     }
     innovation->epsilon = epsilon;
     innovation->rho = rho;
+    innovation->variance = rho / (1 + w * rho);
     innovation->a = stability_factor(kind, factor, rho);
     return 1;
 }

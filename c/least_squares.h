@@ -19,11 +19,12 @@
 
 #include "sigmahat.h"
 
-/* Quantities of one sample, all from before the update. */
+/* Quantities of one sample, from before the update but `variance`. */
 typedef struct {
-    sh_real epsilon; /* prediction error, (14), in the unit of y */
-    sh_real rho;     /* F' P F, (14) */
-    sh_real a;       /* stability factor a(k), (27) */
+    sh_real epsilon;  /* prediction error, (14), in the unit of y */
+    sh_real rho;      /* F' P F, (14) */
+    sh_real a;        /* stability factor a(k), (27) */
+    sh_real variance; /* F' P F after the update */
 } sh_innovation;
 
 /* Starts the recursion.

@@ -30,17 +30,6 @@ static inline sh_real sh_square(sh_real x)
     return x * x;
 }
 
-/* x^exponent, exponent >= 0 */
-static inline sh_real sh_power(sh_real x, int exponent)
-{
-    sh_real power = 1;
-
-    for (; exponent > 0; --exponent) {
-        power *= x;
-    }
-    return power;
-}
-
 #define SH_PI 3.14159265358979323846
 
 /* A number whose square, and whose product with any number of practical size, is far from overflow.

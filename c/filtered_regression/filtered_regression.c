@@ -40,40 +40,39 @@ static sh_real largest_deformation_filtered_regression(const sh_parameters *p)
  * variance, to first order and as if it were the same in all samples (point 5). The estimate is not
  * corrected by it, because slopes differ; it widens the interval.
  */
-static sh_real attenuation(const sh_regression_state *state, const sh_uncertainty *stiffness)
+static sh_real attenuation(const sh_regression_state *state, const sh_combination *stiffness)
 {
     return state->rounding * state->posterior.weight * stiffness->variance;
 }
 
 /* sqrt(c' P c + (s_g d(c' beta)/dg)^2 + (attenuation c' beta)^2) with the gain g of the torque, point 8 */
-static sh_real std_deviation(const sh_parameters *p, const sh_uncertainty *found,
+static sh_real std_deviation(const sh_parameters *p, const sh_combination *found,
                              sh_real attenuated)
 {
-    return sh_std_deviation(found->variance + sh_square(p->prior.torque_gain * found->by_gain) +
+    return sh_std_deviation(found->variance +
+                            sh_square(p->prior.torque_gain * found->value[SH_RIGHT_GAIN]) +
                             sh_square(attenuated));
 }
 
 /* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Returns how uncertain
  * the stiffness is.
  */
-static sh_uncertainty evaluate_at(const sh_regression_state *state, const sh_parameters *p,
+static sh_combination evaluate_at(const sh_regression_state *state, const sh_parameters *p,
                                   const sh_joint_point *at, sh_point *point)
 {
     const sh_columns *columns = &state->columns;
     sh_real F[SH_MAX_COLUMNS] = {0}; /* of the spring alone */
-    sh_uncertainty torque, stiffness;
+    sh_combination torque, stiffness;
     sh_real attenuated;
     int i;
 
-    point->tau_e = at->tau_nominal;
-    point->sigma = at->sigma_nominal;
     for (i = 0; i < columns->size; ++i) {
         F[i] = sh_column_is(&columns->column[i], SH_IS_SPRING) ? at->F[i] : 0;
-        point->tau_e += F[i] * state->beta[i];
-        point->sigma += at->dF[i] * state->beta[i];
     }
-    stiffness = sh_posterior_uncertainty(&state->posterior, p->prior.B, at->dF);
-    torque = sh_posterior_uncertainty(&state->posterior, p->prior.B, F);
+    torque = sh_posterior_combine(&state->posterior, p->prior.B, F);
+    stiffness = sh_posterior_combine(&state->posterior, p->prior.B, at->dF);
+    point->tau_e = at->tau_nominal + torque.value[SH_RIGHT_Y];
+    point->sigma = at->sigma_nominal + stiffness.value[SH_RIGHT_Y];
     attenuated = attenuation(state, &stiffness);
     point->sigma_std = std_deviation(p, &stiffness, attenuated * point->sigma);
     point->tau_e_std = std_deviation(p, &torque, attenuated * point->tau_e);
@@ -147,7 +146,7 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p, co
 
 /* Sets all outputs that follow from the estimate at a point. */
 static void report(const sh_regression_state *state, const sh_parameters *p,
-                   const sh_joint_point *at, const sh_point *point, const sh_uncertainty *stiffness,
+                   const sh_joint_point *at, const sh_point *point, const sh_combination *stiffness,
                    sh_estimate *estimate)
 {
     const sh_real K_0 = p->prior.tau_e / p->range.phi;
@@ -158,7 +157,7 @@ static void report(const sh_regression_state *state, const sh_parameters *p,
     estimate->tau_e_std = point->tau_e_std;
     estimate->sigma_per_gain =
         sh_fabs(point->sigma) > 0
-            ? sh_limited(stiffness->by_gain / sh_fabs(point->sigma), SH_LARGEST_OUTPUT)
+            ? sh_limited(stiffness->value[SH_RIGHT_GAIN] / sh_fabs(point->sigma), SH_LARGEST_OUTPUT)
             : 0;
     estimate->D_theta_hat = p->motor.D_theta * (1 + sum[SH_OF_VISCOUS]);
     estimate->B_hat = p->motor.B * (1 + sum[SH_OF_INERTIA]);
@@ -185,7 +184,7 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
     sh_regression_state *state = &estimator->method.regression;
     sh_joint_point at;
     sh_point point;
-    sh_uncertainty stiffness;
+    sh_combination stiffness;
 
     state->modality = p->modality;
     sh_columns_start(&state->columns, p);
@@ -244,8 +243,8 @@ static int is_settled(sh_regression_state *state, const sh_parameters *p, const 
 /* epsilon = y - x' beta. The share of epsilon that is noise of the torque is removed from the column
  * of the motor's torque, which contains it too; then epsilon is computed again (detail 14).
  */
-static sh_real prediction_error(const sh_regression_state *state, const sh_parameters *p,
-                                sh_real *x)
+static sh_real remove_noise_and_predict(const sh_regression_state *state, const sh_parameters *p,
+                                        sh_real *x)
 {
     sh_real epsilon = x[state->columns.size + SH_RIGHT_Y];
     int i;
@@ -303,7 +302,7 @@ static int use_sample(sh_regression_state *state, const sh_parameters *p, sh_rea
     }
     state->R = noise.R;
     /* 4. Predict and compare. */
-    innovation->epsilon = prediction_error(state, p, x);
+    innovation->epsilon = remove_noise_and_predict(state, p, x);
     /* 5. Update. */
     share = sh_posterior_take(&state->posterior, x, size, w);
     update_rounding(state, p, w);
@@ -339,7 +338,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     innovation_of_sample innovation = {0, 0, 0};
     sh_joint_point at;
     sh_point point;
-    sh_uncertainty stiffness;
+    sh_combination stiffness;
     sh_real x[SH_MAX_ROW] = {0}, y;
 
     if (estimator->started && (estimator->skipped > 0 || state->modality != p->modality)) {
@@ -362,7 +361,8 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     /* 7. Report. */
     sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
     stiffness = evaluate_at(state, p, &at, &point);
-    if (!isfinite(point.sigma) || !isfinite(stiffness.variance) || !isfinite(stiffness.by_gain)) {
+    if (!isfinite(point.sigma) || !isfinite(stiffness.variance) ||
+        !isfinite(stiffness.value[SH_RIGHT_GAIN])) {
         refuse(state, &before);
         return 0;
     }

@@ -35,9 +35,21 @@ void sh_information_right_side(const sh_information *a, int right, sh_real *z)
     }
 }
 
-int sh_information_last(const sh_information *a)
+sh_last_row sh_information_last(const sh_information *a)
 {
-    return row_offset(a->size, a->size - 1);
+    const sh_real *z = a->U + row_offset(a->size, a->size - 1);
+    const sh_last_row last = {a->D[a->size - 1], {z[SH_RIGHT_GAIN], z[SH_RIGHT_Y]}};
+
+    return last;
+}
+
+void sh_information_set_last(sh_information *a, const sh_last_row *last)
+{
+    sh_real *z = a->U + row_offset(a->size, a->size - 1);
+
+    a->D[a->size - 1] = last->D;
+    z[SH_RIGHT_GAIN] = last->z[SH_RIGHT_GAIN];
+    z[SH_RIGHT_Y] = last->z[SH_RIGHT_Y];
 }
 
 void sh_information_start(sh_information *a, int size, sh_real precision)
@@ -62,28 +74,12 @@ void sh_information_copy(sh_information *to, const sh_information *from)
     (void)memcpy(to->U, from->U, sizeof(sh_real) * (size_t)row_offset(size, size));
 }
 
-/* Combines a row of U with a sample. What is left of the sample stays in x, for the next row. Four
- * columns at a time, so that compilers can vectorise the loop.
- */
+/* Combines a row of U with a sample. What is left of the sample stays in x, for the next row. */
 static void combine(sh_real *restrict row, sh_real *restrict x, int count, sh_real xi, sh_real gain)
 {
     int k;
 
-    for (k = 0; k + 4 <= count; k += 4) {
-        const sh_real u_0 = row[k], u_1 = row[k + 1], u_2 = row[k + 2], u_3 = row[k + 3];
-        const sh_real x_0 = x[k] - xi * u_0, x_1 = x[k + 1] - xi * u_1;
-        const sh_real x_2 = x[k + 2] - xi * u_2, x_3 = x[k + 3] - xi * u_3;
-
-        x[k] = x_0;
-        x[k + 1] = x_1;
-        x[k + 2] = x_2;
-        x[k + 3] = x_3;
-        row[k] = u_0 + gain * x_0;
-        row[k + 1] = u_1 + gain * x_1;
-        row[k + 2] = u_2 + gain * x_2;
-        row[k + 3] = u_3 + gain * x_3;
-    }
-    for (; k < count; ++k) {
+    for (k = 0; k < count; ++k) {
         x[k] -= xi * row[k];
         row[k] += gain * x[k];
     }
@@ -136,18 +132,18 @@ static sh_real sum_of_products(const sh_real *a, const sh_real *b, int count)
 }
 
 /* beta_i = z_i - sum over j > i of U_ij beta_j */
-void sh_information_solve(const sh_information *a, int right, sh_real last, sh_real *beta)
+void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta)
 {
     const int size = a->size;
     const sh_real *row = a->U + row_offset(size, size - 1);
     int i;
 
-    beta[size - 1] = last;
+    beta[size - 1] = last->z[SH_RIGHT_Y];
     for (i = size - 2; i >= 0; --i) {
         const int count = size - 1 - i;
 
         row -= count + SH_RIGHT_SIDES;
-        beta[i] = row[count + right] - sum_of_products(row, beta + i + 1, count);
+        beta[i] = row[count + SH_RIGHT_Y] - sum_of_products(row, beta + i + 1, count);
     }
 }
 
@@ -156,38 +152,47 @@ static void subtract(sh_real *restrict x, const sh_real *restrict row, int count
 {
     int k;
 
-    for (k = 0; k + 4 <= count; k += 4) {
-        const sh_real x_0 = x[k] - factor * row[k], x_1 = x[k + 1] - factor * row[k + 1];
-        const sh_real x_2 = x[k + 2] - factor * row[k + 2];
-        const sh_real x_3 = x[k + 3] - factor * row[k + 3];
-
-        x[k] = x_0;
-        x[k + 1] = x_1;
-        x[k + 2] = x_2;
-        x[k + 3] = x_3;
-    }
-    for (; k < count; ++k) {
+    for (k = 0; k < count; ++k) {
         x[k] -= factor * row[k];
     }
 }
 
-void sh_information_project(const sh_information *a, const sh_real *c, sh_real *v)
+/* Adds the part of one row, with the entry v of U'^-1 c. v^2 / D is computed also where v^2 overflows: in
+ * single precision D can be as large.
+ */
+static void add_row(sh_combination *sum, sh_real v, sh_real D, const sh_real *z)
+{
+    const sh_real square = v * v;
+
+    sum->variance += square <= SH_LARGEST_OUTPUT ? square / D : v / D * v;
+    sum->value[SH_RIGHT_GAIN] += v * z[SH_RIGHT_GAIN];
+    sum->value[SH_RIGHT_Y] += v * z[SH_RIGHT_Y];
+}
+
+/* v = U'^-1 c: c' beta = v' z, and its variance is the sum of v_i^2 / D_i. */
+sh_combination sh_information_combine(const sh_information *a, const sh_last_row *last,
+                                      const sh_real *c)
 {
     const int size = a->size;
     const sh_real *row = a->U;
+    sh_combination sum = {{0, 0}, 0};
+    sh_real v[SH_MAX_COLUMNS] = {0};
     int i;
 
     for (i = 0; i < size; ++i) {
         v[i] = c[i];
     }
-    for (i = 0; i < size; ++i) {
+    for (i = 0; i < size - 1; ++i) {
         const int count = size - 1 - i;
 
         if (sh_fabs(v[i]) > 0) {
             subtract(v + i + 1, row, count, v[i]);
+            add_row(&sum, v[i], a->D[i], row + count);
         }
         row += count + SH_RIGHT_SIDES;
     }
+    add_row(&sum, v[i], last->D, last->z);
+    return sum;
 }
 
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta)

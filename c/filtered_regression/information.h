@@ -54,16 +54,26 @@ sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
 /* The entries of U z in row i of a side, SH_RIGHT_*, for all rows: z [size: size]. */
 void sh_information_right_side(const sh_information *a, int right, sh_real *z);
 
-/* Where in U the right-hand sides of the last row stand. */
-int sh_information_last(const sh_information *a);
+/* The last row: the information about the last parameter, and its right-hand sides. */
+typedef struct {
+    sh_real D, z[SH_RIGHT_SIDES];
+} sh_last_row;
 
-/* The estimate of all parameters [size: size] for a right-hand side, SH_RIGHT_*, and the estimate of
- * the last parameter.
- */
-void sh_information_solve(const sh_information *a, int right, sh_real last, sh_real *beta);
+sh_last_row sh_information_last(const sh_information *a);
+void sh_information_set_last(sh_information *a, const sh_last_row *last);
 
-/* v = U'^-1 c [size: size]. Then c' beta = v' z, and its variance is the sum of v_i^2 / D_i. */
-void sh_information_project(const sh_information *a, const sh_real *c, sh_real *v);
+/* The estimate beta [size: size] of all parameters for y, with another last row. */
+void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta);
+
+/* A combination c' beta. */
+typedef struct {
+    sh_real value[SH_RIGHT_SIDES]; /* for both right-hand sides */
+    sh_real variance;              /* c' (U' D U)^-1 c */
+} sh_combination;
+
+/* The combination c [size: size], with another last row. */
+sh_combination sh_information_combine(const sh_information *a, const sh_last_row *last,
+                                      const sh_real *c);
 
 /* Weighted sum of squares of y - x' beta over all samples, and of the first precision. */
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta);

@@ -198,14 +198,14 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 /* Process noise of viscous and Coulomb friction. */
 static void let_friction_drift(const sh_columns *columns, sh_information *a, sh_real variance)
 {
-    sh_real v[SH_MAX_COLUMNS] = {0};
     int i;
 
     for (i = 0; i < columns->size; ++i) {
         if (sh_column_is(&columns->column[i], SH_IS_FRICTION)) {
+            sh_real v[SH_MAX_COLUMNS] = {0};
+
             v[i] = 1;
             sh_information_drift(a, v, variance);
-            v[i] = 0;
         }
     }
 }
@@ -255,7 +255,7 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
 static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
                             sh_real time)
 {
-    sh_real v[SH_MAX_COLUMNS] = {0}, power = 0, variance;
+    sh_real v[SH_MAX_COLUMNS] = {0}, power = 0;
     int i;
 
     for (i = 0; i < state->columns.size; ++i) {
@@ -263,7 +263,8 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
         power += v[i] * v[i];
     }
     if (power > 0) {
-        variance = p->regression.drift * time / (power + state->R);
+        const sh_real variance = p->regression.drift * time / (power + state->R);
+
         sh_information_drift(&state->data, v, variance);
         sh_information_drift(&state->blocks.constant, v, variance);
         sh_information_drift(&state->blocks.drifting, v, variance);

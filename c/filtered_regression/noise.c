@@ -34,15 +34,16 @@ static sh_real inertial_noise(const sh_signals *signals, const sh_parameters *p)
 static sh_real friction_variance(const sh_regression_state *state, const sh_parameters *p)
 {
     const sh_posterior *posterior = &state->posterior;
-    const int C = posterior->coulomb;
     const sh_real u_f = sh_state_variable_filter_output(&state->signals.unknown);
     sh_real c[SH_MAX_COLUMNS] = {0}, tau_C;
+    int C;
 
-    if (C < 0 || !(sh_fabs(u_f) > 0)) {
+    if (posterior->coulomb < 0 || !(sh_fabs(u_f) > 0)) {
         return 0;
     }
+    C = posterior->column[posterior->coulomb];
     c[C] = 1;
-    tau_C = sh_square(state->beta[posterior->column[C]]) + sh_posterior_variance(posterior, c);
+    tau_C = sh_square(state->beta[C]) + sh_posterior_combine(posterior, p->prior.B, c).variance;
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * tau_C;
 }
 
@@ -134,17 +135,16 @@ sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameter
 int sh_noise_contradicts_rest(const sh_regression_state *state, const sh_parameters *p,
                               const sh_real *x)
 {
-    const sh_posterior *posterior = &state->posterior;
-    sh_real own[SH_MAX_COLUMNS] = {0}, epsilon = x[state->columns.size + SH_RIGHT_Y], variance;
+    const int size = state->columns.size;
+    sh_real c[SH_MAX_COLUMNS] = {0}, epsilon = x[size + SH_RIGHT_Y], variance;
     int i;
 
-    for (i = 0; i < posterior->information.size; ++i) {
-        const int column = posterior->column[i];
-
-        epsilon -= x[column] * state->beta[column];
-        own[i] = sh_column_is(&state->columns.column[column], SH_IS_EQUATION) ? x[column] : 0;
+    for (i = 0; i < size; ++i) {
+        epsilon -= x[i] * state->beta[i];
+        c[i] = sh_column_is(&state->columns.column[i], SH_IS_EQUATION) ? x[i] : 0;
     }
-    variance = sh_posterior_variance(posterior, own) + torque_noise(&state->signals, p) +
+    variance = sh_posterior_combine(&state->posterior, p->prior.B, c).variance +
+               torque_noise(&state->signals, p) +
                inertial_noise(&state->signals, p) * sh_square(state->signals.count) / 12 +
                friction_variance(state, p);
     return sh_square(epsilon) > sh_square(SH_AT_REST) * variance;

@@ -1,7 +1,6 @@
 #include "posterior.h"
 
 #include "constants.h"
-#include "information.h"
 #include "regression.h"
 
 void sh_posterior_start(sh_posterior *posterior, const sh_columns *columns, const int *chosen,
@@ -65,40 +64,34 @@ sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, s
 void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B)
 {
     const int b = posterior->inertia;
-    sh_real *D = posterior->information.D, *z;
+    sh_last_row last;
     sh_real N, left;
 
     posterior->surplus += information;
     if (b < 0 || b != posterior->information.size - 1) {
         return;
     }
-    N = sh_fmin(posterior->surplus, D[b] - 1); /* 1: the prior */
+    last = sh_information_last(&posterior->information);
+    N = sh_fmin(posterior->surplus, last.D - 1); /* 1: the prior */
     if (!(N > 0)) {
         return;
     }
-    left = sh_fmax(D[b] - N, 1); /* D[b] - 1 is rounded where D[b] is larger than 1 / epsilon */
-    z = &posterior->information.U[sh_information_last(&posterior->information)];
-    z[SH_RIGHT_GAIN] *= D[b] / left;
-    z[SH_RIGHT_Y] = (z[SH_RIGHT_Y] * D[b] + N / prior_B) / left;
-    D[b] = left;
+    left = sh_fmax(last.D - N, 1); /* D - 1 is rounded where D is larger than 1 / epsilon */
+    last.z[SH_RIGHT_GAIN] *= last.D / left;
+    last.z[SH_RIGHT_Y] = (last.z[SH_RIGHT_Y] * last.D + N / prior_B) / left;
+    last.D = left;
+    sh_information_set_last(&posterior->information, &last);
     posterior->surplus -= N;
     posterior->removed += N;
 }
 
-/* The last entry of D, and its right-hand sides. */
-typedef struct {
-    sh_real D, z[SH_RIGHT_SIDES];
-} last_row;
-
 /* The last row with the weight that the data about b have after the removal:
  * D = 1 + I^2 / (I + N + Q), with I = D_b - 1 and Q = spread + (0.05 N / prior.B)^2.
  */
-static last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
+static sh_last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
 {
-    const sh_information *a = &posterior->information;
-    const sh_real D = a->D[a->size - 1], *z = &a->U[sh_information_last(a)];
-    const sh_real I = sh_fmax(D - 1, 0), N = posterior->removed;
-    last_row last = {D, {z[SH_RIGHT_GAIN], z[SH_RIGHT_Y]}};
+    sh_last_row last = sh_information_last(&posterior->information);
+    const sh_real D = last.D, I = sh_fmax(D - 1, 0), N = posterior->removed;
 
     if (posterior->inertia >= 0 && N > 0) {
         const sh_real Q = posterior->spread + sh_square(SH_REMOVAL_ERROR / prior_B * N);
@@ -113,61 +106,28 @@ static last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
 
 void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta, int size)
 {
-    const sh_information *a = &posterior->information;
-    const last_row last = weighed_last(posterior, prior_B);
+    const sh_last_row last = weighed_last(posterior, prior_B);
     sh_real own[SH_MAX_COLUMNS] = {0};
     int i;
 
-    sh_information_solve(a, SH_RIGHT_Y, last.z[SH_RIGHT_Y], own);
+    sh_information_solve(&posterior->information, &last, own);
     for (i = 0; i < size; ++i) {
         beta[i] = 0;
     }
-    for (i = 0; i < a->size; ++i) {
+    for (i = 0; i < posterior->information.size; ++i) {
         beta[posterior->column[i]] = own[i];
     }
 }
 
-/* v^2 / D, also where v^2 overflows: in single precision D can be as large. */
-static sh_real square_over(sh_real v, sh_real D)
+sh_combination sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B,
+                                    const sh_real *c)
 {
-    const sh_real square = v * v;
-
-    return square <= SH_LARGEST_OUTPUT ? square / D : v / D * v;
-}
-
-/* With A = U' D U and v = U'^-1 c: c' A^-1 c = sum of v_i^2 / D_i, and c' beta = v' z. */
-sh_uncertainty sh_posterior_uncertainty(const sh_posterior *posterior, sh_real prior_B,
-                                        const sh_real *c)
-{
-    const sh_information *a = &posterior->information;
-    const last_row last = weighed_last(posterior, prior_B);
-    sh_real own[SH_MAX_COLUMNS] = {0}, v[SH_MAX_COLUMNS] = {0}, z[SH_MAX_COLUMNS] = {0};
-    sh_uncertainty found = {0, 0};
+    const sh_last_row last = weighed_last(posterior, prior_B);
+    sh_real own[SH_MAX_COLUMNS] = {0};
     int i;
 
-    for (i = 0; i < a->size; ++i) {
+    for (i = 0; i < posterior->information.size; ++i) {
         own[i] = c[posterior->column[i]];
     }
-    sh_information_project(a, own, v);
-    sh_information_right_side(a, SH_RIGHT_GAIN, z);
-    for (i = 0; i < a->size - 1; ++i) {
-        found.variance += square_over(v[i], a->D[i]);
-        found.by_gain += v[i] * z[i];
-    }
-    found.variance += square_over(v[i], last.D);
-    found.by_gain += v[i] * last.z[SH_RIGHT_GAIN];
-    return found;
-}
-
-sh_real sh_posterior_variance(const sh_posterior *posterior, const sh_real *c)
-{
-    const sh_information *a = &posterior->information;
-    sh_real v[SH_MAX_COLUMNS] = {0}, variance = 0;
-    int i;
-
-    sh_information_project(a, c, v);
-    for (i = 0; i < a->size; ++i) {
-        variance += square_over(v[i], a->D[i]);
-    }
-    return variance;
+    return sh_information_combine(&posterior->information, &last, own);
 }

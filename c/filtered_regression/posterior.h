@@ -15,7 +15,7 @@
 #ifndef SH_POSTERIOR_H
 #define SH_POSTERIOR_H
 
-#include "sigmahat.h"
+#include "information.h"
 
 /* Starts from the prior with the columns chosen [size: size].
  *
@@ -46,19 +46,8 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
 /* The estimate beta [size: size] of all columns; 0 for those that are not used. */
 void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta, int size);
 
-/* A combination c' beta. */
-typedef struct {
-    sh_real variance; /* without the gain of the torque */
-    sh_real by_gain;  /* its change with the relative gain of the torque */
-} sh_uncertainty;
-
-/* How uncertain the combination c [size: all columns] is; c must be finite. */
-sh_uncertainty sh_posterior_uncertainty(const sh_posterior *posterior, sh_real prior_B,
-                                        const sh_real *c);
-
-/* Variance of a combination c [size: of the posterior] of its own columns, before the weight of the
- * data about b.
- */
-sh_real sh_posterior_variance(const sh_posterior *posterior, const sh_real *c);
+/* A combination c [size: all columns] of the coefficients. */
+sh_combination sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B,
+                                    const sh_real *c);
 
 #endif

@@ -35,14 +35,29 @@ static int is_tried(const sh_regression_state *state, const sh_parameters *p, in
     return group != 0 && group == state->refit.trial && is_distinct(state, p, i);
 }
 
+/* Which columns stand behind others: those of the spring, whose variances then need few rows of U, and
+ * behind them friction and inertia.
+ */
+static int place_of(const sh_column *column)
+{
+    return sh_column_is(column, SH_IS_COULOMB | SH_IS_INERTIA) ? 2
+           : sh_column_is(column, SH_IS_SPRING)                ? 1
+                                                               : 0;
+}
+
+/* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */
 static int choose_columns(const sh_regression_state *state, const sh_parameters *p, int *chosen)
 {
-    int size = 0, i;
+    int size = 0, place, i;
 
-    /*@ loop unroll SH_MAX_COLUMNS; */
-    for (i = 0; i < state->columns.size; ++i) {
-        if (is_used(state, p, i)) {
-            chosen[size++] = i;
+    /*@ loop unroll 3; */
+    for (place = 0; place < 3; ++place) {
+        /*@ loop unroll SH_MAX_COLUMNS; */
+        for (i = 0; i < state->columns.size; ++i) {
+            if (size < state->columns.size && place == place_of(&state->columns.column[i]) &&
+                is_used(state, p, i)) {
+                chosen[size++] = i;
+            }
         }
     }
     for (i = 0; i < state->columns.size && size < state->columns.size; ++i) {
@@ -161,7 +176,7 @@ static void take_row(sh_regression_state *state)
 }
 
 /* What a refit needs beside the rows is spread over ticks, too. */
-static void advance(sh_regression_state *state, const sh_parameters *p, const sh_real *x)
+static void advance_refit(sh_regression_state *state, const sh_parameters *p, const sh_real *x)
 {
     sh_refit *refit = &state->refit;
     const sh_real time = refit->samples * state->signals.design.T;
@@ -201,6 +216,6 @@ void sh_refit_step(sh_regression_state *state, const sh_parameters *p, const sh_
     (void)sh_posterior_take(&refit->posterior, x, state->columns.size, w);
     refit->waits = !refit->waits;
     if (!refit->waits) {
-        advance(state, p, x);
+        advance_refit(state, p, x);
     }
 }

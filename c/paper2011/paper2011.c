@@ -31,14 +31,17 @@ static sh_real unit_of_covariance(const sh_parameters *p)
 /* Torque and stiffness F' eta and dF' eta, (21) and (23). The variances contain the white noise of the
  * torque only: neither the errors of the motor data nor the lag of the residual. So the method is never
  * confident.
+ *
+ * variance  F' P F
  */
 static void evaluate_regressors(const sh_paper2011_state *state, const sh_parameters *p,
-                                const sh_real *F, const sh_real *dF, sh_point *point)
+                                const sh_real *F, const sh_real *dF, sh_real variance,
+                                sh_point *point)
 {
     const sh_real unit = unit_of_covariance(p);
 
     sh_scalar_products(state->rls.eta, F, dF, p->rls.n * p->rls.m, &point->tau_e, &point->sigma);
-    point->tau_e_std = sh_std_deviation(unit * sh_ud_factor_variance(&state->rls.P, F));
+    point->tau_e_std = sh_std_deviation(unit * variance);
     point->sigma_std = sh_std_deviation(unit * sh_ud_factor_variance(&state->rls.P, dF));
 }
 
@@ -47,8 +50,10 @@ static void evaluate_paper2011(const sh_estimator *estimator, const sh_parameter
 {
     sh_real F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
 
+    const sh_paper2011_state *state = &estimator->method.paper2011;
+
     sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, F, dF);
-    evaluate_regressors(&estimator->method.paper2011, p, F, dF, point);
+    evaluate_regressors(state, p, F, dF, sh_ud_factor_variance(&state->rls.P, F), point);
 }
 
 /* Sets what follows from the recursion but torque and stiffness. */
@@ -136,7 +141,7 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
     sh_real F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0}, factor;
     sh_real phi = z->q - z->theta;
     int kind = p->rls.kind;
-    sh_innovation innovation = {0, 0, 0};
+    sh_innovation innovation = {0, 0, 0, 0};
     sh_point point;
 
     if (p->deformation == SH_DEFORMATION_FILTERED) {
@@ -154,7 +159,7 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
         state->filters = before;
         return 0;
     }
-    evaluate_regressors(state, p, F, dF, &point);
+    evaluate_regressors(state, p, F, dF, innovation.variance, &point);
     if (!isfinite(point.tau_e) || !isfinite(point.sigma)) {
         state->filters = before;
         return 0;

@@ -342,7 +342,7 @@ class Oracle:
             return 0.0
         C = self.kinds.index("COULOMB")
         own = self.live.chosen.index(C)
-        variance = float(self.beta[C] ** 2 + self.live.P[own, own])
+        variance = float(self.beta[C] ** 2 + self.live.weighted()[1][own, own])
         largest = self.p["motor.gamma"] * self.p["prior.tau_coulomb"] * unknown
         return float(largest**2 * variance)
 
@@ -448,7 +448,7 @@ class Oracle:
         inertial = p["motor.gamma"] ** 2 * p["motor.B"] * resolution(p["encoder.theta"])
         variance = 3 / 16 * self.w * self.T * (p["motor.gamma"] * p["noise.tau"]) ** 2
         variance += inertial**2 / 12 * self.gain_second
-        variance += self.friction_variance(filtered.unknown_f[at]) + x @ self.live.P @ x
+        variance += self.friction_variance(filtered.unknown_f[at]) + x @ self.live.weighted()[1] @ x
         if error**2 <= 25 * variance:
             return True
         self.starting, self.settling = 0.0, 12 / self.w

@@ -30,8 +30,13 @@ UNROLLED = ("-eva-min-loop-unroll", str(MAX_COLUMNS + 6))
 TRIANGLES = (
     *("sh_information_take", "sh_information_start", "sh_information_copy"),
     *("sh_information_sample", "sh_information_right_side", "sh_information_last"),
-    *("sh_information_solve", "sh_information_project", "sh_information_squares"),
-    *("sh_information_drift", "sh_ud_factor_start", "sh_ud_factor_project"),
+    *("sh_information_set_last", "sh_information_solve", "sh_information_combine"),
+    *(
+        "sh_information_squares",
+        "sh_information_drift",
+        "sh_ud_factor_start",
+        "sh_ud_factor_project",
+    ),
     *("sh_ud_factor_update", "sh_ud_factor_variance"),
 )
 """Functions that contracts.h stands for."""

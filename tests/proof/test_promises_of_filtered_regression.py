@@ -145,10 +145,11 @@ def test_a_stiffness_that_is_too_large_for_the_next_row_does_not_block_all_rows(
 
 
 def test_the_variance_of_a_direction_that_is_well_known_does_not_overflow(c: Library) -> None:
-    posterior, combination = c.new("sh_posterior", weight=1.0), reals(c, [1e20])
-    c.lib.sh_information_start(c.ffi.addressof(posterior, "information"), 1, 1e30)
-    variance = c.lib.sh_posterior_variance(posterior, c.pointer(combination))
-    assert variance == pytest.approx(1e10)
+    a, combination, last = c.new("sh_information"), reals(c, [1e20]), c.new("sh_last_row")
+    c.lib.sh_information_start(a, 1, 1e30)
+    last[0] = c.lib.sh_information_last(a)
+    found = c.lib.sh_information_combine(a, last, c.pointer(combination))
+    assert found.variance == pytest.approx(1e10)
 
 
 def test_an_initial_curve_that_overflows_starts_with_finite_outputs(c: Library) -> None:

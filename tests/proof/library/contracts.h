@@ -51,22 +51,26 @@ sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
 void sh_information_right_side(const sh_information *a, int right, sh_real *z);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    assigns \result \from a->size;
-    ensures 0 <= \result <= SH_MAX_TRIANGLE - SH_RIGHT_SIDES;
+    assigns \result \from *a;
 */
-int sh_information_last(const sh_information *a);
+sh_last_row sh_information_last(const sh_information *a);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires right == SH_RIGHT_GAIN || right == SH_RIGHT_Y;
-    assigns beta[0 .. SH_MAX_COLUMNS - 1] \from *a, last;
+    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1] \from *a, *last;
 */
-void sh_information_solve(const sh_information *a, int right, sh_real last, sh_real *beta);
+void sh_information_set_last(sh_information *a, const sh_last_row *last);
+
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    assigns beta[0 .. SH_MAX_COLUMNS - 1] \from *a, *last;
+*/
+void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \initialized(c + (0 .. a->size - 1));
-    assigns v[0 .. SH_MAX_COLUMNS - 1] \from *a, c[0 .. SH_MAX_COLUMNS - 1];
+    assigns \result \from *a, *last, c[0 .. SH_MAX_COLUMNS - 1];
 */
-void sh_information_project(const sh_information *a, const sh_real *c, sh_real *v);
+sh_combination sh_information_combine(const sh_information *a, const sh_last_row *last,
+                                      const sh_real *c);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \initialized(beta + (0 .. a->size - 1));

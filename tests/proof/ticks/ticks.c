@@ -90,8 +90,9 @@ static void report(const char *name, uint32_t per_loop)
         longest = now > longest ? now : longest;
     }
     printf("%s %d %d %d %.0f\n", name, parameters.rls.n, parameters.rls.m,
-           parameters.method == SH_METHOD_FILTERED_REGRESSION ? estimator.method.regression.columns.size
-                                                              : 0,
+           parameters.method == SH_METHOD_FILTERED_REGRESSION
+               ? estimator.method.regression.columns.size
+               : 0,
            200000.0 * longest / per_loop);
 }
 
