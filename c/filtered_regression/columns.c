@@ -159,10 +159,9 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
     const sh_real units[] = {1, p->prior.tau_e, p->prior.tau_e / p->range.phi,
                              p->prior.tau_coulomb};
     sh_column column = {kind, i, j, 0, 0};
-    sh_real prior;
+    const void *prior = (const char *)p + KINDS[kind].prior;
 
-    (void)memcpy(&prior, (const char *)p + KINDS[kind].prior, sizeof prior);
-    column.prior = prior * units[KINDS[kind].unit];
+    column.prior = *(const sh_real *)prior * units[KINDS[kind].unit];
     if (!(column.prior > 0)) {
         return;
     }
