@@ -51,6 +51,23 @@ void sh_joint_start(sh_joint *joint)
     sh_estimator_start(&joint->estimator, &joint->parameters, &joint->output);
 }
 
+void sh_joint_evaluate(const sh_joint *joint, size_t count, const double *phi,
+                       const double *set_point, double *points)
+{
+    size_t k;
+
+    for (k = 0; k < count; ++k) {
+        sh_point point;
+
+        (void)sh_estimator_evaluate(&joint->estimator, &joint->parameters, phi[k], set_point[k],
+                                    &point);
+        points[4 * k] = point.tau_e;
+        points[4 * k + 1] = point.tau_e_std;
+        points[4 * k + 2] = point.sigma;
+        points[4 * k + 3] = point.sigma_std;
+    }
+}
+
 /* The outputs of the last tick, into place k of their arrays. */
 static void record(const sh_joint *joint, const sh_joint_output *outputs, size_t count, size_t k)
 {

@@ -1,6 +1,6 @@
 #include "version.h"
 
-enum { INTERFACE = 1 };
+enum { INTERFACE = 2 };
 
 int sh_native_interface(void)
 {

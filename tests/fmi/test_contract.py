@@ -33,6 +33,7 @@ OUTPUTS = {
     "rho": "1",
     "epsilon": "N.m",
     "sigma_std": "N.m/rad",
+    "tau_e_std": "N.m",
     "misfit": "1",
     "bias_hat": "N.m",
     "damping_hat": "N.m.s/rad",

@@ -87,6 +87,7 @@ SCALARS = (
     "rho",
     "epsilon",
     "sigma_std",
+    "tau_e_std",
     "D_theta_hat",
     "B_hat",
     "tau_coulomb_hat",

@@ -275,3 +275,34 @@ except KeyboardInterrupt:
         [sys.executable, "-c", program], check=True, capture_output=True, text=True, timeout=60
     )
     assert shown.stdout == "interrupted\n"
+
+
+def test_the_estimate_is_evaluated_at_any_deformation(
+    z: dict[str, NDArray[np.float64]],
+) -> None:
+    """At the point of the last tick it gives the outputs, and nothing is learned."""
+    estimator = sigmahat.Estimator({"method": "FilteredRegression", "rls.n": 3})
+    estimator.run(**z)
+    names = ("tau_e", "tau_e_std", "sigma", "sigma_std")
+    last, memory = [estimator.output(name) for name in names], estimator._joints.memory.copy()
+    found = estimator.evaluate(estimator.output("phi"), estimator.output("setPoint"))
+    assert [found[name] for name in names] == pytest.approx(last, rel=1e-12)
+    grid = estimator.evaluate(np.linspace(-0.05, 0.05, 5)[:, np.newaxis], [60.0, 80.0])
+    assert all(grid[name].shape == (5, 2) for name in names)
+    assert np.all(grid["sigma"][:, 1] > grid["sigma"][:, 0])  # a longer lever
+    assert np.array_equal(memory, estimator._joints.memory)
+    assert estimator.evaluate(np.nan)["sigma_std"] == np.inf
+
+
+def test_many_estimates_are_evaluated_at_the_same_points(
+    z: dict[str, NDArray[np.float64]],
+) -> None:
+    both = [{"method": "FilteredRegression"}, {"method": "Paper2011"}]
+    estimator = sigmahat.Estimator(both)
+    estimator.run(**{name: np.tile(each, (2, 1)) for name, each in z.items()})
+    found = estimator.evaluate([0.0, 0.01])
+    for joint, parameters in enumerate(both):
+        alone = sigmahat.Estimator(parameters)
+        alone.run(**z)
+        for name, values in alone.evaluate([0.0, 0.01]).items():
+            assert np.array_equal(found[name][joint], values)

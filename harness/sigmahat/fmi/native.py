@@ -14,7 +14,7 @@ import fmpy
 
 from sigmahat.fmi.installed import folder
 
-_INTERFACE = 1  # as in harness/native/version.c
+_INTERFACE = 2  # as in harness/native/version.c
 _POINTER, _SIZE, _NUMBER = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint
 _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sh_sample_loop": (_SIZE, [_POINTER, *[_SIZE] * 3]),
@@ -25,6 +25,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sh_joint_set": (None, [_POINTER, _NUMBER, ctypes.c_double]),
     "sh_joint_check": (ctypes.c_int, [_POINTER, _POINTER]),
     "sh_joint_start": (None, [_POINTER]),
+    "sh_joint_evaluate": (None, [_POINTER, _SIZE, *[_POINTER] * 3]),
     "sh_joints_run": (None, [_POINTER, *[_SIZE] * 5, *[_POINTER] * 6, _SIZE]),
 }
 """Result and arguments of the functions in harness/native/*.h."""

@@ -82,6 +82,15 @@ class Joints:
             raise ValueError(f"{name}: expected at most {_LARGEST_INTEGER}, got {value!r}")
         return number
 
+    def evaluated(
+        self, joint: int, phi: NDArray[np.float64], set_point: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Torque, its std deviation, stiffness, its std deviation [size: 4 x points]."""
+        points = np.empty((phi.size, 4))
+        arrays = (phi.ctypes.data, set_point.ctypes.data, points.ctypes.data)
+        self._library.sh_joint_evaluate(self._address(joint), phi.size, *arrays)
+        return points.T
+
     def copied(self) -> Joints:
         """Other estimators in the same state."""
         other = copy(self)

@@ -82,6 +82,7 @@ package Internal "Calls of the C library"
     output Types.Torque epsilon;
     output Real eta[8, 5];
     output Types.Stiffness sigma_std;
+    output Types.Torque tau_e_std;
     output Types.Friction D_theta_hat;
     output Types.Inertia B_hat;
     output Types.Torque tau_coulomb_hat;
@@ -98,7 +99,7 @@ package Internal "Calls of the C library"
     output Boolean valid;
 
     external "C" sigmahat_estimator_tick(estimator, t, theta, q, theta_c, tau, tau_e_sensor, sigma, tau_e,
-      tau_e_residual, theta_dot, phi, setPoint, a, rho, epsilon, eta, sigma_std, D_theta_hat, B_hat, tau_coulomb_hat,
+      tau_e_residual, theta_dot, phi, setPoint, a, rho, epsilon, eta, sigma_std, tau_e_std, D_theta_hat, B_hat, tau_coulomb_hat,
       misfit, bias_hat, damping_hat, load_friction_hat, eccentric_hat, delay_hat, hysteresis_hat, sigma_per_gain,
       doubt, confident, valid)
       annotation (

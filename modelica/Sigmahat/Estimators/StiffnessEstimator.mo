@@ -36,6 +36,7 @@ block StiffnessEstimator
     "False while the last tick was skipped: an input, used or not, was not finite or above 1e12 in magnitude"
     annotation (Placement(transformation(extent={{100,-90},{120,-70}})));
 
+  discrete output Types.Torque tau_e_std(min=0) "Standard deviation of tau_e, as sigma_std of sigma";
   discrete output Types.AngularVelocity theta_dot(start=0)
     "Velocity of the principal motor, as the residual uses it; with method FilteredRegression through its filter, which delays it";
   discrete output Types.Angle phi
@@ -88,7 +89,7 @@ protected
      prior.eccentric_motor});
 algorithm
   when sample(startTime, samplePeriod) then
-    (sigma, tau_e, tau_e_residual, theta_dot, phi, setPoint_used, a, rho, epsilon, eta, sigma_std, D_theta_hat, B_hat,
+    (sigma, tau_e, tau_e_residual, theta_dot, phi, setPoint_used, a, rho, epsilon, eta, sigma_std, tau_e_std, D_theta_hat, B_hat,
      tau_coulomb_hat, misfit, bias_hat, damping_hat, load_friction_hat, eccentric_hat, delay_hat, hysteresis_hat,
      sigma_per_gain, doubt, confident, valid) := Internal.tick(
       estimator, time, theta, q, theta_c, tau, tau_e_sensor);

@@ -10,11 +10,11 @@ void sigmahat_estimator_tick(void *estimator, double t, double theta, double q, 
                              double tau, double tau_e_sensor, double *sigma, double *tau_e,
                              double *tau_e_residual, double *theta_dot, double *phi,
                              double *setPoint, double *a, double *rho, double *epsilon, double *eta,
-                             double *sigma_std, double *D_theta_hat, double *B_hat,
-                             double *tau_coulomb_hat, double *misfit, double *bias_hat,
-                             double *damping_hat, double *load_friction_hat, double *eccentric_hat,
-                             double *delay_hat, double *hysteresis_hat, double *sigma_per_gain,
-                             int *doubt, int *confident, int *valid)
+                             double *sigma_std, double *tau_e_std, double *D_theta_hat,
+                             double *B_hat, double *tau_coulomb_hat, double *misfit,
+                             double *bias_hat, double *damping_hat, double *load_friction_hat,
+                             double *eccentric_hat, double *delay_hat, double *hysteresis_hat,
+                             double *sigma_per_gain, int *doubt, int *confident, int *valid)
 {
     sigmahat_object *object = estimator;
     sh_measurement z;
@@ -37,6 +37,7 @@ void sigmahat_estimator_tick(void *estimator, double t, double theta, double q, 
     *epsilon = e->epsilon;
     memcpy(eta, e->eta, sizeof e->eta);
     *sigma_std = e->sigma_std;
+    *tau_e_std = e->tau_e_std;
     *D_theta_hat = e->D_theta_hat;
     *B_hat = e->B_hat;
     *tau_coulomb_hat = e->tau_coulomb_hat;
