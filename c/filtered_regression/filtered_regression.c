@@ -144,21 +144,17 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p, co
     return doubt;
 }
 
-/* Sets all outputs that follow from the estimate at a point. */
-static void report(const sh_regression_state *state, const sh_parameters *p,
-                   const sh_joint_point *at, const sh_point *point, const sh_combination *stiffness,
-                   sh_estimate *estimate)
+/* Sets the outputs that follow from the coefficients and from their combination for the stiffness. */
+static void report_coefficients(const sh_regression_state *state, const sh_parameters *p,
+                                const sh_joint_point *at, const sh_combination *stiffness,
+                                sh_estimate *estimate)
 {
-    const sh_real K_0 = p->prior.tau_e / p->range.phi;
+    const sh_real K_0 = p->prior.tau_e / p->range.phi, sigma = sh_fabs(estimate->sigma);
     sh_real sum[SH_QUANTITIES] = {0};
 
     read_coefficients(state, p, at, sum, estimate);
-    estimate->sigma_std = point->sigma_std;
-    estimate->tau_e_std = point->tau_e_std;
     estimate->sigma_per_gain =
-        sh_fabs(point->sigma) > 0
-            ? sh_limited(stiffness->value[SH_RIGHT_GAIN] / sh_fabs(point->sigma), SH_LARGEST_OUTPUT)
-            : 0;
+        sigma > 0 ? sh_limited(stiffness->value[SH_RIGHT_GAIN] / sigma, SH_LARGEST_OUTPUT) : 0;
     estimate->D_theta_hat = p->motor.D_theta * (1 + sum[SH_OF_VISCOUS]);
     estimate->B_hat = p->motor.B * (1 + sum[SH_OF_INERTIA]);
     estimate->tau_coulomb_hat = sum[SH_OF_COULOMB];
@@ -176,8 +172,43 @@ static void report(const sh_regression_state *state, const sh_parameters *p,
     estimate->doubt = doubt_of(state, p, sum, estimate);
 }
 
+/* Computes the estimate, and sets all outputs but the innovation. Returns 0, and sets none, if torque or
+ * stiffness overflow.
+ */
+static int report(sh_regression_state *state, const sh_parameters *p, const sh_joint_point *at,
+                  sh_real y, sh_estimate *estimate)
+{
+    const sh_real largest_delay = SH_LARGEST_DELAY * p->prior.delay;
+    sh_point point;
+    sh_combination stiffness;
+
+    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
+    stiffness = evaluate_at(state, p, at, &point);
+    if (!isfinite(point.sigma) || !isfinite(point.tau_e) || !isfinite(stiffness.variance) ||
+        !isfinite(stiffness.value[SH_RIGHT_GAIN])) {
+        return 0;
+    }
+    estimate->sigma = point.sigma;
+    estimate->sigma_std = point.sigma_std;
+    estimate->tau_e = point.tau_e;
+    estimate->tau_e_std = point.tau_e_std;
+    estimate->tau_e_residual = y;
+    estimate->phi = at->phi;
+    estimate->theta_dot =
+        sh_state_variable_filter_first(&state->signals.theta, &state->signals.design);
+    report_coefficients(state, p, at, &stiffness, estimate);
+    /* What the next row depends on. */
+    state->modality = p->modality;
+    state->y = y;
+    state->sigma = point.sigma;
+    state->delay = sh_fmin(sh_fmax(estimate->delay_hat, -largest_delay), largest_delay);
+    state->stiffness_known = sh_sqrt(stiffness.variance) < SH_KNOWN_STIFFNESS * point.sigma;
+    return 1;
+}
+
 /* ---- start -------------------------------------------------------------------------------- */
 
+/* Sets the uncertainty at phi = 0; torque and stiffness there are those of the curve rls.eta_0. */
 static void start_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
                                       sh_estimate *estimate)
 {
@@ -194,7 +225,9 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
     sh_refit_start(state, p);
     sh_joint_point_at(&at, &state->columns, p, 0, 0, 0, p->setPoint.offset, state->history.play);
     stiffness = evaluate_at(state, p, &at, &point);
-    report(state, p, &at, &point, &stiffness, estimate);
+    estimate->sigma_std = point.sigma_std;
+    estimate->tau_e_std = point.tau_e_std;
+    report_coefficients(state, p, &at, &stiffness, estimate);
 }
 
 /* ---- tick --------------------------------------------------------------------------------- */
@@ -240,11 +273,18 @@ static int is_settled(sh_regression_state *state, const sh_parameters *p, const 
     return 0;
 }
 
-/* epsilon = y - x' beta. The share of epsilon that is noise of the torque is removed from the column
- * of the motor's torque, which contains it too; then epsilon is computed again (detail 14).
+/* Weight 1 / R of the row x; 0 if the numbers are too large. */
+static sh_real weight_of(const sh_sample_noise *noise, const sh_real *x, int size)
+{
+    const sh_real w = 1 / noise->R;
+
+    return w > 0 && w * sum_of_squares(x, size + SH_RIGHT_SIDES) <= SH_LARGE ? w : 0;
+}
+
+/* epsilon = y - x' beta. Its share that is noise of the torque is removed from the column of the
+ * motor's torque, which contains this noise too; then epsilon is computed again (detail 14).
  */
-static sh_real remove_noise_and_predict(const sh_regression_state *state, const sh_parameters *p,
-                                        sh_real *x)
+static sh_real predict(const sh_regression_state *state, const sh_parameters *p, sh_real *x)
 {
     sh_real epsilon = x[state->columns.size + SH_RIGHT_Y];
     int i;
@@ -259,73 +299,60 @@ static sh_real remove_noise_and_predict(const sh_regression_state *state, const 
 /* Updates what is rounding in the columns of b (detail 7) and of the spring (point 5). */
 static void update_rounding(sh_regression_state *state, const sh_parameters *p, sh_real w)
 {
-    sh_posterior *const both[] = {&state->posterior, &state->refit.posterior};
+    sh_posterior *const now = &state->posterior, *const next = &state->refit.posterior;
     const sh_real N = sh_limited(sh_noise_of_inertia(state, p) * w, SH_LARGE);
     sh_real Q;
-    int i;
 
     state->rounding += sh_limited(sh_noise_of_deformation(&state->signals) * w, SH_LARGE);
-    if (state->posterior.inertia < 0) {
+    if (now->inertia < 0) {
         return;
     }
     Q = sh_limited(SH_SPREAD_OF_SQUARE * sh_square(N / p->prior.B), SH_LARGE);
     state->surplus += N;
     state->spread += Q;
-    for (i = 0; i < 2; ++i) {
-        both[i]->spread += Q * both[i]->weight * both[i]->weight;
-    }
-    state->refit.posterior.surplus += N * state->refit.posterior.weight;
+    now->spread += Q * now->weight * now->weight;
+    next->spread += Q * next->weight * next->weight;
+    next->surplus += N * next->weight;
     /* Also without new rounding: what could not be removed before may be removed now. */
-    sh_posterior_remove(&state->posterior, N * state->posterior.weight, p->prior.B);
+    sh_posterior_remove(now, N * now->weight, p->prior.B);
 }
 
-/* As the outputs of the same names. */
-typedef struct {
-    sh_real a, rho, epsilon;
-} innovation_of_sample;
-
-/* Uses the row x. Returns 0 if its numbers are too large. */
-static int use_sample(sh_regression_state *state, const sh_parameters *p, sh_real *x,
-                      innovation_of_sample *innovation)
+/* Takes the row x of weight w into estimate, data and blocks. Returns rho, the variance of the
+ * prediction over the one of the sample.
+ */
+static sh_real update(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
+                      sh_real w, sh_real lasting)
 {
     const int size = state->columns.size;
-    sh_sample_noise noise;
-    sh_real w, share, row[SH_MAX_ROW] = {0};
+    const sh_real share = sh_posterior_take(&state->posterior, x, size, w); /* 1 / (1 + rho) */
+    sh_real row[SH_MAX_ROW] = {0};
     int i;
 
-    /* 3. Weigh the row. */
-    sh_noise_watch(&state->history, &state->signals, p);
-    noise = sh_noise_of_sample(state, p);
-    w = 1 / noise.R;
-    if (!(w > 0) || !(w * sum_of_squares(x, size + SH_RIGHT_SIDES) <= SH_LARGE)) {
-        return 0;
-    }
-    state->R = noise.R;
-    /* 4. Predict and compare. */
-    innovation->epsilon = remove_noise_and_predict(state, p, x);
-    /* 5. Update. */
-    share = sh_posterior_take(&state->posterior, x, size, w);
     update_rounding(state, p, w);
     for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
         row[i] = x[i];
     }
     (void)sh_information_take(&state->data, row, w);
-    sh_blocks_take(state, p, x, w, noise.lasting);
-    /* 6. Choose columns, and weigh the data by their misfit. */
-    sh_refit_step(state, p, x, w);
-    innovation->a = 1;
-    innovation->rho =
-        share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
-    return 1;
+    sh_blocks_take(state, p, x, w, lasting);
+    return share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
 }
 
-/* Forgets what the last row depended on: the next one must not be as large because of it. */
-static void refuse(sh_regression_state *state, const sh_history *before)
+/* After a gap, or a change of the modality, the filters start again. */
+static void resume(sh_regression_state *state)
+{
+    state->signals.begun = 0;
+    sh_signals_unsettle(&state->signals, &state->history);
+    sh_blocks_interrupt(&state->blocks);
+}
+
+/* Forgets what the last row depended on: the next one must not be as large because of it. Returns 0. */
+static int refuse(sh_regression_state *state, const sh_history *before)
 {
     state->signals.begun = 0; /* the filters start again, so their old state does not matter */
     state->history = *before;
     state->sigma = state->delay = state->y = 0;
     state->stiffness_known = 0;
+    return 0;
 }
 
 static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
@@ -334,53 +361,35 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
 {
     sh_regression_state *state = &estimator->method.regression;
     const sh_history before = state->history;
-    const sh_real largest_delay = SH_LARGEST_DELAY * p->prior.delay;
-    innovation_of_sample innovation = {0, 0, 0};
+    const int size = state->columns.size;
+    sh_real x[SH_MAX_ROW] = {0}, y, w = 0, rho = 0, epsilon = 0;
     sh_joint_point at;
-    sh_point point;
-    sh_combination stiffness;
-    sh_real x[SH_MAX_ROW] = {0}, y;
 
     if (estimator->started && (estimator->skipped > 0 || state->modality != p->modality)) {
-        state->signals.begun = 0;
-        sh_signals_unsettle(&state->signals, &state->history);
-        sh_blocks_interrupt(&state->blocks);
+        resume(state);
     }
-    /* 1. Filter the signals. */
-    sh_history_deform(&state->history, &state->signals, p, z->q - z->theta);
-    sh_joint_point_at(&at, &state->columns, p, z->theta, z->q, z->q - z->theta, set_point,
-                      state->history.play);
-    sh_signals_step(state, p, &at, sh_regression_torque(p, z, z->tau));
-    /* 2. Build the row. */
-    y = sh_columns_row(state, p, x);
-    if (!are_acceptable(&at, x, state->columns.size) ||
-        (is_settled(state, p, x) && !use_sample(state, p, x, &innovation))) {
-        refuse(state, &before);
-        return 0;
+    sh_signals_take(state, p, z, set_point, &at); /* 1. Filter the signals. */
+    y = sh_columns_row(state, p, x);              /* 2. Build the row. */
+    if (!are_acceptable(&at, x, size)) {
+        return refuse(state, &before);
     }
-    /* 7. Report. */
-    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
-    stiffness = evaluate_at(state, p, &at, &point);
-    if (!isfinite(point.sigma) || !isfinite(stiffness.variance) ||
-        !isfinite(stiffness.value[SH_RIGHT_GAIN])) {
-        refuse(state, &before);
-        return 0;
+    if (is_settled(state, p, x)) {
+        const sh_sample_noise noise = sh_noise_of_sample(state, p);
+
+        w = weight_of(&noise, x, size); /* 3. Weigh it. */
+        if (!(w > 0)) {
+            return refuse(state, &before);
+        }
+        epsilon = predict(state, p, x);              /* 4. Predict and compare. */
+        rho = update(state, p, x, w, noise.lasting); /* 5. Update. */
+        sh_refit_step(state, p, x, w);               /* 6. Choose columns. */
     }
-    state->modality = p->modality;
-    state->y = y;
-    state->sigma = point.sigma;
-    state->stiffness_known = sh_sqrt(stiffness.variance) < SH_KNOWN_STIFFNESS * point.sigma;
-    estimate->sigma = point.sigma;
-    estimate->tau_e = point.tau_e;
-    estimate->tau_e_residual = y;
-    estimate->phi = at.phi;
-    estimate->theta_dot =
-        sh_state_variable_filter_first(&state->signals.theta, &state->signals.design);
-    estimate->a = innovation.a;
-    estimate->rho = innovation.rho;
-    estimate->epsilon = innovation.epsilon;
-    report(state, p, &at, &point, &stiffness, estimate);
-    state->delay = sh_fmin(sh_fmax(estimate->delay_hat, -largest_delay), largest_delay);
+    if (!report(state, p, &at, y, estimate)) { /* 7. Report. */
+        return refuse(state, &before);
+    }
+    estimate->a = w > 0 ? 1 : 0;
+    estimate->rho = rho;
+    estimate->epsilon = epsilon;
     return 1;
 }
 

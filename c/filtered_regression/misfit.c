@@ -251,9 +251,9 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
     state->rounding *= factor;
 }
 
-/* P += drift time / (v'v + R) v v', where v are the columns of the curve in the last row */
+/* P += drift time / (v'v + R) v v', where v are the columns of the curve in the row x */
 static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
-                            sh_real time)
+                            sh_real R, sh_real time)
 {
     sh_real v[SH_MAX_COLUMNS] = {0}, power = 0;
     int i;
@@ -263,7 +263,7 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
         power += v[i] * v[i];
     }
     if (power > 0) {
-        const sh_real variance = p->regression.drift * time / (power + state->R);
+        const sh_real variance = p->regression.drift * time / (power + R);
 
         sh_information_drift(&state->data, v, variance);
         sh_information_drift(&state->blocks.constant, v, variance);
@@ -272,7 +272,8 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
 }
 
 /* Time counts as far as blocks do: nothing is forgotten at rest. */
-void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real time)
+void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real R,
+               sh_real time)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_real moving = blocks->duration;
@@ -288,6 +289,6 @@ void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real
         forget_data(state, p, moving);
     }
     if (p->regression.drift > 0) {
-        let_curve_drift(state, p, x, time);
+        let_curve_drift(state, p, x, R, time);
     }
 }

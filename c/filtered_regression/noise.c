@@ -47,42 +47,11 @@ static sh_real friction_variance(const sh_regression_state *state, const sh_para
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * tau_C;
 }
 
-/* R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
- *     + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
- *
- * White noise enters as it is before the filter (point 1). A wrong sign of friction in one sample leaves
- * the filter as its impulse response, in many samples, so its variance is divided by 3/16 w T.
- *
- * Errors that do not average out (point 5): with the variance R of what is independent and c of what
- * stays, n samples have the information 1 / (R / n + c), so the n-th one has the variance
- *
- *     R (1 + c n / R)^2 .
- */
-sh_sample_noise sh_noise_of_sample(const sh_regression_state *state, const sh_parameters *p)
-{
-    const sh_history *history = &state->history;
-    const sh_real rounding = sh_square(state->sigma) * counts_squared(&state->signals) / 12;
-    sh_real R = rounding + sh_square(p->noise.tau_e), stays = rounding * history->resting;
-    sh_sample_noise noise;
-
-    if (!sh_is_measured(p)) {
-        const sh_real friction = friction_variance(state, p);
-
-        R = (rounding + sh_square(p->motor.gamma * p->noise.tau)) *
-                (1 + SH_EXCESS * (history->excess - 1)) +
-            friction / white(&state->signals);
-        stays += friction * history->unsure;
-    }
-    noise.lasting = sh_square(1 + stays / R);
-    noise.R = R * noise.lasting;
-    return noise;
-}
-
 /* X = (N_tau + N_theta) / (N_tau + (gamma^2 B)^2 G count^2/12) >= 1, where N_theta has the mean square of
  * the noise of theta over 0.1 s in place of count^2/12; detail 4. Jitter of the sample times makes X
  * larger.
  */
-void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p)
+static void watch_noise(sh_history *history, const sh_signals *signals, const sh_parameters *p)
 {
     const sh_real T = signals->design.T;
     const sh_real torque = torque_noise(signals, p), inertial = inertial_noise(signals, p);
@@ -96,6 +65,38 @@ void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_par
     history->excess = sh_fmax(1, (torque + inertial * history->rough) / rounded);
     history->excess_mean +=
         sh_fmin(T / SH_EXCESS_TIME, 1) * (history->excess - history->excess_mean);
+}
+
+/* R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
+ *     + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
+ *
+ * White noise enters as it is before the filter (point 1). A wrong sign of friction in one sample leaves
+ * the filter as its impulse response, in many samples, so its variance is divided by 3/16 w T.
+ *
+ * Errors that do not average out (point 5): with the variance R of what is independent and c of what
+ * stays, n samples have the information 1 / (R / n + c), so the n-th one has the variance
+ *
+ *     R (1 + c n / R)^2 .
+ */
+sh_sample_noise sh_noise_of_sample(sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_history *history = &state->history;
+    const sh_real rounding = sh_square(state->sigma) * counts_squared(&state->signals) / 12;
+    sh_real R = rounding + sh_square(p->noise.tau_e), stays = rounding * history->resting;
+    sh_sample_noise noise;
+
+    watch_noise(&state->history, &state->signals, p);
+    if (!sh_is_measured(p)) {
+        const sh_real friction = friction_variance(state, p);
+
+        R = (rounding + sh_square(p->motor.gamma * p->noise.tau)) *
+                (1 + SH_EXCESS * (history->excess - 1)) +
+            friction / white(&state->signals);
+        stays += friction * history->unsure;
+    }
+    noise.lasting = sh_square(1 + stays / R);
+    noise.R = R * noise.lasting;
+    return noise;
 }
 
 /* N_tau / (N_tau + N_theta) */

@@ -176,7 +176,8 @@ static void take_row(sh_regression_state *state)
 }
 
 /* What a refit needs beside the rows is spread over ticks, too. */
-static void advance_refit(sh_regression_state *state, const sh_parameters *p, const sh_real *x)
+static void advance_refit(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
+                          sh_real w)
 {
     sh_refit *refit = &state->refit;
     const sh_real time = refit->samples * state->signals.design.T;
@@ -197,7 +198,7 @@ static void advance_refit(sh_regression_state *state, const sh_parameters *p, co
         break;
     case 2:
         if (refit->trial == 0) {
-            sh_forget(state, p, x, time);
+            sh_forget(state, p, x, 1 / w, time);
             refit->samples = 0;
         }
         break;
@@ -216,6 +217,6 @@ void sh_refit_step(sh_regression_state *state, const sh_parameters *p, const sh_
     (void)sh_posterior_take(&refit->posterior, x, state->columns.size, w);
     refit->waits = !refit->waits;
     if (!refit->waits) {
-        advance_refit(state, p, x);
+        advance_refit(state, p, x, w);
     }
 }

@@ -146,15 +146,9 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
 /* Lets the estimate wait until the filters have settled. */
 void sh_signals_unsettle(sh_signals *signals, sh_history *history);
 
-/* Takes the deformation [rad] of a sample into the history: its range, hysteresis, rest. */
-void sh_history_deform(sh_history *history, const sh_signals *signals, const sh_parameters *p,
-                       sh_real phi);
-
-/* Takes a sample into all filters. The torque is of the motor, or the measured or modelled one of the
- * spring [N.m].
- */
-void sh_signals_step(sh_regression_state *state, const sh_parameters *p, const sh_joint_point *at,
-                     sh_real torque);
+/* Takes a sample into the history and into all filters. Sets where the joint is. */
+void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
+                     sh_real set_point, sh_joint_point *at);
 
 /* Variance of the noise of theta in the last sample by its fourth difference [rad2]. */
 sh_real sh_signals_roughness(const sh_signals *signals);
@@ -167,11 +161,8 @@ typedef struct {
     sh_real lasting; /* factor in R by errors that last, >= 1 */
 } sh_sample_noise;
 
-/* Detail 4: variance of a sample. */
-sh_sample_noise sh_noise_of_sample(const sh_regression_state *state, const sh_parameters *p);
-
-/* Measures how much larger the noise of theta is than its rounding, from the last samples. */
-void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p);
+/* Detail 4: variance of the sample, with the noise of theta as the last samples show it. */
+sh_sample_noise sh_noise_of_sample(sh_regression_state *state, const sh_parameters *p);
 
 /* Detail 14: share of the torque's noise in the variance of y after the filter, 0..1. */
 sh_real sh_noise_share_of_torque(const sh_regression_state *state, const sh_parameters *p);
@@ -206,9 +197,10 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
 void sh_friction_drift(sh_regression_state *state, sh_real time);
 
 /* Details 9 and 11: forgets data that contradict the model, and lets the curve drift for `time` [s]
- * along the row x.
+ * along the row x of variance R [(N.m)2].
  */
-void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real time);
+void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real R,
+               sh_real time);
 
 /* ---- refit.c ----------------------------------------------------------------------------- */
 

@@ -39,8 +39,9 @@ void sh_signals_unsettle(sh_signals *signals, sh_history *history)
     history->settling = SH_FORGOTTEN / signals->design.w;
 }
 
-void sh_history_deform(sh_history *history, const sh_signals *signals, const sh_parameters *p,
-                       sh_real phi)
+/* The deformation of a sample: its range, hysteresis, and how long it rests. */
+static void take_deformation(sh_history *history, const sh_signals *signals, const sh_parameters *p,
+                             sh_real phi)
 {
     const sh_real change = signals->begun ? phi - history->phi : 0;
     const sh_real least = SH_RESTS * sh_fmin(signals->count, signals->count_q);
@@ -125,11 +126,14 @@ static void advance_columns(sh_regression_state *state, const sh_joint_point *at
     }
 }
 
-void sh_signals_step(sh_regression_state *state, const sh_parameters *p, const sh_joint_point *at,
-                     sh_real torque)
+void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
+                     sh_real set_point, sh_joint_point *at)
 {
     sh_signals *signals = &state->signals;
+    const sh_real phi = z->q - z->theta, torque = sh_regression_torque(p, z, z->tau);
 
+    take_deformation(&state->history, signals, p, phi);
+    sh_joint_point_at(at, &state->columns, p, z->theta, z->q, phi, set_point, state->history.play);
     if (signals->begun) {
         advance_measured(signals, p, at->theta, torque);
         if (state->columns.has_nominal) {

@@ -226,7 +226,6 @@ typedef struct {
         variance_factor; /* reduced chi-square of the blocks, factor of the variances [1] */
     /* The last estimate, on which the next row depends: */
     sh_real beta[SH_MAX_COLUMNS]; /* by column, in std deviations of the priors */
-    sh_real R;                    /* variance of the sample [(N.m)2] */
     sh_real y;                    /* of the sample [N.m] */
     sh_real sigma;                /* stiffness [N.m/rad] */
     sh_real delay;                /* of the torque [s] */
