@@ -9,7 +9,7 @@
  *         - |gamma| sign(theta')_f tau_C .
  *
  * Where the torque of the spring is measured or modelled, y is that torque through H, and the columns
- * of the motor are 0. Real joints have more than this equation, so there are further columns. Every
+ * of the motor are 0. Real joints have more than this equation, so there are further columns (point 6). Every
  * column is multiplied by the std deviation of its coefficient: all coefficients beta have the prior
  * N(0, 1). With a prior of 0 there is no such column.
  *

@@ -1,4 +1,4 @@
-/* Least squares in the information form, without square roots.
+/* Least squares in the information form, without square roots (detail 5).
  *
  * The samples of a regression y = x' beta, each of weight w, are kept as
  *

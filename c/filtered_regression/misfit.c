@@ -1,4 +1,4 @@
-/* Misfit: what no column explains. Blocks of samples show it, and data that contradict the model are
+/* Misfit (point 7): what no column explains. Blocks of samples show it, and data that contradict the model are
  * forgotten.
  */
 #include "constants.h"

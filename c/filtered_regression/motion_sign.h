@@ -1,4 +1,5 @@
-/* Direction in which a motor turns, from its encoder: Coulomb friction acts against it.
+/* Direction in which a motor turns, from its encoder: Coulomb friction acts against it (point 3,
+ * detail 3).
  *
  * The sign of a filtered velocity would be late compared with the other filtered signals. So the
  * sign is taken from the counts of the encoder. Between two counts it is the sign of the last one.

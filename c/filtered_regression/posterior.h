@@ -2,7 +2,7 @@
  *
  * A posterior uses a choice of the columns of the data. The column of the inertia error b is its last
  * one, so the last entry of D is the information about b, and can be changed in O(1). This is used for
- * the rounding of theta (detail 7):
+ * the rounding of theta (point 4, detail 7):
  *
  * The column of b contains rounding noise of variance V, and y contains the same noise times 1 + b. So
  * the sum of squares that least squares minimise contains V (1 + b)^2 for every sample, and the

@@ -1,4 +1,5 @@
-/* State-variable filter: low pass and derivatives of a sampled signal, without differentiating it.
+/* State-variable filter (point 2): low pass and derivatives of a sampled signal, without
+ * differentiating it.
  *
  *     H(s) = (w / (s + w))^3 ,  s H(s)  and  s^2 H(s)
  *

@@ -1,0 +1,66 @@
+"""What the documentation names is there: files, functions, and the numbers of the method."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from gate import need
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PAGES = sorted(
+    page
+    for page in REPOSITORY.glob("**/*.md")
+    if "build" not in page.parts and page.stem != "CHANGELOG"
+)
+FILE = re.compile(r"`([\w./-]+\.(?:c|h|py|toml|xml|js|mo|cmake))`")
+NOT_OURS = re.compile(
+    r"NAME|Name|LOG|^build/|modelDescription\.xml|buildDescription\.xml|^(rls|fmpy/simulation|joint|"
+    r"arm|arm-elbow|knee\.draft|desr)\.\w+$"
+)
+"""Places of names, files of FMUs and of users, and the parameter rls.c."""
+
+
+def tracked() -> list[str]:
+    command = [need("git"), "-C", str(REPOSITORY), "ls-files"]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))
+def test_every_file_exists(page: Path) -> None:
+    files = tracked()
+    named = {name for name in FILE.findall(page.read_text(encoding="utf-8"))}
+    known = {name for name in named for file in files if f"/{file}".endswith(f"/{name}")}
+    assert {name for name in named - known if not NOT_OURS.search(name)} == set()
+
+
+def test_every_function_of_the_library_exists() -> None:
+    code = "\n".join(
+        (REPOSITORY / file).read_text(encoding="utf-8")
+        for file in tracked()
+        if file.startswith(("c/", "fmu_src/", "harness/native/", "modelica/"))
+        and file.endswith((".c", ".h"))
+    )
+    for page in PAGES:
+        named = set(re.findall(r"\bsh_\w*[a-z]\b", page.read_text(encoding="utf-8")))
+        assert {name for name in named if name not in code and "NAME" not in name} == set(), page
+
+
+@pytest.mark.parametrize(
+    ("word", "section"), [("[Dd]etail", "### Details"), ("point", "## The method")]
+)
+def test_the_code_cites_every_number_of_the_method(word: str, section: str) -> None:
+    """Each detail and each point of the page stands in the code that computes it, and no other."""
+    page = (REPOSITORY / "docs" / "filtered-regression.md").read_text(encoding="utf-8")
+    own = re.split(r"^##", page.split(section, 1)[1], maxsplit=1, flags=re.M)[0]
+    numbers = set(map(int, re.findall(r"^(\d+)\. ", own, re.M)))
+    code = "".join(f.read_text() for f in (REPOSITORY / "c" / "filtered_regression").iterdir())
+    cited = {
+        int(number)
+        for some in re.findall(rf"{word}s? (\d+(?:(?:, | and )\d+)*)", code)
+        for number in re.findall(r"\d+", some)
+    }
+    assert cited == numbers
