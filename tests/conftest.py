@@ -1,13 +1,18 @@
 """Where the tests find what the build made; which tests take long, and why."""
 
 import os
+import sys
 from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+import gate
 import sigmahat
+
+if "SIGMAHAT_TOOLS" in os.environ:
+    sys.addaudithook(gate.note_program)
 
 
 @pytest.fixture(scope="session")

@@ -135,9 +135,9 @@ def test_the_pair_of_files_works_in_c_and_cpp(
         shutil.copy(build / "amalgamation" / file, tmp_path)
     library = tmp_path / "sigmahat.o"
     alone = ["-std=c99", "-ffreestanding", *flags]
-    run(need(c, c), *alone, "-c", tmp_path / "sigmahat.c", "-o", library)
+    run(need(c), *alone, "-c", tmp_path / "sigmahat.c", "-o", library)
     for compiler, options, file in (
-        (c, ["-std=c99", "-Wno-double-promotion"], "main.c"),
+        (need(c), ["-std=c99", "-Wno-double-promotion"], "main.c"),
         (need(cpp), ["-Wno-double-promotion"], "main.cpp"),
     ):
         (tmp_path / file).write_text(PROGRAM.format(header="sigmahat.h"))

@@ -36,8 +36,8 @@ _PACKAGES = {
     "valgrind": "valgrind",
     "wine64": "wine64",
 }
-_ALWAYS_THERE = {"bash", "c++", "cc", "g++", "gcc", "git", "sha256sum"}
-"""In the run of the gate with a bare PATH."""
+_ALWAYS_THERE = {"c++", "cc", "cmake", "g++", "gcc", "git", "sh", "wine64"}
+"""In the run of the gate with a bare PATH; Wine is found in its own folder."""
 
 
 def missing(what: str, how: str) -> NoReturn:
@@ -55,13 +55,12 @@ def missing(what: str, how: str) -> NoReturn:
 def need(name: str, folder: str = "") -> str:
     """Path of a program. Ends the test with `missing` if it is not installed.
 
-    Tests call no program past this function. It adds the name of the test to the file that
-    SIGMAHAT_TOOLS names, so that the gate can run the test again without the program.
+    Tests call no program past this function. The gate repeats the tests that need a tool, without
+    the tools.
 
     folder  where the program may be besides the PATH
     """
-    if name not in _ALWAYS_THERE:
-        _note_test()
+    _note(name)
     found = shutil.which(name, path=os.pathsep.join(filter(None, (os.environ["PATH"], folder))))
     if found is None:
         missing(name, f"apt-get install {_PACKAGES[name]}")
@@ -81,8 +80,18 @@ def is_installed(name: str) -> bool:
     return shutil.which(name) is not None
 
 
-def _note_test() -> None:
-    list_of_tests = os.environ.get("SIGMAHAT_TOOLS")
-    if list_of_tests:
-        with Path(list_of_tests).open("a") as file:
-            file.write(os.environ["PYTEST_CURRENT_TEST"].rpartition(" (")[0] + "\n")
+def note_program(event: str, arguments: tuple[object, ...]) -> None:
+    """Notes the test if it starts a program by its name alone, past `need`; see sys.addaudithook.
+
+    Without the program it fails, and the gate shows it.
+    """
+    if event == "subprocess.Popen":
+        _note(str(arguments[0]))
+
+
+def _note(program: str) -> None:
+    """Adds the name of the test to the file that SIGMAHAT_TOOLS names, if it needs a tool."""
+    tests, test = os.environ.get("SIGMAHAT_TOOLS"), os.environ.get("PYTEST_CURRENT_TEST")
+    if tests and test and program not in _ALWAYS_THERE and os.sep not in program:
+        with Path(tests).open("a") as file:
+            file.write(test.rpartition(" (")[0] + "\n")
