@@ -116,8 +116,7 @@ enum { SH_MAX_COLUMNS = SH_MAX_BASIS + 24 };
 /* The linker knows this function by a name that contains the sizes above. So it finds no function
  * for a file that was compiled with other sizes than the library, whose structs differ.
  */
-#define sh_estimator_start                                                                         \
-    SH_SIZED(sh_estimator_start, SH_REAL, SH_MAX_N, SH_MAX_M, SH_MAX_COLUMNS)
+#define sh_estimator_start SH_SIZED(sh_estimator_start, SH_REAL, SH_MAX_N, SH_MAX_M, SH_MAX_COLUMNS)
 #define SH_SIZED(name, real, n, m, columns) SH_JOINED(name, real, n, m, columns)
 #define SH_JOINED(name, real, n, m, columns) name##_##real##_##n##_##m##_##columns
 
