@@ -67,12 +67,12 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
         !sh_method_of(p)->tick(estimator, p, z, set_point, estimate)) {
         estimator->skipped += 1;
         estimate->valid = 0;
-        return 0;
+        return 1;
     }
     estimator->started = 1;
     estimator->skipped = 0;
     judge(set_point, estimate);
-    return 1;
+    return 0;
 }
 
 int sh_estimator_evaluate(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,

@@ -96,7 +96,7 @@ sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const
         const int was_valid = fmu->output.valid;
         const double skipped = fmu->estimator.skipped;
 
-        if (!sh_estimator_tick(&fmu->estimator, &fmu->parameters, &z, &fmu->output)) {
+        if (sh_estimator_tick(&fmu->estimator, &fmu->parameters, &z, &fmu->output)) {
             status = SH_WARNING;
             if (was_valid) {
                 log_skipped(&z, t + after, who, log);

@@ -15,7 +15,8 @@
  *         sh_estimator_tick(&estimator, &p, &measurement, &estimate);
  *
  * The caller owns every struct. The library allocates no memory, has no global variables, and does
- * no input or output. Any number of estimators can run in any number of threads.
+ * no input or output. Any number of estimators can run in any number of threads. A function that
+ * returns an int returns 0 if all is well.
  *
  * Names of parameters and signals are those of the variables of the FMU (modelDescription/).
  */
@@ -94,8 +95,8 @@ enum {
 };
 
 /* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. They
- * determine the size of sh_estimator. Smaller ones can be given to the compiler, with the same
- * values for every file that includes this header, and every file of the library.
+ * determine the size of sh_estimator. Smaller ones can be given to the compiler, as plain numbers and
+ * with the same values for every file that includes this header, and every file of the library.
  */
 #ifndef SH_MAX_N
 #define SH_MAX_N 8
@@ -104,6 +105,20 @@ enum {
 #define SH_MAX_M 5
 #endif
 enum { SH_MAX_BASIS = SH_MAX_N * SH_MAX_M };
+
+/* Largest number of columns of the regression: those of the basis, and the others of columns.c. A
+ * smaller one, given to the compiler, saves memory where priors of 0 remove columns.
+ */
+#ifndef SH_MAX_COLUMNS
+enum { SH_MAX_COLUMNS = SH_MAX_BASIS + 24 };
+#endif
+
+/* The linker knows this function by a name that contains the sizes above. So it finds no function
+ * for a file that was compiled with other sizes than the library, whose structs differ.
+ */
+#define sh_estimator_start SH_SIZED(sh_estimator_start, SH_REAL, SH_MAX_N, SH_MAX_M, SH_MAX_COLUMNS)
+#define SH_SIZED(name, real, n, m, columns) SH_JOINED(name, real, n, m, columns)
+#define SH_JOINED(name, real, n, m, columns) name##_##real##_##n##_##m##_##columns
 
 /* Data of the motor, (3). */
 typedef struct {
@@ -321,7 +336,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  * z         the measurements of this tick
  * estimate  in: as the last tick, or sh_estimator_start, left it; out: the new estimate
  *
- * Returns 1, or 0 if the tick is skipped: a measurement is not finite or beyond
+ * Returns 0, or 1 if the tick is skipped: a measurement is not finite or beyond
  * SH_LARGEST_MEASUREMENT, or the numbers overflow. A skipped tick sets estimate->valid to 0, is
  * counted, and changes nothing else of the estimate; nor of the state, unless the numbers overflow.
  * What happens at the first good sample after such a gap depends on the method:

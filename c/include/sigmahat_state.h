@@ -96,12 +96,6 @@ typedef struct {
     sh_real unknown;   /* 0 if the sign is known, 1 if not, more if samples before were wrong too */
 } sh_motion_sign;
 
-/* Largest number of columns of the regression: those of the basis, and the others of columns.c. A
- * smaller one, given to the compiler, saves memory where priors of 0 remove columns.
- */
-#ifndef SH_MAX_COLUMNS
-#define SH_MAX_COLUMNS (SH_MAX_BASIS + 24)
-#endif
 enum {
     SH_RIGHT_SIDES = 2, /* right-hand sides of the regression */
     SH_RIGHT_GAIN = 0,  /* change of y with the relative gain of the torque */

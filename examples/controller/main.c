@@ -30,7 +30,7 @@ void SysTick_Handler(void)
     z.theta = count * (sh_real)sample.theta;
     z.q = count * (sh_real)sample.q;
     z.tau = (sh_real)sample.tau;
-    if (!sh_estimator_tick(&estimator, &parameters, &z, &estimate)) {
+    if (sh_estimator_tick(&estimator, &parameters, &z, &estimate)) {
         ++missed; /* a measurement was not finite: the estimate did not change */
     }
     sigma = estimate.sigma;

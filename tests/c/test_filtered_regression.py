@@ -47,7 +47,7 @@ def test_a_nominal_curve_is_the_prior_mean(c: Library) -> None:
     estimator = Estimator(c, {**REGRESSION, "prior.nominal": 0.3})
     estimator.parameters.rls.eta_0[0][2] = 2 * 14220e-6
     estimator.parameters.prior.tau_e = 0.0
-    c.lib.sh_estimator_start(estimator.state, estimator.parameters, estimator.estimate)
+    c.start(estimator.state, estimator.parameters, estimator.estimate)
     sigma = 2 * 14220 * 0.1**2
     assert estimator.estimate.sigma == pytest.approx(sigma)
     assert estimator.estimate.sigma_std == pytest.approx(0.3 * sigma)
@@ -321,7 +321,7 @@ def test_torque_and_stiffness_are_those_of_the_coefficients(c: Library, symmetri
     estimator = Estimator(c, {**values, "prior.gap": 0.0})
     for (i, j), value in np.ndenumerate(np.array([[5.0, 0.2], [30.0, 0.4]])):
         estimator.parameters.rls.eta_0[i][j] = value
-    c.lib.sh_estimator_start(estimator.state, estimator.parameters, estimator.estimate)
+    c.start(estimator.state, estimator.parameters, estimator.estimate)
     regression = estimator.state.method.regression
     used = regression.refit.used
     used[1] = used[2] = 1  # powers of the deformation and of the set-point

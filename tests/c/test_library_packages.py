@@ -146,6 +146,26 @@ def test_the_pair_of_files_works_in_c_and_cpp(
         check(program, build, size)
 
 
+@pytest.mark.parametrize("size", ["SH_REAL=float", "SH_MAX_N=4", "SH_MAX_M=1", "SH_MAX_COLUMNS=21"])
+@pytest.mark.parametrize(("compiler", "file"), [("cc", "main.c"), ("c++", "main.cpp")])
+def test_a_program_of_other_sizes_than_the_library_does_not_link(
+    size: str, compiler: str, file: str, build: Path, tmp_path: Path
+) -> None:
+    """The linker names the function with the sizes that the program expects."""
+    sources = build / "amalgamation"
+    run(need("cc"), "-c", sources / "sigmahat.c", "-o", tmp_path / "sigmahat.o")
+    (tmp_path / file).write_text(PROGRAM.format(header="sigmahat.h"))
+    command = [need(compiler), f"-D{size}", f"-I{sources}", tmp_path / file]
+    done = subprocess.run(
+        [*command, tmp_path / "sigmahat.o", "-lm", "-o", tmp_path / "program"],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode != 0
+    (name,) = set(re.findall(r"\bsh_estimator_start\w+", done.stderr))
+    assert f"_{size.partition('=')[2]}" in name
+
+
 class Conan:
     """Conan of the environment, with a cache of its own that is empty."""
 

@@ -5,7 +5,7 @@ long test_run(sh_estimator *estimator, const sh_parameters *p, const sh_measurem
 {
     long good = 0;
     for (long k = 0; k < ticks; ++k) {
-        good += sh_estimator_tick(estimator, p, &z[k % samples], estimate);
+        good += sh_estimator_tick(estimator, p, &z[k % samples], estimate) == 0;
         if (record) {
             record[k] = *estimate;
         }

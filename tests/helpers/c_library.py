@@ -53,13 +53,19 @@ class Library:
         self.ffi, self.real = cffi.FFI(), real
         own = (header for header in HEADERS if header.name not in _WITHOUT_DECLARATIONS)
         text = declarations(*own, REPOSITORY / "tests" / "drivers" / "run.h")
-        self.ffi.cdef(re.sub(r"\bdouble\b", real, text))
+        self.ffi.cdef(text.replace("double", real))
         suffix = ".dylib" if sys.platform == "darwin" else ".so"
         self.lib: Any = self.ffi.dlopen(str(build / f"libsigmahat_test_driver{suffix}"))
 
     def new(self, struct: str, **values: Any) -> Any:
         """A new struct with the given fields; all others are zero."""
         return self.ffi.new(f"{struct} *", values)
+
+    @property
+    def start(self) -> Any:
+        """The function `sh_estimator_start`, whose name for the linker contains the sizes."""
+        (name,) = (name for name in dir(self.lib) if name.startswith("sh_estimator_start"))
+        return getattr(self.lib, name)
 
     def pointer(self, array: Array) -> Any:
         """A pointer to a contiguous array of reals. It is valid as long as the array exists."""
@@ -131,7 +137,7 @@ class Estimator:
             raise ValueError("{} is {}, allowed: {}".format(*problem))
         self.state = library.new("sh_estimator")
         self.estimate = library.new("sh_estimate")
-        library.lib.sh_estimator_start(self.state, self.parameters, self.estimate)
+        library.start(self.state, self.parameters, self.estimate)
 
     def tick(self, measurement: Sequence[float] | Array) -> bool:
         """Runs a tick with theta, q, theta_c, tau, tau_e_sensor; False if it was skipped."""
@@ -139,7 +145,7 @@ class Estimator:
             "sh_measurement", **dict(zip(MEASUREMENTS, map(float, measurement), strict=True))
         )
         lib = self.library.lib
-        return bool(lib.sh_estimator_tick(self.state, self.parameters, z, self.estimate))
+        return lib.sh_estimator_tick(self.state, self.parameters, z, self.estimate) == 0
 
     def lasting(self) -> bytes:
         """The state as bytes, without the work arrays, which have no meaning between ticks."""

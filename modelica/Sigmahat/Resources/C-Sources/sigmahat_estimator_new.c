@@ -25,7 +25,7 @@ static const sh_estimate *sigmahat_tick(sigmahat_object *o, double t, const sh_m
     }
     o->t = t;
     o->ticked = 1;
-    if (!sh_estimator_tick(&o->now, &o->parameters, z, &o->estimate) && o->estimate_before.valid) {
+    if (sh_estimator_tick(&o->now, &o->parameters, z, &o->estimate) && o->estimate_before.valid) {
         ModelicaFormatMessage(
             "StiffnessEstimator: tick at t = %.9g s skipped, the estimate is kept: expected "
             "inputs that are finite and at most 1e12 in magnitude, received theta = %g, q = %g, "
