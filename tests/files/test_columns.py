@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from sigmahat.files.columns import name_and_unit, title
+from sigmahat.files.tables import name_and_unit, title
 
 
 @pytest.mark.parametrize(

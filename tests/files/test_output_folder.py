@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from sigmahat.files.output_folder import created_folder, output_folder
-from sigmahat.files.whole_file import write_whole
+from sigmahat.files.output import created_folder, output_folder, write_whole
 
 
 def test_folder_appears_filled_or_not_at_all(tmp_path: Path) -> None:
@@ -53,7 +52,7 @@ def test_a_folder_that_was_there_or_holds_something_stays(tmp_path: Path) -> Non
 WRITES = """
 import sys, time
 from pathlib import Path
-from sigmahat.files.output_folder import output_folder
+from sigmahat.files.output import output_folder
 with output_folder(Path(sys.argv[1])) as folder:
     (folder / "table.csv").write_text("half")
     print("writing", flush=True)
@@ -126,7 +125,7 @@ def test_a_file_is_replaced_at_once_or_not_changed(tmp_path: Path) -> None:
 
 
 def test_a_device_is_written_to(tmp_path: Path) -> None:
-    code = "from sigmahat.files.whole_file import *; write_whole('text', Path('/dev/stdout'))"
+    code = "from sigmahat.files.output import *; write_whole('text', Path('/dev/stdout'))"
     command = [sys.executable, "-c", code]
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert (done.stdout, done.stderr) == ("text", "")

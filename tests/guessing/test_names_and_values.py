@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from foreign_joint import GEAR, T, joint
-from sigmahat.guessing.clock import interval
+from sigmahat.guessing.columns import interval
 from sigmahat.guessing.facts import Facts, look_at
 from sigmahat.guessing.guess import JointGuess, guess
 from sigmahat.guessing.words import meaning

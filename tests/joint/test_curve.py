@@ -18,16 +18,22 @@ from sigmahat.cli import main
 from sigmahat.fmi.installed import fmu
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.joint import sheet
-from sigmahat.joint.curve import Branch, Curve, characteristic, nearest
-from sigmahat.joint.curve_file import CURVE, read_curve, write_curve
+from sigmahat.joint.curve import (
+    CURVE,
+    Branch,
+    Curve,
+    characteristic,
+    nearest,
+    read_curve,
+    write_curve,
+)
 from sigmahat.joint.curve_text import curve_text, polynomial_in_words
-from sigmahat.joint.records import LearnedLog
+from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.curve import reaches
 from sigmahat.logs.estimate import Estimate, estimate
 from sigmahat.logs.learned import go_on, read_learned
-from sigmahat.logs.measured import MeasuredPoints, spread
-from sigmahat.logs.points_file import POINTS, read_points
-from sigmahat.logs.reach import reaches
+from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points, spread
 from sigmahat.logs.readers.formats import open_log
 from sigmahat.logs.replay import parameters
 

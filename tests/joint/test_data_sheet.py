@@ -18,7 +18,7 @@ from fmpy.ssp.ssd import read_ssv
 import sigmahat
 from recorded_logs import CONFIGURATION, LEAD, awas_log, read_estimate, write_log
 from sigmahat.cli import main
-from sigmahat.files.digest import sha256
+from sigmahat.files.output import sha256
 
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nprior.B = 0.2\n'
 CASES = {

@@ -14,7 +14,7 @@ import pytest
 
 from recorded_logs import CONFIGURATION, Array, awas_log, read_estimate, write_log
 from sigmahat.cli import main
-from sigmahat.files.digest import sha256
+from sigmahat.files.output import sha256
 
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\n'
 HALF = 2000

@@ -10,7 +10,7 @@ import pytest
 
 from recorded_logs import CONFIGURATION, Array, write_log
 from sigmahat.cli import main
-from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import LogError
 from sigmahat.logs.output import read_estimate
 from sigmahat.logs.readers.formats import open_log
 

@@ -18,8 +18,7 @@ import pytest
 
 from sigmahat.runs.pool import WorkerError
 from sigmahat.sweep.cluster import need_listener, spread_on_cluster
-from sigmahat.sweep.execution import execute
-from sigmahat.sweep.fmus import fmu_digest
+from sigmahat.sweep.execution import execute, fmu_digest
 from sigmahat.sweep.plan_file import read_plan
 from sweeps import QUICK, records, run, start, wait_for_records
 

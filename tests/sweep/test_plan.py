@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from sigmahat.fmi.instance import FmuError
-from sigmahat.sweep.check import check
-from sigmahat.sweep.fmus import sweep_digest
-from sigmahat.sweep.plan import Plan
+from sigmahat.sweep.execution import sweep_digest
+from sigmahat.sweep.plan import Drawn, Plan, values
 from sigmahat.sweep.plan_file import read_plan
-from sigmahat.sweep.values import Drawn, values
+from sigmahat.sweep.preparation import check
 
 PLAN = """\
 scenario = ["table1", "as-printed"]

@@ -10,17 +10,19 @@ import numpy as np
 import pytest
 
 import pictures
-from sigmahat.files import columns
+from sigmahat.files import tables
 from sigmahat.report import from_sweep as report_of_sweep
 from sigmahat.runs.metrics import INDICES, Index
 from sigmahat.sweep import curves, figures, summary
-from sigmahat.sweep.columns import Column, ParameterColumn, Role
 from sigmahat.sweep.table import (
     ESTIMATION,
     FAILURE,
     RUN,
     SCENARIO,
     SEED,
+    Column,
+    ParameterColumn,
+    Role,
     SweepTable,
     from_columns,
     read,
@@ -55,7 +57,7 @@ def made_up() -> SweepTable:
 
 def other_words(monkeypatch: pytest.MonkeyPatch) -> None:
     """Replaces the words of every label, title and name."""
-    monkeypatch.setattr(columns, "title", lambda name, unit: f"({unit}) {name[::-1]}")
+    monkeypatch.setattr(tables, "title", lambda name, unit: f"({unit}) {name[::-1]}")
     monkeypatch.setattr(Index, "name", lambda index, when="": f"{when}{index.field}!")
     monkeypatch.setattr(
         ParameterColumn, "name", property(lambda c: f"{c.role}{c.parameter}{c.owner}")

@@ -18,8 +18,7 @@ from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.estimate import begin
 from sigmahat.logs.frozen import stiffness_at
 from sigmahat.logs.learned import read_learned
-from sigmahat.validation.agreement import agreement
-from sigmahat.validation.torque import TorqueError
+from sigmahat.validation.agreement import TorqueError, agreement
 
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\nprior.B = 0.2\n'
 DURATION = 10.0

@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Value
-from sigmahat.joint.records import NO_OTHER_KEYS, FmuId, LearnedLog, Range, Text
-from sigmahat.joint.stored import Format
+from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Range, Text
 
 UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "misfit": "1"}
 

@@ -7,22 +7,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sigmahat.files.digest import sha256
+from sigmahat.files.output import sha256
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.joint import sheet
-from sigmahat.joint.curve import Curve
-from sigmahat.joint.curve_file import CURVE, write_curve
+from sigmahat.joint.curve import CURVE, Curve, write_curve
 from sigmahat.joint.curve_text import stiffness_points
-from sigmahat.joint.records import LearnedLog
-from sigmahat.logs.answer import Answer, answer
+from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.curve import Answer, answer
 from sigmahat.logs.data_sheet import data_sheet
 from sigmahat.logs.learned import LEARNED, Learned, go_on, read_learned, write_learned
 from sigmahat.logs.log import Log
+from sigmahat.logs.measured import POINTS, write_points
 from sigmahat.logs.notes_file import REPLAYED, write_replayed
 from sigmahat.logs.output import EstimateWriter
-from sigmahat.logs.points_file import POINTS, write_points
 from sigmahat.logs.replay import OUTPUTS, coefficients, parameters, play
 from sigmahat.logs.sampling import Samples, sample
 from sigmahat.logs.statistics import ReplayStatistics

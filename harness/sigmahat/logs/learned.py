@@ -15,11 +15,10 @@ from typing import Any
 
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.instance import FmuError, Slave, Value
-from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import Recorder
 from sigmahat.fmi.saved_state import restore, save
-from sigmahat.joint.records import NO_OTHER_KEYS, FmuId, LearnedLog, Text
-from sigmahat.joint.stored import Format
-from sigmahat.logs.errors import LogError
+from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Text
+from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap
 
 _AGAIN = "run `sigmahat estimate` on the first log again"

@@ -1,14 +1,16 @@
-"""Measured points: the torque over the deformation, as an estimator sees it."""
+"""Measured points: the torque over the deformation, as an estimator sees it, and their file."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.files.tables import numeric_columns, read_csv, title, write_csv
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.saved_state import restore, save
 from sigmahat.logs.log import Array
@@ -94,3 +96,29 @@ def spread(first: int, count: int, stride: int) -> NDArray[np.intp]:
     within = np.floor(stretches * _GOLDEN % 1 * stride).astype(np.intp)
     found: NDArray[np.intp] = stretches * stride + within - first
     return found[(found >= 0) & (found < count)]
+
+
+POINTS = "estimate.points.csv"
+"""Name of the file in the folder of results."""
+_UNITS = {"setPoint": "1", "phi": "rad", "tau_e": "N.m"}
+
+
+def write_points(points: MeasuredPoints, path: Path) -> None:
+    """Writes a row for each point."""
+    columns = (points.set_point, points.phi, points.tau_e)
+    head = [title(name, unit) for name, unit in _UNITS.items()]
+    write_csv(path, head, zip(*(column.tolist() for column in columns), strict=True))
+
+
+def read_points(path: Path) -> MeasuredPoints:
+    """Reads it back. Raises ValueError, which says what to do, for anything else."""
+    again = "run `sigmahat estimate` again"
+    try:
+        columns = numeric_columns(read_csv(path))
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror}; {again}") from error
+    if missing := set(_UNITS) - set(columns):
+        raise ValueError(f"{path}: no numbers in column {min(missing)!r}; {again}")
+    return MeasuredPoints(
+        columns["phi"].values, columns["setPoint"].values, columns["tau_e"].values
+    )

@@ -10,8 +10,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from sigmahat.joint.records import NO_OTHER_KEYS, Text
-from sigmahat.joint.stored import Format
+from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.report.contents import TextTable
 
 

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from sigmahat.files.columns import name_and_unit
-from sigmahat.files.read_table import read_csv
-from sigmahat.plotting.symbols import plain_title
+from sigmahat.files.tables import name_and_unit, read_csv
+from sigmahat.plotting.style import plain_title
 from sigmahat.report.contents import Contents, TextTable, number
 
 METHODS, MISFITS = "compare.csv", "misfits.csv"

@@ -19,9 +19,9 @@ from zlib import crc32
 
 from filelock import FileLock, Timeout
 
-from sigmahat.files.output_folder import created_folder
+from sigmahat.files.output import created_folder
 from sigmahat.runs.metrics import Indices
-from sigmahat.sweep.fmus import sweep_digest
+from sigmahat.sweep.execution import sweep_digest
 from sigmahat.sweep.plan import Outcome, Plan
 
 NAME = "runs.jsonl"

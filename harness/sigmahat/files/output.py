@@ -1,7 +1,8 @@
-"""Folders that a command writes to: nothing is left behind where it fails."""
+"""What a command writes: folders and files that are complete or not there, and their SHA-256."""
 
 from __future__ import annotations
 
+import hashlib
 import os
 import platform
 import re
@@ -88,3 +89,44 @@ def _runs(process: int) -> bool:
     except OSError:  # it is of another user
         return True
     return True
+
+
+def write_whole(text: str, path: Path) -> None:
+    """Writes a file in UTF-8. If it is interrupted, the file is as it was before.
+
+    A link stays a link to the file. Raises OSError if it cannot be written.
+    """
+    if path.exists() and not path.is_file():  # such as /dev/stdout; a folder is refused
+        path.write_text(text, encoding="utf-8")
+        return
+    file = path.resolve()
+    try:
+        with unfinished_folder(file.parent) as folder:
+            (folder / file.name).write_text(text, encoding="utf-8")
+    except OSError as error:  # it names what nobody has heard of
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+_CHUNK = 1 << 20
+
+
+def sha256(path: Path) -> str:
+    """Of a file its bytes; of a folder, such as a ROS 2 bag, the list of its files.
+
+    The list has a line "HASH  NAME" for each file, sorted by name, which `sha256sum` would write.
+
+    Raises OSError if a file cannot be read.
+    """
+    if not path.is_dir():
+        return _of_file(path)
+    files = sorted(each.relative_to(path).as_posix() for each in path.rglob("*") if each.is_file())
+    lines = "".join(f"{_of_file(path / name)}  {name}\n" for name in files)
+    return hashlib.sha256(lines.encode()).hexdigest()
+
+
+def _of_file(path: Path) -> str:
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while chunk := file.read(_CHUNK):
+            digest.update(chunk)
+    return digest.hexdigest()
