@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import platform
-import re
-from collections.abc import Iterator
+import json
+import math
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from shutil import rmtree
+from tempfile import TemporaryDirectory
+from typing import Any
 
 
 @contextmanager
@@ -39,56 +39,10 @@ def output_folder(path: Path) -> Iterator[Path]:
     Creates path, and leaves nothing behind after an exception. Raises OSError if path cannot be
     written to.
     """
-    with created_folder(path), unfinished_folder(path) as unfinished:
-        yield unfinished
-
-
-@contextmanager
-def unfinished_folder(path: Path) -> Iterator[Path]:
-    """The same for a folder that exists.
-
-    What processes that were killed have left there is removed.
-    """
-    # The name is fixed before the folder is made: an interrupt at any moment leaves nothing.
-    unfinished = path / f".unfinished-{os.getpid()}{_HOST}"
-    _remove_abandoned(path)
-    try:
-        unfinished.mkdir()
-        yield unfinished
-        for file in sorted(unfinished.iterdir()):
+    with created_folder(path), TemporaryDirectory(prefix=".unfinished-", dir=path) as unfinished:
+        yield Path(unfinished)
+        for file in sorted(Path(unfinished).iterdir()):
             file.replace(path / file.name)
-        unfinished.rmdir()
-    except BaseException:
-        rmtree(unfinished, ignore_errors=True)
-        raise
-
-
-_HOST = "@" + re.sub(r"[^\w.-]", "_", platform.node())
-"""Of names: the number of a process says nothing on another machine, which may share the folder."""
-_UNFINISHED = re.compile(rf"\.unfinished-(\d{{1,9}}){re.escape(_HOST)}")
-
-
-def _remove_abandoned(path: Path) -> None:
-    """Removes the unfinished folders of processes of this machine that have ended."""
-    for each in path.glob(".unfinished-*"):
-        match = _UNFINISHED.fullmatch(each.name)
-        if match and not _runs(int(match[1])):
-            rmtree(each, ignore_errors=True)
-
-
-def _runs(process: int) -> bool:
-    """Whether another process with this number may be running."""
-    if process == os.getpid():
-        return False
-    if os.name != "posix":  # there os.kill ends processes
-        return True
-    try:
-        os.kill(process, 0)  # sends nothing
-    except ProcessLookupError:
-        return False
-    except OSError:  # it is of another user
-        return True
-    return True
 
 
 def write_whole(text: str, path: Path) -> None:
@@ -101,13 +55,30 @@ def write_whole(text: str, path: Path) -> None:
         return
     file = path.resolve()
     try:
-        with unfinished_folder(file.parent) as folder:
-            (folder / file.name).write_text(text, encoding="utf-8")
+        with TemporaryDirectory(prefix=".unfinished-", dir=file.parent) as folder:
+            whole = Path(folder, file.name)
+            whole.write_text(text, encoding="utf-8")
+            whole.replace(file)
     except OSError as error:  # it names what nobody has heard of
         raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 _CHUNK = 1 << 20
+
+
+def write_json(values: object, path: Path) -> None:
+    """Writes JSON, numbers with all digits; one that is not finite becomes null."""
+    text = json.dumps(finite(values), indent=1, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def finite(values: Any) -> Any:
+    """Values for JSON: None for a number that is not finite, at any depth."""
+    if isinstance(values, Mapping):
+        return {str(key): finite(value) for key, value in values.items()}
+    if isinstance(values, (list, tuple)):
+        return [finite(value) for value in values]
+    return None if isinstance(values, float) and not math.isfinite(values) else values
 
 
 def sha256(path: Path) -> str:

@@ -7,12 +7,12 @@ fmi2SerializeFMUstate gives it, in base64. The state contains the parameters of 
 from __future__ import annotations
 
 import base64
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from sigmahat.files.output import write_json
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.instance import FmuError, Slave, Value
 from sigmahat.fmi.sample_loop import Recorder
@@ -75,7 +75,7 @@ def write_learned(
         parameters=parameters,
         state=state,
     )
-    path.write_text(json.dumps(asdict(contents), indent=1) + "\n", encoding="utf-8")
+    write_json(asdict(contents), path)
 
 
 def read_learned(path: Path) -> Learned:

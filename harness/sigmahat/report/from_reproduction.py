@@ -11,10 +11,18 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from sigmahat.files.tables import name_and_unit
 from sigmahat.paper.result_files import SEEDS, TIME, read_result_files
-from sigmahat.plotting.style import QUANTITIES, plain_axis, plain_title
-from sigmahat.report.contents import COLORS, TRUE, Contents, Curve, Kind, Panel, TextTable, number
+from sigmahat.plotting.style import QUANTITIES, plain_axis
+from sigmahat.report.contents import (
+    COLORS,
+    TRUE,
+    Contents,
+    Curve,
+    Kind,
+    Panel,
+    TextTable,
+    of_file,
+)
 from sigmahat.report.reduction import reduce
 from sigmahat.report.time_panels import (
     SIDES,
@@ -65,14 +73,8 @@ def from_reproduction(folder: Path) -> Contents:
 
 def _indices(table: pa.Table) -> TextTable:
     """The columns that have a value in some row."""
-    shown = [field for field in table.schema if table[field.name].null_count < len(table)]
-    columns = [[number(cell) for cell in table[field.name].to_pylist()] for field in shown]
-    return TextTable(
-        "Performance indices",
-        [plain_title(*name_and_unit(field.name)) for field in shown],
-        list(zip(*columns, strict=True)),
-        [pa.types.is_string(field.type) for field in shown],
-    )
+    shown = [name for name in table.column_names if table[name].null_count < len(table)]
+    return of_file("Performance indices", table.select(shown))
 
 
 _LAST = 1 / 3
