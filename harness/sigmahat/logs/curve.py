@@ -16,9 +16,7 @@ from sigmahat.joint.start_values import start_values
 from sigmahat.joint.stored import LearnedLog, Range
 from sigmahat.logs.frozen import stiffness_at
 from sigmahat.logs.log import Array
-from sigmahat.logs.measured import MeasuredPoints, with_what_was_learned
-from sigmahat.logs.sampling import Samples
-from sigmahat.logs.statistics import ReplayStatistics
+from sigmahat.logs.measured import MeasuredPoints
 
 _FAMILY = 5
 """Set-points of a curve whose set-point moves."""
@@ -201,23 +199,3 @@ class Answer:
     """Torque and stiffness over the deformation."""
     points: MeasuredPoints
     """That stand behind it."""
-
-
-def answer(
-    slave: Slave,
-    every: Mapping[str, Value],
-    logs: Sequence[LearnedLog],
-    samples: Samples,
-    statistics: ReplayStatistics,
-) -> Answer:
-    """The answer of a slave at the end of a replay; nothing is written.
-
-    every  parameters of the slave
-    logs   that it has learned from; samples and statistics are of the last one
-    """
-    method = str(every["method"])
-    points = statistics.points(method)
-    found = curve(slave, every, logs, points)
-    if method == "FilteredRegression":
-        points = with_what_was_learned(slave, every, samples)
-    return Answer(found, points)

@@ -15,7 +15,8 @@ from sigmahat.fmi.sample_loop import Recorder
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import NORMAL_95, Curve
 from sigmahat.joint.start_values import start_values
-from sigmahat.joint.stored import FmuId, LearnedLog, Range
+from sigmahat.joint.stored import FmuId, Range
+from sigmahat.logs.job import Replay
 from sigmahat.user_input import toml_file
 
 UNITS = {
@@ -67,35 +68,21 @@ _AMPLITUDE_95 = 2.4477
 """95 % of the distances of two such coordinates from 0 are smaller (Rayleigh)."""
 
 
-def data_sheet(
-    slave: Slave,
-    every: Mapping[str, Value],
-    logs: Sequence[LearnedLog],
-    configuration: Path,
-    last: Mapping[str, float],
-    doubt: str,
-    curve: Curve,
-) -> sheet.Sheet:
-    """The sheet of what a slave has learned.
-
-    every          parameters of the slave
-    logs           that it has learned from
-    configuration  the file of the parameters
-    last           Real outputs of the last tick
-    doubt          the output of that name at the last tick
-    curve          that it has learned
-    """
+def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
+    """The sheet of what an estimator has learned at the end of a replay, and its curve."""
+    slave, every, configuration = replay.slave, replay.every, replay.configuration.path
+    last, doubt = replay.statistics.last, replay.statistics.last_doubt
     start = start_values(slave, every)
-    claims = every["method"] == "FilteredRegression"
+    claims = replay.method == "FilteredRegression"
     return sheet.Sheet(
         format=sheet.FORMAT.name,
         version=sheet.FORMAT.version,
         sigmahat=version(),
         units=sheet.UNITS,
         fmu=FmuId.of(slave.fmu),
-        logs=list(logs),
+        logs=replay.logs,
         configuration=_source(configuration),
-        method=str(every["method"]),
+        method=replay.method,
         modality=str(every["modality"]),
         at_the_end=_point(last, claims),
         confident=doubt == "None",

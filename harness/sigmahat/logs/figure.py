@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,11 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sigmahat.joint.curve import NORMAL_95, Branch, Curve, nearest
+from sigmahat.logs.curve import Answer
+from sigmahat.logs.job import Replay
 from sigmahat.logs.log import Array
 from sigmahat.logs.measured import MeasuredPoints
 from sigmahat.logs.resampling import stretches
 from sigmahat.logs.sampling import Samples
-from sigmahat.logs.statistics import ReplayStatistics
 from sigmahat.plotting.style import BLUE, SKY, VERMILION, cycle, math_axis
 from sigmahat.plotting.style import limits as shown_range
 
@@ -118,22 +118,6 @@ _OUTER = 1.0  # percent of the stiffness left out at either end of its range, fo
 _MARGIN = 0.3
 
 
-@dataclass(frozen=True)
-class Replay:
-    """The data of the figure."""
-
-    samples: Samples
-    statistics: ReplayStatistics
-    modality: str
-    """Modality of the estimator: the source of its torque."""
-    method: str
-    """Method of the estimator."""
-    curve: Curve
-    """That was learned."""
-    points: MeasuredPoints
-    """Behind the curve."""
-
-
 class _Line(NamedTuple):
     """An output over time."""
 
@@ -145,14 +129,14 @@ class _Line(NamedTuple):
     """Percent at either end that the scale does not show; 0: only what is far away."""
 
 
-def draw(replay: Replay) -> Figure:
+def draw(replay: Replay, answer: Answer) -> Figure:
     """The curve, and below it panels over the time since the start of the log."""
     panels = _panels(replay)
     figure = Figure(figsize=(8.4, 3.6 + 2.0 * len(panels)), layout="constrained")
     parts: Any = figure.subfigures(2, height_ratios=[3.4, 2.0 * len(panels) + 0.2])
     top, below = parts
     torque, stiffness = top.subplots(1, 2)
-    draw_curve(torque, stiffness, replay.curve, replay.points)
+    draw_curve(torque, stiffness, answer.curve, answer.points)
     skipped = _skipped(replay.samples)
     every = below.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
     for axes, (label, lines) in zip(every, panels.items(), strict=True):
@@ -188,7 +172,7 @@ def _panels(replay: Replay) -> dict[str, list[_Line]]:
     """Lines by the label of their axis; the stiffness is first."""
     ends = replay.statistics.ends
     torque = _Line(r"residual $\gamma r_e$", SKY, ends("tau_e_residual"))
-    if replay.modality == "Sensor":
+    if replay.every["modality"] == "Sensor":
         torque = _Line("sensor", SKY, _sensor(replay))
     elif replay.method == "FilteredRegression":
         torque = torque._replace(label="by the motor data, with friction")

@@ -15,12 +15,9 @@ from sigmahat.guessing import template
 from sigmahat.guessing.columns import read_columns
 from sigmahat.guessing.guess import JointGuess, guess_chosen, guess_of
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve import Answer, answer
-from sigmahat.logs.estimate import begin, learned_log, run
+from sigmahat.logs.curve import Answer
+from sigmahat.logs.job import Replay
 from sigmahat.logs.log import Log, LogError
-from sigmahat.logs.replay import parameters
-from sigmahat.logs.sampling import sample
-from sigmahat.logs.statistics import ReplayStatistics
 from sigmahat.page.look import look
 from sigmahat.page.setup import Chosen, Setup
 
@@ -48,16 +45,10 @@ def replayed(
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
     """
     with Slave(installed("StiffnessEstimator"), "estimator") as slave:
-        fmu = slave.fmu
-        every = fmu.parameters(parameters(fmu, configuration))
-        configuration.need_ports(str(every["modality"]))
-        t_0 = begin(slave, configuration, None)
-        samples = sample(log, configuration, float(every["samplePeriod"]))
-        statistics = ReplayStatistics(len(samples.values))
+        replay = Replay(slave, log, configuration)
         with slave.only_errors():
-            run(slave, samples, statistics, t_0, progress=progress)
-        # Nobody keeps this record: what identifies the file is not needed.
-        return answer(slave, every, [learned_log(log, statistics, "")], samples, statistics)
+            replay.run(progress=progress)
+        return replay.answer()
 
 
 _REFUSED = (LogError, FmuError, OSError, ValueError)

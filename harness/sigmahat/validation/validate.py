@@ -10,17 +10,16 @@ from typing import Any
 import numpy as np
 
 from sigmahat.files.output import sha256
-from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.joint.start_values import as_fixed_curve, start_values
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.estimate import begin, run
 from sigmahat.logs.frozen import stiffness_at
-from sigmahat.logs.learned import Learned, read_learned
+from sigmahat.logs.job import Replay
+from sigmahat.logs.learned import read_learned
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.replay import parameters
-from sigmahat.logs.sampling import Samples, sample
-from sigmahat.logs.statistics import ReplayStatistics
+from sigmahat.logs.sampling import Samples
 from sigmahat.validation.agreement import Agreement, TorqueError, agreement, torque_errors
 
 _INSTANTS = 20_000
@@ -107,48 +106,17 @@ def validate(log: Log, configuration: Configuration, start_from: Path) -> Valida
             f"{configuration.path}: method = {every['method']} claims no interval, by which to "
             "validate; expected method = FilteredRegression"
         )
-    configuration.need_ports(str(every["modality"]))
     with Slave(fmu, "learned") as slave:
-        t_0 = begin(slave, configuration, learned)  # before the log is read: it may not fit
-        samples = sample(log, configuration, float(every["samplePeriod"]))
+        replay = Replay(slave, log, configuration, learned)
+        samples = replay.samples
         points = _points(log, samples)
         start = start_values(slave, every)
-        before = stiffness_at(slave, samples.names, points, t_0, samples.T)
-    alone = _alone(fmu, configuration, samples, points)
-    torque, below = torque_errors(fmu, samples, as_fixed_curve(start))
-    return _validation(log, configuration, learned, samples, torque, below, before, alone, every)
-
-
-def _points(log: Log, samples: Samples) -> Array:
-    """Values of the ports at the instants that are compared."""
-    complete = samples.values[np.isfinite(samples.values).all(axis=1)]
-    if not len(complete):
-        raise LogError(f"{log.path}: no instant at which every port has a value")
-    return complete[:: -(-len(complete) // _INSTANTS)]
-
-
-def _alone(
-    fmu: Fmu, configuration: Configuration, samples: Samples, points: Array
-) -> dict[str, Array]:
-    """What the log alone gives, at its end."""
+        before = stiffness_at(slave, samples.names, points, replay.t, samples.T)
     with Slave(fmu, "alone") as slave:
-        t_0 = begin(slave, configuration, None)
-        run(slave, samples, ReplayStatistics(len(samples.values)), t_0)
-        end = samples.T * len(samples.values)
-        return stiffness_at(slave, samples.names, points, end, samples.T)
-
-
-def _validation(
-    log: Log,
-    configuration: Configuration,
-    learned: Learned,
-    samples: Samples,
-    torque: TorqueError | None,
-    below: TorqueError | None,
-    before: dict[str, Array],
-    alone: dict[str, Array],
-    every: dict[str, Value],
-) -> Validation:
+        replay = Replay(slave, log, configuration)
+        replay.run()
+        alone = stiffness_at(slave, samples.names, points, replay.t, samples.T)
+    torque, below = torque_errors(fmu, samples, as_fixed_curve(start))
     digest = sha256(log.path)
     return Validation(
         log=log.path,
@@ -162,6 +130,14 @@ def _validation(
         stiffness=agreement(before, alone, float(every["prior.torque_gain"])),
         notes=samples.notes,
     )
+
+
+def _points(log: Log, samples: Samples) -> Array:
+    """Values of the ports at the instants that are compared."""
+    complete = samples.values[np.isfinite(samples.values).all(axis=1)]
+    if not len(complete):
+        raise LogError(f"{log.path}: no instant at which every port has a value")
+    return complete[:: -(-len(complete) // _INSTANTS)]
 
 
 def summary(result: Validation) -> str:
