@@ -15,8 +15,7 @@ import sigmahat
 from sigmahat.fmi import native
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 from sigmahat.runs.scenario import T
 from subjects import MEASUREMENTS, OUTPUTS, TORQUES, Array, Fmus, Library, Master, Subject, doubles
 

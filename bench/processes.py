@@ -27,8 +27,7 @@ import sigmahat
 from report import update
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 from sigmahat.runs.scenario import T
 
 PORTS = ("theta", "q", "theta_c", "tau")

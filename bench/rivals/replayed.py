@@ -11,8 +11,7 @@ import sigmahat
 from rivals.records import Array, JointLog
 from rivals.spring import Spring, spring
 from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 OUTPUTS = ("sigma", "sigma_std", "confident")
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rivals.records import Estimate, JointLog
 from rivals.score import Score, score
-from sigmahat.files.csv_table import write_csv
+from sigmahat.files.tables import write_csv
 
 
 @dataclass(frozen=True)

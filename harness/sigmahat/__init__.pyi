@@ -20,10 +20,10 @@ from .logs.configuration import Configuration as Configuration
 from .logs.configuration import Port as Port
 from .logs.configuration import Time as Time
 from .logs.configuration import read_configuration as read_configuration
-from .logs.errors import LogError as LogError
 from .logs.estimate import Estimate as Estimate
 from .logs.estimate import estimate as estimate
 from .logs.log import Log as Log
+from .logs.log import LogError as LogError
 from .logs.readers.formats import open_log as open_log
 from .paper.scenarios import scenario as scenario
 from .plants.equations import PlantEquations as PlantEquations
@@ -39,7 +39,7 @@ from .runs.scenario import Scenario as Scenario
 from .runs.scenario import Sine as Sine
 from .runs.scenario import Sines as Sines
 from .validation.agreement import Agreement as Agreement
-from .validation.torque import TorqueError as TorqueError
+from .validation.agreement import TorqueError as TorqueError
 from .validation.validate import Validation as Validation
 from .validation.validate import validate as validate
 

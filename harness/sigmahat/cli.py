@@ -8,19 +8,10 @@ from collections.abc import Sequence
 
 import click
 
-from sigmahat.commands.check import check
 from sigmahat.commands.common import printable
-from sigmahat.commands.compare import compare
-from sigmahat.commands.estimate import estimate
-from sigmahat.commands.export import export
-from sigmahat.commands.identify import identify
-from sigmahat.commands.init import init
-from sigmahat.commands.open import open_page
-from sigmahat.commands.report import report
-from sigmahat.commands.reproduce import reproduce
-from sigmahat.commands.scenarios import scenarios
-from sigmahat.commands.sweep import sweep
-from sigmahat.commands.validate import validate
+from sigmahat.commands.configuration import check, identify, init, open_page
+from sigmahat.commands.results import estimate, export, report, validate
+from sigmahat.commands.simulations import compare, reproduce, scenarios, sweep
 
 _ERROR, _INTERRUPTED = 2, 130
 _LONGEST = 5000  # characters of an error: more than the names of all parameters

@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 from gate import need
-from sigmahat.files.digest import sha256
+from sigmahat.files.output import sha256
 
 
 def test_of_a_file(tmp_path: Path) -> None:

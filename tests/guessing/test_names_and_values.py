@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from foreign_joint import GEAR, T, joint
-from sigmahat.guessing.clock import interval
+from sigmahat.guessing.columns import interval
 from sigmahat.guessing.facts import Facts, look_at
 from sigmahat.guessing.guess import JointGuess, guess
 from sigmahat.guessing.words import meaning
@@ -31,6 +31,16 @@ N = 7000
         ("angle_moteur_deg", "position", "motor", "deg"),
         ("coppia_motore_Nm", "torque", "motor", "N.m"),
         ("angulo_eslabon_grados", "position", "link", "deg"),
+        ("posicion_motor_pulsos", "position", "motor", "counts"),
+        ("corriente_A", "current", None, "A"),
+        ("tiempo_ms", "time", None, "ms"),
+        ("mota_kakudo", "position", "motor", None),
+        ("denryu_mA", "current", None, "mA"),
+        ("jikan_us", "time", None, "us"),
+        ("guanjie_jiaodu_deg", "position", None, "deg"),
+        ("dianliu_A", "current", None, "A"),
+        ("motormoment_Nm", "torque", "motor", "N.m"),
+        ("tid_ms", "time", None, "ms"),
         ("kansetsu_kakudo", "position", None, None),
         ("mota_denryu_A", "current", "motor", "A"),
         ("thetaM", "position", "motor", None),

@@ -12,8 +12,7 @@ from typing import Any
 import pytest
 import tomlkit
 
-import log_styles
-from log_styles import Style
+from log_styles import STYLES, Style
 from sigmahat.cli import main
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.estimate import Estimate, estimate
@@ -55,9 +54,7 @@ def read_document(path: Path) -> dict[str, Any]:
     return tomlkit.parse(path.read_text()).unwrap()
 
 
-@pytest.mark.parametrize(
-    "style", [*log_styles.TUNED, *log_styles.UNTUNED], ids=lambda style: style.name
-)
+@pytest.mark.parametrize("style", STYLES, ids=lambda style: style.name)
 def test_from_log_to_stiffness(
     style: Style, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -63,9 +63,41 @@ def other_joint(m: Motion, values: Array) -> Array:
     return 0.7 * np.interp(0.61 * m.t + 1.7, m.t, values)
 
 
+CURRENT = {"ports.tau.torque_constant": TORQUE_CONSTANT}
+AFTER_GEAR = {"motor.gamma": GEAR}
+STYLES: list[Style] = []
+
+
+def _style(
+    name: str,
+    file: str,
+    ports: Mapping[str, tuple[str, str | None]],
+    sheet: Mapping[str, Any],
+    **more: Any,
+) -> Callable[[Callable[[Motion], Columns]], Callable[[Motion], Columns]]:
+    """Adds a way to log a joint to STYLES; the arguments are those of Style."""
+
+    def add(log: Callable[[Motion], Columns]) -> Callable[[Motion], Columns]:
+        STYLES.append(Style(name, file, log, ports, sheet, **more))
+        return log
+
+    return add
+
+
 # --- the series elastic knee of a prosthesis: counts, milliamperes, jitter, missing values, a gap
 
 
+@_style(
+    "knee in counts",
+    "knee.csv",
+    {"theta": ("motor_enc", "counts"), "q": ("knee_enc", "counts"), "tau": ("iq_mA", "mA")},
+    {
+        **CURRENT,
+        "ports.theta.counts_per_turn": 4096,
+        "ports.theta.gear_ratio": GEAR,
+        "ports.q.counts_per_turn": 2**17,
+    },
+)
 def _knee_counts(m: Motion) -> Columns:
     rng = np.random.default_rng(1)
     t = m.t * 1e3 + rng.uniform(-0.12, 0.12, len(m.t))
@@ -85,6 +117,17 @@ def _knee_counts(m: Motion) -> Columns:
 # --- PlotJuggler: two joints, position and effort of motor and link
 
 
+@_style(
+    "PlotJuggler",
+    "export.csv",
+    {
+        "theta": ("/joint_states/knee_motor/position", "rad"),
+        "q": ("/joint_states/knee_link/position", "rad"),
+        "tau": ("/joint_states/knee_motor/effort", "N.m"),
+    },
+    AFTER_GEAR,
+    joint="knee",
+)
 def _plotjuggler(m: Motion) -> Columns:
     out: Columns = {"__time": 1_700_000_000.0 + m.t}
     for name, values in {
@@ -135,6 +178,18 @@ def _write_bag(columns: Columns, path: Path) -> Path:
     return path
 
 
+@_style(
+    "ROS 2 bag",
+    "bag",
+    {
+        "theta": ("/joint_states.position[right_knee_motor]", "rad"),
+        "q": ("/joint_states.position[right_knee_link]", "rad"),
+        "tau": ("/right_knee_drive/current.data", "A"),
+    },
+    {**CURRENT, **AFTER_GEAR},
+    joint="right_knee",
+    write=_write_bag,
+)
 def _bag(m: Motion) -> Columns:
     n = len(m.t)
     columns: Columns = {
@@ -152,6 +207,16 @@ def _bag(m: Motion) -> Columns:
 # --- rostopic echo -p: times in nanoseconds, numbered elements of arrays
 
 
+@_style(
+    "rostopic echo",
+    "echo.csv",
+    {
+        "theta": ("field.position0", "rad"),
+        "q": ("field.position1", "rad"),
+        "tau": ("field.effort0", "N.m"),
+    },
+    AFTER_GEAR,
+)
 def _rostopic(m: Motion) -> Columns:
     stamp = 1_700_000_000_123_456_789 + np.round(m.t * 1e9).astype(np.int64)
     return {
@@ -177,6 +242,17 @@ def _write_german(columns: Columns, path: Path) -> Path:
     return path
 
 
+@_style(
+    "German",
+    "messung.csv",
+    {
+        "theta": ("Motorwinkel [Grad]", "deg"),
+        "q": ("Abtriebswinkel [Grad]", "deg"),
+        "tau": ("Motorstrom [A]", "A"),
+    },
+    {**CURRENT, "ports.theta.gear_ratio": GEAR},
+    write=_write_german,
+)
 def _german(m: Motion) -> Columns:
     return {
         "Zeit [s]": m.t,
@@ -191,6 +267,18 @@ def _german(m: Motion) -> Columns:
 # --- French: no units in the names, a lever in mm sets the stiffness
 
 
+@_style(
+    "French",
+    "essai.csv",
+    {
+        "theta": ("position_moteur", "rad"),
+        "q": ("position_articulation", "rad"),
+        "theta_c": ("bras_de_levier_mm", "mm"),
+        "tau": ("couple_moteur", "N.m"),
+    },
+    AFTER_GEAR,
+    has_lever=True,
+)
 def _french(m: Motion) -> Columns:
     return {
         "temps": m.t,
@@ -206,6 +294,12 @@ def _french(m: Motion) -> Columns:
 # --- MATLAB: letters of the equations, the motor on its own axis
 
 
+@_style(
+    "letters",
+    "joint.mat",
+    {"theta": ("th", "rad"), "q": ("q", "rad"), "tau": ("i", "A")},
+    {**CURRENT, "ports.theta.gear_ratio": GEAR},
+)
 def _letters(m: Motion) -> Columns:
     return {
         "t": m.t,
@@ -216,36 +310,21 @@ def _letters(m: Motion) -> Columns:
     }
 
 
-# --- Spanish: milliseconds, pulses of the motor, degrees of the link
-
-
-def _spanish(m: Motion) -> Columns:
-    return {
-        "tiempo_ms": np.round(1e3 * m.t).astype(np.int64),
-        "posicion_motor_pulsos": counts(m.theta * GEAR, 4000),
-        "angulo_eslabon_grados": counts(m.q, 2**18) * 360 / 2**18,
-        "corriente_A": current(m, 14),
-        "referencia_grados": m.target * DEG,
-        "velocidad_rpm": m.velocity * GEAR * 60 / (2 * np.pi),
-    }
-
-
-# --- Japanese in Latin letters: microseconds, everything behind the gear
-
-
-def _japanese(m: Motion) -> Columns:
-    return {
-        "jikan_us": np.round(1e6 * m.t).astype(np.int64),
-        "mota_kakudo": counts(m.theta, 2**20) * 360 / 2**20,
-        "kansetsu_kakudo": counts(m.q, 2**20) * 360 / 2**20,
-        "denryu_mA": 1e3 * current(m, 15),
-        "mokuhyou_kakudo": m.target * DEG,
-    }
-
-
 # --- Italian: the lever that sets the stiffness in degrees of its motor
 
 
+@_style(
+    "Italian",
+    "prova.h5",
+    {
+        "theta": ("angolo_motore_gradi", "deg"),
+        "q": ("angolo_giunto_gradi", "deg"),
+        "theta_c": ("angolo_motore_rigidezza_gradi", "deg"),
+        "tau": ("coppia_motore_Nm", "N.m"),
+    },
+    AFTER_GEAR,
+    has_lever=True,
+)
 def _italian(m: Motion) -> Columns:
     return {
         "tempo_s": m.t,
@@ -260,6 +339,12 @@ def _italian(m: Motion) -> Columns:
 # --- nothing but numbers: the values have to say it all
 
 
+@_style(
+    "no names",
+    "log.parquet",
+    {"theta": ("data4", "rad"), "q": ("data1", "rad"), "tau": ("data2", "N.m")},
+    AFTER_GEAR,
+)
 def _silent(m: Motion) -> Columns:
     return {
         "data0": m.t,
@@ -271,143 +356,24 @@ def _silent(m: Motion) -> Columns:
     }
 
 
-CURRENT = {"ports.tau.torque_constant": TORQUE_CONSTANT}
-AFTER_GEAR = {"motor.gamma": GEAR}
-
-TUNED = [
-    Style(
-        "knee in counts",
-        "knee.csv",
-        _knee_counts,
-        {
-            "theta": ("motor_enc", "counts"),
-            "q": ("knee_enc", "counts"),
-            "tau": ("iq_mA", "mA"),
-        },
-        {
-            **CURRENT,
-            "ports.theta.counts_per_turn": 4096,
-            "ports.theta.gear_ratio": GEAR,
-            "ports.q.counts_per_turn": 2**17,
-        },
-    ),
-    Style(
-        "PlotJuggler",
-        "export.csv",
-        _plotjuggler,
-        {
-            "theta": ("/joint_states/knee_motor/position", "rad"),
-            "q": ("/joint_states/knee_link/position", "rad"),
-            "tau": ("/joint_states/knee_motor/effort", "N.m"),
-        },
-        AFTER_GEAR,
-        joint="knee",
-    ),
-    Style(
-        "ROS 2 bag",
-        "bag",
-        _bag,
-        {
-            "theta": ("/joint_states.position[right_knee_motor]", "rad"),
-            "q": ("/joint_states.position[right_knee_link]", "rad"),
-            "tau": ("/right_knee_drive/current.data", "A"),
-        },
-        {**CURRENT, **AFTER_GEAR},
-        joint="right_knee",
-        write=_write_bag,
-    ),
-    Style(
-        "rostopic echo",
-        "echo.csv",
-        _rostopic,
-        {
-            "theta": ("field.position0", "rad"),
-            "q": ("field.position1", "rad"),
-            "tau": ("field.effort0", "N.m"),
-        },
-        AFTER_GEAR,
-    ),
-    Style(
-        "German",
-        "messung.csv",
-        _german,
-        {
-            "theta": ("Motorwinkel [Grad]", "deg"),
-            "q": ("Abtriebswinkel [Grad]", "deg"),
-            "tau": ("Motorstrom [A]", "A"),
-        },
-        {**CURRENT, "ports.theta.gear_ratio": GEAR},
-        write=_write_german,
-    ),
-    Style(
-        "French",
-        "essai.csv",
-        _french,
-        {
-            "theta": ("position_moteur", "rad"),
-            "q": ("position_articulation", "rad"),
-            "theta_c": ("bras_de_levier_mm", "mm"),
-            "tau": ("couple_moteur", "N.m"),
-        },
-        AFTER_GEAR,
-        has_lever=True,
-    ),
-    Style(
-        "letters",
-        "joint.mat",
-        _letters,
-        {"theta": ("th", "rad"), "q": ("q", "rad"), "tau": ("i", "A")},
-        {**CURRENT, "ports.theta.gear_ratio": GEAR},
-    ),
-    Style(
-        "Spanish",
-        "ensayo.csv",
-        _spanish,
-        {
-            "theta": ("posicion_motor_pulsos", "counts"),
-            "q": ("angulo_eslabon_grados", "deg"),
-            "tau": ("corriente_A", "A"),
-        },
-        {**CURRENT, "ports.theta.counts_per_turn": 4000, "ports.theta.gear_ratio": GEAR},
-    ),
-    Style(
-        "Japanese",
-        "jikken.parquet",
-        _japanese,
-        {
-            "theta": ("mota_kakudo", "deg"),
-            "q": ("kansetsu_kakudo", "deg"),
-            "tau": ("denryu_mA", "mA"),
-        },
-        {**CURRENT, **AFTER_GEAR},
-    ),
-    Style(
-        "Italian",
-        "prova.h5",
-        _italian,
-        {
-            "theta": ("angolo_motore_gradi", "deg"),
-            "q": ("angolo_giunto_gradi", "deg"),
-            "theta_c": ("angolo_motore_rigidezza_gradi", "deg"),
-            "tau": ("coppia_motore_Nm", "N.m"),
-        },
-        AFTER_GEAR,
-        has_lever=True,
-    ),
-    Style(
-        "no names",
-        "log.parquet",
-        _silent,
-        {"theta": ("data4", "rad"), "q": ("data1", "rad"), "tau": ("data2", "N.m")},
-        AFTER_GEAR,
-    ),
-]
-"""The styles that the vocabulary and the rules were made with."""
-
-
 # --- CiA 402 objects in a PLC: torque and position as integers, torque in thousandths of the rated
 
 
+@_style(
+    "CiA 402",
+    "scope.csv",
+    {
+        "theta": ("Axis 1.Position actual value", "counts"),
+        "q": ("Axis 1.Additional position actual value", "counts"),
+        "tau": ("Axis 1.Torque actual value", None),
+    },
+    {
+        "ports.theta.counts_per_turn": 2**20,
+        "ports.theta.gear_ratio": GEAR,
+        "ports.q.counts_per_turn": 2**19,
+        "ports.tau.scale": 2.0 / 1000,
+    },
+)
 def _drive_objects(m: Motion) -> Columns:
     return {
         "Timestamp [ns]": 133_000_000_000_000_000 + np.round(m.t * 1e9).astype(np.int64),
@@ -420,23 +386,21 @@ def _drive_objects(m: Motion) -> Columns:
     }
 
 
-# --- Chinese in Latin letters
+# --- names of variables in the firmware of a drive: turns, camel case. Neither names nor values say
+#     that these are turns: as radians they were as likely.
 
 
-def _pinyin(m: Motion) -> Columns:
-    return {
-        "shijian_s": m.t,
-        "dianji_jiaodu_deg": m.theta * DEG,
-        "guanjie_jiaodu_deg": m.q * DEG,
-        "dianliu_A": current(m, 22),
-        "mubiao_jiaodu_deg": m.target * DEG,
-        "wendu": np.round(30 + m.t / 3, 1),
-    }
-
-
-# --- names of variables in the firmware of a drive: turns, camel case
-
-
+@_style(
+    "firmware",
+    "capture.csv",
+    {
+        "theta": ("axis0.encoder.posEstimate", "rad"),
+        "q": ("axis0.loadEncoder.posAbs", "rad"),
+        "tau": ("axis0.motor.IqMeasured", "A"),
+    },
+    {**CURRENT, "ports.theta.gear_ratio": GEAR},
+    edits={"ports.theta.unit": "turn", "ports.q.unit": "turn"},
+)
 def _firmware(m: Motion) -> Columns:
     return {
         "tickUs": np.round(1e6 * m.t).astype(np.int64) + 4_711,
@@ -450,23 +414,19 @@ def _firmware(m: Motion) -> Columns:
     }
 
 
-# --- Swedish
-
-
-def _swedish(m: Motion) -> Columns:
-    return {
-        "tid_ms": np.round(1e3 * m.t).astype(np.int64),
-        "motorvinkel_grader": m.theta * DEG * GEAR,
-        "ledvinkel_grader": m.q * DEG,
-        "havarmslangd_mm": np.round(1e3 * m.lever, 3),
-        "motormoment_Nm": noisy(m.tau, 2e-3, 26),
-        "varvtal_rpm": m.velocity * GEAR * 60 / (2 * np.pi),
-    }
-
-
 # --- signals that Simulink logged, each with its times, in HDF5
 
 
+@_style(
+    "Simulink",
+    "run.h5",
+    {
+        "theta": ("logsout.PhiMot.Data", "rad"),
+        "q": ("logsout.PhiLast.Data", "rad"),
+        "tau": ("logsout.MMot.Data", "N.m"),
+    },
+    {"ports.theta.gear_ratio": GEAR},
+)
 def _simulink(m: Motion) -> Columns:
     out: Columns = {}
     for name, values in {
@@ -478,75 +438,3 @@ def _simulink(m: Motion) -> Columns:
         out[f"logsout/{name}/Data"] = values
         out[f"logsout/{name}/Time"] = m.t
     return out
-
-
-UNTUNED = [
-    Style(
-        "CiA 402",
-        "scope.csv",
-        _drive_objects,
-        {
-            "theta": ("Axis 1.Position actual value", "counts"),
-            "q": ("Axis 1.Additional position actual value", "counts"),
-            "tau": ("Axis 1.Torque actual value", None),
-        },
-        {
-            "ports.theta.counts_per_turn": 2**20,
-            "ports.theta.gear_ratio": GEAR,
-            "ports.q.counts_per_turn": 2**19,
-            "ports.tau.scale": 2.0 / 1000,  # the rated torque is 2 N.m
-        },
-    ),
-    Style(
-        "Chinese",
-        "shiyan.csv",
-        _pinyin,
-        {
-            "theta": ("dianji_jiaodu_deg", "deg"),
-            "q": ("guanjie_jiaodu_deg", "deg"),
-            "tau": ("dianliu_A", "A"),
-        },
-        {**CURRENT, **AFTER_GEAR},
-    ),
-    Style(
-        "firmware",
-        "capture.csv",
-        _firmware,
-        {
-            "theta": ("axis0.encoder.posEstimate", "rad"),
-            "q": ("axis0.loadEncoder.posAbs", "rad"),
-            "tau": ("axis0.motor.IqMeasured", "A"),
-        },
-        {**CURRENT, "ports.theta.gear_ratio": GEAR},
-        # Neither names nor values say that these are turns: as radians they were as likely.
-        edits={"ports.theta.unit": "turn", "ports.q.unit": "turn"},
-    ),
-    Style(
-        "Swedish",
-        "prov.csv",
-        _swedish,
-        {
-            "theta": ("motorvinkel_grader", "deg"),
-            "q": ("ledvinkel_grader", "deg"),
-            "theta_c": ("havarmslangd_mm", "mm"),
-            "tau": ("motormoment_Nm", "N.m"),
-        },
-        {"ports.theta.gear_ratio": GEAR},
-        has_lever=True,
-    ),
-    Style(
-        "Simulink",
-        "run.h5",
-        _simulink,
-        {
-            "theta": ("logsout.PhiMot.Data", "rad"),
-            "q": ("logsout.PhiLast.Data", "rad"),
-            "tau": ("logsout.MMot.Data", "N.m"),
-        },
-        {"ports.theta.gear_ratio": GEAR},
-    ),
-]
-"""Styles that were written when the others worked. Before anything was changed for them, all found
-the right joint. Edits beyond the data sheet: Simulink 0; CiA 402 1 (torque of the motor taken for
-that of a sensor); Chinese 1 (A taken for N.m); firmware 2 (turns taken for radians, which is still
-so); Swedish 3 (a lever in mm was left out: its port, and rls.m)."""

@@ -1,14 +1,11 @@
-"""What a figure or a report shows, without its words."""
+"""What a figure shows, without its words."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-
-from sigmahat.report.contents import Panel
 
 
 def of_figure(figure: Figure) -> list[Any]:
@@ -27,20 +24,4 @@ def of_figure(figure: Figure) -> list[Any]:
             ],
         )
         for axes in figure.axes
-    ]
-
-
-def of_report(panels: Sequence[Panel]) -> list[Any]:
-    """For each panel its scales and curves."""
-    return [
-        (
-            panel.x_log,
-            panel.y_log,
-            panel.linked,
-            [
-                (curve.x.tolist(), curve.y.tolist(), curve.kind, curve.color)
-                for curve in panel.curves
-            ],
-        )
-        for panel in panels
     ]

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 import sigmahat
 from sigmahat.fmi.instance import Fmu, Slave
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 Array = NDArray[np.float64]
 

@@ -23,8 +23,7 @@ import sigmahat
 from misfit_priors import WITHOUT_MISFITS
 from shared_data import data_folder
 from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 Array = NDArray[np.float64]
 

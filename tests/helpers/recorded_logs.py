@@ -68,6 +68,13 @@ def awas_log(
     return {"t": t, **{port: run[name] for port, name in COLUMNS.items()}, "true": run["sigma"]}
 
 
+def plain_log(rows: int = 2000) -> dict[str, Array]:
+    """A made-up motion without noise: ports and t, 1 ms apart."""
+    t = T * np.arange(rows, dtype=np.float64)
+    motion = np.sin(5 * t)
+    return {"t": t, "theta": motion, "q": 1.01 * motion, "theta_c": 75 + t, "tau": 0.1 * motion}
+
+
 def write_log(columns: Mapping[str, NDArray[np.generic]], path: Path) -> Path:
     """Writes a log in the format of the suffix."""
     if path.suffix == ".csv":

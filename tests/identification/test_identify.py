@@ -17,7 +17,6 @@ from recorded_logs import CONFIGURATION, LEAD, TRUE, Array, awas_log, read_estim
 from sigmahat.cli import main
 from sigmahat.fmi.instance import Fmu
 from sigmahat.identification.identify import identify
-from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
 from sigmahat.identification.quantities import Identified, Quantity
 from sigmahat.identification.regression import Form, Signals, equations, fit
 from sigmahat.identification.write import write
@@ -285,36 +284,6 @@ def test_gaps_do_not_disturb(tmp_path: Path) -> None:
     quantities = identified({name: column[kept] for name, column in log.items()}, path).quantities
     for name, true in TRUE.items():
         assert quantities[name].value == pytest.approx(true, rel=0.05)
-
-
-def test_variance_is_that_of_the_noise() -> None:
-    rng = np.random.default_rng(1)
-    t = 1e-3 * np.arange(20000)
-    values = 5 * np.sin(2 * np.pi * 8 * t) + rng.normal(0, 0.02, len(t))
-    assert variance(values) == pytest.approx(0.02**2, rel=0.05)
-    assert variance(np.zeros(1000), resolution=0.01) == 0.01**2 / 12
-
-
-def test_at_the_bandwidth_both_noises_are_equal() -> None:
-    torque, theta, inertia = 1e-5, 2e-9, 1e-3
-    omega = 2 * np.pi * bandwidth(torque, theta, inertia, T=1e-4)
-    assert (inertia * omega**2) ** 2 * theta == pytest.approx(torque)
-
-
-def test_low_pass_has_no_phase() -> None:
-    t = 1e-3 * np.arange(4000)
-    for f in (10.0, 40.0, 80.0):
-        filtered = low_pass(np.sin(2 * np.pi * f * t), 40.0, 1e-3)
-        gain = 1 / (1 + (np.tan(np.pi * f * 1e-3) / np.tan(np.pi * 40e-3)) ** 4)
-        expected = gain * np.sin(2 * np.pi * f * t)
-        assert filtered[1000:3000] == pytest.approx(expected[1000:3000], abs=1e-4)
-
-
-def test_best_V_a() -> None:
-    reference = np.sin(np.arange(100.0))
-    assert (
-        best_V_a({1.0: reference + 0.1, 2.0: reference - 0.01, 3.0: 0 * reference}, reference) == 2
-    )
 
 
 def test_without_noise_and_rounding_the_equations_hold() -> None:

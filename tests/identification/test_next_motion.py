@@ -10,8 +10,7 @@ import pytest
 from checked_logs import KNEE, Array
 from plant_runs import run_plant, times
 from sigmahat.identification.identify import identify
-from sigmahat.identification.quantities import Identified, Motion
-from sigmahat.identification.summary import summary
+from sigmahat.identification.quantities import Identified, Motion, summary
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.log import LogInMemory
 

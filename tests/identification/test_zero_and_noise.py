@@ -106,12 +106,3 @@ def test_a_deformation_that_is_noise_limits_the_bandwidth(
     noise = TorqueNoise(torque=9e-6, position=0.0, inertia=1e-3, T=T)
     limit = coherent_range(motor(noise_of_phi), 50.0, True, 40.0, noise)
     assert (limit < 6.0) if is_noise else limit == math.inf
-
-
-def test_the_noise_of_the_torque_has_the_density_of_its_variance() -> None:
-    noise = TorqueNoise(torque=9e-6, position=1e-12, inertia=1e-3, T=T)
-    f = np.linspace(0.0, 0.5 / T, 1001)
-    without = TorqueNoise(torque=9e-6, position=0.0, inertia=1e-3, T=T)
-    assert np.trapezoid(without.density(f), f) == pytest.approx(9e-6)
-    by_position = (1e-3 * (2 * math.pi * f) ** 2) ** 2 * 1e-12
-    assert noise.density(f) - without.density(f) == pytest.approx(2 * T * by_position)

@@ -15,21 +15,22 @@ from numpy.typing import NDArray
 from closed_form_joint import CUBIC, LINEAR, OF_THETA_C, closed_form_log
 from recorded_logs import CONFIGURATION, Array, awas_log, write_log
 from sigmahat.cli import main
-from sigmahat.fmi.installed import fmu
-from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.joint import sheet
-from sigmahat.joint.curve import Branch, Curve, characteristic, nearest
-from sigmahat.joint.curve_file import CURVE, read_curve, write_curve
+from sigmahat.joint.curve import (
+    CURVE,
+    Branch,
+    Curve,
+    nearest,
+    read_curve,
+    write_curve,
+)
 from sigmahat.joint.curve_text import curve_text, polynomial_in_words
-from sigmahat.joint.records import LearnedLog
+from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.curve import reaches
 from sigmahat.logs.estimate import Estimate, estimate
-from sigmahat.logs.learned import go_on, read_learned
-from sigmahat.logs.measured import MeasuredPoints, spread
-from sigmahat.logs.points_file import POINTS, read_points
-from sigmahat.logs.reach import reaches
+from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points, spread
 from sigmahat.logs.readers.formats import open_log
-from sigmahat.logs.replay import parameters
 
 GAIN = 0.02
 """Standard deviation of the gain of the torque: start value of prior.torque_gain."""
@@ -282,11 +283,6 @@ def test_levels_of_the_set_point_are_found() -> None:
     assert np.array_equal(nearest(found, np.array([1.1, 1.5, 2.2, 9.0])), [0, -1, 1, -1])
 
 
-def test_what_is_told_lies_in_the_reach() -> None:
-    assert characteristic((-0.2, 0.4)) == (-0.1, 0.0, 0.2)
-    assert characteristic((0.2, 0.6)) == pytest.approx((0.3, 0.4, 0.5))
-
-
 @pytest.mark.parametrize("stride", [1, 7, 300])
 def test_points_do_not_depend_on_the_chunks(stride: int) -> None:
     whole = spread(0, 10_000, stride)
@@ -310,27 +306,3 @@ def test_a_file_that_is_no_curve(text: str | None, words: str, tmp_path: Path) -
     polynomial = sheet.Polynomial([1], [0], [[1.0]], [["N.m/rad"]], None, None)
     with pytest.raises(ValueError, match=words):
         read_curve(tmp_path / CURVE, polynomial)
-
-
-def test_the_state_gives_the_same_curve_again(
-    awas: tuple[Estimate, Columns, Path],
-) -> None:
-    """A program that has a state has the curve: sigma of the FMU itself is its slope."""
-    from sigmahat.logs.frozen import stiffness_at
-
-    result, _, folder = awas
-    learned = read_learned(folder)
-    configuration = read_configuration(folder / "log.toml")
-    with Fmu(fmu("StiffnessEstimator")) as estimator, Slave(estimator, "again") as slave:
-        start = parameters(estimator, configuration)
-        slave.initialize(start)
-        every = estimator.parameters(start)
-        t_0 = go_on(slave, learned, every, configuration.path)
-        branch = result.curve.branches[2]
-        theta_c = (branch.set_point - float(every["setPoint.offset"])) / float(
-            every["setPoint.scale"]
-        )
-        points = np.array([(0.0, phi, theta_c) for phi in branch.phi])
-        found = stiffness_at(slave, ("theta", "q", "theta_c"), points, t_0, 1e-3)
-    assert found["sigma"] == pytest.approx(branch.sigma, rel=1e-9)
-    assert found["sigma_std"] == pytest.approx(branch.sigma_std, rel=1e-9)

@@ -16,9 +16,10 @@ import pytest
 from fmpy.ssp.ssd import read_ssv
 
 import sigmahat
+from command_line import refused as command_refused
 from recorded_logs import CONFIGURATION, LEAD, awas_log, read_estimate, write_log
 from sigmahat.cli import main
-from sigmahat.files.digest import sha256
+from sigmahat.files.output import sha256
 
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nprior.B = 0.2\n'
 CASES = {
@@ -140,13 +141,6 @@ def test_the_polynomial_is_the_curve(case: Path) -> None:
         assert sigma == pytest.approx(point["sigma"], rel=1e-9)
 
 
-def test_units_of_the_coefficients(case: Path) -> None:
-    p = sheet_of(case)["polynomial"]
-    names = {0: "N.m", 1: "N.m/rad"}
-    for row, power in zip(p["units"], p["powers_of_phi"], strict=True):
-        assert set(row) == {names.get(power, f"N.m/rad{power}")}
-
-
 def test_intervals_of_the_parameters(tmp_path: Path) -> None:
     """Of `identify` where it wrote one, else of the prior; none where a value is exact."""
     identified = (
@@ -171,13 +165,6 @@ def test_paper2011_claims_no_interval(tmp_path: Path) -> None:
     assert {p["interval"] for p in sheet["parameters"].values()} == {None}
     assert set(sheet["parameters"]) == {"gamma", "B", "D_theta"}
     assert sheet["start_values"]["rls.n"] == 6
-
-
-def test_the_log_of_a_motor_at_rest_has_a_sheet(tmp_path: Path) -> None:
-    text = REGRESSION.replace("[ports.theta_c]", "[ports.theta_c]\nscale = 0.01")
-    sheet = sheet_of(estimated(tmp_path, text, duration=0.02))
-    assert sheet["logs"][0]["ticks"] == 21
-    assert not sheet["confident"]
 
 
 # ---- into the FMU -------------------------------------------------------------------------------
@@ -384,11 +371,7 @@ def test_the_name_of_an_ssv_may_have_characters_that_xml_writes_otherwise(knee: 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     before = {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()}
-    capsys.readouterr()
-    assert main(["export", *arguments]) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    (line,) = captured.err.splitlines()
+    line = command_refused(capsys, "export", *arguments)
     assert {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()} == before
     return line
 

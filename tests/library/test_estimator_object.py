@@ -19,8 +19,7 @@ import sigmahat
 from recordings import one_seed
 from sigmahat.fmi import native
 from sigmahat.fmi.instance import Fmu, Slave
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop
 
 T, N = 1e-3, 3000
 INPUTS = ("theta", "q", "tau", "theta_c")

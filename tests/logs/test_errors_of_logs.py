@@ -8,25 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recorded_logs import CONFIGURATION, Array, write_log
-from sigmahat.cli import main
-
-
-def columns(rows: int = 2000) -> dict[str, Array]:
-    t = 1e-3 * np.arange(rows, dtype=np.float64)
-    motion = np.sin(5 * t)
-    return {"t": t, "theta": motion, "q": 1.01 * motion, "theta_c": 75 + t, "tau": 0.1 * motion}
+from command_line import refused as command_refused
+from recorded_logs import CONFIGURATION, Array, plain_log, write_log
 
 
 def refused(
     arguments: list[str], capsys: pytest.CaptureFixture[str], command: str = "estimate"
 ) -> str:
-    assert main([command, *arguments]) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    (line,) = captured.err.splitlines()
-    assert line.startswith("sigmahat: error: ")
-    return line
+    return command_refused(capsys, command, *arguments)
 
 
 @pytest.fixture(autouse=True)
@@ -40,7 +29,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_file_cut_in_the_middle(
     suffix: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    path = write_log(columns(), folder / f"log{suffix}")
+    path = write_log(plain_log(), folder / f"log{suffix}")
     whole = path.read_bytes()
     path.write_bytes(
         whole[: len(whole) // 2].rsplit(b",", 2)[0]
@@ -125,7 +114,7 @@ def test_values_that_do_not_fit(
     folder: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    path = write_log(change(columns()), folder / f"log{suffix}")
+    path = write_log(change(plain_log()), folder / f"log{suffix}")
     assert words in refused([path.name], capsys)
 
 
@@ -161,7 +150,7 @@ def test_values_that_do_not_fit(
 def test_configuration_that_does_not_fit(
     old: str, new: str, words: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    write_log(columns(), folder / "log.parquet")
+    write_log(plain_log(), folder / "log.parquet")
     assert old in CONFIGURATION
     Path("log.toml").write_text(CONFIGURATION.replace(old, new))
     assert words in refused(["log.parquet"], capsys)
@@ -173,21 +162,21 @@ def test_times_since_1970_are_told_from_the_first_row(
     suffix: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     Path("log.toml").write_text(CONFIGURATION.replace('"t"', '"t"\nunit = "ns"'))
-    path = write_log(nanoseconds_back(columns()), folder / f"log{suffix}")
+    path = write_log(nanoseconds_back(plain_log()), folder / f"log{suffix}")
     line = refused([path.name], capsys)
     assert "does not increase: 1.4 s in row 1501 after 1.499 s" in line
 
 
 def test_no_configuration(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    write_log(columns(), folder / "other.csv")
+    write_log(plain_log(), folder / "other.csv")
     assert "sigmahat init" in refused(["other.csv"], capsys)
 
 
 def test_identify_needs_its_ports(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    write_log(columns(), folder / "log.csv")
+    write_log(plain_log(), folder / "log.csv")
     line = refused(["log.csv", "--torque-constant"], capsys, "identify")
     assert "tau_e_sensor" in line
-    write_log(columns(rows=200), folder / "log.csv")
+    write_log(plain_log(rows=200), folder / "log.csv")
     assert "without a gap" in refused(["log.csv"], capsys, "identify")
 
 
@@ -202,6 +191,6 @@ def test_identify_needs_its_ports(folder: Path, capsys: pytest.CaptureFixture[st
 def test_a_name_of_before_is_answered_with_the_new_one(
     old: str, new: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    write_log(columns(), folder / "log.csv")
-    Path("log.toml").write_text(f"{CONFIGURATION}\n[parameters]\n{old}\n")
+    write_log(plain_log(), folder / "log.csv")
+    Path("log.toml").write_text(f"{CONFIGURATION}\n{old}\n")
     assert f"it is called '{new}' now" in refused(["log.csv"], capsys)

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from command_line import refused as command_refused
 from recorded_logs import CONFIGURATION, Array, awas_log, read_estimate, write_log
 from sigmahat.cli import main
-from sigmahat.files.digest import sha256
+from sigmahat.files.output import sha256
 
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\n'
 HALF = 2000
@@ -168,10 +169,7 @@ def refused(capsys: pytest.CaptureFixture[str], *options: str) -> str:
     """The one line of an estimate that must fail; its folder must stay as it is."""
     before = {path: path.read_bytes() for path in Path("out").glob("*")}
     arguments = ["estimate", "second.parquet", "--config", "joint.toml", "--out", "out"]
-    assert main([*arguments, *options]) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    (line,) = captured.err.splitlines()
+    line = command_refused(capsys, *arguments, *options)
     assert {path: path.read_bytes() for path in Path("out").glob("*")} == before
     return line
 

@@ -19,7 +19,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from confined import MOST_MEMORY, Confined
 from recorded_logs import CONFIGURATION, write_log
 from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import LogError
 from sigmahat.logs.readers.formats import open_log
 from sigmahat.logs.sampling import sample
 from strange_files import TRIALS, Trial, usual

@@ -8,28 +8,22 @@ import numpy as np
 import pyarrow.csv
 import pytest
 
-from recorded_logs import CONFIGURATION, Array, write_log
+from recorded_logs import CONFIGURATION, plain_log, write_log
 from sigmahat.cli import main
-from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import LogError
 from sigmahat.logs.output import read_estimate
 from sigmahat.logs.readers.formats import open_log
 
 ROWS = 2000
 
 
-def columns(rows: int = ROWS) -> dict[str, Array]:
-    t = 1e-3 * np.arange(rows, dtype=np.float64)
-    motion = np.sin(5 * t)
-    return {"t": t, "theta": motion, "q": 1.01 * motion, "theta_c": 75 + t, "tau": 0.1 * motion}
-
-
 def test_a_csv_log_is_parsed_once(tmp_path: Path) -> None:
     # GIVEN a file that is gone once it has been opened THEN all of its numbers are there
-    path = write_log(columns(), tmp_path / "log.csv")
+    path = write_log(plain_log(), tmp_path / "log.csv")
     log = open_log(path)
     path.unlink()
-    assert log.columns == dict.fromkeys(columns(), ROWS)
-    for name, values in columns().items():
+    assert log.columns == dict.fromkeys(plain_log(), ROWS)
+    for name, values in plain_log().items():
         assert np.array_equal(log.read(name), values)
     rows = [batch.num_rows for batch in log.batches(["t", "q"], 300)]
     assert sum(rows) == ROWS and max(rows) <= 300
@@ -40,10 +34,10 @@ def test_a_column_that_begins_with_numbers_may_go_on_with_text(tmp_path: Path) -
     rows = 40_000
     note = np.arange(rows).astype(str)
     note[-1] = "end"
-    path = write_log({**columns(rows), "note": note}, tmp_path / "log.csv")
+    path = write_log({**plain_log(rows), "note": note}, tmp_path / "log.csv")
     assert path.stat().st_size > 2 << 20
     log = open_log(path)
-    assert np.array_equal(log.read("q"), columns(rows)["q"])
+    assert np.array_equal(log.read("q"), plain_log(rows)["q"])
     with pytest.raises(LogError, match=r"'note' holds text \('end' in row 40000\)"):
         log.read("note")
     assert [each for batch in log.batches(["note"], rows) for each in batch["note"].to_pylist()][
@@ -61,7 +55,7 @@ def test_whole_numbers_stay_whole_numbers(
     rows = ROWS if not begin else 60_000
     stamps = 1_700_000_000_123_456_789 + 1_000_000 * np.arange(rows, dtype=np.int64)
     note = np.array(["0"] * (rows - begin) + ["0.5"] * begin)
-    write_log({**columns(rows), "t": stamps, "note": note}, Path("log.csv"))
+    write_log({**plain_log(rows), "t": stamps, "note": note}, Path("log.csv"))
     text = Path("log.csv").read_text().replace('"', "")
     Path("log.csv").write_text(text)
     log = open_log(Path("log.csv"))
@@ -77,7 +71,7 @@ def test_dates_are_times_and_stay_as_they_are(
     monkeypatch.chdir(tmp_path)
     stamps = np.datetime64("2024-05-01T12:00:00.250") + np.arange(ROWS).astype("timedelta64[ms]")
     text = np.datetime_as_string(stamps, "ms")
-    write_log({**columns(), "t": text}, Path("log.csv"))
+    write_log({**plain_log(), "t": text}, Path("log.csv"))
     Path("log.toml").write_text(CONFIGURATION)
     assert main(["estimate", "log.csv", "--out", ".", "--quiet"]) == 0
     written = pyarrow.csv.read_csv(
@@ -85,7 +79,7 @@ def test_dates_are_times_and_stay_as_they_are(
         convert_options=pyarrow.csv.ConvertOptions(column_types={"t": pyarrow.string()}),
     )
     assert written["t"].to_pylist() == text.tolist()
-    assert np.allclose(read_estimate(Path())["t"].values, columns()["t"], rtol=0, atol=1e-12)
+    assert np.allclose(read_estimate(Path())["t"].values, plain_log()["t"], rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
@@ -93,7 +87,7 @@ def test_estimates_are_read_as_they_were_written(
     suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    write_log({**columns(), "note [V]": np.full(ROWS, 3.0)}, Path(f"log{suffix}"))
+    write_log({**plain_log(), "note [V]": np.full(ROWS, 3.0)}, Path(f"log{suffix}"))
     Path("log.toml").write_text(CONFIGURATION)
     assert main(["estimate", f"log{suffix}", "--out", "out", "--quiet"]) == 0
     signals = read_estimate(Path("out"))
@@ -106,7 +100,7 @@ def test_estimates_are_read_as_they_were_written(
         kind = {"doubt": object, "valid": bool, "confident": bool}.get(name, np.float64)
         assert signal.values.dtype == kind
         assert signal.values.shape == (ROWS,)
-    phi = columns()["q"] - columns()["theta"]
+    phi = plain_log()["q"] - plain_log()["theta"]
     assert np.allclose(signals["phi"].values, phi, rtol=1e-12, atol=1e-15)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sigmahat.logs.configuration import checked_configuration
-from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import LogError
 from sigmahat.logs.readers.formats import open_log
 from sigmahat.logs.sampling import sample
 from sigmahat.user_input import toml_file

@@ -11,8 +11,8 @@ from checked_logs import knee_log
 from recorded_logs import write_log
 from sigmahat.logs.readers.formats import open_log
 from sigmahat.page.edits import comment_of, remove_value, set_value, to_fill_in, value_of
+from sigmahat.page.jobs import guessed
 from sigmahat.page.setup import Setup
-from sigmahat.page.start import guessed
 
 FILE = """\
 # of mine

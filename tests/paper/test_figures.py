@@ -15,7 +15,7 @@ from recordings import one_seed
 from sigmahat.paper.figures.catalogue import FIGURES
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.plotting.save import save
-from sigmahat.runs.nominal_awas import nominal_awas
+from sigmahat.runs.signals import nominal_awas
 
 # One scenario of each kind, and its figures.
 DRAWN = [

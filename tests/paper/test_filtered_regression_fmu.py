@@ -15,8 +15,7 @@ from c_library import Array, Estimator, Library, load
 from c_regression import covariance
 from plant_runs import run_awas, times
 from sigmahat.fmi.instance import Fmu, Slave
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 from sigmahat.runs.metrics import msrep
 
 T = 1e-3  # [s]

@@ -11,9 +11,8 @@ from recordings import one_seed, twenty_seeds
 from sigmahat.paper.reproduction import Result, reproduce
 from sigmahat.paper.scenarios import SCENARIOS, scenario
 from sigmahat.runs.metrics import mean_interval
-from sigmahat.runs.nominal_awas import nominal_awas
 from sigmahat.runs.scenario import Sine, Sines
-from sigmahat.runs.signals import signal_of
+from sigmahat.runs.signals import nominal_awas, signal_of
 
 
 def worst(result: Result, name: str, index: str) -> float:

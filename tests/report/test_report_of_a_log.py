@@ -14,8 +14,8 @@ import pytest
 from browser import DATA, ROWS, opened
 from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.cli import main
-from sigmahat.joint.curve_file import CURVE
-from sigmahat.plotting.scale import limits
+from sigmahat.joint.curve import CURVE
+from sigmahat.plotting.style import limits
 from sigmahat.report.findings import FINDINGS, ShownFinding, write_findings
 
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nprior.B = 0.2\nrls.n = 3\n'

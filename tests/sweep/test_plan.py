@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 from sigmahat.fmi.instance import FmuError
-from sigmahat.sweep.check import check
-from sigmahat.sweep.fmus import sweep_digest
-from sigmahat.sweep.plan import Plan
+from sigmahat.sweep.plan import Drawn, values
 from sigmahat.sweep.plan_file import read_plan
-from sigmahat.sweep.values import Drawn, values
+from sigmahat.sweep.preparation import check
 
 PLAN = """\
 scenario = ["table1", "as-printed"]
@@ -102,33 +100,6 @@ def test_options_replace_the_file(tmp_path: Path) -> None:
     assert plan.scenarios == ("table1",)
     assert plan.modalities == ("RESIDUAL", "SENSOR")
     assert len(plan) == len(plan.runs) == 1 * 3 * 1 * 2 * 2
-
-
-@pytest.mark.parametrize(
-    ("drawn", "mean", "deviation"),
-    [(Drawn("normal", 3.0, 0.5), 3.0, 0.5), (Drawn("uniform", 1.0, 3.0), 2.0, 1 / np.sqrt(3))],
-)
-def test_what_is_drawn_is_distributed_as_said(drawn: Drawn, mean: float, deviation: float) -> None:
-    count = 2000
-    x = np.array([drawn.value("a", seed) for seed in range(1, count + 1)])
-    y = np.array([drawn.value("b", seed) for seed in range(1, count + 1)])
-    five = 5 / np.sqrt(count)  # standard errors
-    assert abs(x.mean() - mean) < five * deviation
-    assert abs(x.std() / deviation - 1) < five
-    assert abs(np.corrcoef(x, y)[0, 1]) < five
-    if drawn.kind == "uniform":
-        assert 1.0 <= x.min() < 1.01 < 2.99 < x.max() <= 3.0
-
-
-def test_different_sweeps_have_different_digests() -> None:
-    plans = [
-        Plan(("table1",), seeds, modalities, parameters)
-        for seeds in (1, 2)
-        for modalities in ((), ("RESIDUAL",))
-        for parameters in ({}, {"plant.link.M": (0.1,)}, {"plant.link.M": (0.2,)})
-    ]
-    assert len({sweep_digest(plan) for plan in plans}) == len(plans)
-    assert sweep_digest(Plan(("table1",), 1, (), {})) == sweep_digest(plans[0])
 
 
 @pytest.mark.parametrize(

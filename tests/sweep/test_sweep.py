@@ -16,12 +16,11 @@ import scipy.stats
 from sigmahat.paper.reproduction import reproduce
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.metrics import INDICES, Indices
-from sigmahat.sweep.columns import ParameterColumn, Role
 from sigmahat.sweep.job import sweep
 from sigmahat.sweep.plan import Outcome, Plan
 from sigmahat.sweep.plan_file import read_plan
 from sigmahat.sweep.records import Records
-from sigmahat.sweep.table import read
+from sigmahat.sweep.table import ParameterColumn, Role, read
 from sweeps import QUICK, records, refused, run, start, wait_for_records
 
 FILES = {
@@ -93,7 +92,7 @@ def test_killed_and_resumed_is_the_same_file(tmp_path: Path) -> None:
     process.communicate()
     before = path.read_bytes()
     assert 5 <= len(records(path)) < 24
-    path.write_bytes(before + b'0123abcd {"numb')
+    path.write_bytes(before + b'{"numb')
     # THEN its workers are gone with it
     gone, alive = psutil.wait_procs(workers, timeout=300)
     assert (len(gone), alive) == (len(workers), [])
@@ -101,7 +100,7 @@ def test_killed_and_resumed_is_the_same_file(tmp_path: Path) -> None:
     done = run(*arguments, "--out", "killed", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert path.read_bytes().startswith(before)
-    numbers = [json.loads(line.partition(b" ")[2])["number"] for line in records(path)]
+    numbers = [json.loads(line)["number"] for line in records(path)]
     assert sorted(numbers) == list(range(24))
     for name in FILES - {"runs.jsonl"}:
         assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "killed" / name).read_bytes()
@@ -126,7 +125,7 @@ def test_more_seeds_than_before_are_those_of_one_sweep(tmp_path: Path) -> None:
     assert (grown.returncode, grown.stderr) == (0, "")
     assert grown.stdout.splitlines()[:-1] == whole.stdout.splitlines()[:-1]
     assert path.read_bytes().startswith(few)
-    contents = [json.loads(line.partition(b" ")[2]) for line in path.read_bytes().splitlines()]
+    contents = [json.loads(line) for line in path.read_bytes().splitlines()]
     assert sum("number" in content for content in contents) == 2 * 5
     for name in FILES - {"runs.jsonl"}:
         assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "grown" / name).read_bytes()

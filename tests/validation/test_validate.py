@@ -15,11 +15,11 @@ from recorded_logs import CONFIGURATION, Array, awas_log, read_estimate, write_l
 from sigmahat.cli import main
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.estimate import begin
 from sigmahat.logs.frozen import stiffness_at
+from sigmahat.logs.job import Replay
 from sigmahat.logs.learned import read_learned
-from sigmahat.validation.agreement import agreement
-from sigmahat.validation.torque import TorqueError
+from sigmahat.logs.readers.formats import open_log
+from sigmahat.validation.agreement import TorqueError, agreement
 
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\nprior.B = 0.2\n'
 DURATION = 10.0
@@ -178,8 +178,9 @@ def frozen(folder: Path, points: Array) -> dict[str, Array]:
     configuration = read_configuration(folder / "knee.toml")
     learned = read_learned(folder / "sigmahat-results" / "knee")
     with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "x") as slave:
-        t_0 = begin(slave, configuration, learned)
-        return stiffness_at(slave, ("theta", "q", "theta_c"), points, t_0, 1e-3)
+        log = open_log(folder / "knee.parquet")
+        replay = Replay(slave, log, configuration, learned)
+        return stiffness_at(slave, ("theta", "q", "theta_c"), points, replay.t, 1e-3)
 
 
 def test_nothing_is_learned_at_a_point(folder: Path) -> None:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from sigmahat.checks.columns import columns
 from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
-from sigmahat.checks.keys import gears, rests_on
 from sigmahat.checks.relation import relation
 from sigmahat.checks.replayed import Outputs, play, replayed
 from sigmahat.checks.view import View, view
@@ -16,6 +15,7 @@ from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.data_sheet import absent, exact
 from sigmahat.logs.log import Log
 from sigmahat.logs.replay import parameters
 
@@ -98,3 +98,53 @@ def _contradictions(seen: View) -> Iterator[Finding]:
     if not any(key.endswith("gear_ratio") for key in keys):
         yield from gears(seen.configuration, seen.every)
     yield from dynamics(seen, here)
+
+
+_AWAS = ("motor.B", "motor.D_theta", "motor.gamma")
+_SAME = 0.01
+"""Two gear ratios are the same up to this."""
+
+
+def gears(configuration: Configuration, every: Mapping[str, Value]) -> Iterator[Finding]:
+    """motor.gamma beside the gear of the encoder and of the torque."""
+    gamma = abs(float(every["motor.gamma"]))
+    for name in ("theta", "tau"):
+        port = configuration.ports.get(name)
+        gear = abs(port.gear_ratio) if port else 1.0
+        if gear == 1 or abs(gamma / gear - 1) < _SAME:
+            continue
+        own = (f"ports.{name}.gear_ratio", gamma)
+        keys = [("motor.gamma", gear), own] if name == "theta" else [own, ("motor.gamma", gear)]
+        (key, proposed), other = keys
+        measured, expected = (gamma, gear) if name == "theta" else (gear, gamma)
+        yield Finding(
+            Kind.GEAR, Severity.WRONG, key, measured, "", expected, proposed, [other], name
+        )
+
+
+def rests_on(
+    configuration: Configuration,
+    every: Mapping[str, Value],
+    start: Mapping[str, Value],
+    per_gain: float,
+) -> Iterator[Finding]:
+    """What no log shows.
+
+    start     start values of the FMU
+    per_gain  relative change of the stiffness with a relative change of the gain of the torque
+    """
+    tau = configuration.ports.get("tau")
+    is_current = tau is not None and tau.torque_constant is not None
+    key = "ports.tau.torque_constant" if is_current else "prior.torque_gain"
+    gain = float(every["prior.torque_gain"])
+    yield Finding(Kind.TORQUE_GAIN, Severity.RESTS_ON, key, per_gain, "", gain)
+    if every["modality"] == "Residual" and all(every[name] == start[name] for name in _AWAS):
+        gamma = float(every["motor.gamma"])
+        yield Finding(Kind.OTHER_ROBOT, Severity.RESTS_ON, "motor.gamma", gamma, "")
+    if every["method"] != "FilteredRegression":
+        return
+    for name in exact(every):
+        value = float(every[f"motor.{name}"])
+        yield Finding(Kind.EXACT, Severity.RESTS_ON, f"prior.{name}", value, "", about=name)
+    for name in absent(every):
+        yield Finding(Kind.ABSENT, Severity.RESTS_ON, f"prior.{name}", 0.0, "", about=name)

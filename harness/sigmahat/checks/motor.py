@@ -16,13 +16,13 @@ import numpy as np
 from sigmahat.checks.view import View
 from sigmahat.identification.coherence import TorqueNoise, coherent_range
 from sigmahat.identification.noise import bandwidth, variance
-from sigmahat.identification.orders import choose
 from sigmahat.identification.regression import (
     MOTOR,
     Equations,
     Fit,
     Form,
     Signals,
+    choose,
     equations,
     fit,
     is_worse,

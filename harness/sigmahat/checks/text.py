@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
 
@@ -48,7 +49,7 @@ def nothing_found(checked: Checked) -> str:
 
 def sentence(finding: Finding) -> str:
     """The finding, the key to look at, and what it should be, in one line."""
-    return f"{finding.key}: {_SENTENCES[finding.kind](finding)}{_proposal(finding)}"
+    return f"{finding.key}: {_what(finding)}{_proposal(finding)}"
 
 
 def _proposal(finding: Finding) -> str:
@@ -71,138 +72,56 @@ def _number(value: float | None, unit: str) -> str:
     return "" if value is None else f"{value:.3g} {unit}".rstrip()
 
 
-def _slope(f: Finding) -> str:
-    opposite = "q moves against theta" if f.about == "sign" else ""
-    return opposite or f"q moves {f.measured:.4g} times as far as theta, expected about 1"
-
-
-def _gear(f: Finding) -> str:
-    if f.key == "motor.gamma":
-        return f"it is {f.measured:g}, but the gear ratio of {f.about} is {f.expected:g}"
-    return f"it is {f.measured:g}, but motor.gamma is {f.expected:g}"
-
-
-def _sign(f: Finding) -> str:
-    return (
-        "with this sign inertia, friction or stiffness are negative: the stiffness would be "
-        f"{_number(f.measured, f.unit)}"
+def _what(f: Finding) -> str:
+    """The sentence of its kind, filled in."""
+    template = _SENTENCES[f.kind]
+    if f.kind is Kind.SLOPE and f.about == "sign":
+        template = "q moves against theta"
+    elif f.kind is Kind.TORQUE_LAG and f.measured < 0:
+        template = "the torque comes {ms} earlier than the motion explains, or the spring is damped"
+    return template.format(
+        measured=_number(f.measured, f.unit),
+        expected=_number(f.expected, f.unit),
+        value=f.measured,
+        about=f.about,
+        percent=f"{100 * f.measured:.3g} %",
+        ms=f"{1e3 * abs(f.measured):.3g} ms",
+        later="later" if f.measured > 0 else "earlier",
+        ratio=f.measured / f.expected if f.expected else math.nan,
+        gear=f"the gear ratio of {f.about}" if f.key == "motor.gamma" else "motor.gamma",
+        given=f.expected,
+        reason=_DOUBTS.get(f.about, f.about),
+        effect=_ABSENT.get(f.about, f.about),
+        gain=f"known to {100 * f.expected:.3g} %" if f.expected else "taken as exact",
     )
 
 
-def _stiffness(f: Finding) -> str:
-    return (
-        f"the stiffness would be {_number(f.measured, f.unit)}, below 0; a deformation of the "
-        "wrong sign or scale does that"
-    )
-
-
-def _zero(f: Finding) -> str:
-    return f"the spring has no torque at a deformation of {_number(f.measured, f.unit)}, not at 0"
-
-
-def _torque_lag(f: Finding) -> str:
-    ms = f"{1e3 * abs(f.measured):.3g} ms"
-    if f.measured > 0:
-        return f"the torque comes {ms} later than the motion explains"
-    return f"the torque comes {ms} earlier than the motion explains, or the spring is damped"
-
-
-def _encoder_lag(f: Finding) -> str:
-    side = "later" if f.measured > 0 else "earlier"
-    return (
-        "the viscous friction would be negative, as if q were recorded "
-        f"{1e3 * abs(f.measured):.3g} ms {side} than theta"
-    )
-
-
-def _inertia(f: Finding) -> str:
-    ratio = f.measured / f.expected if f.expected else float("nan")
-    return f"the log shows an inertia of {_number(f.measured, f.unit)}, {ratio:.3g} times motor.B"
-
-
-def _torque_scale(f: Finding) -> str:
-    return f"{_inertia(f)}, as if the torque were geared twice or not at all"
-
-
-def _step(f: Finding) -> str:
-    return (
-        f"the values of {f.about} change in steps of {_number(f.measured, f.unit)}, "
-        f"the configured encoder has {_number(f.expected, f.unit)}"
-    )
-
-
-def _jump(f: Finding) -> str:
-    return f"{f.about} jumps by {_number(f.measured, f.unit)}, as a counter that starts again"
-
-
-def _saturation(f: Finding) -> str:
-    return f"the torque stays at an end of its range for {100 * f.measured:.3g} % of the samples"
-
-
-def _noise(f: Finding) -> str:
-    return (
-        f"the noise of the torque is {_number(f.measured, f.unit)}, "
-        f"the configuration says {_number(f.expected, f.unit)}"
-    )
-
-
-def _misfit(f: Finding) -> str:
-    return f"the errors of the model are {f.measured:.3g} times as large as noise explains"
-
-
-def _doubt(f: Finding) -> str:
-    reason = _DOUBTS[f.about]
-    return f"not confident in {100 * f.measured:.3g} % of the second half: {reason}"
-
-
-def _range(f: Finding) -> str:
-    return (
-        f"the log reaches {_number(f.measured, f.unit)}, the configuration says "
-        f"{_number(f.expected, f.unit)} (identify sets it)"
-    )
-
-
-def _learned(f: Finding) -> str:
-    return f"the estimator learned at {100 * f.measured:.3g} % of the ticks only"
-
-
-def _gain(f: Finding) -> str:
-    gain = f"known to {100 * f.expected:.3g} %" if f.expected else "taken as exact"
-    return f"gain of the torque, {gain}; 1 % of it changes the stiffness by {f.measured:.3g} %"
-
-
-def _other_robot(f: Finding) -> str:
-    return "motor.B, motor.D_theta and motor.gamma are still those of the AwAS"
-
-
-def _exact(f: Finding) -> str:
-    return f"motor.{f.about} = {f.measured:.4g} is taken as exact"
-
-
-def _absent(f: Finding) -> str:
-    return f"no {_ABSENT.get(f.about, f.about)} is assumed"
-
-
-_SENTENCES: Mapping[Kind, Callable[[Finding], str]] = {
-    Kind.SLOPE: _slope,
-    Kind.GEAR: _gear,
-    Kind.SIGN: _sign,
-    Kind.STIFFNESS_SIGN: _stiffness,
-    Kind.ZERO: _zero,
-    Kind.TORQUE_LAG: _torque_lag,
-    Kind.ENCODER_LAG: _encoder_lag,
-    Kind.INERTIA: _inertia,
-    Kind.TORQUE_SCALE: _torque_scale,
-    Kind.OTHER_ROBOT: _other_robot,
-    Kind.STEP: _step,
-    Kind.JUMP: _jump,
-    Kind.SATURATION: _saturation,
-    Kind.NOISE: _noise,
-    Kind.MISFIT: _misfit,
-    Kind.DOUBT: _doubt,
-    Kind.RANGE: _range,
-    Kind.LEARNED: _learned,
-    Kind.TORQUE_GAIN: _gain,
-    Kind.EXACT: _exact,
-    Kind.ABSENT: _absent,
+_INERTIA = "the log shows an inertia of {measured}, {ratio:.3g} times motor.B"
+_SENTENCES: Mapping[Kind, str] = {
+    Kind.SLOPE: "q moves {value:.4g} times as far as theta, expected about 1",
+    Kind.GEAR: "it is {value:g}, but {gear} is {given:g}",
+    Kind.SIGN: "with this sign inertia, friction or stiffness are negative: the stiffness would be "
+    "{measured}",
+    Kind.STIFFNESS_SIGN: "the stiffness would be {measured}, below 0; a deformation of the "
+    "wrong sign or scale does that",
+    Kind.ZERO: "the spring has no torque at a deformation of {measured}, not at 0",
+    Kind.TORQUE_LAG: "the torque comes {ms} later than the motion explains",
+    Kind.ENCODER_LAG: "the viscous friction would be negative, as if q were recorded {ms} {later} "
+    "than theta",
+    Kind.INERTIA: _INERTIA,
+    Kind.TORQUE_SCALE: f"{_INERTIA}, as if the torque were geared twice or not at all",
+    Kind.OTHER_ROBOT: "motor.B, motor.D_theta and motor.gamma are still those of the AwAS",
+    Kind.STEP: "the values of {about} change in steps of {measured}, the configured encoder has "
+    "{expected}",
+    Kind.JUMP: "{about} jumps by {measured}, as a counter that starts again",
+    Kind.SATURATION: "the torque stays at an end of its range for {percent} of the samples",
+    Kind.NOISE: "the noise of the torque is {measured}, the configuration says {expected}",
+    Kind.MISFIT: "the errors of the model are {value:.3g} times as large as noise explains",
+    Kind.DOUBT: "not confident in {percent} of the second half: {reason}",
+    Kind.RANGE: "the log reaches {measured}, the configuration says {expected} (identify sets it)",
+    Kind.LEARNED: "the estimator learned at {percent} of the ticks only",
+    Kind.TORQUE_GAIN: "gain of the torque, {gain}; 1 % of it changes the stiffness by "
+    "{value:.3g} %",
+    Kind.EXACT: "motor.{about} = {value:.4g} is taken as exact",
+    Kind.ABSENT: "no {effect} is assumed",
 }

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import logging
-import math
 import shutil
 import sys
 from collections.abc import Callable, Iterator
@@ -161,14 +160,6 @@ def configuration_of(log: Path) -> Path:
 
 def print_json(values: object) -> None:
     """Prints values for a script; nan and infinity become null."""
-    click.echo(json.dumps(_finite(values), indent=2))
+    from sigmahat.files.output import finite
 
-
-def _finite(values: Any) -> Any:
-    if isinstance(values, dict):
-        return {str(key): _finite(value) for key, value in values.items()}
-    if isinstance(values, (list, tuple)):
-        return [_finite(value) for value in values]
-    if isinstance(values, float) and not math.isfinite(values):
-        return None
-    return values
+    click.echo(json.dumps(finite(values), indent=2))

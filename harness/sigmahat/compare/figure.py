@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from sigmahat.compare import labels
 from sigmahat.compare.conditions import METHODS, PAPER2011, REGRESSION, Device
 from sigmahat.compare.job import Row
-from sigmahat.plotting.colors import BLUE, VERMILION
+from sigmahat.plotting.style import BLUE, VERMILION
 
 _COLORS = {PAPER2011: VERMILION, REGRESSION: BLUE}
 _MARKERS = "ovsD^"

@@ -11,8 +11,7 @@ from sigmahat.compare import labels
 from sigmahat.compare.conditions import METHODS, REGRESSION
 from sigmahat.compare.job import Row
 from sigmahat.compare.performance import Performance
-from sigmahat.files.csv_table import write_csv
-from sigmahat.files.text_table import aligned
+from sigmahat.files.tables import aligned, write_csv
 
 
 def table(rows: Sequence[Row]) -> str:

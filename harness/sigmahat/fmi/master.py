@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import named
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 Signal = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Values of an input at the times given [s]."""

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Array, Log
+from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.units import unwrap
 
 TURN = {"rad": 2 * np.pi, "mrad": 2000 * np.pi, "deg": 360.0, "turn": 1.0}

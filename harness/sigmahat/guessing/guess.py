@@ -13,13 +13,58 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sigmahat.guessing.columns import Column, Columns, read_columns
-from sigmahat.guessing.joints import joints as joints_of
 from sigmahat.guessing.ports import PortGuess, guess_ports
-from sigmahat.guessing.roles import Roles, chosen_roles
+from sigmahat.guessing.roles import Roles, assign, chosen_roles
 from sigmahat.logs.configuration import PORTS
-from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Log
+from sigmahat.logs.log import Log, LogError
 from sigmahat.user_input.unknown_name import unknown
+
+_OF_A_JOINT = ("position", "torque", "current", None)
+
+
+def joints_of_log(columns: Sequence[Column], T: float) -> dict[str, Roles]:
+    """The joints of a log by their names; one without a name if the log has only one.
+
+    T  time between the samples of the windows of the columns [s]
+    """
+    placed = [each for each in columns if each.meaning.quantity in _OF_A_JOINT]
+    for groups in (_groups(placed, _all_words(placed)), _groups(placed, _joint_words(placed))):
+        found = {name: assign(group, T) for name, group in groups.items()}
+        whole = {name: roles for name, roles in found.items() if name and roles.is_complete}
+        if len(whole) > 1:
+            return whole
+        if len(whole) == 1:
+            (name,) = whole
+            # What bears no name of a joint is of the only one.
+            return {name: assign([*groups[name], *groups.get("", [])], T)}
+    if len(groups.keys() - {""}) > 1:
+        return {name: roles for name, roles in found.items() if name and roles.ports}
+    return {"": assign(placed, T)}
+
+
+def _groups(
+    columns: Sequence[Column], words: Mapping[str, Sequence[str]]
+) -> dict[str, list[Column]]:
+    """Columns by what is left of their names."""
+    groups: dict[str, list[Column]] = {}
+    for column in columns:
+        groups.setdefault("_".join(words[column.name]), []).append(column)
+    return groups
+
+
+def _all_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
+    """Words and numbers that do not stand in every name, and names of joints."""
+    common = set.intersection(*(set(each.meaning.rest) for each in columns)) if columns else set()
+    return {
+        each.name: [
+            word for word in each.meaning.rest if word not in common or word in each.meaning.joints
+        ]
+        for each in columns
+    }
+
+
+def _joint_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
+    return {each.name: each.meaning.joints for each in columns}
 
 
 @dataclass(frozen=True)
@@ -63,7 +108,7 @@ def guess(log: Log) -> dict[str, JointGuess]:
 
 def guess_of(columns: Columns, log: Log) -> dict[str, JointGuess]:
     """The same for the columns of a log that were looked at before."""
-    found = joints_of(columns.signals, columns.window_T)
+    found = joints_of_log(columns.signals, columns.window_T)
     return {name: _joint(name, roles, columns, log) for name, roles in found.items()}
 
 

@@ -21,8 +21,7 @@ from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, varianc
 from sigmahat.identification.quantities import WIDE, Advice, Identified, Quantity
 from sigmahat.identification.regression import Form, Signals, shortest
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Array, Log
+from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.replay import parameters, replay
 from sigmahat.logs.resampling import stretches
 from sigmahat.logs.sampling import Samples, sample

@@ -9,7 +9,6 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from sigmahat.identification.orders import Orders, choose
 from sigmahat.identification.quantities import Quantity
 from sigmahat.identification.regression import (
     CONSTANT,
@@ -18,7 +17,9 @@ from sigmahat.identification.regression import (
     Equations,
     Fit,
     Form,
+    Orders,
     Signals,
+    choose,
     equations,
     fit,
     is_worse,

@@ -9,7 +9,7 @@ from typing import Any
 
 import tomlkit
 
-from sigmahat.files.whole_file import write_whole
+from sigmahat.files.output import write_whole
 from sigmahat.fmi.opened import installed
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import MOTOR

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from sigmahat.files.text_table import aligned
+from sigmahat.files.tables import aligned
 from sigmahat.joint.curve import Branch, Curve, characteristic
-from sigmahat.joint.records import Range
 from sigmahat.joint.sheet import Polynomial
+from sigmahat.joint.stored import Range
 
 STIFFNESS_HEAD = ("phi [rad]", "sigma [N.m/rad]", "95 % interval")
 FAMILY_HEAD = (

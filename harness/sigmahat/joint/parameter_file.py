@@ -14,7 +14,7 @@ from typing import Any
 
 from lxml import etree
 
-from sigmahat.files.whole_file import write_whole
+from sigmahat.files.output import write_whole
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.joint.sheet import Sheet
 

@@ -5,19 +5,16 @@ Numbers are written with all of their digits, so that what is read is what was e
 
 from __future__ import annotations
 
-import json
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.files.output import write_json
 from sigmahat.fmi.instance import Value
-from sigmahat.joint.records import NO_OTHER_KEYS, FmuId, LearnedLog, Range, Text
-from sigmahat.joint.stored import Format
+from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Range, Text
 
 UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "misfit": "1"}
 
@@ -172,16 +169,7 @@ FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)
 
 def write(sheet: Sheet, path: Path) -> None:
     """Writes a sheet. A number that is not finite becomes null."""
-    text = json.dumps(_finite(asdict(sheet)), indent=1, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
-
-
-def _finite(values: Any) -> Any:
-    if isinstance(values, Mapping):
-        return {key: _finite(value) for key, value in values.items()}
-    if isinstance(values, Sequence) and not isinstance(values, str):
-        return [_finite(value) for value in values]
-    return None if isinstance(values, float) and not math.isfinite(values) else values
+    write_json(asdict(sheet), path)
 
 
 def powers_of_phi(symmetric: bool, n: int) -> list[int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import Recorder
 
 _CURVE = "rls.eta_0["
 _NOT_IN_A_RUN = (

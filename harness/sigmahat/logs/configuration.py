@@ -29,7 +29,7 @@ from pydantic import AfterValidator, AllowInfNan, ConfigDict, Strict, TypeAdapte
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from sigmahat.fmi.instance import Value
-from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import LogError
 from sigmahat.user_input import toml_file
 from sigmahat.user_input.unknown_name import unknown
 

@@ -8,50 +8,81 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from sigmahat.files.digest import sha256
+from sigmahat.files.output import sha256
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import Recorder
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import NORMAL_95, Curve
-from sigmahat.joint.records import FmuId, LearnedLog, Range
 from sigmahat.joint.start_values import start_values
-from sigmahat.logs import assumptions
+from sigmahat.joint.stored import FmuId, Range
+from sigmahat.logs.job import Replay
 from sigmahat.user_input import toml_file
+
+UNITS = {
+    "bias": "N.m",
+    "damping": "N.m.s/rad",
+    "load_friction": "",
+    "eccentric": "rad",
+    "delay": "s",
+    "hysteresis": "N.m",
+}
+"""Of what FilteredRegression estimates beside motor data: output bias_hat, parameter prior.bias."""
+MOTOR = {"B": "kg.m2", "D_theta": "N.m.s/rad"}
+"""Units of the motor data: parameter motor.B, output B_hat."""
+
+
+def priors(p: Mapping[str, Value]) -> dict[str, float]:
+    """Standard deviations of the priors of UNITS, in the units of the outputs.
+
+    p  all parameters
+    """
+    tau_e, phi = float(p["prior.tau_e"]), float(p["range.phi"])
+    # Friction by load is the sum of two: by the torque of the spring, and by that of the motor.
+    by_load = math.sqrt(2) if p["prior.tau_coulomb"] else 1.0
+    per_unit = {
+        "bias": tau_e,
+        "damping": tau_e / phi,
+        "hysteresis": tau_e,
+        "load_friction": by_load,
+    }
+    return {name: float(p[f"prior.{name}"]) * per_unit.get(name, 1.0) for name in UNITS}
+
+
+def exact(p: Mapping[str, Value]) -> Sequence[str]:
+    """Motor data that are taken as exact, of MOTOR."""
+    if p["modality"] != "Residual":
+        return []
+    return [name for name in MOTOR if not float(p[f"motor.{name}"]) * float(p[f"prior.{name}"])]
+
+
+def absent(p: Mapping[str, Value]) -> Sequence[str]:
+    """What is taken as absent: tau_coulomb, and names of UNITS."""
+    names = [name for name, std in priors(p).items() if not std]
+    if p["modality"] == "Residual" and not p["prior.tau_coulomb"]:
+        names.insert(0, "tau_coulomb")
+    return names
+
 
 _AMPLITUDE_95 = 2.4477
 """95 % of the distances of two such coordinates from 0 are smaller (Rayleigh)."""
 
 
-def data_sheet(
-    slave: Slave,
-    every: Mapping[str, Value],
-    logs: Sequence[LearnedLog],
-    configuration: Path,
-    last: Mapping[str, float],
-    doubt: str,
-    curve: Curve,
-) -> sheet.Sheet:
-    """The sheet of what a slave has learned.
-
-    every          parameters of the slave
-    logs           that it has learned from
-    configuration  the file of the parameters
-    last           Real outputs of the last tick
-    doubt          the output of that name at the last tick
-    curve          that it has learned
-    """
+def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
+    """The sheet of what an estimator has learned at the end of a replay, and its curve."""
+    slave, every, configuration = replay.slave, replay.every, replay.configuration.path
+    last, doubt = replay.statistics.last, replay.statistics.last_doubt
     start = start_values(slave, every)
-    claims = every["method"] == "FilteredRegression"
+    claims = replay.method == "FilteredRegression"
     return sheet.Sheet(
         format=sheet.FORMAT.name,
         version=sheet.FORMAT.version,
         sigmahat=version(),
         units=sheet.UNITS,
         fmu=FmuId.of(slave.fmu),
-        logs=list(logs),
+        logs=replay.logs,
         configuration=_source(configuration),
-        method=str(every["method"]),
+        method=replay.method,
         modality=str(every["modality"]),
         at_the_end=_point(last, claims),
         confident=doubt == "None",
@@ -63,8 +94,8 @@ def data_sheet(
         rests_on=sheet.RestsOn(
             torque_gain=float(every["prior.torque_gain"]),
             sigma_per_gain=last["sigma_per_gain"],
-            exact=[f"motor.{name}" for name in assumptions.exact(every)],
-            absent=list(assumptions.absent(every)),
+            exact=[f"motor.{name}" for name in exact(every)],
+            absent=list(absent(every)),
         ),
         start_values=start,
         check=_check(slave.fmu, start),
@@ -115,7 +146,7 @@ def _parameters(
     claims = every["method"] == "FilteredRegression"
     measured = claims and every["modality"] == "Residual"
     identified = _identified(configuration)
-    for name, unit in assumptions.MOTOR.items():
+    for name, unit in MOTOR.items():
         value = float(every[f"motor.{name}"])
         std = value * float(every[f"prior.{name}"]) if measured else 0.0
         found[name] = _with_interval(
@@ -124,9 +155,9 @@ def _parameters(
     if not claims:
         return found
     stds = {"tau_coulomb": float(every["prior.tau_coulomb"]) if measured else 0.0}
-    stds |= assumptions.priors(every)
+    stds |= priors(every)
     for name, std in stds.items():
-        unit = assumptions.UNITS.get(name, "N.m") or "1"
+        unit = UNITS.get(name, "N.m") or "1"
         found[name] = _with_interval(last[f"{name}_hat"], unit, 0.0, std, identified.get(name))
     std, amplitude = stds["eccentric"], found["eccentric"]
     if std:  # of sine and cosine each: the amplitude is not normal, and never below 0

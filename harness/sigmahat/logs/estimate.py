@@ -7,27 +7,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sigmahat.files.digest import sha256
+from sigmahat.files.output import sha256
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.joint import sheet
-from sigmahat.joint.curve import Curve
-from sigmahat.joint.curve_file import CURVE, write_curve
+from sigmahat.joint.curve import CURVE, Curve, write_curve
 from sigmahat.joint.curve_text import stiffness_points
-from sigmahat.joint.records import LearnedLog
-from sigmahat.logs.answer import Answer, answer
 from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.curve import Answer
 from sigmahat.logs.data_sheet import data_sheet
-from sigmahat.logs.learned import LEARNED, Learned, go_on, read_learned, write_learned
+from sigmahat.logs.job import Replay
+from sigmahat.logs.learned import LEARNED, read_learned, write_learned
 from sigmahat.logs.log import Log
+from sigmahat.logs.measured import POINTS, write_points
 from sigmahat.logs.notes_file import REPLAYED, write_replayed
 from sigmahat.logs.output import EstimateWriter
-from sigmahat.logs.points_file import POINTS, write_points
-from sigmahat.logs.replay import OUTPUTS, coefficients, parameters, play
-from sigmahat.logs.sampling import Samples, sample
-from sigmahat.logs.statistics import ReplayStatistics
+from sigmahat.logs.replay import OUTPUTS, coefficients
 
-_CHUNK = 1 << 14  # ticks that are replayed at a time, about
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
 
 
@@ -125,91 +121,29 @@ def estimate(
     """
     learned = None if start_from is None else read_learned(start_from)
     with Slave(installed("StiffnessEstimator"), "estimator") as slave:
-        fmu = slave.fmu
-        start = parameters(fmu, configuration)
-        every = fmu.parameters(start)
-        configuration.need_ports(str(every["modality"]))
-        t_0 = begin(slave, configuration, learned)
-        samples = sample(log, configuration, float(every["samplePeriod"]))
-        statistics = ReplayStatistics(len(samples.values))
-        units = {name: fmu.variable(name).unit for name in OUTPUTS}
-        with EstimateWriter(log, samples, units, folder) as table:
-            run(slave, samples, statistics, t_0, table.add, progress)
-        eta = coefficients(slave, int(every["rls.n"]), int(every["rls.m"]))
-        logs = [*(learned.logs if learned else []), learned_log(log, statistics, sha256(log.path))]
-        write_learned(slave, every, logs, folder / LEARNED.file)
-        path, last = configuration.path, statistics.last
-        answered = answer(slave, every, logs, samples, statistics)
-        write_curve(answered.curve, folder / CURVE)
-        write_points(answered.points, folder / POINTS)
-        found = data_sheet(slave, every, logs, path, last, statistics.last_doubt, answered.curve)
-        sheet.write(found, folder / sheet.FORMAT.file)
-    result = _estimate(log, samples, statistics, every, eta, logs[:-1], answered.curve)
+        replay = Replay(slave, log, configuration, learned)
+        units = {name: slave.fmu.variable(name).unit for name in OUTPUTS}
+        with EstimateWriter(log, replay.samples, units, folder) as table:
+            replay.run(table.add, progress, sha256(log.path))
+        write_learned(slave, replay.every, replay.logs, folder / LEARNED.file)
+        answered = replay.answer()
+        sheet.write(data_sheet(replay, answered.curve), folder / sheet.FORMAT.file)
+        result = _result(replay, answered.curve)
+    write_curve(answered.curve, folder / CURVE)
+    write_points(answered.points, folder / POINTS)
     write_replayed(
         log.path, result.ticks, result.skipped, result.T, result.notes, folder / REPLAYED.file
     )
-    _save_figure(samples, statistics, every, answered, folder)
+    _save_figure(replay, answered, folder)
     return result
 
 
-def begin(slave: Slave, configuration: Configuration, learned: Learned | None) -> float:
-    """Initialises a slave; with what was learned before, it goes on from there.
-
-    Returns the time that it has reached [s]. Raises LogError, FmuError if something does not fit.
-    """
-    start = parameters(slave.fmu, configuration)
-    slave.initialize(start)
-    if learned is None:
-        return 0.0
-    return go_on(slave, learned, slave.fmu.parameters(start), configuration.path)
-
-
-def run(
-    slave: Slave,
-    samples: Samples,
-    statistics: ReplayStatistics,
-    t_0: float,
-    add: Callable[[Mapping[str, Any]], object] = lambda outputs: None,
-    progress: Callable[[int], object] = lambda thousandths: None,
-) -> None:
-    """Plays all samples, from the time t_0 [s]; statistics and `add` are given the outputs."""
-    chunk = statistics.bucket * max(1, _CHUNK // statistics.bucket)
-    done, ticks = 0, len(samples.values)
-    for outputs in play(slave, samples, chunk, t_0):
-        statistics.add(outputs)
-        add(outputs)
-        now = done + len(outputs["valid"])
-        progress(1000 * now // ticks - 1000 * done // ticks)
-        done = now
-
-
-def learned_log(log: Log, statistics: ReplayStatistics, digest: str) -> LearnedLog:
-    """The record of a log that was replayed to its end; digest is the SHA-256 of its file."""
-    return LearnedLog(
-        file=str(log.path),
-        sha256=digest,
-        ticks=statistics.ticks,
-        skipped=statistics.skipped,
-        phi=statistics.used("phi"),
-        set_point=statistics.used("setPoint"),
-    )
-
-
-def _estimate(
-    log: Log,
-    samples: Samples,
-    statistics: ReplayStatistics,
-    every: Mapping[str, Value],
-    eta: Sequence[Sequence[float]],
-    before: Sequence[LearnedLog],
-    learned_curve: Curve,
-) -> Estimate:
-    last, doubts = statistics.last, statistics.doubts
-    notes = list(samples.notes)
-    if before:
-        notes.insert(0, f"continued from what was learned from {', '.join(b.file for b in before)}")
+def _result(replay: Replay, found: Curve) -> Estimate:
+    samples, statistics, every = replay.samples, replay.statistics, replay.every
+    last, doubts, before = statistics.last, statistics.doubts, [e.file for e in replay.logs[:-1]]
+    continued = [f"continued from what was learned from {', '.join(before)}"] if before else []
     return Estimate(
-        log=log.path,
+        log=replay.log.path,
         ticks=len(samples.values),
         skipped=statistics.skipped,
         T=samples.T,
@@ -223,32 +157,18 @@ def _estimate(
         tau_e_range=statistics.later("tau_e"),
         phi_range=statistics.later("phi"),
         epsilon_rms=statistics.rms,
-        eta=eta,
+        eta=coefficients(replay.slave, int(every["rls.n"]), int(every["rls.m"])),
         motor={name: last[name] for name in _MOTOR},
         joint={name: last[name] for name in last if name.endswith("_hat") and name not in _MOTOR},
         sigma_per_gain=last["sigma_per_gain"],
-        curve=learned_curve,
-        notes=notes,
-        learned_from=[each.file for each in before],
+        curve=found,
+        notes=[*continued, *samples.notes],
+        learned_from=before,
     )
 
 
-def _save_figure(
-    samples: Samples,
-    statistics: ReplayStatistics,
-    every: Mapping[str, Value],
-    answered: Answer,
-    folder: Path,
-) -> None:
-    from sigmahat.logs.figure import Replay, draw
+def _save_figure(replay: Replay, answered: Answer, folder: Path) -> None:
+    from sigmahat.logs.figure import draw
     from sigmahat.plotting.save import save
 
-    replayed = Replay(
-        samples,
-        statistics,
-        str(every["modality"]),
-        str(every["method"]),
-        answered.curve,
-        answered.points,
-    )
-    save(draw, replayed, folder / "estimate")
+    save(lambda source: draw(*source), (replay, answered), folder / "estimate")

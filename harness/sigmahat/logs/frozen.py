@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sigmahat.fmi.instance import Slave
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Array
 

@@ -7,19 +7,18 @@ fmi2SerializeFMUstate gives it, in base64. The state contains the parameters of 
 from __future__ import annotations
 
 import base64
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from sigmahat.files.output import write_json
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.instance import FmuError, Slave, Value
-from sigmahat.fmi.recorder import Recorder
+from sigmahat.fmi.sample_loop import Recorder
 from sigmahat.fmi.saved_state import restore, save
-from sigmahat.joint.records import NO_OTHER_KEYS, FmuId, LearnedLog, Text
-from sigmahat.joint.stored import Format
-from sigmahat.logs.errors import LogError
+from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Text
+from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap
 
 _AGAIN = "run `sigmahat estimate` on the first log again"
@@ -76,7 +75,7 @@ def write_learned(
         parameters=parameters,
         state=state,
     )
-    path.write_text(json.dumps(asdict(contents), indent=1) + "\n", encoding="utf-8")
+    write_json(asdict(contents), path)
 
 
 def read_learned(path: Path) -> Learned:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import LogError
 
 MOST_COLUMNS = 2000
 _NUMBERS, _SMALL = 15_000_000, 10_000_000  # numbers in a file of so many bytes, or fewer

@@ -11,8 +11,12 @@ import pyarrow as pa
 import pyarrow.compute
 from numpy.typing import NDArray
 
-from sigmahat.logs.errors import LogError
 from sigmahat.user_input.unknown_name import unknown
+
+
+class LogError(ValueError):
+    """The message says in one line where the error is, what was expected, and what to do."""
+
 
 Array = NDArray[np.float64]
 _NO_TEXT = r"^\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(?i:nan|inf|infinity))?\s*$"

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from sigmahat.joint.records import NO_OTHER_KEYS, Text
-from sigmahat.joint.stored import Format
+from sigmahat.files.output import write_json
+from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 
 
 @dataclass(frozen=True)
@@ -40,4 +39,4 @@ def write_replayed(
 ) -> None:
     """Writes the file; the values are as in Replayed."""
     contents = Replayed(REPLAYED.name, REPLAYED.version, str(log), ticks, skipped, T, list(notes))
-    path.write_text(json.dumps(asdict(contents), indent=1) + "\n", encoding="utf-8")
+    write_json(asdict(contents), path)

@@ -21,9 +21,8 @@ import pyarrow.csv
 import pyarrow.parquet
 from numpy.typing import NDArray
 
-from sigmahat.files import columns
-from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Log
+from sigmahat.files import tables
+from sigmahat.logs.log import Log, LogError
 from sigmahat.logs.readers.tables import CsvLog
 from sigmahat.logs.sampling import Samples
 
@@ -75,7 +74,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         estimates = [EstimatedSignal(_TIME, "s", times)]
         estimates += [EstimatedSignal(n, self._units.get(n), v[take]) for n, v in outputs.items()]
         for each in estimates:
-            title = columns.title(_PREFIX + each.name, each.unit)
+            title = tables.title(_PREFIX + each.name, each.unit)
             table = table.append_column(title, pa.array(each.values))
         self._row, self._tick = end, self._tick + ticks
         if self._writer is None:
@@ -138,7 +137,7 @@ def read_estimate(folder: Path) -> dict[str, EstimatedSignal]:
     signals = {}
     try:
         titles = [title for title in _titles(path) if title.startswith(_PREFIX)]
-        names = [columns.name_and_unit(title.removeprefix(_PREFIX)) for title in titles]
+        names = [tables.name_and_unit(title.removeprefix(_PREFIX)) for title in titles]
         if not {name for name, _ in names} >= {_TIME, "sigma", "valid"}:
             raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
         table = _table(path, titles)

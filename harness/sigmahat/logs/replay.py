@@ -11,10 +11,9 @@ from fmpy import fmi2
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 from sigmahat.logs.configuration import PORTS, Configuration
-from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import LogError
 from sigmahat.logs.sampling import Samples
 from sigmahat.logs.units import counts_per_turn
 

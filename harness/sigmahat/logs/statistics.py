@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sigmahat.logs.log import Array
-from sigmahat.logs.measured import NEEDED, MeasuredPoints, points_of, spread
+from sigmahat.logs.measured import NEEDED, spread
 from sigmahat.logs.replay import OUTPUTS
 
 _BUCKETS = 4000
@@ -86,10 +86,10 @@ class ReplayStatistics:
         """Least and largest phi or setPoint at the samples that the regression used, if any."""
         return self._used.get(name)
 
-    def points(self, method: str) -> MeasuredPoints:
-        """Up to 20000 points, evenly over the log, each as the estimator saw it then."""
-        columns = {name: np.concatenate(parts) for name, parts in self._points.items()}
-        return points_of(columns, method)
+    @property
+    def spread_over_log(self) -> dict[str, np.ndarray[Any, Any]]:
+        """Outputs NEEDED of up to 20000 ticks, evenly over the log."""
+        return {name: np.concatenate(parts) for name, parts in self._points.items()}
 
     @property
     def doubts(self) -> dict[str, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sigmahat.joint.curve_text import curve_text
-from sigmahat.logs.assumptions import MOTOR, UNITS, absent, exact, priors
+from sigmahat.logs.data_sheet import MOTOR, UNITS, absent, exact, priors
 from sigmahat.logs.estimate import Estimate
 
 _NEGLIGIBLE = 0.1

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from sigmahat.logs.configuration import PORTS, Port
-from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Array
+from sigmahat.logs.log import Array, LogError
 
 _USUAL = ("rad", "mrad", "deg", "turn", "counts", "N.m", "mN.m", "kN.m", "lbf.in", "A", "mA", "mm")
 _USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")

@@ -8,8 +8,7 @@ from typing import Any
 
 from bokeh.models import InlineStyleSheet, Row, Select, TextInput, UIElement
 
-from sigmahat.page.edits import GAMMA
-from sigmahat.page.fields import NumberField
+from sigmahat.page.edits import GAMMA, NumberField
 from sigmahat.page.setup import Setup
 
 STYLE = """

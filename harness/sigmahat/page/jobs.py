@@ -4,15 +4,52 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 
 import tomlkit
 
-from sigmahat.fmi.instance import FmuError
-from sigmahat.logs.errors import LogError
+from sigmahat.fmi.instance import FmuError, Slave
+from sigmahat.fmi.opened import installed
+from sigmahat.guessing import template
+from sigmahat.guessing.columns import read_columns
+from sigmahat.guessing.guess import JointGuess, guess_chosen, guess_of
+from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.curve import Answer
+from sigmahat.logs.job import Replay
+from sigmahat.logs.log import Log, LogError
 from sigmahat.page.look import look
-from sigmahat.page.setup import Setup
+from sigmahat.page.setup import Chosen, Setup
+
+
+def guessed(log: Log) -> tuple[Mapping[str, JointGuess], Mapping[str, str], Chosen]:
+    """The joints of a log, the configuration of each as `init` writes it, and what guesses units,
+    signs and gear of columns that somebody chooses.
+    """
+    columns = read_columns(log)
+    joints = guess_of(columns, log)
+    fmu = installed("StiffnessEstimator")
+    motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
+    templates = {name: template.write(log, joint, motor) for name, joint in joints.items()}
+    return joints, templates, partial(guess_chosen, columns)
+
+
+def replayed(
+    log: Log, configuration: Configuration, progress: Callable[[int], object] = lambda _: None
+) -> Answer:
+    """Replays a log as `estimate` does, and writes nothing.
+
+    Now and then progress is called with the thousandths of the log done since the last call; what
+    it raises ends the replay.
+
+    Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
+    """
+    with Slave(installed("StiffnessEstimator"), "estimator") as slave:
+        replay = Replay(slave, log, configuration)
+        with slave.only_errors():
+            replay.run(progress=progress)
+        return replay.answer()
+
 
 _REFUSED = (LogError, FmuError, OSError, ValueError)
 Later = Callable[[Callable[[], object]], object]
@@ -70,7 +107,7 @@ class Jobs:
             self._later(partial(self._refused, None, f"a fault of sigmahat: {error!r}"))
 
     def _look(self) -> None:
-        from sigmahat.page.start import guessed
+        from sigmahat.page.jobs import guessed
 
         setup = self._setup
         looks = {name: look(setup.log, name) for name in setup.log.columns}
@@ -81,7 +118,7 @@ class Jobs:
     def _check(self, version: int, text: str) -> None:
         from sigmahat.checks.check import check
         from sigmahat.logs.configuration import checked_configuration
-        from sigmahat.page.replayed import replayed
+        from sigmahat.page.jobs import replayed
 
         log, path = self._setup.log, self._setup.path
         done = 0

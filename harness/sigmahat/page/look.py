@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import Array, Log
+from sigmahat.logs.log import Array, Log, LogError
 
 _BUCKETS = 80
 WIDTH, HEIGHT = 160, 28

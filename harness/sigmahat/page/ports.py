@@ -8,7 +8,7 @@ from bokeh.models import Column, Div
 
 from sigmahat.logs.configuration import FILL_IN
 from sigmahat.page import edits
-from sigmahat.page.fields import BY_SCALE, CHOICES, OF_PORT, PARAMETERS, UNITS
+from sigmahat.page.edits import BY_SCALE, CHOICES, OF_PORT, PARAMETERS, UNITS
 from sigmahat.page.inputs import Choice, Number, in_grid, style
 from sigmahat.page.setup import Setup
 

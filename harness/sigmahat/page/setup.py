@@ -13,18 +13,18 @@ from typing import TYPE_CHECKING, Any
 
 import tomlkit
 
-from sigmahat.files.whole_file import write_whole
+from sigmahat.files.output import write_whole
 from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Log
 from sigmahat.page import edits
-from sigmahat.page.fields import BY_SCALE, OF_PORT
+from sigmahat.page.edits import BY_SCALE, OF_PORT
 from sigmahat.page.look import Look
 
 if TYPE_CHECKING:
     from sigmahat.checks.findings import Checked
     from sigmahat.guessing.guess import JointGuess
     from sigmahat.guessing.ports import PortGuess
-    from sigmahat.logs.answer import Answer
+    from sigmahat.logs.curve import Answer
 
 Chosen = Callable[[Mapping[str, str | None]], "Mapping[str, PortGuess]"]
 """Guesses units, signs and gear of columns by port."""

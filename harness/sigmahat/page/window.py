@@ -10,16 +10,76 @@ from typing import Protocol
 from bokeh.core.templates import get_env
 from bokeh.document import Document
 from bokeh.events import DocumentReady
-from bokeh.models import Div, UIElement
+from bokeh.models import Button, Div, Row, UIElement
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from sigmahat.page.columns import ColumnsPanel
-from sigmahat.page.fields import TITLES
+from sigmahat.logs.configuration import PORTS
+from sigmahat.page.edits import TITLES
 from sigmahat.page.findings import FindingsPanel
 from sigmahat.page.inputs import Choice, style
+from sigmahat.page.look import HEIGHT, WIDTH
 from sigmahat.page.ports import ParameterPanel, PortPanel
 from sigmahat.page.result import ResultPanel
-from sigmahat.page.saving import SavingBar
 from sigmahat.page.setup import Setup
+
+_TEMPLATES = Environment(
+    loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined
+)
+
+
+class ColumnsPanel:
+    """All columns."""
+
+    def __init__(self, setup: Setup) -> None:
+        self._setup = setup
+        self.root = Div(name="columns", sizing_mode="stretch_width", stylesheets=[style()])
+
+    def show(self) -> None:
+        """Shows what is known of them."""
+        setup = self._setup
+        uses = {setup.get(f"ports.{port}.column"): port for port in PORTS}
+        uses[setup.get("time.column")] = "time"
+        self.root.text = _TEMPLATES.get_template("columns.html").render(
+            columns=setup.log.columns, looks=setup.looks, uses=uses, width=WIDTH, height=HEIGHT
+        )
+
+
+class SavingBar:
+    """Button and message."""
+
+    def __init__(self, setup: Setup) -> None:
+        self._setup = setup
+        self._write = Button(button_type="primary", name="write", width=220, stylesheets=[style()])
+        self._overwrite = Button(
+            label="Overwrite it", name="overwrite", width=130, stylesheets=[style()]
+        )
+        self._write.on_click(lambda: setup.write(overwrite=False))
+        self._overwrite.on_click(lambda: setup.write(overwrite=True))
+        self._words = Div(
+            name="message",
+            sizing_mode="stretch_width",
+            styles={"color": "var(--ink)", "overflow-wrap": "anywhere", "min-width": "14rem"},
+            stylesheets=[style()],
+        )
+        # Write stays where it is when the others come.
+        flow: dict[str, str | None] = {"flex-wrap": "wrap-reverse"}
+        self.root = Row(
+            self._write,
+            self._overwrite,
+            self._words,
+            name="bar",
+            sizing_mode="stretch_width",
+            styles=flow,
+        )
+
+    def show(self) -> None:
+        """Shows whether there is something to write."""
+        setup = self._setup
+        self._write.label = f"Write {setup.path.name}"
+        self._write.disabled = not setup.is_ready
+        self._overwrite.visible = setup.asks_to_overwrite
+        self._words.text = escape(setup.message)
+        self._words.visible = bool(setup.message)
 
 
 class Panel(Protocol):

@@ -1,18 +1,68 @@
-"""The CSV files that `sigmahat reproduce` writes; read_result_files.py reads them."""
+"""The files of a reproduction: indices and signals. They are written and read here."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sigmahat.files import columns
-from sigmahat.files.csv_table import write_csv
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from sigmahat.files import tables
+from sigmahat.files.tables import numeric_columns, read_csv, write_csv
 from sigmahat.fmi.master import Recording, Series
-from sigmahat.paper.file_format import ESTIMATION, PLANT, SEEDS, TABLE, TIME
 from sigmahat.paper.reproduction import Result
 from sigmahat.runs.metrics import INDICES
+
+TABLE = "table.csv"
+"""File with the indices of each comparison; each estimator has a file over time, too."""
+ESTIMATION, SEEDS = "estimation", "seeds"
+"""The first columns of that file."""
+TIME = "t"
+"""The first column of a file over time."""
+PLANT = "plant."
+"""What the names of signals of the plant begin with, there."""
+
+
+_ORDER = ("MODEL", "SENSOR", "RESIDUAL")
+"""That of Table I; other estimators follow by name."""
+
+
+@dataclass(frozen=True)
+class ResultFiles:
+    """The files of one folder."""
+
+    table: pa.Table
+    """The indices of each comparison, as in table.csv."""
+    series: Mapping[str, Mapping[str, NDArray[Any]]]
+    """Signals by estimator and by name, of one shape: t, plant.<output>, <output>."""
+
+
+def read_result_files(folder: Path) -> ResultFiles:
+    """Reads a folder of `sigmahat reproduce`, the estimators in the order of Table I.
+
+    Raises ValueError, which says what to do, if its files are not those of one run.
+    """
+    table = read_csv(folder / TABLE)
+    series = {}
+    names = {path.stem for path in folder.glob("*.csv") if path.name != TABLE}
+    for name in sorted(names, key=lambda name: (*(name != each for each in _ORDER), name)):
+        signals = {
+            n: c.values for n, c in numeric_columns(read_csv(folder / f"{name}.csv")).items()
+        }
+        if next(iter(signals), None) == TIME:  # files of other commands may be there
+            series[name] = signals
+    if not series or table.column_names[:2] != [ESTIMATION, SEEDS]:
+        raise ValueError(f"{folder}: no result of `sigmahat reproduce`; run it again")
+    if len({len(signals[TIME]) for signals in series.values()}) > 1:
+        raise ValueError(
+            f"{folder}: files of different lengths; run `sigmahat reproduce` again, "
+            "with an empty folder as --out"
+        )
+    return ResultFiles(table, series)
 
 
 def write_results(result: Result, folder: Path) -> None:
@@ -41,7 +91,7 @@ def _indices(result: Result) -> tuple[list[str], list[list[Any]]]:
     head = [ESTIMATION, SEEDS]
     for index in indices:
         name = index.name(index.when(scenario.settled))
-        head += [columns.title(each, index.unit) for each in (name, f"{name} 95 % half width")]
+        head += [tables.title(each, index.unit) for each in (name, f"{name} 95 % half width")]
     head += ["MSE of the paper [(N.m/rad)2]", "MSREP of the paper [%]"]
     rows: list[list[Any]] = []
     for each in scenario.comparisons:
@@ -55,11 +105,11 @@ def _indices(result: Result) -> tuple[list[str], list[list[Any]]]:
 def write_series(recording: Recording, estimator: str, path: Path) -> None:
     """Writes plant and one estimator over time: columns t, plant.<output>, <output>, with units."""
     series = recording.estimators[estimator]
-    head = [columns.title(TIME, "s"), *_titles(recording.plant, PLANT), *_titles(series, "")]
+    head = [tables.title(TIME, "s"), *_titles(recording.plant, PLANT), *_titles(series, "")]
     values = [recording.t, *recording.plant.values.values(), *series.values.values()]
     write_csv(path, head, zip(*(column.tolist() for column in values), strict=True))
 
 
 def _titles(series: Series, prefix: str) -> Iterator[str]:
     for name in series.values:
-        yield columns.title(f"{prefix}{name}", series.units.get(name))
+        yield tables.title(f"{prefix}{name}", series.units.get(name))

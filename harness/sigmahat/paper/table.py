@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from sigmahat.files.text_table import aligned
+from sigmahat.files.tables import aligned
 from sigmahat.paper.reproduction import Result
 from sigmahat.runs.metrics import INDICES, Index
 from sigmahat.runs.scenario import Scenario

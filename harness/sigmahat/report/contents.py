@@ -6,10 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from sigmahat.files.tables import name_and_unit
+from sigmahat.plotting.style import plain_title
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 TRUE = "#8f8f8f"
 """Colour of what an estimate is compared with."""
@@ -121,3 +127,16 @@ def number(value: object) -> str:
     if not isinstance(value, float):
         return str(value)
     return "-" if np.isnan(value) else f"{value:.4g}"
+
+
+def of_file(title: str, table: pa.Table) -> TextTable:
+    """A table as it is in a file, whose titles are names and units."""
+    import pyarrow as pa
+
+    columns = [[number(cell) for cell in column.to_pylist()] for column in table.columns]
+    return TextTable(
+        title,
+        [plain_title(*name_and_unit(name)) for name in table.column_names],
+        list(zip(*columns, strict=True)),
+        [pa.types.is_string(field.type) for field in table.schema],
+    )

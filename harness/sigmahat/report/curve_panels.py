@@ -17,8 +17,7 @@ from sigmahat.joint.curve_text import (
     stiffness_rows,
 )
 from sigmahat.logs.measured import MeasuredPoints
-from sigmahat.plotting.scale import limits
-from sigmahat.plotting.symbols import QUANTITIES, plain_axis, plain_text
+from sigmahat.plotting.style import QUANTITIES, limits, plain_axis, plain_text
 from sigmahat.report.contents import COLORS, Curve, Panel, TextTable
 
 

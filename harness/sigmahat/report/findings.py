@@ -5,13 +5,12 @@ Whoever checks a log writes the file; a folder without it has a report without t
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from sigmahat.joint.records import NO_OTHER_KEYS, Text
-from sigmahat.joint.stored import Format
+from sigmahat.files.output import write_json
+from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.report.contents import TextTable
 
 
@@ -45,8 +44,7 @@ FINDINGS = Format("findings.json", "sigmahat findings", 1, FindingsFile)
 def write_findings(findings: Sequence[ShownFinding], folder: Path) -> None:
     """Writes the file into a folder of results; an empty list says that nothing was found."""
     contents = FindingsFile(FINDINGS.name, FINDINGS.version, list(findings))
-    text = json.dumps(asdict(contents), indent=1)
-    (folder / FINDINGS.file).write_text(text + "\n", encoding="utf-8")
+    write_json(asdict(contents), folder / FINDINGS.file)
 
 
 def findings_table(folder: Path) -> list[TextTable]:

@@ -6,10 +6,8 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from sigmahat.files.columns import name_and_unit
-from sigmahat.files.read_table import read_csv
-from sigmahat.plotting.symbols import plain_title
-from sigmahat.report.contents import Contents, TextTable, number
+from sigmahat.files.tables import read_csv
+from sigmahat.report.contents import Contents, of_file
 
 METHODS, MISFITS = "compare.csv", "misfits.csv"
 """Files of `compare` and `compare --misfits`; the figure beside has the same name."""
@@ -33,7 +31,7 @@ def from_comparison(name: str, folder: Path) -> Contents:
     seeds = table[_SEEDS][0].as_py()
     shown = table.drop_columns([first, _SEEDS])
     tables = [
-        _table(group, shown.filter(pa.array([each == group for each in groups])))
+        of_file(group, shown.filter(pa.array([each == group for each in groups])))
         for group in dict.fromkeys(groups)
     ]
     picture = (folder / name).with_suffix(".png")
@@ -43,14 +41,4 @@ def from_comparison(name: str, folder: Path) -> Contents:
         tables,
         [],
         pictures=[picture] if picture.is_file() else [],
-    )
-
-
-def _table(group: str, rows: pa.Table) -> TextTable:
-    columns = [[number(cell) for cell in rows[name].to_pylist()] for name in rows.column_names]
-    return TextTable(
-        group,
-        [plain_title(*name_and_unit(name)) for name in rows.column_names],
-        list(zip(*columns, strict=True)),
-        [pa.types.is_string(field.type) for field in rows.schema],
     )

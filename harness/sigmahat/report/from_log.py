@@ -12,17 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.joint import sheet
-from sigmahat.joint.curve import Curve
-from sigmahat.joint.curve_file import CURVE, read_curve
-from sigmahat.logs.measured import MeasuredPoints
+from sigmahat.joint.curve import CURVE, Curve, read_curve
+from sigmahat.joint.sheet import Sheet
+from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.notes_file import REPLAYED, Replayed
 from sigmahat.logs.output import EstimatedSignal, read_estimate
-from sigmahat.logs.points_file import POINTS, read_points
-from sigmahat.plotting.symbols import plain_title
+from sigmahat.plotting.style import plain_title, plain_unit
 from sigmahat.report.contents import Contents, TextTable, number
 from sigmahat.report.curve_panels import curve_panels, curve_table
 from sigmahat.report.findings import findings_table
-from sigmahat.report.parameter_tables import estimator_table, found_table
 from sigmahat.report.reduction import reduce
 from sigmahat.report.time_panels import Estimate, quantity_panels, sampling, stiffness_panels
 
@@ -129,3 +127,46 @@ def _range_and_rms(values: NDArray[Any]) -> list[float]:
     if not len(values):
         return [np.nan] * 3
     return [values.min(), values.max(), float(np.sqrt(np.mean(values**2)))]
+
+
+_WORDS = {
+    "gamma": "gear ratio",
+    "B": "inertia of the motor",
+    "D_theta": "viscous friction of the motor",
+    "tau_coulomb": "Coulomb friction of the motor",
+    "bias": "bias of the torque",
+    "damping": "damping of the joint",
+    "load_friction": "friction by load",
+    "eccentric": "eccentricity of the encoders",
+    "delay": "delay of the torque",
+    "hysteresis": "hysteresis",
+}
+_FROM = {"prior": "the configuration (prior)", "identify": "identify", "exact": "taken as exact"}
+
+
+def found_table(sheet: Sheet) -> TextTable:
+    """Motor data and what else was estimated, with intervals."""
+    rows = []
+    for name, each in sheet.parameters.items():
+        interval = "-" if each.interval is None else " to ".join(map(number, each.interval))
+        unit = "" if each.unit == "1" else plain_unit(each.unit)
+        source = _FROM.get(each.interval_from, each.interval_from)
+        rows.append([_WORDS.get(name, name), name, number(each.value), unit, interval, source])
+    return TextTable(
+        "Joint and motor",
+        ["", "name", "value", "unit", "95 % interval", "interval from"],
+        rows,
+        [True, True, False, True, False, True],
+    )
+
+
+def estimator_table(sheet: Sheet) -> TextTable:
+    """All parameters of the estimator but the coefficients of its curve; folded."""
+    rows = [
+        [name, str(value).lower() if isinstance(value, bool) else number(value)]
+        for name, value in sheet.start_values.items()
+        if not name.startswith("rls.eta_0")
+    ]
+    note = "motor.B and motor.D_theta as they were found"
+    title = "Parameters of the estimator"
+    return TextTable(title, ["parameter", "value"], rows, [True, False], note=note, folded=True)

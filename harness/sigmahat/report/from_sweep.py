@@ -9,7 +9,6 @@ import numpy as np
 
 from sigmahat.report.contents import COLORS, Contents, Curve, Kind, Panel, TextTable
 from sigmahat.runs.metrics import Index
-from sigmahat.sweep.columns import ParameterColumn, Role, title
 from sigmahat.sweep.curves import (
     abscissas,
     drawn_indices,
@@ -20,7 +19,7 @@ from sigmahat.sweep.curves import (
     time_of,
 )
 from sigmahat.sweep.summary import summary_columns
-from sigmahat.sweep.table import FAILURE, RUN, SweepTable, read
+from sigmahat.sweep.table import FAILURE, RUN, ParameterColumn, Role, SweepTable, read, title
 
 
 def from_sweep(folder: Path) -> Contents:

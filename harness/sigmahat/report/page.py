@@ -11,7 +11,7 @@ from bokeh.embed import components
 from bokeh.resources import Resources
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from sigmahat.paper.file_format import TABLE
+from sigmahat.paper.result_files import TABLE
 from sigmahat.report.contents import Contents
 from sigmahat.report.from_comparison import METHODS, MISFITS, from_comparison
 from sigmahat.report.from_log import from_log

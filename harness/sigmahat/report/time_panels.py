@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.joint.curve import NORMAL_95
-from sigmahat.plotting.scale import limits
-from sigmahat.plotting.symbols import plain_axis
+from sigmahat.plotting.style import limits, plain_axis
 from sigmahat.report.contents import COLORS, TRUE, Curve, Panel
 from sigmahat.report.reduction import Reduced
 

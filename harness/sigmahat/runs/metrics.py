@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sigmahat.files import columns
+from sigmahat.files import tables
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Index:
 
     def title(self, when: str = "") -> str:
         """name() with the unit."""
-        return columns.title(self.name(when), self.unit)
+        return tables.title(self.name(when), self.unit)
 
 
 INDICES = {

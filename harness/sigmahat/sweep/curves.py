@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.runs.metrics import INDICES, Index, mean_interval
-from sigmahat.sweep.columns import ParameterColumn, Role
-from sigmahat.sweep.table import ESTIMATION, FAILURE, SCENARIO, SweepTable
+from sigmahat.sweep.table import ESTIMATION, FAILURE, SCENARIO, ParameterColumn, Role, SweepTable
 
 Column = NDArray[np.float64]
 _BINS = 40

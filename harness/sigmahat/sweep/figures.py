@@ -8,8 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from sigmahat.plotting.colors import cycle
-from sigmahat.sweep.columns import title
+from sigmahat.plotting.style import cycle
 from sigmahat.sweep.curves import (
     abscissas,
     drawn_indices,
@@ -19,7 +18,7 @@ from sigmahat.sweep.curves import (
     parts,
     time_of,
 )
-from sigmahat.sweep.table import SweepTable
+from sigmahat.sweep.table import SweepTable, title
 
 
 def distributions(sweep: SweepTable) -> Figure:

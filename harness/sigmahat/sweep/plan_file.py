@@ -3,7 +3,7 @@
     scenario = ["table1"]           # see `sigmahat scenarios`
     seeds = 100                     # 1 to 100; of the noise, and of what is drawn
     modality = ["RESIDUAL"]         # estimators of the scenarios; left out: all
-    [parameters]                    # as in values.py
+    [parameters]                    # as in plan.py
     plant.motor.D_theta = [0.9e-3, 1.1e-3]
     estimator.residual.K_I = "100:500:5"
     RESIDUAL.motor.B = "normal(2.3e-5, 1e-6)"
@@ -17,8 +17,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from sigmahat.sweep.plan import Plan
-from sigmahat.sweep.values import Values, values
+from sigmahat.sweep.plan import Plan, Values, values
 from sigmahat.user_input import toml_file
 from sigmahat.user_input.unknown_name import unknown
 

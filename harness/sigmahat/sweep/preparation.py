@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.instance import Slave, Value
+from sigmahat.fmi.master import EstimatorFmu, Plant
+from sigmahat.fmi.opened import installed
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.engine import SEED
 from sigmahat.runs.scenario import Scenario
 from sigmahat.runs.signals import PLANT, to_record
-from sigmahat.sweep.plan import Run
+from sigmahat.sweep.plan import Plan, Run
 from sigmahat.user_input.unknown_name import unknown
 
 ALL = "estimator"
@@ -80,3 +82,26 @@ def parameters_by_owner(
         for each in chosen.estimators if owner == ALL else (owner,):
             own[each][name] = parameters[full]
     return own
+
+
+def check(plan: Plan) -> None:
+    """Lets the FMUs of each scenario see each listed value once, with the first of the others.
+
+    Raises ValueError for a name or value that does not fit, FmuError if an FMU refuses a value.
+    """
+    for run in plan.samples():
+        # What is drawn may leave its range now and then: that run fails, not the sweep.
+        listed = {name: run.parameters[name] for name in plan.listed}
+        starts = _models(replace(run, parameters=listed))
+        for name, model in _models(run).items():
+            fmu = installed(model.fmu)
+            for parameter, value in model.start.items():
+                fmu.variable(parameter, "parameter")
+                fmu.number(parameter, value)
+            with Slave(fmu, name) as slave:
+                slave.initialize(starts[name].start)
+
+
+def _models(run: Run) -> dict[str, Plant | EstimatorFmu]:
+    scenario = prepare(run)
+    return {PLANT: scenario.plant, **scenario.estimators}

@@ -1,31 +1,26 @@
 """The runs of a sweep that are done, on disk: one line for each, so that a sweep can go on later.
 
-A line is the CRC-32 of a JSON text, a space and the text. The first says which sweep it is. If the
-sweep gets more seeds later, another such line is appended, and the numbers of the runs behind it
-are those of the larger plan.
+A line is JSON. The first says which sweep it is. If the sweep gets more seeds later, another such
+line is appended, and the numbers of the runs behind it are those of the larger plan.
 """
 
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import astuple, replace
 from pathlib import Path
-from threading import Timer
 from typing import Any
-from zlib import crc32
 
 from filelock import FileLock, Timeout
 
-from sigmahat.files.output_folder import created_folder
+from sigmahat.files.output import created_folder
 from sigmahat.runs.metrics import Indices
-from sigmahat.sweep.fmus import sweep_digest
+from sigmahat.sweep.execution import sweep_digest
 from sigmahat.sweep.plan import Outcome, Plan
 
 NAME = "runs.jsonl"
-_DELAY = 1.0  # after which the disk is waited for [s]: once for all that is written meanwhile
 
 
 class Records:
@@ -49,14 +44,11 @@ class Records:
                 self._seeds = self._seeds_of(content)
             else:
                 self._take(content, i)
-        self._waiting: Timer | None = None  # for the moment at which the disk is waited for
         self._file = path.open("ab")
         self._file.truncate(sum(map(len, lines)))
 
     def add(self, outcome: Outcome) -> None:
-        """Writes an outcome. A process that is killed later loses nothing; if the machine fails,
-        the outcomes of the last second are lost.
-        """
+        """Writes an outcome, which a process that is killed later does not lose."""
         if self._seeds != self._plan.seeds:  # before the first of the runs that are new
             self._seeds = self._plan.seeds
             self._write(_head(self._plan))
@@ -65,33 +57,21 @@ class Records:
         self._write({"number": outcome.number, "indices": indices, "failure": outcome.failure})
 
     def close(self) -> None:
-        """Closes the file; all of it is on the disk then."""
-        waiting = self._waiting
-        if waiting is not None:
-            waiting.cancel()
-            waiting.join()
-        os.fsync(self._file.fileno())
+        """Closes the file."""
         self._file.close()
 
     def _write(self, content: dict[str, Any]) -> None:
-        text = json.dumps(content).encode()
-        self._file.write(b"%08x %s\n" % (crc32(text), text))
+        self._file.write(json.dumps(content).encode() + b"\n")
         self._file.flush()
-        if self._waiting is None:
-            self._waiting = Timer(_DELAY, self._synchronize)
-            self._waiting.daemon = True
-            self._waiting.start()
-
-    def _synchronize(self) -> None:
-        self._waiting = None  # what is written from now on needs another moment
-        os.fsync(self._file.fileno())
 
     def _parse(self, line: bytes, number: int) -> Any:
-        crc, _, text = line.rstrip(b"\n").partition(b" ")
-        if crc != b"%08x" % crc32(text):
+        try:
+            return json.loads(line)
+        except ValueError as error:
             what = "delete this file" if number == 1 else "delete this line"
-            raise ValueError(f"{self.path}, line {number}: damaged; {what} and start again")
-        return json.loads(text)
+            raise ValueError(
+                f"{self.path}, line {number}: damaged; {what} and start again"
+            ) from error
 
     def _seeds_of(self, head: Any) -> int:
         """How many seeds the records behind this line are of."""

@@ -3,21 +3,74 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import astuple
 from typing import Any
 
-from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.runs.metrics import INDICES, Indices
 from sigmahat.runs.scenario import Scenario
 from sigmahat.runs.signals import PLANT, source_and_variable
-from sigmahat.sweep.columns import Column, ParameterColumn, Role
-from sigmahat.sweep.fmus import fmu_names
-from sigmahat.sweep.parameter_errors import ParameterErrors
+from sigmahat.sweep.execution import fmu_names
 from sigmahat.sweep.plan import Outcome, Plan
-from sigmahat.sweep.preparation import reduced
-from sigmahat.sweep.table import ESTIMATION, FAILURE, RUN, SCENARIO, SEED, SweepTable, from_columns
+from sigmahat.sweep.preparation import ALL, parameters_by_owner, reduced
+from sigmahat.sweep.table import (
+    ESTIMATION,
+    FAILURE,
+    RUN,
+    SCENARIO,
+    SEED,
+    Column,
+    ParameterColumn,
+    Role,
+    SweepTable,
+    from_columns,
+    name_in_the_plant,
+)
+
+
+class ParameterErrors:
+    """Errors of the parameters of one scenario."""
+
+    def __init__(self, swept: Iterable[str], scenario: Scenario, fmus: Mapping[str, Fmu]) -> None:
+        """swept: the parameters of the sweep by name with owner; fmus: by name."""
+        self._scenario = scenario
+        self._plant = fmus[scenario.plant.fmu].parameters(scenario.plant.start)
+        self._estimators = {
+            name: fmus[each.fmu].parameters(each.start)
+            for name, each in scenario.estimators.items()
+        }
+        names = {name_in_the_plant(full.partition(".")[2]) for full in swept}
+        self.columns = [
+            ParameterColumn(Role.ERROR, ALL, name, "%")
+            for name in dict.fromkeys(name for own in self._estimators.values() for name in own)
+            if name_in_the_plant(name) in names & self._plant.keys()
+        ]
+        """The parameters of which there is an error."""
+
+    def of(self, parameters: Mapping[str, Value]) -> dict[str, dict[Column, float]]:
+        """For each estimator the errors in a run with these parameters [%].
+
+        Relative to the parameter of the plant; nan where that is 0.
+        """
+        own = parameters_by_owner(parameters, self._scenario)
+        plant = {**self._plant, **own[PLANT]}
+        return {
+            modality: {
+                column: _error(
+                    {**values, **own[modality]}[column.parameter],
+                    plant[name_in_the_plant(column.parameter)],
+                )
+                for column in self.columns
+            }
+            for modality, values in self._estimators.items()
+        }
+
+
+def _error(value: Value, true: Value) -> float:
+    return (float(value) / float(true) - 1) * 100 if float(true) else math.nan
+
 
 _FAILED = Indices(*[math.nan] * len(INDICES))
 

@@ -8,14 +8,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sigmahat.files.csv_table import write_csv
-from sigmahat.files.text_table import aligned
+from sigmahat.files.tables import aligned, write_csv
 from sigmahat.fmi.instance import Value
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.metrics import INDICES, Index, mean_interval
-from sigmahat.sweep.columns import Column, ParameterColumn, Role, half_width_title, title
 from sigmahat.sweep.plan import Plan
-from sigmahat.sweep.table import ESTIMATION, FAILURE, SCENARIO, SweepTable
+from sigmahat.sweep.table import (
+    ESTIMATION,
+    FAILURE,
+    SCENARIO,
+    Column,
+    ParameterColumn,
+    Role,
+    SweepTable,
+    half_width_title,
+    title,
+)
 
 _ROWS = 30
 """Rows of a printed summary; summary.csv has all of them."""

@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from sigmahat.files.digest import sha256
-from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.files.output import sha256
+from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.joint.start_values import as_fixed_curve, start_values
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.errors import LogError
-from sigmahat.logs.estimate import begin, run
 from sigmahat.logs.frozen import stiffness_at
-from sigmahat.logs.learned import Learned, read_learned
-from sigmahat.logs.log import Array, Log
+from sigmahat.logs.job import Replay
+from sigmahat.logs.learned import read_learned
+from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.replay import parameters
-from sigmahat.logs.sampling import Samples, sample
-from sigmahat.logs.statistics import ReplayStatistics
-from sigmahat.validation.agreement import Agreement, agreement
-from sigmahat.validation.torque import TorqueError, torque_errors
+from sigmahat.logs.sampling import Samples
+from sigmahat.validation.agreement import Agreement, TorqueError, agreement, torque_errors
 
 _INSTANTS = 20_000
 """At which the stiffness is compared, at most: they are evenly spaced over the log."""
@@ -109,48 +106,17 @@ def validate(log: Log, configuration: Configuration, start_from: Path) -> Valida
             f"{configuration.path}: method = {every['method']} claims no interval, by which to "
             "validate; expected method = FilteredRegression"
         )
-    configuration.need_ports(str(every["modality"]))
     with Slave(fmu, "learned") as slave:
-        t_0 = begin(slave, configuration, learned)  # before the log is read: it may not fit
-        samples = sample(log, configuration, float(every["samplePeriod"]))
+        replay = Replay(slave, log, configuration, learned)
+        samples = replay.samples
         points = _points(log, samples)
         start = start_values(slave, every)
-        before = stiffness_at(slave, samples.names, points, t_0, samples.T)
-    alone = _alone(fmu, configuration, samples, points)
-    torque, below = torque_errors(fmu, samples, as_fixed_curve(start))
-    return _validation(log, configuration, learned, samples, torque, below, before, alone, every)
-
-
-def _points(log: Log, samples: Samples) -> Array:
-    """Values of the ports at the instants that are compared."""
-    complete = samples.values[np.isfinite(samples.values).all(axis=1)]
-    if not len(complete):
-        raise LogError(f"{log.path}: no instant at which every port has a value")
-    return complete[:: -(-len(complete) // _INSTANTS)]
-
-
-def _alone(
-    fmu: Fmu, configuration: Configuration, samples: Samples, points: Array
-) -> dict[str, Array]:
-    """What the log alone gives, at its end."""
+        before = stiffness_at(slave, samples.names, points, replay.t, samples.T)
     with Slave(fmu, "alone") as slave:
-        t_0 = begin(slave, configuration, None)
-        run(slave, samples, ReplayStatistics(len(samples.values)), t_0)
-        end = samples.T * len(samples.values)
-        return stiffness_at(slave, samples.names, points, end, samples.T)
-
-
-def _validation(
-    log: Log,
-    configuration: Configuration,
-    learned: Learned,
-    samples: Samples,
-    torque: TorqueError | None,
-    below: TorqueError | None,
-    before: dict[str, Array],
-    alone: dict[str, Array],
-    every: dict[str, Value],
-) -> Validation:
+        replay = Replay(slave, log, configuration)
+        replay.run()
+        alone = stiffness_at(slave, samples.names, points, replay.t, samples.T)
+    torque, below = torque_errors(fmu, samples, as_fixed_curve(start))
     digest = sha256(log.path)
     return Validation(
         log=log.path,
@@ -164,3 +130,58 @@ def _validation(
         stiffness=agreement(before, alone, float(every["prior.torque_gain"])),
         notes=samples.notes,
     )
+
+
+def _points(log: Log, samples: Samples) -> Array:
+    """Values of the ports at the instants that are compared."""
+    complete = samples.values[np.isfinite(samples.values).all(axis=1)]
+    if not len(complete):
+        raise LogError(f"{log.path}: no instant at which every port has a value")
+    return complete[:: -(-len(complete) // _INSTANTS)]
+
+
+def summary(result: Validation) -> str:
+    """One screen."""
+    both = result.stiffness
+    lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
+    lines += [
+        f"learned before from {', '.join(result.learned_from)} ({result.start_from})",
+        "",
+        "torque at the stiffness that was learned, in motion; friction and bias are of this log:",
+        f"  error RMS         {_error(result.torque)}",
+        f"  below 2 Hz        {_error(result.torque_below)}",
+        "stiffness at the end, median over the instants of this log, with 95 % interval:",
+        f"  learned before    {_value(both.before)}",
+        f"  this log alone    {_value(both.alone)}",
+        f"  this log is within the interval of before at {100 * both.alone_in_before:.3g} % of the "
+        f"instants, the other way round {100 * both.before_in_alone:.3g} %",
+        f"  intervals overlap at {100 * both.overlap:.3g} %; difference over its standard "
+        f"deviation {both.z:.3g} (RMS)",
+        "",
+        *_verdict(result),
+    ]
+    return "\n".join(lines)
+
+
+def _error(error: TorqueError | None) -> str:
+    if error is None:
+        return "  cannot tell: too few samples in motion"
+    return (
+        f"{error.rms:10.4g} N.m, {100 * error.relative:.3g} % of its standard deviation "
+        f"(at {100 * error.share:.3g} % of the instants)"
+    )
+
+
+def _value(value: tuple[float, float]) -> str:
+    return f"{value[0]:10.5g} +- {value[1]:.2g} N.m/rad"
+
+
+def _verdict(result: Validation) -> Iterator[str]:
+    if result.repeated:
+        yield "cannot tell: this log is one of those that were learned from"
+    elif result.agree is None:
+        yield "cannot tell: an interval is wider than the stiffness itself"
+    elif result.agree:
+        yield "the logs agree"
+    else:
+        yield "the logs do not agree: the stiffness differs by more than its intervals explain"

@@ -13,7 +13,7 @@ from sigmahat.compare.misfits.conditions import Group
 from sigmahat.compare.misfits.job import Row
 from sigmahat.compare.misfits.joints import JOINTS
 from sigmahat.compare.misfits.score import DANGEROUS_CLAIM, DANGEROUS_ERROR
-from sigmahat.plotting.colors import cycle
+from sigmahat.plotting.style import cycle
 
 _MARKERS = dict(zip((joint.name for joint in JOINTS), "o^s", strict=True))
 _COLORS = dict(zip(Group, cycle(len(Group)), strict=True))

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from sigmahat.compare.misfits.experiment import DRIFT_TIME, Control, Drive, Experiment
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
-from sigmahat.fmi.recorder import Recorder
-from sigmahat.fmi.sample_loop import SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 Array = NDArray[np.float64]
 

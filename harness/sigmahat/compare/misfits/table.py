@@ -11,9 +11,7 @@ import numpy as np
 from sigmahat.compare.misfits.conditions import Group
 from sigmahat.compare.misfits.job import Row
 from sigmahat.compare.misfits.score import Score
-from sigmahat.files.columns import title
-from sigmahat.files.csv_table import write_csv
-from sigmahat.files.text_table import aligned
+from sigmahat.files.tables import aligned, title, write_csv
 
 FIGURES = {
     "error": "error",

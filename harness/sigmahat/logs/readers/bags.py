@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from sigmahat.logs.errors import LogError
-from sigmahat.logs.log import LogInMemory
+from sigmahat.logs.log import LogError, LogInMemory
 
 
 def read_bag(path: Path) -> LogInMemory:

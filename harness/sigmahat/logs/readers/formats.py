@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sigmahat.logs.errors import LogError
 from sigmahat.logs.limits import check_columns
-from sigmahat.logs.log import Log
+from sigmahat.logs.log import Log, LogError
 
 _HEAD = 520  # bytes; in files of MATLAB the signature of HDF5 is at byte 512
 

@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.logs.errors import LogError
 from sigmahat.logs.limits import check_bytes, check_columns, check_numbers
-from sigmahat.logs.log import LogInMemory
+from sigmahat.logs.log import LogError, LogInMemory
 from sigmahat.logs.readers.packed_mat import check_packed
 
 _MOST_COLUMNS = 256  # of one matrix; a larger one is an image, not a log

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
-from sigmahat.logs.errors import LogError
+from sigmahat.logs.log import LogError
 
 _MATRIX, _COMPRESSED = 14, 15
 _KINDS = {*range(1, 8), 9, 12, 13, _MATRIX, 16, 17, 18}  # numbers, matrices, text

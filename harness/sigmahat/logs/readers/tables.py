@@ -13,9 +13,17 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from sigmahat.logs.errors import LogError
 from sigmahat.logs.limits import MOST_TEXT, check_columns, check_numbers
-from sigmahat.logs.log import Array, Log, first_text, fits_float64, holds_text, is_number, numbers
+from sigmahat.logs.log import (
+    Array,
+    Log,
+    LogError,
+    first_text,
+    fits_float64,
+    holds_text,
+    is_number,
+    numbers,
+)
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 _ALWAYS_READ = 100_000_000  # bytes without compression that every file may have

@@ -1,4 +1,4 @@
-"""Every figure of a scenario, by the name of its files."""
+"""The figures of the scenarios by their names."""
 
 from __future__ import annotations
 
@@ -7,7 +7,23 @@ from collections.abc import Callable
 from matplotlib.figure import Figure
 
 from sigmahat.fmi.master import Recording
-from sigmahat.paper.figures import curves, experiment, overview, simulation
+from sigmahat.paper.figures import curves, experiment, simulation
+from sigmahat.paper.figures.panels import (
+    error_lines,
+    everything,
+    stiffness_lines,
+    time_panels,
+)
+
+
+def summary(recording: Recording) -> Figure:
+    """Stiffness, true and estimated, and the relative error of each estimate."""
+    figure, (above, below) = time_panels(2)
+    stiffness_lines(above, recording, everything(recording.t))
+    above.legend(ncols=2)
+    error_lines(below, recording)
+    return figure
+
 
 FIGURES: dict[str, Callable[[Recording], Figure]] = {
     "fig3-deformation": simulation.deformation,
@@ -21,7 +37,7 @@ FIGURES: dict[str, Callable[[Recording], Figure]] = {
     "fig11-flexibility-torque": experiment.nominal_torque,
     "fig12-stiffness": experiment.stiffness,
     "transmission": curves.transmission,
-    "summary": overview.summary,
+    "summary": summary,
     "experiment": experiment.experiment,
     "antagonistic": curves.antagonistic,
 }

@@ -26,8 +26,7 @@ from sigmahat.paper.figures.panels import (
     line,
     stiffness_lines,
 )
-from sigmahat.plotting.colors import BLUE, GREEN, VERMILION
-from sigmahat.plotting.symbols import math_axis
+from sigmahat.plotting.style import BLUE, GREEN, VERMILION, math_axis
 
 _LAST = 1 / 3
 """Part of the run."""

@@ -21,8 +21,8 @@ from sigmahat.paper.figures.panels import (
     window,
 )
 from sigmahat.paper.figures.simulation import deformation_panel
-from sigmahat.plotting.colors import GREEN
-from sigmahat.runs.nominal_awas import nominal_awas
+from sigmahat.plotting.style import GREEN
+from sigmahat.runs.signals import nominal_awas
 
 _NOMINAL: dict[str, Any] = {"color": "black", "linewidth": 0.8, "label": "nominal"}
 

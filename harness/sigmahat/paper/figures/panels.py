@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from sigmahat.fmi.master import Recording
-from sigmahat.plotting.colors import BLUE, GREEN, VERMILION
-from sigmahat.plotting.symbols import math_axis
+from sigmahat.plotting.style import BLUE, GREEN, VERMILION, math_axis
 
 Array = NDArray[np.float64]
 

@@ -22,7 +22,7 @@ from sigmahat.paper.figures.panels import (
     time_panels,
     window,
 )
-from sigmahat.plotting.colors import BLUE, GREEN, SKY, VERMILION
+from sigmahat.plotting.style import BLUE, GREEN, SKY, VERMILION
 
 _HELD: dict[str, Any] = {"color": SKY, "drawstyle": "steps-post"}
 _VELOCITY = r"motor velocity $\dot\theta$ [rad/s]"

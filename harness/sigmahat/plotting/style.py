@@ -1,9 +1,23 @@
-"""The symbols of the paper and the units, as figures and reports write them."""
+"""What the figures of all commands share: colours, symbols with units, and limits of an axis."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+BLUE, VERMILION, GREEN, ORANGE = "#0072B2", "#D55E00", "#009E73", "#E69F00"
+SKY, PURPLE, BLACK = "#56B4E9", "#CC79A7", "#000000"
+
+_CYCLE = (BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE, BLACK)  # neighbours are far apart
+
+
+def cycle(count: int) -> list[str]:
+    """Colours for so many lines; they begin again after the seventh."""
+    return [_CYCLE[i % len(_CYCLE)] for i in range(count)]
 
 
 @dataclass(frozen=True)
@@ -62,3 +76,25 @@ def plain_text(text: str) -> str:
     text = re.sub(r"[A-Za-z_]+", lambda word: symbols.get(word[0], word[0]), text)
     text = re.sub(r"\^(\d)", lambda power: power[1].translate(_DIGITS), text)
     return text.replace("N.m", "N·m")
+
+
+_OUTER = 0.5
+"""Percent of the values at either end."""
+_FURTHER = 0.5
+"""How much further than the others these are shown, over the range of the others."""
+
+
+def limits(values: NDArray[Any]) -> tuple[float, float]:
+    """Least and greatest of the values that are shown; (0, 1) if none is finite.
+
+    The outermost percent, for example a spike after a gap, is cut off where it is far away.
+    """
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return 0.0, 1.0
+    low, high = np.percentile(finite, [_OUTER, 100 - _OUTER]).tolist()
+    least, greatest = float(finite.min()), float(finite.max())
+    if not high > low:
+        return least, greatest
+    further = _FURTHER * (high - low)
+    return max(least, low - further), min(greatest, high + further)

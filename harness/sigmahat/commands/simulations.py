@@ -1,0 +1,267 @@
+"""Commands that simulate: reproduce, compare, scenarios, sweep."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+import click
+
+from sigmahat.commands import common
+
+
+def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
+    """Scenarios, for the completion of the shell."""
+    from sigmahat.paper.scenarios import SCENARIOS
+
+    return [name for name in SCENARIOS if name.startswith(begin)]
+
+
+@click.command()
+@click.option(
+    "--scenario",
+    "name",
+    default="table1",
+    show_default=True,
+    shell_complete=_names,
+    help="What to run.",
+)
+@click.option(
+    "--seeds",
+    default=1,
+    show_default=True,
+    type=click.IntRange(min=1),
+    help="Number of runs, each with other noise.",
+)
+@click.option(
+    "--out",
+    callback=common.folder,
+    help="Folder for figures and CSV files.  [default: sigmahat-results/SCENARIO]",
+)
+@common.json_option
+@common.quiet_option
+def reproduce(name: str, seeds: int, out: Path | None) -> None:
+    """Run a scenario; print its table, draw its figures.
+
+    \b
+    Example: sigmahat reproduce --scenario as-printed --seeds 20 --out as-printed
+    """
+    from sigmahat.files.output import output_folder
+    from sigmahat.paper.reproduction import progress_length, reproduce
+    from sigmahat.paper.result_files import as_dict, write_results
+    from sigmahat.paper.table import conditions, table
+    from sigmahat.runs.metrics import MSREP_IN_WORDS
+
+    chosen = common.ready_scenario(name)
+    if seeds > 1:
+        import_module("scipy")  # intervals need it; if it is not there, say so before the runs
+    out = out or Path("sigmahat-results", name)
+    numbers = range(1, seeds + 1)
+    with common.errors_in_one_line(out), output_folder(out) as folder:
+        with common.progress("Running", progress_length(chosen, numbers)) as bar:
+            result = reproduce(chosen, numbers, progress=bar.update)
+        from sigmahat.paper.figures.catalogue import FIGURES
+        from sigmahat.plotting.save import save
+
+        with common.progress("Drawing", len(chosen.figures)) as bar:
+            for title in chosen.figures:
+                save(FIGURES[title], result.recording, folder / title)
+                bar.update(1)
+        write_results(result, folder)
+
+    common.answer(
+        f"{chosen.name}: {chosen.description}\n{conditions(result)}\n{MSREP_IN_WORDS}\n\n"
+        f"{table(result)}\n\nFigures (PNG, SVG) and CSV files are in {out.resolve()}",
+        as_dict(result),
+    )
+
+
+@click.command()
+@click.option(
+    "--misfits",
+    is_flag=True,
+    help="FilteredRegression on joints with hysteresis, backlash, bad friction and sensors, ..., "
+    "in place of both methods.",
+)
+@click.option(
+    "--seeds",
+    default=5,
+    show_default=True,
+    type=click.IntRange(min=1),
+    help="Number of runs of each joint, each with other noise.",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    help="Processes to use.  [default: all cores]",
+)
+@click.option(
+    "--out",
+    default="sigmahat-results/compare",
+    show_default=True,
+    callback=common.folder,
+    help="Folder for figure and CSV file.",
+)
+@common.json_option
+@common.quiet_option
+def compare(misfits: bool, seeds: int, jobs: int | None, out: Path) -> None:
+    """Compare the estimation methods where motor data are wrong.
+
+    \b
+    Example: sigmahat compare --seeds 20 --out compare
+    """
+    (_misfits if misfits else _methods)(seeds, jobs, out)
+
+
+def _methods(seeds: int, jobs: int | None, out: Path) -> None:
+    """Both methods, where motor data are wrong."""
+    from sigmahat.compare.conditions import JOINTS, TRUE
+    from sigmahat.compare.job import compare
+    from sigmahat.compare.performance import CALIBRATED
+    from sigmahat.compare.table import as_dicts, table, write
+    from sigmahat.files.output import output_folder
+    from sigmahat.runs.metrics import MSREP_IN_WORDS
+
+    for joint in JOINTS:
+        common.need_fmus(joint.scenario)
+
+    with common.errors_in_one_line(out), output_folder(out) as folder:
+        with common.progress("Running", len(JOINTS) * seeds) as bar:
+            rows = compare(JOINTS, range(1, seeds + 1), jobs, progress=bar.update)
+        from sigmahat.compare.figure import draw
+        from sigmahat.plotting.save import save
+
+        save(draw, rows, folder / "compare")
+        write(rows, seeds, folder / "compare.csv")
+
+    common.answer(
+        f"MSREP [%] of both methods, and of FilteredRegression: sigma_std relative to the true "
+        f"stiffness and share of instants\nwithin 1.96 sigma_std, from {CALIBRATED:g} s on; motor "
+        f"data found at the end, true {TRUE['D_theta']:g} N.m.s/rad, {TRUE['B']:g} kg.m2.\n"
+        f"Mean over {_counted(seeds)}. {MSREP_IN_WORDS}.\n\n"
+        f"{table(rows)}\n\n"
+        f"Figure (PNG, SVG) and CSV file are in {out.resolve()}",
+        as_dicts(rows),
+    )
+
+
+def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
+    """FilteredRegression on the catalogue of misfits."""
+    from sigmahat.compare.misfits.conditions import CONDITIONS
+    from sigmahat.compare.misfits.job import ESTIMATOR, compare, pairs
+    from sigmahat.compare.misfits.joints import JOINTS
+    from sigmahat.compare.misfits.motion import PLANT
+    from sigmahat.compare.misfits.score import SETTLED
+    from sigmahat.compare.misfits.table import as_dicts, table, write
+    from sigmahat.files.output import output_folder
+
+    for fmu in (PLANT, ESTIMATOR):
+        common.need_fmu(fmu)
+
+    with common.errors_in_one_line(out), output_folder(out) as folder:
+        with common.progress("Running", len(pairs(CONDITIONS, JOINTS)) * seeds) as bar:
+            rows = compare(CONDITIONS, JOINTS, range(1, seeds + 1), jobs, bar.update)
+        from sigmahat.compare.misfits.figure import draw
+        from sigmahat.plotting.save import save
+
+        save(draw, rows, folder / "misfits")
+        write(rows, seeds, folder / "misfits.csv")
+
+    common.answer(
+        f"FilteredRegression on a catalogue of joints and misfits. Error, claim (sigma_std): RMS, "
+        f"relative to the true\nstiffness. Coverage: share of instants with the truth within "
+        f"1.96 sigma_std. Dangerous: over 10 % off while\nclaiming under 2 %. Wrong: "
+        f"confident and over 20 % off. Instants after {SETTLED:g} s, outside of a dead zone, of\n"
+        f"{_counted(seeds)}.\n\n"
+        f"{table(rows)}\n\n"
+        f"Figure (PNG, SVG) and CSV file are in {out.resolve()}",
+        as_dicts(rows),
+    )
+
+
+def _counted(seeds: int) -> str:
+    return f"{seeds} seed{'s' if seeds > 1 else ''}"
+
+
+@click.command()
+@common.json_option
+def scenarios() -> None:
+    """List the scenarios.
+
+    \b
+    Example: sigmahat scenarios --json
+    """
+    from sigmahat.paper.scenarios import SCENARIOS
+
+    width = max(map(len, SCENARIOS)) + 2
+    every = SCENARIOS.values()
+    common.answer(
+        "\n".join(f"{each.name:{width}}{each.description}" for each in every),
+        [{"name": each.name, "description": each.description} for each in every],
+    )
+
+
+def _listed(_: click.Context, __: click.Parameter, text: str | None) -> tuple[str, ...]:
+    return tuple(name.strip() for name in text.split(",")) if text else ()
+
+
+@click.command()
+@click.argument("plan", required=False, type=click.Path(path_type=Path, dir_okay=False))
+@click.option("--scenario", callback=_listed, help="One or more, a,b.  [default: table1]")
+@click.option(
+    "--seeds", type=click.IntRange(min=1), help="Number of runs of each setting.  [default: 1]"
+)
+@click.option("--modality", callback=_listed, help="Estimators to run, a,b.  [default: all]")
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="NAME=VALUES",
+    help="Parameter plant.X, estimator.X or MODALITY.X; values 1,2,3 or first:last:count, or "
+    "drawn for each seed: uniform(low,high), normal(mean,deviation). Repeatable.",
+)
+@click.option(
+    "--scheduler", metavar="ADDRESS", help="Dask scheduler, tcp://host:port.  [default: all cores]"
+)
+@click.option(
+    "--out",
+    callback=common.folder,
+    help="Folder for table and figures.  [default: sigmahat-results/sweep]",
+)
+@common.json_option
+@common.quiet_option
+def sweep(
+    plan: Path | None,
+    scenario: tuple[str, ...],
+    seeds: int | None,
+    modality: tuple[str, ...],
+    settings: tuple[str, ...],
+    scheduler: str | None,
+    out: Path | None,
+) -> None:
+    """Run scenarios over seeds and parameters, in parallel; Monte Carlo.
+
+    PLAN is a TOML file with the keys scenario, seeds, modality and a table [parameters]; options
+    replace them. After an interruption the same command does the runs that are missing; with more
+    seeds, those of the new seeds.
+
+    \b
+    Example: sigmahat sweep --seeds 100 --modality RESIDUAL \\
+        --set estimator.motor.D_theta=0.9e-3:1.1e-3:5 --out friction
+    """
+    from sigmahat.sweep.job import sweep as run
+    from sigmahat.sweep.plan_file import read_plan
+    from sigmahat.sweep.summary import as_dicts, conditions, summary
+
+    out = out or Path("sigmahat-results", "sweep")
+    with common.errors_in_one_line(out):
+        read = read_plan(plan, scenario, seeds, modality, settings)
+        for name in read.scenarios:
+            common.ready_scenario(name)
+        with common.progress("Running", len(read)) as bar:
+            result = run(read, out, scheduler, progress=bar.update)
+    common.answer(
+        f"{conditions(read)}\n\n{summary(result)}\n\n"
+        f"Table (Parquet), summary (CSV) and figures (PNG, SVG) are in {out.resolve()}",
+        as_dicts(result),
+    )

@@ -1,0 +1,103 @@
+"""What a command writes: folders and files that are complete or not there, and their SHA-256."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+
+@contextmanager
+def created_folder(path: Path, ignored: str = "") -> Iterator[None]:
+    """Creates a folder if there is none; at the end it is removed again if nothing is in it.
+
+    ignored  name of a file that does not count as something, and is removed with the folder
+
+    Raises OSError if the folder cannot be created.
+    """
+    missing = [p for p in (path, *path.parents) if not p.exists()]
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        yield
+    finally:
+        if missing and [p.name for p in path.glob("*")] == [ignored]:
+            (path / ignored).unlink()
+        for p in missing:
+            with suppress(OSError):  # something is in it
+                p.rmdir()
+
+
+@contextmanager
+def output_folder(path: Path) -> Iterator[Path]:
+    """Yields a folder to write into; its files appear in path together, once all is well.
+
+    Creates path, and leaves nothing behind after an exception. Raises OSError if path cannot be
+    written to.
+    """
+    with created_folder(path), TemporaryDirectory(prefix=".unfinished-", dir=path) as unfinished:
+        yield Path(unfinished)
+        for file in sorted(Path(unfinished).iterdir()):
+            file.replace(path / file.name)
+
+
+def write_whole(text: str, path: Path) -> None:
+    """Writes a file in UTF-8. If it is interrupted, the file is as it was before.
+
+    A link stays a link to the file. Raises OSError if it cannot be written.
+    """
+    if path.exists() and not path.is_file():  # such as /dev/stdout; a folder is refused
+        path.write_text(text, encoding="utf-8")
+        return
+    file = path.resolve()
+    try:
+        with TemporaryDirectory(prefix=".unfinished-", dir=file.parent) as folder:
+            whole = Path(folder, file.name)
+            whole.write_text(text, encoding="utf-8")
+            whole.replace(file)
+    except OSError as error:  # it names what nobody has heard of
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+_CHUNK = 1 << 20
+
+
+def write_json(values: object, path: Path) -> None:
+    """Writes JSON, numbers with all digits; one that is not finite becomes null."""
+    text = json.dumps(finite(values), indent=1, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def finite(values: Any) -> Any:
+    """Values for JSON: None for a number that is not finite, at any depth."""
+    if isinstance(values, Mapping):
+        return {str(key): finite(value) for key, value in values.items()}
+    if isinstance(values, (list, tuple)):
+        return [finite(value) for value in values]
+    return None if isinstance(values, float) and not math.isfinite(values) else values
+
+
+def sha256(path: Path) -> str:
+    """Of a file its bytes; of a folder, such as a ROS 2 bag, the list of its files.
+
+    The list has a line "HASH  NAME" for each file, sorted by name, which `sha256sum` would write.
+
+    Raises OSError if a file cannot be read.
+    """
+    if not path.is_dir():
+        return _of_file(path)
+    files = sorted(each.relative_to(path).as_posix() for each in path.rglob("*") if each.is_file())
+    lines = "".join(f"{_of_file(path / name)}  {name}\n" for name in files)
+    return hashlib.sha256(lines.encode()).hexdigest()
+
+
+def _of_file(path: Path) -> str:
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while chunk := file.read(_CHUNK):
+            digest.update(chunk)
+    return digest.hexdigest()

@@ -1,0 +1,83 @@
+"""Tables: titles of columns, CSV written and read back, and lines of text."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Container, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+
+def title(name: str, unit: str | None) -> str:
+    """Name and unit as one text; a quantity without a unit is its name alone."""
+    return f"{name} [{unit}]" if unit else name
+
+
+def name_and_unit(title: str) -> tuple[str, str | None]:
+    """What title() was made of."""
+    name, bracket, unit = title.rpartition(" [")
+    return (name, unit.removesuffix("]")) if bracket else (title, None)
+
+
+def write_csv(path: Path, head: Iterable[str], rows: Iterable[Iterable[Any]]) -> None:
+    """Writes a table, numbers with all digits; None is an empty field."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(head)
+        writer.writerows(rows)
+
+
+@dataclass(frozen=True)
+class NumericColumn:
+    """A column of numbers."""
+
+    unit: str | None
+    values: NDArray[Any]
+    """One for each row."""
+
+
+def numeric_columns(table: pa.Table) -> dict[str, NumericColumn]:
+    """The columns with numbers or true and false, as floats, by name without the unit."""
+    from pyarrow import types
+
+    kinds = (types.is_floating, types.is_integer, types.is_boolean)
+    found = {}
+    for field in table.schema:
+        if any(is_kind(field.type) for is_kind in kinds):
+            name, unit = name_and_unit(field.name)
+            values = np.asarray(table[field.name].to_numpy(), dtype=np.float64)
+            found[name] = NumericColumn(unit, values)
+    return found
+
+
+def read_csv(path: Path) -> pa.Table:
+    """A table of text. Raises ValueError if the file is not CSV, OSError if there is none."""
+    from pyarrow import ArrowInvalid, ArrowKeyError, csv
+
+    try:
+        return csv.read_csv(path)
+    except (ArrowInvalid, ArrowKeyError) as error:
+        raise ValueError(f"{path}: not readable as CSV; run the command that wrote it") from error
+
+
+def aligned(rows: Sequence[Sequence[str]], left: Container[int] = (0,)) -> list[str]:
+    """Rows as lines, every column as wide as its longest cell.
+
+    rows  cells, all rows of the same length; the head is a row, too
+    left  columns whose cells stand at the left; those of the others stand at the right
+    """
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join(
+            cell.ljust(width) if i in left else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+        )
+        for row in rows
+    ]
