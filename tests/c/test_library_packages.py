@@ -155,7 +155,7 @@ def test_a_program_of_other_sizes_than_the_library_does_not_link(
     sources = build / "amalgamation"
     run(need("cc"), "-c", sources / "sigmahat.c", "-o", tmp_path / "sigmahat.o")
     (tmp_path / file).write_text(PROGRAM.format(header="sigmahat.h"))
-    command = [need(compiler), f"-D{size}", f"-I{sources}", tmp_path / file]
+    command = [need(compiler), f"-D{size}", f"-I{sources}", str(tmp_path / file)]
     done = subprocess.run(
         [*command, tmp_path / "sigmahat.o", "-lm", "-o", tmp_path / "program"],
         capture_output=True,

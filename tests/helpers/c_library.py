@@ -145,7 +145,7 @@ class Estimator:
             "sh_measurement", **dict(zip(MEASUREMENTS, map(float, measurement), strict=True))
         )
         lib = self.library.lib
-        return lib.sh_estimator_tick(self.state, self.parameters, z, self.estimate) == 0
+        return bool(lib.sh_estimator_tick(self.state, self.parameters, z, self.estimate) == 0)
 
     def lasting(self) -> bytes:
         """The state as bytes, without the work arrays, which have no meaning between ticks."""

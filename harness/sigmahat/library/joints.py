@@ -86,10 +86,11 @@ class Joints:
         self, joint: int, phi: NDArray[np.float64], set_point: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Torque, its std deviation, stiffness, its std deviation [size: 4 x points]."""
-        points = np.empty((phi.size, 4))
+        points: NDArray[np.float64] = np.empty((phi.size, 4))
         arrays = (phi.ctypes.data, set_point.ctypes.data, points.ctypes.data)
         self._library.sh_joint_evaluate(self._address(joint), phi.size, *arrays)
-        return points.T
+        by_name: NDArray[np.float64] = points.T
+        return by_name
 
     def copied(self) -> Joints:
         """Other estimators in the same state."""
