@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sigmahat.files import toml_file
 from sigmahat.guessing.columns import Column
 from sigmahat.guessing.facts import look_at
 from sigmahat.guessing.guess import guess
@@ -13,7 +14,6 @@ from sigmahat.guessing.roles import assign
 from sigmahat.guessing.template import write
 from sigmahat.guessing.words import meaning
 from sigmahat.logs.log import LogInMemory
-from sigmahat.user_input import toml_file
 
 
 def test_the_configuration_of_many_columns_can_be_read_again(tmp_path: Path) -> None:

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sigmahat.files import toml_file
 from sigmahat.logs.configuration import checked_configuration
 from sigmahat.logs.log import LogError
 from sigmahat.logs.readers.formats import open_log
 from sigmahat.logs.sampling import sample
-from sigmahat.user_input import toml_file
 
 GEAR, COUNTS, T = 80, 2**14, 2e-3
 PERIOD = 2 * np.pi / GEAR  # of the counter of the motor, behind the gear [rad]

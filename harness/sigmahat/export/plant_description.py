@@ -12,8 +12,8 @@ import casadi as ca
 from sigmahat.export import templates
 from sigmahat.export.c_variables import SAMPLE_PERIOD, SEED, is_of_every_plant
 from sigmahat.fmi.installed import version
+from sigmahat.fmi.unknown_name import unknown
 from sigmahat.plants.equations import PlantEquations
-from sigmahat.user_input.unknown_name import unknown
 
 
 @dataclass(frozen=True)

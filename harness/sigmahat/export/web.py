@@ -17,10 +17,10 @@ from typing import Any
 
 from sigmahat import guessing
 from sigmahat.export import cross_compiler
+from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.logs.configuration import ANOTHER_ROBOT, ANY_COULOMB
 from sigmahat.paper.scenarios import scenario
-from sigmahat.user_input import toml_file
 
 FUNCTIONS = (
     "fmi2Instantiate",

@@ -22,7 +22,7 @@ from fmpy import fmi2
 from numpy.typing import NDArray
 
 from sigmahat.fmi.interrupts import interrupts_wait
-from sigmahat.user_input.unknown_name import unknown
+from sigmahat.fmi.unknown_name import unknown
 
 try:  # FMPy ships it for some platforms only; without it messages arrive unformatted
     from fmpy.logging import addLoggerProxy

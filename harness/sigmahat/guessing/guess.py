@@ -12,12 +12,12 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from sigmahat.fmi.unknown_name import unknown
 from sigmahat.guessing.columns import Column, Columns, read_columns
 from sigmahat.guessing.ports import PortGuess, guess_ports
 from sigmahat.guessing.roles import Roles, assign, chosen_roles
 from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Log, LogError
-from sigmahat.user_input.unknown_name import unknown
 
 _OF_A_JOINT = ("position", "torque", "current", None)
 

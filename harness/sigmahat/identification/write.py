@@ -9,6 +9,7 @@ from typing import Any
 
 import tomlkit
 
+from sigmahat.files import toml_file
 from sigmahat.files.output import write_whole
 from sigmahat.fmi.opened import installed
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
@@ -22,7 +23,6 @@ from sigmahat.logs.configuration import (
     read_document,
 )
 from sigmahat.logs.units import factor
-from sigmahat.user_input import toml_file
 
 _ABOVE = 1.4
 """regression.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""

@@ -28,10 +28,10 @@ import tomlkit
 from pydantic import AfterValidator, AllowInfNan, ConfigDict, Strict, TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
+from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Value
+from sigmahat.fmi.unknown_name import unknown
 from sigmahat.logs.log import LogError
-from sigmahat.user_input import toml_file
-from sigmahat.user_input.unknown_name import unknown
 
 PORTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sensor": "N.m"}
 """Inputs of StiffnessEstimator and their units."""

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from sigmahat.files import toml_file
 from sigmahat.files.output import sha256
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.instance import Fmu, Slave, Value
@@ -17,7 +18,6 @@ from sigmahat.joint.curve import NORMAL_95, Curve
 from sigmahat.joint.start_values import start_values
 from sigmahat.joint.stored import FmuId, Range
 from sigmahat.logs.job import Replay
-from sigmahat.user_input import toml_file
 
 UNITS = {
     "bias": "N.m",

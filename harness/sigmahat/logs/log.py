@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.compute
 from numpy.typing import NDArray
 
-from sigmahat.user_input.unknown_name import unknown
+from sigmahat.fmi.unknown_name import unknown
 
 
 class LogError(ValueError):

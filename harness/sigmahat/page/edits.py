@@ -12,8 +12,8 @@ from typing import Any
 import tomlkit
 from tomlkit.items import Table
 
+from sigmahat.files import toml_file
 from sigmahat.logs.configuration import FILL_IN, NOT_YOURS, WIDE_PRIOR
-from sigmahat.user_input import toml_file
 
 ANGLES = ("rad", "mrad", "deg", "turn", "counts")
 TORQUES = ("N.m", "mN.m", "kN.m", "A", "mA")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from sigmahat.fmi.unknown_name import unknown
 from sigmahat.paper.awas import experiment, simulation
 from sigmahat.paper.transmissions import antagonistic, single
 from sigmahat.runs.scenario import Scenario
-from sigmahat.user_input.unknown_name import unknown
 
 SCENARIOS = {
     s.name: s

@@ -17,9 +17,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from sigmahat.files import toml_file
+from sigmahat.fmi.unknown_name import unknown
 from sigmahat.sweep.plan import Plan, Values, values
-from sigmahat.user_input import toml_file
-from sigmahat.user_input.unknown_name import unknown
 
 _KEYS = ("scenario", "seeds", "modality", "parameters")
 _MOST = 1_000_000

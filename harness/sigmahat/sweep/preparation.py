@@ -8,12 +8,12 @@ from dataclasses import replace
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.master import EstimatorFmu, Plant
 from sigmahat.fmi.opened import installed
+from sigmahat.fmi.unknown_name import unknown
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.engine import SEED
 from sigmahat.runs.scenario import Scenario
 from sigmahat.runs.signals import PLANT, to_record
 from sigmahat.sweep.plan import Plan, Run
-from sigmahat.user_input.unknown_name import unknown
 
 ALL = "estimator"
 """Owner of a parameter of all estimators."""

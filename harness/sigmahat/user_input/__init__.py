@@ -1,1 +1,0 @@
-"""What users write: TOML files, and names that may not exist."""
