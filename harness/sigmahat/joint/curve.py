@@ -38,11 +38,11 @@ class Branch:
     tau_e: Array
     """Flexibility torque [N.m]"""
     tau_e_std: Array | None
-    """Its standard deviation [N.m], at most; None if the method claims none."""
+    """Its standard deviation, as the estimator reports it [N.m]; None if the method claims none."""
     sigma: Array
     """Stiffness [N.m/rad]"""
     sigma_std: Array | None
-    """Its standard deviation, as the estimator reports it [N.m/rad]; None as above."""
+    """The same of the stiffness [N.m/rad]."""
 
     @property
     def within(self) -> NDArray[np.bool_]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,12 +110,8 @@ def curve(
 ) -> Curve:
     """Torque and stiffness over the deformation, at each set-point that the data reach.
 
-    The slave does not change. Of the method FilteredRegression it says how certain the stiffness is
-    at each point, sigma_std. The torque of a spring is the integral of its stiffness, so its
-    standard deviation is at most the integral of sigma_std, from where the torque is known: at 0
-    for an odd polynomial. A general one has a constant. No motor torque tells it from a bias, so
-    the interval is that of the torque relative to the one at 0, or at the end of the reach next to
-    it.
+    The slave does not change. With the method FilteredRegression it gives the standard deviations
+    at each point, tau_e_std and sigma_std.
 
     every   parameters of the slave
     logs    that it has learned from, the last of them now
@@ -125,15 +121,13 @@ def curve(
     polynomial = sheet.polynomial(start_values(slave, every), *covered)
     reach = reaches(points, logs[:-1], not polynomial.is_of_set_point)
     grids = [_grid(each, polynomial) for each in reach]
-    stds: list[Array | None] = [None] * len(grids)
+    stds: list[tuple[Array | None, Array | None]] = [(None, None)] * len(grids)
     if every["method"] == "FilteredRegression" and grids:
-        stds = list(_sigma_std(slave, every, reach, grids))
+        stds = list(_standard_deviations(slave, every, reach, grids))
     branches = []
-    for each, phi, std in zip(reach, grids, stds, strict=True):
+    for each, phi, (tau_e_std, sigma_std) in zip(reach, grids, stds, strict=True):
         tau_e, sigma = polynomial.at(phi, each.set_point)
-        known = _known(each, polynomial)
-        tau_e_std = None if std is None else _integral(std, phi, known)
-        branches.append(Branch(each.set_point, each.phi, phi, tau_e, tau_e_std, sigma, std))
+        branches.append(Branch(each.set_point, each.phi, phi, tau_e, tau_e_std, sigma, sigma_std))
     return Curve(polynomial, branches)
 
 
@@ -146,7 +140,8 @@ def _grid(reach: Reach, polynomial: Polynomial) -> Array:
     """Deformations of a branch: in the reach, beyond it, and those at which something is told."""
     low, high = reach.phi
     further = _BEYOND * (high - low)
-    known = _known(reach, polynomial)
+    odd = 0 not in polynomial.powers_of_phi
+    known = 0.0 if odd else float(np.clip(0.0, low, high))
     return np.unique(
         np.concatenate(
             [
@@ -159,25 +154,10 @@ def _grid(reach: Reach, polynomial: Polynomial) -> Array:
     )
 
 
-def _known(reach: Reach, polynomial: Polynomial) -> float:
-    """The deformation from which the torque is counted."""
-    if 0 not in polynomial.powers_of_phi:
-        return 0.0
-    return float(np.clip(0.0, *reach.phi))
-
-
-def _integral(std: Array, phi: Array, start: float) -> Array:
-    """Integral of std over phi from a start, which is one of phi, without its sign."""
-    steps = np.diff(phi) * (std[1:] + std[:-1]) / 2
-    total = np.concatenate([[0.0], np.cumsum(steps)])
-    integral: Array = np.abs(total - total[np.searchsorted(phi, start)])
-    return integral
-
-
-def _sigma_std(
+def _standard_deviations(
     slave: Slave, every: Mapping[str, Value], reach: Sequence[Reach], grids: Sequence[Array]
-) -> list[Array]:
-    """What the estimator says at each point, by a copy of it."""
+) -> Iterator[tuple[Array, Array]]:
+    """Of torque and stiffness at each point of each grid, as a copy of the estimator gives them."""
     scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
     points = [
         (0.0, phi, (each.set_point - offset) / scale if scale else 0.0)
@@ -188,7 +168,9 @@ def _sigma_std(
         other.initialize(every)
         t_0, T = restore(other, save(slave)), float(every["samplePeriod"])
         found = stiffness_at(other, ("theta", "q", "theta_c"), np.array(points), t_0, T)
-    return np.split(found["sigma_std"], np.cumsum([len(grid) for grid in grids])[:-1])
+    ends = np.cumsum([len(grid) for grid in grids])[:-1]
+    names = ("tau_e_std", "sigma_std")
+    yield from zip(*(np.split(found[name], ends) for name in names), strict=True)
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,13 @@ from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Array
 
-_OUTPUTS = ("sigma", "sigma_std", "sigma_per_gain", "phi", "setPoint")
+_OUTPUTS = ("tau_e_std", "sigma", "sigma_std", "sigma_per_gain", "phi", "setPoint")
 
 
 def stiffness_at(
     slave: Slave, names: Sequence[str], points: Array, t_0: float, T: float
 ) -> dict[str, Array]:
-    """sigma, sigma_std, sigma_per_gain, phi and setPoint at each point, [size: points].
+    """The outputs _OUTPUTS at each point, by name, [size: points].
 
     Before each point a sample is missing. After such a gap FilteredRegression learns nothing until
     its filters have settled, and they never do: its answers are those of what it has learned

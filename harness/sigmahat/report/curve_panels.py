@@ -52,10 +52,7 @@ def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
 
 def _caption(name: str, curve: joint.Curve) -> str:
     parts = ["points: measured"] if name == "tau_e" else []
-    # A constant torque cannot be told from a bias.
-    is_relative = name == "tau_e" and 0 in curve.polynomial.powers_of_phi
-    band = "band: 95 %" + is_relative * ", relative to the torque where it is narrowest"
-    parts += [band] if curve.claims else []
+    parts += ["band: 95 %"] if curve.claims else []
     return "; ".join([*parts, "faded: beyond the data"])
 
 
