@@ -158,6 +158,16 @@ def amalgamate(
     amalgamation.write(out, sources, interface, licence, version)
 
 
+@main.command("parameters")
+@click.argument("template", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("out", type=click.Path(dir_okay=False, path_type=Path))
+def write_parameters(template: Path, out: Path) -> None:
+    """Write OUT, the parameters of TEMPLATE as a table in C."""
+    from sigmahat.export import c_parameters
+
+    out.write_text(c_parameters.table(template), encoding="utf-8")
+
+
 @main.command("modelica")
 @click.argument("out", type=click.Path(dir_okay=False, path_type=Path))
 @click.argument("library", type=click.Path(exists=True, file_okay=False, path_type=Path))
