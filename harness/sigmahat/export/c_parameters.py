@@ -23,7 +23,7 @@ def table(template: Path) -> str:
     return "\n".join(
         [
             "/* Generated from modelDescription/ by the target parameter_table; do not edit.",
-            " * Each row: place in sh_parameters, start value, least and largest value, range in words.",
+            " * A row: place in sh_parameters, start, least and largest value, range in words.",
             " */",
             "static const real_parameter REALS[] = {",
             *rows["REAL"],
