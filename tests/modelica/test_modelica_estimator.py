@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 import sigmahat
 from gate import need
-from modelica_package import KEYWORDS
 from recordings import one_seed
+from sigmahat.export.modelica import KEYWORDS
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import Plant, simulate
 
