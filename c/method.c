@@ -7,19 +7,11 @@
 #define SH_METHOD_ENTRY(constant, number, name, block) [constant] = &(block),
 static const sh_method *const METHODS[] = {SH_METHODS(SH_METHOD_ENTRY)};
 
-#define SH_METHOD_NAME(constant, number, name, block) " or " #number " (" name ")"
-static const char METHOD_NAMES[] = SH_METHODS(SH_METHOD_NAME);
-
 const sh_method *sh_method_of(const sh_parameters *p)
 {
     const int count = sizeof METHODS / sizeof METHODS[0];
 
     return p->method >= 0 && p->method < count ? METHODS[p->method] : NULL;
-}
-
-const char *sh_method_names(void)
-{
-    return METHOD_NAMES + sizeof " or " - 1; /* without the first one */
 }
 
 int sh_violates(sh_violation *violation, const char *name, sh_real value, const char *range)

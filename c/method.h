@@ -60,9 +60,6 @@ SH_METHODS(SH_METHOD_DECLARATION)
 /* The method that the parameters choose, NULL if there is none of this number. */
 const sh_method *sh_method_of(const sh_parameters *p);
 
-/* Numbers and names of all methods: "1 (Paper2011) or 2 (FilteredRegression)". */
-const char *sh_method_names(void);
-
 /* Describes a violation. Returns 1. */
 int sh_violates(sh_violation *violation, const char *name, sh_real value, const char *range);
 

@@ -26,7 +26,7 @@ function(sigmahat_add_fmu name)
     get_target_property(interface ${arg_LIBRARY} HEADER_SET)
     list(APPEND sources ${library_sources})
   endif()
-  file(GLOB headers ${source_dir}/c/*.h ${source_dir}/c/*/*.h ${source_dir}/fmu_src/*.h ${source_dir}/fmu_src/*/*.h)
+  file(GLOB headers ${source_dir}/c/*.inc ${source_dir}/c/*.h ${source_dir}/c/*/*.h ${source_dir}/fmu_src/*.h ${source_dir}/fmu_src/*/*.h)
 
   set(described ${dir}/modelDescription.xml ${dir}/fmi3/modelDescription.xml
                 ${dir}/fmi3/buildDescription.xml ${dir}/fmi3/terminalsAndIcons.xml)

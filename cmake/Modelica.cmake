@@ -4,11 +4,14 @@ set(modelica ${PROJECT_BINARY_DIR}/release/sigmahat-modelica.zip)
 set(modelica_sources ${amalgamation}/sigmahat.c ${amalgamation}/sigmahat.h
                      ${PROJECT_SOURCE_DIR}/fmu_src/noise.c ${PROJECT_SOURCE_DIR}/fmu_src/noise.h)
 file(GLOB_RECURSE modelica_package CONFIGURE_DEPENDS modelica/Sigmahat/*)
+file(GLOB modelica_variables CONFIGURE_DEPENDS modelDescription/*.xml)
 add_custom_command(
   OUTPUT ${modelica}
   COMMAND ${SIGMAHAT_RUN} sigmahat.export modelica ${modelica} ${PROJECT_SOURCE_DIR}/modelica/Sigmahat
-          ${modelica_sources} --licence ${PROJECT_SOURCE_DIR}/LICENSE --version ${PROJECT_VERSION}
-  DEPENDS ${modelica_package} ${modelica_sources} LICENSE harness/sigmahat/export/modelica.py
+          ${modelica_sources} --templates ${PROJECT_SOURCE_DIR}/modelDescription
+          --licence ${PROJECT_SOURCE_DIR}/LICENSE --version ${PROJECT_VERSION}
+  DEPENDS ${modelica_package} ${modelica_variables} ${modelica_sources} LICENSE
+          harness/sigmahat/export/modelica.py harness/sigmahat/export/templates.py
           harness/sigmahat/export/archive.py
   COMMENT "Modelica package" VERBATIM)
 add_custom_target(modelica DEPENDS ${modelica})

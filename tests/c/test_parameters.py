@@ -1,14 +1,17 @@
-"""Defaults against the start values of the FMU, and the ranges of the coefficients eta_0."""
+"""The library against the list of variables: names, start values, ranges, and its table in C."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import fmpy
 import pytest
 
-from c_library import Library, load
+from c_library import REPOSITORY, Library, load
+from sigmahat.export import c_parameters
 
 
 @pytest.fixture(scope="module")
@@ -16,21 +19,64 @@ def c(build: Path) -> Library:
     return load(build)
 
 
-def test_defaults_are_the_start_values_of_the_fmu(c: Library, estimator_fmu: Path) -> None:
-    p = c.parameters({})
-    variables = fmpy.read_model_description(str(estimator_fmu)).modelVariables
-    compared = 0
-    for variable in variables:
-        if variable.causality != "parameter" or "[" in variable.name:
-            continue
-        value = p
-        for name in variable.name.split("."):
-            value = getattr(value, name)
-        switch = {"true": 1.0, "false": 0.0}
-        start = switch[variable.start] if variable.start in switch else float(variable.start)
-        assert value == pytest.approx(start, rel=1e-12, abs=0.0), variable.name
-        compared += 1
-    assert compared > 40
+@pytest.fixture(scope="module")
+def listed(estimator_fmu: Path) -> list[Any]:
+    """Parameters and outputs, without those in arrays."""
+    found: list[Any] = fmpy.read_model_description(str(estimator_fmu)).modelVariables
+    return [v for v in found if v.causality != "input" and "[" not in v.name]
+
+
+def test_the_table_in_c_is_made_from_the_list() -> None:
+    """If not: cmake --build build --target parameter_table."""
+    made = c_parameters.table(REPOSITORY / "modelDescription" / "StiffnessEstimator.xml")
+    assert (REPOSITORY / "c" / "parameters.inc").read_text(encoding="utf-8") == made
+
+
+def fields(c: Library, struct: Any, prefix: str = "") -> Iterator[str]:
+    """The names of the numbers in a struct, with those of the structs around them."""
+    for name, field in struct.fields:
+        if field.type.kind == "struct":
+            yield from fields(c, field.type, f"{prefix}{name}.")
+        else:
+            yield prefix + name
+
+
+@pytest.mark.parametrize(
+    ("struct", "causality", "array"),
+    [("sh_parameters", "parameter", "rls.eta_0"), ("sh_estimate", "output", "eta")],
+)
+def test_a_struct_has_the_fields_of_the_list(
+    struct: str, causality: str, array: str, c: Library, listed: list[Any]
+) -> None:
+    expected = [array, *(v.name for v in listed if v.causality == causality)]
+    assert sorted(fields(c, c.ffi.typeof(struct))) == sorted(expected)
+
+
+def test_start_values_and_ranges_are_those_of_the_list(c: Library, listed: list[Any]) -> None:
+    """A limit is accepted itself, and what is beyond it is refused."""
+    for variable in (v for v in listed if v.causality == "parameter"):
+        value: Any = c.parameters({})
+        for part in variable.name.split("."):
+            value = getattr(value, part)
+        boolean, choice = variable.type == "Boolean", variable.declaredType
+        start = ("false", "true").index(variable.start) if boolean else float(variable.start)
+        assert value == start, variable.name
+        low, high = (
+            None if limit is None else float(limit) for limit in (variable.min, variable.max)
+        )
+        if boolean or choice:
+            low, high = (0.0, 1.0) if boolean else (1.0, float(len(choice.items)))
+        kind = float if variable.type == "Real" else int
+        for limit, outward in ((low, -math.inf), (high, math.inf)):
+            beyond = outward if limit is None else math.nextafter(limit, outward)
+            if kind is int:
+                assert limit is not None
+                beyond = limit + math.copysign(1.0, outward)
+            found = c.violation(c.parameters({variable.name: kind(beyond)}))
+            assert found is not None and found[:2] == (variable.name, beyond)
+            if limit is not None:
+                found = c.violation(c.parameters({variable.name: kind(limit)}))
+                assert found is None or "<" in found[2], found  # a limit by other parameters
 
 
 @pytest.mark.parametrize("i", range(8))

@@ -7,22 +7,16 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import fmpy
 import pytest
 
+import sigmahat
 from fmi_instance import ERROR, OK, WARNING, Instance
 
 OUTPUTS = [
-    *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),
-    *(f"eta[{i},{j}]" for i in range(3) for j in range(3)),
-    *("sigma_std", "tau_e_std", "D_theta_hat", "B_hat", "tau_coulomb_hat", "misfit", "bias_hat"),
-    *(
-        "damping_hat",
-        "load_friction_hat",
-        "eccentric_hat",
-        "delay_hat",
-        "hysteresis_hat",
-        "sigma_per_gain",
-    ),
+    v.name
+    for v in fmpy.read_model_description(str(sigmahat.fmu("StiffnessEstimator"))).modelVariables
+    if v.causality == "output" and v.type == "Real"
 ]
 INPUTS = ["theta", "tau", "tau_e_sensor"]
 CONFIDENT, NOT_EXCITED, MISFIT = 1, 3, 4  # items of the enumeration Doubt

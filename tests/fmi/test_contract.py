@@ -9,7 +9,6 @@ from typing import Any
 import fmpy
 import pytest
 
-from c_library import Library
 from fmi_instance import ERROR, OK, Instance
 
 B = 0.0025 / (2 * math.pi)
@@ -34,14 +33,6 @@ OUTPUTS = {
     "epsilon": "N.m",
     "sigma_std": "N.m/rad",
     "tau_e_std": "N.m",
-    "misfit": "1",
-    "bias_hat": "N.m",
-    "damping_hat": "N.m.s/rad",
-    "load_friction_hat": "1",
-    "eccentric_hat": "rad",
-    "delay_hat": "s",
-    "hysteresis_hat": "N.m",
-    "sigma_per_gain": "1",
 }
 PARAMETERS = {
     "samplePeriod": ("fixed", "s", 1e-3),
@@ -75,22 +66,6 @@ PARAMETERS = {
     "model.k_s": ("tunable", "N/m", 14220),
     "model.r_0": ("tunable", "m", 0.1),
     "model.b": ("tunable", "m/rad", B),
-    "range.phi": ("fixed", "rad", None),
-    "range.setPoint": ("fixed", "1", None),
-    "prior.D_theta": ("fixed", "1", None),
-    "prior.B": ("fixed", "1", None),
-    "prior.tau_coulomb": ("fixed", "N.m", None),
-    "prior.torque_gain": ("fixed", "1", 0.02),
-    "prior.bias": ("fixed", "1", None),
-    "prior.damping": ("fixed", "s", None),
-    "prior.load_friction": ("fixed", "1", None),
-    "prior.eccentric": ("fixed", "rad", None),
-    "prior.delay": ("fixed", "s", None),
-    "prior.reversal": ("fixed", "s", None),
-    "prior.power": ("fixed", "1", None),
-    "prior.gap": ("fixed", "1", None),
-    "prior.hysteresis": ("fixed", "1", None),
-    "prior.eccentric_motor": ("fixed", "rad", None),
     "torque.held": ("tunable", None, 0),
     "regression.memory": ("tunable", "s", 20),
 }
@@ -225,20 +200,12 @@ def start_of(variable: Any) -> float:
 
 
 @pytest.mark.parametrize("name", PARAMETERS)
-def test_a_parameter_is_that_of_the_contract(
-    name: str, variables: dict[str, Any], build: Path
-) -> None:
+def test_a_parameter_is_that_of_the_contract(name: str, variables: dict[str, Any]) -> None:
     variability, unit, start = PARAMETERS[name]
     variable = variables[name]
     assert (variable.causality, variable.variability) == ("parameter", variability)
     assert unit is None or (variable.unit or NO_UNIT) == unit
     assert start is None or start_of(variable) == pytest.approx(start, rel=1e-15)
-    # The library has the same start values.
-    parameters = Library(build).parameters({})  # must live as long as its parts are read
-    value: Any = parameters
-    for part in name.split("."):
-        value = getattr(value, part)
-    assert start_of(variable) == value
 
 
 @pytest.mark.parametrize("name", PLANT)
@@ -259,30 +226,6 @@ def test_an_enumeration_has_the_items_of_the_contract(name: str, variables: dict
     assert [item.name for item in items] == ITEMS[name]
     assert [int(item.value) for item in items] == list(range(1, len(items) + 1))
     assert all(item.description for item in items)
-
-
-def test_limits_in_the_description_are_those_of_the_library(
-    variables: dict[str, Any], build: Path
-) -> None:
-    """The library refuses a value beyond a limit of the description."""
-    library = Library(build)
-    violation = library.ffi.new("sh_violation *")
-    checked = 0
-    for name in PARAMETERS:
-        variable = variables[name]
-        for limit, outward in ((variable.min, -1.0), (variable.max, 1.0)):
-            if limit is None:
-                continue
-            beyond = float(limit) + outward
-            parameters = library.parameters({})
-            if variable.type == "Real":
-                library.set(parameters, name, beyond)
-            else:
-                library.set(parameters, name, int(beyond))
-            assert library.lib.sh_parameters_check(parameters, violation) == 1, name
-            assert library.ffi.string(violation.name).decode() == name
-            checked += 1
-    assert checked > 20
 
 
 def test_symmetric_is_a_boolean_that_allows_0_and_1_only(

@@ -76,32 +76,11 @@ CHANGED = {
     "contact.d": 10.0,
     "sensor.tau_bias": 0.01,
 }
-SCALARS = (
-    "sigma",
-    "tau_e",
-    "tau_e_residual",
-    "theta_dot",
-    "phi",
-    "setPoint",
-    "a",
-    "rho",
-    "epsilon",
-    "sigma_std",
-    "tau_e_std",
-    "D_theta_hat",
-    "B_hat",
-    "tau_coulomb_hat",
-    "misfit",
-    "bias_hat",
-    "damping_hat",
-    "load_friction_hat",
-    "eccentric_hat",
-    "delay_hat",
-    "hysteresis_hat",
-    "sigma_per_gain",
-    "doubt",
-    "confident",
-)
+SCALARS = [
+    v.name
+    for v in fmpy.read_model_description(str(sigmahat.fmu("StiffnessEstimator"))).modelVariables
+    if v.causality == "output" and "[" not in v.name and v.name != "valid"
+]
 ETA = [(i, j) for i in range(8) for j in range(5)]
 
 

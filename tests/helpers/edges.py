@@ -3,55 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
+from xml.etree.ElementTree import Element
 
 import numpy as np
 from hypothesis import strategies as st
 
-from c_library import MEASUREMENTS, Array
+from c_library import MEASUREMENTS, REPOSITORY, Array
+from sigmahat.export.templates import items, render, variables
 
 LARGEST = 1e12
 """Largest magnitude of a measurement, and of most parameters of docs/proof/promises.md."""
 SUBNORMAL = (4.9e-324, 1e-310, 1e-45, 1e-40)  # the last two in single precision
 
+_DESCRIPTION = render(REPOSITORY / "modelDescription" / "StiffnessEstimator.xml", "")
+_PARAMETERS: Mapping[str, Element] = {
+    v.attrib["name"]: v[0]
+    for v in variables(_DESCRIPTION)
+    if v.attrib["causality"] == "parameter" and "[" not in v.attrib["name"]
+}
+
 RANGES: Mapping[str, tuple[float, float]] = {
-    "motor.B": (1e-15, LARGEST),
-    "motor.D_theta": (0, LARGEST),
-    "motor.gamma": (1e-6, 1e6),
-    "residual.K_I": (1e-15, LARGEST),
-    "filter.V_a": (0, LARGEST),
-    "filter.V_max": (1e-30, LARGEST),
-    "filter.V_min": (1e-30, LARGEST),
-    "filter.alpha": (0, LARGEST),
-    "filter.R": (1e-30, LARGEST),
-    "filter.P_0": (1e-30, LARGEST),
-    "encoder.theta": (0, LARGEST),
-    "encoder.q": (0, LARGEST),
-    "setPoint.offset": (0, LARGEST),
-    "setPoint.scale": (0, LARGEST),
-    "rls.P_0": (1e-30, 1e20),
-    "rls.c": (1e-30, LARGEST),
-    "rls.a": (1e-15, 1),
-    "model.k_s": (0, LARGEST),
-    "model.r_0": (0, LARGEST),
-    "model.b": (0, LARGEST),
-    "noise.tau": (1e-12, LARGEST),
-    "noise.tau_e": (1e-12, LARGEST),
-    "limit.relative_std": (1e-15, LARGEST),
-    "regression.slow": (1e-15, LARGEST),
-    "regression.drift": (0, LARGEST),
-    "regression.memory": (0, LARGEST),
-    "range.phi": (1e-6, 1e6),
-    "range.setPoint": (1e-12, LARGEST),
     **{
-        f"prior.{name}": (0, LARGEST)
-        for name in (
-            *("tau_e", "nominal", "D_theta", "B", "tau_coulomb", "torque_gain", "bias", "damping"),
-            *("load_friction", "eccentric", "delay", "reversal", "power", "gap", "hysteresis"),
-            "eccentric_motor",
-        )
+        name: (float(kind.get("min", 0)), min(float(kind.get("max", LARGEST)), LARGEST))
+        for name, kind in _PARAMETERS.items()
+        if kind.tag == "Real" and name not in ("samplePeriod", "regression.bandwidth")
     },
+    "motor.gamma": (1e-6, 1e6),
+    "rls.P_0": (1e-30, 1e20),
 }
 """The domain of the promises. gamma, offset, scale and rls.eta_0 may be negative."""
 
@@ -63,16 +43,16 @@ def magnitudes(low: float, high: float) -> st.SearchStrategy[float]:
     return st.one_of(st.sampled_from([float(low), float(high)]), between)
 
 
-_CHOICES: Mapping[str, tuple[int, ...]] = {
-    "modality": (1, 2, 3),
-    "deformation": (1, 2),
-    "filter.kind": (1, 2, 3),
-    "filter.weighting": (1, 2),
-    "rls.kind": (1, 2, 3),
-    "rls.symmetric": (1, 0),
-    "rls.n": (8, 1, 2, 3, 4, 5, 6, 7),
-    "rls.m": (5, 1, 2, 3, 4),
-    "torque.held": (0, 1),
+def _choices(kind: Element) -> Sequence[int]:
+    if kind.tag == "Enumeration":
+        return range(1, len(items(_DESCRIPTION, kind)) + 1)
+    return range(int(kind.get("min", 0)), int(kind.get("max", 1)) + 1)
+
+
+_CHOICES: Mapping[str, Sequence[int]] = {
+    name: _choices(kind)
+    for name, kind in _PARAMETERS.items()
+    if kind.tag != "Real" and name != "method"
 }
 _SIGNED = ("motor.gamma", "setPoint.offset", "setPoint.scale")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import tempfile
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
@@ -12,11 +12,18 @@ import pymoca.ast
 import pymoca.parser
 import rumoca
 
+import sigmahat
+from sigmahat.export.modelica import KEYWORDS, contents
+
 REPOSITORY = Path(__file__).resolve().parents[2]
-PACKAGE = REPOSITORY / "modelica" / "Sigmahat"
+_FOLDER = tempfile.TemporaryDirectory()
+PACKAGE = Path(_FOLDER.name) / "Sigmahat"
+for _name, _text in contents(
+    REPOSITORY / "modelica" / "Sigmahat", REPOSITORY / "modelDescription", sigmahat.__version__
+).items():
+    (PACKAGE / _name).parent.mkdir(parents=True, exist_ok=True)
+    (PACKAGE / _name).write_bytes(_text)
 FILES = sorted(PACKAGE.rglob("*.mo"))
-KEYWORDS = {"initial": "init", "model": "nominal"}
-"""Groups of parameters whose names in the FMUs are keywords of Modelica: their names there."""
 NO_NOISE = "redeclare function drawNoise = Sigmahat.Plants.noNoise"
 """For rumoca, which calls no C."""
 
@@ -61,14 +68,6 @@ def in_modelica(name: str) -> str:
     """The name in the package of a parameter of an FMU."""
     group, dot, last = name.partition(".")
     return f"{KEYWORDS.get(group, group)}{dot}{last}"
-
-
-def external_arguments(file: str, function: str) -> list[str]:
-    """The arguments with which a file of the package calls a C function."""
-    text = (PACKAGE / file).read_text(encoding="utf-8")
-    call = re.search(rf'external "C" (?:\w+ = )?{function}\(([^)]*)\)', text)
-    assert call, function
-    return [argument.strip() for argument in call[1].split(",")]
 
 
 def compiled(text: str, model: str = "Test") -> rumoca.Model:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
+import os
 import re
 import subprocess
+import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -17,28 +20,125 @@ from numpy.typing import NDArray
 
 import sigmahat
 from gate import need
-from modelica_calls import INPUTS, calls, constructor_arguments, outputs
-from modelica_package import FILES, classes, external_arguments
 from recordings import one_seed
-from sigmahat.export.templates import render
+from sigmahat.export.modelica import KEYWORDS
+from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import Plant, simulate
 
 DRIVERS = Path(__file__).parents[1] / "drivers" / "modelica"
-REPOSITORY = Path(__file__).parents[2]
-FLAGS = ["-std=c99", "-O2", "-ffp-contract=off"]
+FLAGS = ["-std=c99", "-O2", "-g", "-ffp-contract=off", "-fPIC"]
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
+SANITIZER = "SIGMAHAT_MODELICA_SANITIZER"
 T, N = 1e-3, 3000
-NAMES = ("new", "tick", "free")
+INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
 
-@pytest.fixture(scope="module")
-def c_sources(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of the C sources, from the archive."""
-    folder = tmp_path_factory.mktemp("package")
-    with ZipFile(build / "release" / "sigmahat-modelica.zip") as archive:
-        archive.extractall(folder)
-    (sources,) = folder.glob("*/Resources/C-Sources")
-    return sources
+class Tool:
+    """The external functions in a library, each compiled alone, and how the block calls them."""
+
+    def __init__(self, package: Path, folder: Path, fmu: Fmu) -> None:
+        self.fmu, self.sources = fmu, package / "Resources" / "C-Sources"
+        calls = (package / "Estimators" / "Internal.mo").read_text(encoding="utf-8")
+        block = (package / "Estimators" / "StiffnessEstimator.mo").read_text(encoding="utf-8")
+        self.includes = [
+            each.replace("\\", "") + "\n"
+            for each in re.findall(r'Include="(#include .+?)"[,)]', calls)
+        ]
+        assert len(self.includes) == 3
+        given = re.search(
+            r"Internal\.Estimator\(\s*\{(.*?)\},\s*\{(.*?)\},\s*rls.eta_0\)", block, re.S
+        )
+        taken = re.search(r"sigmahat_estimator_tick\(estimator, t,([^)]*)\)", calls)
+        assert given and taken
+        self.reals, self.integers = (
+            [_parameter(n) for n in each.split(",")] for each in given.groups()
+        )
+        self.arguments = [name.strip() for name in taken[1].split(",")]
+        self.outputs = self.arguments[len(INPUTS) :]
+        assert self.arguments[: len(INPUTS)] == list(INPUTS)
+        objects = [
+            self.compiled(folder, each)
+            for each in (*self.includes, '#include "sigmahat_noise.c"\n', '#include "tool.c"\n')
+        ]
+        library = folder / "tool.so"
+        gcc("-shared", *_sanitizer(), *objects, "-lm", "-o", library)
+        self.library = ctypes.CDLL(str(library))
+        self.library.tool_new.restype = ctypes.c_void_p
+        self.library.sigmahat_standard_normal.restype = ctypes.c_double
+
+    def compiled(self, folder: Path, text: str) -> Path:
+        """The object file of a translation unit with this text."""
+        source = Path(tempfile.mkdtemp(dir=folder)) / "unit.c"
+        source.write_text(text)
+        search = (f"-I{self.sources}", f"-I{DRIVERS}")
+        gcc(*_sanitizer(), *search, "-c", source, "-o", source.with_suffix(".o"))
+        return source.with_suffix(".o")
+
+    def messages(self) -> str:
+        """The messages since the last call."""
+        buffer = ctypes.c_char.in_dll(self.library, "tool_messages")
+        text = ctypes.string_at(ctypes.addressof(buffer)).decode()
+        buffer.value = b"\0"
+        return text
+
+    def new(self, parameters: Mapping[str, Any]) -> int | None:
+        """A new object for these parameters by their names in the FMU; None after an error."""
+
+        def values(names: list[str]) -> list[float]:
+            # A number stands for a parameter that the block does not have.
+            return [
+                self.fmu.number(n, parameters[n]) if n in parameters else float(n) for n in names
+            ]
+
+        reals, integers = values(self.reals), list(map(int, values(self.integers)))
+        eta_0 = [parameters[f"rls.eta_0[{i},{j}]"] for i in range(8) for j in range(5)]
+        made: int | None = self.library.tool_new(
+            (ctypes.c_double * len(reals))(*reals),
+            (ctypes.c_int * len(integers))(*integers),
+            (ctypes.c_double * len(eta_0))(*eta_0),
+        )
+        return made
+
+    def run(
+        self, parameters: Mapping[str, Any], samples: NDArray[np.float64], *before: float
+    ) -> dict[str, NDArray[Any]]:
+        """Outputs of a tick for each of the samples, time and inputs.
+
+        Another object runs in between, with other inputs. With `before`, each tick is made twice,
+        first with these inputs.
+        """
+        objects = [ctypes.c_void_p(self.new(parameters)) for _ in range(2)]
+        places = [
+            (ctypes.c_double * 40 if name == "eta" else self._type(name))() for name in self.outputs
+        ]
+        pointers = [ctypes.byref(each) for each in places]
+        rows: dict[str, list[Any]] = {name: [] for name in self.outputs}
+        for t, *z in samples.tolist():
+            for which, inputs in ((0, before), (1, [0.0] * 5), (0, z)):
+                if inputs:
+                    numbers = [ctypes.c_double(each) for each in (t, *inputs)]
+                    self.library.sigmahat_estimator_tick(objects[which], *numbers, *pointers)
+            for name, place in zip(self.outputs, places, strict=True):
+                rows[name].append(list(place) if name == "eta" else place.value)
+        for each in objects:
+            self.library.sigmahat_estimator_free(each)
+        return {name: np.array(each) for name, each in rows.items()}
+
+    def _type(self, name: str) -> Any:
+        real = self.fmu.variable(name).type == "Real"
+        return ctypes.c_double if real else ctypes.c_int
+
+
+def _parameter(expression: str) -> str:
+    """The name in the FMU of a parameter that the block gives as a number."""
+    name = re.sub(r"Integer\((.*)\)|if (.*) then 1 else 0", r"\1\2", expression.strip())
+    for theirs, ours in KEYWORDS.items():
+        name = re.sub(rf"^{ours}\.", f"{theirs}.", name)
+    return name
+
+
+def _sanitizer() -> list[str]:
+    return ["-fsanitize=address,undefined"] if SANITIZER in os.environ else []
 
 
 def gcc(*arguments: str | Path) -> None:
@@ -48,59 +148,15 @@ def gcc(*arguments: str | Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def unit(folder: Path, c_sources: Path, text: str, *flags: str) -> Path:
-    """The object file of a translation unit with this text."""
-    source = Path(tempfile.mkdtemp(dir=folder)) / "unit.c"
-    source.write_text(text)
-    gcc(*flags, f"-I{c_sources}", f"-I{DRIVERS}", "-c", source, "-o", source.with_suffix(".o"))
-    return source.with_suffix(".o")
-
-
 @pytest.fixture(scope="module")
-def objects(c_sources: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """Each external function of the estimator in a translation unit of its own."""
-    folder = tmp_path_factory.mktemp("objects")
-    return [unit(folder, c_sources, text) for text in includes()]
-
-
-def includes() -> list[str]:
-    """The annotations Include of the functions of the estimator."""
-    text = "".join(file.read_text(encoding="utf-8") for file in FILES)
-    found = re.findall(r'Include="(#include \\"sigmahat_estimator.+?)"[,)]', text)
-    assert len(found) == len(NAMES)
-    return [each.replace("\\", "") + "\n" for each in found]
-
-
-def items() -> dict[str, dict[str, int]]:
-    """Numbers of the items of each enumeration."""
-    template = REPOSITORY / "modelDescription" / "StiffnessEstimator.xml"
-    types = render(template, sigmahat.__version__).findall("TypeDefinitions/SimpleType")
-    return {
-        str(each.get("name")): {
-            str(item.get("name")): int(str(item.get("value"))) for item in each.iterfind(".//Item")
-        }
-        for each in types
-    }
-
-
-CHOICES = {
-    "method": "Method",
-    "modality": "Modality",
-    "deformation": "Deformation",
-    "filter.kind": "FilterKind",
-    "filter.weighting": "Weighting",
-    "rls.kind": "RlsKind",
-}
-
-
-def numbers(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """Parameters with enumerations and Booleans as their numbers in C."""
-    declared = items()
-    named = {
-        name: declared[CHOICES[name]][value] if isinstance(value, str) else value
-        for name, value in parameters.items()
-    }
-    return {name: int(v) if isinstance(v, bool) else v for name, v in named.items()}
+def tool(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tool]:
+    """Of the package in the archive."""
+    folder = tmp_path_factory.mktemp("package")
+    with ZipFile(build / "release" / "sigmahat-modelica.zip") as archive:
+        archive.extractall(folder)
+    (package,) = folder.glob("Sigmahat *")
+    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
+        yield Tool(package, folder, fmu)
 
 
 SETTINGS: list[dict[str, Any]] = [
@@ -127,14 +183,13 @@ SETTINGS: list[dict[str, Any]] = [
 
 def otherwise(setting: Mapping[str, Any]) -> dict[str, Any]:
     """All parameters of the block; the reals are not those of the start, each by its own factor."""
-    start = dict(sigmahat.Estimator().parameters[0])
-    start.pop("encoder.theta_c")  # it is not in the block, as it has no effect
     changed: dict[str, Any] = {}
-    for number, (name, value) in enumerate(start.items()):
+    for number, (name, value) in enumerate(sigmahat.Estimator().parameters[0].items()):
         if isinstance(value, float) and name != "samplePeriod":
             changed[name] = (value or 1e-3) * (1 + 0.02 * math.sin(number))
         else:
             changed[name] = value
+    del changed["encoder.theta_c"]  # it is not in the block, as it has no effect
     return {**changed, **setting}
 
 
@@ -148,67 +203,40 @@ def samples() -> NDArray[np.float64]:
     return z
 
 
-def run(program: Path, samples: NDArray[np.float64], *arguments: str) -> dict[str, NDArray[Any]]:
-    done = subprocess.run([program, *arguments], input=samples.tobytes(), capture_output=True)
-    assert done.returncode == 0, done.stderr
-    table = np.frombuffer(done.stdout).reshape(len(samples), -1)
-    found, column = {}, 0
-    for name, (_, size) in outputs().items():
-        found[name] = table[:, column : column + size]
-        column += size
-    assert column == table.shape[1]
-    return found
-
-
-def in_python(samples: NDArray[np.float64], start: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
-    names = [name for name in outputs() if name != "eta"]
-    eta = [f"eta[{i},{j}]" for i in range(8) for j in range(5)]
-    estimator = sigmahat.Estimator(start, record=[*names, *eta])
-    found = estimator.run(**dict(zip(INPUTS, samples[:, 1:].T, strict=True)))
-    doubt = items()["Doubt"]
-    columns = {name: np.asarray(found[name]) for name in names}
-    columns["doubt"] = np.array([doubt[name] for name in columns["doubt"]])
-    columns = {name: column[:, None] for name, column in columns.items()}
-    return {**columns, "eta": np.column_stack([found[name] for name in eta])}
-
-
-def tool(folder: Path, objects: list[Path], parameters: Mapping[str, Any], *flags: str) -> Path:
-    """The program drivers/modelica/tool.c for these parameters."""
-    eta_0 = np.array([[parameters[f"rls.eta_0[{i},{j}]"] for j in range(5)] for i in range(8)])
-    (folder / "calls.h").write_text(calls(numbers(parameters), eta_0))
-    program = folder / "tool"
-    gcc(*flags, f"-I{folder}", f"-I{DRIVERS}", DRIVERS / "tool.c", *objects, "-lm", "-o", program)
-    return program
-
-
 @pytest.mark.parametrize(
     "setting", SETTINGS, ids=["default", "regression", "sensor", "regression-model"]
 )
 def test_the_outputs_are_those_of_the_library_to_the_last_bit(
-    setting: dict[str, Any], samples: NDArray[np.float64], objects: list[Path], tmp_path: Path
+    setting: dict[str, Any], samples: NDArray[np.float64], tool: Tool
 ) -> None:
     """Each parameter has a value of its own, so that none takes the place of another."""
     parameters = otherwise(setting)
-    found = run(tool(tmp_path, objects, parameters), samples)
-    expected = in_python(samples, parameters)
-    for name, column in found.items():
-        np.testing.assert_array_equal(column, expected[name], err_msg=name)
+    found = tool.run(parameters, samples)
+    eta = [f"eta[{i},{j}]" for i in range(8) for j in range(5)]
+    record = [name for name in tool.outputs if name != "eta"]
+    estimator = sigmahat.Estimator(parameters, record=[*record, *eta])
+    expected = estimator.run(**dict(zip(INPUTS, samples[:, 1:].T, strict=True)))
+    for name in record:
+        column = [tool.fmu.number(name, each) for each in expected[name].tolist()]
+        np.testing.assert_array_equal(found[name], column, err_msg=name)
+    np.testing.assert_array_equal(found["eta"], np.column_stack([expected[n] for n in eta]))
     assert found["valid"].sum() == N - 1 and np.ptp(found["sigma"]) > 1
+    names = {_name for _name in (*tool.reals, *tool.integers) if _name in parameters}
+    assert names == {name for name in parameters if not name.startswith("rls.eta_0")}
 
 
 def test_a_second_tick_at_the_same_time_replaces_the_first(
-    samples: NDArray[np.float64], objects: list[Path], tmp_path: Path
+    samples: NDArray[np.float64], tool: Tool
 ) -> None:
-    program = tool(tmp_path, objects, otherwise({}))
-    once, twice = run(program, samples), run(program, samples, "twice")
+    once = tool.run(otherwise({}), samples)
+    twice = tool.run(otherwise({}), samples, 1.0, 2.0, 3.0, 4.0, 5.0)
     for name, column in once.items():
         np.testing.assert_array_equal(column, twice[name], err_msg=name)
 
 
-def test_all_in_one_file_they_compile_too(c_sources: Path, tmp_path: Path) -> None:
+def test_all_in_one_file_they_compile_too(tool: Tool, tmp_path: Path) -> None:
     """A tool may put all external functions into one file, each Include once or several times."""
-    text = "".join(includes()) * 2 + '#include "sigmahat_noise.c"\n'
-    tool(tmp_path, [unit(tmp_path, c_sources, text)], otherwise({}))
+    tool.compiled(tmp_path, "".join(tool.includes) * 2 + '#include "sigmahat_noise.c"\n')
 
 
 @pytest.mark.parametrize(
@@ -221,60 +249,41 @@ def test_all_in_one_file_they_compile_too(c_sources: Path, tmp_path: Path) -> No
     ],
 )
 def test_a_parameter_out_of_its_range_is_an_error_of_the_model(
-    wrong: dict[str, Any], message: str, objects: list[Path], tmp_path: Path
+    wrong: dict[str, Any], message: str, tool: Tool
 ) -> None:
-    program = tool(tmp_path, objects, {**otherwise({}), **wrong})
-    done = subprocess.run([program], input=b"", capture_output=True, text=False)
-    assert (done.returncode, done.stdout) == (3, b"")
-    assert done.stderr.decode() == f"StiffnessEstimator: {message}\n"
+    tool.messages()
+    assert tool.new({**otherwise({}), **wrong}) is None
+    assert tool.messages() == f"StiffnessEstimator: {message}\n"
 
 
 def test_skipped_ticks_and_too_large_deformations_are_told_once(
-    samples: NDArray[np.float64], objects: list[Path], tmp_path: Path
+    samples: NDArray[np.float64], tool: Tool
 ) -> None:
-    parameters = otherwise({"method": "FilteredRegression", "range.phi": 1e-5})
-    program = tool(tmp_path, objects, parameters)
     with_gap = samples[1500:2500].copy()
     with_gap[400:600, 1] = np.inf
-    done = subprocess.run([program], input=with_gap.tobytes(), capture_output=True)
-    lines = done.stderr.decode().splitlines()
-    assert done.returncode == 0 and len(lines) == 2
+    tool.messages()
+    tool.run(otherwise({"method": "FilteredRegression", "range.phi": 1e-5}), with_gap)
+    lines = tool.messages().splitlines()
+    assert len(lines) == 2
     assert "far beyond range.phi" in lines[0] and "tick at t = 1.9 s skipped" in lines[1]
 
 
-def test_the_address_sanitizer_finds_no_error_and_no_leak(
-    samples: NDArray[np.float64], c_sources: Path, tmp_path: Path
-) -> None:
-    flags = ("-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-    checked = [unit(tmp_path, c_sources, text, *flags) for text in includes()]
-    run(tool(tmp_path, checked, otherwise({"method": "FilteredRegression"}), *flags), samples[:300])
+@pytest.mark.slow("starts an interpreter and compiles, both with the sanitizer")
+@pytest.mark.skipif(SANITIZER in os.environ, reason="this is the run with the sanitizer")
+def test_the_address_sanitizer_finds_no_error(build: Path) -> None:
+    """This file again; the interpreter has leaks of its own, so these are not looked for."""
+    found = subprocess.check_output([need("gcc"), "-print-file-name=libasan.so"], text=True)
+    environment = {"LD_PRELOAD": found.strip(), "ASAN_OPTIONS": "detect_leaks=0"}
+    environment |= {SANITIZER: "1", "SIGMAHAT_BUILD": str(build)}
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", __file__]
+    command += ["-k", "told_once or out_of_its_range"]
+    done = subprocess.run(
+        command, env={**os.environ, **environment}, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_the_block_takes_the_outputs_in_the_order_of_the_function() -> None:
-    block, tick = (classes()[f"Estimators.{n}"] for n in ("StiffnessEstimator", "Internal.tick"))
-    (when,) = block.statements
-    ((statement,),) = when.blocks
-    taken = [str(each).replace("setPoint_used", "setPoint") for each in statement.left]
-    assert taken == list(outputs())
-    given = [str(each) for each in statement.right.operands]
-    declared = [name for name, each in tick.symbols.items() if "input" in each.prefixes]
-    assert ["t" if each == "time" else each for each in given] == declared
-    arguments = external_arguments("Estimators/Internal.mo", "sigmahat_estimator_tick")
-    assert arguments == [*declared, *outputs()]
-
-
-def test_the_block_gives_every_parameter_to_the_constructor() -> None:
-    flat = [
-        n for each in constructor_arguments() for n in ([each] if isinstance(each, str) else each)
-    ]
-    expected = {n for n in otherwise({}) if not n.startswith("rls.eta_0[")} | {"rls.eta_0"}
-    assert len(flat) == len(set(flat)) and set(flat) == expected
-
-
-def test_the_noise_is_that_of_the_plants(c_sources: Path, tmp_path: Path) -> None:
-    own = unit(tmp_path, c_sources, '#include "sigmahat_noise.c"\n')
-    program = tmp_path / "noise"
-    gcc(DRIVERS / "noise.c", own, "-lm", "-o", program)
+def test_the_noise_is_that_of_the_plants(tool: Tool) -> None:
     start = {"noise.seed": 7, "noise.tau_variance": 4.0, "noise.tau_e_variance": 9.0}
     # The plant is at rest: nothing but noise is measured. TorqueNoise.mo has these channels.
     deviation = {
@@ -285,7 +294,5 @@ def test_the_noise_is_that_of_the_plants(c_sources: Path, tmp_path: Path) -> Non
     }
     recording = simulate(Plant("AntagonisticVsaPlant", start, {}, list(deviation)), {}, T, 1000)
     for channel, (name, factor) in enumerate(deviation.items()):
-        command = [str(program), "7", str(channel), "1001"]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-        normals = np.array([float.fromhex(line) for line in done.stdout.split()])
-        np.testing.assert_array_equal(recording.plant[name], factor * normals)
+        normals = [tool.library.sigmahat_standard_normal(7, k, channel) for k in range(1001)]
+        np.testing.assert_array_equal(recording.plant[name], factor * np.array(normals))

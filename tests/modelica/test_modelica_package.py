@@ -16,7 +16,6 @@ from lxml import etree
 
 import sigmahat
 from modelica_package import FILES, PACKAGE, REPOSITORY, classes, compiled
-from sigmahat.export import modelica
 
 FOLDER = f"Sigmahat {sigmahat.__version__}"
 C_SOURCES = f"{FOLDER}/Resources/C-Sources"
@@ -150,22 +149,6 @@ def test_the_archive_has_the_package_and_all_of_its_c(archive: Path) -> None:
                 waiting += set(re.findall(r'^#include "(.+)"', source, re.M)) - seen
                 # The tool has it.
                 waiting = [each for each in waiting if each != "ModelicaUtilities.h"]
-
-
-def test_a_second_archive_is_identical(archive: Path, build: Path, tmp_path: Path) -> None:
-    again = tmp_path / "again.zip"
-    sources = [
-        *(build / "amalgamation").glob("sigmahat.[ch]"),
-        *(REPOSITORY / "fmu_src").rglob("noise.[ch]"),
-    ]
-    modelica.write(again, PACKAGE, sources, REPOSITORY / "LICENSE", sigmahat.__version__)
-    assert again.read_bytes() == archive.read_bytes()
-
-
-def test_another_version_than_that_of_the_project_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"expected version 9\.9\.9, got \d"):
-        modelica.write(tmp_path / "a.zip", PACKAGE, [], REPOSITORY / "LICENSE", "9.9.9")
-    assert not list(tmp_path.iterdir())
 
 
 EXAMPLES = sorted({file.stem for file in (PACKAGE / "Examples").glob("*.mo")} - {"package"})

@@ -99,7 +99,8 @@ def test_the_modelica_package_made_elsewhere_is_the_same(
     sources = [build / "amalgamation" / f"sigmahat.{suffix}" for suffix in "ch"]
     sources += [REPOSITORY / "fmu_src" / f"noise.{suffix}" for suffix in "ch"]
     again = tmp_path / "again.zip"
-    modelica.write(again, package, sources, REPOSITORY / "LICENSE", sigmahat.__version__)
+    descriptions, licence = REPOSITORY / "modelDescription", REPOSITORY / "LICENSE"
+    modelica.write(again, package, descriptions, sources, licence, sigmahat.__version__)
     assert again.read_bytes() == (released / "sigmahat-modelica.zip").read_bytes()
 
 

@@ -158,19 +158,33 @@ def amalgamate(
     amalgamation.write(out, sources, interface, licence, version)
 
 
+@main.command("parameters")
+@click.argument("template", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("out", type=click.Path(dir_okay=False, path_type=Path))
+def write_parameters(template: Path, out: Path) -> None:
+    """Write OUT, the parameters of TEMPLATE as a table in C."""
+    from sigmahat.export import c_parameters
+
+    out.write_text(c_parameters.table(template), encoding="utf-8")
+
+
 @main.command("modelica")
 @click.argument("out", type=click.Path(dir_okay=False, path_type=Path))
 @click.argument("library", type=click.Path(exists=True, file_okay=False, path_type=Path))
 @click.argument("sources", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--templates", required=True, type=click.Path(exists=True, path_type=Path))
 @click.option("--licence", required=True, type=click.Path(path_type=Path))
 @click.option("--version", required=True, help="Version of the package.")
 def write_modelica(
-    out: Path, library: Path, sources: list[Path], licence: Path, version: str
+    out: Path, library: Path, sources: list[Path], templates: Path, licence: Path, version: str
 ) -> None:
-    """Write OUT, an archive of the Modelica package LIBRARY with the C files SOURCES."""
+    """Write OUT, an archive of the Modelica package LIBRARY with the C files SOURCES.
+
+    --templates is the folder of the model descriptions, from which it has its variables.
+    """
     from sigmahat.export import modelica
 
-    modelica.write(out, library, sources, licence, version)
+    modelica.write(out, library, templates, sources, licence, version)
 
 
 main()

@@ -8,13 +8,16 @@ from pathlib import Path
 _TIME = (1980, 1, 1, 0, 0, 0)
 
 
-def write(fmu: Path, contents: Mapping[str, Path]) -> None:
-    """Write an FMU from the files to put in it, by their names in the archive.
+def write(fmu: Path, contents: Mapping[str, Path | bytes]) -> None:
+    """Write an FMU from the files to put in it, or their bytes, by their names in the archive.
 
     Entries are sorted, with fixed times and permissions, so that equal contents give equal
     bytes. Raises ``FileNotFoundError`` for a missing file, before anything is written.
     """
-    data = {name: path.read_bytes() for name, path in contents.items()}
+    data = {
+        name: each if isinstance(each, bytes) else each.read_bytes()
+        for name, each in contents.items()
+    }
     fmu.parent.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(fmu, "w") as archive:
         for name in sorted(data):

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from xml.etree.ElementTree import Element
 
 from sigmahat.export.arrays import arrays
-from sigmahat.export.templates import variables
+from sigmahat.export.templates import items, variables
 
 SEED, SAMPLE_PERIOD = "noise.seed", "noise.samplePeriod"
 """Parameters of a plant with noise besides those of its equations."""
@@ -104,9 +104,7 @@ def _start(kind: Element) -> str:
 
 def _limits(root: Element, kind: Element) -> tuple[str, str]:
     if kind.tag == "Enumeration":
-        name = kind.attrib["declaredType"]
-        items = root.findall(f"TypeDefinitions/SimpleType[@name='{name}']/Enumeration/Item")
-        values = [int(item.attrib["value"]) for item in items]
+        values = [int(item["value"]) for item in items(root, kind)]
         return str(min(values)), str(max(values))
     if kind.tag == "Boolean":
         return "0", "1"

@@ -80,8 +80,7 @@ def _row(root: Element, variable: Element) -> dict[str, Any]:
             value = float(kind.attrib["start"]) * float(display.attrib["factor"])
             shown = f" ({value:.6g} {display.attrib['name']})"
     elif kind.tag == "Enumeration":
-        path = f"TypeDefinitions/SimpleType[@name='{kind.attrib['declaredType']}']/Enumeration/Item"
-        choices = [item.attrib for item in root.findall(path)]
+        choices = templates.items(root, kind)
         names = {item["value"]: item["name"] for item in choices}
         start = names[start] if start else ""  # an output has none
         limits = "see items"

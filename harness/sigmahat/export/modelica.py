@@ -1,28 +1,167 @@
-"""The Modelica package as an archive, in the form in which Modelica tools load it."""
+"""The Modelica package as an archive, in the form in which Modelica tools load it.
+
+A file ``*.jinja`` of the package is a template. It takes the variables from the model descriptions
+of the FMUs, so that names, units, start values, ranges and descriptions stand there alone.
+"""
 
 import re
 from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import Element
 
-from sigmahat.export import archive
+import jinja2
+
+from sigmahat.export import archive, templates
+
+KEYWORDS = {"initial": "init", "model": "nominal"}
+"""Groups of parameters whose names in the FMUs are keywords of Modelica: their names there."""
 
 
-def write(out: Path, library: Path, sources: Iterable[Path], licence: Path, version: str) -> None:
+@dataclass(frozen=True)
+class Variable:
+    """A variable of an FMU, as the package declares it. An array is one variable."""
+
+    causality: str
+    in_c: str
+    """Name in the FMU, and place in the structs of the library."""
+    group: str
+    """Record that contains it; "" for none."""
+    name: str
+    """Name in its record."""
+    kind: str
+    """Real, Integer, Boolean or Enumeration."""
+    type: str
+    size: str
+    """ "[8, 5]" for an array, else ""."""
+    start: str
+    """Start value, "" for none."""
+    limits: tuple[str, ...]
+    """Modifiers such as "min=0"."""
+    nominal: str
+    unit: str
+    description: str
+
+    @property
+    def full_name(self) -> str:
+        """Name with the record: "motor.B"."""
+        return f"{self.group}.{self.name}" if self.group else self.name
+
+    @property
+    def component(self) -> str:
+        """What a block has of it: its record, or itself."""
+        return self.group or self.name
+
+    @property
+    def as_integer(self) -> str:
+        """Expression for its value as C has it."""
+        forms = {"Enumeration": "Integer({})", "Boolean": "if {} then 1 else 0"}
+        return forms.get(self.kind, "{}").format(self.full_name)
+
+    def declared(self, *modifiers: str, name: str = "", value: str = "") -> str:
+        """Type, name, modifiers and description, those of the range included."""
+        every = ", ".join([*modifiers, *self.limits])
+        text = f"{self.type} {name or self.name}{self.size}{f'({every})' if every else ''}"
+        return f'{text}{f" = {value}" if value else ""} "{self.description}"'
+
+
+def contents(library: Path, descriptions: Path, version: str) -> dict[str, bytes]:
+    """The files of the package by their names in it, templates rendered.
+
+    library       folder of the package, with its ``package.mo.jinja``
+    descriptions  folder of the templates of the model descriptions
+
+    Raises ``jinja2.TemplateError`` for a template that is damaged, or lacks a group of parameters.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(library),
+        undefined=jinja2.StrictUndefined,
+        line_statement_prefix="//%",
+        block_start_string="<%",
+        block_end_string="%>",
+        variable_start_string="<<",
+        variable_end_string=">>",
+        comment_start_string="<#",
+        comment_end_string="#>",
+        keep_trailing_newline=True,
+    )
+    text = (library / "Types.mo.jinja").read_text(encoding="utf-8")
+    types = {unit: name for name, unit in re.findall(r'type (\w+) = Real \(.*unit="(.+?)"', text)}
+    root = cache(lambda fmu: templates.render(descriptions / f"{fmu}.xml", version))
+
+    @cache
+    def variables(fmu: str, causality: str) -> list[Variable]:
+        found = (_variable(root(fmu), each, types) for each in templates.variables(root(fmu)))
+        return [each for each in found if each is not None and each.causality == causality]
+
+    made = {}
+    for file in sorted(each for each in library.rglob("*") if each.is_file()):
+        name = file.relative_to(library).as_posix()
+        if file.name == "macros.jinja":
+            continue
+        if file.suffix == ".jinja":
+            enumerations = root("StiffnessEstimator").findall("TypeDefinitions/SimpleType")
+            known: dict[str, Any] = {"variables": variables, "enumerations": enumerations}
+            template = environment.get_template(name, globals={**known, "version": version})
+            made[name.removesuffix(".jinja")] = template.render().encode()
+        else:
+            made[name] = file.read_bytes()
+    return made
+
+
+def _variable(root: Element, variable: Element, types: dict[str, str]) -> Variable | None:
+    """None for an element of an array but the first, and for a source: sources are connected."""
+    kind, given = variable[0], variable.attrib
+    name, _, index = given["name"].partition("[")
+    if name.startswith("signal.") or (index and "array" not in given):
+        return None
+    group, _, last = name.rpartition(".")
+    start = kind.get("start", "")
+    if kind.tag == "Enumeration":
+        declared = kind.attrib["declaredType"]
+        names = {item["value"]: item["name"] for item in templates.items(root, kind)}
+        type_name, start = f"Types.{declared}", start and f"Types.{declared}.{names[start]}"
+    elif kind.tag == "Real" and not index and kind.get("unit"):
+        type_name = f"Types.{types[kind.attrib['unit']]}"
+    else:
+        type_name = kind.tag
+    return Variable(
+        causality=given["causality"],
+        in_c=name,
+        group=KEYWORDS.get(group, group),
+        name=last,
+        kind=kind.tag,
+        type=type_name,
+        size="[8, 5]" if index else "",
+        start="zeros(8, 5)" if index else start,
+        limits=tuple(f"{limit}={kind.get(limit)}" for limit in ("min", "max") if kind.get(limit)),
+        nominal=kind.get("nominal", "1"),
+        unit=kind.get("unit", "1"),
+        # Indices are from 1 in Modelica.
+        description=re.sub(r"; signal\.\w+ is added to it$", "", given["description"])
+        if not index
+        else given["array"].replace("[i,j]", "[i+1,j+1]"),
+    )
+
+
+def write(
+    out: Path,
+    library: Path,
+    descriptions: Path,
+    sources: Iterable[Path],
+    licence: Path,
+    version: str,
+) -> None:
     """Write the archive ``out`` with one folder, ``Sigmahat VERSION``.
 
-    library  folder of the package, with its ``package.mo``
-    sources  C files and headers to add to its ``Resources/C-Sources``
+    sources  C files and headers to add to its ``Resources/C-Sources``; see `contents` for the rest
 
-    Equal files give equal bytes. Raises ``ValueError`` if the package says that it has another
-    version, ``FileNotFoundError`` for a file that is missing.
+    Equal files give equal bytes. Raises ``FileNotFoundError`` for a file that is missing.
     """
-    text = (library / "package.mo").read_text(encoding="utf-8")
-    stated = re.search(r'^\s*version="(.*)",$', text, re.MULTILINE)
-    if stated is None or stated[1] != version:
-        received = stated[1] if stated else "none"
-        raise ValueError(f"{library / 'package.mo'}: expected version {version}, got {received}")
     folder = f"{library.name} {version}"
-    files = sorted(file for file in library.rglob("*") if file.is_file())
-    contents = {f"{folder}/{file.relative_to(library).as_posix()}": file for file in files}
-    contents |= {f"{folder}/Resources/C-Sources/{file.name}": file for file in sources}
-    archive.write(out, {**contents, f"{folder}/LICENSE": licence})
+    made = contents(library, descriptions, version)
+    files: dict[str, Path | bytes] = {f"{folder}/{name}": text for name, text in made.items()}
+    files |= {f"{folder}/Resources/C-Sources/{file.name}": file for file in sources}
+    archive.write(out, {**files, f"{folder}/LICENSE": licence})

@@ -33,3 +33,9 @@ def render(template: Path, version: str) -> Element:
 def variables(root: Element) -> list[Element]:
     """The ``ScalarVariable`` elements in the order of their value references."""
     return root.findall("ModelVariables/ScalarVariable")
+
+
+def items(root: Element, kind: Element) -> list[dict[str, str]]:
+    """The items of the type of an enumeration: value, name and description."""
+    path = f"TypeDefinitions/SimpleType[@name='{kind.attrib['declaredType']}']/Enumeration/Item"
+    return [item.attrib for item in root.findall(path)]

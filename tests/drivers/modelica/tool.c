@@ -1,36 +1,26 @@
-/* A Modelica tool, as far as an external object needs one: constructor, ticks, destructor.
- *
- * calls.h is made from the Modelica sources: PROTOTYPES, NEW (the call of the constructor with the values
- * of the parameters), OUTPUTS (declarations), TICK(object, t, z), and WRITE (all outputs).
- *
- * Reads samples from stdin, each of t and the five inputs, and writes the outputs of every tick to
- * stdout, all as doubles in the format of this machine. Two objects run in turn; the second one sees all
- * inputs as 0, and its outputs are thrown away. With an argument every tick is made twice, first with
- * other inputs. An error of the model ends it with status 3.
- */
+/* What a Modelica tool has for external functions: messages, and an error that ends the model. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 
 #include "ModelicaUtilities.h"
-#include "calls.h"
+
+void *sigmahat_estimator_new(const double *reals, const int *integers, const double *eta_0);
+void *tool_new(const double *reals, const int *integers, const double *eta_0);
+
+extern char tool_messages[4096];
+char tool_messages[4096]; /* all messages since it was emptied */
 
 static jmp_buf model;
 
-void ModelicaError(const char *string)
+static void add(const char *string, va_list arguments)
 {
-    fputs(string, stderr);
-    longjmp(model, 1);
-}
+    size_t length = 0;
 
-void ModelicaFormatError(const char *string, ...)
-{
-    va_list arguments;
-
-    va_start(arguments, string);
-    vfprintf(stderr, string, arguments);
-    va_end(arguments);
-    longjmp(model, 1);
+    while (tool_messages[length] != '\0') {
+        ++length;
+    }
+    vsnprintf(tool_messages + length, sizeof tool_messages - length, string, arguments);
 }
 
 void ModelicaFormatMessage(const char *string, ...)
@@ -38,44 +28,27 @@ void ModelicaFormatMessage(const char *string, ...)
     va_list arguments;
 
     va_start(arguments, string);
-    vfprintf(stderr, string, arguments);
+    add(string, arguments);
     va_end(arguments);
 }
 
-static void put(const double *values, size_t count)
+void ModelicaFormatError(const char *string, ...)
 {
-    fwrite(values, sizeof *values, count, stdout);
+    va_list arguments;
+
+    va_start(arguments, string);
+    add(string, arguments);
+    va_end(arguments);
+    longjmp(model, 1);
 }
 
-static void put_integer(int value)
+void ModelicaError(const char *string)
 {
-    const double converted = value;
-
-    put(&converted, 1);
+    ModelicaFormatError("%s", string);
 }
 
-int main(int count, char **arguments)
+/* The constructor; NULL after an error. */
+void *tool_new(const double *reals, const int *integers, const double *eta_0)
 {
-    static const double zero[5], others[5] = {1.0, 2.0, 3.0, 4.0, 5.0};
-    double sample[6];
-    void *object, *second;
-    OUTPUTS;
-
-    (void)arguments;
-    if (setjmp(model) != 0) {
-        return 3;
-    }
-    object = NEW;
-    second = NEW;
-    while (fread(sample, sizeof sample, 1, stdin) == 1) {
-        if (count > 1) {
-            TICK(object, sample[0], others);
-        }
-        TICK(second, sample[0], zero);
-        TICK(object, sample[0], (sample + 1));
-        WRITE;
-    }
-    sigmahat_estimator_free(second);
-    sigmahat_estimator_free(object);
-    return 0;
+    return setjmp(model) == 0 ? sigmahat_estimator_new(reals, integers, eta_0) : NULL;
 }
