@@ -116,7 +116,7 @@ def _requirements(
     for name in [n for n in times if n.startswith("table1")]:
         at_most(f"run of {name}", float(np.nanmedian(times[name])) / 1e9, 0.4, "s")
     for method, each in footprints.items():
-        at_most(f"stack of a tick, {method}", each.stack, 1024, "bytes")
+        at_most(f"stack of a tick, {method}", each.stack, 5120, "bytes")
     return rows
 
 
