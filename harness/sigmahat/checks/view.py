@@ -8,14 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sigmahat.fmi.instance import Value
-from sigmahat.identification.regression import Signals, shortest
+from sigmahat.identification.regression import Signals, signals_of
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.log import Array, Log
-from sigmahat.logs.resampling import stretches
+from sigmahat.logs.log import Log
 from sigmahat.logs.sampling import Samples, sample
 
-_LEAST = 40
-"""Samples of a stretch: filters need some."""
 _MOST = 60_000
 """Ticks that are looked at: of a longer log, those in which the joint moves most."""
 
@@ -59,8 +56,8 @@ def view(log: Log, configuration: Configuration, every: Mapping[str, Value]) -> 
     """
     configuration.need_ports(str(every["modality"]))
     samples = _liveliest(sample(log, configuration, float(every["samplePeriod"])))
-    seen = View(log, configuration, every, samples, ())
-    return replace(seen, pieces=_pieces(seen))
+    torque = "tau_e_sensor" if every["modality"] == "Sensor" else "tau"
+    return View(log, configuration, every, samples, list(signals_of(samples, every, torque)))
 
 
 def _liveliest(samples: Samples) -> Samples:
@@ -74,24 +71,3 @@ def _liveliest(samples: Samples) -> Samples:
     ways = [np.nansum(np.abs(np.diff(values[first : first + _MOST]))) for first in starts]
     first = int(starts[np.argmax(ways)])
     return replace(samples, values=samples.values[first : first + _MOST])
-
-
-def _pieces(seen: View) -> list[Signals]:
-    samples, every = seen.samples, seen.every
-    columns = dict(zip(samples.names, samples.values.T, strict=True))
-    torque = "tau_e_sensor" if seen.has_sensor else "tau"
-    if not {"q", torque} <= columns.keys():
-        return []
-    scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
-    good = np.isfinite(samples.values).all(axis=1)
-    pieces = []
-    for first, last in zip(*stretches(good), strict=True):
-        if last - first < max(shortest(samples.T), _LEAST):
-            continue
-        part = {name: np.ascontiguousarray(each[first:last]) for name, each in columns.items()}
-        nothing: Array = np.zeros(last - first)
-        theta = part.get("theta", nothing)
-        tau = -part[torque] / seen.gamma if seen.has_sensor else part[torque]
-        set_point = offset + scale * part.get("theta_c", nothing)
-        pieces.append(Signals(theta, part["q"] - theta, set_point, tau, None))
-    return pieces

@@ -7,7 +7,7 @@ sensor, the noise of the signals, a bandwidth and V_a for the filters, and the p
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,11 +19,10 @@ from sigmahat.identification.motor import KnownInertia, fit_motor, motor_form
 from sigmahat.identification.next_motion import advice
 from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
 from sigmahat.identification.quantities import WIDE, Advice, Identified, Quantity
-from sigmahat.identification.regression import Form, Signals, shortest
+from sigmahat.identification.regression import Form, Signals, shortest, signals_of
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.replay import parameters, replay
-from sigmahat.logs.resampling import stretches
 from sigmahat.logs.sampling import Samples, sample
 
 _LONGEST = 600.0  # [s] of a log that are used
@@ -48,7 +47,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     every = fmu.parameters(start)
     samples = _beginning(sample(log, configuration, float(every["samplePeriod"])))
     T, gamma = samples.T, float(every["motor.gamma"])
-    pieces = list(_pieces(samples, every, sensor=torque_constant))
+    pieces = list(signals_of(samples, every, sensor=torque_constant))
     if not pieces:
         raise LogError(f"{log.path}: no stretch of {shortest(T) * T:g} s without a gap")
     longest = max(pieces, key=lambda piece: len(piece.theta))
@@ -160,25 +159,6 @@ def _beginning(samples: Samples) -> Samples:
         values=samples.values[: round(_LONGEST / samples.T)],
         notes=[*samples.notes, f"used the first {_LONGEST:g} s"],
     )
-
-
-def _pieces(samples: Samples, every: Mapping[str, Value], sensor: bool) -> Iterator[Signals]:
-    """Stretches of the log without gaps that are long enough."""
-    columns = dict(zip(samples.names, samples.values.T, strict=True))
-    good = np.isfinite(samples.values).all(axis=1)
-    scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
-    for first, last in zip(*stretches(good), strict=True):
-        if last - first < shortest(samples.T):
-            continue
-        part = {name: np.ascontiguousarray(each[first:last]) for name, each in columns.items()}
-        theta_c = part.get("theta_c", np.zeros(last - first))
-        yield Signals(
-            theta=part["theta"],
-            phi=part["q"] - part["theta"],
-            set_point=offset + scale * theta_c,
-            tau=part["tau"],
-            tau_e=part["tau_e_sensor"] if sensor else None,
-        )
 
 
 def _best_V_a(

@@ -18,15 +18,18 @@ squared noise.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.fmi.instance import Value
 from sigmahat.identification.noise import low_pass
 from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.logs.log import Array
+from sigmahat.logs.resampling import stretches
+from sigmahat.logs.sampling import Samples
 
 MOTOR = ("B", "D_theta", "tau_coulomb")
 """Names of the first columns, which describe the motor."""
@@ -36,6 +39,9 @@ CONSTANT = "constant"
 """Name of the column of c."""
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
 _EDGE = 0.1  # [s] left out at both ends of a piece, where the filter has not settled
+
+_LEAST = 40
+"""Samples of a stretch: filters need some."""
 
 
 @dataclass(frozen=True)
@@ -148,6 +154,35 @@ def eta(n: int, m: int) -> list[str]:
 def shortest(T: float) -> int:
     """Least number of samples of a piece."""
     return round((2 * _EDGE + 2 * _BLOCK) / T)
+
+
+def signals_of(
+    samples: Samples, every: Mapping[str, Value], torque: str = "tau", sensor: bool = False
+) -> Iterator[Signals]:
+    """Stretches of a log without a gap that are long enough; none without q and the torque.
+
+    every   parameters of the estimator
+    torque  port of the torque; tau_e_sensor over the gear ratio takes the place of -tau
+    sensor  whether the torque of the sensor is kept beside that of the motor
+    """
+    columns = dict(zip(samples.names, samples.values.T, strict=True))
+    if not {"q", torque} <= columns.keys():
+        return
+    scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
+    for first, last in zip(*stretches(np.isfinite(samples.values).all(axis=1)), strict=True):
+        if last - first < max(shortest(samples.T), _LEAST):
+            continue
+        part = {name: np.ascontiguousarray(each[first:last]) for name, each in columns.items()}
+        nothing: Array = np.zeros(last - first)
+        theta = part.get("theta", nothing)
+        measured = part[torque]
+        yield Signals(
+            theta=theta,
+            phi=part["q"] - theta,
+            set_point=offset + scale * part.get("theta_c", nothing),
+            tau=measured if torque == "tau" else -measured / float(every["motor.gamma"]),
+            tau_e=part["tau_e_sensor"] if sensor else None,
+        )
 
 
 def _half(

@@ -16,7 +16,7 @@ from sigmahat.logs.log import Array
 from sigmahat.logs.measured import MeasuredPoints
 from sigmahat.logs.resampling import stretches
 from sigmahat.logs.sampling import Samples
-from sigmahat.plotting.style import BLUE, SKY, VERMILION, cycle, math_axis
+from sigmahat.plotting.style import BLUE, SKY, VERMILION, around, cycle, math_axis
 from sigmahat.plotting.style import limits as shown_range
 
 _FADED = 0.35
@@ -105,12 +105,9 @@ def _shown(branch: Branch, values: Array, interval: tuple[Array, Array] | None) 
 
 
 def _scale(axes: Axes, shown: list[Array]) -> None:
-    values = np.concatenate([np.empty(0), *shown])
-    values = values[np.isfinite(values)]
-    if len(values):
-        low, high = float(values.min()), float(values.max())
-        margin = 0.15 * ((high - low) or abs(high) or 1.0)
-        axes.set_ylim(low - margin, high + margin)
+    found = around(shown, 0.15)
+    if found is not None:
+        axes.set_ylim(*found)
 
 
 _SETTLED = 0.05  # part of the log that is left out when the scale is chosen: the estimate learns

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -98,3 +99,16 @@ def limits(values: NDArray[Any]) -> tuple[float, float]:
         return least, greatest
     further = _FURTHER * (high - low)
     return max(least, low - further), min(greatest, high + further)
+
+
+def with_margin(low: float, high: float, share: float) -> tuple[float, float]:
+    """Limits of an axis with a margin at either end, a share of the span."""
+    margin = share * ((high - low) or abs(high) or 1.0)
+    return low - margin, high + margin
+
+
+def around(parts: Iterable[NDArray[Any]], share: float) -> tuple[float, float] | None:
+    """The same around all finite values; None without any."""
+    values = np.concatenate([np.empty(0), *parts])
+    values = values[np.isfinite(values)]
+    return with_margin(float(values.min()), float(values.max()), share) if len(values) else None

@@ -17,7 +17,7 @@ from sigmahat.joint.curve_text import (
     stiffness_rows,
 )
 from sigmahat.logs.measured import MeasuredPoints
-from sigmahat.plotting.style import QUANTITIES, limits, plain_axis, plain_text
+from sigmahat.plotting.style import QUANTITIES, around, limits, plain_axis, plain_text
 from sigmahat.report.contents import COLORS, Curve, Panel, TextTable
 
 
@@ -63,13 +63,7 @@ def _scale(curves: list[Curve]) -> tuple[float, float] | None:
         shown += [values[each.within] for values in (each.y, *(each.band or ()))]
         if each.behind is not None and len(each.behind[1]):
             shown.append(np.array(limits(each.behind[1])))
-    values = np.concatenate(shown)
-    values = values[np.isfinite(values)]
-    if not len(values):
-        return None
-    low, high = float(values.min()), float(values.max())
-    margin = 0.1 * ((high - low) or abs(high) or 1.0)
-    return low - margin, high + margin
+    return around(shown, 0.1)
 
 
 def curve_table(curve: joint.Curve) -> TextTable:

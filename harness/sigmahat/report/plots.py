@@ -25,6 +25,7 @@ from bokeh.models import (
 from bokeh.plotting import figure
 from numpy.typing import NDArray
 
+from sigmahat.plotting.style import with_margin
 from sigmahat.report.contents import Curve, Kind, Panel
 
 _HEIGHT = 300
@@ -93,8 +94,7 @@ def _limits(values: Sequence[NDArray[Any]], log: bool) -> tuple[float, float]:
     if log:
         ratio = (high / low) ** 0.06 if high > low else 2.0
         return low / ratio, high * ratio
-    margin = 0.06 * ((high - low) or abs(high) or 1.0)
-    return low - margin, high + margin
+    return with_margin(low, high, 0.06)
 
 
 def _figure(panel: Panel, linked: Range1d) -> figure:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.joint.curve import NORMAL_95
-from sigmahat.plotting.style import limits, plain_axis
+from sigmahat.plotting.style import limits, plain_axis, with_margin
 from sigmahat.report.contents import COLORS, TRUE, Curve, Panel
 from sigmahat.report.reduction import Reduced
 
@@ -216,9 +216,7 @@ def _error(estimate: NDArray[Any], true: NDArray[Any]) -> NDArray[np.float32]:
 def _every(curves: Sequence[Curve]) -> tuple[float, float]:
     """Limits of an axis that a spike, for example after a gap, does not set."""
     ends = [limits(curve.y) for curve in curves]
-    low, high = min(end[0] for end in ends), max(end[1] for end in ends)
-    margin = 0.06 * ((high - low) or abs(high) or 1.0)
-    return low - margin, high + margin
+    return with_margin(min(end[0] for end in ends), max(end[1] for end in ends), 0.06)
 
 
 def _range(values: NDArray[Any]) -> tuple[float, float]:
@@ -227,5 +225,4 @@ def _range(values: NDArray[Any]) -> tuple[float, float]:
     if not len(finite):
         return 0.0, 1.0
     low, high = np.percentile(finite, [_OUTER, 100 - _OUTER]).tolist()
-    margin = 0.2 * ((high - low) or abs(high) or 1.0)
-    return low - margin, high + margin
+    return with_margin(low, high, 0.2)
