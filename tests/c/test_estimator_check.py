@@ -94,6 +94,7 @@ def test_a_damaged_member_is_found(c: Library, member: str, place: int, value: i
     assert not passes(e)
 
 
+@settings(deadline=None)
 @given(value=st.integers(-(2**31), 2**31 - 1).filter(lambda value: value != 9))
 def test_another_size_of_the_recursion_is_found(c: Library, value: int) -> None:
     e = Estimator(c, {"method": PAPER2011, "rls.n": 3, "rls.m": 3})
