@@ -41,8 +41,8 @@ static int is_tried(const sh_regression_state *state, const sh_parameters *p, in
 static int place_of(const sh_column *column)
 {
     return sh_column_is(column, SH_IS_FRICTION | SH_IS_INERTIA) ? 2
-           : sh_column_is(column, SH_IS_SPRING)                ? 1
-                                                               : 0;
+           : sh_column_is(column, SH_IS_SPRING)                 ? 1
+                                                                : 0;
 }
 
 /* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */
