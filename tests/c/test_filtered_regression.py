@@ -304,6 +304,9 @@ def test_the_standard_deviation_of_the_paper_is_that_of_white_noise(c: Library) 
     P = c_library.covariance(estimator.state.method.paper2011.rls.P)
     want = 0.01 * GAMMA * math.sqrt(1e-20 * (dF @ P @ dF))
     assert found["sigma_std"][-1] == pytest.approx(want, rel=1e-9)
+    F = np.array([phi, phi**3])
+    want = 0.01 * GAMMA * math.sqrt(1e-20 * (F @ P @ F))
+    assert found["tau_e_std"][-1] == pytest.approx(want, rel=1e-6)
     assert found["B_hat"][-1] == 2.3e-5
 
 
