@@ -6,9 +6,8 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pyarrow as pa
 from numpy.typing import NDArray
 
 from sigmahat.files import tables
@@ -16,6 +15,9 @@ from sigmahat.files.tables import numeric_columns, read_csv, write_csv
 from sigmahat.fmi.master import Recording, Series
 from sigmahat.paper.reproduction import Result
 from sigmahat.runs.metrics import INDICES
+
+if TYPE_CHECKING:  # `reproduce` writes its files without it
+    import pyarrow as pa
 
 TABLE = "table.csv"
 """File with the indices of each comparison; each estimator has a file over time, too."""
