@@ -97,7 +97,7 @@ endfunction()
 # sigmahat_add_estimator(NAME STRUCT type STORAGE struct|sides): an FMU of the C library.
 function(sigmahat_add_estimator name)
   sigmahat_add_fmu(${name} ${ARGN} SOURCES fmu_src/${name}.c fmu_src/estimator_fmu.c
-                   fmu_src/sample_clock.c LIBRARY sigmahat_c)
+                   LIBRARY sigmahat_c)
 endfunction()
 
 # sigmahat_add_plant(NAME): the FMU of a plant whose equations are in harness/sigmahat/plants.

@@ -76,8 +76,8 @@ static void initialize(void *model, double t)
     int i;
 
     (void)t; /* it counts ticks */
+    fmu->side[1].parameters = parameters_of(fmu, 1);
     for (i = 0; i < 2; ++i) {
-        fmu->side[i].parameters = parameters_of(fmu, i);
         sh_estimator_fmu_initialize(&fmu->side[i]);
     }
     sum(fmu);
@@ -105,11 +105,9 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
 
     fmu->side[1].input.q = fmu->side[0].input.q;
     fmu->side[1].input_derivative.q = fmu->side[0].input_derivative.q;
+    fmu->side[1].parameters = parameters_of(fmu, 1);
     for (i = 0; i < 2; ++i) {
-        sh_status of_side;
-
-        fmu->side[i].parameters = parameters_of(fmu, i);
-        of_side = sh_estimator_fmu_step(&fmu->side[i], t, h, WHO[i], log);
+        const sh_status of_side = sh_estimator_fmu_step(&fmu->side[i], t, h, WHO[i], log);
         if (of_side > status) {
             status = of_side;
         }

@@ -9,37 +9,27 @@ sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *wh
     if (!sh_parameters_check(parameters, &violation)) {
         return SH_OK;
     }
-    sh_log(log, SH_ERROR, "%sParameter %s = %.9g is out of its range: %s.", who, violation.name,
-           violation.value, violation.range);
+    sh_report(log, SH_ERROR, "%sParameter %s = %.9g is out of its range: %s.", who, violation.name,
+              violation.value, violation.range);
     return SH_ERROR;
 }
 
 void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu)
 {
     sh_estimator_start(&fmu->estimator, &fmu->parameters, &fmu->output);
-    sh_sample_clock_start(&fmu->clock);
+    fmu->ahead = 0.0; /* the first tick is at the begin */
     fmu->strained = 0;
 }
 
 int sh_estimator_fmu_is_state(const sh_estimator_fmu *fmu, const sh_parameters *parameters)
 {
-    return sh_sample_clock_is_state(&fmu->clock) &&
+    /* From far behind, or from a place that is no number, a step would not come to its end. */
+    return fmu->ahead >= -1.0 && fmu->ahead <= 1.0 &&
            sh_estimator_check(&fmu->estimator, parameters) == 0;
 }
 
 /* Most ticks in one step. More would take minutes, and are the mistake of a wrong unit. */
 static const double MAX_TICKS = 1e9;
-
-/* Whether the deformation is, for the first time, larger than the parameters are made for. */
-static int becomes_strained(sh_estimator_fmu *fmu)
-{
-    if (fmu->strained ||
-        fabs(fmu->output.phi) <= sh_parameters_largest_deformation(&fmu->parameters)) {
-        return 0;
-    }
-    fmu->strained = 1;
-    return 1;
-}
 
 /* Inputs at a time after the begin of the step. */
 static sh_measurement extrapolate(const sh_estimator_fmu *fmu, double after)
@@ -64,56 +54,74 @@ static void log_skipped(const sh_measurement *z, double t, const char *who, sh_i
 
     for (i = 0; i < sizeof values / sizeof values[0]; ++i) {
         if (!(fabs(values[i]) <= SH_LARGEST_MEASUREMENT)) {
-            sh_log(log, SH_WARNING,
-                   "%sTick at t = %.9g s skipped, the estimate is kept: expected %s finite and at "
-                   "most %g in magnitude, received %g.",
-                   who, t, NAMES[i], SH_LARGEST_MEASUREMENT, values[i]);
+            sh_report(
+                log, SH_WARNING,
+                "%sTick at t = %.9g s skipped, the estimate is kept: expected %s finite and at "
+                "most %g in magnitude, received %g.",
+                who, t, NAMES[i], SH_LARGEST_MEASUREMENT, values[i]);
             return;
         }
     }
-    sh_log(log, SH_WARNING,
-           "%sTick at t = %.9g s skipped, the estimate is kept: the regression overflows at "
-           "theta = %g, q = %g, tau = %g.",
-           who, t, z->theta, z->q, z->tau);
+    sh_report(log, SH_WARNING,
+              "%sTick at t = %.9g s skipped, the estimate is kept: the regression overflows at "
+              "theta = %g, q = %g, tau = %g.",
+              who, t, z->theta, z->q, z->tau);
 }
 
+static sh_status tick(sh_estimator_fmu *fmu, double t, double after, const char *who,
+                      sh_instance *log)
+{
+    const sh_parameters *p = &fmu->parameters;
+    const sh_measurement z = extrapolate(fmu, after);
+    const int was_valid = fmu->output.valid;
+    const double skipped = fmu->estimator.skipped;
+    sh_status status = SH_OK;
+
+    if (sh_estimator_tick(&fmu->estimator, p, &z, &fmu->output)) {
+        status = SH_WARNING;
+        if (was_valid) {
+            log_skipped(&z, t + after, who, log);
+        }
+    } else if (!was_valid) {
+        sh_report(log, SH_OK, "%sMeasurements are good again at t = %.9g s, %g ticks skipped.", who,
+                  t + after, skipped);
+    }
+    if (!fmu->strained && fabs(fmu->output.phi) > sh_parameters_largest_deformation(p)) {
+        fmu->strained = 1;
+        status = SH_WARNING;
+        sh_report(log, SH_WARNING,
+                  "%sDeformation phi = %g rad at t = %.9g s is more than %g times range.phi = %g "
+                  "rad: expected a range.phi that covers it; the stiffness may be far off.",
+                  who, fmu->output.phi, t + after,
+                  sh_parameters_largest_deformation(p) / p->range.phi, p->range.phi);
+    }
+    return status;
+}
+
+/* Ticks are counted in periods and not in the importer's time, whose rounding errors add up: a step of
+ * length T is one tick, for any number of steps.
+ */
 sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
                                 sh_instance *log)
 {
-    const double T = fmu->parameters.samplePeriod;
+    const double T = fmu->parameters.samplePeriod, periods = h / T;
+    /* A tick this close to the end of the step belongs to the next one. A step of any length counts. */
+    const double tolerance = periods < 2e-6 ? periods / 2.0 : 1e-6;
     sh_status status = SH_OK;
-    double after;
 
-    if (h / T > MAX_TICKS) {
-        sh_log(log, SH_ERROR,
-               "%sThe communication step of %g s is more than %g times samplePeriod = "
-               "%g s; expected a shorter step.",
-               who, h, MAX_TICKS, T);
+    if (periods > MAX_TICKS) {
+        sh_report(log, SH_ERROR,
+                  "%sThe communication step of %g s is more than %g times samplePeriod = "
+                  "%g s; expected a shorter step.",
+                  who, h, MAX_TICKS, T);
         return SH_ERROR;
     }
-    while (sh_sample_clock_tick(&fmu->clock, h, T, &after)) {
-        const sh_measurement z = extrapolate(fmu, after);
-        const int was_valid = fmu->output.valid;
-        const double skipped = fmu->estimator.skipped;
-
-        if (sh_estimator_tick(&fmu->estimator, &fmu->parameters, &z, &fmu->output)) {
+    for (; fmu->ahead < periods - tolerance; fmu->ahead += 1.0) {
+        /* It may be negative by the tolerance. */
+        if (tick(fmu, t, fmu->ahead > 0.0 ? fmu->ahead * T : 0.0, who, log) != SH_OK) {
             status = SH_WARNING;
-            if (was_valid) {
-                log_skipped(&z, t + after, who, log);
-            }
-        } else if (!was_valid) {
-            sh_log(log, SH_OK, "%sMeasurements are good again at t = %.9g s, %g ticks skipped.",
-                   who, t + after, skipped);
-        }
-        if (becomes_strained(fmu)) {
-            status = SH_WARNING;
-            sh_log(log, SH_WARNING,
-                   "%sDeformation phi = %g rad at t = %.9g s is more than %g times range.phi = %g "
-                   "rad: expected a range.phi that covers it; the stiffness may be far off.",
-                   who, fmu->output.phi, t + after,
-                   sh_parameters_largest_deformation(&fmu->parameters) / fmu->parameters.range.phi,
-                   fmu->parameters.range.phi);
         }
     }
+    fmu->ahead -= periods;
     return status;
 }

@@ -3,7 +3,6 @@
 #define SH_ESTIMATOR_FMU_H
 
 #include "model.h"
-#include "sample_clock.h"
 #include "sigmahat.h"
 
 typedef struct {
@@ -12,7 +11,7 @@ typedef struct {
     sh_measurement input_derivative;
     sh_estimate output;
     sh_estimator estimator;
-    sh_sample_clock clock;
+    double ahead; /* next tick, in periods after the communication point */
     int strained; /* 1: the warning of a too large deformation was logged */
 } sh_estimator_fmu;
 
@@ -25,7 +24,9 @@ enum {
 /* As in sh_model; with the parameters that the estimator uses. */
 int sh_estimator_fmu_is_state(const sh_estimator_fmu *fmu, const sh_parameters *parameters);
 
-/* As in sh_model. Messages begin with `who`: "", or which of several estimators it is. */
+/* As in sh_model. Ticks are at start + k T: a step from t to t + h runs those with t <= t_k < t + h.
+ * Messages begin with `who`: "", or which of several estimators it is.
+ */
 sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
                                  sh_instance *log);
 void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu);

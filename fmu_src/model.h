@@ -33,7 +33,6 @@ typedef enum {
 typedef struct {
     const char *name;
     size_t offset; /* in the model's struct, of a double (Real) or an int */
-    size_t length; /* number of elements of the array that begins here; 1: no array, 0: inside */
     sh_type type;
     sh_role role;
     double start;
@@ -42,7 +41,7 @@ typedef struct {
 
 /* Sends a message to the user through the logger of the importer; format as in printf. */
 typedef struct sh_instance sh_instance;
-void sh_log(sh_instance *instance, sh_status status, const char *format, ...);
+void sh_report(sh_instance *instance, sh_status status, const char *format, ...);
 
 typedef struct {
     const char *identifier; /* modelIdentifier */

@@ -27,7 +27,7 @@ static void set_outputs(sh_plant *plant, const double *u)
 }
 
 /* Goes on to the noise sample at the end of a step: the last one whose time, a multiple of the
- * period, is reached. As in sample_clock.h it counts in periods, and a time that is missed by 1e-6
+ * period, is reached. As in estimator_fmu.c it counts in periods, and a time that is missed by 1e-6
  * of a period counts as reached.
  */
 static void advance_noise(sh_plant *plant, double periods)
@@ -118,18 +118,19 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
         du[i] = plant->du[i] + (end - begin) / h;
         u_end[i] = plant->u[i] + plant->du[i] * h + end;
         if (!isfinite(u[i]) || !isfinite(u_end[i])) {
-            sh_log(log, SH_ERROR,
-                   "Step from t = %.9g s refused, the state is kept: expected a finite input "
-                   "%s, received %g at its begin and %g at its end.",
-                   t, input_name(i), u[i], u_end[i]);
+            sh_report(log, SH_ERROR,
+                      "Step from t = %.9g s refused, the state is kept: expected a finite input "
+                      "%s, received %g at its begin and %g at its end.",
+                      t, input_name(i), u[i], u_end[i]);
             return SH_ERROR;
         }
     }
     if (!(periods <= MAX_PERIODS)) {
-        sh_log(log, SH_ERROR,
-               "Step from t = %.9g s refused, the state is kept: its length %g s is more than %g "
-               "times noise.samplePeriod = %g s; expected a shorter step.",
-               t, h, MAX_PERIODS, plant->samplePeriod);
+        sh_report(
+            log, SH_ERROR,
+            "Step from t = %.9g s refused, the state is kept: its length %g s is more than %g "
+            "times noise.samplePeriod = %g s; expected a shorter step.",
+            t, h, MAX_PERIODS, plant->samplePeriod);
         return SH_ERROR;
     }
     for (i = 0; i < SH_PLANT_STATES; ++i) {
@@ -137,12 +138,12 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     }
     if (sh_radau_integrate(x, u, du, plant->p, h, &internal_step) == 0) {
         i = largest_input(u, u_end);
-        sh_log(log, SH_ERROR,
-               "Step from t = %.9g s to %.9g s refused, the state is kept: the equations have "
-               "no solution there, or it takes more than %d internal steps. Expected inputs and "
-               "parameters of a joint; the largest input is %s = %g.",
-               t, t + h, sh_radau_attempts(h), input_name(i),
-               fabs(u_end[i]) > fabs(u[i]) ? u_end[i] : u[i]);
+        sh_report(log, SH_ERROR,
+                  "Step from t = %.9g s to %.9g s refused, the state is kept: the equations have "
+                  "no solution there, or it takes more than %d internal steps. Expected inputs and "
+                  "parameters of a joint; the largest input is %s = %g.",
+                  t, t + h, sh_radau_attempts(h), input_name(i),
+                  fabs(u_end[i]) > fabs(u[i]) ? u_end[i] : u[i]);
         return SH_ERROR;
     }
     for (i = 0; i < SH_PLANT_STATES; ++i) {

@@ -1,6 +1,7 @@
 /* FMI 2.0: inquiry, logging, creation and the course of a simulation. */
 #include "fmi2Functions.h"
-#include "instance.h"
+#include "log.h"
+#include "simulation.h"
 
 const char *fmi2GetTypesPlatform(void)
 {
@@ -30,7 +31,8 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
     unsigned found = 0;
     sh_status status;
 
-    if (instance == NULL) {
+    if (instance == NULL ||
+        (nCategories > 0 && !sh_has(instance, categories, "fmi2SetDebugLogging", "categories"))) {
         return fmi2Error;
     }
     status = sh_find_categories(instance, nCategories, categories, &found, "fmi2SetDebugLogging");

@@ -1,6 +1,6 @@
 /* FMI 2.0 for Co-Simulation: the communication step and its status. */
 #include "fmi2Functions.h"
-#include "instance.h"
+#include "simulation.h"
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
                       fmi2Real communicationStepSize, fmi2Boolean noSetFMUStatePriorToCurrentPoint)
@@ -15,8 +15,8 @@ fmi2Status fmi2CancelStep(fmi2Component c)
     sh_instance *instance = sh_enter(c, SH_ANY, "fmi2CancelStep");
 
     if (instance != NULL) {
-        sh_log(instance, SH_ERROR,
-               "fmi2CancelStep: no step is in progress; steps run synchronously.");
+        sh_report(instance, SH_ERROR,
+                  "fmi2CancelStep: no step is in progress; steps run synchronously.");
     }
     return fmi2Error;
 }
@@ -31,7 +31,8 @@ static fmi2Status no_status(fmi2Component c, const char *function)
     if (instance == NULL) {
         return fmi2Error;
     }
-    sh_log(instance, SH_DISCARD, "%s: no information of this kind; no step is pending.", function);
+    sh_report(instance, SH_DISCARD, "%s: no information of this kind; no step is pending.",
+              function);
     return fmi2Discard;
 }
 

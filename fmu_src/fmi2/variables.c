@@ -15,106 +15,86 @@ const char *sh_type_name(sh_type type)
     }
 }
 
-static void store_real(void *values, size_t i, double value)
-{
-    ((fmi2Real *)values)[i] = value;
-}
-
-static double load_real(const void *values, size_t i)
-{
-    return ((const fmi2Real *)values)[i];
-}
-
-/* Integers, enumerations and Booleans. */
-static void store_int(void *values, size_t i, double value)
-{
-    ((int *)values)[i] = (int)value;
-}
-
-static double load_int(const void *values, size_t i)
-{
-    return ((const int *)values)[i];
-}
-
 /* The call of an importer that hands over one value for each reference. */
-static sh_access call(fmi2Component c, const char *function, unsigned types,
+static sh_access call(fmi2Component c, const char *function, unsigned types, sh_values values,
                       const fmi2ValueReference vr[], size_t nvr)
 {
-    const sh_access access = {c, function, types, 0, vr, nvr, nvr};
+    const sh_access access = {c, function, types, values, 0, vr, nvr, nvr};
 
     return access;
 }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
 {
-    const sh_access access = call(c, "fmi2GetReal", SH_TYPE_REAL, vr, nvr);
+    const sh_access access = call(c, "fmi2GetReal", SH_TYPE_REAL, SH_DOUBLES, vr, nvr);
 
-    return (fmi2Status)sh_get(&access, value, store_real);
+    return (fmi2Status)sh_get(&access, value);
 }
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           fmi2Integer value[])
 {
     const sh_access access =
-        call(c, "fmi2GetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, vr, nvr);
+        call(c, "fmi2GetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, SH_INTS, vr, nvr);
 
-    return (fmi2Status)sh_get(&access, value, store_int);
+    return (fmi2Status)sh_get(&access, value);
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           fmi2Boolean value[])
 {
-    const sh_access access = call(c, "fmi2GetBoolean", SH_TYPE_BOOLEAN, vr, nvr);
+    const sh_access access = call(c, "fmi2GetBoolean", SH_TYPE_BOOLEAN, SH_INTS, vr, nvr);
 
-    return (fmi2Status)sh_get(&access, value, store_int);
+    return (fmi2Status)sh_get(&access, value);
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                        const fmi2Real value[])
 {
-    const sh_access access = call(c, "fmi2SetReal", SH_TYPE_REAL, vr, nvr);
+    const sh_access access = call(c, "fmi2SetReal", SH_TYPE_REAL, SH_DOUBLES, vr, nvr);
 
-    return (fmi2Status)sh_set(&access, value, load_real);
+    return (fmi2Status)sh_set(&access, value);
 }
 
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           const fmi2Integer value[])
 {
     const sh_access access =
-        call(c, "fmi2SetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, vr, nvr);
+        call(c, "fmi2SetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, SH_INTS, vr, nvr);
 
-    return (fmi2Status)sh_set(&access, value, load_int);
+    return (fmi2Status)sh_set(&access, value);
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           const fmi2Boolean value[])
 {
-    const sh_access access = call(c, "fmi2SetBoolean", SH_TYPE_BOOLEAN, vr, nvr);
+    const sh_access access = call(c, "fmi2SetBoolean", SH_TYPE_BOOLEAN, SH_INTS, vr, nvr);
 
-    return (fmi2Status)sh_set(&access, value, load_int);
+    return (fmi2Status)sh_set(&access, value);
 }
 
 /* No FMU of this project has a variable of type String: any reference is an error. */
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                          fmi2String value[])
 {
-    const sh_access access = call(c, "fmi2GetString", 0, vr, nvr);
+    const sh_access access = call(c, "fmi2GetString", 0, SH_BYTES, vr, nvr);
 
-    return (fmi2Status)sh_get(&access, (void *)value, NULL);
+    return (fmi2Status)sh_get(&access, (void *)value);
 }
 
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                          const fmi2String value[])
 {
-    const sh_access access = call(c, "fmi2SetString", 0, vr, nvr);
+    const sh_access access = call(c, "fmi2SetString", 0, SH_BYTES, vr, nvr);
 
-    return (fmi2Status)sh_set(&access, (const void *)value, NULL);
+    return (fmi2Status)sh_set(&access, (const void *)value);
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                        const fmi2Integer order[], const fmi2Real value[])
 {
-    const sh_access access = call(c, "fmi2SetRealInputDerivatives", SH_TYPE_REAL, vr, nvr);
+    const sh_access access =
+        call(c, "fmi2SetRealInputDerivatives", SH_TYPE_REAL, SH_DOUBLES, vr, nvr);
     sh_instance *instance = sh_begin_set(&access, value);
     const sh_variable *variables = sh_fmu_model.variables;
     size_t i;
@@ -125,12 +105,13 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     for (i = 0; i < nvr; ++i) {
         const sh_variable *variable = &variables[vr[i]];
         if (variable->role != SH_ROLE_INPUT) {
-            sh_log(instance, SH_ERROR, "%s: %s is not an input.", access.function, variable->name);
+            sh_report(instance, SH_ERROR, "%s: %s is not an input.", access.function,
+                      variable->name);
             return fmi2Error;
         }
         if (order[i] != 1) {
-            sh_log(instance, SH_ERROR, "%s: order %d of %s is not supported; expected 1.",
-                   access.function, order[i], variable->name);
+            sh_report(instance, SH_ERROR, "%s: order %d of %s is not supported; expected 1.",
+                      access.function, order[i], variable->name);
             return fmi2Error;
         }
     }
@@ -155,8 +136,8 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     if (nvr == 0) {
         return fmi2OK;
     }
-    sh_log(instance, SH_ERROR,
-           "fmi2GetRealOutputDerivatives: not provided (maxOutputDerivativeOrder is 0).");
+    sh_report(instance, SH_ERROR,
+              "fmi2GetRealOutputDerivatives: not provided (maxOutputDerivativeOrder is 0).");
     return fmi2Error;
 }
 
@@ -175,9 +156,9 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     (void)dvKnown;
     (void)dvUnknown;
     if (instance != NULL) {
-        sh_log(instance, SH_ERROR,
-               "fmi2GetDirectionalDerivative: not provided "
-               "(providesDirectionalDerivative is false).");
+        sh_report(instance, SH_ERROR,
+                  "fmi2GetDirectionalDerivative: not provided "
+                  "(providesDirectionalDerivative is false).");
     }
     return fmi2Error;
 }

@@ -1,6 +1,7 @@
 /* FMI 3.0: inquiry, logging, creation and the course of a simulation. */
 #include "fmi3Functions.h"
-#include "instance.h"
+#include "log.h"
+#include "simulation.h"
 
 const char *fmi3GetVersion(void)
 {
@@ -25,7 +26,8 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, siz
     unsigned found = 0;
     sh_status status;
 
-    if (entered == NULL) {
+    if (entered == NULL ||
+        (nCategories > 0 && !sh_has(entered, categories, "fmi3SetDebugLogging", "categories"))) {
         return fmi3Error;
     }
     status = sh_find_categories(entered, nCategories, categories, &found, "fmi3SetDebugLogging");

@@ -2,7 +2,7 @@
  * here it fails with a message that says what is missing.
  */
 #include "fmi3Functions.h"
-#include "instance.h"
+#include "simulation.h"
 
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-parameter" /* no argument but the instance is used */
@@ -15,7 +15,8 @@ static fmi3Status refuse(fmi3Instance instance, const char *function, const char
     sh_instance *entered = sh_enter(instance, SH_ANY, function);
 
     if (entered != NULL) {
-        sh_log(entered, SH_ERROR, "%s: %s has no %s.", function, sh_fmu_model.identifier, missing);
+        sh_report(entered, SH_ERROR, "%s: %s has no %s.", function, sh_fmu_model.identifier,
+                  missing);
     }
     return fmi3Error;
 }

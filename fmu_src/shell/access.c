@@ -1,46 +1,46 @@
 #include "access.h"
 
+#include <stdbool.h>
+
 #include "value.h"
 
 /* Time, the independent variable of FMI 3.0: it has the reference after those of the table. */
 static int is_time(const sh_access *access, uint32_t reference)
 {
-    return access->arrays && reference == sh_fmu_model.count;
+    return access->fmi3 && reference == sh_fmu_model.count;
 }
 
-/* The variable of a reference, or the first one of its array; NULL after a message. */
+static void refuse_reference(const sh_access *access, uint32_t reference)
+{
+    if (is_time(access, reference)) {
+        sh_report(access->handle, SH_ERROR,
+                  "%s: value reference %lu is time, which can only be read, as Float64.",
+                  access->function, (unsigned long)reference);
+    } else if (reference >= sh_fmu_model.count) {
+        sh_report(access->handle, SH_ERROR, "%s: unknown value reference %lu; the last one is %lu.",
+                  access->function, (unsigned long)reference,
+                  (unsigned long)sh_fmu_model.count - 1);
+    } else {
+        const sh_variable *variable = &sh_fmu_model.variables[reference];
+        sh_report(access->handle, SH_ERROR, "%s: value reference %lu is %s, which is %s.",
+                  access->function, (unsigned long)reference, variable->name,
+                  sh_type_name(variable->type));
+    }
+}
+
+/* The variable of a reference if the call is for its type, else NULL. */
 static const sh_variable *find(const sh_access *access, uint32_t reference)
 {
-    const sh_variable *variable;
-
-    if (is_time(access, reference)) {
-        sh_log(access->handle, SH_ERROR,
-               "%s: value reference %lu is time, which can only be read, as Float64.",
-               access->function, (unsigned long)reference);
-        return NULL;
+    if (reference < sh_fmu_model.count) {
+        const sh_variable *variable = &sh_fmu_model.variables[reference];
+        if ((unsigned)variable->type & access->types) {
+            return variable;
+        }
     }
-    if (reference >= sh_fmu_model.count) {
-        sh_log(access->handle, SH_ERROR, "%s: unknown value reference %lu; the last one is %lu.",
-               access->function, (unsigned long)reference, (unsigned long)sh_fmu_model.count - 1);
-        return NULL;
-    }
-    variable = &sh_fmu_model.variables[reference];
-    if (!((unsigned)variable->type & access->types)) {
-        sh_log(access->handle, SH_ERROR, "%s: value reference %lu is %s, which is %s.",
-               access->function, (unsigned long)reference, variable->name,
-               sh_type_name(variable->type));
-        return NULL;
-    }
-    if (access->arrays && variable->length == 0) {
-        sh_log(access->handle, SH_ERROR,
-               "%s: value reference %lu is %s, an element; expected that of the array.",
-               access->function, (unsigned long)reference, variable->name);
-        return NULL;
-    }
-    return variable;
+    return NULL;
 }
 
-static int may_be_set(const sh_access *access, const sh_variable *variable)
+static int may_be_set(sh_instance *instance, const sh_variable *variable, const char *function)
 {
     static const struct {
         unsigned states;
@@ -53,30 +53,43 @@ static int may_be_set(const sh_access *access, const sh_variable *variable)
          "a fixed parameter, settable until the end of initialisation"},
         {SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, "a tunable parameter"},
     };
-    sh_instance *instance = access->handle;
 
     if ((unsigned)instance->state & RULES[variable->role].states) {
         return 1;
     }
-    sh_log(instance, SH_ERROR, "%s: %s cannot be set now: it is %s.", access->function,
-           variable->name, RULES[variable->role].rule);
+    sh_report(instance, SH_ERROR, "%s: %s cannot be set now: it is %s.", function, variable->name,
+              RULES[variable->role].rule);
     return 0;
 }
 
-/* Number of elements that a reference means. */
-static size_t length_of(const sh_access *access, const sh_variable *variable)
+/* The value at a place of the importer's array: a double holds all of ours. */
+static double load(const sh_access *access, const void *values, size_t i)
 {
-    return access->arrays ? variable->length : 1;
+    if (access->values == SH_DOUBLES) {
+        return ((const double *)values)[i];
+    }
+    return access->values == SH_INTS     ? (double)((const int *)values)[i]
+           : access->values == SH_INT64S ? (double)((const int64_t *)values)[i]
+                                         : (double)((const unsigned char *)values)[i];
 }
 
-/* The checks common to reading and writing: the arguments, and the number of elements behind the
- * references.
- */
-static sh_instance *begin(const sh_access *access, unsigned states, const void *values,
-                          int time_allowed)
+static void store(const sh_access *access, void *values, size_t i, double value)
+{
+    if (access->values == SH_DOUBLES) {
+        ((double *)values)[i] = value;
+    } else if (access->values == SH_INTS) {
+        ((int *)values)[i] = (int)value;
+    } else if (access->values == SH_INT64S) {
+        ((int64_t *)values)[i] = (int64_t)value;
+    } else {
+        ((bool *)values)[i] = value != 0.0;
+    }
+}
+
+/* The instance of a call, if its arguments are usable; else NULL, after a message. */
+static sh_instance *begin(const sh_access *access, unsigned states, const void *values)
 {
     sh_instance *instance = sh_enter(access->handle, states, access->function);
-    size_t elements = 0, i;
 
     if (instance == NULL ||
         (access->count > 0 &&
@@ -84,44 +97,35 @@ static sh_instance *begin(const sh_access *access, unsigned states, const void *
           !sh_has(instance, values, access->function, "values")))) {
         return NULL;
     }
-    for (i = 0; i < access->count; ++i) {
-        const uint32_t reference = access->references[i];
-        const sh_variable *variable;
-
-        if (time_allowed && is_time(access, reference)) {
-            elements += 1;
-            continue;
-        }
-        variable = find(access, reference);
-        if (variable == NULL) {
-            return NULL;
-        }
-        elements += length_of(access, variable);
+    if (access->length != access->count) {
+        sh_report(instance, SH_ERROR, "%s: nValues = %lu; expected %lu, one for each reference.",
+                  access->function, (unsigned long)access->length, (unsigned long)access->count);
+        return NULL;
     }
-    if (elements == access->length) {
-        return instance;
-    }
-    sh_log(instance, SH_ERROR,
-           "%s: nValues = %lu; expected %lu, the number of elements behind %lu references.",
-           access->function, (unsigned long)access->length, (unsigned long)elements,
-           (unsigned long)access->count);
-    return NULL;
+    return instance;
 }
 
 sh_instance *sh_begin_set(const sh_access *access, const void *values)
 {
-    sh_instance *instance = begin(access, SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, values, 0);
+    sh_instance *instance = begin(access, SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, values);
     size_t i;
 
     if (instance == NULL) {
         return NULL;
     }
     for (i = 0; i < access->count; ++i) {
-        const sh_variable *variable = &sh_fmu_model.variables[access->references[i]];
-        if (!may_be_set(access, variable)) {
+        const sh_variable *variable = find(access, access->references[i]);
+        if (variable == NULL) {
+            refuse_reference(access, access->references[i]);
+            return NULL;
+        }
+        if (!may_be_set(instance, variable, access->function)) {
             return NULL;
         }
         if (sh_is_parameter(variable)) {
+            if (!sh_accepts(instance, variable, load(access, values, i), access->function)) {
+                return NULL;
+            }
             instance->parameters_unchecked = 1;
         }
     }
@@ -131,60 +135,46 @@ sh_instance *sh_begin_set(const sh_access *access, const void *values)
     return instance;
 }
 
-sh_status sh_get(const sh_access *access, void *values, sh_store *store)
+sh_status sh_get(const sh_access *access, void *values)
 {
-    /* FMI 3.0 lets importers read start values before the initialisation. */
     const unsigned states =
-        SH_INITIALIZATION | SH_STEP | SH_TERMINATED | (access->arrays ? SH_INSTANTIATED : 0);
-    sh_instance *instance = begin(access, states, values, access->types == SH_TYPE_REAL);
-    size_t i, k, next = 0;
-
-    if (instance == NULL ||
-        (instance->state == SH_INITIALIZATION && sh_initialize(instance) != SH_OK)) {
-        return SH_ERROR;
-    }
-    if (store == NULL) {
-        return SH_OK;
-    }
-    /* `begin` has counted: the importer's array ends with the last reference. */
-    for (i = 0; i < access->count && next < access->length; ++i) {
-        const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
-        if (is_time(access, access->references[i])) {
-            store(values, next++, instance->time);
-        } else {
-            for (k = 0; k < length_of(access, first) && next < access->length; ++k) {
-                store(values, next++, sh_read(instance, first + k));
-            }
-        }
-    }
-    return SH_OK;
-}
-
-sh_status sh_set(const sh_access *access, const void *values, sh_load *load)
-{
-    sh_instance *instance = sh_begin_set(access, values);
-    size_t i, k, next = 0;
+        SH_INITIALIZATION | SH_STEP | SH_TERMINATED | (access->fmi3 ? SH_INSTANTIATED : 0);
+    sh_instance *instance = begin(access, states, values);
+    size_t i;
 
     if (instance == NULL) {
         return SH_ERROR;
     }
-    if (load == NULL) {
-        return SH_OK;
+    for (i = 0; i < access->count; ++i) {
+        const uint32_t reference = access->references[i];
+        if (find(access, reference) == NULL &&
+            !(access->types == SH_TYPE_REAL && is_time(access, reference))) {
+            refuse_reference(access, reference);
+            return SH_ERROR;
+        }
+    }
+    if (instance->state == SH_INITIALIZATION && sh_initialize(instance) != SH_OK) {
+        return SH_ERROR;
     }
     for (i = 0; i < access->count; ++i) {
-        const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
-        for (k = 0; k < length_of(access, first) && next < access->length; ++k, ++next) {
-            if (sh_is_parameter(first) &&
-                !sh_accepts(instance, first + k, load(values, next), access->function)) {
-                return SH_ERROR;
-            }
-        }
+        const uint32_t reference = access->references[i];
+        store(access, values, i,
+              reference < sh_fmu_model.count ? sh_read(instance, &sh_fmu_model.variables[reference])
+                                             : instance->time);
     }
-    for (next = 0, i = 0; i < access->count; ++i) {
-        const sh_variable *first = &sh_fmu_model.variables[access->references[i]];
-        for (k = 0; k < length_of(access, first) && next < access->length; ++k) {
-            sh_write(instance, first + k, load(values, next++));
-        }
+    return SH_OK;
+}
+
+sh_status sh_set(const sh_access *access, const void *values)
+{
+    sh_instance *instance = sh_begin_set(access, values);
+    size_t i;
+
+    if (instance == NULL) {
+        return SH_ERROR;
+    }
+    for (i = 0; i < access->count; ++i) {
+        sh_write(instance, &sh_fmu_model.variables[access->references[i]], load(access, values, i));
     }
     return SH_OK;
 }

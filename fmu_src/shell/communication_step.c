@@ -2,6 +2,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "simulation.h"
 #include "value.h"
 
 /* Derivatives of inputs are valid for one step. In the next step inputs are constant, unless the
@@ -23,10 +24,21 @@ static void clear_input_derivatives(sh_instance *instance)
     }
 }
 
+/* Whether a step ends after the stop time by rounding only. Some importers make a last step of
+ * 1e-13 s, so the tolerance is of the step before, too; some add up their time, whose error grows
+ * with the number of steps.
+ */
+static int is_rounding(const sh_instance *instance, double t, double h)
+{
+    const double longer = h > instance->previous_step ? h : instance->previous_step;
+
+    return t + h <= instance->stop_time + 1e-3 * longer + DBL_EPSILON * fabs(t) * instance->steps;
+}
+
 sh_status sh_communication_step(void *handle, double t, double h, const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_STEP, function);
-    double late, rounding, tolerance, whole;
+    double begin = t, length = h, late, end;
     sh_status status;
 
     if (instance == NULL) {
@@ -34,9 +46,9 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
     }
     /*@ dynamic_split instance->parameters_unchecked; */ /* for the proof of docs/proof/shell.md */
     if (!(h > 0.0) || !isfinite(h)) {
-        sh_log(instance, SH_ERROR,
-               "%s: communicationStepSize = %.9g s; expected a finite number above 0.", function,
-               h);
+        sh_report(instance, SH_ERROR,
+                  "%s: communicationStepSize = %.9g s; expected a finite number above 0.", function,
+                  h);
         return SH_ERROR;
     }
     /* An importer that adds up its time makes rounding errors. They have no effect, as ticks are
@@ -44,44 +56,43 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
      * quite fit its times: then this step also covers the difference, so that it ends at t + h.
      */
     late = t - instance->time;
-    rounding = 8.0 * DBL_EPSILON * fabs(t);
-    if (!isfinite(t) || !(fabs(late) <= fmin(1e-3 * h, 1e-6) + rounding)) {
-        sh_log(instance, SH_ERROR,
-               "%s: currentCommunicationPoint = %.15g s; expected %.15g s, "
-               "where the last step ended.",
-               function, t, instance->time);
+    if (late != 0.0) { /* or not a number */
+        const double rounding = 8.0 * DBL_EPSILON * fabs(t), whole = h + late;
+        if (!isfinite(t) || !(fabs(late) <= (h < 1e-3 ? 1e-3 * h : 1e-6) + rounding)) {
+            sh_report(instance, SH_ERROR,
+                      "%s: currentCommunicationPoint = %.15g s; expected %.15g s, "
+                      "where the last step ended.",
+                      function, t, instance->time);
+            return SH_ERROR;
+        }
+        if (fabs(late) > rounding && whole > 0.0) { /* else h is shorter than the rounding */
+            begin = instance->time;
+            length = whole;
+        }
+    }
+    end = t + h;
+    if (isinf(end)) {
+        sh_report(instance, SH_ERROR,
+                  "%s: a step from t = %.15g s of %.15g s ends beyond the largest number.",
+                  function, t, h);
         return SH_ERROR;
     }
-    /* Importers round. Some make a last step of 1e-13 s, so the tolerance is of the step before, too;
-     * some add up their time, whose error grows with the number of steps.
-     */
-    tolerance = 1e-3 * fmax(instance->previous_step, h) + DBL_EPSILON * fabs(t) * instance->steps;
-    if (isinf(t + h)) {
-        sh_log(instance, SH_ERROR,
-               "%s: a step from t = %.15g s of %.15g s ends beyond the largest number.", function,
-               t, h);
-        return SH_ERROR;
-    }
-    if (t + h > instance->stop_time + tolerance) {
-        sh_log(instance, SH_ERROR,
-               "%s: a step from t = %.15g s to %.15g s; expected an end not after stopTime = %.15g "
-               "s.",
-               function, t, t + h, instance->stop_time);
+    if (end > instance->stop_time && !is_rounding(instance, t, h)) {
+        sh_report(
+            instance, SH_ERROR,
+            "%s: a step from t = %.15g s to %.15g s; expected an end not after stopTime = %.15g "
+            "s.",
+            function, t, end, instance->stop_time);
         return SH_ERROR;
     }
     if (sh_check_parameters(instance) != SH_OK) {
         return SH_ERROR;
     }
-    whole = h + late;
-    if (fabs(late) > rounding && whole > 0.0) { /* else h is shorter than the rounding */
-        status = sh_fmu_model.step(instance->model, instance->time, whole, instance);
-    } else {
-        status = sh_fmu_model.step(instance->model, t, h, instance);
-    }
+    status = sh_fmu_model.step(instance->model, begin, length, instance);
     if (status > SH_WARNING) {
         return status;
     }
-    instance->time = t + h;
+    instance->time = end;
     instance->previous_step = h;
     instance->steps += 1.0;
     clear_input_derivatives(instance);

@@ -1,28 +1,13 @@
 /* From the instance to its first step: parameters are checked, and initial outputs computed. */
 #include <math.h>
 
+#include "simulation.h"
 #include "value.h"
-
-sh_status sh_check_ranges(sh_instance *instance, const char *function)
-{
-    size_t i;
-
-    for (i = 0; i < sh_fmu_model.count; ++i) {
-        const sh_variable *variable = &sh_fmu_model.variables[i];
-        if (!sh_accepts(instance, variable, sh_read(instance, variable), function)) {
-            return SH_ERROR;
-        }
-    }
-    return SH_OK;
-}
 
 sh_status sh_check_parameters(sh_instance *instance)
 {
     if (!instance->parameters_unchecked) {
         return SH_OK;
-    }
-    if (sh_check_ranges(instance, "Initialisation") != SH_OK) {
-        return SH_ERROR;
     }
     if (sh_fmu_model.check != NULL && sh_fmu_model.check(instance->model, instance) != SH_OK) {
         return SH_ERROR;
@@ -46,10 +31,11 @@ static int outputs_are_finite(sh_instance *instance)
         }
         value = sh_read(instance, variable);
         if (!isfinite(value)) {
-            sh_log(instance, SH_ERROR,
-                   "Initialisation: output %s = %g is not finite. Look for extreme parameters and "
-                   "inputs.",
-                   variable->name, value);
+            sh_report(
+                instance, SH_ERROR,
+                "Initialisation: output %s = %g is not finite. Look for extreme parameters and "
+                "inputs.",
+                variable->name, value);
             return 0;
         }
     }
@@ -78,17 +64,18 @@ sh_status sh_set_up(sh_instance *instance, const sh_experiment *experiment, cons
     const sh_experiment *e = experiment;
 
     if (e->tolerance_defined && !(e->tolerance >= 0.0 && isfinite(e->tolerance))) {
-        sh_log(instance, SH_ERROR, "%s: tolerance = %.9g; expected a finite number, not below 0.",
-               function, e->tolerance);
+        sh_report(instance, SH_ERROR,
+                  "%s: tolerance = %.9g; expected a finite number, not below 0.", function,
+                  e->tolerance);
         return SH_ERROR;
     }
     if (!isfinite(e->start_time)) {
-        sh_log(instance, SH_ERROR, "%s: startTime = %g is not finite.", function, e->start_time);
+        sh_report(instance, SH_ERROR, "%s: startTime = %g is not finite.", function, e->start_time);
         return SH_ERROR;
     }
     if (e->stop_time_defined && !(e->stop_time >= e->start_time)) {
-        sh_log(instance, SH_ERROR, "%s: stopTime = %.9g is before startTime = %.9g.", function,
-               e->stop_time, e->start_time);
+        sh_report(instance, SH_ERROR, "%s: stopTime = %.9g is before startTime = %.9g.", function,
+                  e->stop_time, e->start_time);
         return SH_ERROR;
     }
     instance->time = e->start_time;
@@ -119,6 +106,6 @@ sh_status sh_end_initialization(void *handle, const char *function)
         return SH_ERROR;
     }
     instance->state = SH_STEP;
-    sh_log(instance, SH_OK, "Initialised at t = %.9g s.", instance->time);
+    sh_report(instance, SH_OK, "Initialised at t = %.9g s.", instance->time);
     return SH_OK;
 }

@@ -1,9 +1,8 @@
-/* Messages for the user: their categories, and text that an importer can rely on. */
+#include "log.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-#include "instance.h"
 
 static const struct {
     const char *name;
@@ -69,7 +68,7 @@ int sh_make_utf8(char *text)
     return replaced;
 }
 
-void sh_log(sh_instance *instance, sh_status status, const char *format, ...)
+void sh_report(sh_instance *instance, sh_status status, const char *format, ...)
 {
     const size_t place = place_of(status);
     char text[512];
@@ -91,9 +90,6 @@ sh_status sh_find_categories(sh_instance *instance, size_t count, const char *co
     sh_status status = SH_OK;
     size_t i, k;
 
-    if (count > 0 && !sh_has(instance, categories, function, "categories")) {
-        return SH_ERROR;
-    }
     *found = count > 0 ? 0 : SH_LOG_ALL;
     for (i = 0; i < count; ++i) {
         unsigned category = 0;
@@ -103,10 +99,10 @@ sh_status sh_find_categories(sh_instance *instance, size_t count, const char *co
             }
         }
         if (category == 0) {
-            sh_log(instance, SH_WARNING,
-                   "%s: unknown category %s is ignored; known are logEvents, logStatusWarning, "
-                   "logStatusDiscard, logStatusError and logAll.",
-                   function, categories[i] != NULL ? categories[i] : "NULL");
+            sh_report(instance, SH_WARNING,
+                      "%s: unknown category %s is ignored; known are logEvents, logStatusWarning, "
+                      "logStatusDiscard, logStatusError and logAll.",
+                      function, categories[i] != NULL ? categories[i] : "NULL");
             status = SH_WARNING;
         }
         *found |= category;

@@ -16,7 +16,7 @@ sh_status sh_save_state(void *handle, void **state, const char *function)
     /* A state from an earlier call may be handed in, to be overwritten. */
     block = *state != NULL ? *state : sh_allocate(&instance->importer, sh_block_size());
     if (block == NULL) {
-        sh_log(instance, SH_ERROR, "%s: out of memory.", function);
+        sh_report(instance, SH_ERROR, "%s: out of memory.", function);
         return SH_ERROR;
     }
     sh_block_write(instance, block);
@@ -27,26 +27,17 @@ sh_status sh_save_state(void *handle, void **state, const char *function)
 sh_status sh_restore_state(void *handle, void *state, const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_ANY, function);
-    sh_instance shown;
     const char *what;
-    void *model;
 
     if (instance == NULL || !sh_has(instance, state, function, "FMUState")) {
         return SH_ERROR;
     }
-    what = sh_block_defect(state, sh_block_size());
+    what = sh_block_defect(state);
     if (what != NULL) {
-        sh_log(instance, SH_ERROR, "%s: the state %s.", function, what);
+        sh_report(instance, SH_ERROR, "%s: the state %s.", function, what);
         return SH_ERROR;
     }
-    shown = sh_block_instance(instance, state);
-    if (!sh_block_is_sound(&shown, function)) {
-        return SH_ERROR;
-    }
-    model = instance->model;
-    (void)memcpy(model, shown.model, sh_fmu_model.size);
-    *instance = shown;
-    instance->model = model;
+    sh_block_read(instance, state);
     return SH_OK;
 }
 
@@ -86,11 +77,12 @@ sh_status sh_serialize_state(void *handle, const void *state, void *bytes, size_
         return SH_ERROR;
     }
     if (size < sh_block_size()) {
-        sh_log(instance, SH_ERROR, "%s: size = %lu bytes; expected %lu.", function,
-               (unsigned long)size, (unsigned long)sh_block_size());
+        sh_report(instance, SH_ERROR, "%s: size = %lu bytes; expected %lu.", function,
+                  (unsigned long)size, (unsigned long)sh_block_size());
         return SH_ERROR;
     }
     (void)memcpy(bytes, state, sh_block_size());
+    sh_block_sign(bytes);
     return SH_OK;
 }
 
@@ -98,7 +90,6 @@ sh_status sh_deserialize_state(void *handle, const void *bytes, size_t size, voi
                                const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_ANY, function);
-    sh_instance shown;
     const char *what;
     void *block;
 
@@ -106,20 +97,19 @@ sh_status sh_deserialize_state(void *handle, const void *bytes, size_t size, voi
         !sh_has(instance, state, function, "FMUState")) {
         return SH_ERROR;
     }
-    what = sh_block_defect(bytes, size);
+    what = sh_bytes_defect(bytes, size);
     if (what != NULL) {
-        sh_log(instance, SH_ERROR, "%s: the state (%lu bytes) %s.", function, (unsigned long)size,
-               what);
+        sh_report(instance, SH_ERROR, "%s: the state (%lu bytes) %s.", function,
+                  (unsigned long)size, what);
         return SH_ERROR;
     }
     block = sh_allocate(&instance->importer, sh_block_size());
     if (block == NULL) {
-        sh_log(instance, SH_ERROR, "%s: out of memory.", function);
+        sh_report(instance, SH_ERROR, "%s: out of memory.", function);
         return SH_ERROR;
     }
     (void)memcpy(block, bytes, sh_block_size());
-    shown = sh_block_instance(instance, block);
-    if (!sh_block_is_sound(&shown, function)) {
+    if (!sh_block_is_sound(instance, block, function)) {
         sh_release(&instance->importer, block);
         return SH_ERROR;
     }

@@ -6,7 +6,7 @@
 #ifndef SH_SAVED_STATE_H
 #define SH_SAVED_STATE_H
 
-#include "instance.h"
+#include "simulation.h"
 
 /* Writes the state to *state, or to new memory if that is NULL. */
 sh_status sh_save_state(void *handle, void **state, const char *function);

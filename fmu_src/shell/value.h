@@ -2,6 +2,8 @@
 #ifndef SH_VALUE_H
 #define SH_VALUE_H
 
+#include <limits.h>
+
 #include "instance.h"
 
 static inline int sh_is_parameter(const sh_variable *variable)
@@ -15,11 +17,35 @@ static inline int sh_is_parameter(const sh_variable *variable)
 int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,
                const char *function);
 
+static inline void *sh_place(const sh_instance *instance, const sh_variable *variable)
+{
+    return (char *)instance->model + variable->offset;
+}
+
 /* The value of a variable of any type: a double holds every int. */
-double sh_read(const sh_instance *instance, const sh_variable *variable);
-void sh_write(sh_instance *instance, const sh_variable *variable, double value);
+static inline double sh_read(const sh_instance *instance, const sh_variable *variable)
+{
+    const void *place = sh_place(instance, variable);
+
+    return variable->type == SH_TYPE_REAL ? *(const double *)place : (double)*(const int *)place;
+}
+
+static inline void sh_write(sh_instance *instance, const sh_variable *variable, double value)
+{
+    void *place = sh_place(instance, variable);
+
+    if (variable->type == SH_TYPE_REAL) {
+        *(double *)place = value;
+    } else {
+        /* In its range, unless the importer has changed it since the check. */
+        *(int *)place = value >= INT_MAX ? INT_MAX : value > INT_MIN ? (int)value : INT_MIN;
+    }
+}
 
 /* Time derivative of a Real input. */
-double *sh_slope(sh_instance *instance, const sh_variable *input);
+static inline double *sh_slope(sh_instance *instance, const sh_variable *input)
+{
+    return (double *)(void *)((char *)sh_place(instance, input) + sh_fmu_model.derivative_offset);
+}
 
 #endif

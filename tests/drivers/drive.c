@@ -51,14 +51,12 @@ size_t get_outputs(void *instance, double *values)
 
     for (i = 0; i < sh_fmu_model.count; ++i) {
         const sh_variable *variable = &sh_fmu_model.variables[i];
-        const size_t more = fmi_values(&i, 1);
-        if (variable->type != SH_TYPE_REAL || more == 0 ||
+        if (variable->type != SH_TYPE_REAL ||
             (variable->role != SH_ROLE_OUTPUT && variable->role != SH_ROLE_GUESS)) {
             continue;
         }
-        check(n + more <= 256, "more than 256 outputs");
-        check(fmi_get_reals(instance, &i, 1, &values[n]) == SH_OK, "get an output");
-        n += more;
+        check(n < 256, "more than 256 outputs");
+        check(fmi_get_reals(instance, &i, 1, &values[n++]) == SH_OK, "get an output");
     }
     return n;
 }

@@ -66,12 +66,6 @@ double fmi_time(void *instance, double otherwise)
     return otherwise;
 }
 
-size_t fmi_values(const uint32_t references[], size_t n)
-{
-    (void)references;
-    return n;
-}
-
 sh_status fmi_get_reals(void *instance, const uint32_t references[], size_t n, double values[])
 {
     return (sh_status)fmi2GetReal(instance, references, n, values);

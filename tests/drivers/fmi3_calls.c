@@ -71,26 +71,15 @@ double fmi_time(void *instance, double otherwise)
     return otherwise;
 }
 
-size_t fmi_values(const uint32_t references[], size_t n)
-{
-    size_t values = 0, i;
-
-    for (i = 0; references != NULL && i < n; ++i) {
-        values +=
-            references[i] < sh_fmu_model.count ? sh_fmu_model.variables[references[i]].length : 1;
-    }
-    return values;
-}
-
 sh_status fmi_get_reals(void *instance, const uint32_t references[], size_t n, double values[])
 {
-    return (sh_status)fmi3GetFloat64(instance, references, n, values, fmi_values(references, n));
+    return (sh_status)fmi3GetFloat64(instance, references, n, values, n);
 }
 
 sh_status fmi_set_reals(void *instance, const uint32_t references[], size_t n,
                         const double values[])
 {
-    return (sh_status)fmi3SetFloat64(instance, references, n, values, fmi_values(references, n));
+    return (sh_status)fmi3SetFloat64(instance, references, n, values, n);
 }
 
 sh_status fmi_set_slope(void *instance, uint32_t input, double slope)

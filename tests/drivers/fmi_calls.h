@@ -27,13 +27,7 @@ sh_status fmi_reset(void *instance);
 /* Time of the instance [s], or `otherwise` if it does not tell it now. */
 double fmi_time(void *instance, double otherwise);
 
-/* How many values belong to n references. In FMI 3.0 a reference means a whole array, and that of
- * an element inside of an array has none. An unknown reference counts as one; references may be
- * NULL.
- */
-size_t fmi_values(const uint32_t references[], size_t n);
-
-/* Reads or writes Real variables. values [size: fmi_values(references, n)] */
+/* Reads or writes Real variables. values [size: n] */
 sh_status fmi_get_reals(void *instance, const uint32_t references[], size_t n, double values[]);
 sh_status fmi_set_reals(void *instance, const uint32_t references[], size_t n,
                         const double values[]);

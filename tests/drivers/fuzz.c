@@ -34,15 +34,13 @@ static void set_reals(sequence *s, sh_role first, sh_role last)
 {
     uint32_t references[MAX_REFERENCES];
     const size_t n = some_references(s, references, SH_TYPE_REAL, first, last);
-    double *values = memory(fmi_values(references, n) * sizeof *values), *next = values;
-    size_t i, k;
+    double *values = memory(n * sizeof *values);
+    size_t i;
 
     for (i = 0; i < n; ++i) {
-        for (k = 0; k < fmi_values(&references[i], 1); ++k) {
-            *next++ = some_real(s, references[i] < sh_fmu_model.count
-                                       ? sh_fmu_model.variables[references[i] + k].start
-                                       : 1.0);
-        }
+        values[i] = some_real(s, references[i] < sh_fmu_model.count
+                                     ? sh_fmu_model.variables[references[i]].start
+                                     : 1.0);
     }
     fmi_set_reals(s->instance, seldom(s, 99) ? NULL : references, n, seldom(s, 99) ? NULL : values);
     free(values);
@@ -52,7 +50,7 @@ static void get_reals(sequence *s)
 {
     uint32_t references[MAX_REFERENCES];
     const size_t n = some_references(s, references, SH_TYPE_REAL, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
-    double *values = memory(fmi_values(references, n) * sizeof *values);
+    double *values = memory(n * sizeof *values);
 
     fmi_get_reals(s->instance, references, n, seldom(s, 99) ? NULL : values);
     free(values);
@@ -67,7 +65,7 @@ static void get_all(const sequence *s, double *values)
         values[i] = 0.0;
     }
     for (i = 0; i < sh_fmu_model.count; ++i) {
-        if (sh_fmu_model.variables[i].type == SH_TYPE_REAL && fmi_values(&i, 1) > 0) {
+        if (sh_fmu_model.variables[i].type == SH_TYPE_REAL) {
             fmi_get_reals(s->instance, &i, 1, &values[i]);
         }
     }

@@ -87,7 +87,7 @@ size_t some_references(sequence *s, uint32_t *references, unsigned types, sh_rol
         for (k = 0; k < sh_fmu_model.count; ++k) {
             const sh_variable *variable = &sh_fmu_model.variables[references[i]];
             if (((unsigned)variable->type & types) && variable->role >= first &&
-                variable->role <= last && fmi_values(&references[i], 1) > 0) {
+                variable->role <= last) {
                 break;
             }
             references[i] = (uint32_t)((references[i] + 1) % sh_fmu_model.count);

@@ -7,7 +7,7 @@
 #include "drive.h"
 #include "fmi_calls.h"
 
-enum { CHECKSUM = 128 }; /* its place in a serialised state, behind the rest of the header */
+enum { CHECKSUM = 120 }; /* its place in a serialised state, behind the rest of the header */
 
 /* Writes the right checksum, as anybody can who has the sources: FNV-1a over all bytes but its own. */
 static void sign(uint8_t *bytes, size_t size)
@@ -109,9 +109,9 @@ static void restore(sequence *s, unsigned slot)
     unsigned char *block = s->states[slot];
 
     if (block != NULL && seldom(s, 32)) {
-        unsigned char *place = block + below(s, 100);
+        unsigned char *place = block + below(s, 12); /* of what says whose state it is */
         *place ^= 1;
-        check(fmi_set_state(s->instance, block) == SH_ERROR, "a spoilt state was taken");
+        check(fmi_set_state(s->instance, block) == SH_ERROR, "a foreign state was taken");
         *place ^= 1;
     }
     if (fmi_set_state(s->instance, block) == SH_OK) {

@@ -1,16 +1,20 @@
-"""Reset, copies of the state, and states that are damaged or of another FMU."""
+"""Reset, copies of the state, and states that are damaged or of another FMU: FMI 2.0 and 3.0."""
 
 from __future__ import annotations
 
 import ctypes
 import random
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import sigmahat
+from fmi3_instance import Instance3, driver3
 from fmi_instance import ERROR, OK, Instance
 from fmi_runs import ESTIMATORS, PLANTS, Driver, continue_from, names, random_steps
 
@@ -19,25 +23,42 @@ STEPS = random_steps(120, seed=1)
 POINTS = random.Random(2).sample(range(len(STEPS)), 50)
 
 
+@dataclass(frozen=True)
+class Version:
+    """How an FMU is run in one version of FMI."""
+
+    path: Callable[[str], Path]
+    instance: Any
+    driver: Any
+    reset: str
+    deserialise: str
+
+
+@pytest.fixture(params=["fmi2", "fmi3"])
+def fmi(request: pytest.FixtureRequest, twin: Callable[[str], Path]) -> Version:
+    if request.param == "fmi2":
+        return Version(sigmahat.fmu, Instance, Driver, "fmi2Reset", "fmi2DeSerializeFMUstate")
+    return Version(twin, Instance3, driver3, "fmi3Reset", "fmi3DeserializeFMUState")
+
+
 @every_fmu
-def test_an_instance_after_a_reset_is_like_a_new_one(name: str) -> None:
-    path = sigmahat.fmu(name)
-    with Instance(path) as fmu:
-        driver = Driver(fmu)
+def test_an_instance_after_a_reset_is_like_a_new_one(name: str, fmi: Version) -> None:
+    with fmi.instance(fmi.path(name)) as fmu:
+        driver = fmi.driver(fmu)
         fmu.initialise()
         initial, fresh = driver.result(), driver.run(STEPS)
-    with Instance(path) as fmu:
-        driver = Driver(fmu)
+    with fmi.instance(fmi.path(name)) as fmu:
+        driver = fmi.driver(fmu)
         tunable = names(fmu, "parameter", "tunable")[:3]
         other = {n: 1.5 * float(fmu.variables[n].start) for n in tunable}
-        for point in POINTS:
-            fmu.initialise(other)  # values that the reset has to replace
-            driver.run(STEPS[:point])
-            assert fmu.call("fmi2Reset") == OK
+        for point in POINTS[:25]:
+            fmu.initialise(other, start=3.7)  # values that the reset has to replace
+            driver.run([(3.7 + t, h) for t, h in STEPS[:point]])
+            assert fmu.call(fmi.reset) == OK
             fmu.initialise()
             assert driver.result() == initial
             assert driver.run(STEPS) == fresh
-            assert fmu.call("fmi2Reset") == OK
+            assert fmu.call(fmi.reset) == OK
 
 
 @every_fmu
@@ -55,41 +76,51 @@ def test_after_a_reset_without_setup_the_start_time_is_0(name: str) -> None:
 
 
 @every_fmu
-def test_a_restored_state_continues_bit_for_bit(name: str) -> None:
-    with Instance(sigmahat.fmu(name)) as fmu:
-        driver = Driver(fmu)
+def test_a_restored_state_continues_bit_for_bit(name: str, fmi: Version) -> None:
+    """In the instance that it is of, and, serialised, in another process."""
+    with fmi.instance(fmi.path(name)) as fmu:
+        driver = fmi.driver(fmu)
         fmu.initialise()
-        states, results, whole = {}, {}, []
+        states, serialised, results, whole = {}, {}, {}, []
         for k, step in enumerate(STEPS):
             if k in POINTS:
                 states[k], results[k] = fmu.save(), driver.result()
+                serialised[k] = fmu.serialise(states[k])
             whole.append(driver.step(*step))
         for point in POINTS:
             assert fmu.restore(states[point]) == OK
             assert driver.result() == results[point]
             assert driver.run(STEPS[point:]) == whole[point:]
             fmu.free(states[point])
+    with ProcessPoolExecutor(1, get_context("spawn")) as process:
+        continued = process.submit(
+            continue_from,
+            fmi.path(name),
+            [serialised[p] for p in POINTS],
+            [STEPS[p:] for p in POINTS],
+            fmi.instance,
+            fmi.driver,
+        ).result()
+    for point, result in zip(POINTS, continued, strict=True):
+        assert result == whole[point:]
 
 
 @every_fmu
-def test_a_serialised_state_continues_in_another_process(name: str) -> None:
-    path = sigmahat.fmu(name)
-    with Instance(path) as fmu:
-        driver = Driver(fmu)
-        fmu.initialise()
-        states, whole = {}, []
-        for k, step in enumerate(STEPS):
-            if k in POINTS:
-                state = fmu.save()
-                states[k] = fmu.serialise(state)
-                fmu.free(state)
-            whole.append(driver.step(*step))
-    with ProcessPoolExecutor(1, get_context("spawn")) as process:
-        results = process.submit(
-            continue_from, path, [states[p] for p in POINTS], [STEPS[p:] for p in POINTS]
-        ).result()
-    for point, result in zip(POINTS, results, strict=True):
-        assert result == whole[point:]
+def test_instances_do_not_influence_each_other(name: str, fmi: Version) -> None:
+    expected = []
+    for start in (0.0, 1.0):
+        with fmi.instance(fmi.path(name)) as alone:
+            alone.initialise(start=start)
+            expected.append(fmi.driver(alone).run([(start + t, h) for t, h in STEPS]))
+    with fmi.instance(fmi.path(name)) as first, fmi.instance(fmi.path(name)) as second:
+        drivers = [fmi.driver(first), fmi.driver(second)]
+        first.initialise()
+        second.initialise(start=1.0)
+        got: list[list[bytes]] = [[], []]
+        for t, h in STEPS:
+            got[0].append(drivers[0].step(t, h))
+            got[1].append(drivers[1].step(1.0 + t, h))
+        assert got == expected
 
 
 @pytest.mark.parametrize("at", ["instantiated", "initialisation", "terminated"])
@@ -140,16 +171,18 @@ def test_a_state_with_contradictory_parameters_refuses_a_step(estimator_fmu: Pat
 
 
 @every_fmu
-def test_a_damaged_or_foreign_state_is_refused(name: str) -> None:
+def test_a_damaged_or_foreign_state_is_refused(name: str, fmi: Version) -> None:
     foreign_name = "AwasPlant" if name != "AwasPlant" else "StiffnessEstimator"
-    with Instance(sigmahat.fmu(name)) as fmu, Instance(sigmahat.fmu(foreign_name)) as other:
-        driver = Driver(fmu)
+    foreign_path = fmi.path(foreign_name)
+    with fmi.instance(fmi.path(name)) as fmu, fmi.instance(foreign_path) as other:
+        driver = fmi.driver(fmu)
         fmu.initialise()
         driver.run(STEPS[:5])
-        state = fmu.save()
+        state, foreign_state = fmu.save(), other.save()
         good, expected = fmu.serialise(state), driver.run(STEPS[5:10])
-        foreign_state = other.save()
         foreign = other.serialise(foreign_state)
+        assert fmu.restore(foreign_state) == ERROR
+        assert "another FMU" in fmu.messages[-1][2]
         other.free(foreign_state)
         refused = [
             (good[:-1], "truncated"),
@@ -166,20 +199,13 @@ def test_a_damaged_or_foreign_state_is_refused(name: str) -> None:
         reached = driver.result()
         for bad, reason in refused:
             fmu.messages.clear()
-            status, _ = fmu.deserialise(bad)
-            assert status == ERROR
-            assert "fmi2DeSerializeFMUstate" in fmu.messages[-1][2]
-            assert reason in fmu.messages[-1][2]
+            status, made = fmu.deserialise(bad)
+            assert status == ERROR and made.value is None
+            category, message = fmu.messages[-1][1:]
+            assert category == "logStatusError"
+            assert message.startswith(fmi.deserialise) and reason in message
             assert driver.result() == reached
-        # A state that is damaged after it was saved.
-        memory = (ctypes.c_ubyte * len(good)).from_address(state.value or 0)
-        memory[len(good) // 2] ^= 1
-        assert fmu.restore(state) == ERROR
-        assert "damaged" in fmu.messages[-1][2]
-        assert driver.result() == reached
-        fmu.free(state)
-        status, state = fmu.deserialise(good)
-        assert status == OK and fmu.restore(state) == OK
+        assert fmu.restore(state) == OK
         assert driver.run(STEPS[5:10]) == expected
         fmu.free(state)
 

@@ -37,7 +37,7 @@ def sources(fmu: str, build: Path, version: str) -> list[Path]:
     """The C source files of an FMU, with the functions of a version of FMI."""
     files = sorted([*(FMU_SOURCES / "shell").glob("*.c"), *(FMU_SOURCES / version).glob("*.c")])
     if fmu in ESTIMATORS:
-        own = [FMU_SOURCES / name for name in (f"{fmu}.c", "estimator_fmu.c", "sample_clock.c")]
+        own = [FMU_SOURCES / name for name in (f"{fmu}.c", "estimator_fmu.c")]
         return files + own + SOURCES
     return [
         *files,

@@ -101,33 +101,22 @@ class Instance3:
     def references(self, names: Sequence[str]) -> Any:
         return (ctypes.c_uint32 * len(names))(*[self.variables[n].valueReference for n in names])
 
-    def length(self, name: str) -> int:
-        """Number of elements of a variable."""
-        return math.prod(int(d.start) for d in self.variables[name].dimensions)
-
-    def set(self, name: str, *values: float) -> int:
+    def set(self, name: str, value: float) -> int:
         function, c_type = C_TYPES[self.variables[name].type]
-        array = (c_type * len(values))(*values)
-        return self.call(
-            f"fmi3Set{function}", self.references([name]), SIZE(1), array, SIZE(len(values))
-        )
+        array = (c_type * 1)(value)
+        return self.call(f"fmi3Set{function}", self.references([name]), SIZE(1), array, SIZE(1))
 
     def set_all(self, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             assert self.set(name, value) == OK, self.messages
 
     def get(self, name: str) -> float:
-        return self.elements(name)[0]
-
-    def elements(self, name: str) -> list[float]:
-        """All values of a variable, the last index running fastest."""
         function, c_type = C_TYPES[self.variables[name].type]
-        array = (c_type * self.length(name))()
-        status = self.call(
-            f"fmi3Get{function}", self.references([name]), SIZE(1), array, SIZE(len(array))
-        )
+        array = (c_type * 1)()
+        status = self.call(f"fmi3Get{function}", self.references([name]), SIZE(1), array, SIZE(1))
         assert status == OK, self.messages
-        return list(array)
+        value: float = array[0]
+        return value
 
     def enter(
         self, start: float = 0.0, stop: float | None = None, tolerance: float | None = None
@@ -218,7 +207,7 @@ class HeldInputs:
 
 
 def driver3(fmu: Instance3) -> HeldInputs:
-    """Held inputs, and all outputs that are no arrays."""
-    of_type = {n: v for n, v in fmu.variables.items() if v.type == "Float64" and not v.dimensions}
+    """Held inputs, and all Real outputs."""
+    of_type = {n: v for n, v in fmu.variables.items() if v.type == "Float64"}
     inputs = [n for n, v in of_type.items() if v.causality == "input"]
     return HeldInputs(fmu, inputs, [n for n, v in of_type.items() if v.causality == "output"])

@@ -33,9 +33,7 @@ class Run:
         variables = self.description.modelVariables
         self.inputs = [v for v in variables if v.causality == "input"]
         self.outputs = [
-            v
-            for v in variables
-            if v.causality == "output" and v.type in ("Real", "Float64") and not v.dimensions
+            v for v in variables if v.causality == "output" and v.type in ("Real", "Float64")
         ]
         self.time = STEP * np.arange(STEPS + 1)
         # Different for each input, so that exchanged ones are seen; 0 at the start, where

@@ -65,7 +65,7 @@ static void call(int which, course here)
         fmi2FreeFMUstate(&instance, any_choice() ? &state : NULL);
         break;
     case 16:
-        fmi2SetFMUstate(&instance, any_choice() ? any_state(here) : NULL);
+        fmi2SetFMUstate(&instance, any_choice() ? saved_state() : NULL);
         break;
     case 17:
         fmi2DeSerializeFMUstate(&instance, any_state(here), sh_block_size(), &state);

@@ -88,7 +88,7 @@ static void call(int which, course here)
         fmi3FreeFMUState(&instance, any_choice() ? &state : NULL);
         break;
     case 8:
-        fmi3SetFMUState(&instance, any_choice() ? any_state(here) : NULL);
+        fmi3SetFMUState(&instance, any_choice() ? saved_state() : NULL);
         break;
     case 9:
         fmi3DeserializeFMUState(&instance, any_state(here), sh_block_size(), &state);
@@ -101,12 +101,6 @@ static void call(int which, course here)
         call_refused(which);
         break;
     }
-}
-
-/* Number of values behind a reference. */
-static size_t length_of(uint32_t reference)
-{
-    return reference < sh_fmu_model.count ? sh_fmu_model.variables[reference].length : 1;
 }
 
 static void access_values(int which, const uint32_t vr[], size_t n, void *values, size_t count)
@@ -162,18 +156,17 @@ static void access(int which, const uint32_t vr[], size_t n, int way)
     static const size_t SIZES[ACCESSES] = {
         sizeof(fmi3Float64), sizeof(fmi3Float64), sizeof(fmi3Int64),   sizeof(fmi3Int64),
         sizeof(fmi3Int32),   sizeof(fmi3Int32),   sizeof(fmi3Boolean), sizeof(fmi3Boolean)};
-    const size_t length = length_of(vr[0]) + n - 1;
 
     //@ dynamic_split instance.parameters_unchecked;
     switch (way) { /* the right number of values, or too few, or too many */
     case 0:
-        access_values(which, vr, n, any_array(length * SIZES[which]), length);
+        access_values(which, vr, n, any_array(n * SIZES[which]), n);
         break;
     case 1:
-        access_values(which, vr, n, any_array(0), Frama_C_size_t_interval(0, length - 1));
+        access_values(which, vr, n, any_array(0), Frama_C_size_t_interval(0, n - 1));
         break;
     default:
-        access_values(which, vr, n, any_array(0), Frama_C_size_t_interval(length + 1, SIZE_MAX));
+        access_values(which, vr, n, any_array(0), Frama_C_size_t_interval(n + 1, SIZE_MAX));
         break;
     }
 }

@@ -22,7 +22,7 @@ void expect_sound(const MODEL *model);
 
 /*@ requires \valid(instance) && \valid_read(format);
     assigns \nothing; */
-void sh_log(sh_instance *instance, sh_status status, const char *format, ...);
+void sh_report(sh_instance *instance, sh_status status, const char *format, ...);
 
 /* Where a simulation stands. */
 typedef struct {
@@ -33,7 +33,7 @@ typedef struct {
 
 enum { COURSES = 16 };
 
-enum { HEADER = 136 }; /* bytes of a saved state before those of its model */
+enum { HEADER = 128 }; /* bytes of a saved state before those of its model */
 
 static MODEL model;
 static char name[] = "x";
@@ -52,14 +52,14 @@ static int is_initialized(sh_state state, int outputs_stale)
     return state == SH_STEP || (state == SH_INITIALIZATION && !outputs_stale);
 }
 
-/* A saved state, of which it is written where its simulation stands. */
-static void *with_course(char *block, unsigned state, int outputs_stale, int parameters_unchecked)
+/* A serialised state, in which it is written where its simulation stands. */
+static void *with_course(char *block, unsigned state, int outputs_stale)
 {
-    enum { PLACE_OF_STATE = 12, PLACE_OF_FLAGS = 120 };
-    const int flags[2] = {outputs_stale, parameters_unchecked};
+    enum { PLACE_OF_STATE = 12, PLACE_OF_FLAG = 112 };
+    const uint64_t flag = (uint64_t)outputs_stale;
 
     (void)memcpy(block + PLACE_OF_STATE, &state, sizeof state);
-    (void)memcpy(block + PLACE_OF_FLAGS, flags, sizeof flags);
+    (void)memcpy(block + PLACE_OF_FLAG, &flag, sizeof flag);
     return block;
 }
 

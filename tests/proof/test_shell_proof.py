@@ -22,7 +22,10 @@ PROOF = REPOSITORY / "tests" / "proof"
 SOURCES = REPOSITORY / "fmu_src"
 SHELL = SOURCES / "shell"
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
-LENGTH_CHECK = " || size != sh_block_size()"
+LENGTH_CHECK = """    if (size != sh_block_size()) {
+        return "is truncated or too long";
+    }
+"""
 NOTE = "instance->parameters_unchecked = 1;"
 
 # The struct of a model, the header that declares it, its own sources, and what replaces the rest.
@@ -30,22 +33,22 @@ MODELS = {
     "StiffnessEstimator": (
         "sh_estimator_fmu",
         "estimator_fmu.h",
-        ["StiffnessEstimator.c", "estimator_fmu.c", "sample_clock.c"],
+        ["StiffnessEstimator.c", "estimator_fmu.c"],
         "shell_library.c",
     ),
     "AwasPlant": ("sh_plant", "plant.h", ["plant.c", "radau.c", "noise.c"], "shell_equations.c"),
 }
 # Functions after which Eva keeps failure and success apart.
 OUTCOMES = [
-    *("sh_allocate", "malloc", "sh_check_parameters", "sh_check_ranges", "is_state"),
+    *("sh_allocate", "malloc", "sh_check_parameters", "is_state", "sh_bytes_defect"),
     *("sh_block_is_sound", "sh_block_defect", "sh_deserialize_state", "sh_restore_state"),
-    *("sh_enter", "sh_has", "has_course", "is_initialized", "sh_initialize", "any_choice"),
+    *("sh_enter", "sh_has", "is_initialized", "sh_initialize", "any_choice"),
     *("importer_allocates", "sh_end_initialization", "sh_create"),
     *("sh_set_up", "sh_begin_initialization"),
 ]
 OUTCOMES_OF_AN_ESTIMATOR = [
     *("sh_estimator_fmu_check", "check", "sh_parameters_check", "sh_estimator_check"),
-    *("sh_estimator_fmu_is_state", "sh_sample_clock_is_state", "sh_sample_clock_tick"),
+    "sh_estimator_fmu_is_state",
 ]
 OUTCOMES_OF_A_VERSION = {
     "fmi2": ["begin", "sh_begin_set", "find", "fmi2Instantiate"],
@@ -55,14 +58,14 @@ OUTCOMES_OF_A_VERSION = {
     ],
 }
 # Frama-C accepts no conversion to a function with other parameters. The pointer is only kept here,
-# as sh_log, which uses it, is replaced.
+# as sh_report, which uses it, is replaced.
 LOGGER = re.compile(
     r"\((?:fmi2CallbackLogger|fmi3LogMessageCallback)\)instance->importer\.logger"
     r"|\(void \(\*\)\(void\)\)[\w>-]+"
 )
 # How many states Eva keeps apart in a function; with 0 it joins all that can happen.
 APART = [
-    *("sh_check_ranges:0", "checksum:0", "sh_accepts:0", "sh_communication_step:100"),
+    *("checksum:0", "sh_accepts:0", "sh_communication_step:100"),
     "sh_reset:0",
 ]
 APART_IN_AN_ESTIMATOR = ["sh_estimator_fmu_step:10"]
@@ -107,7 +110,7 @@ def alarms_of(
             *(REPOSITORY / "c" / "include", SOURCES, SOURCES / "fmi3", shell),
             *(build / "fmu" / fmu, PROOF, FMI_HEADERS),
         ],
-        *("-eva-alloc-builtin", "fresh", "-eva-use-spec", "sh_log"),
+        *("-eva-alloc-builtin", "fresh", "-eva-use-spec", "sh_report"),
         *("-eva-interprocedural-splits", "-eva-slevel", "40"),
         *("-eva-slevel-function", ",".join(apart)),
         *("-eva-auto-loop-unroll", "0" if estimator else "8"),

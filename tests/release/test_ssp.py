@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
+from libcosimpy.CosimExecution import CosimExecution
+from libcosimpy.CosimObserver import CosimObserver
 from lxml import etree
 
 import sigmahat
@@ -58,7 +60,8 @@ def read(ssp: Path, name: str) -> Any:
 
 def test_it_is_valid_against_the_schema(ssp: Path) -> None:
     assert read_ssd(str(ssp), validate=True).version == "1.0"
-    assert read_ssv(str(ssp), "resources/table1.ssv", validate=True).name == "table1"
+    for element in ("plant", "estimator"):
+        assert read_ssv(str(ssp), f"resources/{element}.ssv", validate=True).name == element
 
 
 def test_it_has_the_form_that_omsimulator_2_requires(ssp: Path) -> None:
@@ -129,47 +132,42 @@ def test_a_second_build_gives_identical_bytes(ssp: Path, tmp_path: Path) -> None
 
 def test_both_ends_of_every_connection_have_the_same_unit(ssp: Path) -> None:
     root = read(ssp, "SystemStructure.ssd").find("ssd:System", NAMESPACES)
-    owners = [(None, root), *((e.get("name"), e) for e in root.find("ssd:Elements", NAMESPACES))]
+    assert root.find("ssd:Connectors", NAMESPACES) is None
     units = {
-        (owner, c.get("name"), c.get("kind")): c.find("ssc:Real", NAMESPACES).get("unit")
-        for owner, element in owners
+        (element.get("name"), c.get("name"), c.get("kind")): c[0].get("unit")
+        for element in root.find("ssd:Elements", NAMESPACES)
         for c in element.iterfind("ssd:Connectors/ssd:Connector", NAMESPACES)
     }
     connections = root.findall("ssd:Connections/ssd:Connection", NAMESPACES)
     ends = set()
     for c in connections:
-        source, sink = c.get("startElement"), c.get("endElement")
-        start = (source, c.get("startConnector"), "output" if source else "input")
-        end = (sink, c.get("endConnector"), "input" if sink else "output")
+        start = (c.get("startElement"), c.get("startConnector"), "output")
+        end = (c.get("endElement"), c.get("endConnector"), "input")
         assert units[start] == units[end]
         ends |= {start, end}
-    assert ends == set(units)  # every connector is connected
-    wires = {
-        c.get("endConnector"): c.get("startConnector")
-        for c in connections
-        if c.get("endElement") == "estimator"
-    }
+    results = {("plant", "sigma", "output"), ("estimator", "sigma", "output")}
+    assert ends | results == set(units)  # every input is connected
+    wires = {c.get("endConnector"): c.get("startConnector") for c in connections}
     assert wires == RESIDUAL.connections
 
 
 def test_parameters_are_those_of_the_scenario(ssp: Path) -> None:
-    found = {}
-    for p in read(ssp, "resources/table1.ssv").iterfind("ssv:Parameters/*", NAMESPACES):
-        found[p.get("name")] = p[0].get("value")
     for element, name, start in (
         ("plant", "AwasPlant", {**TABLE1.plant.start, **SIGNALS}),
         ("estimator", "StiffnessEstimator", RESIDUAL.start),
     ):
+        listed = read(ssp, f"resources/{element}.ssv").iterfind("ssv:Parameters/*", NAMESPACES)
+        found = {p.get("name"): p[0].get("value") for p in listed}
         with Fmu(sigmahat.fmu(name)) as fmu:
             for parameter, value in fmu.parameters(start).items():
-                text = found.pop(f"{element}.{parameter}", None)
+                text = found.pop(parameter, None)
                 if fmu.variables[parameter].type == "Enumeration" or "eta_0" in parameter:
                     assert text is None and value == fmu.parameters({})[parameter]
                 elif fmu.variables[parameter].type == "Boolean":
                     assert text == str(bool(value)).lower()
                 else:
                     assert text is not None and float(text) == value
-    assert found == {}
+        assert found == {}
 
 
 def test_a_scenario_with_another_enumeration_is_refused(
@@ -188,8 +186,13 @@ def test_a_scenario_with_another_enumeration_is_refused(
 
 @pytest.fixture(scope="module")
 def result(ssp: Path) -> Any:
-    """What FMPy computes of the system as it is: no input is connected."""
-    parameters = read_ssv(str(ssp), "resources/table1.ssv")
+    """What FMPy computes of the system as it is. It takes one set of parameters."""
+    parameters = read_ssv(str(ssp), "resources/plant.ssv")
+    for parameter in parameters.parameters:
+        parameter.name = f"plant.{parameter.name}"
+    for parameter in read_ssv(str(ssp), "resources/estimator.ssv").parameters:
+        parameter.name = f"estimator.{parameter.name}"
+        parameters.parameters.append(parameter)
     return simulate_ssp(str(ssp), stop_time=STEPS * T, step_size=T, parameter_set=parameters)
 
 
@@ -209,7 +212,6 @@ def test_fmpy_passes_zeros_to_the_first_tick_and_is_else_exact(result: Any) -> N
     # FMPy records the outputs of the plant after the step with the time of its begin.
     np.testing.assert_array_equal(result["plant.sigma"][:-1], own["plant.sigma"][1:])
     np.testing.assert_array_equal(result["estimator.sigma"], own["estimator.sigma"])
-    np.testing.assert_array_equal(result["sigma_hat"], own["estimator.sigma"])
     assert own["estimator.sigma"].any()
 
 
@@ -220,7 +222,29 @@ def test_the_system_as_it_is_gives_table_1(result: Any) -> None:
     np.testing.assert_allclose(result["plant.sigma"][:n], plant[1:], rtol=1e-10)
     settled = recording.t[:n] > 1.0
     # What is left is the first tick, whose inputs FMPy sets to 0.
-    np.testing.assert_allclose(result["sigma_hat"][:n][settled], estimate[:n][settled], rtol=1e-6)
+    np.testing.assert_allclose(
+        result["estimator.sigma"][:n][settled], estimate[:n][settled], rtol=1e-6
+    )
+
+
+def test_libcosim_takes_the_parameters_and_gives_the_estimate_one_sample_later(ssp: Path) -> None:
+    recording = simulate(TABLE1.plant, {"RESIDUAL": RESIDUAL}, T, STEPS)
+    execution = CosimExecution.from_ssp_file(ssp_path=str(ssp), step_size=T * 1e9)
+    observer = CosimObserver.create_last_value()
+    execution.add_observer(observer)
+    slaves = {slave.name.decode(): slave.index for slave in execution.slave_infos()}
+    for k in (1000, STEPS - 1):
+        assert execution.simulate_until(round(k * T * 1e9))
+        for element, name, expected in (
+            ("plant", "AwasPlant", recording.plant["sigma"][k]),
+            ("estimator", "StiffnessEstimator", recording.estimators["RESIDUAL"]["sigma"][k - 1]),
+        ):
+            with Fmu(sigmahat.fmu(name)) as fmu:
+                references = [fmu.variables["sigma"].valueReference]
+            (found,) = observer.last_real_values(
+                slave_index=slaves[element], variable_references=references
+            )
+            assert found == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_master_written_by_hand_gives_the_results_of_the_harness() -> None:

@@ -4,7 +4,6 @@ import re
 from collections.abc import Callable
 from xml.etree.ElementTree import Element
 
-from sigmahat.export.arrays import arrays
 from sigmahat.export.templates import items, variables
 
 SEED, SAMPLE_PERIOD = "noise.seed", "noise.samplePeriod"
@@ -119,15 +118,12 @@ def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> st
     """
     identifier = root.findall("CoSimulation")[0].attrib["modelIdentifier"]
     rows = []
-    lengths = {a.first: a.length for a in arrays([v.attrib["name"] for v in variables(root)])}
-    for place, variable in enumerate(variables(root)):
+    for variable in variables(root):
         kind, name = variable[0], variable.attrib["name"]
         low, high = _limits(root, kind)
         rows.append(
             f'    {{"{name}", offsetof({struct}, {places[name]}), '
-            f"{lengths.get(place, 0)}, {_TYPES[kind.tag]}, "
-            f"{_role(variable)}, {_start(kind)}, "
-            f"{low}, {high}}},"
+            f"{_TYPES[kind.tag]}, {_role(variable)}, {_start(kind)}, {low}, {high}}},"
         )
     return "\n".join(
         [

@@ -68,7 +68,6 @@ def complete(root: Element) -> str:
     """
     for reference, variable in enumerate(variables(root)):
         variable.set("valueReference", str(reference))
-        variable.attrib.pop("array", None)
     _remove_unused_units(root)
     _add_display_units(root)
     _add_model_structure(root)
@@ -98,25 +97,20 @@ def write(
 ) -> None:
     """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder.
 
-    Beside them, ``fmi3`` gets the three files that describe the twin for FMI 3.0. ``sources`` are
+    Beside them, ``fmi3`` gets the three files that describe the FMU for FMI 3.0. ``sources`` are
     the C files of both; those in a folder ``fmi2`` or ``fmi3`` are for that version only.
     """
     out.mkdir(parents=True, exist_ok=True)
     root = render(template, version)
     sources = list(sources)
     _add_source_files(root, source_files.names(source_files.for_version(sources, 2)))
-    descriptions = {
-        v.attrib["name"].partition("[")[0]: v.attrib["array"]
-        for v in variables(root)
-        if "array" in v.attrib
-    }
     guid = complete(root)
     (out / "variables.h").write_text(c_table(root, struct, storage(root), guid), encoding="utf-8")
     _write_xml(root, out / "modelDescription.xml")
     names = source_files.names(source_files.for_version(sources, 3))
     described = fmi3_description.build_description(template.stem, names)
     (out / "fmi3").mkdir(exist_ok=True)
-    _write_xml(fmi3_description.twin(root, descriptions), out / "fmi3/modelDescription.xml")
+    _write_xml(fmi3_description.twin(root), out / "fmi3/modelDescription.xml")
     _write_xml(described, out / "fmi3/buildDescription.xml")
     shown = fmi3_description.terminals_and_icons(root)
     _write_xml(shown, out / "fmi3/terminalsAndIcons.xml")

@@ -1,26 +1,22 @@
-"""The model description of the FMI 3.0 twin of an FMU, from that of FMI 2.0.
+"""The model description for FMI 3.0, from that for FMI 2.0.
 
-Value references are the same, and the instantiation token is the GUID. What differs: elements of an
-array become one variable, whose reference is that of its first element; the types have other names;
-there is a variable for time, whose reference follows the others.
+Names, value references and scalars are the same, and the instantiation token is the GUID. What
+differs: the types have other names, and there is a variable for time, whose reference follows the
+others.
 """
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from sigmahat.export.arrays import Array, arrays
 from sigmahat.export.templates import variables
 
 _TYPES = {"Real": "Float64", "Integer": "Int32", "Boolean": "Boolean", "Enumeration": "Enumeration"}
 
 
-def twin(root: Element, descriptions: Mapping[str, str]) -> Element:
-    """Model description of FMI 3.0 for the complete one of FMI 2.0, which is left as it is.
-
-    ``descriptions`` are those of the arrays, by their names.
-    """
+def twin(root: Element) -> Element:
+    """Model description of FMI 3.0 for the complete one of FMI 2.0, which is left as it is."""
     made = Element("fmiModelDescription", {**root.attrib, "fmiVersion": "3.0"})
     made.set("instantiationToken", made.attrib.pop("guid"))
     (identifier,) = (e.attrib["modelIdentifier"] for e in root.findall("CoSimulation"))
@@ -32,7 +28,6 @@ def twin(root: Element, descriptions: Mapping[str, str]) -> Element:
         canSerializeFMUState="true",
         canHandleVariableCommunicationStepSize="true",
     )
-    found = arrays([v.attrib["name"] for v in variables(root)])
     for part in ("UnitDefinitions", "TypeDefinitions", "LogCategories", "DefaultExperiment"):
         made.extend(map(copy.deepcopy, root.findall(part)))
     for definition in made.findall("TypeDefinitions"):
@@ -41,8 +36,8 @@ def twin(root: Element, descriptions: Mapping[str, str]) -> Element:
         _add_second(units)
     for categories in made.findall("LogCategories"):  # FMI 3.0 has no requests for status
         categories.remove(categories.findall("Category[@name='logStatusDiscard']")[0])
-    made.append(_model_variables(root, found, descriptions))
-    made.append(_model_structure(root, found))
+    made.append(_model_variables(root))
+    made.append(_model_structure(root))
     ElementTree.indent(made)
     return made
 
@@ -60,24 +55,12 @@ def _add_second(units: Element) -> None:
         ElementTree.SubElement(ElementTree.SubElement(units, "Unit", name="s"), "BaseUnit", s="1")
 
 
-def _model_variables(
-    root: Element, found: Sequence[Array], descriptions: Mapping[str, str]
-) -> Element:
+def _model_variables(root: Element) -> Element:
     made = Element("ModelVariables")
     listed = variables(root)
-    for array in found:
-        elements = listed[array.first : array.first + array.length]
-        kind, common = elements[0][0], dict(elements[0].attrib)
-        if array.dimensions:
-            common["description"] = descriptions[array.name]
-        start = " ".join(e[0].attrib["start"] for e in elements if "start" in e[0].attrib)
-        variable = ElementTree.SubElement(
-            made, _TYPES[kind.tag], {**common, **kind.attrib, "name": array.name}
-        )
-        if start:
-            variable.set("start", start)
-        for size in array.dimensions:
-            ElementTree.SubElement(variable, "Dimension", start=str(size))
+    for variable in listed:
+        kind = variable[0]
+        ElementTree.SubElement(made, _TYPES[kind.tag], {**variable.attrib, **kind.attrib})
     ElementTree.SubElement(
         made,
         "Float64",
@@ -91,20 +74,19 @@ def _model_variables(
     return made
 
 
-def _model_structure(root: Element, found: Sequence[Array]) -> Element:
+def _model_structure(root: Element) -> Element:
     """Outputs and initial unknowns, by value references instead of indices from 1."""
     made = Element("ModelStructure")
-    first = {a.first + i: a.first for a in found for i in range(a.length)}
     for part, tag in (("Outputs", "Output"), ("InitialUnknowns", "InitialUnknown")):
-        known: dict[int, set[int]] = {}
         for unknown in root.findall(f"ModelStructure/{part}/Unknown"):
-            reference = first[int(unknown.attrib["index"]) - 1]
-            listed = unknown.attrib["dependencies"].split()
-            known.setdefault(reference, set()).update(first[int(i) - 1] for i in listed)
-        for reference, dependencies in known.items():
-            entry = ElementTree.SubElement(made, tag, valueReference=str(reference))
-            entry.set("dependencies", " ".join(map(str, sorted(dependencies))))
-            entry.set("dependenciesKind", " ".join(["dependent"] * len(dependencies)))
+            known = [str(int(i) - 1) for i in unknown.attrib["dependencies"].split()]
+            ElementTree.SubElement(
+                made,
+                tag,
+                valueReference=str(int(unknown.attrib["index"]) - 1),
+                dependencies=" ".join(known),
+                dependenciesKind=" ".join(["dependent"] * len(known)),
+            )
     return made
 
 

@@ -41,19 +41,26 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
             "units": units.values(),
             "plant": _element("plant", of_plant, plant, (), sent),
             "estimator": _element("estimator", of_estimator, estimator, connections, ["sigma"]),
-            "parameters": [
-                *_parameters("plant", of_plant, {**table1.plant.start, **_torques(table1)}),
-                *_parameters("estimator", of_estimator, residual.start),
-            ],
         }
         contents = {f"resources/{fmu.name}": fmu for fmu in (plant, estimator)}
-        for name, template in (
-            ("SystemStructure.ssd", "SystemStructure.ssd"),
-            ("resources/table1.ssv", "table1.ssv"),
-        ):
-            contents[name] = Path(folder) / template
-            text = environment.get_template(template).render(data)
+
+        def add(name: str, template: str, **more: Any) -> None:
+            contents[name] = Path(folder) / Path(name).name
+            text = environment.get_template(template).render(data, **more)
             contents[name].write_text(text, encoding="utf-8")
+
+        add("SystemStructure.ssd", "SystemStructure.ssd")
+        for element, fmu, start in (
+            ("plant", of_plant, {**table1.plant.start, **_torques(table1)}),
+            ("estimator", of_estimator, residual.start),
+        ):
+            parameters = _parameters(fmu, start)
+            add(
+                f"resources/{element}.ssv",
+                "parameters.ssv",
+                element=element,
+                parameters=parameters,
+            )
         archive.write(ssp, contents)
 
 
@@ -85,7 +92,7 @@ def _element(
     }
 
 
-def _parameters(element: str, fmu: Fmu, start: Mapping[str, Value]) -> list[dict[str, Any]]:
+def _parameters(fmu: Fmu, start: Mapping[str, Value]) -> list[dict[str, Any]]:
     """All parameters except enumerations, and initial estimates, which are zero.
 
     Importers disagree on the form of an enumeration: the standard asks for the name of the item,
@@ -103,7 +110,7 @@ def _parameters(element: str, fmu: Fmu, start: Mapping[str, Value]) -> list[dict
             boolean = variable.type == "Boolean"
             listed.append(
                 {
-                    "name": f"{element}.{name}",
+                    "name": name,
                     "type": variable.type,
                     "value": str(bool(value)).lower() if boolean else repr(value),
                     "unit": variable.unit,

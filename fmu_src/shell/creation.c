@@ -1,9 +1,10 @@
-#include "instance.h"
-
+/* The begin and the end of an instance, and how a call enters it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "log.h"
+#include "simulation.h"
 #include "value.h"
 
 static const char *state_name(sh_state state)
@@ -20,26 +21,15 @@ static const char *state_name(sh_state state)
     }
 }
 
-sh_instance *sh_enter(void *handle, unsigned allowed_states, const char *function)
+sh_instance *sh_refuse_call(sh_instance *instance, const char *function)
 {
-    sh_instance *instance = handle;
-
-    if (instance == NULL) {
-        return NULL; /* no logger to report it to */
-    }
-    if (!((unsigned)instance->state & allowed_states)) {
-        sh_log(instance, SH_ERROR, "%s: not allowed %s.", function, state_name(instance->state));
-        return NULL;
-    }
-    return instance;
+    sh_report(instance, SH_ERROR, "%s: not allowed %s.", function, state_name(instance->state));
+    return NULL;
 }
 
-int sh_has(sh_instance *instance, const void *pointer, const char *function, const char *argument)
+int sh_refuse_null(sh_instance *instance, const char *function, const char *argument)
 {
-    if (pointer != NULL) {
-        return 1;
-    }
-    sh_log(instance, SH_ERROR, "%s: argument %s is NULL.", function, argument);
+    sh_report(instance, SH_ERROR, "%s: argument %s is NULL.", function, argument);
     return 0;
 }
 
@@ -87,8 +77,8 @@ void *sh_refuse_instance(const sh_importer *importer, const char *function, cons
 {
     sh_instance before = nobody(importer);
 
-    sh_log(&before, SH_ERROR, "%s: %s is an FMU for co-simulation, not for %s.", function,
-           sh_fmu_model.identifier, wanted);
+    sh_report(&before, SH_ERROR, "%s: %s is an FMU for co-simulation, not for %s.", function,
+              sh_fmu_model.identifier, wanted);
     return NULL;
 }
 
@@ -104,10 +94,11 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
         return NULL;
     }
     if (guid == NULL || strcmp(guid, sh_fmu_model.guid) != 0) {
-        sh_log(&before, SH_ERROR,
-               "%s: the binary of %s expects the GUID or instantiation token %s, the importer gave "
-               "%s: modelDescription.xml and binary are not of the same FMU.",
-               function, sh_fmu_model.identifier, sh_fmu_model.guid, guid != NULL ? guid : "NULL");
+        sh_report(
+            &before, SH_ERROR,
+            "%s: the binary of %s expects the GUID or instantiation token %s, the importer gave "
+            "%s: modelDescription.xml and binary are not of the same FMU.",
+            function, sh_fmu_model.identifier, sh_fmu_model.guid, guid != NULL ? guid : "NULL");
         return NULL;
     }
 
@@ -118,7 +109,7 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
         sh_release(importer, instance);
         sh_release(importer, model);
         sh_release(importer, own_name);
-        sh_log(&before, SH_ERROR, "%s: out of memory.", function);
+        sh_report(&before, SH_ERROR, "%s: out of memory.", function);
         return NULL;
     }
     instance->importer = *importer;
@@ -127,8 +118,8 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
     instance->categories = categories;
     sh_reset(instance);
     if (sh_make_utf8(instance->name)) {
-        sh_log(instance, SH_WARNING, "%s: instanceName is not UTF-8; messages name %s.", function,
-               instance->name);
+        sh_report(instance, SH_WARNING, "%s: instanceName is not UTF-8; messages name %s.",
+                  function, instance->name);
     }
     return instance;
 }

@@ -1,0 +1,33 @@
+/* Messages for the user: their categories, and text that an importer can rely on. */
+#ifndef SH_LOG_H
+#define SH_LOG_H
+
+#include "instance.h"
+
+/* Categories of messages, as bits. */
+enum {
+    SH_LOG_EVENTS = 1,
+    SH_LOG_WARNING = 2,
+    SH_LOG_DISCARD = 4,
+    SH_LOG_ERROR = 8,
+    SH_LOG_STATUS = 14, /* all but events */
+    SH_LOG_ALL = 15
+};
+
+/* Gives a message to the importer's logger, which is not NULL. Each version of FMI has its own. */
+void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
+                const char *text);
+
+/* Writes the SH_LOG_* of some categories to *found, SH_LOG_ALL if count is 0. Unknown ones are ignored,
+ * with a warning.
+ */
+sh_status sh_find_categories(sh_instance *instance, size_t count, const char *const categories[],
+                             unsigned *found, const char *function);
+
+/* Copies text, with every `special` character twice; at most size - 1 characters. */
+void sh_double(char *copy, size_t size, const char *text, char special);
+
+/* Replaces every byte that is not part of UTF-8 by '?'; returns 1 if there was one. */
+int sh_make_utf8(char *text);
+
+#endif

@@ -1,0 +1,75 @@
+/* What can be done with an instance, the same in every version of FMI.
+ *
+ * The functions of an importer (fmi2/, fmi3/) translate arguments and status; the rest is here. Each
+ * function here that takes the name of the importer's function begins its messages with it.
+ */
+#ifndef SH_SIMULATION_H
+#define SH_SIMULATION_H
+
+#include "instance.h"
+
+/* A new instance that passes on some categories of messages, or NULL after a message. */
+sh_instance *sh_create(const sh_importer *importer, const char *name, const char *guid,
+                       unsigned categories, const char *function);
+/* NULL, after a message that the FMU is not for what is wanted. */
+void *sh_refuse_instance(const sh_importer *importer, const char *function, const char *wanted);
+void sh_destroy(sh_instance *instance);
+
+/* Back to the state after sh_create, with all start values. The categories of messages stay. */
+void sh_reset(sh_instance *instance);
+
+/* NULL, after a message that the function is not allowed in this state. */
+sh_instance *sh_refuse_call(sh_instance *instance, const char *function);
+
+/* The instance behind the importer's handle if it is in one of the allowed states; else NULL, after a
+ * message. Without a handle there is no logger for one.
+ */
+static inline sh_instance *sh_enter(void *handle, unsigned allowed_states, const char *function)
+{
+    sh_instance *instance = handle;
+
+    return instance == NULL || ((unsigned)instance->state & allowed_states)
+               ? instance
+               : sh_refuse_call(instance, function);
+}
+
+/* 0, after a message that an argument is NULL. */
+int sh_refuse_null(sh_instance *instance, const char *function, const char *argument);
+
+/* 1 if the pointer is not NULL; else 0, after a message. */
+static inline int sh_has(sh_instance *instance, const void *pointer, const char *function,
+                         const char *argument)
+{
+    return pointer != NULL || sh_refuse_null(instance, function, argument);
+}
+
+/* Memory from the functions of the importer, or from the C library if it has none. Zero. */
+void *sh_allocate(const sh_importer *importer, size_t size);
+void sh_release(const sh_importer *importer, void *memory);
+
+/* The experiment that the importer announces, and its start: times in s. */
+typedef struct {
+    int tolerance_defined;
+    double tolerance;
+    double start_time;
+    int stop_time_defined;
+    double stop_time;
+} sh_experiment;
+
+/* Refuses what is not finite or in the wrong order. Nothing has a tolerance to be set. */
+sh_status sh_set_up(sh_instance *instance, const sh_experiment *experiment, const char *function);
+
+/* The course of a simulation. `handle` is what the importer gave; it may be NULL. */
+sh_status sh_begin_initialization(void *handle, const char *function);
+sh_status sh_end_initialization(void *handle, const char *function);
+sh_status sh_communication_step(void *handle, double t, double h, const char *function);
+sh_status sh_terminate(void *handle, const char *function);
+
+/* Checks what the parameters require of each other, if one was set since the last check. */
+sh_status sh_check_parameters(sh_instance *instance);
+
+/* Checks the parameters and computes the initial outputs, if anything was set since the last time.
+ */
+sh_status sh_initialize(sh_instance *instance);
+
+#endif
