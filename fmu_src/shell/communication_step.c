@@ -38,7 +38,7 @@ static int is_rounding(const sh_instance *instance, double t, double h)
 sh_status sh_communication_step(void *handle, double t, double h, const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_STEP, function);
-    double begin = t, length = h, late, end;
+    double begin = t, length, late, end;
     sh_status status;
 
     if (instance == NULL) {
@@ -55,6 +55,7 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
      * counted by h. A larger difference that is still small comes from an importer whose h does not
      * quite fit its times: then this step also covers the difference, so that it ends at t + h.
      */
+    length = h;
     late = t - instance->time;
     if (late != 0.0) { /* or not a number */
         const double rounding = 8.0 * DBL_EPSILON * fabs(t), whole = h + late;
@@ -65,7 +66,8 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
                       function, t, instance->time);
             return SH_ERROR;
         }
-        if (fabs(late) > rounding && whole > 0.0) { /* else h is shorter than the rounding */
+        /* Below 0, h is shorter than the rounding. */
+        if (fabs(late) > rounding && whole > 0.0 && isfinite(whole)) {
             begin = instance->time;
             length = whole;
         }

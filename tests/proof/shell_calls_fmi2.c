@@ -90,6 +90,7 @@ static void access(int which, const uint32_t vr[], size_t n, int way)
     void *values = any_array(n * SIZES[which]);
 
     Frama_C_make_unknown((char *)orders, sizeof orders);
+    //@ dynamic_split instance.parameters_unchecked;
     (void)way; /* one value for each reference */
     switch (which) {
     case 0:

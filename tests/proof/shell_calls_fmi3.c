@@ -103,51 +103,38 @@ static void call(int which, course here)
     }
 }
 
-static void access_values(int which, const uint32_t vr[], size_t n, void *values, size_t count)
+static fmi3Status access_values(int which, const uint32_t vr[], size_t n, void *values,
+                                size_t count)
 {
     switch (which) {
     case 0:
-        fmi3GetFloat64(&instance, vr, n, values, count);
-        break;
+        return fmi3GetFloat64(&instance, vr, n, values, count);
     case 1:
-        fmi3SetFloat64(&instance, vr, n, values, count);
-        break;
+        return fmi3SetFloat64(&instance, vr, n, values, count);
     case 2:
-        fmi3GetInt64(&instance, vr, n, values, count);
-        break;
+        return fmi3GetInt64(&instance, vr, n, values, count);
     case 3:
-        fmi3SetInt64(&instance, vr, n, values, count);
-        break;
+        return fmi3SetInt64(&instance, vr, n, values, count);
     case 4:
-        fmi3GetInt32(&instance, vr, n, values, count);
-        break;
+        return fmi3GetInt32(&instance, vr, n, values, count);
     case 5:
-        fmi3SetInt32(&instance, vr, n, values, count);
-        break;
+        return fmi3SetInt32(&instance, vr, n, values, count);
     case 6:
-        fmi3GetBoolean(&instance, vr, n, values, count);
-        break;
+        return fmi3GetBoolean(&instance, vr, n, values, count);
     case 7:
-        fmi3SetBoolean(&instance, vr, n, values, count);
-        break;
+        return fmi3SetBoolean(&instance, vr, n, values, count);
     case 8:
-        fmi3GetString(&instance, vr, n, values, count);
-        break;
+        return fmi3GetString(&instance, vr, n, values, count);
     case 9:
-        fmi3SetString(&instance, vr, n, values, count);
-        break;
+        return fmi3SetString(&instance, vr, n, values, count);
     case 10:
-        fmi3GetBinary(&instance, vr, n, NULL, values, count);
-        break;
+        return fmi3GetBinary(&instance, vr, n, NULL, values, count);
     case 11:
-        fmi3SetBinary(&instance, vr, n, NULL, values, count);
-        break;
+        return fmi3SetBinary(&instance, vr, n, NULL, values, count);
     case 12:
-        fmi3GetClock(&instance, vr, n, values);
-        break;
+        return fmi3GetClock(&instance, vr, n, values);
     default:
-        fmi3SetClock(&instance, vr, n, values);
-        break;
+        return fmi3SetClock(&instance, vr, n, values);
     }
 }
 

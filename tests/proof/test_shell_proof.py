@@ -51,9 +51,10 @@ OUTCOMES_OF_AN_ESTIMATOR = [
     "sh_estimator_fmu_is_state",
 ]
 OUTCOMES_OF_A_VERSION = {
-    "fmi2": ["begin", "sh_begin_set", "find", "fmi2Instantiate"],
+    "fmi2": ["begin", "sh_begin_set", "sh_set", "fmi2SetInteger", "find", "fmi2Instantiate"],
     "fmi3": [
-        *("begin", "sh_begin_set", "find", "fmi3InstantiateCoSimulation"),
+        *("begin", "sh_begin_set", "sh_set", "find", "fmi3InstantiateCoSimulation"),
+        *("fmi3SetInt32", "fmi3SetInt64", "access_values"),
         "fmi3EnterInitializationMode",
     ],
 }
@@ -180,10 +181,7 @@ def alarms_of_calls(
 @pytest.mark.slow("the analysis of every call in every state")
 @pytest.mark.parametrize("version", ["fmi2", "fmi3"])
 def test_any_calls_in_any_order_are_harmless(build: Path, version: str, tmp_path: Path) -> None:
-    alarms = alarms_of_calls(build, version, tmp_path)
-    # NaN as an integer: only a Float64 can be NaN, and no Float64 is written to an integer.
-    expected = ["value.c"] if version == "fmi3" else []
-    assert [alarm.split(":")[0] for alarm in alarms] == expected
+    assert alarms_of_calls(build, version, tmp_path) == ()
 
 
 @by_hand
