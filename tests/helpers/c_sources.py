@@ -11,10 +11,6 @@ SOURCES = sorted(LIBRARY.rglob("*.c"))
 HEADERS = sorted(LIBRARY.rglob("*.h"))
 FOLDERS = sorted({header.parent for header in HEADERS})
 
-OTHER_FOLDERS = [REPOSITORY / "fmu_src", REPOSITORY / "fmu_src" / "shell", NATIVE]
-OTHERS = [*sorted((REPOSITORY / "fmu_src").rglob("*.c")), *sorted(NATIVE.glob("*.c"))]
-"""C files outside of the library: those of the FMUs and of the Python package."""
-
 
 def generated(source: Path, build: Path) -> Path:
     """The folder of the generated code that a file includes, or that of a plant."""

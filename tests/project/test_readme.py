@@ -8,8 +8,6 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import pytest
-
 REPOSITORY = Path(__file__).parents[2]
 DOCS = REPOSITORY / "docs"
 
@@ -17,13 +15,6 @@ DOCS = REPOSITORY / "docs"
 def test_the_program_of_the_page_is_the_example() -> None:
     (program,) = re.findall(r"```python\n(.*?)```", (DOCS / "fmu.md").read_text(), re.DOTALL)
     assert program == (REPOSITORY / "examples" / "fmpy_ten_lines.py").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize(
-    "example", sorted(p.name for p in (REPOSITORY / "examples").iterdir() if p.is_file())
-)
-def test_the_page_names_every_example(example: str) -> None:
-    assert f"(../examples/{example})" in (DOCS / "examples.md").read_text(encoding="utf-8")
 
 
 def test_the_links_of_the_readme_exist() -> None:
@@ -35,9 +26,3 @@ def test_the_links_of_the_readme_exist() -> None:
         if anchor:
             headings = re.findall(r"^#+ (.*)$", text.decode(), re.MULTILINE)
             assert anchor in {heading.lower().replace(" ", "-") for heading in headings}
-
-
-@pytest.mark.parametrize("preset", ["reproduce", "test", "docs"])
-def test_the_readme_names_the_command(preset: str) -> None:
-    readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
-    assert f"cmake --workflow --preset {preset}" in readme
