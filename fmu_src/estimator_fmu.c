@@ -116,11 +116,12 @@ sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const
                   who, h, MAX_TICKS, T);
         return SH_ERROR;
     }
-    for (; fmu->ahead < periods - tolerance; fmu->ahead += 1.0) {
+    while (fmu->ahead < periods - tolerance) {
         /* It may be negative by the tolerance. */
         if (tick(fmu, t, fmu->ahead > 0.0 ? fmu->ahead * T : 0.0, who, log) != SH_OK) {
             status = SH_WARNING;
         }
+        fmu->ahead += 1.0;
     }
     fmu->ahead -= periods;
     return status;
