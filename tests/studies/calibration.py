@@ -19,8 +19,7 @@ import numpy as np
 
 from sigmahat.compare.performance import performances
 from sigmahat.fmi.instance import Value
-from sigmahat.paper.awas import awas, estimator
-from sigmahat.paper.estimators import against_the_plant
+from sigmahat.paper.awas import against_the_plant, awas, estimator
 from sigmahat.runs.engine import measured, run_all
 from sigmahat.runs.metrics import mean_interval
 from sigmahat.runs.scenario import Scenario, Sine

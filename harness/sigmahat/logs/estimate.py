@@ -20,8 +20,7 @@ from sigmahat.logs.job import Replay
 from sigmahat.logs.learned import LEARNED, read_learned, write_learned
 from sigmahat.logs.log import Log
 from sigmahat.logs.measured import POINTS, write_points
-from sigmahat.logs.notes_file import REPLAYED, write_replayed
-from sigmahat.logs.output import EstimateWriter
+from sigmahat.logs.output import REPLAYED, EstimateWriter, write_replayed
 from sigmahat.logs.replay import OUTPUTS, coefficients
 
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")

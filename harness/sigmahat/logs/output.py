@@ -1,16 +1,16 @@
-"""The table of `sigmahat estimate`: the log with the estimates added. It is written and read here.
+"""The table of `sigmahat estimate`, and its notes for the report. They are written and read here.
 
-A CSV log gives `estimate.csv`, every other log `estimate.parquet`. The titles of the estimates are
-"estimate.sigma [N.m/rad]" and so on; "estimate.t [s]" is the time of the tick since the start of
-the log.
+A CSV log gives `estimate.csv`, every other log `estimate.parquet`: the log with the estimates. The
+titles of the estimates are "estimate.sigma [N.m/rad]" and so on; "estimate.t [s]" is the time of
+the tick since the start of the log. `estimate.json` has what no other file of the folder has.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -22,6 +22,8 @@ import pyarrow.parquet
 from numpy.typing import NDArray
 
 from sigmahat.files import tables
+from sigmahat.files.output import write_json
+from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs.log import Log, LogError
 from sigmahat.logs.readers.tables import CsvLog
 from sigmahat.logs.sampling import Samples
@@ -163,3 +165,35 @@ def _table(path: Path, titles: list[str]) -> pa.Table:
         return pa.parquet.read_table(path, columns=titles)
     options = pa.csv.ConvertOptions(include_columns=titles)
     return pa.csv.read_csv(path, convert_options=options)
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """The contents of the file."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    format: Text
+    version: int
+    log: Text
+    """Path of the log, as it was given."""
+    ticks: int
+    """Of the estimator over the log."""
+    skipped: int
+    """Ticks without an estimate: a measurement was missing."""
+    T: float
+    """Time between ticks [s]."""
+    notes: list[Text]
+    """What had to be done to the samples of the log, in sentences."""
+
+
+REPLAYED = Format("estimate.json", "sigmahat estimate", 1, Replayed)
+"""Of the file."""
+
+
+def write_replayed(
+    log: Path, ticks: int, skipped: int, T: float, notes: Sequence[str], path: Path
+) -> None:
+    """Writes the file; the values are as in Replayed."""
+    contents = Replayed(REPLAYED.name, REPLAYED.version, str(log), ticks, skipped, T, list(notes))
+    write_json(asdict(contents), path)

@@ -3,13 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from sigmahat.fmi.instance import Value
 from sigmahat.fmi.master import EstimatorFmu, Plant
-from sigmahat.paper.estimators import OUTPUTS, against_the_plant
 from sigmahat.runs.scenario import Comparison, Scenario, Sine, T
+
+OUTPUTS = (
+    "sigma",
+    "tau_e",
+    "tau_e_residual",
+    "theta_dot",
+    "phi",
+    "setPoint",
+    "a",
+    "rho",
+    "epsilon",
+    "valid",
+)
+"""Outputs of StiffnessEstimator."""
+
+
+def against_the_plant(estimators: Iterable[str]) -> list[Comparison]:
+    """Each estimator compared with the true stiffness of the plant."""
+    return [Comparison(name, f"{name}.sigma", "plant.sigma") for name in estimators]
+
 
 SECTION_VI_B = Sine(0.3, 0.1)
 """Torque of the principal motor there [N.m, Hz]."""

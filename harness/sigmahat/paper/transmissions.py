@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sigmahat.fmi.instance import Value
 from sigmahat.fmi.master import EstimatorFmu, Plant
-from sigmahat.paper.estimators import OUTPUTS, against_the_plant
+from sigmahat.paper.awas import OUTPUTS, against_the_plant
 from sigmahat.runs.scenario import Comparison, Scenario, Sine, Sines, T
 
 

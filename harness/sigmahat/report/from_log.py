@@ -15,14 +15,18 @@ from sigmahat.joint import sheet
 from sigmahat.joint.curve import CURVE, Curve, read_curve
 from sigmahat.joint.sheet import Sheet
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
-from sigmahat.logs.notes_file import REPLAYED, Replayed
-from sigmahat.logs.output import EstimatedSignal, read_estimate
+from sigmahat.logs.output import REPLAYED, EstimatedSignal, Replayed, read_estimate
 from sigmahat.plotting.style import plain_title, plain_unit
 from sigmahat.report.contents import Contents, TextTable, number
 from sigmahat.report.curve_panels import curve_panels, curve_table
 from sigmahat.report.findings import findings_table
-from sigmahat.report.reduction import reduce
-from sigmahat.report.time_panels import Estimate, quantity_panels, sampling, stiffness_panels
+from sigmahat.report.time_panels import (
+    Estimate,
+    quantity_panels,
+    reduce,
+    sampling,
+    stiffness_panels,
+)
 
 _OF_THE_METHOD = ("a", "rho")
 """Outputs about the inner working of the method; they are not in the table."""

@@ -23,12 +23,12 @@ from sigmahat.report.contents import (
     TextTable,
     of_file,
 )
-from sigmahat.report.reduction import reduce
 from sigmahat.report.time_panels import (
     SIDES,
     Estimate,
     of_side,
     quantity_panels,
+    reduce,
     sampling,
     stiffness_panels,
 )
