@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import ctypes
 import math
-import os
 import re
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -28,7 +26,7 @@ from sigmahat.fmi.master import Plant, simulate
 DRIVERS = Path(__file__).parents[1] / "drivers" / "modelica"
 FLAGS = ["-std=c99", "-O2", "-g", "-ffp-contract=off", "-fPIC"]
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
-SANITIZER = "SIGMAHAT_MODELICA_SANITIZER"
+SANITIZER = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 T, N = 1e-3, 3000
 INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
@@ -61,17 +59,17 @@ class Tool:
             for each in (*self.includes, '#include "sigmahat_noise.c"\n', '#include "tool.c"\n')
         ]
         library = folder / "tool.so"
-        gcc("-shared", *_sanitizer(), *objects, "-lm", "-o", library)
+        gcc("-shared", *objects, "-lm", "-o", library)
         self.library = ctypes.CDLL(str(library))
         self.library.tool_new.restype = ctypes.c_void_p
         self.library.sigmahat_standard_normal.restype = ctypes.c_double
 
-    def compiled(self, folder: Path, text: str) -> Path:
+    def compiled(self, folder: Path, text: str, *flags: str) -> Path:
         """The object file of a translation unit with this text."""
         source = Path(tempfile.mkdtemp(dir=folder)) / "unit.c"
         source.write_text(text)
         search = (f"-I{self.sources}", f"-I{DRIVERS}")
-        gcc(*_sanitizer(), *search, "-c", source, "-o", source.with_suffix(".o"))
+        gcc(*flags, *search, "-c", source, "-o", source.with_suffix(".o"))
         return source.with_suffix(".o")
 
     def messages(self) -> str:
@@ -81,17 +79,21 @@ class Tool:
         buffer.value = b"\0"
         return text
 
-    def new(self, parameters: Mapping[str, Any]) -> int | None:
-        """A new object for these parameters by their names in the FMU; None after an error."""
+    def values(self, parameters: Mapping[str, Any]) -> tuple[list[float], list[int], list[float]]:
+        """The arguments of the constructor, from parameters by their names in the FMU."""
 
-        def values(names: list[str]) -> list[float]:
+        def numbers(names: list[str]) -> list[float]:
             # A number stands for a parameter that the block does not have.
             return [
                 self.fmu.number(n, parameters[n]) if n in parameters else float(n) for n in names
             ]
 
-        reals, integers = values(self.reals), list(map(int, values(self.integers)))
-        eta_0 = [parameters[f"rls.eta_0[{i},{j}]"] for i in range(8) for j in range(5)]
+        eta_0 = [float(parameters[f"rls.eta_0[{i},{j}]"]) for i in range(8) for j in range(5)]
+        return numbers(self.reals), list(map(int, numbers(self.integers))), eta_0
+
+    def new(self, parameters: Mapping[str, Any]) -> int | None:
+        """A new object; None after an error."""
+        reals, integers, eta_0 = self.values(parameters)
         made: int | None = self.library.tool_new(
             (ctypes.c_double * len(reals))(*reals),
             (ctypes.c_int * len(integers))(*integers),
@@ -135,10 +137,6 @@ def _parameter(expression: str) -> str:
     for theirs, ours in KEYWORDS.items():
         name = re.sub(rf"^{ours}\.", f"{theirs}.", name)
     return name
-
-
-def _sanitizer() -> list[str]:
-    return ["-fsanitize=address,undefined"] if SANITIZER in os.environ else []
 
 
 def gcc(*arguments: str | Path) -> None:
@@ -234,9 +232,27 @@ def test_a_second_tick_at_the_same_time_replaces_the_first(
         np.testing.assert_array_equal(column, twice[name], err_msg=name)
 
 
-def test_all_in_one_file_they_compile_too(tool: Tool, tmp_path: Path) -> None:
+@pytest.mark.slow("the library is compiled with the sanitizer")
+def test_all_in_one_file_they_run_without_an_error_of_memory(tool: Tool, tmp_path: Path) -> None:
     """A tool may put all external functions into one file, each Include once or several times."""
-    tool.compiled(tmp_path, "".join(tool.includes) * 2 + '#include "sigmahat_noise.c"\n')
+    includes = "".join(tool.includes) * 2 + '#include "sigmahat_noise.c"\n#include "tool.c"\n'
+    given = "const double reals[] = {%s}; const int integers[] = {%s}; const double eta_0[] = {%s};"
+    lists = (", ".join(map(repr, each)) for each in tool.values(otherwise(SETTINGS[1])))
+    places = " ".join(
+        f"{'double' if tool.fmu.variable('sigma' if n == 'eta' else n).type == 'Real' else 'int'}"
+        f" {n}[{40 if n == 'eta' else 1}];"
+        for n in tool.outputs
+    )
+    tick = "sigmahat_estimator_tick(o, 1e-3 * k, sin(k), 1.1 * sin(k), 1, cos(k), 0, %s);"
+    body = (
+        f"{given % tuple(lists)} {places} int k; void *o = tool_new(reals, integers, eta_0);"
+        f" for (k = 0; k < 300; ++k) {{ {tick % ', '.join(tool.outputs)} }}"
+        " sigmahat_estimator_free(o); return *valid != 1;"
+    )
+    unit = tool.compiled(tmp_path, f"{includes}int main(void) {{ {body} }}\n", *SANITIZER)
+    gcc(*SANITIZER, unit, "-lm", "-o", tmp_path / "program")
+    done = subprocess.run([tmp_path / "program"], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize(
@@ -266,21 +282,6 @@ def test_skipped_ticks_and_too_large_deformations_are_told_once(
     lines = tool.messages().splitlines()
     assert len(lines) == 2
     assert "far beyond range.phi" in lines[0] and "tick at t = 1.9 s skipped" in lines[1]
-
-
-@pytest.mark.slow("starts an interpreter and compiles, both with the sanitizer")
-@pytest.mark.skipif(SANITIZER in os.environ, reason="this is the run with the sanitizer")
-def test_the_address_sanitizer_finds_no_error(build: Path) -> None:
-    """This file again; the interpreter has leaks of its own, so these are not looked for."""
-    found = subprocess.check_output([need("gcc"), "-print-file-name=libasan.so"], text=True)
-    environment = {"LD_PRELOAD": found.strip(), "ASAN_OPTIONS": "detect_leaks=0"}
-    environment |= {SANITIZER: "1", "SIGMAHAT_BUILD": str(build)}
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", __file__]
-    command += ["-k", "told_once or out_of_its_range"]
-    done = subprocess.run(
-        command, env={**os.environ, **environment}, capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_the_noise_is_that_of_the_plants(tool: Tool) -> None:

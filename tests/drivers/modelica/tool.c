@@ -11,9 +11,9 @@ void *tool_new(const double *reals, const int *integers, const double *eta_0);
 extern char tool_messages[4096];
 char tool_messages[4096]; /* all messages since it was emptied */
 
-static jmp_buf model;
+static jmp_buf tool_model;
 
-static void add(const char *string, va_list arguments)
+static void tool_add(const char *string, va_list arguments)
 {
     size_t length = 0;
 
@@ -28,7 +28,7 @@ void ModelicaFormatMessage(const char *string, ...)
     va_list arguments;
 
     va_start(arguments, string);
-    add(string, arguments);
+    tool_add(string, arguments);
     va_end(arguments);
 }
 
@@ -37,9 +37,9 @@ void ModelicaFormatError(const char *string, ...)
     va_list arguments;
 
     va_start(arguments, string);
-    add(string, arguments);
+    tool_add(string, arguments);
     va_end(arguments);
-    longjmp(model, 1);
+    longjmp(tool_model, 1);
 }
 
 void ModelicaError(const char *string)
@@ -50,5 +50,5 @@ void ModelicaError(const char *string)
 /* The constructor; NULL after an error. */
 void *tool_new(const double *reals, const int *integers, const double *eta_0)
 {
-    return setjmp(model) == 0 ? sigmahat_estimator_new(reals, integers, eta_0) : NULL;
+    return setjmp(tool_model) == 0 ? sigmahat_estimator_new(reals, integers, eta_0) : NULL;
 }
