@@ -1,10 +1,8 @@
-/* The recursion of this project, the update of the covariance alone, and liquid-dsp. */
+/* The recursion of this project, and the update of the covariance alone. */
 #include <stdlib.h>
 
-#include "../c/least_squares.h"
 #include "least_squares.h"
-
-#include <liquid/liquid.h>
+#include "subjects.h"
 
 void *sigmahat_start(int size)
 {
@@ -97,50 +95,6 @@ void covariance_run(void *rls, const double *F, const double *y, int samples)
 
     (void)y;
     c->run(c->P, F, samples);
-}
-
-/* liquid-dsp has its own delay line, in single precision. */
-typedef struct {
-    eqrls_rrrf equaliser;
-    int size;
-} liquid_rls;
-
-void *liquid_start(int size)
-{
-    liquid_rls *rls = malloc(sizeof *rls);
-
-    if (rls == NULL) {
-        return NULL;
-    }
-    rls->equaliser = eqrls_rrrf_create(NULL, (unsigned)size);
-    rls->size = size;
-    eqrls_rrrf_set_bw(rls->equaliser, 1.0f); /* no forgetting */
-    return rls;
-}
-
-void liquid_run(void *rls, const double *F, const double *y, int samples)
-{
-    liquid_rls *own = rls;
-    int k;
-
-    for (k = 0; k < samples; ++k) {
-        float predicted;
-        eqrls_rrrf_push(own->equaliser, (float)F[k * own->size]);
-        eqrls_rrrf_execute(own->equaliser, &predicted);
-        eqrls_rrrf_step(own->equaliser, (float)y[k], predicted);
-    }
-}
-
-void liquid_eta(const void *rls, double *eta)
-{
-    const liquid_rls *own = rls;
-    float weights[SH_MAX_PARAMETERS];
-    int i;
-
-    eqrls_rrrf_get_weights(own->equaliser, weights);
-    for (i = 0; i < own->size; ++i) {
-        eta[i] = (double)weights[i];
-    }
 }
 
 /* Independent chains x = a x + b, so many that every unit of the processor always has work. */

@@ -1,5 +1,5 @@
 // dlib, and the few lines one would write with Eigen.
-#include "least_squares.h"
+#include "subjects.h"
 
 #include <Eigen/Dense>
 

@@ -1,8 +1,7 @@
-"""The loops of the package beside a master in C, FMPy, and the bare tick."""
+"""The loops of the package, in C and in Python, and FMPy."""
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from functools import partial
@@ -17,34 +16,22 @@ from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 from sigmahat.runs.scenario import T
-from subjects import MEASUREMENTS, OUTPUTS, TORQUES, Array, Fmus, Library, Master, Subject, doubles
+from subjects import MEASURED, MEASUREMENTS, OUTPUTS, TORQUES, Array, Subject
 
-MEASURED = [f"{name}_measured" for name in ("theta", "q", "theta_c", "tau", "tau_e")]
 JOINTS = 30
 
 
-def pair(library: Library, fmus: Fmus, samples: int) -> Iterator[Subject]:
+def pair(samples: int) -> Iterator[Subject]:
     """AwasPlant with the torques of table1 and an estimator, connected."""
     t = T * np.arange(samples, dtype=np.float64)
     u = np.column_stack([signal(t) for signal in TORQUES.values()])
-    plant = Master(library, fmus.plant, list(TORQUES), [*MEASURED, "sigma"], slopes=True)
-    estimator = Master(library, fmus.estimator, MEASUREMENTS, OUTPUTS)
-    yield Subject("pair, master in C", lambda: _run_pair(library, plant, estimator, u), samples)
     yield Subject("pair, loop in C", _loop(u, t, in_c=True), samples)
     few = max(samples // 20, 2)
     yield Subject("pair, loop in Python", _loop(u[:few], t[:few], in_c=False), few, every=5)
 
 
-def _run_pair(library: Library, plant: Master, estimator: Master, u: Array) -> None:
-    run = library.function("master_run_pair", ctypes.c_int)
-    h = ctypes.c_double(T)
-    outputs = doubles(plant.outputs), doubles(estimator.outputs)
-    if run(plant.state, estimator.state, doubles(u), len(u), h, *outputs) != 0:
-        raise RuntimeError("an FMU refused a call")
-
-
 def _loop(u: Array, t: Array, in_c: bool) -> Callable[[], None]:
-    """The same by the loop of the package; the FMUs begin again each time."""
+    """The loop of the package, in C or in Python; the FMUs begin again each time."""
     plant, estimator = (
         Slave(installed(name), name) for name in ("AwasPlant", "StiffnessEstimator")
     )
@@ -98,10 +85,8 @@ def objects(z: Array) -> Iterator[Subject]:
 def whole(z: Array) -> Iterator[Subject]:
     """The estimator FMU over measurements, with all that comes before and after: FMPy and ours."""
     t = T * np.arange(len(z))
-    rows = np.zeros(len(z), [(name, float) for name in ("time", *MEASUREMENTS)])
-    rows["time"] = t
-    for name, column in zip(MEASUREMENTS, z.T, strict=True):
-        rows[name] = column
+    names = ("time", *MEASUREMENTS)
+    rows = np.rec.fromarrays([t, *z.T], [(name, float) for name in names])
     path = sigmahat.fmu("StiffnessEstimator")
     yield Subject(
         "simulate_fmu of FMPy",

@@ -1,4 +1,4 @@
-"""Times of whole commands, threads and another simulator: python bench/processes.py --help.
+"""Times of whole commands and threads: python bench/processes.py --help.
 
 It needs a machine that does nothing else, and takes some minutes.
 """
@@ -13,14 +13,14 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.csv
 import pyarrow.parquet
 
 import sigmahat
@@ -82,11 +82,6 @@ def _memory(process: int) -> float:
         return 0.0
     lines = (line.split() for line in status.splitlines())
     return next((int(words[1]) * 1024 / 1e9 for words in lines if words[0] == "VmHWM:"), 0.0)
-
-
-def median(run: Callable[[], float]) -> float:
-    """Median of some runs."""
-    return statistics.median(run() for _ in range(ROUNDS))
 
 
 def sigmahat_command() -> Path:
@@ -198,59 +193,16 @@ def threads(count: int = 1000) -> Iterator[Row]:
     )
 
 
-def fmusim(program: Path, folder: Path) -> Iterator[Row]:
-    """The estimator FMU over a minute of measurements, by fmusim and by this package."""
-    samples = 60_000
-    columns = measurements(samples)
-    path = sigmahat.fmu("StiffnessEstimator")
-    t = T * np.arange(samples)
-    pa.csv.write_csv(pa.table({"time": t, **columns}), folder / "input.csv")
-    pa.parquet.write_table(pa.table({"t": t, **columns}), folder / "minute.parquet")
-    command: list[str | Path] = [
-        *(program, "simulate", path, "--input-file", folder / "input.csv"),
-        *("--output-file", folder / "output.csv", "--stop-time", str(t[-1])),
-        *("--output-interval", str(T)),
-        *(part for name in OUTPUTS for part in ("--output-variable", name)),
-    ]
-    script = (
-        "import sys, numpy as np, pyarrow.parquet as pq, sigmahat\n"
-        "log = pq.read_table(sys.argv[1])\n"
-        "inputs = {n: (lambda t, n=n: log[n].to_numpy()) for n in log.column_names if n != 't'}\n"
-        f"plant = sigmahat.Plant({str(path)!r}, {{}}, inputs, {OUTPUTS!r})\n"
-        f"run = sigmahat.simulate(plant, {{}}, {T}, len(log) - 1)\n"
-        "np.savez(sys.argv[2], **run.plant.values)\n"
-    )
-    ours: list[str | Path] = [
-        sys.executable,
-        "-c",
-        script,
-        folder / "minute.parquet",
-        folder / "output.npz",
-    ]
-    theirs_time = median(lambda: measured(*command).wall)
-    ours_time = median(lambda: measured(*ours).wall)
-    yield Row(
-        f"{samples} steps of the estimator FMU as a process: fmusim, simulate",
-        "faster",
-        f"{theirs_time:.2f} s, {ours_time:.2f} s",
-    )
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--fmusim", type=Path, help="the program fmusim, to compare with")
     parser.add_argument("--page", type=Path, help="Markdown page whose table is replaced")
     arguments = parser.parse_args()
     lines = ["| quantity | asked | measured |", "|---|---|---|"]
     with tempfile.TemporaryDirectory(prefix="sigmahat-bench-") as name:
         folder = Path(name)
-        jobs = [estimate(folder), sweep(folder), compare(folder), threads()]
-        if arguments.fmusim:
-            jobs.append(fmusim(arguments.fmusim, folder))
-        for job in jobs:
-            for row in job:
-                lines.append(f"| {row.what} | {row.asked} | {row.measured} |")
-                print(lines[-1], flush=True)
+        for row in chain(estimate(folder), sweep(folder), compare(folder), threads()):
+            lines.append(f"| {row.what} | {row.asked} | {row.measured} |")
+            print(lines[-1], flush=True)
     if arguments.page:
         update(arguments.page, "processes", "\n".join(lines) + "\n")
 

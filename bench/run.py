@@ -1,11 +1,8 @@
-"""Measures all times in one run and writes tables and a figure: python bench/run.py --help."""
+"""Measures all times in one run and writes tables: python bench/run.py --help."""
 
 from __future__ import annotations
 
 import argparse
-import ctypes
-import shutil
-import subprocess
 import tempfile
 import time
 from pathlib import Path
@@ -14,14 +11,16 @@ import numpy as np
 
 import loops
 import subjects
-from report import Footprint, Times, figure, table, update
-from subjects import Array, Fmus, Library, Subject
+from report import Times, table, update
+from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.opened import installed
+from subjects import Array, Library, Subject
 
 ROUNDS = 101
 SAMPLES = 10000  # one period of the torques
 
 
-def verify(library: Library, native: Library, fmus: Fmus) -> None:
+def verify(library: Library, native: Library, python: Fmu) -> None:
     """Checks that all subjects compute the same results.
 
     Raises AssertionError, which names the subject that does not.
@@ -33,20 +32,15 @@ def verify(library: Library, native: Library, fmus: Fmus) -> None:
         recursions = subjects.recursions(library, size) | subjects.native_recursions(native, size)
         for make, rls in recursions.items():
             rls.run(data)
-            tolerance = 0.05 if make == "liquid" else 1e-9  # single precision, other P_0
-            np.testing.assert_allclose(rls.eta, closed_form, 0, tolerance, err_msg=make)
+            np.testing.assert_allclose(rls.eta, closed_form, 0, 1e-9, err_msg=make)
 
     z = subjects.measurements(500)
     tick = subjects.Ticks(library, "Paper2011")
     tick.run(z)
-    for where, tolerance in ((fmus.estimator, 0.0), (fmus.pythonfmu, 1e-3)):
-        inputs, outputs = subjects.MEASUREMENTS, subjects.OUTPUTS
-        master = subjects.Master(library, where, inputs, outputs)
-        master.run(z)
-        loader = subjects.Fmpy(where)
-        loader.run(z.tolist())
-        np.testing.assert_allclose(master.outputs, tick.outputs, tolerance, 0, err_msg=str(where))
-        np.testing.assert_array_equal(loader.outputs, master.outputs)
+    for fmu, tolerance in ((installed("StiffnessEstimator"), 0.0), (python, 1e-3)):
+        steps = subjects.Steps(fmu, subjects.MEASUREMENTS, subjects.OUTPUTS, z)
+        steps.run()
+        np.testing.assert_allclose(steps.outputs, tick.outputs, tolerance, 0, err_msg=fmu.name)
 
 
 def measure(every: list[Subject], rounds: int) -> Times:
@@ -67,7 +61,7 @@ def measure(every: list[Subject], rounds: int) -> Times:
     return times
 
 
-def all_subjects(library: Library, native: Library, fmus: Fmus, samples: int) -> list[Subject]:
+def all_subjects(library: Library, native: Library, python: Fmu, samples: int) -> list[Subject]:
     """All subjects whose time is measured."""
     z: Array = subjects.measurements(samples)
     few = samples // 5
@@ -75,78 +69,39 @@ def all_subjects(library: Library, native: Library, fmus: Fmus, samples: int) ->
         subjects.peak(library, samples),
         *(s for n in subjects.SIZES for s in subjects.least_squares(library, n, few)),
         *(s for n in subjects.SIZES for s in subjects.native_least_squares(native, n, few)),
-        *subjects.ticks(library, fmus, z),
-        *subjects.plant(library, fmus, samples),
-        *loops.pair(library, fmus, samples),
+        *subjects.ticks(library, python, z),
+        *subjects.plant(samples),
+        *loops.pair(samples),
         *loops.objects(z),
         *loops.whole(z),
-        *subjects.table1(15 * samples // 10),
+        subjects.table1(15 * samples // 10),
     ]
-
-
-def footprint(build: Path, method: str, library: Library) -> Footprint:
-    """Instructions, stack and memory of one tick of a method."""
-    program = str(build / "sigmahat_bench_footprint")
-
-    def output(*command: str) -> str:
-        return subprocess.run(command, check=True, capture_output=True, text=True).stdout
-
-    instructions = None
-    if shutil.which("valgrind"):
-        ticks = 10000
-        with tempfile.TemporaryDirectory() as folder:
-            written = Path(folder) / "callgrind"
-            output(
-                *("valgrind", "--tool=callgrind", "--toggle-collect=sh_estimator_tick"),
-                *(f"--callgrind-out-file={written}", program, method, str(ticks)),
-            )
-            summary = next(
-                line for line in written.read_text().splitlines() if line.startswith("summary:")
-            )
-        instructions = int(summary.split()[1]) / ticks
-    code = 0
-    if shutil.which("size"):
-        listed = output("size", str(build / "libsigmahat_bench_estimator.a")).splitlines()[1:]
-        code = sum(int(line.split()[0]) for line in listed)
-    sizes = (ctypes.c_int * 3)()
-    library.function("tick_bytes")(sizes)
-    return Footprint(instructions, int(output(program, method)), code, list(sizes))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--build", type=Path, required=True, help="folder in which bench was built")
-    parser.add_argument("--out", type=Path, help="folder for the tables and the figure")
-    parser.add_argument(
-        "--page",
-        type=Path,
-        help="Markdown page whose tables are replaced; the figure goes to its folder images/",
-    )
+    parser.add_argument("--out", type=Path, help="folder for the tables")
+    parser.add_argument("--page", type=Path, help="Markdown page whose tables are replaced")
     parser.add_argument("--check", action="store_true", help="only check that every subject works")
     arguments = parser.parse_args()
     library = Library(arguments.build / "libsigmahat_bench.so")
     native = Library(arguments.build / "libsigmahat_bench_native.so")
     with tempfile.TemporaryDirectory(prefix="sigmahat-bench-") as name:
-        fmus = subjects.unpack(Path(name))
-        verify(library, native, fmus)
-        every = all_subjects(library, native, fmus, 100 if arguments.check else SAMPLES)
+        python = subjects.pythonfmu(Path(name))
+        verify(library, native, python)
+        every = all_subjects(library, native, python, 100 if arguments.check else SAMPLES)
         times = measure(every, 1 if arguments.check else ROUNDS)
-    footprints = {
-        method: footprint(arguments.build, method, library) for method in subjects.METHODS
-    }
     if arguments.check:
         print(f"{len(times)} subjects work")
         return
-    text = table(times, footprints)
+    text = table(times)
     print(text)
     if arguments.out:
         arguments.out.mkdir(parents=True, exist_ok=True)
         (arguments.out / "bench.md").write_text(text, encoding="utf-8")
-        figure(times).savefig(arguments.out / "bench.png", dpi=150)
-        print(f"Figure: {arguments.out / 'bench.png'}")
     if arguments.page:
         update(arguments.page, "bench", text)
-        figure(times).savefig(arguments.page.parent / "images" / "bench.png", dpi=150)
 
 
 if __name__ == "__main__":

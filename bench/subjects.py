@@ -5,19 +5,18 @@ from __future__ import annotations
 import ctypes
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import fmpy
 import numpy as np
-import padasip
-from fmpy import fmi2
 from numpy.typing import NDArray
 
-import sigmahat
+from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.fmi.master import simulate
+from sigmahat.fmi.opened import installed
+from sigmahat.fmi.sample_loop import SampleLoop, step_times
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.scenario import Sine, T
 
@@ -25,10 +24,11 @@ Array = NDArray[np.float64]
 
 HERE = Path(__file__).parent
 SIZES = (3, 6, 18, 40)
-P_0 = 1e3  # as BENCH_P_0 in least_squares.h
+P_0 = 1e3  # as BENCH_P_0 in subjects.h
 METHODS = ("Paper2011", "FilteredRegression", "FilteredRegression, 21 columns")
-MODALITIES = ("RESIDUAL", "SENSOR", "MODEL")
 MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
+MEASURED = [f"{name}_measured" for name in ("theta", "q", "theta_c", "tau", "tau_e")]
+"""Outputs of the plant that the estimator measures."""
 OUTPUTS = ("sigma", "tau_e", "theta_dot")
 TORQUES = {"tau": Sine(0.3, 0.1), "tau_c": Sine(8.0, 0.1)}
 """Of scenario table1."""
@@ -107,24 +107,6 @@ class Numpy:
             self.P = self.P - np.outer(K, PF)
 
 
-class Padasip:
-    """FilterRLS of padasip without forgetting."""
-
-    def __init__(self, size: int) -> None:
-        self._filter = padasip.filters.FilterRLS(size, mu=1.0, eps=1 / P_0, w="zeros")
-
-    @property
-    def eta(self) -> Array:
-        """Estimate."""
-        weights: Array = self._filter.w
-        return weights
-
-    def run(self, data: Regression) -> None:
-        """Processes all samples."""
-        for F, y in zip(data.F, data.y, strict=True):
-            self._filter.adapt(y, F)
-
-
 class Compiled:
     """A recursion of the shared library."""
 
@@ -147,10 +129,8 @@ class Compiled:
 
 def recursions(library: Library, size: int) -> dict[str, Any]:
     """A new recursion of every make that computes an estimate, by name."""
-    makes = {
-        make: Compiled(library, make, size) for make in ("sigmahat", "eigen", "dlib", "liquid")
-    }
-    return {**makes, "numpy": Numpy(size), "padasip": Padasip(size)}
+    makes = {make: Compiled(library, make, size) for make in ("sigmahat", "eigen", "dlib")}
+    return {**makes, "numpy": Numpy(size)}
 
 
 def least_squares(library: Library, size: int, samples: int) -> Iterator[Subject]:
@@ -158,7 +138,7 @@ def least_squares(library: Library, size: int, samples: int) -> Iterator[Subject
     whole, short = regression(size, samples), regression(size, max(samples // 50, 1))
     every = recursions(library, size) | {"covariance": Compiled(library, "covariance", size)}
     for make, rls in every.items():
-        data = short if make in ("numpy", "padasip", "liquid") else whole
+        data = short if make == "numpy" else whole
         yield Subject(f"{make} {size}", _bind(rls.run, data), len(data.y))
 
 
@@ -185,12 +165,9 @@ def peak(library: Library, times: int) -> Subject:
 
 def measurements(samples: int) -> Array:
     """Measurements of the estimator at the begin of scenario table1 [size: samples x 5]."""
-    plant = SCENARIOS["table1"].plant
-    record = [
-        *("theta_measured", "q_measured", "theta_c_measured", "tau_measured", "tau_e_measured")
-    ]
-    run = simulate(replace(plant, record=record), {}, T, samples - 1)
-    return np.column_stack([run.plant[name] for name in record])
+    plant = replace(SCENARIOS["table1"].plant, record=MEASURED)
+    run = simulate(plant, {}, T, samples - 1)
+    return np.column_stack([run.plant[name] for name in MEASURED])
 
 
 class Ticks:
@@ -206,136 +183,74 @@ class Ticks:
         self._run(self._state, doubles(z), len(z), doubles(self.outputs))
 
 
-class Master:
-    """An FMU, run by the master in C."""
+class Steps:
+    """An FMU in the loop of the package: for each row of inputs a step, and its outputs."""
 
     def __init__(
         self,
-        library: Library,
-        folder: Path,
-        inputs: Sequence[str],
+        fmu: Fmu,
+        inputs: Iterable[str],
         outputs: Sequence[str],
+        u: Array,
         slopes: bool = False,
     ) -> None:
-        description = fmpy.read_model_description(str(folder))
-        name = description.coSimulation.modelIdentifier
-        binary = folder / "binaries" / fmpy.platform / (name + fmpy.sharedLibraryExtension)
-        references = {v.name: v.valueReference for v in description.modelVariables}
-        self.state = ctypes.c_void_p(
-            library.start(
-                "master",
-                str(binary).encode(),
-                description.guid.encode(),
-                (folder / "resources").as_uri().encode(),
-                (ctypes.c_uint * len(inputs))(*(references[i] for i in inputs)),
-                len(inputs),
-                (ctypes.c_uint * len(outputs))(*(references[i] for i in outputs)),
-                len(outputs),
-                int(slopes),
-            )
-        )
-        self._run = library.function("master_run", ctypes.c_int)
-        self.outputs = np.zeros(len(outputs))
+        """slopes: inputs are linear over a step and not held."""
+        slave = Slave(fmu, "bench")
+        slave.initialize({})
+        references = fmu.references(inputs, "input")
+        self.outputs, self.count = np.empty(len(outputs)), len(u)
+        self._times = step_times(T * np.arange(len(u), dtype=np.float64), T)
+        self._loop = SampleLoop()
+        self._loop.set_real(slave, references, u)
+        if slopes:
+            self._loop.set_slopes(slave, references, np.diff(u, axis=0, append=u[-1:]) / T)
+        self._loop.step(slave, self._times)
+        self._loop.get_real(slave, fmu.references(outputs), self.outputs)
 
-    def run(self, u: Array) -> None:
-        """Makes one step for each row of inputs. Raises RuntimeError if the FMU refuses one."""
-        h = ctypes.c_double(T)
-        if self._run(self.state, doubles(u), len(u), h, doubles(self.outputs)) != 0:
-            raise RuntimeError("the FMU refused a call")
+    def run(self) -> None:
+        """Makes a step for each row, from where the last one ended."""
+        self._loop.run(0, self.count)
+        self._times[:, 0] += self.count * T
 
 
-class Fmpy:
-    """An FMU, run by FMPy with the calls that its documentation shows."""
-
-    def __init__(self, folder: Path) -> None:
-        description = fmpy.read_model_description(str(folder))
-        references = {v.name: v.valueReference for v in description.modelVariables}
-        self._inputs = [references[name] for name in MEASUREMENTS]
-        self._outputs = [references[name] for name in OUTPUTS]
-        self._time = 0.0
-        self.outputs: list[float] = []
-        self._fmu = fmi2.FMU2Slave(
-            guid=description.guid,
-            unzipDirectory=str(folder),
-            modelIdentifier=description.coSimulation.modelIdentifier,
-            instanceName="bench",
-        )
-        self._fmu.instantiate()
-        self._fmu.setupExperiment(startTime=0.0)
-        self._fmu.enterInitializationMode()
-        self._fmu.exitInitializationMode()
-
-    def run(self, z: list[list[float]]) -> None:
-        """Makes one step for each row of inputs."""
-        fmu = self._fmu
-        for row in z:
-            fmu.setReal(self._inputs, row)
-            fmu.doStep(currentCommunicationPoint=self._time, communicationStepSize=T)
-            self._time += T
-            self.outputs = fmu.getReal(self._outputs)
-
-
-@dataclass(frozen=True)
-class Fmus:
-    """Folders of the unpacked FMUs. They must not change while the FMUs are loaded."""
-
-    estimator: Path
-    plant: Path
-    pythonfmu: Path
-    """The estimator in Python, `paper2011_slave.py`."""
-
-
-def unpack(folder: Path) -> Fmus:
-    """Builds the FMU of PythonFMU, and unpacks all FMUs into a folder."""
+def pythonfmu(folder: Path) -> Fmu:
+    """The estimator in Python, `paper2011_slave.py`, as an FMU."""
     script = HERE / "paper2011_slave.py"
-    subprocess.run(
-        [sys.executable, "-m", "pythonfmu", "build", "-f", script, "-d", folder],
-        check=True,
-        stdout=subprocess.DEVNULL,
-    )
-    files = (
-        sigmahat.fmu("StiffnessEstimator"),
-        sigmahat.fmu("AwasPlant"),
-        folder / "Paper2011.fmu",
-    )
-    return Fmus(*(Path(fmpy.extract(str(fmu), str(folder / fmu.stem))) for fmu in files))
+    command = [sys.executable, "-m", "pythonfmu", "build", "-f", str(script), "-d", str(folder)]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    return Fmu(folder / "Paper2011.fmu")
 
 
-def ticks(library: Library, fmus: Fmus, z: Array) -> Iterator[Subject]:
+def ticks(library: Library, python: Fmu, z: Array) -> Iterator[Subject]:
     """The tick of the C library, and the same in FMUs."""
-    few = np.ascontiguousarray(z[: max(len(z) // 100, 1)])
-    rows = few.tolist()
     for method in METHODS:
         yield Subject(f"tick {method}", _bind(Ticks(library, method).run, z), len(z))
-    own_master = Master(library, fmus.estimator, MEASUREMENTS, OUTPUTS)
-    yield Subject("FMU, C", _bind(own_master.run, z), len(z))
-    yield Subject("FMU, FMPy", _bind(Fmpy(fmus.estimator).run, rows), len(rows))
-    python_master = Master(library, fmus.pythonfmu, MEASUREMENTS, OUTPUTS)
-    yield Subject("PythonFMU, C", _bind(python_master.run, few), len(few))
-    yield Subject("PythonFMU, FMPy", _bind(Fmpy(fmus.pythonfmu).run, rows), len(rows))
+    few = np.ascontiguousarray(z[: max(len(z) // 100, 1)])
+    for name, fmu, rows in (
+        ("FMU", installed("StiffnessEstimator"), z),
+        ("PythonFMU", python, few),
+    ):
+        yield Subject(name, Steps(fmu, MEASUREMENTS, OUTPUTS, rows).run, len(rows))
 
 
 # Plant and whole runs
 
 
-def plant(library: Library, fmus: Fmus, samples: int) -> Iterator[Subject]:
+def plant(samples: int) -> Iterator[Subject]:
     """Steps of 1 ms of the AwAS with the torques of table1, held or linear over the step."""
-    outputs = ("q_measured", "theta_measured", "theta_c_measured", "tau_measured", "tau_e_measured")
     t = T * np.arange(samples, dtype=np.float64)
     u = np.column_stack([signal(t) for signal in TORQUES.values()])
     for name, slopes in (("plant, held", False), ("plant, linear", True)):
-        master = Master(library, fmus.plant, list(TORQUES), outputs, slopes)
-        yield Subject(name, _bind(master.run, u), samples)
+        steps = Steps(installed("AwasPlant"), TORQUES, MEASURED, u, slopes)
+        yield Subject(name, steps.run, samples)
 
 
-def table1(steps: int) -> Iterator[Subject]:
+def table1(steps: int) -> Subject:
     """The scenario with one estimator, as `sigmahat` runs it, without the start of a process."""
     scenario = SCENARIOS["table1"]
-    for modality in MODALITIES:
-        estimators = {modality: scenario.estimators[modality]}
-        yield Subject(
-            f"table1 {modality}", _bind(simulate, scenario.plant, estimators, T, steps), 1, every=20
-        )
+    estimators = {"RESIDUAL": scenario.estimators["RESIDUAL"]}
+    run = _bind(simulate, scenario.plant, estimators, T, steps)
+    return Subject("table1 RESIDUAL", run, 1, every=20)
 
 
 def _bind(function: Callable[..., object], *arguments: Any) -> Callable[[], object]:

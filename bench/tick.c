@@ -1,9 +1,8 @@
-#include "tick.h"
-
 #include <stdlib.h>
 #include <string.h>
 
 #include "sigmahat.h"
+#include "subjects.h"
 
 typedef struct {
     sh_parameters parameters;
@@ -60,11 +59,4 @@ void tick_run(void *ticks, const double *z, int samples, double *outputs)
     outputs[0] = own->estimate.sigma;
     outputs[1] = own->estimate.tau_e;
     outputs[2] = own->estimate.theta_dot;
-}
-
-void tick_bytes(int *bytes)
-{
-    bytes[0] = (int)sizeof(sh_estimator);
-    bytes[1] = (int)sizeof(sh_parameters);
-    bytes[2] = (int)sizeof(sh_estimate);
 }

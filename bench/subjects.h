@@ -1,17 +1,12 @@
-/* Recursive least squares of several libraries behind the same three functions.
+/* What is measured in C and C++: recursive least squares of several libraries behind the same three
+ * functions, and the tick of the estimator.
  *
- * All minimise |eta|^2 / BENCH_P_0 + sum (y(k) - F(k)' eta)^2, as far as their parameters allow it.
- * The samples are those of a delay line, F(k) = (x(k), x(k-1), ...), because the adaptive filters
- * among them accept no others.
+ * All recursions minimise |eta|^2 / BENCH_P_0 + sum (y(k) - F(k)' eta)^2.
  */
-#ifndef BENCH_LEAST_SQUARES_H
-#define BENCH_LEAST_SQUARES_H
+#ifndef BENCH_SUBJECTS_H
+#define BENCH_SUBJECTS_H
 
-#ifdef _WIN32
-#define BENCH_EXPORT __declspec(dllexport)
-#else
 #define BENCH_EXPORT __attribute__((visibility("default")))
-#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,7 +29,6 @@ extern "C" {
 BENCH_LEAST_SQUARES(sigmahat)
 BENCH_LEAST_SQUARES(dlib)
 BENCH_LEAST_SQUARES(eigen)
-BENCH_LEAST_SQUARES(liquid)
 
 /* For comparison, not a complete recursion: the update of the covariance alone as in textbooks, in
  * plain loops.
@@ -45,6 +39,19 @@ BENCH_EXPORT void covariance_run(void *rls, const double *F, const double *y, in
 /* 2 `times` BENCH_PEAK multiplications and additions, as fast as the machine can do them. */
 enum { BENCH_PEAK = 24 };
 BENCH_EXPORT double peak_run(int times);
+
+enum { BENCH_MEASUREMENTS = 5 }; /* theta, q, theta_c, tau, tau_e_sensor */
+
+/* A new estimator of the AwAS with n = 6, m = 3, in the modality Residual: "Paper2011", or
+ * "FilteredRegression" with all three motor data estimated. NULL if there is no such method. It exists
+ * until the end of the process.
+ */
+BENCH_EXPORT void *tick_start(const char *method);
+
+/* Runs ticks on measurements z [size: samples x BENCH_MEASUREMENTS], and writes sigma, tau_e and
+ * theta_dot of the last tick to outputs [size: 3].
+ */
+BENCH_EXPORT void tick_run(void *ticks, const double *z, int samples, double *outputs);
 
 #ifdef __cplusplus
 }
