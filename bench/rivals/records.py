@@ -33,7 +33,6 @@ class JointLog:
     """One run of one joint. All arrays have one entry a sample."""
 
     kind: str  # series_elastic, variable_stiffness or arm
-    engine: str  # the physics engine: mujoco
     seed: int
     sample_period: float  # [s]
     theta: Array  # measured motor position behind the gear [rad]
@@ -47,10 +46,34 @@ class JointLog:
 
 @dataclass(frozen=True)
 class Estimate:
-    """What a method says about a log. NaN where it says nothing."""
+    """The estimate of a method for a log. NaN where it has none."""
 
     stiffness: Array  # at every sample [N.m/rad]
-    std: Array  # its claimed standard deviation [N.m/rad]; NaN: no claim
+    std: Array  # standard deviation [N.m/rad]; NaN: the method gives none
     confident: NDArray[np.bool_]
     seconds: float  # wall time of the estimation
-    remark: str = ""  # why it has no answer
+    remark: str = ""  # why there is none
+
+
+CONFIDENT = 0.1
+"""A rival is confident while its standard deviation is below this share of a positive stiffness, as
+FilteredRegression is at most."""
+
+
+def with_interval(log: JointLog, stiffness: Array, std: Array, seconds: float) -> Estimate:
+    """The estimate of a method that gives a standard deviation.
+
+    What is known of the gain of the torque is added to it: the stiffness is proportional to it.
+
+    stiffness, std  at every sample [N.m/rad]
+    seconds         wall time
+    """
+    std = np.hypot(std, log.known.relative_std_gain * stiffness)
+    confident = np.isfinite(stiffness) & np.isfinite(std) & (std < CONFIDENT * stiffness)
+    return Estimate(stiffness, std, confident, seconds)
+
+
+def none_found(log: JointLog, seconds: float, reason: str) -> Estimate:
+    """The estimate of a method that has none for this log."""
+    nothing = np.full(len(log.theta), np.nan)
+    return Estimate(nothing, nothing, np.zeros(len(log.theta), bool), seconds, reason)

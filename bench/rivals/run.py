@@ -12,25 +12,25 @@ from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 
-from rivals.joints.catalogue import BUILDS, ENGINES, KINDS, make
+from rivals.joints.catalogue import KINDS, make
 from rivals.methods import METHODS
-from rivals.result import Result, judge, write_results
+from rivals.score import Result, judge, write_results
 from rivals.table import page
 
 
-def run_joint(methods: Sequence[str], joint: tuple[str, str, int]) -> list[Result]:
-    """Results of the methods on the joint of this kind, engine and seed."""
+def run_joint(methods: Sequence[str], joint: tuple[str, int]) -> list[Result]:
+    """Results of the methods on the joint of this kind and seed."""
     log = make(*joint)
     return [judge(name, METHODS[name], log) for name in methods]
 
 
-def run(joints: Iterable[tuple[str, str, int]], methods: Sequence[str], jobs: int) -> list[Result]:
+def run(joints: Iterable[tuple[str, int]], methods: Sequence[str], jobs: int) -> list[Result]:
     """Results of the methods on all joints, in this order, in so many processes."""
     every: list[Result] = []
     with ProcessPoolExecutor(jobs) as pool:
         for results in pool.map(partial(run_joint, methods), joints):
             every += results
-            print(results[0].kind, results[0].engine, results[0].seed, file=sys.stderr, flush=True)
+            print(results[0].kind, results[0].seed, file=sys.stderr, flush=True)
     return every
 
 
@@ -45,19 +45,12 @@ def main() -> None:
         help="of the joints; default: 1 5, which methods may be developed with",
     )
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
-    parser.add_argument("--engines", nargs="+", choices=ENGINES, default=ENGINES)
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
     parser.add_argument("--jobs", type=int, default=1, help="processes; default: %(default)s")
     parser.add_argument("--out", type=Path, required=True, help="folder for results and tables")
     arguments = parser.parse_args()
     first, last = arguments.seeds
-    seeds = range(first, last + 1)
-    joints = [
-        (kind, engine, seed)
-        for kind, engine in BUILDS
-        if kind in arguments.kinds and engine in arguments.engines
-        for seed in seeds
-    ]
+    joints = [(kind, seed) for kind in arguments.kinds for seed in range(first, last + 1)]
     results = run(joints, arguments.methods, arguments.jobs)
     text = page(results)
     arguments.out.mkdir(parents=True, exist_ok=True)

@@ -1,13 +1,17 @@
-"""How right an estimate of a log is, and how right what it says of itself."""
+"""How right an estimate of a log and its interval are, and the file of all results."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
 from rivals.records import Array, Estimate, JointLog
+from sigmahat.files.tables import write_csv
 
 SETTLED = 2.0
 """An estimate is judged from this time on [s]."""
@@ -26,7 +30,7 @@ class Score:
     error: float
     """Root mean square."""
     width: float
-    """Mean width of the intervals; nan without a claim, as are coverage and interval score."""
+    """Mean width of the intervals; nan without them, as are coverage and interval score."""
     coverage: float
     """Share of instants whose interval holds the truth."""
     interval_score: float
@@ -53,8 +57,8 @@ def score(log: JointLog, estimate: Estimate) -> Score:
         raise ValueError(f"not finite at {np.count_nonzero(~np.isfinite(found))} instants")
     error = np.abs(found / true - 1)
     low, high = found - QUANTILE * std, found + QUANTILE * std
-    claims = bool(np.isfinite(std).any())
-    coverage = np.mean((low <= true) & (true <= high)) if claims else math.nan
+    has_intervals = bool(np.isfinite(std).any())
+    coverage = np.mean((low <= true) & (true <= high)) if has_intervals else math.nan
     return Score(
         error=100 * float(np.sqrt(np.mean(error**2))),
         width=100 * float(np.mean((high - low) / true)),
@@ -74,3 +78,47 @@ def winkler(true: Array, low: Array, high: Array) -> Array:
     """
     outside = np.maximum(low - true, 0.0) + np.maximum(true - high, 0.0)
     return high - low + 2 / (1 - INTERVAL) * outside
+
+
+@dataclass(frozen=True)
+class Result:
+    """One method on one log."""
+
+    kind: str
+    seed: int
+    method: str
+    seconds: float
+    """Wall time; nan if the method failed."""
+    score: Score | None
+    """None if the method has no estimate."""
+    remark: str
+    """Why it has none."""
+
+
+def judge(method: str, estimate: Callable[[JointLog], Estimate], log: JointLog) -> Result:
+    """Result of a method on a log. A method that raises an exception has none."""
+    result = partial(Result, log.kind, log.seed, method)
+    try:
+        found = estimate(log)
+        if found.remark:
+            return result(found.seconds, None, found.remark)
+        return result(found.seconds, score(log, found), "")
+    except Exception as error:  # whatever a rival raises is a row of the table
+        return result(math.nan, None, f"{type(error).__name__}: {error}")
+
+
+def write_results(path: Path, results: Sequence[Result]) -> None:
+    """Writes a row a result; fields of a score that is not there are empty."""
+    scores = [field.name for field in fields(Score)]
+    of_result = [field.name for field in fields(Result) if field.name != "score"]
+    write_csv(
+        path,
+        [*of_result, *scores],
+        (
+            [
+                *(getattr(result, name) for name in of_result),
+                *(getattr(result.score, name, None) for name in scores),
+            ]
+            for result in results
+        ),
+    )

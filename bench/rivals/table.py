@@ -8,25 +8,22 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from rivals.result import Result
-from rivals.score import Score
+from rivals.score import Result, Score
 
 LABELS = {
     "least_squares": "least squares (IDIM-LS)",
     "idim_iv": "IDIM-IV",
     "kalman": "extended Kalman filter",
-    "mujoco_sysid": "`mujoco.sysid`",
 }
 KINDS = {
     "series_elastic": "Series elastic joint",
     "variable_stiffness": "Variable-stiffness pair",
     "arm": "Arm under gravity with contact",
 }
-ENGINES = {"mujoco": "MuJoCo"}
 _T = TypeVar("_T")
 _HEAD = (
     "method",
-    "answers",
+    "estimates",
     "error %",
     "interval width %",
     "coverage %",
@@ -39,34 +36,33 @@ _HEAD = (
 
 
 def page(results: Sequence[Result]) -> str:
-    """All tables: per kind of joint and engine, what was confident and wrong, and no answers."""
+    """All tables: each kind of joint, what was confident and wrong, and what has no estimate."""
     parts = [
         "Error (root mean square), interval width, interval score and time are medians over the "
         "logs, the others means. The interval is that of 95 %. *Lowest score*: the share of the "
         "logs on which the interval score of this method is the lowest."
     ]
-    for kind, engine in _unique((r.kind, r.engine) for r in results):
-        of_joint = [r for r in results if (r.kind, r.engine) == (kind, engine)]
-        parts += [f"### {KINDS.get(kind, kind)}, {ENGINES.get(engine, engine)}", _joint(of_joint)]
+    for kind in _unique(r.kind for r in results):
+        parts += [f"### {KINDS[kind]}", _joint([r for r in results if r.kind == kind])]
     parts += ["### Confident and over 20 % wrong", _wrong(results)]
-    parts += ["### No answer", _no_answer(results)]
+    parts += ["### No estimate", _without_estimate(results)]
     return "\n\n".join(parts) + "\n"
 
 
-def best(results: Sequence[Result]) -> dict[tuple[str, str, int], str]:
-    """The method with the lowest interval score, by kind, engine and seed."""
-    found: dict[tuple[str, str, int], tuple[float, str]] = {}
+def best(results: Sequence[Result]) -> dict[tuple[str, int], str]:
+    """The method with the lowest interval score, by kind and seed."""
+    found: dict[tuple[str, int], tuple[float, str]] = {}
     for result in results:
         if result.score is None or math.isnan(result.score.interval_score):
             continue
-        log = (result.kind, result.engine, result.seed)
+        log = (result.kind, result.seed)
         candidate = (result.score.interval_score, result.method)
         found[log] = min(found.get(log, candidate), candidate)
     return {log: method for log, (_, method) in found.items()}
 
 
 def _joint(results: Sequence[Result]) -> str:
-    """The table of one kind of joint in one engine."""
+    """The table of one kind of joint."""
     lowest = list(best(results).values())
     logs = len({r.seed for r in results})
     rows = []
@@ -91,30 +87,29 @@ def _joint(results: Sequence[Result]) -> str:
 
 def _wrong(results: Sequence[Result]) -> str:
     rows = [
-        [*_names(r), f"{r.score.wrong:.1f}", _number(r.score.error), _number(r.score.width)]
+        [
+            *(r.kind, str(r.seed), LABELS.get(r.method, r.method)),
+            *(f"{r.score.wrong:.1f}", _number(r.score.error), _number(r.score.width)),
+        ]
         for r in results
         if r.score is not None and r.score.wrong > 0
     ]
-    head = ("joint", "engine", "seed", "method", "of the time %", "error %", "interval width %")
-    return _markdown(head, rows) if rows else "None."
+    return _markdown(
+        ("joint", "seed", "method", "of the time %", "error %", "interval width %"), rows
+    )
 
 
-def _no_answer(results: Sequence[Result]) -> str:
+def _without_estimate(results: Sequence[Result]) -> str:
     """One row for each method and reason, with the logs."""
-    reasons: dict[tuple[str, str, str, str], list[int]] = {}
+    reasons: dict[tuple[str, str, str], list[int]] = {}
     for r in results:
         if r.score is None:
-            reasons.setdefault((r.method, r.kind, r.engine, r.remark), []).append(r.seed)
+            reasons.setdefault((r.method, r.kind, r.remark), []).append(r.seed)
     rows = [
-        [LABELS.get(method, method), kind, engine, ", ".join(map(str, seeds)), remark]
-        for (method, kind, engine, remark), seeds in reasons.items()
+        [LABELS.get(method, method), kind, ", ".join(map(str, seeds)), remark]
+        for (method, kind, remark), seeds in reasons.items()
     ]
-    return _markdown(("method", "joint", "engine", "seeds", "reason"), rows) if rows else "None."
-
-
-def _names(result: Result) -> list[str]:
-    method = LABELS.get(result.method, result.method)
-    return [result.kind, result.engine, str(result.seed), method]
+    return _markdown(("method", "joint", "seeds", "reason"), rows)
 
 
 def _figure(
@@ -145,5 +140,7 @@ def _unique(values: Iterable[_T]) -> list[_T]:
 
 
 def _markdown(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    if not rows:
+        return "None."
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)

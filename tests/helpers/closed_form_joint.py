@@ -64,6 +64,4 @@ def closed_form_log(
         range_phi=RANGE_PHI,
         range_tau_e=20.0,
     )
-    return JointLog(
-        kind, "closed form", seed, T, rounded[0], rounded[1], tau, theta_c, tau_e, stiffness, known
-    )
+    return JointLog(kind, seed, T, rounded[0], rounded[1], tau, theta_c, tau_e, stiffness, known)

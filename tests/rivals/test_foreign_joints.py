@@ -14,67 +14,43 @@ import numpy as np
 import pytest
 
 from rivals.joints import catalogue
-from rivals.joints.encoders import count
-from rivals.joints.excitation import Drive
 from rivals.joints.logs import log
-from rivals.joints.parameters import Arm, Instruments, Motor, Tendons, VariableStiffness
-from rivals.joints.simulation import SAMPLE_PERIOD, STEP, Run
+from rivals.joints.parameters import Arm, Tendons, VariableStiffness
+from rivals.joints.simulation import SAMPLE_PERIOD, STEP, Run, count
+from rivals.joints.simulation import run as simulate
 from rivals.records import Array
 
 SECONDS = 4.0  # of a run here
 SEED = 1
 HARDENING = 2  # a seed of springs that harden
 TOUCHING = 3  # a seed of an arm that touches the floor soon
-BUILDS = [*catalogue.BUILDS]
 
 
 @pytest.fixture(scope="module", autouse=True)
 def engine() -> None:
     """Skips where MuJoCo is missing. It is too large for every run of the tests."""
     if find_spec("mujoco") is None:
-        how = "cmake --build build --target packages_rivals"
-        pytest.skip(f"MuJoCo is not installed; to install it: {how}")
+        pytest.skip("MuJoCo is not installed; to install it: cmake --workflow --preset rivals")
 
 
-def shortened(joint: Any) -> Any:
-    """The first seconds of what its drives do."""
-    samples = round(SECONDS / SAMPLE_PERIOD)
-
-    def cut(drive: Drive) -> Drive:
-        return replace(
-            drive,
-            feed_forward=drive.feed_forward[:samples],
-            reference=drive.reference[:samples],
-        )
-
-    if isinstance(joint, Arm):
-        shoulder, elbow = joint.drives
-        return replace(joint, drives=(cut(shoulder), cut(elbow)))
-    return replace(joint, drive=cut(joint.drive))
+def shortened(kind: str, seed: int = SEED) -> Any:
+    """A joint, and the first seconds of what its drives do."""
+    joint, samples = catalogue.drawn(kind, seed), round(SECONDS / SAMPLE_PERIOD)
+    drives = [
+        replace(each, feed_forward=each.feed_forward[:samples], reference=each.reference[:samples])
+        for each in joint.drives
+    ]
+    return replace(joint, drives=tuple(drives))
 
 
-def observed(joint: Any) -> Motor:
-    return joint.motors[joint.observed] if isinstance(joint, Arm) else joint.motor
-
-
-def instruments(joint: Any) -> Instruments:
-    return joint.instruments[joint.observed] if isinstance(joint, Arm) else joint.instruments
-
-
-@pytest.fixture(scope="module", params=BUILDS, ids="-".join)
-def build_of(request: pytest.FixtureRequest) -> tuple[str, str]:
-    kind, engine = request.param
-    return kind, engine
+@pytest.fixture(scope="module", params=catalogue.KINDS)
+def joint(request: pytest.FixtureRequest) -> Any:
+    return shortened(request.param)
 
 
 @pytest.fixture(scope="module")
-def joint(build_of: tuple[str, str]) -> Any:
-    return shortened(catalogue.drawn(*build_of, SEED))
-
-
-@pytest.fixture(scope="module")
-def run(build_of: tuple[str, str], joint: Any) -> Run:
-    return catalogue.simulate(*build_of, joint)
+def run(joint: Any) -> Run:
+    return simulate(joint)
 
 
 def fitted(columns: Mapping[str, Array], y: Array) -> dict[str, float]:
@@ -85,19 +61,13 @@ def fitted(columns: Mapping[str, Array], y: Array) -> dict[str, float]:
     return dict(zip(columns, map(float, solution), strict=True))
 
 
-def differenced(x: Array) -> Array:
-    """Acceleration from positions alone, as a log would give it, where both sides are there."""
-    second: Array = (x[2:] - 2 * x[1:-1] + x[:-2]) / SAMPLE_PERIOD**2
-    return second
-
-
 def rms(x: Array) -> float:
     return float(np.sqrt(np.mean(x**2)))
 
 
 def test_the_motor_obeys_its_equation(joint: Any, run: Run) -> None:
     """B g^2 theta'' + D g^2 theta' = g tau + friction + tau_e + damper, all on the motor."""
-    motor, x = observed(joint), run.signals
+    motor, x = joint.motors[joint.observed], run.signals
     left = motor.inertia * x["theta_ddot"] + motor.D * motor.gear**2 * x["theta_dot"]
     right = motor.gear * run.torque + x["friction"] + x["tau_e"] + x["damper"]
     # The flange of an elbow moves with the arm.
@@ -106,14 +76,14 @@ def test_the_motor_obeys_its_equation(joint: Any, run: Run) -> None:
 
 def test_least_squares_finds_inertia_damping_and_stiffness(joint: Any, run: Run) -> None:
     """The torque of the spring enters by phi only, the rest by signals that a log would have."""
-    motor, x = observed(joint), run.signals
+    motor, x = joint.motors[joint.observed], run.signals
     y = motor.gear * run.torque + x["friction"] + x["damper"]
     columns = {"inertia": x["theta_ddot"], "damping": x["theta_dot"]}
     if isinstance(joint, VariableStiffness):  # no formula for them: their torque is taken as it is
         found = fitted({**columns, "tau_e": -x["tau_e"]}, y)
         assert found["tau_e"] == pytest.approx(1, rel=2e-3)
     else:
-        spring = joint.springs[joint.observed] if isinstance(joint, Arm) else joint.spring
+        spring = joint.springs[joint.observed]
         columns["phi"] = -x["phi"]
         if spring.k_3:
             columns["phi^3"] = -(x["phi"] ** 3)
@@ -125,9 +95,9 @@ def test_least_squares_finds_inertia_damping_and_stiffness(joint: Any, run: Run)
 
 def test_the_acceleration_is_that_of_the_positions(run: Run) -> None:
     """The derivative of the engine agrees with differences over a sample, but for its jerks."""
-    x = run.signals
-    smooth = np.convolve(x["theta_ddot"], [0.25, 0.5, 0.25], mode="valid")
-    error = differenced(x["theta"]) - smooth
+    theta = run.signals["theta"]
+    smooth = np.convolve(run.signals["theta_ddot"], [0.25, 0.5, 0.25], mode="valid")
+    error = (theta[2:] - 2 * theta[1:-1] + theta[:-2]) / SAMPLE_PERIOD**2 - smooth
     assert np.median(np.abs(error)) < 0.02 * rms(smooth)
 
 
@@ -141,15 +111,13 @@ def test_the_true_stiffness_is_the_slope_of_the_torque(run: Run) -> None:
 
 
 @pytest.mark.slow("three times as many steps")
-def test_smaller_steps_give_the_same_motion(
-    build_of: tuple[str, str], joint: Any, run: Run
-) -> None:
+def test_smaller_steps_give_the_same_motion(joint: Any, run: Run) -> None:
     """Of the first order: a half as large step leaves a half as large error. Without the floor:
     when a tip touches it is a matter of chance."""
     if isinstance(joint, Arm):
         joint = replace(joint, floor=-10.0)
-        run = catalogue.simulate(*build_of, joint)
-    half = catalogue.simulate(*build_of, joint, STEP / 2)
+        run = simulate(joint)
+    half = simulate(joint, STEP / 2)
     for name, limit in (("theta", 2e-3), ("phi", 2e-2)):
         change = run.signals[name] - half.signals[name]
         assert rms(change) < limit * rms(half.signals[name])
@@ -170,8 +138,8 @@ def pulled(tendons: Tendons, phi: Array, theta_c: Array) -> Array:
 
 
 def test_the_tendons_pull_as_their_geometry_says() -> None:
-    joint = shortened(catalogue.drawn("variable_stiffness", "mujoco", SEED))
-    x = catalogue.simulate("variable_stiffness", "mujoco", joint).signals
+    joint = shortened("variable_stiffness")
+    x = simulate(joint).signals
     step = 1e-5
     torques = [pulled(joint.tendons, x["phi"] + shift, x["theta_c"]) for shift in (-step, 0, step)]
     np.testing.assert_allclose(x["tau_e"], torques[1], atol=1e-6 * np.abs(torques[1]).max())
@@ -182,18 +150,18 @@ def test_the_tendons_pull_as_their_geometry_says() -> None:
 
 def test_the_tip_touches_the_floor() -> None:
     """The torque of a joint in contact is another one than without the floor."""
-    joint = shortened(catalogue.drawn("arm", "mujoco", TOUCHING))
-    touching = catalogue.simulate("arm", "mujoco", joint).signals["tau_e"]
-    free = catalogue.simulate("arm", "mujoco", replace(joint, floor=-10.0)).signals["tau_e"]
+    joint = shortened("arm", TOUCHING)
+    touching = simulate(joint).signals["tau_e"]
+    free = simulate(replace(joint, floor=-10.0)).signals["tau_e"]
     assert rms(touching - free) > 0.02 * rms(free)
 
 
 @pytest.mark.parametrize("kind", ["series_elastic", "arm"])
 def test_a_spring_of_mujoco_hardens(kind: str) -> None:
     """Linear and cubic, as its polynomial says."""
-    joint = shortened(catalogue.drawn(kind, "mujoco", HARDENING))
-    spring = joint.springs[joint.observed] if isinstance(joint, Arm) else joint.spring
-    x = catalogue.simulate(kind, "mujoco", joint).signals
+    joint = shortened(kind, HARDENING)
+    spring = joint.springs[joint.observed]
+    x = simulate(joint).signals
     assert spring.k_3 > 0
     np.testing.assert_allclose(
         x["tau_e"], [spring.torque(phi) for phi in x["phi"]], rtol=1e-9, atol=1e-9
@@ -201,11 +169,9 @@ def test_a_spring_of_mujoco_hardens(kind: str) -> None:
     np.testing.assert_allclose(x["stiffness"], [spring.slope(phi) for phi in x["phi"]], rtol=1e-6)
 
 
-def test_a_log_is_what_the_instruments_make_of_the_run(
-    build_of: tuple[str, str], joint: Any, run: Run
-) -> None:
-    motor, tools, x = observed(joint), instruments(joint), run.signals
-    made = log((*build_of, SEED), run, motor, tools, joint.sheet, np.random.default_rng(SEED))
+def test_a_log_is_what_the_instruments_make_of_the_run(joint: Any, run: Run) -> None:
+    motor, tools = joint.motors[joint.observed], joint.instruments[joint.observed]
+    x, made = run.signals, log("a kind", SEED, run, joint, np.random.default_rng(SEED))
     known = made.known
     for read, true, counts in (
         (made.theta, x["theta"], known.counts_theta),
@@ -223,7 +189,7 @@ def test_a_log_is_what_the_instruments_make_of_the_run(
 
 def test_the_torque_in_the_log_is_early_or_late(joint: Any, run: Run) -> None:
     """A command comes before its torque, a measurement after it, by at most 3 ms."""
-    tools = instruments(joint)
+    tools = joint.instruments[joint.observed]
     seen = run.command if tools.commanded else run.late
     late = tools.delay + tools.lag if tools.commanded else -tools.delay
     shifted = run.torque[10:-10]
@@ -232,8 +198,8 @@ def test_the_torque_in_the_log_is_early_or_late(joint: Any, run: Run) -> None:
 
 
 def test_make_gives_the_same_log_every_time() -> None:
-    one, other = (catalogue.make("series_elastic", "mujoco", SEED) for _ in range(2))
-    assert (one.kind, one.engine, one.seed) == ("series_elastic", "mujoco", SEED)
+    one, other = (catalogue.make("series_elastic", SEED) for _ in range(2))
+    assert (one.kind, one.seed) == ("series_elastic", SEED)
     assert one.sample_period == 1e-3
     for name in ("theta", "q", "tau", "theta_c", "tau_e", "stiffness"):
         assert getattr(one, name).shape == (20000,)

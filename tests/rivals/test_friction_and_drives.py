@@ -11,10 +11,8 @@ import numpy as np
 import pytest
 
 from rivals.joints import catalogue, draw
-from rivals.joints.current_loop import CurrentLoop, Delay
-from rivals.joints.encoders import count, rounded
 from rivals.joints.friction import Friction
-from rivals.joints.parameters import Arm
+from rivals.joints.simulation import CurrentLoop, Delay, count, rounded
 
 SEEDS = range(1, 41)
 V, M, E = 0.3, 2.0, -3.0  # velocity, torque of the motor, torque from outside
@@ -62,16 +60,14 @@ def test_encoders_round_and_count_on() -> None:
 
 
 @cache
-def drawn(kind: str, engine: str) -> list[Any]:
-    return [catalogue.drawn(kind, engine, seed) for seed in SEEDS]
+def drawn(kind: str) -> list[Any]:
+    return [catalogue.drawn(kind, seed) for seed in SEEDS]
 
 
-@pytest.mark.parametrize(("kind", "engine"), catalogue.BUILDS)
-def test_what_is_drawn_is_within_the_ranges(kind: str, engine: str) -> None:
-    for joint in drawn(kind, engine):
-        motors = joint.motors if isinstance(joint, Arm) else [joint.motor]
-        tools = joint.instruments if isinstance(joint, Arm) else [joint.instruments]
-        for motor, instruments in zip(motors, tools, strict=True):
+@pytest.mark.parametrize("kind", catalogue.KINDS)
+def test_what_is_drawn_is_within_the_ranges(kind: str) -> None:
+    for joint in drawn(kind):
+        for motor, instruments in zip(joint.motors, joint.instruments, strict=True):
             assert 30 <= motor.gear <= 160
             assert 1e-5 <= motor.B <= 2e-4
             assert 0.005 <= motor.friction.at_rest / motor.peak <= 0.08 + 1e-12
@@ -84,16 +80,12 @@ def test_what_is_drawn_is_within_the_ranges(kind: str, engine: str) -> None:
 
 
 def test_every_friction_model_and_both_logs_of_torque_are_drawn() -> None:
-    joints = drawn("series_elastic", "mujoco")
-    assert {joint.motor.friction.model for joint in joints} == {1, 2, 3, 4, 5, 6}
-    assert {joint.instruments.commanded for joint in joints} == {False, True}
-    assert {joint.spring.k_3 > 0 for joint in joints} == {False, True}
-    assert {joint.observed for joint in drawn("arm", "mujoco")} == {0, 1}
-
-
-def test_no_two_joints_are_alike() -> None:
-    stiffness = {joint.spring.stiffness for joint in drawn("series_elastic", "mujoco")}
-    assert len(stiffness) == len(SEEDS)
+    joints = drawn("series_elastic")
+    assert {joint.motors[0].friction.model for joint in joints} == {1, 2, 3, 4, 5, 6}
+    assert {joint.instruments[0].commanded for joint in joints} == {False, True}
+    assert {joint.springs[0].k_3 > 0 for joint in joints} == {False, True}
+    assert len({joint.springs[0].stiffness for joint in joints}) == len(SEEDS)
+    assert {joint.observed for joint in drawn("arm")} == {0, 1}
 
 
 def test_the_seeds_are_fixed() -> None:
@@ -102,7 +94,7 @@ def test_the_seeds_are_fixed() -> None:
 
 def test_a_motor_holds_its_arm() -> None:
     quarter, straight = np.full(1, math.pi / 2), np.zeros(1)
-    for arm in drawn("arm", "mujoco"):
+    for arm in drawn("arm"):
         torques = draw.gravity_torques(arm.links, quarter, straight)
         for motor, torque in zip(arm.motors, torques, strict=True):
             assert motor.gear * motor.peak >= draw.HOLDS * torque[0]

@@ -22,7 +22,7 @@ def log() -> JointLog:
     """A log of 4 s, every half second; four samples are judged."""
     zero, true = np.zeros(8), np.full(8, 100.0)
     known = closed_form_log("series_elastic").known
-    return JointLog("arm", "mujoco", 1, 0.5, zero, zero, zero, zero, zero, true, known)
+    return JointLog("arm", 1, 0.5, zero, zero, zero, zero, zero, true, known)
 
 
 def estimate(stiffness: list[float], std: list[float], confident: list[bool]) -> Estimate:
@@ -45,7 +45,7 @@ def test_a_score_is_of_the_samples_after_two_seconds_and_relative_to_the_truth()
     assert (found.confident, found.wrong) == (75, 25)
 
 
-def test_without_a_claim_there_is_no_interval() -> None:
+def test_without_a_standard_deviation_there_is_no_interval() -> None:
     found = score(log(), estimate([110, 100, 130, 90], [np.nan] * 4, [False] * 4))
     assert np.isnan([found.width, found.coverage, found.interval_score]).all()
     assert found.error > 0

@@ -10,11 +10,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
-from rivals.joints.encoders import count
 from rivals.joints.excitation import Complex, Drive, Multisine
 from rivals.joints.friction import MODELS, Friction
 from rivals.joints.logs import STD_B, STD_D, STD_GAIN
@@ -29,7 +28,7 @@ from rivals.joints.parameters import (
     Tendons,
     VariableStiffness,
 )
-from rivals.joints.simulation import DURATION, SAMPLE_PERIOD
+from rivals.joints.simulation import DURATION, SAMPLE_PERIOD, count
 from rivals.records import Array
 
 Range = tuple[float, float]
@@ -287,27 +286,32 @@ def _rod(inertia: float, length: float) -> Link:
     return Link(mass, length, length / 2, mass * length**2 / 12)
 
 
-def _single(
-    rng: Rng, load: float, stiffness: float
-) -> tuple[Motor, Link, float, Drive, Instruments, Sheet]:
-    """All of a joint with one motor but its spring; its axis is horizontal if the motor can lift
-    the link, in half of the cases."""
+def _single(rng: Rng, load: float, stiffness: float) -> tuple[Motor, dict[str, Any]]:
+    """The motor of a joint with one, and all but its spring; its axis is horizontal if the motor
+    can lift the link, in half of the cases."""
     motor = _motor(rng, load)
     link = _rod(load, _even(rng, LENGTHS))
     lifts = HOLDS * link.mass * G * link.centre <= motor.gear * motor.peak
     gravity = G if lifts and rng.integers(2) else 0.0
     make = _torque_drive if rng.integers(2) else _position_drive
     drive, phi = make(rng, motor, load, stiffness)
-    return motor, link, gravity, drive, _instruments(rng, motor.peak, phi), _sheet(rng)
+    return motor, {
+        "motors": (motor,),
+        "links": (link,),
+        "gravity": gravity,
+        "drives": (drive,),
+        "instruments": (_instruments(rng, motor.peak, phi),),
+        "sheet": _sheet(rng),
+    }
 
 
 def series_elastic(rng: Rng) -> SeriesElastic:
     """A series elastic joint, whose spring may harden or is linear."""
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS, load)
-    motor, link, gravity, drive, instruments, sheet = _single(rng, load, stiffness)
+    motor, parts = _single(rng, load, stiffness)
     spring = _spring(rng, stiffness, load, motor.gear * motor.peak)
-    return SeriesElastic(motor, spring, link, gravity, drive, instruments, sheet)
+    return SeriesElastic(springs=(spring,), **parts)
 
 
 def _tendons(rng: Rng, stiffness: float, load: float) -> Tendons:
@@ -331,10 +335,10 @@ def variable_stiffness(rng: Rng) -> VariableStiffness:
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS_VARIABLE, load)
     tendons = _tendons(rng, stiffness, load)
-    motor, link, gravity, drive, instruments, sheet = _single(rng, load, stiffness)
+    _, parts = _single(rng, load, stiffness)
     knots = np.arange(0, DURATION + KNOTS, KNOTS)
     theta_c = np.interp(TIMES, knots, rng.uniform(0, tendons.range_theta_c, len(knots)))
-    return VariableStiffness(motor, tendons, link, gravity, drive, theta_c, instruments, sheet)
+    return VariableStiffness(tendons=tendons, theta_c=theta_c, **parts)
 
 
 def _links(rng: Rng) -> tuple[Link, Link]:
@@ -401,15 +405,15 @@ def _arm(rng: Rng) -> Arm | None:
         instruments.append(_instruments(rng, motor.peak, phi + float(np.ptp(weight)) / 2 / k))
         springs.append(_spring(rng, k, load, motor.gear * motor.peak))
     return Arm(
-        motors=(motors[0], motors[1]),
-        springs=(springs[0], springs[1]),
+        motors=tuple(motors),
+        springs=tuple(springs),
         links=links,
         gravity=G,
         tip=TIP,
         floor=floor,
-        start=(centres[0], centres[1]),
-        drives=(drives[0], drives[1]),
+        start=tuple(centres),
+        drives=tuple(drives),
         observed=int(rng.integers(2)),
-        instruments=(instruments[0], instruments[1]),
+        instruments=tuple(instruments),
         sheet=_sheet(rng),
     )

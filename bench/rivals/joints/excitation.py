@@ -33,10 +33,6 @@ class Multisine:
         summed: Array = np.imag(np.exp(1j * angles) @ lines)
         return summed
 
-    def scaled(self, factor: float) -> Multisine:
-        """The same with other amplitudes."""
-        return Multisine(self.frequencies, factor * self.amplitudes, self.phases)
-
 
 def _fade(t: Array) -> Array:
     s = np.clip(t / FADE, 0, 1)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rivals.joints.encoders import rounded
-from rivals.joints.parameters import Instruments, Motor, Sheet
-from rivals.joints.simulation import SAMPLE_PERIOD, Run
+from rivals.joints.parameters import Joint
+from rivals.joints.simulation import SAMPLE_PERIOD, Run, rounded
 from rivals.records import Array, JointLog, Known
 
 STD_B = 0.05
@@ -15,22 +14,14 @@ STD_GAIN = 0.015
 """Relative standard deviations of the data sheets, as drawn, and as the methods are given them."""
 
 
-def log(
-    name: tuple[str, str, int],
-    run: Run,
-    motor: Motor,
-    instruments: Instruments,
-    sheet: Sheet,
-    rng: np.random.Generator,
-) -> JointLog:
-    """The log of a run; `name` is kind, engine, seed, and `rng` draws the noise."""
-    kind, engine, seed = name
+def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) -> JointLog:
+    """The log of a run of a joint; `rng` draws the noise."""
+    instruments = joint.instruments[joint.observed]
     theta, phi = run.signals["theta"], run.signals["phi"]
     torque = run.command if instruments.commanded else run.late
     noise = instruments.noise * rng.standard_normal(len(theta))
     return JointLog(
         kind=kind,
-        engine=engine,
         seed=seed,
         sample_period=SAMPLE_PERIOD,
         theta=rounded(theta, instruments.counts_theta),
@@ -39,11 +30,13 @@ def log(
         theta_c=run.signals["theta_c"],
         tau_e=run.signals["tau_e"],
         stiffness=run.signals["stiffness"],
-        known=_known(motor, instruments, sheet, phi, run.signals["tau_e"]),
+        known=_known(joint, phi, run.signals["tau_e"]),
     )
 
 
-def _known(motor: Motor, instruments: Instruments, sheet: Sheet, phi: Array, tau_e: Array) -> Known:
+def _known(joint: Joint, phi: Array, tau_e: Array) -> Known:
+    sheet, i = joint.sheet, joint.observed
+    motor, instruments = joint.motors[i], joint.instruments[i]
     return Known(
         gamma=motor.gear,
         B=sheet.B * motor.B,

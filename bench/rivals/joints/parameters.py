@@ -120,45 +120,38 @@ class Sheet:
     tau_e: float
 
 
-@dataclass(frozen=True)
-class SeriesElastic:
-    """One motor, a spring, one link. `gravity` is 0 where the axis is vertical."""
+@dataclass(frozen=True, kw_only=True)
+class Joint:
+    """Motors, links, drives and instruments: one of each but for an arm, which has two."""
 
-    motor: Motor
-    spring: Spring
-    link: Link
-    gravity: float  # [m/s2]
-    drive: Drive
-    instruments: Instruments
+    motors: tuple[Motor, ...]
+    links: tuple[Link, ...]
+    gravity: float  # 0 where the axis is vertical [m/s2]
+    drives: tuple[Drive, ...]
+    instruments: tuple[Instruments, ...]
     sheet: Sheet
+    observed: int = 0  # the joint in the log; of an arm 0 is the shoulder, 1 the elbow
 
 
-@dataclass(frozen=True)
-class VariableStiffness:
-    """One motor, two tendons, one link, and a second motor that moves the slider."""
+@dataclass(frozen=True, kw_only=True)
+class SeriesElastic(Joint):
+    """A spring between motor and link."""
 
-    motor: Motor
+    springs: tuple[Spring, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class VariableStiffness(Joint):
+    """Two tendons between motor and link, and a second motor that moves the slider."""
+
     tendons: Tendons
-    link: Link
-    gravity: float  # [m/s2]
-    drive: Drive
     theta_c: Array  # where the stiffness motor shall be at every sample [rad]
-    instruments: Instruments
-    sheet: Sheet
 
 
-@dataclass(frozen=True)
-class Arm:
+@dataclass(frozen=True, kw_only=True)
+class Arm(SeriesElastic):
     """Two links in a vertical plane, a motor and a spring in each joint, and a floor."""
 
-    motors: tuple[Motor, Motor]
-    springs: tuple[Spring, Spring]
-    links: tuple[Link, Link]
-    gravity: float  # [m/s2]
     tip: float  # radius of the sphere at the end [m]
     floor: float  # height against the first axis [m]
-    start: tuple[float, float]  # angles of the motors [rad]
-    drives: tuple[Drive, Drive]
-    observed: int  # the joint in the log: 0 shoulder, 1 elbow
-    instruments: tuple[Instruments, Instruments]
-    sheet: Sheet
+    start: tuple[float, ...]  # angles of the motors [rad]

@@ -1,17 +1,15 @@
-"""Runs a joint in a foreign engine: drives at the rate of the log, current loops, clean signals."""
+"""Runs a joint in MuJoCo: drives at the rate of the log, current loops, encoders, clean signals."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections import deque
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from rivals.joints.current_loop import CurrentLoop, Delay
-from rivals.joints.encoders import count
 from rivals.joints.excitation import Drive
-from rivals.joints.parameters import Instruments, Motor
+from rivals.joints.parameters import Instruments, Joint, Motor, VariableStiffness
 from rivals.records import Array
 
 SAMPLE_PERIOD = 1e-3  # [s]
@@ -21,35 +19,48 @@ VELOCITY_LAG = 5e-3  # of the low pass behind the difference of the encoder [s]
 INNER_DELAY = 2e-4  # from command to torque where the log has measured torque [s]
 
 
-class Instant(NamedTuple):
-    """The observed joint at the beginning of a step; torques behind the gear, on the motor."""
-
-    theta: float  # [rad]
-    phi: float  # [rad]
-    theta_dot: float  # [rad/s]
-    phi_dot: float  # [rad/s]
-    theta_ddot: float  # [rad/s2]
-    friction: float  # dry, what the engine applied [N.m]
-    damper: float  # of the spring [N.m]
-    tau_e: float  # of the spring alone [N.m]
-    stiffness: float  # [N.m/rad]
-    theta_c: float  # [rad]
+def count(counts: int) -> float:
+    """The angle of one count [rad]."""
+    return 2 * math.pi / counts
 
 
-class Physics(Protocol):
-    """A joint in an engine."""
+def rounded(angle: Array, counts: int) -> Array:
+    """What an encoder with this number of counts a turn reads [rad]; it counts on past a turn."""
+    read: Array = np.round(angle / count(counts)) * count(counts)
+    return read
 
-    def motors(self) -> Sequence[tuple[float, float, float]]:
-        """Position, velocity and load of each motor, behind its gear [rad, rad/s, N.m]."""
 
-    def advance(self, torques: Sequence[float], dry: Sequence[float], target: float) -> None:
-        """One step with these torques, and at most this friction, on the axes of the motors.
+class Delay:
+    """Gives what it was given `seconds` ago, to the nearest step; zero before that."""
 
-        `target` [rad] is where the stiffness motor shall be, if there is one.
-        """
+    def __init__(self, seconds: float, step: float) -> None:
+        length = round(seconds / step)
+        self._past = deque([0.0] * length, maxlen=length) if length else None
 
-    def instant(self) -> Instant:
-        """The beginning of the step that `advance` made."""
+    def __call__(self, value: float) -> float:
+        if self._past is None:
+            return value
+        oldest = self._past[0]
+        self._past.append(value)
+        return oldest
+
+
+class CurrentLoop:
+    """The torque of a motor follows its command late: dead time, then a lag of the first order.
+
+    Torque on the motor's axis [N.m], advanced by one step of the physics at each call.
+    """
+
+    def __init__(self, delay: float, lag: float, step: float) -> None:
+        """Dead time and time constant [s]."""
+        self._delay = Delay(delay, step)
+        self._share = -math.expm1(-step / lag)
+        self._torque = 0.0
+
+    def __call__(self, command: float) -> float:
+        """The torque during the step that begins now, for a command that holds during it."""
+        self._torque += self._share * (self._delay(command) - self._torque)
+        return self._torque
 
 
 @dataclass(frozen=True)
@@ -93,29 +104,24 @@ class _Axis:
         return self._motor.friction.budget(v, self.torque, load / self._motor.gear)
 
 
-def run(
-    physics: Physics,
-    motors: Sequence[Motor],
-    drives: Sequence[Drive],
-    instruments: Sequence[Instruments],
-    observed: int = 0,
-    theta_c: Array | None = None,
-    step: float = STEP,
-) -> Run:
-    """Runs the drives to their end. `step` [s] is that of `physics`."""
-    parts = zip(motors, drives, instruments, strict=True)
+def run(joint: Joint, step: float = STEP) -> Run:
+    """Runs the drives of a joint to their end. `step` [s] is that of the physics."""
+    from rivals.joints.mujoco_joints import Instant, build  # what is drawn needs no MuJoCo
+
+    physics, observed = build(joint, step), joint.observed
+    parts = zip(joint.motors, joint.drives, joint.instruments, strict=True)
     axes = [_Axis(motor, drive, each, step) for motor, drive, each in parts]
-    samples = len(drives[0].reference)
+    samples = len(joint.drives[0].reference)
+    targets = joint.theta_c if isinstance(joint, VariableStiffness) else np.zeros(samples)
     instants: list[Instant] = []
     torques = np.empty((3, samples))
     for k in range(samples):
         for axis, (theta, _, _) in zip(axes, physics.motors(), strict=True):
             axis.decide(k, theta)
-        target = 0.0 if theta_c is None else float(theta_c[k])
         for substep in range(round(SAMPLE_PERIOD / step)):
             states = physics.motors()
             dry = [axis.act(v, load) for axis, (_, v, load) in zip(axes, states, strict=True)]
-            physics.advance([axis.torque for axis in axes], dry, target)
+            physics.advance([axis.torque for axis in axes], dry, float(targets[k]))
             if substep == 0:
                 instants.append(physics.instant())
                 axis = axes[observed]

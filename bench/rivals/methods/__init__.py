@@ -1,24 +1,16 @@
-"""The methods that are compared, by name: each has a file of its own, with its source."""
+"""The methods that are compared, by name; the docstring of each has its source."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from rivals.methods import (
-    filtered_regression,
-    idim_iv,
-    kalman,
-    least_squares,
-    mujoco_sysid,
-    paper2011,
-)
+from rivals.methods import idim_iv, kalman, least_squares, ours
 from rivals.records import Estimate, JointLog
 
 METHODS: dict[str, Callable[[JointLog], Estimate]] = {
-    "FilteredRegression": filtered_regression.estimate,
-    "Paper2011": paper2011.estimate,
+    "FilteredRegression": ours.filtered_regression,
+    "Paper2011": ours.paper2011,
     "least_squares": least_squares.estimate,
     "idim_iv": idim_iv.estimate,
     "kalman": kalman.estimate,
-    "mujoco_sysid": mujoco_sysid.estimate,
 }

@@ -20,9 +20,8 @@ import time
 
 import numpy as np
 
-from rivals.answer import answer, no_answer
 from rivals.methods import least_squares
-from rivals.records import Array, Estimate, JointLog, Known
+from rivals.records import Array, Estimate, JointLog, Known, none_found, with_interval
 from rivals.regression import (
     COULOMB,
     INERTIA,
@@ -50,10 +49,10 @@ def estimate(log: JointLog) -> Estimate:
     error = float(np.linalg.norm(rows.y - rows.X @ beta))
     for _ in range(ITERATIONS):
         if beta[INERTIA] <= 0:
-            return no_answer(log, time.perf_counter() - begin, "the inertia became negative")
+            return none_found(log, time.perf_counter() - begin, "the inertia became negative")
         motion = simulate(log, rows, beta)
         if motion is None:
-            return no_answer(log, time.perf_counter() - begin, "the simulation diverged")
+            return none_found(log, time.perf_counter() - begin, "the simulation diverged")
         Z = rows.filters.decimated(columns(log, motion, rows.spring))
         last, last_error = beta, error
         beta, covariance = solve(Z, rows.X, rows.y, log.known)
@@ -62,8 +61,10 @@ def estimate(log: JointLog) -> Estimate:
             TOLERANCE * np.abs(last), np.sqrt(np.diag(covariance))
         )
         if np.all(change) and abs(error - last_error) <= TOLERANCE * last_error:
-            return answer(log, *rows.stiffness(log, beta, covariance), time.perf_counter() - begin)
-    return no_answer(log, time.perf_counter() - begin, f"not converged after {ITERATIONS} rounds")
+            return with_interval(
+                log, *rows.stiffness(log, beta, covariance), time.perf_counter() - begin
+            )
+    return none_found(log, time.perf_counter() - begin, f"not converged after {ITERATIONS} rounds")
 
 
 def solve(Z: Array, X: Array, y: Array, known: Known) -> tuple[Array, Array]:

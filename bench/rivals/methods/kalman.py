@@ -23,8 +23,7 @@ from math import cosh, tanh
 
 import numpy as np
 
-from rivals.answer import answer, no_answer
-from rivals.records import Array, Estimate, JointLog
+from rivals.records import Array, Estimate, JointLog, none_found, with_interval
 from rivals.regression import encoder_std
 from rivals.spring import Spring, spring
 
@@ -48,11 +47,11 @@ def estimate(log: JointLog) -> Estimate:
         filtered.predict(inputs(log, k))
         filtered.correct(log.theta[k])
         if not np.isfinite(filtered.x[THETA]) or filtered.P[THETA, THETA] < 0:
-            return no_answer(log, time.perf_counter() - begin, f"diverged at sample {k}")
+            return none_found(log, time.perf_counter() - begin, f"diverged at sample {k}")
         stiffness[k] = slope[k] @ filtered.x[SPRING:]
         variance[k] = slope[k] @ filtered.P[SPRING:, SPRING:] @ slope[k]
     std = np.sqrt(np.maximum(variance, 0.0))
-    return answer(log, stiffness, std, time.perf_counter() - begin)
+    return with_interval(log, stiffness, std, time.perf_counter() - begin)
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,7 @@ import time
 
 import numpy as np
 
-from rivals.answer import answer
-from rivals.records import Array, Estimate, JointLog, Known
+from rivals.records import Array, Estimate, JointLog, Known, with_interval
 from rivals.regression import INERTIA, VISCOUS, regression
 
 
@@ -25,7 +24,7 @@ def estimate(log: JointLog) -> Estimate:
     begin = time.perf_counter()
     rows = regression(log)
     beta, covariance = solve(rows.X, rows.y, log.known)
-    return answer(log, *rows.stiffness(log, beta, covariance), time.perf_counter() - begin)
+    return with_interval(log, *rows.stiffness(log, beta, covariance), time.perf_counter() - begin)
 
 
 def solve(X: Array, y: Array, known: Known) -> tuple[Array, Array]:
