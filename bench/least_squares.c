@@ -96,25 +96,3 @@ void covariance_run(void *rls, const double *F, const double *y, int samples)
     (void)y;
     c->run(c->P, F, samples);
 }
-
-/* Independent chains x = a x + b, so many that every unit of the processor always has work. */
-double peak_run(int times)
-{
-    double x[BENCH_PEAK], sum = 0.0;
-    const volatile double a = 0.999, b = 0.001;
-    const double factor = a, term = b;
-    int i, k;
-
-    for (i = 0; i < BENCH_PEAK; ++i) {
-        x[i] = i;
-    }
-    for (k = 0; k < times; ++k) {
-        for (i = 0; i < BENCH_PEAK; ++i) {
-            x[i] = factor * x[i] + term;
-        }
-    }
-    for (i = 0; i < BENCH_PEAK; ++i) {
-        sum += x[i];
-    }
-    return sum;
-}

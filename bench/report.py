@@ -15,20 +15,13 @@ Times = Mapping[str, NDArray[np.float64]]
 the subject did not run."""
 
 SIZES = (3, 6, 18, 40)
-MAKES = ("sigmahat", "eigen", "dlib", "numpy", "covariance")
-NATIVE = ("sigmahat native", "eigen native")
 LABELS = {
+    "sigmahat": "sigmahat",
     "eigen": "Eigen",
-    "sigmahat native": "sigmahat, `-march=native`",
-    "eigen native": "Eigen, `-march=native`",
+    "dlib": "dlib",
     "covariance": "covariance alone, plain loops",
 }
 FMPY = "simulate_fmu of FMPy"
-
-
-def update_flops(n: int) -> int:
-    """Multiplications and additions of a UD update: 6 per entry of U, 16 per parameter."""
-    return 6 * n * (n - 1) // 2 + 16 * n
 
 
 def ratio(times: Times, one: str, other: str) -> float:
@@ -92,19 +85,9 @@ def table(times: Times) -> str:
 
     lines += ["", "Least squares, one sample, median (min) [ns]:", ""]
     lines += ["| | " + " | ".join(f"{n} parameters" for n in SIZES) + " |", "|---" * 5 + "|"]
-    for make in (*MAKES, *NATIVE):
+    for make, label in LABELS.items():
         cells = (f"{_short(times, f'{make} {n}')}" for n in SIZES)
-        lines.append(f"| {LABELS.get(make, make)} | " + " | ".join(cells) + " |")
-    flop = float(np.nanmin(times["peak"]))
-    limit = (f"{update_flops(n) * flop:.1f}" for n in SIZES)
-    lines.append("| limit of the machine | " + " | ".join(limit) + " |")
-    both_native = ratio(times, "sigmahat native 18", "eigen native 18")
-    lines += [
-        "",
-        "Least squares, 18 parameters, against Eigen, both compiled with `-march=native`: "
-        f"{both_native:.2f} x.",
-    ]
-
+        lines.append(f"| {label} | " + " | ".join(cells) + " |")
     lines += [
         "",
         "| one tick, step or run | median | min | relative to the bare tick |",
@@ -134,16 +117,3 @@ def _processor() -> str:
 
 def _read(path: Path) -> str:
     return path.read_text(encoding="utf-8") if path.exists() else ""
-
-
-def update(path: Path, mark: str, text: str) -> None:
-    """Replaces the text of a page between <!-- mark --> and <!-- /mark -->.
-
-    Raises ValueError if the page has no such marks.
-    """
-    first, last = f"<!-- {mark} -->", f"<!-- /{mark} -->"
-    before, begin, rest = path.read_text(encoding="utf-8").partition(first)
-    _, end, after = rest.partition(last)
-    if not begin or not end:
-        raise ValueError(f"{path}: expected {first} and {last}")
-    path.write_text(f"{before}{first}\n\n{text}\n{last}{after}", encoding="utf-8")

@@ -11,7 +11,7 @@ import numpy as np
 
 import loops
 import subjects
-from report import Times, table, update
+from report import Times, table
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.opened import installed
 from subjects import Array, Library, Subject
@@ -20,7 +20,7 @@ ROUNDS = 101
 SAMPLES = 10000  # one period of the torques
 
 
-def verify(library: Library, native: Library, python: Fmu) -> None:
+def verify(library: Library, python: Fmu) -> None:
     """Checks that all subjects compute the same results.
 
     Raises AssertionError, which names the subject that does not.
@@ -29,8 +29,7 @@ def verify(library: Library, native: Library, python: Fmu) -> None:
         data = subjects.regression(size, 2000)
         information = np.eye(size) / subjects.P_0 + data.F.T @ data.F
         closed_form = np.linalg.solve(information, data.F.T @ data.y)
-        recursions = subjects.recursions(library, size) | subjects.native_recursions(native, size)
-        for make, rls in recursions.items():
+        for make, rls in subjects.recursions(library, size).items():
             rls.run(data)
             np.testing.assert_allclose(rls.eta, closed_form, 0, 1e-9, err_msg=make)
 
@@ -61,14 +60,11 @@ def measure(every: list[Subject], rounds: int) -> Times:
     return times
 
 
-def all_subjects(library: Library, native: Library, python: Fmu, samples: int) -> list[Subject]:
+def all_subjects(library: Library, python: Fmu, samples: int) -> list[Subject]:
     """All subjects whose time is measured."""
     z: Array = subjects.measurements(samples)
-    few = samples // 5
     return [
-        subjects.peak(library, samples),
-        *(s for n in subjects.SIZES for s in subjects.least_squares(library, n, few)),
-        *(s for n in subjects.SIZES for s in subjects.native_least_squares(native, n, few)),
+        *(s for n in subjects.SIZES for s in subjects.least_squares(library, n, samples // 5)),
         *subjects.ticks(library, python, z),
         *subjects.plant(samples),
         *loops.pair(samples),
@@ -82,15 +78,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--build", type=Path, required=True, help="folder in which bench was built")
     parser.add_argument("--out", type=Path, help="folder for the tables")
-    parser.add_argument("--page", type=Path, help="Markdown page whose tables are replaced")
     parser.add_argument("--check", action="store_true", help="only check that every subject works")
     arguments = parser.parse_args()
     library = Library(arguments.build / "libsigmahat_bench.so")
-    native = Library(arguments.build / "libsigmahat_bench_native.so")
     with tempfile.TemporaryDirectory(prefix="sigmahat-bench-") as name:
         python = subjects.pythonfmu(Path(name))
-        verify(library, native, python)
-        every = all_subjects(library, native, python, 100 if arguments.check else SAMPLES)
+        verify(library, python)
+        every = all_subjects(library, python, 100 if arguments.check else SAMPLES)
         times = measure(every, 1 if arguments.check else ROUNDS)
     if arguments.check:
         print(f"{len(times)} subjects work")
@@ -100,8 +94,6 @@ def main() -> None:
     if arguments.out:
         arguments.out.mkdir(parents=True, exist_ok=True)
         (arguments.out / "bench.md").write_text(text, encoding="utf-8")
-    if arguments.page:
-        update(arguments.page, "bench", text)
 
 
 if __name__ == "__main__":

@@ -36,10 +36,6 @@ BENCH_LEAST_SQUARES(eigen)
 BENCH_EXPORT void *covariance_start(int size);
 BENCH_EXPORT void covariance_run(void *rls, const double *F, const double *y, int samples);
 
-/* 2 `times` BENCH_PEAK multiplications and additions, as fast as the machine can do them. */
-enum { BENCH_PEAK = 24 };
-BENCH_EXPORT double peak_run(int times);
-
 enum { BENCH_MEASUREMENTS = 5 }; /* theta, q, theta_c, tau, tau_e_sensor */
 
 /* A new estimator of the AwAS with n = 6, m = 3, in the modality Residual: "Paper2011", or

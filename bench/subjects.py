@@ -92,21 +92,6 @@ def regression(size: int, samples: int) -> Regression:
     return Regression(np.ascontiguousarray(F), y)
 
 
-class Numpy:
-    """Recursive least squares as written by hand in numpy."""
-
-    def __init__(self, size: int) -> None:
-        self.eta, self.P = np.zeros(size), P_0 * np.eye(size)
-
-    def run(self, data: Regression) -> None:
-        """Processes all samples."""
-        for F, y in zip(data.F, data.y, strict=True):
-            PF = self.P @ F
-            K = PF / (1 + F @ PF)
-            self.eta = self.eta + K * (y - F @ self.eta)
-            self.P = self.P - np.outer(K, PF)
-
-
 class Compiled:
     """A recursion of the shared library."""
 
@@ -127,37 +112,17 @@ class Compiled:
         self._run(self._state, doubles(data.F), doubles(data.y), len(data.y))
 
 
-def recursions(library: Library, size: int) -> dict[str, Any]:
+def recursions(library: Library, size: int) -> dict[str, Compiled]:
     """A new recursion of every make that computes an estimate, by name."""
-    makes = {make: Compiled(library, make, size) for make in ("sigmahat", "eigen", "dlib")}
-    return {**makes, "numpy": Numpy(size)}
+    return {make: Compiled(library, make, size) for make in ("sigmahat", "eigen", "dlib")}
 
 
 def least_squares(library: Library, size: int, samples: int) -> Iterator[Subject]:
     """All recursions, and the covariance update alone as the reference."""
-    whole, short = regression(size, samples), regression(size, max(samples // 50, 1))
+    data = regression(size, samples)
     every = recursions(library, size) | {"covariance": Compiled(library, "covariance", size)}
     for make, rls in every.items():
-        data = short if make == "numpy" else whole
-        yield Subject(f"{make} {size}", _bind(rls.run, data), len(data.y))
-
-
-def native_recursions(native: Library, size: int) -> dict[str, Compiled]:
-    """New recursions that are compiled for the processor of this machine, by name."""
-    return {f"{make} native": Compiled(native, make, size) for make in ("sigmahat", "eigen")}
-
-
-def native_least_squares(native: Library, size: int, samples: int) -> Iterator[Subject]:
-    """The recursions of `native_recursions`."""
-    data = regression(size, samples)
-    for make, rls in native_recursions(native, size).items():
         yield Subject(f"{make} {size}", _bind(rls.run, data), samples)
-
-
-def peak(library: Library, times: int) -> Subject:
-    """Multiplications and additions in registers, without access to memory."""
-    function = library.function("peak_run", ctypes.c_double)
-    return Subject("peak", lambda: function(times), 2 * 24 * times)
 
 
 # Ticks
