@@ -94,7 +94,7 @@ def table(times: Times) -> str:
         "|---" * 4 + "|",
     ]
     for name, of_name in times.items():
-        if not re.match(r"tick|.*FMU|plant|pair|Estimator|simulate|table1", name):
+        if not re.match(r"tick|.*FMU|plant|Estimator|simulate|table1", name):
             continue
         low, middle = float(np.nanmin(of_name)), float(np.nanmedian(of_name))
         relative = ratio(times, name, "tick Paper2011") if re.match("tick|.*FMU", name) else None

@@ -67,7 +67,6 @@ def all_subjects(library: Library, python: Fmu, samples: int) -> list[Subject]:
         *(s for n in subjects.SIZES for s in subjects.least_squares(library, n, samples // 5)),
         *subjects.ticks(library, python, z),
         *subjects.plant(samples),
-        *loops.pair(samples),
         *loops.objects(z),
         *loops.whole(z),
         subjects.table1(15 * samples // 10),
