@@ -1,15 +1,7 @@
-// dlib, and the few lines one would write with Eigen.
+// The few lines one would write with Eigen.
 #include "subjects.h"
 
 #include <Eigen/Dense>
-
-// dlib with its own loops. Debian builds it for a BLAS, whose calls are no faster for matrices of
-// this size, and which would have to be installed too.
-#include <dlib/assert.h>
-#include <dlib/test_for_odr_violations.h>
-#undef DLIB_USE_BLAS
-#undef DLIB_USE_LAPACK
-#include <dlib/svm/rls.h>
 
 namespace {
 
@@ -45,29 +37,6 @@ public:
     }
 };
 
-class Dlibs final : public Recursion {
-    dlib::rls rls{1.0, BENCH_P_0};
-    dlib::matrix<double, 0, 1> f;
-
-public:
-    explicit Dlibs(int size) : f(size)
-    {
-    }
-
-    void run(const double *F, const double *y, int samples) override
-    {
-        for (int k = 0; k < samples; ++k) {
-            std::copy_n(F + k * f.size(), f.size(), f.begin());
-            rls.train(f, y[k]);
-        }
-    }
-
-    void eta(double *to) const override
-    {
-        std::copy(rls.get_w().begin(), rls.get_w().end(), to);
-    }
-};
-
 } // namespace
 
 void *eigen_start(int size)
@@ -92,21 +61,6 @@ void eigen_run(void *rls, const double *F, const double *y, int samples)
 }
 
 void eigen_eta(const void *rls, double *eta)
-{
-    static_cast<const Recursion *>(rls)->eta(eta);
-}
-
-void *dlib_start(int size)
-{
-    return static_cast<Recursion *>(new Dlibs(size));
-}
-
-void dlib_run(void *rls, const double *F, const double *y, int samples)
-{
-    static_cast<Recursion *>(rls)->run(F, y, samples);
-}
-
-void dlib_eta(const void *rls, double *eta)
 {
     static_cast<const Recursion *>(rls)->eta(eta);
 }

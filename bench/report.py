@@ -18,7 +18,6 @@ SIZES = (3, 6, 18, 40)
 LABELS = {
     "sigmahat": "sigmahat",
     "eigen": "Eigen",
-    "dlib": "dlib",
     "covariance": "covariance alone, plain loops",
 }
 FMPY = "simulate_fmu of FMPy"
@@ -42,7 +41,6 @@ def _requirements(times: Times) -> Iterator[Row]:
 
     tick, own, one = "tick Paper2011", "sigmahat 18", "Estimator.run"
     for what, subject, other, limit in (
-        ("least squares, 18 parameters, against dlib", own, "dlib 18", 0.5),
         ("least squares, 18 parameters, against Eigen", own, "eigen 18", 1.0),
         ("tick of Paper2011, against the covariance update alone", tick, "covariance 18", 1.5),
         (

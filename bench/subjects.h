@@ -27,7 +27,6 @@ extern "C" {
     BENCH_EXPORT void make##_eta(const void *rls, double *eta);
 
 BENCH_LEAST_SQUARES(sigmahat)
-BENCH_LEAST_SQUARES(dlib)
 BENCH_LEAST_SQUARES(eigen)
 
 /* For comparison, not a complete recursion: the update of the covariance alone as in textbooks, in

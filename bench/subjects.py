@@ -114,7 +114,7 @@ class Compiled:
 
 def recursions(library: Library, size: int) -> dict[str, Compiled]:
     """A new recursion of every make that computes an estimate, by name."""
-    return {make: Compiled(library, make, size) for make in ("sigmahat", "eigen", "dlib")}
+    return {make: Compiled(library, make, size) for make in ("sigmahat", "eigen")}
 
 
 def least_squares(library: Library, size: int, samples: int) -> Iterator[Subject]:

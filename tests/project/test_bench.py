@@ -31,7 +31,7 @@ def test_all_subjects_work_and_compute_the_same(build: Path, tmp_path: Path) -> 
         text=True,
     )
     if "apt-get install" in configured.stderr:
-        missing("a library of the bench", "apt-get install libdlib-dev libeigen3-dev")
+        missing("Eigen", "apt-get install libeigen3-dev")
     assert configured.returncode == 0, configured.stderr
     for command in (
         ["cmake", "--build", str(tmp_path)],
