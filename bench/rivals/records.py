@@ -55,6 +55,11 @@ class Estimate:
     remark: str = ""  # why there is none
 
 
+def encoder_std(counts: int) -> float:
+    """Standard deviation of the rounding error of an encoder [rad]; 0 if it does not round."""
+    return 2 * np.pi / counts / np.sqrt(12) if counts else 0.0
+
+
 CONFIDENT = 0.1
 """A rival is confident while its standard deviation is below this share of a positive stiffness, as
 FilteredRegression is at most."""

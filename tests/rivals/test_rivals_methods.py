@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from closed_form_joint import LINEAR, TAU_COULOMB, closed_form_log
-from rivals.methods import METHODS, idim_iv, kalman, least_squares
+from rivals.methods import METHODS, kalman, least_squares
 from rivals.records import Array, JointLog
-from rivals.regression import COULOMB, Regression, filters, regression
 from rivals.score import score
 from rivals.spring import spring
 
@@ -16,7 +15,6 @@ KINDS = ("series_elastic", "variable_stiffness")
 ERRORS = {
     "FilteredRegression": 0.5,
     "least_squares": 0.1,
-    "idim_iv": 0.1,
     "kalman": 1.0,
 }
 """Largest root mean square error of the stiffness [%]."""
@@ -41,12 +39,11 @@ def test_on_line_intervals_hold_the_truth(method: str, log: JointLog) -> None:
 
 
 @pytest.mark.slow("the logs of 40 seeds")
-@pytest.mark.parametrize("method", ["least_squares", "idim_iv"])
-def test_the_error_off_line_is_as_large_as_its_standard_deviation(method: str) -> None:
+def test_the_error_off_line_is_as_large_as_its_standard_deviation() -> None:
     ratios = []
     for seed in range(40):
         log = closed_form_log("series_elastic", noise_tau=0.01, seed=seed)
-        found = METHODS[method](log)
+        found = least_squares.estimate(log)
         ratios.append((found.stiffness[5000] - LINEAR) / found.std[5000])
     # The mean square of 40 numbers of variance 1 is within 0.55 and 1.55 with 99 %.
     assert 0.55 < np.mean(np.square(ratios)) < 1.55
@@ -60,28 +57,9 @@ def test_paper2011_finds_the_stiffness_of_a_joint_without_coulomb_friction() -> 
     assert not estimate.confident.any()
 
 
-def noisy(seed: int = 1) -> tuple[Array, Array, Array]:
-    """A column without noise, the same with noise of the same variance, and 2 times the first."""
-    rng = np.random.default_rng(seed)
-    clean, noise = rng.normal(size=(2, 20000))
-    x = np.column_stack([np.zeros((20000, 4)), clean + noise])
-    x[:, :4] = rng.normal(size=(20000, 4))
-    return np.column_stack([x[:, :4], clean]), x, 2 * clean
-
-
-def test_noise_of_a_column_halves_what_least_squares_finds_but_not_an_instrument() -> None:
-    clean, X, y = noisy()
-    known = closed_form_log("series_elastic").known
-    without = type(known)(**{**vars(known), "relative_std_B": 0.0, "relative_std_D_theta": 0.0})
-    attenuated, _ = least_squares.solve(X, y, without)
-    assert attenuated[4] == pytest.approx(1.0, abs=0.03)
-    instrumental, covariance = idim_iv.solve(clean, X, y, without)
-    assert instrumental[4] == pytest.approx(2.0, abs=4 * np.sqrt(covariance[4, 4]))
-
-
 def test_the_data_sheet_decides_where_the_data_say_nothing() -> None:
     log = closed_form_log("series_elastic")
-    rows = regression(log)
+    rows = least_squares.regression(log)
     X = rows.X.copy()
     X[:, 0] = 1e-3 * X[:, 4]  # inertia and stiffness look the same
     beta, covariance = least_squares.solve(X, rows.y, log.known)
@@ -90,43 +68,21 @@ def test_the_data_sheet_decides_where_the_data_say_nothing() -> None:
 
 
 def test_the_frequency_of_the_dynamics_is_that_of_the_fastest_motion() -> None:
-    passed = filters(closed_form_log("series_elastic"))
-    assert passed.dynamics == pytest.approx(2.3, abs=0.2)
+    log = closed_form_log("series_elastic")
+    f = least_squares.dynamics(log)
+    assert f == pytest.approx(2.3, abs=0.2)
     # What passes the decimation is below 0.8 times the new Nyquist frequency.
-    assert 2 * passed.dynamics <= 0.8 / passed.sample_period / passed.decimation / 2
-
-
-def exact() -> tuple[JointLog, Regression, Array]:
-    """A log without noise, its rows, and its coefficients."""
-    log = closed_form_log("series_elastic", noise_tau=0.0, counts=0)
-    known = log.known
-    beta = [known.B, known.D_theta, TAU_COULOMB, 0.0, LINEAR * known.range_phi, 0.0]
-    return log, regression(log), np.array(beta)
+    T = log.sample_period
+    assert 2 * f <= 0.8 / T / least_squares.decimation(T, f) / 2
 
 
 def test_columns_are_those_of_the_equation() -> None:
-    _, rows, beta = exact()
-    assert rows.X[:, COULOMB] @ rows.X[:, COULOMB] > 0
-    np.testing.assert_allclose(rows.X @ beta, rows.y, atol=2e-3 * np.abs(rows.y).max())
-
-
-def test_the_simulated_motor_moves_as_the_joint_did() -> None:
-    log, rows, beta = exact()
+    log = closed_form_log("series_elastic", noise_tau=0.0, counts=0)
     known = log.known
-    motion = idim_iv.simulate(log, rows, beta)
-    assert motion is not None
-    # In a loop with the gain kp the motor is off by the torque over kp, while it moves steadily.
-    kp = known.gamma**2 * known.B * (idim_iv.LOOP / log.sample_period) ** 2
-    off = np.abs(motion.theta - log.theta)[500:-500]
-    assert off.max() < 1.5 * known.gamma * np.abs(log.tau).max() / kp
-    assert off.max() < 2e-3 * np.ptp(log.theta)
-
-
-def test_a_simulation_that_diverges_is_none() -> None:
-    log = closed_form_log("series_elastic")
-    rows = regression(log)
-    beta = np.array([log.known.B, log.known.D_theta, 0.0, 0.0, -1e4, 0.0])
-    assert idim_iv.simulate(log, rows, beta) is None
+    beta = [known.B, known.D_theta, TAU_COULOMB, 0.0, LINEAR * known.range_phi, 0.0]
+    rows = least_squares.regression(log)
+    assert rows.X[:, least_squares.COULOMB] @ rows.X[:, least_squares.COULOMB] > 0
+    np.testing.assert_allclose(rows.X @ beta, rows.y, atol=2e-3 * np.abs(rows.y).max())
 
 
 def test_the_derivatives_of_the_kalman_filter_are_those_of_its_prediction() -> None:

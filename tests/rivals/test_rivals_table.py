@@ -16,13 +16,13 @@ def of(method: str, seed: int, interval_score: float, wrong: float = 0.0) -> Res
     return Result("arm", seed, method, 0.5, found, "")
 
 
-FAILED = Result("arm", 2, "idim_iv", 0.1, None, "not converged")
+FAILED = Result("arm", 2, "least_squares", 0.1, None, "not converged")
 RESULTS = [
     of("FilteredRegression", 1, 8.0),
     of("kalman", 1, 9.0),
     of("FilteredRegression", 2, 6.0),
     of("kalman", 2, 4.0, wrong=25.0),
-    of("idim_iv", 1, float("nan")),
+    of("least_squares", 1, float("nan")),
     FAILED,
 ]
 
@@ -39,7 +39,7 @@ def test_a_row_has_medians_and_means_over_the_logs() -> None:
     lines = page(RESULTS).splitlines()
     row = next(line for line in lines if line.startswith("| arm | FilteredRegression"))
     assert cells(row)[2:] == ["2 of 2", "3", "5", "90", "7", "50", "0.5", "100", "0"]
-    row = next(line for line in lines if line.startswith("| arm | idim_iv"))
+    row = next(line for line in lines if line.startswith("| arm | least_squares"))
     assert cells(row)[2:7] == ["1 of 2", "2", "5", "90", "-"]
     row = next(line for line in lines if line.startswith("| arm | kalman"))
     assert cells(row)[-1] == "12.5"

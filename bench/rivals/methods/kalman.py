@@ -23,8 +23,14 @@ from math import cosh, tanh
 
 import numpy as np
 
-from rivals.records import Array, Estimate, JointLog, none_found, with_interval
-from rivals.regression import encoder_std
+from rivals.records import (
+    Array,
+    Estimate,
+    JointLog,
+    encoder_std,
+    none_found,
+    with_interval,
+)
 from rivals.spring import Spring, spring
 
 WALK = 0.01  # of the stiffness in a second, relative to its scale
