@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-import loops
 import subjects
 from report import Times, table
 from sigmahat.fmi.instance import Fmu
@@ -67,8 +66,8 @@ def all_subjects(library: Library, python: Fmu, samples: int) -> list[Subject]:
         *(s for n in subjects.SIZES for s in subjects.least_squares(library, n, samples // 5)),
         *subjects.ticks(library, python, z),
         *subjects.plant(samples),
-        *loops.objects(z),
-        *loops.whole(z),
+        *subjects.objects(z),
+        *subjects.whole(z),
         subjects.table1(15 * samples // 10),
     ]
 

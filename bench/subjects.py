@@ -7,12 +7,15 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+import fmpy
 import numpy as np
 from numpy.typing import NDArray
 
+import sigmahat
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.fmi.master import simulate
 from sigmahat.fmi.opened import installed
@@ -24,6 +27,7 @@ Array = NDArray[np.float64]
 
 HERE = Path(__file__).parent
 SIZES = (3, 6, 18, 40)
+JOINTS = 30
 P_0 = 1e3  # as BENCH_P_0 in subjects.h
 METHODS = ("Paper2011", "FilteredRegression", "FilteredRegression, 21 columns")
 MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
@@ -122,7 +126,7 @@ def least_squares(library: Library, size: int, samples: int) -> Iterator[Subject
     data = regression(size, samples)
     every = recursions(library, size) | {"covariance": Compiled(library, "covariance", size)}
     for make, rls in every.items():
-        yield Subject(f"{make} {size}", _bind(rls.run, data), samples)
+        yield Subject(f"{make} {size}", partial(rls.run, data), samples)
 
 
 # Ticks
@@ -189,7 +193,7 @@ def pythonfmu(folder: Path) -> Fmu:
 def ticks(library: Library, python: Fmu, z: Array) -> Iterator[Subject]:
     """The tick of the C library, and the same in FMUs."""
     for method in METHODS:
-        yield Subject(f"tick {method}", _bind(Ticks(library, method).run, z), len(z))
+        yield Subject(f"tick {method}", partial(Ticks(library, method).run, z), len(z))
     few = np.ascontiguousarray(z[: max(len(z) // 100, 1)])
     for name, fmu, rows in (
         ("FMU", installed("StiffnessEstimator"), z),
@@ -210,13 +214,60 @@ def plant(samples: int) -> Iterator[Subject]:
         yield Subject(name, steps.run, samples)
 
 
+def objects(z: Array) -> Iterator[Subject]:
+    """sigmahat.Estimator over arrays: one joint, and many."""
+    columns = dict(zip(MEASUREMENTS, np.ascontiguousarray(z.T), strict=True))
+    one = sigmahat.Estimator({}, OUTPUTS)
+    yield Subject("Estimator.run", lambda: one.run(**columns), len(z))
+    short = {name: np.tile(each[: len(z) // 10], (JOINTS, 1)) for name, each in columns.items()}
+    many = sigmahat.Estimator([{}] * JOINTS, OUTPUTS)
+    count = JOINTS * (len(z) // 10)
+    yield Subject(f"Estimator.run, {JOINTS} joints", lambda: many.run(**short), count)
+    regression = sigmahat.Estimator({"method": "FilteredRegression"}, OUTPUTS)
+    yield Subject("Estimator.run, FilteredRegression", lambda: regression.run(**columns), len(z))
+    row = z[0].tolist()
+    named = dict(zip(MEASUREMENTS, row, strict=True))
+    few = max(len(z) // 100, 1)
+
+    def ticks() -> None:
+        for _ in range(few):
+            one.tick(**named)
+
+    yield Subject("Estimator.tick", ticks, few)
+
+
+def whole(z: Array) -> Iterator[Subject]:
+    """The estimator FMU over measurements, with all that comes before and after: FMPy and ours."""
+    t = T * np.arange(len(z))
+    names = ("time", *MEASUREMENTS)
+    rows = np.rec.fromarrays([t, *z.T], [(name, float) for name in names])
+    path = sigmahat.fmu("StiffnessEstimator")
+    yield Subject(
+        "simulate_fmu of FMPy",
+        lambda: fmpy.simulate_fmu(
+            path, stop_time=t[-1], step_size=T, output_interval=T, input=rows, output=OUTPUTS
+        ),
+        len(z),
+        every=20,
+    )
+    # The FMU in the place of a plant, so that the measurements are its inputs.
+    inputs = {name: partial(_recorded, rows[name]) for name in MEASUREMENTS}
+    plant = sigmahat.Plant(str(path), {}, inputs, OUTPUTS)
+    yield Subject(
+        "simulate of sigmahat",
+        lambda: sigmahat.simulate(plant, {}, T, len(z) - 1),
+        len(z),
+        every=5,
+    )
+
+
 def table1(steps: int) -> Subject:
     """The scenario with one estimator, as `sigmahat` runs it, without the start of a process."""
     scenario = SCENARIOS["table1"]
     estimators = {"RESIDUAL": scenario.estimators["RESIDUAL"]}
-    run = _bind(simulate, scenario.plant, estimators, T, steps)
+    run = partial(simulate, scenario.plant, estimators, T, steps)
     return Subject("table1 RESIDUAL", run, 1, every=20)
 
 
-def _bind(function: Callable[..., object], *arguments: Any) -> Callable[[], object]:
-    return lambda: function(*arguments)
+def _recorded(values: Array, _t: Array) -> Array:
+    return values
