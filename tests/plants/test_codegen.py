@@ -33,14 +33,6 @@ def test_elimination_solves_sparse_systems(seed: int) -> None:
     np.testing.assert_allclose(x, np.linalg.solve(values, right), rtol=1e-12, atol=1e-13)
 
 
-def test_elimination_starts_where_it_fills_in_least() -> None:
-    size = 30
-    arrow = np.eye(size) * 4
-    arrow[0, :] = arrow[:, 0] = 1.0  # full if the first pivot were the first row
-    elimination = Elimination(ca.SX.sym("A", ca.sparsify(arrow).sparsity()))
-    assert elimination.factors.size1() == 3 * size - 2
-
-
 def test_code_is_the_same_in_every_process(tmp_path: Path) -> None:
     texts = []
     for seed in ("1", "2"):
@@ -53,11 +45,6 @@ def test_code_is_the_same_in_every_process(tmp_path: Path) -> None:
         texts.append([(tmp_path / seed / name).read_text() for name in names])
     assert texts[0] == texts[1]
     assert str(tmp_path) not in "".join(texts[0])
-
-
-def test_unknown_plant() -> None:
-    with pytest.raises(LookupError, match=r"no plant Awas; there are .*AwasPlant"):
-        plant_codegen.find("Awas")
 
 
 def mass() -> PlantEquations:
@@ -81,22 +68,6 @@ def test_functions_take_variables_in_the_order_asked_for() -> None:
     assert by_name["sh_plant_start"](p).full().ravel().tolist() == [0.0, 7.0]
     assert by_name["sh_plant_xdot"]([1.0, 3.0], 8.0, p).full().ravel().tolist() == [3.0, 4.0]
     assert float(by_name["sh_plant_outputs"]([1.0, 3.0], 8.0, p, 0.5)) == 1.0 + 2 * 0.5
-
-
-@pytest.mark.parametrize(
-    ("parameters", "inputs", "outputs", "message"),
-    [
-        (["mass"], ["force"], ["x"], "the model description has no parameter initial.v"),
-        (["mass", "initial.v", "b"], ["force"], ["x"], "the equations have no parameter b"),
-        (["mass", "initial.v"], ["f"], ["x"], "the equations have no input f"),
-        (["mass", "initial.v"], ["force"], ["x", "v"], "the equations have no output v"),
-    ],
-)
-def test_names_must_be_those_of_the_model_description(
-    parameters: list[str], inputs: list[str], outputs: list[str], message: str
-) -> None:
-    with pytest.raises(ValueError, match=message):
-        plant_codegen.functions(mass(), parameters, inputs, outputs)
 
 
 def test_a_state_needs_its_derivative() -> None:

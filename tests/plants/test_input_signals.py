@@ -9,7 +9,7 @@ import pytest
 
 import sigmahat
 from fmi_instance import OK, Instance
-from plant_runs import INPUTS, QUIET, STATES, Array, run_awas, run_plant, times
+from plant_runs import QUIET, STATES, Array, run_awas, run_plant, times
 
 FIRST = {"signal.tau.amplitude": 0.3, "signal.tau.frequency": 2.0}
 SECOND = {"signal.tau_c.amplitude": 8.0, "signal.tau_c.frequency": 3.0}
@@ -78,12 +78,6 @@ def test_a_signal_begins_at_zero_at_any_start_time() -> None:
         assert late.get_all(names) == early.get_all(names)
         assert early.get("tau_measured") == pytest.approx(0.3 * np.sin(4 * np.pi * 100 / 1024))
         assert early.get("q") != 0.0
-
-
-def test_inputs_without_a_motor_have_none() -> None:
-    with Instance(sigmahat.fmu("AwasPlant")) as fmu:
-        found = {name.split(".")[1] for name in fmu.variables if name.startswith("signal.")}
-    assert found == set(INPUTS) - {"tau_ext"}
 
 
 def test_a_late_importer_gets_the_sine_of_the_right_time() -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from c_library import REPOSITORY, declarations
-from plant_runs import Array, sinusoids, times
+from plant_runs import Array
 from sigmahat.export import plant_codegen
 from sigmahat.plants.equations import PlantEquations
 
@@ -183,32 +183,3 @@ def test_a_state_that_is_no_number_is_reported(radau: Radau, value: float) -> No
     x = START.copy()
     x[POSITION] = value
     assert radau.integrate(x, 1.0, MILD)[1] == 0
-
-
-@pytest.mark.parametrize(("held", "most"), [(False, 1030), (True, 6000)])
-def test_a_millisecond_of_the_awas_is_one_step_or_some_if_torques_jump(
-    tmp_path: Path, held: bool, most: int
-) -> None:
-    plant = plant_codegen.find("AwasPlant")
-    radau = Radau(plant, tmp_path)
-    nominal = {
-        "link.M": 0.1,
-        "link.D_q": 0.15,
-        "motor.B": 2.3e-5,
-        "motor.D_theta": 1e-3,
-        "motor.gamma": 50.0,
-        "motor_c.B": 1.29e-7,
-        "motor_c.D": 0.0141,
-        "motor_c.gamma": 23.0,
-        "spring.k_s": 14220.0,
-        "spring.r_0": 0.1,
-        "spring.b": 0.0025 / (2 * math.pi),
-    }
-    p = np.array([nominal.get(name, 0.0) for name in plant.parameters])
-    torques = sinusoids(times(1e-3, 1.0), (0.3, 0.1), (8.0, 0.1), (0.0, 0.0))
-    slopes = np.diff(torques, axis=0) / 1e-3 * (not held)
-    x, h, total = np.array([0.0, 0.0, 75.0, 0.0, 0.0, 0.0]), math.inf, 0
-    for u, du in zip(torques[:-1], slopes, strict=True):
-        x, steps, h = radau.integrate(x, 1e-3, p, u, du, h)
-        total += steps
-    assert 1000 <= total < most

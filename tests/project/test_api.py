@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import re
 from pathlib import Path
 
@@ -22,30 +21,6 @@ def page(site: Path) -> str:
 @pytest.mark.parametrize("name", sorted({*sigmahat.__all__} - {"__version__"}))
 def test_a_public_name_is_on_the_page(name: str, page: str) -> None:
     assert f'id="sigmahat.{name}"' in page
-
-
-def members() -> list[tuple[str, object]]:
-    """Public classes and functions, and public methods of the classes."""
-    found = [(name, getattr(sigmahat, name)) for name in sigmahat.__all__ if name[0] != "_"]
-    for name, each in list(found):
-        if inspect.isclass(each):
-            own = (item for item in vars(each).items() if item[0][0] != "_")
-            found += [(f"{name}.{key}", item) for key, item in own if inspect.isfunction(item)]
-    return found
-
-
-@pytest.mark.parametrize(
-    ("name", "member"), [pytest.param(*each, id=each[0]) for each in members()]
-)
-def test_a_public_function_is_documented_and_typed(name: str, member: object) -> None:
-    text = inspect.getdoc(member) or ""
-    assert text and not text.startswith(f"{name.split('.')[-1]}("), "it has no docstring of its own"
-    if inspect.isfunction(member):
-        signature = inspect.signature(member)
-        assert signature.return_annotation is not inspect.Signature.empty
-        for parameter in signature.parameters.values():
-            typed = parameter.annotation is not inspect.Parameter.empty
-            assert typed or parameter.name == "self", parameter.name
 
 
 def test_all_public_names_are_imported_lazily_and_listed() -> None:

@@ -47,20 +47,3 @@ def test_every_function_of_the_library_exists() -> None:
     for page in PAGES:
         named = set(re.findall(r"\bsh_\w*[a-z]\b", page.read_text(encoding="utf-8")))
         assert {name for name in named if name not in code and "NAME" not in name} == set(), page
-
-
-@pytest.mark.parametrize(
-    ("word", "section"), [("[Dd]etail", "### Details"), ("point", "## The method")]
-)
-def test_the_code_cites_every_number_of_the_method(word: str, section: str) -> None:
-    """Each detail and each point of the page stands in the code that computes it, and no other."""
-    page = (REPOSITORY / "docs" / "filtered-regression.md").read_text(encoding="utf-8")
-    own = re.split(r"^##", page.split(section, 1)[1], maxsplit=1, flags=re.M)[0]
-    numbers = set(map(int, re.findall(r"^(\d+)\. ", own, re.M)))
-    code = "".join(f.read_text() for f in (REPOSITORY / "c" / "filtered_regression").iterdir())
-    cited = {
-        int(number)
-        for some in re.findall(rf"{word}s? (\d+(?:(?:, | and )\d+)*)", code)
-        for number in re.findall(r"\d+", some)
-    }
-    assert cited == numbers

@@ -5,7 +5,6 @@ That every page is in the navigation, and that Sphinx has nothing to warn of, th
 
 from __future__ import annotations
 
-import json
 import re
 from functools import cache
 from pathlib import Path
@@ -56,11 +55,6 @@ def anchors(page: Path) -> set[str]:
     return set(read(page).xpath("//@id | //a/@name"))
 
 
-def test_every_page_of_docs_is_on_the_site(site: Path) -> None:
-    sources = [page.relative_to(DOCS).with_suffix(".html") for page in DOCS.rglob("*.md")]
-    assert {site / page for page in sources} <= set(pages(site))
-
-
 def test_no_link_of_the_site_is_broken(site: Path) -> None:
     broken, checked = [], 0
     for page in pages(site):
@@ -84,20 +78,6 @@ def test_the_site_loads_nothing_from_the_network(site: Path) -> None:
     for style in site.rglob("*.css"):
         text = style.read_text(encoding="utf-8")
         assert not re.search(r"""(?:@import\s+|url\()["']?(?:https?:)?//""", text), style.name
-
-
-@pytest.fixture(scope="module")
-def index(site: Path) -> Any:
-    """What the search of the site looks into."""
-    text = (site / "searchindex.js").read_text(encoding="utf-8")
-    return json.loads(text.removeprefix("Search.setIndex(").removesuffix(")"))
-
-
-@pytest.mark.parametrize("word", WORDS)
-def test_the_index_of_the_search_has_the_word(word: str, index: Any) -> None:
-    for part in word.lower().split("."):
-        found = index["terms"][part]
-        assert found or found == 0  # a number of a page, or a list of them
 
 
 @pytest.mark.parametrize("name", FMUS)
