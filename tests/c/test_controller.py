@@ -91,21 +91,6 @@ def test_single_precision_gives_the_stiffness_of_table1(
     assert deviation(single, double) < (1e-3 if configuration in PAPER else 3e-3)
 
 
-@pytest.mark.parametrize("configuration", "ag")
-def test_a_microcontroller_in_single_precision_gives_the_stiffness_of_table1(
-    configuration: str, folder: Path, ninja: Path, tmp_path: Path
-) -> None:
-    z = measurements(15001)
-    single = replay(
-        cross_build("tests/replay", TARGETS["Cortex-M4F"], "float", ninja, folder),
-        *(z, configuration, tmp_path),
-    )
-    double = replay(
-        cross_build("tests/replay", HOST, "double", ninja, folder), z, configuration, tmp_path
-    )
-    assert deviation(single, double) < 1e-3
-
-
 # Without a unit for double, a tick of FilteredRegression takes longer than a millisecond.
 @pytest.mark.parametrize(
     ("name", "real"), [("Cortex-M4F", "float"), ("Cortex-M7", "float"), ("Cortex-M7", "double")]
@@ -164,13 +149,6 @@ def test_smaller_sizes_cost_what_the_page_says(
     shares = (100 * joints * count / 168e3 for count in (mean, longest))
     expected = [mean, longest, *shares, joints * int(memory[1])]
     assert cells == pytest.approx(expected, rel=0.1)
-
-
-def test_columns_for_which_there_is_no_memory_are_refused(folder: Path, ninja: Path) -> None:
-    sizes = ("SH_MAX_N=3", "SH_MAX_M=1", "SH_MAX_COLUMNS=6")
-    tree = cross_build("examples/controller", TARGETS["Cortex-M4F"], "float", ninja, folder, sizes)
-    text = run("cmake", "--build", str(tree), "--target", "cost")
-    assert re.search("all columns: .* compiled for at most 6 columns", text)
 
 
 @each_real

@@ -171,13 +171,6 @@ def test_the_estimate_follows_a_spring_that_ages_and_does_not_change_at_rest(c: 
     assert np.all(np.linalg.eigvalsh(P) > 0)
 
 
-def test_no_variance_grows_beyond_the_prior(c: Library) -> None:
-    estimator = Estimator(c, {**ALL, "regression.drift": 1e3})
-    estimator.run(Joint(deformation=0.005).measurements())
-    assert np.all(np.diag(covariance(estimator)) <= 1 + 1e-9)
-    assert np.all(np.linalg.eigvalsh(covariance(estimator)) > 0)
-
-
 # Errors that do not average out
 
 
@@ -253,16 +246,6 @@ def test_the_filters_start_again_when_the_modality_changes(c: Library) -> None:
     assert np.all(found["a"][:30] == 0)  # no update while the filters settle
     assert np.all(found["a"][50:] == 1)
     assert np.all(np.abs(found["sigma"] / joint.sigma[3000:] - 1) < 0.05)
-
-
-@pytest.mark.parametrize("huge", [1e11, -1e11])
-def test_outputs_stay_finite_after_huge_measurements(c: Library, huge: float) -> None:
-    z = Joint(duration=1.0).measurements()
-    z[300] = huge
-    estimator = Estimator(c, {**ALL, "regression.drift": 1e-2})
-    found = estimator.run(z)
-    assert all(np.all(np.isfinite(found[name])) for name in ("sigma", "sigma_std", "eta", "tau_e"))
-    assert np.all(np.isfinite(covariance(estimator)))
 
 
 @pytest.mark.parametrize("where", [3, 40, 1000])

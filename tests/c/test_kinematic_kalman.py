@@ -12,7 +12,7 @@ from scipy.linalg import solve_discrete_are
 
 import oracle
 from c_library import Array, Library, load
-from reference_plant import round_to_counts, table1_recording
+from reference_plant import table1_recording
 
 T = 1e-3
 COUNTS = 40000.0
@@ -90,38 +90,6 @@ def test_a_ramp_is_followed_without_error(c: Library, kind: int, slope: float) -
     track = run(c, z, kind=kind)
     assert track[-1, 0] == pytest.approx(z[-1], rel=1e-12)
     assert track[-1, 1] == pytest.approx(slope, rel=1e-9)
-
-
-@pytest.mark.parametrize("counts_per_sample", [0.3, 1.7])
-def test_quantisation_is_smoothed(c: Library, counts_per_sample: float) -> None:
-    # GIVEN a quantised ramp WHEN the velocity is a difference quotient THEN it is always a whole
-    # number of counts per sample; WHEN it is filtered THEN its mean is the same and it varies less
-    slope = counts_per_sample * W_S
-    z = round_to_counts(slope * T * np.arange(3000, dtype=np.float64), COUNTS)
-    differenced = run(c, z, kind=3)[1000:, 1]
-    filtered = run(c, z, kind=1)[1000:, 1]
-    assert np.allclose(differenced / W_S, np.round(differenced / W_S), atol=1e-9)
-    assert filtered.mean() == pytest.approx(slope, rel=1e-2)
-    assert np.std(filtered - slope) < 0.7 * np.std(differenced - slope)
-
-
-def test_a_slower_filter_is_smoother(c: Library) -> None:
-    z = round_to_counts(0.3 * W_S * T * np.arange(3000, dtype=np.float64), COUNTS)
-    spread = [run(c, z, V_a=V_a)[1000:, 1].std() for V_a in (1e6, 1e8, 1e10)]
-    assert spread[0] < spread[1] < spread[2]
-
-
-def test_finite_differences_give_the_difference_quotient(c: Library) -> None:
-    z = np.array([1.0, 1.25, 0.75, 0.75])
-    track = run(c, z, kind=3, dt=0.5)
-    assert track.tolist() == [[1.0, 0.0], [1.25, 0.5], [0.75, -1.0], [0.75, 0.0]]
-
-
-def test_the_variance_at_one_count_per_sample_is_the_mean_of_both_limits(c: Library) -> None:
-    # (11): the exponent is 0 if the velocity is one count per sample
-    assert variance(c, W_S) == pytest.approx((10.0 + 0.1) / 2, rel=1e-14)
-    assert variance(c, -W_S) == variance(c, W_S)
-    assert variance(c, 1 / W_S, weighting=2) == pytest.approx((10.0 + 0.1) / 2, rel=1e-14)
 
 
 def test_variance_falls_from_rest_to_fast_motion(c: Library) -> None:

@@ -75,6 +75,9 @@ def test_start_values_and_ranges_are_those_of_the_list(c: Library, listed: list[
                 beyond = limit + math.copysign(1.0, outward)
             found = c.violation(c.parameters({variable.name: kind(beyond)}))
             assert found is not None and found[:2] == (variable.name, beyond)
+            if kind is float:
+                found = c.violation(c.parameters({variable.name: math.nan}))
+                assert found is not None and found[0] == variable.name
             if limit is not None:
                 found = c.violation(c.parameters({variable.name: kind(limit)}))
                 assert found is None or "<" in found[2], found  # a limit by other parameters

@@ -49,16 +49,6 @@ def run(
     return np.array(estimate)
 
 
-def test_residual_of_a_motor_that_is_held_still(c: Library) -> None:
-    # GIVEN a motor that is held still, so that the flexibility torque is -gamma tau by (3)
-    # WHEN the torque has acted for 1 / K_I THEN the residual has reached 63 % of it
-    zero = np.zeros(1000)
-    estimate = run(c, zero, zero, np.full(1000, 0.2))
-    reached = estimate[round(1 / (K_I * T))] / (-GAMMA * 0.2)
-    assert reached == pytest.approx(1 - math.exp(-1), rel=1e-3)
-    assert estimate[-1] == pytest.approx(-GAMMA * 0.2, rel=1e-6)
-
-
 def test_step_in_closed_form(c: Library) -> None:
     # The step response of the trapezoidal rule is 1 - pole^k
     zero = np.zeros(300)
@@ -88,20 +78,6 @@ def test_residual_is_zero_if_the_torque_is_that_of_friction_and_inertia(c: Libra
     tau = -B * GAMMA * w**2 * np.sin(w * t) + D_THETA * GAMMA * w * np.cos(w * t)
     estimate = run(c, np.sin(w * t), w * np.cos(w * t), tau)
     assert np.max(np.abs(estimate)) < 1e-4 * GAMMA * np.max(np.abs(tau))
-
-
-def test_bandwidth_is_K_I(c: Library) -> None:
-    # GIVEN a flexibility torque at the frequency K_I WHEN it has settled THEN the residual has
-    # 1 / sqrt(2) of the amplitude and a phase of -45 degrees
-    t = T * np.arange(4000)
-    zero = np.zeros(len(t))
-    estimate = run(c, zero, zero, -np.sin(K_I * t) / GAMMA)[2000:]
-    wave = np.exp(-1j * K_I * t[2000:])
-    period = round(2 * math.pi / (K_I * T))
-    last = len(wave) // period * period
-    response = 2j * np.mean((estimate * wave)[:last])
-    assert abs(response) == pytest.approx(1 / math.sqrt(2), rel=1e-2)
-    assert math.degrees(np.angle(response)) == pytest.approx(-45, abs=1)
 
 
 def test_after_lost_samples_the_residual_continues_from_its_last_value(c: Library) -> None:

@@ -10,10 +10,8 @@ import fmpy
 import lief
 import pytest
 
+import sigmahat
 from released_fmus import FMUS, TWINS
-
-each_fmu = pytest.mark.parametrize("name", FMUS)
-each_twin = pytest.mark.parametrize("twin", TWINS)
 
 # Functions of the header that are not for co-simulation.
 MODEL_EXCHANGE = {
@@ -29,138 +27,88 @@ MODEL_EXCHANGE = {
     "fmi2GetNominalsOfContinuousStates",
 }
 BY_THE_LINKER = {"__mh_dylib_header", "___dso_handle"}  # symbols of a library of macOS
+WHEEL = f"python/sigmahat-{sigmahat.__version__}-py3-none-{{}}.whl"
+ARCHITECTURES = ("x86_64", "aarch64")
+LINUX = [
+    *((f"{name}.fmu", "binaries/linux64/") for name in FMUS),
+    *(
+        (f"{name}.fmu", f"binaries/{arch}-linux/")
+        for name in TWINS
+        for arch in ("x86_64", "aarch64")
+    ),
+    (WHEEL.format("manylinux_2_17_x86_64"), "sigmahat/fmus/sigmahat_native"),
+]
+WINDOWS = [
+    *((f"{name}.fmu", "binaries/win64/") for name in FMUS),
+    *((f"{name}.fmu", "binaries/x86_64-windows/") for name in TWINS),
+    (WHEEL.format("win_amd64"), "sigmahat/fmus/sigmahat_native"),
+]
+MACOS = [
+    *((f"{name}.fmu", "binaries/darwin64/") for name in FMUS),
+    *(
+        (f"{name}.fmu", f"binaries/{arch}-darwin/")
+        for name in TWINS
+        for arch in ("x86_64", "aarch64")
+    ),
+    (WHEEL.format("macosx_11_0_x86_64"), "sigmahat/fmus/sigmahat_native"),
+]
 
 
-@pytest.fixture(scope="module")
-def functions() -> set[str]:
-    """The functions of FMI 2.0 for Co-Simulation, from the header of the standard."""
-    header = Path(fmpy.__file__).parent / "c-code" / "fmi2Functions.h"
-    declared = set(re.findall(r"^#define \w+\s+fmi2FullName\((\w+)\)", header.read_text(), re.M))
-    assert declared > MODEL_EXCHANGE
-    return declared - MODEL_EXCHANGE
+def functions(archive: str) -> set[str]:
+    """All functions that the standard, or the header of the library in a wheel, declares."""
+    if archive.endswith(".whl"):
+        headers = (Path(__file__).parents[2] / "harness" / "native").glob("*.h")
+        text = "".join(header.read_text() for header in headers)
+        return set(re.findall(r"^SH_EXPORT .*?(\w+)\(", text, re.M))
+    version = 3 if archive.endswith("_FMI3.fmu") else 2
+    header = Path(fmpy.__file__).parent / "c-code" / f"fmi{version}Functions.h"
+    pattern = rf"^#define \w+\s+fmi{version}FullName\((\w+)\)"
+    return set(re.findall(pattern, header.read_text(), re.M)) - MODEL_EXCHANGE
 
 
-def binary(released: Path, name: str, platform: str, extension: str) -> list[int]:
-    library = name.removesuffix("_FMI3") + extension
-    with ZipFile(released / f"{name}.fmu") as archive:
-        return list(archive.read(f"binaries/{platform}/{library}"))
+def binary(released: Path, archive: str, place: str) -> object:
+    with ZipFile(released / archive) as opened:
+        (name,) = (each for each in opened.namelist() if each.startswith(place))
+        return lief.parse(list(opened.read(name)))
 
 
-# An object of lief is valid only as long as its parent exists, so each parent has a variable below.
+@pytest.mark.parametrize(("archive", "place"), LINUX)
+def test_linux(archive: str, place: str, released: Path) -> None:
+    elf = binary(released, archive, place)
+    assert isinstance(elf, lief.ELF.Binary)
+    assert {symbol.name for symbol in elf.exported_symbols} == functions(archive)
+    arm = elf.header.machine_type == lief.ELF.ARCH.AARCH64
+    assert arm == ("aarch64" in place)
+    assert set(elf.libraries) <= {"libc.so.6", "libm.so.6", *(["ld-linux-aarch64.so.1"] * arm)}
+    needed = (
+        n for library in elf.symbols_version_requirement for n in library.get_auxiliary_symbols()
+    )
+    for version in needed:
+        numbers = [int(part) for part in re.findall(r"\d+", str(version))]
+        assert numbers[:2] <= [2, 17], version
 
 
-def linux(released: Path, name: str) -> lief.ELF.Binary:
-    parsed = lief.ELF.parse(binary(released, name, "linux64", ".so"))
-    assert isinstance(parsed, lief.ELF.Binary)
-    return parsed
-
-
-def windows(released: Path, name: str) -> lief.PE.Binary:
-    parsed = lief.PE.parse(binary(released, name, "win64", ".dll"))
-    assert isinstance(parsed, lief.PE.Binary)
-    return parsed
-
-
-@each_fmu
-def test_linux_exports_only_the_fmi_functions(
-    name: str, released: Path, functions: set[str]
-) -> None:
-    elf = linux(released, name)
-    assert {symbol.name for symbol in elf.exported_symbols} == functions
-
-
-@each_fmu
-def test_linux_needs_glibc_2_17_at_most(name: str, released: Path) -> None:
-    elf = linux(released, name)
-    assert set(elf.libraries) <= {"libc.so.6", "libm.so.6"}
-    versions = [
-        needed.name
-        for library in elf.symbols_version_requirement
-        for needed in library.get_auxiliary_symbols()
-    ]
-    assert versions
-    for version in versions:
-        numbers = re.fullmatch(r"GLIBC_(\d+)\.(\d+)(?:\.\d+)?", str(version))
-        assert numbers is not None, version
-        assert (int(numbers[1]), int(numbers[2])) <= (2, 17), version
-
-
-@each_fmu
-def test_windows_exports_only_the_fmi_functions(
-    name: str, released: Path, functions: set[str]
-) -> None:
-    dll = windows(released, name)
+@pytest.mark.parametrize(("archive", "place"), WINDOWS)
+def test_windows(archive: str, place: str, released: Path) -> None:
+    dll = binary(released, archive, place)
+    assert isinstance(dll, lief.PE.Binary)
     export = dll.get_export()
     assert export is not None
-    assert {str(entry.name) for entry in export.entries} == functions
-
-
-@each_fmu
-def test_windows_needs_only_system_libraries(name: str, released: Path) -> None:
-    dll = windows(released, name)
+    assert {str(entry.name) for entry in export.entries} == functions(archive)
     imported = [str(library.name) for library in dll.imports]
     assert imported
     for library in imported:
         assert re.fullmatch(r"KERNEL32\.dll|msvcrt\.dll|api-ms-win-crt-[-a-z0-9]+\.dll", library)
 
 
-@each_fmu
-def test_macos_exports_only_the_fmi_functions_and_needs_only_the_system(
-    name: str, released: Path, functions: set[str]
-) -> None:
-    universal = lief.MachO.parse(binary(released, name, "darwin64", ".dylib"))
-    assert universal is not None and universal.size == 1
-    macho = universal.at(0)
-    assert macho is not None
+@pytest.mark.parametrize(("archive", "place"), MACOS)
+def test_macos(archive: str, place: str, released: Path) -> None:
+    macho = binary(released, archive, place)
+    assert isinstance(macho, lief.MachO.Binary)
     exported = {str(symbol.name) for symbol in macho.exported_symbols} - BY_THE_LINKER
-    assert exported == {"_" + function for function in functions}
-    assert macho.build_version is not None
-    assert list(macho.build_version.minos) == [11, 0, 0]
-    own_name, *needed = [library.name for library in macho.libraries]
-    assert own_name == f"{name}.dylib"
+    assert exported == {f"_{name}" for name in functions(archive)}
+    assert macho.build_version is not None and list(macho.build_version.minos) == [11, 0, 0]
+    _, *needed = [library.name for library in macho.libraries]
     assert needed == ["/usr/lib/libSystem.B.dylib"]
-
-
-@pytest.fixture(scope="module")
-def functions_3() -> set[str]:
-    """All functions of FMI 3.0: the standard demands them from every FMU."""
-    header = Path(fmpy.__file__).parent / "c-code" / "fmi3Functions.h"
-    return set(re.findall(r"^#define \w+\s+fmi3FullName\((\w+)\)", header.read_text(), re.M))
-
-
-@each_twin
-@pytest.mark.parametrize("platform", ["x86_64-linux", "aarch64-linux"])
-def test_linux_exports_all_functions_of_fmi_3(
-    twin: str, platform: str, released: Path, functions_3: set[str]
-) -> None:
-    elf = lief.ELF.parse(binary(released, twin, platform, ".so"))
-    assert isinstance(elf, lief.ELF.Binary)
-    assert {symbol.name for symbol in elf.exported_symbols} == functions_3
-    arm = elf.header.machine_type == lief.ELF.ARCH.AARCH64
-    assert arm == (platform == "aarch64-linux")
-
-
-@each_twin
-def test_windows_exports_all_functions_of_fmi_3(
-    twin: str, released: Path, functions_3: set[str]
-) -> None:
-    dll = lief.PE.parse(binary(released, twin, "x86_64-windows", ".dll"))
-    assert isinstance(dll, lief.PE.Binary)
-    export = dll.get_export()
-    assert export is not None
-    assert {str(entry.name) for entry in export.entries} == functions_3
-
-
-@each_twin
-@pytest.mark.parametrize("platform", ["x86_64-darwin", "aarch64-darwin"])
-def test_macos_exports_all_functions_of_fmi_3(
-    twin: str, platform: str, released: Path, functions_3: set[str]
-) -> None:
-    universal = lief.MachO.parse(binary(released, twin, platform, ".dylib"))
-    assert universal is not None
-    macho = universal.at(0)
-    assert macho is not None
-    exported = {str(symbol.name) for symbol in macho.exported_symbols}
-    assert exported - BY_THE_LINKER == {"_" + function for function in functions_3}
     # The loader of macOS refuses a library for ARM without a signature.
-    assert macho.has_code_signature == (platform == "aarch64-darwin")
+    assert "aarch64" not in place or macho.has_code_signature

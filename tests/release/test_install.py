@@ -154,16 +154,6 @@ def test_no_compiler_is_reached_in_these_tests(installed: Path) -> None:
         assert shutil.which(tool, path=str(installed)) is None
 
 
-def test_fmu_is_that_of_the_installation(installed: Path, tmp_path: Path) -> None:
-    code = "import sigmahat; print(sigmahat.__file__, *map(sigmahat.fmu, {!r}), sep='\\n')"
-    names = sorted(Path(name).stem for name in FMUS)
-    printed = run(installed / "python", "-c", code.format(names), cwd=tmp_path).splitlines()
-    package = Path(printed[0]).parent
-    assert package.is_relative_to(installed.parent)
-    assert [Path(path).parent for path in printed[1:]] == [package / "fmus"] * len(FMUS)
-    assert {Path(path).name for path in printed[1:] if Path(path).is_file()} == FMUS
-
-
 def test_commands_give_what_the_development_tree_gives(installed: Path, tmp_path: Path) -> None:
     arguments = ("reproduce", "--scenario", "single-linear", "--seeds", "2", "--json")
     printed = run(installed / "sigmahat", *arguments, cwd=tmp_path)
@@ -186,35 +176,6 @@ def test_every_command_has_what_it_needs(installed: Path, tmp_path: Path) -> Non
         "report sweep",
     ):
         assert run(installed / "sigmahat", *command.split(), cwd=tmp_path)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "package", "extra"),
-    [
-        ("sweep --seeds 2 --scheduler tcp://localhost:1", "distributed", "dask"),
-        ("estimate log.h5", "h5py", "hdf5"),
-        ("init log.mcap", "rosbags", "bags"),
-    ],
-)
-def test_commands_name_the_extra_that_they_miss(
-    installed: Path, tmp_path: Path, arguments: str, package: str, extra: str
-) -> None:
-    (tmp_path / "log.h5").write_bytes(b"\x89HDF\r\n\x1a\n")
-    (tmp_path / "log.mcap").write_bytes(b"\x89MCAP0\r\n")
-    printed = run(installed / "sigmahat", *arguments.split(), cwd=tmp_path, status=2)
-    python = installed / Path(sys.executable).name
-    assert printed == (
-        f"sigmahat: error: {package} is not installed; to install it: "
-        f"{python} -m pip install 'sigmahat[{extra}]'\n"
-    )
-
-
-def test_example_names_the_extra_that_it_misses(installed: Path, tmp_path: Path) -> None:
-    shutil.copy(REPOSITORY / "examples" / "own_plant.py", tmp_path)
-    printed = run(installed / "python", "own_plant.py", cwd=tmp_path, status=1)
-    assert printed == (
-        "own_plant.py: CasADi is not installed; to install it: pip install 'sigmahat[plants]'\n"
-    )
 
 
 def test_types_are_those_of_the_sources(installed: Path, tmp_path: Path) -> None:

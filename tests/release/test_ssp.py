@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import re
 import zipfile
 from pathlib import Path
@@ -18,11 +17,10 @@ from lxml import etree
 
 import sigmahat
 from fmi_master import run, torques
-from sigmahat.export import system
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import simulate
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.scenario import Sine, T
+from sigmahat.runs.scenario import T
 
 TABLE1 = scenario("table1")
 RESIDUAL = TABLE1.estimators["RESIDUAL"]
@@ -33,7 +31,6 @@ SIGNALS = {  # section VI.B
     "signal.tau_c.frequency": 0.1,
 }
 STEPS = 1500  # half of the first motion to one side
-TEMPLATES = Path(__file__).parents[2] / "modelDescription" / "system"
 NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
     "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
@@ -123,67 +120,6 @@ def test_it_contains_the_fmus_of_the_same_folder(ssp: Path) -> None:
             assert archive.read(f"resources/{name}.fmu") == fmu.read_bytes()
 
 
-def test_a_second_build_gives_identical_bytes(ssp: Path, tmp_path: Path) -> None:
-    again = tmp_path / "again.ssp"
-    plant, estimator = ssp.with_name("AwasPlant.fmu"), ssp.with_name("StiffnessEstimator.fmu")
-    system.write(again, plant, estimator, TEMPLATES, sigmahat.__version__)
-    assert hashlib.sha256(again.read_bytes()).digest() == hashlib.sha256(ssp.read_bytes()).digest()
-
-
-def test_both_ends_of_every_connection_have_the_same_unit(ssp: Path) -> None:
-    root = read(ssp, "SystemStructure.ssd").find("ssd:System", NAMESPACES)
-    assert root.find("ssd:Connectors", NAMESPACES) is None
-    units = {
-        (element.get("name"), c.get("name"), c.get("kind")): c[0].get("unit")
-        for element in root.find("ssd:Elements", NAMESPACES)
-        for c in element.iterfind("ssd:Connectors/ssd:Connector", NAMESPACES)
-    }
-    connections = root.findall("ssd:Connections/ssd:Connection", NAMESPACES)
-    ends = set()
-    for c in connections:
-        start = (c.get("startElement"), c.get("startConnector"), "output")
-        end = (c.get("endElement"), c.get("endConnector"), "input")
-        assert units[start] == units[end]
-        ends |= {start, end}
-    results = {("plant", "sigma", "output"), ("estimator", "sigma", "output")}
-    assert ends | results == set(units)  # every input is connected
-    wires = {c.get("endConnector"): c.get("startConnector") for c in connections}
-    assert wires == RESIDUAL.connections
-
-
-def test_parameters_are_those_of_the_scenario(ssp: Path) -> None:
-    for element, name, start in (
-        ("plant", "AwasPlant", {**TABLE1.plant.start, **SIGNALS}),
-        ("estimator", "StiffnessEstimator", RESIDUAL.start),
-    ):
-        listed = read(ssp, f"resources/{element}.ssv").iterfind("ssv:Parameters/*", NAMESPACES)
-        found = {p.get("name"): p[0].get("value") for p in listed}
-        with Fmu(sigmahat.fmu(name)) as fmu:
-            for parameter, value in fmu.parameters(start).items():
-                text = found.pop(parameter, None)
-                if fmu.variables[parameter].type == "Enumeration" or "eta_0" in parameter:
-                    assert text is None and value == fmu.parameters({})[parameter]
-                elif fmu.variables[parameter].type == "Boolean":
-                    assert text == str(bool(value)).lower()
-                else:
-                    assert text is not None and float(text) == value
-        assert found == {}
-
-
-def test_a_scenario_with_another_enumeration_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(RESIDUAL.start, "modality", "Sensor")
-    with pytest.raises(ValueError, match="modality: the SSP leaves it at Residual"):
-        system.write(
-            tmp_path / "x.ssp",
-            sigmahat.fmu("AwasPlant"),
-            sigmahat.fmu("StiffnessEstimator"),
-            TEMPLATES,
-            sigmahat.__version__,
-        )
-
-
 @pytest.fixture(scope="module")
 def result(ssp: Path) -> Any:
     """What FMPy computes of the system as it is. It takes one set of parameters."""
@@ -194,15 +130,6 @@ def result(ssp: Path) -> Any:
         parameter.name = f"estimator.{parameter.name}"
         parameters.parameters.append(parameter)
     return simulate_ssp(str(ssp), stop_time=STEPS * T, step_size=T, parameter_set=parameters)
-
-
-def test_a_scenario_with_another_signal_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(TABLE1.plant.inputs, "tau", Sine(0.3, 0.1, 1.0))
-    plant, estimator = sigmahat.fmu("AwasPlant"), sigmahat.fmu("StiffnessEstimator")
-    with pytest.raises(ValueError, match="tau: expected a sine without a phase"):
-        system.write(tmp_path / "x.ssp", plant, estimator, TEMPLATES, sigmahat.__version__)
 
 
 def test_fmpy_passes_zeros_to_the_first_tick_and_is_else_exact(result: Any) -> None:

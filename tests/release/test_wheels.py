@@ -7,15 +7,12 @@ import csv
 import hashlib
 import io
 import json
-import re
 import subprocess
 import sys
 import sysconfig
-import tarfile
 import zipfile
 from pathlib import Path
 
-import lief
 import pytest
 
 import sigmahat
@@ -36,11 +33,6 @@ def folder(released: Path) -> Path:
 
 def wheel(folder: Path, tag: str) -> Path:
     return folder / f"sigmahat-{sigmahat.__version__}-py3-none-{tag}.whl"
-
-
-def library(folder: Path, tag: str) -> list[int]:
-    with zipfile.ZipFile(wheel(folder, tag)) as archive:
-        return list(archive.read(f"sigmahat/fmus/sigmahat_native{EXTENSIONS[tag]}"))
 
 
 def test_there_is_one_for_each_platform_and_the_sources(folder: Path) -> None:
@@ -79,49 +71,6 @@ def test_its_record_is_right(tag: str, folder: Path) -> None:
             if name != f"{info}/RECORD":
                 found = base64.urlsafe_b64encode(hashlib.sha256(archive.read(name)).digest())
                 assert digest == "sha256=" + found.decode().rstrip("=")
-
-
-def functions() -> set[str]:
-    """What the headers of the library declare."""
-    headers = (Path(__file__).parents[2] / "harness" / "native").glob("*.h")
-    text = "".join(header.read_text() for header in headers)
-    return set(re.findall(r"^SH_EXPORT .*?(\w+)\(", text, re.M))
-
-
-def test_each_library_exports_the_functions_of_its_headers(folder: Path) -> None:
-    linux = lief.ELF.parse(library(folder, "manylinux_2_17_x86_64"))
-    windows = lief.PE.parse(library(folder, "win_amd64"))
-    mac = lief.MachO.parse(library(folder, "macosx_11_0_x86_64"))
-    assert isinstance(linux, lief.ELF.Binary) and isinstance(windows, lief.PE.Binary)
-    assert mac is not None and mac.size == 1
-    first, exports = mac.at(0), windows.get_export()
-    assert first is not None and exports is not None
-    by_the_linker = {"__mh_dylib_header", "___dso_handle"}
-    assert {str(symbol.name) for symbol in linux.exported_symbols} == functions()
-    assert {str(entry.name) for entry in exports.entries} == functions()
-    names = {str(symbol.name) for symbol in first.exported_symbols} - by_the_linker
-    assert names == {f"_{name}" for name in functions()}
-
-
-def test_linux_needs_glibc_2_17_at_most(folder: Path) -> None:
-    elf = lief.ELF.parse(library(folder, "manylinux_2_17_x86_64"))
-    assert isinstance(elf, lief.ELF.Binary)
-    versions = [
-        str(needed.name)
-        for each in elf.symbols_version_requirement
-        for needed in each.get_auxiliary_symbols()
-    ]
-    for version in versions:
-        numbers = [int(part) for part in version.removeprefix("GLIBC_").split(".")]
-        assert numbers <= [2, 17], version
-
-
-def test_source_distribution_is_of_this_version(folder: Path) -> None:
-    name = f"sigmahat-{sigmahat.__version__}"
-    with tarfile.open(folder / f"{name}.tar.gz") as archive:
-        names = archive.getnames()
-    assert {each.split("/")[0] for each in names} == {name}
-    assert f"{name}/harness/native/sample_loop.c" in names
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the wheel of this machine")
