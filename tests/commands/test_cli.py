@@ -11,7 +11,6 @@ import signal
 import subprocess
 import sys
 import time
-from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -47,40 +46,12 @@ def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> Non
     assert {path.name for path in out.iterdir()} == expected
 
 
-def test_another_scenario_has_its_own_files(tmp_path: Path) -> None:
-    done = run("reproduce", "--scenario", "single-hardening", "--out", "here", cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert {path.name for path in (tmp_path / "here").iterdir()} == {
-        "transmission.png",
-        "transmission.svg",
-        "RESIDUAL.csv",
-        "RESIDUAL-paper-prior.csv",
-        "table.csv",
-    }
-
-
-@pytest.mark.slow("several reproductions, each in a process of its own")
-def test_scenario_seeds_and_folder_are_taken(tmp_path: Path) -> None:
-    done = run(
-        "reproduce", "--scenario", "as-printed", "--seeds", "2", "--out", "here", cwd=tmp_path
-    )
-    assert done.returncode == 0
-    assert "as-printed" in done.stdout
-    assert "2 seeds" in done.stdout
-    assert " +- " in done.stdout
-    assert [path.name for path in tmp_path.iterdir()] == ["here"]
-
-
 def test_scenarios_are_listed_one_a_line(tmp_path: Path) -> None:
     done = run("scenarios", cwd=tmp_path)
     lines = done.stdout.splitlines()
     assert [line.split()[0] for line in lines] == list(SCENARIOS)
     for line, scenario in zip(lines, SCENARIOS.values(), strict=True):
         assert line.endswith(scenario.description)
-
-
-def test_version(tmp_path: Path) -> None:
-    assert run("--version", cwd=tmp_path).stdout == f"sigmahat {version('sigmahat')}\n"
 
 
 @pytest.mark.parametrize("name", ["", *sorted(cli.commands)])
@@ -94,23 +65,6 @@ def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
     assert command == name or not name
     with cli.commands[command].make_context(command, arguments):
         pass
-
-
-@pytest.mark.parametrize(
-    ("name", "options"),
-    [
-        ("reproduce", {"--json", "--quiet"}),
-        ("estimate", {"--json", "--quiet"}),
-        ("identify", {"--json", "--quiet"}),
-        ("validate", {"--json", "--quiet"}),
-        ("export", {"--quiet"}),  # it writes a file for programs
-        ("init", {"--quiet"}),  # it writes a file for people
-        ("scenarios", {"--json"}),  # it is asked for nothing but what it prints
-    ],
-)
-def test_options_for_scripts(name: str, options: set[str]) -> None:
-    have = {option for parameter in cli.commands[name].params for option in parameter.opts}
-    assert have & {"--json", "--quiet"} == options
 
 
 @pytest.mark.slow("a whole reproduction with its figures")
@@ -191,11 +145,6 @@ def test_folder_that_is_a_file(out: str, tmp_path: Path) -> None:
     assert "file is a file" in line or "choose another folder with --out" in line
     assert time.monotonic() - started < 30  # refused before anything is computed
     assert (tmp_path / "file").read_text() == "mine"
-
-
-def test_folder_without_a_name(tmp_path: Path) -> None:
-    assert "empty name" in refused("reproduce", "--out", "", cwd=tmp_path)
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")

@@ -79,12 +79,6 @@ def test_noise_and_orders(found: dict[float, Identified]) -> None:
         assert 1e8 <= found[f].V_a <= 1e13
 
 
-def test_fast_motion_needs_a_faster_filter(found: dict[float, Identified]) -> None:
-    by_frequency = [found[f].V_a for f in AMPLITUDES]
-    assert by_frequency == sorted(by_frequency)
-    assert by_frequency[-1] > by_frequency[0]
-
-
 def test_the_old_name_of_determined(found: dict[float, Identified]) -> None:
     quantity = found[0.1].quantities["B"]
     with pytest.warns(DeprecationWarning, match="determined"):
@@ -211,13 +205,6 @@ def test_what_is_not_determined_is_never_exact(
         assert "not known" not in path.read_text()
 
 
-def test_the_bandwidth_is_that_of_the_inertia_found(found: dict[float, Identified]) -> None:
-    B, W = found[1.0].quantities["B"], found[1.0].bandwidth
-    torque, theta = found[1.0].tau_variance, found[1.0].theta_variance
-    assert B.determined
-    assert (B.value * 50 * W**2) ** 2 * theta == pytest.approx(torque)
-
-
 def test_ranges_hold_what_the_log_shows(found: dict[float, Identified], tmp_path: Path) -> None:
     log = awas_log(1.0, 0.3)
     path = tmp_path / "log.toml"
@@ -303,16 +290,6 @@ def test_without_noise_and_rounding_the_equations_hold() -> None:
     assert abs(result.value["tau_coulomb"]) < 1e-5
     assert result.value["constant"] == pytest.approx(0.03, rel=1e-3)
     assert result.value["eta[0,0]"] == pytest.approx(-k * np.max(np.abs(phi)) / gamma, rel=1e-3)
-
-
-def test_instruments_take_away_what_rounding_does_to_least_squares() -> None:
-    log = awas_log(0.3, 0.3)
-    set_point = 100 - 1e3 * LEAD * log["theta_c"]
-    piece = Signals(log["theta"], log["q"] - log["theta"], set_point, log["tau"], None)
-    e = equations([piece], 1e-3, 50.0, Form(44.0, 100.0, 1, 3))
-    plain = np.linalg.lstsq(e.X, e.y, rcond=None)[0][0]
-    error = abs(fit(e).value["B"] / TRUE["B"] - 1)
-    assert error < 0.5 * abs(plain / TRUE["B"] - 1)
 
 
 def test_a_value_in_the_place_of_one_that_is_not_known_stays(

@@ -19,17 +19,15 @@ from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
     CURVE,
     Branch,
-    Curve,
     nearest,
     read_curve,
-    write_curve,
 )
 from sigmahat.joint.curve_text import curve_text, polynomial_in_words
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.curve import reaches
 from sigmahat.logs.estimate import Estimate, estimate
-from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points, spread
+from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.readers.formats import open_log
 
 GAIN = 0.02
@@ -245,16 +243,6 @@ def test_a_joint_that_does_not_move_has_a_point(tmp_path: Path) -> None:
     assert main(["report", str(tmp_path)]) == 0
 
 
-def test_a_curve_of_no_data(tmp_path: Path) -> None:
-    polynomial = sheet.Polynomial([1], [0], [[1.0]], [["N.m/rad"]], None, None)
-    nothing = MeasuredPoints(np.empty(0), np.empty(0), np.empty(0))
-    assert reaches(nothing, [], one_curve=False) == []
-    empty = Curve(polynomial, ())
-    assert curve_text(empty) == []
-    write_curve(empty, tmp_path / CURVE)
-    assert read_curve(tmp_path / CURVE, polynomial) == empty
-
-
 def test_going_on_adds_to_the_reach() -> None:
     before = LearnedLog("a", "b", 10, 0, (-1.0, 0.5), (0.0, 3.0))
     points = MeasuredPoints(np.linspace(-0.1, 0.9, 100), np.full(100, 2.0), np.zeros(100))
@@ -282,15 +270,6 @@ def test_levels_of_the_set_point_are_found() -> None:
     found = [r.set_point for r in reaches(points, [], one_curve=False)]
     assert found == pytest.approx([1.0, 2.0, 5.0], abs=1e-3)
     assert np.array_equal(nearest(found, np.array([1.1, 1.5, 2.2, 9.0])), [0, -1, 1, -1])
-
-
-@pytest.mark.parametrize("stride", [1, 7, 300])
-def test_points_do_not_depend_on_the_chunks(stride: int) -> None:
-    whole = spread(0, 10_000, stride)
-    parts = [first + spread(first, 1234, stride) for first in range(0, 10_000, 1234)]
-    joined = np.concatenate(parts)
-    assert np.array_equal(joined[joined < 10_000], whole)
-    assert np.all(np.diff(whole) > 0) and len(whole) == pytest.approx(10_000 / stride, abs=1)
 
 
 @pytest.mark.parametrize(

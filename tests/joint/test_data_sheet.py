@@ -17,7 +17,7 @@ from fmpy.ssp.ssd import read_ssv
 
 import sigmahat
 from command_line import refused as command_refused
-from recorded_logs import CONFIGURATION, LEAD, awas_log, read_estimate, write_log
+from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
 from sigmahat.cli import main
 from sigmahat.files.output import sha256
 
@@ -29,7 +29,6 @@ CASES = {
 }
 SUFFIXES = {"ssv": ".ssv", "matlab": ".m", "modelica": ".mo"}
 K_S = 14220.0
-OFFSET, SCALE = 100.0, -1e3 * LEAD
 
 
 def estimated(folder: Path, configuration: str, duration: float = 10.0) -> Path:
@@ -220,19 +219,6 @@ def test_the_fmu_begins_with_what_was_learned_to_the_last_bit(case: Path, tmp_pa
         sigma = sigma * start["setPoint.offset"] + coefficient
     assert outputs["sigma"] == sigma == sheet["check"]["sigma"]
     assert outputs["tau_e"] == sheet["check"]["tau_e"]
-
-
-def test_higher_powers_that_the_data_asked_for_are_part_of_the_curve(
-    tmp_path_factory: pytest.TempPathFactory,
-) -> None:
-    folder = estimated(tmp_path_factory.mktemp("powers"), REGRESSION + CASES["powers that do not"])
-    start, answer = (
-        sheet_of(folder)["start_values"],
-        json.loads((folder / "answer.json").read_text()),
-    )
-    assert (start["rls.n"], start["rls.m"]) > (1, 2)
-    # THEN the stiffness of the first sample is that of the last one, which these powers are part of
-    assert first_sigma(folder) == pytest.approx(answer["sigma [N.m/rad]"], rel=1e-12)
 
 
 def test_the_first_sample_gives_the_last_stiffness(case: Path) -> None:

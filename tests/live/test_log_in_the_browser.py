@@ -138,11 +138,6 @@ def test_a_log_with_a_motor_that_sets_the_stiffness(page: LivePage) -> None:
         assert np.all(np.abs(found - true) < 3 * std)
 
 
-def test_a_file_is_chosen_instead(page: LivePage) -> None:
-    page.page.driver.find_element("id", "file").send_keys(str(KNEE))
-    page.until(lambda: page.text("log-name").startswith("knee.csv"))
-
-
 def test_decimal_commas_quotes_and_units(page: LivePage) -> None:
     t = 0.001 * np.arange(200)
     lines = ["Zeit_ms;Motor_Winkel_deg;Abtrieb_Winkel_deg;Drehmoment_mNm"]

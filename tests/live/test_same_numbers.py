@@ -10,7 +10,6 @@ import fmpy
 import numpy as np
 import pytest
 
-import sigmahat
 from live_page import LivePage, live_page
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.engine import run
@@ -70,20 +69,6 @@ def test_table1_in_the_browser_is_that_of_the_fmus(
         differences[name] = np.max(np.abs(values - series[variable])), np.ptp(series[variable])
     assert len(differences) == len(plant) + len(estimator) > 70
     assert {name: d for name, d in differences.items() if d[0] > WITHIN * d[1]} == {}
-
-
-def test_the_binaries_call_nothing_but_the_log_of_the_page(page: LivePage) -> None:
-    imports = """
-    return [joint.plant, joint.estimator].map((type) =>
-      WebAssembly.Module.imports(type.module).map((each) => `${each.module}.${each.name}`));
-    """
-    assert page.page.run(imports) == [["page.log"], ["page.log"]]
-
-
-def test_the_binaries_are_of_the_fmus_that_are_installed(page: LivePage) -> None:
-    types = "return [joint.plant, joint.estimator].map((type) => [type.name, type.guid])"
-    for name, guid in page.page.run(types):
-        assert guid == fmpy.read_model_description(str(sigmahat.fmu(name))).guid
 
 
 def test_the_page_is_small(site: Path) -> None:

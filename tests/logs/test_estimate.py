@@ -258,24 +258,6 @@ def test_paper2011_makes_no_claim(
     assert band in (tmp_path / "out" / "estimate.svg").read_text()
 
 
-def test_a_nan_is_reported_on_one_screen(log: dict[str, Array], tmp_path: Path) -> None:
-    log = {name: values.copy() for name, values in log.items()}
-    log["tau"][100] = np.nan
-    path = write_log(log, tmp_path / "log.csv")
-    config = tmp_path / "log.toml"
-    config.write_text(AS_IN_THE_FMU)
-    done = subprocess.run(
-        [sys.executable, "-m", "sigmahat", "estimate", "log.csv"],
-        cwd=path.parent,
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0
-    assert "tau: 1 samples missing or not finite" in done.stdout
-    assert len(done.stdout.splitlines()) <= 24
-    assert (tmp_path / "sigmahat-results" / "log" / "estimate.csv").is_file()
-
-
 def test_the_real_joint(estimator_fmu: Path, tmp_path: Path) -> None:
     """The configuration in the documentation gives what the replay in real_joint.py does."""
     try:
@@ -292,41 +274,6 @@ def test_the_real_joint(estimator_fmu: Path, tmp_path: Path) -> None:
     table = read_estimate(tmp_path / "out")
     assert table[SIGMA].to_numpy()[-1] == pytest.approx(expected.sigma, rel=1e-12)
     assert table["estimate.tau_e [N.m]"].to_numpy()[-1] == pytest.approx(expected.tau_e, rel=1e-12)
-
-
-def test_from_counts_and_amperes_to_the_stiffness(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """init, an editor, identify, estimate: with pip install five commands."""
-    log = awas_log(1.0, 0.3)
-    columns = {
-        "time_s": log["t"],
-        "motor_counts": np.round(log["theta"] * 40000 / (2 * np.pi)),
-        "link_deg": np.degrees(log["q"]),
-        "theta_c_counts": np.round(log["theta_c"] * 1024 / (2 * np.pi)),
-        "motor_current_A": log["tau"] / 0.05,
-    }
-    write_log(columns, tmp_path / "knee.csv")
-    monkeypatch.chdir(tmp_path)
-    assert main(["init", "knee.csv"]) == 0
-    text = Path("knee.toml").read_text()
-    for value in ("counts_per_turn = 40000", "counts_per_turn = 1024", "torque_constant = 0.05"):
-        text = text.replace(f"{value.split()[0]} = 0 ", f"{value} ", 1)
-    text = text.replace("gear_ratio = 0 ", "gear_ratio = 1 ")  # the encoder sits behind the gear
-    Path("knee.toml").write_text(text)
-    assert main(["identify", "knee.csv"]) == 2  # it asks for the gear ratio of the motor
-    text = text.replace("motor.gamma = 0 ", "motor.gamma = 50 ")
-    Path("knee.toml").write_text(text)
-    assert main(["identify", "knee.csv"]) == 0
-    assert main(["estimate", "knee.csv"]) == 0
-    out = Path("sigmahat-results") / "knee"
-    assert (out / "estimate.png").is_file()
-    r = (100 - 0.0025 / (2 * np.pi) * 1e3 * log["theta_c"]) / 1e3
-    phi = log["q"] - log["theta"]
-    truth = 2 * 14220 * r**2 * np.cos(2 * phi)
-    sigma = read_estimate(out)[SIGMA].to_numpy()
-    # Coulomb friction is in the plant and not in the residual: a tenth is what is left of it
-    assert np.mean(np.abs(sigma / truth - 1)[5000:]) < 0.1
 
 
 def test_without_a_torque_no_percentage_of_it(

@@ -221,11 +221,6 @@ def cut(state: dict[str, Any]) -> None:
     state["state"] = base64.b64encode(base64.b64decode(state["state"])[:-8]).decode()
 
 
-def other_parameters(state: dict[str, Any]) -> None:
-    """Only what people read: the state itself is that of before, and counts."""
-    state["parameters"]["motor.B"] = 2e-5
-
-
 @pytest.mark.parametrize(
     ("edit", "words"),
     [
@@ -256,17 +251,6 @@ def test_another_or_a_damaged_state_is_refused(
     assert words in line
 
 
-def test_the_parameters_in_the_state_count(
-    learned: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = learned / "first" / "state.json"
-    state = json.loads(path.read_text())
-    other_parameters(state)
-    path.write_text(json.dumps(state))
-    Path("joint.toml").write_text(REGRESSION.replace("1.84e-5", "2e-5"))
-    assert "was learned with 1.84e-05" in refused(capsys, "--start-from", "first")
-
-
 @pytest.mark.parametrize(
     ("content", "words"),
     [
@@ -284,15 +268,3 @@ def test_a_file_of_another_kind_is_refused(
         Path("other.json").write_bytes(content)
     line = refused(capsys, "--start-from", "other.json")
     assert "other.json: " in line and words in line
-
-
-def test_a_refusal_leaves_earlier_results_as_they_are(
-    learned: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """The results to start from are not lost where the new ones would replace them."""
-    first = {path.name: path.read_bytes() for path in Path("first").iterdir()}
-    Path("joint.toml").write_text(REGRESSION + "prior.bias = 0.2\n")
-    arguments = ["estimate", "second.parquet", "--config", "joint.toml", "--out", "first"]
-    assert main([*arguments, "--start-from", "first"]) == 2
-    assert "prior.bias" in capsys.readouterr().err
-    assert {path.name: path.read_bytes() for path in Path("first").iterdir()} == first

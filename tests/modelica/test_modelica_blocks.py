@@ -133,11 +133,3 @@ def test_the_device_is_the_sum_of_its_sides(
     )
     assert (last["side_1.epsilon"], last["side_2.epsilon"]) == pytest.approx((0.1, 0.2))
     assert (last["doubt"], last["confident"], last["valid"]) == (doubt, doubt == NONE, True)
-
-
-def test_the_device_is_valid_if_both_sides_are(package: Path) -> None:
-    inputs = dict.fromkeys(
-        ("theta_1", "q", "tau_1", "tau_2", "tau_e_sensor_1", "tau_e_sensor_2"), "0"
-    )
-    found = simulated(package, "AntagonisticStiffnessEstimator", {**inputs, "theta_2": "11"}, "")
-    assert not found["b.valid"][-1]

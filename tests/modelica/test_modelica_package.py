@@ -6,19 +6,13 @@ import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from zipfile import ZipFile
 
 import pymoca.ast
 import pymoca.parser
 import pytest
 import rumoca
-from lxml import etree
 
-import sigmahat
-from modelica_package import FILES, PACKAGE, REPOSITORY, classes, compiled
-
-FOLDER = f"Sigmahat {sigmahat.__version__}"
-C_SOURCES = f"{FOLDER}/Resources/C-Sources"
+from modelica_package import FILES, PACKAGE, REPOSITORY, compiled
 
 
 def by_rumoca(file: Path) -> None:
@@ -57,98 +51,9 @@ def test_every_file_is_read_without_error(parse: Callable[[Path], None]) -> None
         parse(file)
 
 
-@each_parser
-def test_a_damaged_file_is_refused(parse: Callable[[Path], None], tmp_path: Path) -> None:
-    damaged = tmp_path / "AwasPlant.mo"
-    text = (PACKAGE / "Plants" / "AwasPlant.mo").read_text(encoding="utf-8")
-    damaged.write_text(text.replace("phi = q - theta;", "phi = q - ;"), encoding="utf-8")
-    refused = False
-    try:
-        parse(damaged)
-    except Exception:  # each parser has its own; pymoca returns None
-        refused = True
-    assert refused
-
-
-def test_the_order_of_a_package_names_all_that_is_in_it() -> None:
-    for package in PACKAGE.rglob("package.mo"):
-        folder = package.parent
-        inside = {file.stem for file in folder.glob("*.mo")} - {"package"}
-        inside |= {each.parent.name for each in folder.glob("*/package.mo")}
-        order = (folder / "package.order").read_text(encoding="utf-8").split()
-        assert len(order) == len(set(order)) and set(order) == inside, folder
-
-
-def named(annotation: pymoca.ast.ClassModification | None) -> set[str]:
-    arguments = annotation.arguments if annotation else []
-    return {str(each.value.component) for each in arguments}
-
-
-def test_every_class_has_a_description_a_documentation_and_an_icon() -> None:
-    for name, each in classes().items():
-        if each.type == "type":
-            assert name.startswith("Types.")
-            continue
-        if each.replaceable:  # a parameter of a plant, as it were
-            continue
-        assert each.comment, name
-        if each.is_short_class_definition:  # pymoca does not keep their annotations
-            text = (PACKAGE / "Interfaces.mo").read_text(encoding="utf-8")
-            text = text.split(f"connector {each.name} =")[1].split("connector ")[0]
-            assert "Icon(" in text and "Documentation(" in text
-            continue
-        assert "Documentation" in named(each.annotation), name
-        own = "Icon" in named(each.annotation)
-        # By inheritance; records and functions extend those that have one.
-        assert own or each.extends, name
-
-
-def test_the_documentation_is_html_whose_links_lead_to_classes() -> None:
-    known = {"Sigmahat", *(f"Sigmahat.{name}" for name in classes())}
-    pages = 0
-    for file in FILES:
-        text = file.read_text(encoding="utf-8")
-        for info in re.findall(r'Documentation\(\s*info="(.*?[^\\])"\)', text, re.DOTALL):
-            page = etree.fromstring(info.replace('\\"', '"'))
-            assert page.tag == "html"
-            assert {
-                link.get("href").removeprefix("modelica://") for link in page.iter("a")
-            } <= known
-            pages += 1
-        assert text.count("Documentation(") == len(re.findall("Documentation\\(info=", text))
-    assert pages == sum(file.read_text(encoding="utf-8").count("info=") for file in FILES)
-
-
-def test_every_example_says_how_it_is_run() -> None:
-    examples = {name: each for name, each in classes().items() if name.startswith("Examples.")}
-    assert len(examples) == 6
-    for name, each in examples.items():
-        assert "experiment" in named(each.annotation), name
-
-
 @pytest.fixture(scope="module")
 def archive(build: Path) -> Path:
     return build / "release" / "sigmahat-modelica.zip"
-
-
-def test_the_archive_has_the_package_and_all_of_its_c(archive: Path) -> None:
-    with ZipFile(archive) as opened:
-        names = set(opened.namelist())
-        assert {name.split("/")[0] for name in names} == {FOLDER}
-        assert {f"{FOLDER}/{file.relative_to(PACKAGE).as_posix()}" for file in FILES} <= names
-        assert f"{FOLDER}/LICENSE" in names
-        text = "".join(file.read_text(encoding="utf-8") for file in FILES)
-        included = set(re.findall(r'Include="#include \\"(.+?)\\""', text))
-        assert len(included) == 4
-        for name in included:
-            waiting, seen = [name], set()
-            while waiting:
-                file = waiting.pop()
-                seen.add(file)
-                source = opened.read(f"{C_SOURCES}/{file}").decode()
-                waiting += set(re.findall(r'^#include "(.+)"', source, re.M)) - seen
-                # The tool has it.
-                waiting = [each for each in waiting if each != "ModelicaUtilities.h"]
 
 
 EXAMPLES = sorted({file.stem for file in (PACKAGE / "Examples").glob("*.mo")} - {"package"})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -41,53 +40,6 @@ def test_every_figure_belongs_to_a_scenario_and_every_scenario_has_one() -> None
     assert {name for scenario in SCENARIOS.values() for name in scenario.figures} == set(FIGURES)
     assert all(scenario.figures for scenario in SCENARIOS.values())
     assert {name for _, name in DRAWN} == set(FIGURES)
-
-
-@pytest.mark.parametrize(("scenario", "name"), DRAWN)
-def test_axes_have_labels_with_units_and_the_figure_a_legend(scenario: str, name: str) -> None:
-    figure = draw(scenario, name)
-    for axes in figure.axes:
-        assert axes.get_xlabel() in ("time $t$ [s]", r"deformation $\phi$ [rad]")
-        assert re.search(r"\[.+\]", axes.get_ylabel())
-    legend = figure.axes[0].get_legend()
-    assert legend is not None
-    assert all(text.get_text().strip() for text in legend.get_texts())
-    for axes in figure.axes:
-        for each in axes.get_lines():
-            assert not str(each.get_label()).startswith("_")
-
-
-@pytest.mark.parametrize(("scenario", "name"), DRAWN)
-def test_lines_cover_the_whole_run(scenario: str, name: str) -> None:
-    for each in draw(scenario, name).axes[0].get_lines():
-        t = np.asarray(each.get_xdata())
-        assert (t[0], t[-1]) == (0.0, SCENARIOS[scenario].duration)
-        assert np.all(np.diff(t) > 0)
-
-
-@pytest.mark.parametrize(
-    ("scenario", "name", "lines"),
-    [
-        ("table1", "fig3-deformation", [1]),
-        ("table1", "fig4-velocity", [3, 3]),
-        ("table1", "fig5-flexibility-torque", [4, 4]),
-        ("table1", "fig6-stiffness", [4, 4]),
-        ("table1", "fig7-stability-factor", [1]),
-        ("table1", "fig8-constant-factors", [4]),
-        ("table1", "summary", [4, 3]),
-        ("experiment", "fig9-deformation", [1]),
-        ("experiment", "fig10-lever-arm", [2]),
-        ("experiment", "fig11-flexibility-torque", [3, 3]),
-        ("experiment", "fig12-stiffness", [5, 5]),
-        ("experiment", "experiment", [1, 2, 3, 5, 3]),
-        ("single-hardening", "transmission", [3, 3, 3, 2]),
-        ("antagonistic", "antagonistic", [3, 2, 2, 2, 2, 2, 2, 2, 3]),
-    ],
-)
-def test_every_trace_is_there(scenario: str, name: str, lines: list[int]) -> None:
-    figure = draw(scenario, name)
-    labels = [{str(each.get_label()) for each in axes.get_lines()} for axes in figure.axes]
-    assert [len(each) for each in labels] == lines
 
 
 def test_drawn_values_are_those_of_the_recording() -> None:
@@ -157,27 +109,6 @@ def test_the_curves_of_a_transmission_are_the_spring_and_its_estimate() -> None:
         last = recording.t >= 10.0
         pairs = set(zip(estimate["phi"][last], estimate[signal][last], strict=True))
         assert set(zip(phi, drawn, strict=True)) <= pairs
-
-
-def test_zoom_shows_the_quantisation() -> None:
-    count = 2 * np.pi / 40000 / 1e-3  # one count per sample [rad/s]
-    _, differenced = line("fig4-velocity", "differenced", panel=1)
-    steps = differenced / count
-    np.testing.assert_allclose(steps, np.round(steps), atol=1e-6)
-    assert set(np.round(steps)) >= {-1.0, 0.0, 1.0}
-
-
-def test_start_up_shows_every_sample() -> None:
-    recording = one_seed("table1").recording
-    t, sigma = line("fig6-stiffness", "RESIDUAL", panel=1)
-    np.testing.assert_array_equal(t, recording.t[: len(t)])
-    np.testing.assert_array_equal(sigma, recording.estimators["RESIDUAL"]["sigma"][: len(t)])
-    assert t[-1] == pytest.approx(0.3)
-
-
-def test_stability_factor_is_on_a_log_axis() -> None:
-    figure = draw("table1", "fig7-stability-factor")
-    assert figure.axes[0].get_yscale() == "log"
 
 
 @pytest.mark.parametrize(("scenario", "name"), DRAWN)

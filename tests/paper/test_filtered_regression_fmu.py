@@ -97,33 +97,6 @@ def test_motor_that_turns_at_the_start(
     assert msrep(run["sigma"], found["sigma"]) <= 2 * 100 * (12 / 350)
 
 
-@pytest.mark.parametrize(("frequency", "bound"), [(8.0, 0.01), (20.0, 0.3)])
-def test_torque_that_is_held_between_samples(c: Library, frequency: float, bound: float) -> None:
-    """GIVEN a drive that holds its torque between samples, THEN `torque.held` takes the torque from
-    each sample on; without it the mean of the torques before and after a sample belongs to it, or
-    the delay of the torque is estimated."""
-    t = times(T, 6.0)
-    tau = 0.5 * np.sin(2 * np.pi * frequency * t)
-    torques = np.column_stack([tau, 8 * np.sin(0.2 * np.pi * t), 0 * t])
-    run = run_awas(T, torques, SHORTENED, (*MEASURED, "sigma"), held=True)
-    z = np.column_stack([run[name] for name in MEASURED])  # tau as held until t_k
-    middle = z.copy()
-    middle[:-1, 3] = (z[:-1, 3] + z[1:, 3]) / 2
-    held = z.copy()
-    held[:-1, 3] = z[1:, 3]
-
-    def error(samples: Array, settings: dict[str, float]) -> float:
-        found = Estimator(c, {**SETTINGS, **settings}).run(samples)
-        return msrep(run["sigma"][1000:], found["sigma"][1000:])
-
-    in_the_middle = error(middle, {"prior.delay": 0})
-    assert in_the_middle <= bound
-    assert error(z, {"prior.delay": 0}) > 10 * in_the_middle
-    assert error(held, {"prior.delay": 0, "torque.held": 1}) <= bound
-    assert error(z, {}) <= bound
-    assert error(held, {"torque.held": 1}) <= bound
-
-
 @pytest.fixture(scope="module")
 def ageing() -> Iterator[tuple[Array, Array]]:
     """Measurements [size: ticks x 5] and true stiffness [size: ticks] at 1 Hz.

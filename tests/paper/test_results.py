@@ -85,29 +85,6 @@ def test_printed_table_stands_beside_the_papers() -> None:
         assert (float(paper_mse), float(paper_msrep)) == pytest.approx(paper, abs=0.005)
 
 
-def test_table_of_the_experiment_has_two_parts() -> None:
-    result = one_seed("experiment")
-    settled, whole = table(result).split("\n\n")
-    names = [each.name for each in result.scenario.comparisons]
-    for part, time in ((settled, "after 1 s"), (whole, "all 60 s")):
-        assert [re.split("  +", line)[0] for line in part.splitlines()] == [time, *names]
-    cells = {row[0]: row[1:] for row in (re.split("  +", x) for x in settled.splitlines())}
-    assert cells["after 1 s"] == [
-        "MSE [(N.m/rad)2]",
-        "paper",
-        "MSREP [%]",
-        "paper",
-        "mean error [%]",
-    ]
-    found = result.indices[0]["RESIDUAL against SENSOR"]
-    mse, paper_mse, msrep, paper_msrep, error = map(float, cells["RESIDUAL against SENSOR"])
-    assert (paper_mse, paper_msrep) == (63.02, 1.55)
-    assert mse == pytest.approx(found.mse_settled, abs=0.005)
-    assert msrep == pytest.approx(found.msrep_settled, abs=0.0005)
-    assert error == pytest.approx(found.error_settled, abs=0.0005)
-    assert [cells["MODEL against nominal"][i] for i in (1, 3)] == ["9.36", "0.034"]
-
-
 def test_index_that_is_not_defined_is_a_dash_and_an_empty_field(tmp_path: Path) -> None:
     """SENSOR is 0 until the joint deforms."""
     result = one_seed("experiment")
@@ -124,13 +101,3 @@ def test_index_that_is_not_defined_is_a_dash_and_an_empty_field(tmp_path: Path) 
         float(row["MSREP after 1 s [%]"])
         == result.indices[0]["RESIDUAL against SENSOR"].msrep_settled
     )
-
-
-def test_conditions_name_what_the_run_depends_on() -> None:
-    line = conditions(one_seed("table1"))
-    assert "15 s" in line
-    assert "T = 1 ms" in line
-    assert "V_a = " in line
-    assert "c P(0) = 1," in line
-    assert "seed 1" in line
-    assert "c P(0) = 10000," in conditions(one_seed("single-hardening"))

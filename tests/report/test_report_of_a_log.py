@@ -45,30 +45,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("dark", [False, True])
-def test_the_curve_is_seen_without_scrolling(dark: bool, folder: Path) -> None:
-    file = folder / "out" / "report.html"
-    assert file.stat().st_size <= 3_000_000
-    with opened(file, dark=dark) as page:
-        bottoms = page.run("""
-            return [...document.querySelectorAll(".plots section")].slice(0, 2)
-              .map(s => s.getBoundingClientRect().bottom);""")
-        titles = page.run("return [...document.querySelectorAll('h2')].map(h => h.textContent)")
-        assert page.complaints() == []
-    assert max(bottoms) < 700  # of a window of 1400 x 1000
-    assert titles[:3] == [
-        "Flexibility torque over the deformation",
-        "Stiffness over the deformation",
-        "Stiffness",
-    ]
-
-
-def test_nothing_is_wider_than_a_telephone(folder: Path) -> None:
-    with opened(folder / "out" / "report.html", width=400) as page:
-        assert page.run("return document.documentElement.scrollWidth") <= 400
-        assert page.complaints() == []
-
-
 def test_the_band_is_that_of_the_file(folder: Path) -> None:
     table = pa.csv.read_csv(folder / "out" / CURVE)
     first = table["setPoint [1]"].to_numpy() == table["setPoint [1]"].to_numpy()[0]

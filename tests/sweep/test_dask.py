@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import json
 import signal
-import socket
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 import distributed
 import pytest
 
 from sigmahat.runs.pool import WorkerError
-from sigmahat.sweep.cluster import need_listener, spread_on_cluster
 from sigmahat.sweep.execution import execute, fmu_digest
 from sigmahat.sweep.plan_file import read_plan
 from sweeps import QUICK, records, run, start, wait_for_records
@@ -111,36 +108,6 @@ def test_a_scheduler_that_is_slow_and_without_workers(
     (line,) = errors.splitlines()
     assert f"start one with `dask worker {address}`" in line
     assert not (tmp_path / "out").exists()
-
-
-def test_a_scheduler_that_is_about_to_start(tmp_path: Path) -> None:
-    """It accepts connections a moment after the sweep has asked for the first time."""
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
-        timer = threading.Timer(0.3, listener.listen)
-        timer.start()
-        need_listener(address)
-        timer.join()
-
-
-def test_something_else_that_answers_there() -> None:
-    """Such as an SSH server, which speaks first."""
-    with socket.create_server(("127.0.0.1", 0)) as server:
-
-        def answer() -> None:
-            for _ in range(2):  # one call asks whether somebody is there
-                connection, _ = server.accept()
-                with connection, suppress(OSError):
-                    connection.sendall(b"SSH-2.0-OpenSSH_9.2p1\r\n" * 10)
-                    connection.recv(1 << 16)
-
-        thread = threading.Thread(target=answer)
-        thread.start()
-        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        with pytest.raises(WorkerError, match=f"no Dask scheduler at {address}; start one"):
-            next(spread_on_cluster([int], address))
-        thread.join()
 
 
 def test_the_scheduler_is_lost(
