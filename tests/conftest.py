@@ -5,11 +5,15 @@ import sys
 from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 import gate
 import sigmahat
+
+if TYPE_CHECKING:
+    from c_library import Library
 
 if "SIGMAHAT_TOOLS" in os.environ:
     sys.addaudithook(gate.note_program)
@@ -19,6 +23,14 @@ if "SIGMAHAT_TOOLS" in os.environ:
 def build() -> Path:
     """Build tree, from SIGMAHAT_BUILD or ``build`` in the checkout."""
     return Path(os.environ.get("SIGMAHAT_BUILD", Path(__file__).parent.parent / "build"))
+
+
+@pytest.fixture(scope="session")
+def c(build: Path) -> "Library":
+    """The library in C, which the environment of `reproduce` cannot call."""
+    from c_library import load
+
+    return load(build)
 
 
 @pytest.fixture(scope="session")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from c_library import Estimator, Library, load
+from c_library import Estimator, Library
 from regression_joint import Joint
 
 PAPER2011, FILTERED_REGRESSION = 1, 2
@@ -21,11 +20,6 @@ JOINTS: list[dict[str, Any]] = [
     {"rls.n": 3, "prior.B": 0.1, "regression.drift": 0.01},
     {"rls.n": 2, "prior.tau_coulomb": 0.0, "prior.D_theta": 0.0},
 ]
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 def passes(e: Estimator) -> bool:

@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from c_library import Array, Estimator, Library, load
+from c_library import Array, Estimator, Library
 from oracle import SENSOR
 from regression_joint import Joint
 
 METHODS = [{"method": 1}, {"method": 2, "rls.n": 3}, {"method": 2, "modality": SENSOR}]
 both = pytest.mark.parametrize("values", METHODS, ids=["Paper2011", "FilteredRegression", "Sensor"])
 NAMES = ("tau_e", "tau_e_std", "sigma", "sigma_std")
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 def after(c: Library, values: dict[str, Any]) -> Estimator:

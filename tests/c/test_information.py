@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from c_library import Array, Library, load
+from c_library import Array, Library
 from c_regression import SIDES, dense, factors
 
 SIZES = [1, 2, 3, 4, 5, 9, 31, 63]
 Y = 1  # the side of y
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 class Information:
@@ -181,17 +175,6 @@ def test_process_noise_adds_to_the_covariance_and_keeps_the_estimate(
     assert a.a.squares == pytest.approx(rest, rel=rel)
 
 
-def test_process_noise_of_any_size_leaves_the_information_positive(c: Library) -> None:
-    a = Information(c, 6, 1e-9)
-    rng = np.random.default_rng(4)
-    a.fill(rng, 4)  # fewer samples than parameters
-    for _ in range(200):
-        v = rng.normal(size=6)
-        c.lib.sh_information_drift(a.a, c.pointer(v), 10.0 ** rng.uniform(-12, 12))
-        assert np.all(factors(a.a)[1] > 0)
-        assert all(np.all(np.isfinite(part)) for part in factors(a.a))
-
-
 def exactly(rows: Array, y: Array, precision: float) -> list[Fraction]:
     """Least squares in rational numbers."""
     n = rows.shape[1]
@@ -230,33 +213,6 @@ def test_columns_that_are_almost_equal(c: Library, distance: float) -> None:
         if precision == 1.0:
             assert a.solve(Y) == pytest.approx(want, rel=rel)
         assert np.all(factors(a.a)[1] > 0)
-
-
-@pytest.mark.parametrize("scale", [1e-150, 1e-70, 1e-20, 1e20, 1e70])
-def test_samples_of_extreme_size(c: Library, scale: float) -> None:
-    """As the estimator takes them: the sum of squares of a row is at most 1e150."""
-    rng = np.random.default_rng(6)
-    a = Information(c, 5)
-    for _ in range(50):
-        a.take(scale * rng.normal(size=5), scale * rng.normal(size=SIDES), 1.0)
-    U, D, z = factors(a.a)
-    assert all(np.all(np.isfinite(part)) for part in (U, D, z))
-    assert np.all(D >= 1.0)
-    if scale >= 1:
-        a.check(1e-8)
-
-
-def test_many_samples_of_different_weights_lose_no_digits(c: Library) -> None:
-    rng = np.random.default_rng(7)
-    a = Information(c, 3)
-    rows, y = rng.normal(size=(2000, 3)), rng.normal(size=2000)
-    weights = 10.0 ** rng.uniform(-8, 8, 2000)
-    for x, value, w in zip(rows, y, weights, strict=True):
-        a.take(x, np.array([0.0, value]), w)
-    root = np.sqrt(weights)[:, None]
-    system = np.vstack([root * rows, np.eye(3)]), np.append(root[:, 0] * y, np.zeros(3))
-    want = np.linalg.lstsq(*system, rcond=None)[0]
-    assert a.solve(Y) == pytest.approx(want, rel=1e-10)
 
 
 @pytest.mark.parametrize("size", SIZES)

@@ -203,7 +203,6 @@ class Conan:
 
 @pytest.fixture(scope="module")
 def conan(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Conan:
-    """Conan, without packages."""
     return Conan(build, tmp_path_factory.mktemp("conan"))
 
 

@@ -13,7 +13,7 @@ import pytest
 from scipy import signal
 
 import c_sources
-from c_library import Estimator, Library, load
+from c_library import Estimator, Library
 from c_regression import PLAIN, coefficients, covariance
 from gate import need
 from misfit_joint import SETTINGS, STIFFNESS, MisfitJoint
@@ -21,11 +21,6 @@ from regression_joint import Joint
 
 T = 1e-3
 GAP, HYSTERESIS = 3, 4
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 def accuracy(estimator: Estimator, *kinds: str) -> float:

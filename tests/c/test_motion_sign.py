@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from c_library import Array, Library, load
+from c_library import Array, Library
 
 COUNT = 2 * np.pi / 40000
 T = 1e-3
 SLOW = 0.05  # [rad/s]
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 def steps(count: int) -> Array:

@@ -10,13 +10,8 @@ from typing import Any
 import fmpy
 import pytest
 
-from c_library import REPOSITORY, Library, load
+from c_library import REPOSITORY, Library
 from sigmahat.export import c_parameters
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 @pytest.fixture(scope="module")

@@ -3,17 +3,11 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import pytest
 
-from c_library import Estimator, Library, load
+from c_library import Estimator, Library
 from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 @pytest.mark.parametrize("kind", [ENHANCED, STANDARD, CONSTANT_FACTOR])

@@ -6,13 +6,12 @@ coefficient: so also the sign of every column, and of what it means, is tested.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from c_library import Array, Estimator, Library, load
+from c_library import Array, Estimator, Library
 from c_regression import coefficients
 from dense_signals import GAPS, PLAYS, through
 
@@ -24,11 +23,6 @@ VALUES = {
     **{"encoder.theta": 0.0, "encoder.q": 0.0},
 }
 K_0 = 45.0 / PHI
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 t = T * np.arange(600)

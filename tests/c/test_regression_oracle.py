@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from c_library import Array, Estimator, Library, load
+from c_library import Array, Estimator, Library
 from c_regression import PLAIN
 from dense_regression import Oracle
 from oracle import RESIDUAL, SENSOR
@@ -41,11 +40,6 @@ FAST = Joint(duration=3.0, frequency=8.0, amplitude=0.05, tau_coulomb=0.02)
 CREEPS = Joint(duration=4.0, frequency=0.2, amplitude=0.5, tau_coulomb=0.02)
 ONE = {"rls.n": 1, "rls.m": 1}
 POWERS, SET_POWER, GAP, HYSTERESIS, MOTOR_ENCODER = range(1, 6)
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 def compare(found: NDArray[np.void], expected: Mapping[str, Array]) -> None:

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy import signal
 
-from c_library import Array, Library, load
+from c_library import Array, Library
 
 T = 1e-3
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 def design(c: Library, w: float) -> Any:

@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import oracle
-from c_library import Array, Library, load
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
+from c_library import Array, Library
 
 
 def basis(

@@ -3,30 +3,19 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import oracle
-from c_library import Array, Library, load
+from c_library import Array, Library
 
 B, D_THETA, GAMMA = 2.3e-5, 1e-3, 50.0
 T, K_I = 1e-4, 200.0
 
 
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
-
-
 def run(
-    c: Library,
-    theta: Array,
-    theta_dot: Array,
-    tau: Array,
-    T: float = T,
-    K_I: float = K_I,
+    c: Library, theta: Array, theta_dot: Array, tau: Array, T: float = T, K_I: float = K_I
 ) -> Array:
     """gamma r_e at every sample [size: samples]."""
     motor = c.new("sh_motor_parameters", B=B, D_theta=D_THETA, gamma=GAMMA)

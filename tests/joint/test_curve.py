@@ -16,12 +16,7 @@ from closed_form_joint import CUBIC, LINEAR, OF_THETA_C, closed_form_log
 from recorded_logs import CONFIGURATION, Array, awas_log, write_log
 from sigmahat.cli import main
 from sigmahat.joint import sheet
-from sigmahat.joint.curve import (
-    CURVE,
-    Branch,
-    nearest,
-    read_curve,
-)
+from sigmahat.joint.curve import CURVE, Branch, nearest, read_curve
 from sigmahat.joint.curve_text import curve_text, polynomial_in_words
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import read_configuration
@@ -137,9 +132,7 @@ def test_the_band_is_what_the_estimator_said_at_its_last_sample(
     assert np.interp(end["phi"], branch.phi, branch.sigma_std) == pytest.approx(std, rel=5e-3)
 
 
-def test_each_branch_ends_where_its_data_end(
-    awas: tuple[Estimate, Columns, Path],
-) -> None:
+def test_each_branch_ends_where_its_data_end(awas: tuple[Estimate, Columns, Path]) -> None:
     result, log, _ = awas
     set_point = 100.0 - 1e3 * 0.0025 / (2 * np.pi) * log["theta_c"]
     phi, step = log["q"] - log["theta"], np.ptp(set_point) / 4
@@ -151,9 +144,7 @@ def test_each_branch_ends_where_its_data_end(
         assert branch.phi[0] < branch.reach[0] and branch.phi[-1] > branch.reach[1]
 
 
-def test_torque_is_the_integral_of_the_stiffness(
-    awas: tuple[Estimate, Columns, Path],
-) -> None:
+def test_torque_is_the_integral_of_the_stiffness(awas: tuple[Estimate, Columns, Path]) -> None:
     for branch in awas[0].curve.branches:
         steps = np.diff(branch.phi) * (branch.sigma[1:] + branch.sigma[:-1]) / 2
         np.testing.assert_allclose(np.diff(branch.tau_e), steps, atol=1e-3 * np.ptp(branch.tau_e))
@@ -162,9 +153,7 @@ def test_torque_is_the_integral_of_the_stiffness(
         assert branch.tau_e[zero] == branch.tau_e_std[zero] == 0
 
 
-def test_measured_points_lie_about_the_curve(
-    awas: tuple[Estimate, Columns, Path],
-) -> None:
+def test_measured_points_lie_about_the_curve(awas: tuple[Estimate, Columns, Path]) -> None:
     """(29): tau_e = k_s r^2 sin(2 phi) is what a perfect sensor would have measured."""
     _, _, folder = awas
     points = read_points(folder / POINTS)

@@ -87,10 +87,7 @@ def test_what_it_rests_on(original: Path) -> None:
     (log,) = sheet["logs"]
     assert (log["file"], log["ticks"]) == ("knee.parquet", 10001)
     assert log["sha256"] == sha256(original / "knee.parquet")
-    assert sheet["configuration"] == {
-        "file": "knee.toml",
-        "sha256": sha256(original / "knee.toml"),
-    }
+    assert sheet["configuration"] == {"file": "knee.toml", "sha256": sha256(original / "knee.toml")}
     assert sheet["rests_on"]["torque_gain"] == 0.02
     assert sheet["rests_on"]["exact"] == [] and sheet["rests_on"]["absent"] == []
 

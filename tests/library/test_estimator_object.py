@@ -276,9 +276,7 @@ except KeyboardInterrupt:
     assert shown.stdout == "interrupted\n"
 
 
-def test_the_estimate_is_evaluated_at_any_deformation(
-    z: dict[str, NDArray[np.float64]],
-) -> None:
+def test_the_estimate_is_evaluated_at_any_deformation(z: dict[str, NDArray[np.float64]]) -> None:
     """At the point of the last tick it gives the outputs, and nothing is learned."""
     estimator = sigmahat.Estimator({"method": "FilteredRegression", "rls.n": 3})
     estimator.run(**z)
@@ -293,9 +291,7 @@ def test_the_estimate_is_evaluated_at_any_deformation(
     assert estimator.evaluate(np.nan)["sigma_std"] == np.inf
 
 
-def test_many_estimates_are_evaluated_at_the_same_points(
-    z: dict[str, NDArray[np.float64]],
-) -> None:
+def test_many_estimates_are_evaluated_at_the_same_points(z: dict[str, NDArray[np.float64]]) -> None:
     both = [{"method": "FilteredRegression"}, {"method": "Paper2011"}]
     estimator = sigmahat.Estimator(both)
     estimator.run(**{name: np.tile(each, (2, 1)) for name, each in z.items()})

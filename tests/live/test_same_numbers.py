@@ -34,7 +34,6 @@ return found;
 
 
 def outputs(fmu: Path) -> list[str]:
-    """Names of all outputs that are numbers."""
     variables = fmpy.read_model_description(str(fmu)).modelVariables
     return [v.name for v in variables if v.causality == "output" and v.type == "Real"]
 

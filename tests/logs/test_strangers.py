@@ -170,18 +170,6 @@ def test_a_parquet_file_with_a_damaged_description(
         assert "codec" not in done.err or "not a whole Parquet file" in done.err
 
 
-@pytest.mark.parametrize("T", ["5e-324", "1e-12"])
-def test_a_sample_period_far_below_that_of_the_log(
-    T: str, tmp_path: Path, confined: Confined
-) -> None:
-    write_log(usual(), tmp_path / "log.csv")
-    text = CONFIGURATION.replace("samplePeriod = 0.001", f"samplePeriod = {T}")
-    (tmp_path / "log.toml").write_text(text)
-    done = confined.run(tmp_path, "estimate", "log.csv")
-    assert done.complaint() is None
-    assert done.status == 2 and "check time.unit and samplePeriod" in done.err
-
-
 def test_a_log_of_which_no_tick_can_be_used(tmp_path: Path, confined: Confined) -> None:
     """GIVEN a scale that makes every value too large, THEN there are results, and all say so."""
     write_log(usual(), tmp_path / "log.csv")

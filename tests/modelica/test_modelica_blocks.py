@@ -30,7 +30,6 @@ SPECIAL = {
 
 
 def outputs() -> list[str]:
-    """The outputs of a tick."""
     tick = classes()["Estimators.Internal.tick"]
     return [name for name, each in tick.symbols.items() if "output" in each.prefixes]
 

@@ -140,7 +140,6 @@ def _parameter(expression: str) -> str:
 
 
 def gcc(*arguments: str | Path) -> None:
-    """Runs the compiler, with all warnings as errors."""
     command = [need("gcc"), *FLAGS, *WARNINGS, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")

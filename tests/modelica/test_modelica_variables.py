@@ -40,7 +40,6 @@ def parameters(fmu: str) -> dict[str, Any]:
 
 
 def own(model: Any, prefix: str = "") -> dict[str, Any]:
-    """The same of a model in rumoca."""
     every = {n.removeprefix(prefix): model.parameters[n] for n in model.parameters.names}
     return {n: (v.unit or "1", v.value, v.min, v.max) for n, v in every.items()}
 

@@ -84,10 +84,7 @@ def test_result_does_not_depend_on_the_number_of_processes() -> None:
     assert one_process.indices == list(twenty_seeds("table1").indices[:2])
     for series, other in (
         (alone.recording.plant, one_process.recording.plant),
-        (
-            alone.recording.estimators["RESIDUAL"],
-            one_process.recording.estimators["RESIDUAL"],
-        ),
+        (alone.recording.estimators["RESIDUAL"], one_process.recording.estimators["RESIDUAL"]),
     ):
         for output in series.values:
             np.testing.assert_array_equal(series[output], other[output])

@@ -12,15 +12,7 @@ import pytest
 
 from fmi_instance import ERROR, OK, Instance
 from plant_runs import QUIET, STATES, Array, run_awas, sinusoids, times
-from reference_plant import (
-    SCREW,
-    Awas,
-    Torque,
-    paper_tau,
-    paper_tau_c,
-    round_to_counts,
-    solve,
-)
+from reference_plant import SCREW, Awas, Torque, paper_tau, paper_tau_c, round_to_counts, solve
 
 RETRACTED = 0.030 / SCREW  # theta_c for a lever arm of 70 mm
 AT_REST = np.array([0.0, 0.0, RETRACTED, 0.0, 0.0, 0.0])

@@ -63,10 +63,7 @@ def test_every_motor_of_every_plant_has_its_own(name: str, motors: list[str]) ->
 
 
 def test_a_signal_begins_at_zero_at_any_start_time() -> None:
-    with (
-        Instance(sigmahat.fmu("AwasPlant")) as early,
-        Instance(sigmahat.fmu("AwasPlant")) as late,
-    ):
+    with Instance(sigmahat.fmu("AwasPlant")) as early, Instance(sigmahat.fmu("AwasPlant")) as late:
         for fmu, begin in ((early, 0.0), (late, 0.125)):
             assert fmu.setup(begin) == OK
             fmu.set_all({**QUIET, **FIRST})

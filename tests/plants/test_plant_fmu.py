@@ -25,7 +25,6 @@ VARIABLES = {
 
 
 def mass() -> PlantEquations:
-    """A mass under a torque."""
     plant = PlantEquations("MassPlant")
     force = plant.input("force")
     x = plant.state("x", start=plant.parameter("initial.x"), scale=1.0)
@@ -120,24 +119,20 @@ def test_brings_its_sources(fmu: Path, tmp_path: Path) -> None:
     assert listed == {"MassPlant"}
 
 
-def test_a_variable_that_is_missing(tmp_path: Path) -> None:
-    some = {name: each for name, each in VARIABLES.items() if name != "mass"}
-    with pytest.raises(ValueError, match="no entry for the parameter mass"):
-        write_plant_fmu(mass(), some, tmp_path / "x.fmu")
-
-
-def test_a_variable_that_is_not_in_the_equations(tmp_path: Path) -> None:
-    more = {**VARIABLES, "mas": VARIABLES["mass"]}
-    with pytest.raises(
-        ValueError, match="unknown variable of MassPlant 'mas'; did you mean 'mass'"
-    ):
-        write_plant_fmu(mass(), more, tmp_path / "x.fmu")
-
-
-def test_a_unit_that_does_not_exist(tmp_path: Path) -> None:
-    other = {**VARIABLES, "mass": PlantVariable("kg.m", "Inertia")}
-    with pytest.raises(ValueError, match=r"MassPlant\.mass: unknown unit 'kg\.m'.*kg\.m2"):
-        write_plant_fmu(mass(), other, tmp_path / "x.fmu")
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"mass": None}, "no entry for the parameter mass"),
+        ({"mas": VARIABLES["mass"]}, "unknown variable of MassPlant 'mas'; did you mean 'mass'"),
+        ({"mass": PlantVariable("kg.m", "?")}, r"MassPlant\.mass: unknown unit 'kg\.m'.*kg\.m2"),
+    ],
+)
+def test_variables_that_do_not_fit(
+    changed: dict[str, PlantVariable | None], message: str, tmp_path: Path
+) -> None:
+    others = {name: each for name, each in {**VARIABLES, **changed}.items() if each is not None}
+    with pytest.raises(ValueError, match=message):
+        write_plant_fmu(mass(), others, tmp_path / "x.fmu")
 
 
 @pytest.mark.parametrize("name", ["noise.seed", "noise.samplePeriod", "signal.tau.amplitude"])

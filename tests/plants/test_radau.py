@@ -92,7 +92,6 @@ class Radau:
         return self._ffi.cast("double *", self._ffi.from_buffer(values))
 
     def step(self, x: Array, h: float, p: Array, u: Array = ZERO, du: Array = ZERO) -> Any:
-        """State after one step, and the estimated error."""
         x_new = np.empty_like(x)
         arguments = [self._pointer(values) for values in (x, u, du, p)]
         error = self._lib.sh_radau_step(*arguments, h, self._pointer(x_new))

@@ -14,7 +14,6 @@ REPOSITORY = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def page(site: Path) -> str:
-    """The page of the Python API."""
     return (site / "api.html").read_text(encoding="utf-8")
 
 

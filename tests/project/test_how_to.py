@@ -23,14 +23,12 @@ PAGES = REPOSITORY / "docs" / "how-to"
 
 
 def blocks(page: str, language: str) -> Iterator[str]:
-    """Code blocks of a page, in their order."""
     text = (PAGES / page).read_text(encoding="utf-8")
     return (m[1] for m in re.finditer(rf"^```{language}\n(.*?)^```$", text, re.M | re.S))
 
 
 @pytest.mark.skipif(fmpy.platform != "linux64", reason="the page names the Linux binary")
 def test_the_commands_of_the_page_on_c_masters_work(tmp_path: Path) -> None:
-    """Runs the commands in a new folder."""
     (commands,) = blocks("c-master.md", "sh")
     (tmp_path / "examples").symlink_to(REPOSITORY / "examples")
     done = subprocess.run(

@@ -23,7 +23,6 @@ METHODS = {"tick of Paper2011": "1", "tick of FilteredRegression": "2"}
 
 
 def counted(program: Path, subject: str) -> float:
-    """Instructions of one round."""
     totals = []
     for rounds in (FEW, MANY):
         command = [need("valgrind"), "--tool=lackey", "--basic-counts=yes", str(program), subject]

@@ -45,7 +45,6 @@ def pages(site: Path) -> list[Path]:
 
 @cache
 def read(page: Path) -> Any:
-    """A page of the site."""
     return html.parse(str(page)).getroot()
 
 

@@ -20,7 +20,6 @@ pytestmark = pytest.mark.slow("the commands of the page run on a log of 20 s")
 
 
 def sigmahat(command: list[str], folder: Path) -> str:
-    """Runs a command. Returns what it prints."""
     done = subprocess.run(
         [sys.executable, "-m", "sigmahat", *command], cwd=folder, capture_output=True, text=True
     )
@@ -46,7 +45,6 @@ def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 
 def recording(path: Path) -> Any:
-    """Runs the program that made the log."""
     spec = importlib.util.spec_from_file_location("record", FILES / "record.py")
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)

@@ -93,7 +93,6 @@ def wheels(clone: Path, empty: Path, tmp_path_factory: pytest.TempPathFactory) -
 
 @pytest.fixture(scope="module")
 def wheel(wheels: Path) -> Path:
-    """The wheel built from the clone."""
     (path,) = wheels.glob("sigmahat-*.whl")
     return path
 

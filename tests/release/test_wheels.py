@@ -18,11 +18,7 @@ import pytest
 import sigmahat
 from released_fmus import FMUS
 
-EXTENSIONS = {
-    "manylinux_2_17_x86_64": ".so",
-    "win_amd64": ".dll",
-    "macosx_11_0_x86_64": ".dylib",
-}
+EXTENSIONS = {"manylinux_2_17_x86_64": ".so", "win_amd64": ".dll", "macosx_11_0_x86_64": ".dylib"}
 each_platform = pytest.mark.parametrize("tag", EXTENSIONS)
 
 

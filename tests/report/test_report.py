@@ -207,23 +207,6 @@ def test_fewer_points_of_a_long_signal_keep_every_peak(samples: int) -> None:
     assert np.array_equal(shown[middle], x[inside])
 
 
-def test_an_hour_is_a_file_of_the_same_size(tmp_path: Path) -> None:
-    t = np.arange(1_200_000) * 1e-3
-    names = [
-        "sigma [N.m/rad]", "tau_e [N.m]", "tau_e_residual [N.m]", "theta_dot [rad/s]",
-        "phi [rad]", "setPoint [1]", "a [1]", "rho [1]", "epsilon [N.m]",
-    ]  # fmt: skip
-    columns = {f"estimate.{name}": np.sin((i + 1) * t) for i, name in enumerate(names)}
-    table = {"estimate.t [s]": t, **columns, "estimate.valid": t > 1.0}
-    pa.parquet.write_table(pa.table(table), tmp_path / "estimate.parquet")
-    done = command("report", ".", cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
-    text = (tmp_path / "report.html").read_text()
-    assert len(text) < 5_000_000
-    assert "in 1001 of them the estimator skipped the tick" in text
-    assert "least and the greatest of every" in text
-
-
 @pytest.mark.parametrize(
     ("files", "words"),
     [

@@ -209,13 +209,6 @@ def test_records_that_do_not_fit(tmp_path: Path) -> None:
     assert run(*arguments, cwd=tmp_path).returncode == 0
     path = tmp_path / "out" / "runs.jsonl"
     good = path.read_bytes()
-    for other, words in (
-        (["--seeds", "1"], "expected as many or more, got 1"),
-        (["--seeds", "3", "--set", "plant.link.M=0.2"], "another sweep"),
-    ):
-        line = refused(*QUICK, *other, "--out", "out", cwd=tmp_path)
-        assert words in line and "--out" in line
-        assert path.read_bytes() == good
     for damaged, words in (
         (good.replace(b'"number": 1', b'"number": 0'), "line"),
         (good + records(path)[0], "line 4: run"),
@@ -246,11 +239,8 @@ def test_runs_that_fail_are_reported(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--scenario", "tabel1"], "did you mean 'table1'?"),
         (["--modality", "RESIDUL"], "did you mean 'RESIDUAL'?"),
-        (["--set", "plant.motor.D_teta=1"], "did you mean 'motor.D_theta'"),
         (["--set", "plant.motor.D_theta"], "expected NAME=VALUES"),
-        (["--set", "estimator.motor.B=-1"], "motor.B"),
         (["--seeds", "0"], "--seeds"),
         (["missing.toml"], "cannot read missing.toml"),
         (["--set", "estimator.motor.B=uniform(-2,-1)"], "every run failed"),

@@ -136,10 +136,7 @@ def test_nothing_is_written(folder: Path, capsys: pytest.CaptureFixture[str]) ->
     ],
 )
 def test_wrong_arguments(
-    arguments: list[str],
-    words: str,
-    folder: Path,
-    capsys: pytest.CaptureFixture[str],
+    arguments: list[str], words: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "other.toml").write_text(REGRESSION)
     (folder / "b.toml").write_text(REGRESSION.replace("1.84e-5", "2e-5"))
