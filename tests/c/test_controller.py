@@ -149,6 +149,13 @@ def test_smaller_sizes_cost_what_the_page_says(
     assert cells == pytest.approx(expected, rel=0.1)
 
 
+def test_columns_for_which_there_is_no_memory_are_refused(folder: Path, ninja: Path) -> None:
+    sizes = ("SH_MAX_N=3", "SH_MAX_M=1", "SH_MAX_COLUMNS=6")
+    tree = cross_build("examples/controller", TARGETS["Cortex-M4F"], "float", ninja, folder, sizes)
+    text = run("cmake", "--build", str(tree), "--target", "cost")
+    assert re.search("all columns: .* compiled for at most 6 columns", text)
+
+
 @each_real
 def test_the_library_needs_only_memory_and_math_functions(
     real: str, folder: Path, ninja: Path

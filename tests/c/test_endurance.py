@@ -67,12 +67,3 @@ def test_sanitizers_find_no_undefined_behaviour(folder: Path, method: int, n: in
         program, Case(method, n, m, 1e6, 0, 0), INPUT_CYCLE, folder / f"{method}_{n}"
     )
     assert checkpoints[-1][0] == INPUT_CYCLE
-
-
-def test_the_comparison_detects_a_difference() -> None:
-    first = [np.longdouble(number) for number in (10, 1, 2, 3, 4, 5, 6, 7, 8)]
-    second = [np.longdouble(13), *first[1:]]
-    other = [*second[:3], second[3] * (1 + 1e-6), *second[4:]]
-    largest, output = endurance.difference([first, second], [first, other])
-    assert output == "sigma_std"
-    assert largest == pytest.approx(1e-6, rel=1e-3)

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-import subprocess
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy import signal
 
-import c_sources
 from c_library import Estimator, Library
 from c_regression import PLAIN, coefficients, covariance
-from gate import need
 from misfit_joint import SETTINGS, STIFFNESS, MisfitJoint
 from regression_joint import Joint
 
@@ -283,77 +279,3 @@ def test_a_held_torque_is_exact(c: Library, hold: bool) -> None:
     right, wrong = errors[::-1] if hold else errors
     assert right < 1e-3
     assert wrong > 10 * right
-
-
-# Sizes given to the compiler
-
-PROGRAM = """
-#include <stdio.h>
-#include "sigmahat.h"
-
-int main(void)
-{
-    static sh_parameters p;
-    static sh_estimator estimator;
-    static sh_estimate e;
-    sh_violation violation;
-    double z[5];
-
-    sh_parameters_default(&p);
-    p.method = SH_METHOD_FILTERED_REGRESSION;
-    p.rls.n = 3;
-    p.rls.m = 1;
-    p.prior.power = 0;
-    if (sh_parameters_check(&p, &violation)) {
-        printf("%s %s", violation.name, violation.range);
-        return 0;
-    }
-    sh_estimator_start(&estimator, &p, &e);
-    while (fread(z, sizeof z, 1, stdin) == 1) {
-        const sh_measurement measurement = {z[0], z[1], z[2], z[3], z[4]};
-        sh_estimator_tick(&estimator, &p, &measurement, &e);
-    }
-    printf("%zu %.17g %.17g %.17g", sizeof estimator, e.sigma, e.sigma_std, e.bias_hat);
-    return 0;
-}
-"""
-
-
-def compiled(folder: Path, *flags: str) -> list[str]:
-    """What the program prints if it is compiled with these options, as words."""
-    source, main = folder / "main.c", folder / "program"
-    source.write_text(PROGRAM)
-    subprocess.run(
-        [
-            *(
-                need("gcc"),
-                "-std=c99",
-                "-O2",
-                "-ffp-contract=off",
-                "-Wall",
-                "-Wextra",
-                "-Werror",
-                *flags,
-            ),
-            *(f"-I{path}" for path in c_sources.FOLDERS),
-            *map(str, [source, *c_sources.SOURCES]),
-            *("-lm", "-o", str(main)),
-        ],
-        check=True,
-    )
-    z = MisfitJoint(duration=3.0).measurements()
-    done = subprocess.run([main], input=z.tobytes(), capture_output=True, check=True)
-    return done.stdout.decode().split()
-
-
-def test_smaller_sizes_give_the_same_numbers(tmp_path: Path) -> None:
-    full = compiled(tmp_path)
-    small = compiled(tmp_path, "-DSH_MAX_N=3", "-DSH_MAX_M=1", "-DSH_MAX_COLUMNS=21")
-    assert small[1:] == full[1:]
-    assert int(small[0]) < 0.25 * int(full[0])
-
-
-def test_too_many_columns_for_the_compiled_size_violate_the_parameters(tmp_path: Path) -> None:
-    found = compiled(tmp_path, "-DSH_MAX_N=3", "-DSH_MAX_M=1", "-DSH_MAX_COLUMNS=20")
-    assert found[0] == "rls.n"
-    assert "20" in found

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from closed_form_joint import CUBIC, LINEAR, OF_THETA_C, closed_form_log
 from recorded_logs import CONFIGURATION, Array, awas_log, write_log
 from sigmahat.cli import main
-from sigmahat.joint import sheet
 from sigmahat.joint.curve import CURVE, Branch, nearest, read_curve
 from sigmahat.joint.curve_text import curve_text, polynomial_in_words
 from sigmahat.joint.stored import LearnedLog
@@ -259,19 +258,3 @@ def test_levels_of_the_set_point_are_found() -> None:
     found = [r.set_point for r in reaches(points, [], one_curve=False)]
     assert found == pytest.approx([1.0, 2.0, 5.0], abs=1e-3)
     assert np.array_equal(nearest(found, np.array([1.1, 1.5, 2.2, 9.0])), [0, -1, 1, -1])
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("", "not readable as CSV"),
-        ("a,b\n1,2\n", "expected the curve that"),
-        (None, "No such file"),
-    ],
-)
-def test_a_file_that_is_no_curve(text: str | None, words: str, tmp_path: Path) -> None:
-    if text is not None:
-        (tmp_path / CURVE).write_text(text)
-    polynomial = sheet.Polynomial([1], [0], [[1.0]], [["N.m/rad"]], None, None)
-    with pytest.raises(ValueError, match=words):
-        read_curve(tmp_path / CURVE, polynomial)

@@ -232,17 +232,6 @@ def test_why_and_how_often_the_estimate_is_not_confident(
         assert line in text
 
 
-def test_what_is_absent_because_its_prior_is_0_is_listed(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = write_log(awas_log(1.0, 0.3, duration=2.0), tmp_path / "log.parquet")
-    absent = "prior.B = 0.1\nprior.delay = 0\nprior.load_friction = 0\nprior.tau_coulomb = 0\n"
-    assert estimate(path, tmp_path, REGRESSION + absent) == 0
-    text = capsys.readouterr().out
-    assert "no Coulomb friction, no load friction, no delay (priors of 0)" in text
-    assert "exactly" not in text
-
-
 def test_paper2011_makes_no_claim(
     log: dict[str, Array], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -274,17 +263,3 @@ def test_the_real_joint(estimator_fmu: Path, tmp_path: Path) -> None:
     table = read_estimate(tmp_path / "out")
     assert table[SIGMA].to_numpy()[-1] == pytest.approx(expected.sigma, rel=1e-12)
     assert table["estimate.tau_e [N.m]"].to_numpy()[-1] == pytest.approx(expected.tau_e, rel=1e-12)
-
-
-def test_without_a_torque_no_percentage_of_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    # GIVEN a joint that does not deform THEN its error is not said to be 1e+10 % of no torque
-    monkeypatch.chdir(tmp_path)
-    t = 1e-3 * np.arange(2000)
-    motion = np.sin(5 * t)
-    log = {"t": t, "theta": motion, "q": motion, "theta_c": 75 + t, "tau": 0.1 * motion}
-    write_log(log, Path("log.parquet"))
-    Path("log.toml").write_text(CONFIGURATION)
-    assert main(["estimate", "log.parquet"]) == 0
-    assert "(100 % or more of the torque)" in capsys.readouterr().out

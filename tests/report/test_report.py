@@ -31,15 +31,6 @@ window.before = picture;
 return before?.length === picture.length ? picture.filter((x, i) => x !== before[i]).length : 0;
 """
 """How much of the picture of a plot has changed since this was last asked."""
-COLORS_OF_PLOT = f"""{PICTURE}
-const counts = {{}};
-for (let i = 0; i < picture.length; i += 4) {{
-  const color = picture.slice(i, i + 3).join();
-  counts[color] = (counts[color] ?? 0) + 1;
-}}
-return counts;
-"""
-"""How many pixels of a plot have each colour."""
 SHOW = """
 const [plot, shown, done] = arguments;
 for (const box of document.querySelectorAll(`[data-trace^="trace-${plot}-"]`))
@@ -110,18 +101,6 @@ def test_the_file_alone_shows_every_plot(
                 changed = page.run(CHANGED, plot)
             assert changed > 0, trace
         assert page.complaints() == []
-
-
-@pytest.mark.parametrize("dark", [False, True])
-def test_a_narrow_window_light_and_dark(dark: bool, results: Callable[[str], Path]) -> None:
-    with opened(results("sweep") / "report.html", width=400, dark=dark) as page:
-        assert page.run("return document.documentElement.scrollWidth") <= 400
-        rights = "return [...document.querySelectorAll('.plots section')].map(s => s.%s)"
-        assert all(0 < w <= 400 for w in page.run(rights % "getBoundingClientRect().right"))
-        page_color = page.run("return getComputedStyle(document.body).backgroundColor")
-        assert page_color == ("rgb(20, 23, 27)" if dark else "rgb(255, 255, 255)")
-        dots = page.run(COLORS_OF_PLOT, 0)
-        assert dots.get("20,23,27" if dark else "255,255,255", 0) > 10_000
 
 
 def test_the_plots_have_the_numbers_of_the_files(results: Callable[[str], Path]) -> None:
