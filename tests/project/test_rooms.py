@@ -1,0 +1,75 @@
+"""The rooms of the Python package: imports run one way, and not through many of them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parents[2] / "harness" / "sigmahat"
+LONGEST = 9
+"""Rooms from the command line to the last one."""
+
+Graph = Mapping[str, set[str]]
+
+
+def modules() -> dict[str, Path]:
+    """Files by name; not the front door, which names what is public wherever it is."""
+    paths = {
+        path.relative_to(PACKAGE).with_suffix("").parts: path for path in PACKAGE.rglob("*.py")
+    }
+    names = {".".join(("sigmahat", *parts)): path for parts, path in paths.items()}
+    return {
+        name.removesuffix(".__init__"): path
+        for name, path in names.items()
+        if name != "sigmahat.__init__"
+    }
+
+
+def imported(path: Path) -> Iterator[str]:
+    """Names that a file imports, anywhere in it."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+            yield node.module
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+
+
+@pytest.fixture(scope="module")
+def graph() -> Graph:
+    """What each module imports of this package."""
+    files = modules()
+    return {name: set(imported(path)) & files.keys() - {name} for name, path in files.items()}
+
+
+def room(module: str) -> str:
+    """The folder in the package, or the module itself if it is in none."""
+    return module.split(".")[1]
+
+
+def rooms(graph: Graph) -> Graph:
+    every: dict[str, set[str]] = {room(name): set() for name in graph}
+    for name, others in graph.items():
+        every[room(name)] |= {room(other) for other in others} - {room(name)}
+    return every
+
+
+def longest(graph: Graph) -> list[str]:
+    """The longest chain. Raises CycleError, which names a circle, if there is one."""
+    chains: dict[str, list[str]] = {}
+    for name in TopologicalSorter(graph).static_order():
+        below = max((chains[other] for other in graph[name]), key=len, default=[])
+        chains[name] = [name, *below]
+    return max(chains.values(), key=len)
+
+
+def test_no_module_imports_itself_through_others(graph: Graph) -> None:
+    assert len(longest(graph)) > 1
+
+
+def test_imports_run_one_way_through_few_rooms(graph: Graph) -> None:
+    assert len(longest(rooms(graph))) <= LONGEST
