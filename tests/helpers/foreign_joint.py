@@ -70,14 +70,17 @@ def _lever(t: Array | float) -> Array | float:
 
 
 @cache
-def joint(has_lever: bool, seconds: float = 7.0) -> Motion:
-    """A motion from rest."""
+def joint(has_lever: bool, seconds: float = 7.0, stiffer: float = 0.0) -> Motion:
+    """A motion from rest.
+
+    stiffer  relative change of the stiffness of the series elastic joint per deformation [1/rad]
+    """
 
     def spring(phi: Array | float, t: Array | float) -> tuple[Array | float, Array | float]:
         if has_lever:
             K = PER_LEVER * _lever(t) ** 2
             return 0.5 * K * np.sin(2 * phi), K * np.cos(2 * phi)
-        return STIFFNESS * phi, STIFFNESS + 0.0 * phi
+        return STIFFNESS * phi * (1 + stiffer * phi / 2), STIFFNESS * (1 + stiffer * phi)
 
     def torque(t: Array | float, theta: Array | float, velocity: Array | float) -> Array | float:
         target, rate = _target(t)

@@ -104,5 +104,5 @@ def test_a_deformation_that_is_noise_limits_the_bandwidth(
     noise_of_phi: float, is_noise: bool
 ) -> None:
     noise = TorqueNoise(torque=9e-6, position=0.0, inertia=1e-3, T=T)
-    limit = coherent_range(motor(noise_of_phi), 50.0, True, 40.0, noise)
+    limit = coherent_range(motor(noise_of_phi), 50.0, 40.0, noise)
     assert (limit < 6.0) if is_noise else limit == math.inf

@@ -11,7 +11,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+
+from recorded_logs import read_estimate
 
 REPOSITORY = Path(__file__).parents[2]
 FILES = REPOSITORY / "examples" / "tutorial"
@@ -35,8 +38,9 @@ def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     commands = [line.split() for line in re.findall(r"^sigmahat (.*)$", PAGE, re.MULTILINE)]
     init, identify, estimate, report = commands
     sigmahat(init, folder)
-    results = {"guess": (folder / "knee.toml").read_text(encoding="utf-8")}
+    results: dict[str, Any] = {"guess": (folder / "knee.toml").read_text(encoding="utf-8")}
     shutil.copy(FILES / "knee.toml", folder)
+    results["folder"] = folder / "sigmahat-results" / "knee"
     results["identify"] = json.loads(sigmahat([*identify, "--json"], folder))
     results["estimate"] = json.loads(sigmahat([*estimate, "--json"], folder))
     sigmahat(report, folder)
@@ -85,10 +89,12 @@ def test_the_true_values_are_those_of_the_joint(printed: dict[str, Any], tmp_pat
     for name in ("B", "D_theta", "tau_coulomb"):
         assert f"| {joint[f'motor.{name}']:g} |" in PAGE
     sigma = made.plant["sigma"][len(made.t) // 2 :]
-    assert f"true ones, {sigma.min():.0f} and {sigma.max():.0f} N.m/rad" in PAGE
-    low, high = printed["estimate"]["sigma range [N.m/rad]"]
-    error = max(abs(low / sigma.min() - 1), abs(high / sigma.max() - 1))
-    last = printed["estimate"]["sigma [N.m/rad]"]
-    claimed = printed["estimate"]["sigma_std [N.m/rad]"] / last
-    assert max(error, abs(last / sigma[-1] - 1)) < 0.01 < claimed
-    assert f"{claimed:.0%}" == "2%"
+    assert f"true stiffness is from {sigma.min():.0f} to {sigma.max():.0f} N.m/rad" in PAGE
+    table = read_estimate(printed["folder"])
+    found, std = (table[f"estimate.{name} [N.m/rad]"].to_numpy() for name in ("sigma", "sigma_std"))
+    error = found[-len(sigma) :] / sigma - 1
+    assert f"is {100 * np.sqrt(np.mean(error**2)):.1g} % (root mean square)" in PAGE
+    assert f"is up to {100 * np.max(np.abs(error)):.1g} %" in PAGE
+    claimed = std[-len(sigma) :] / sigma
+    assert np.all(np.abs(error) <= 1.96 * claimed)
+    assert f"{claimed[-1]:.0%}" == "2%"

@@ -8,7 +8,16 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from sigmahat.checks.findings import Finding, Kind, Severity
-from sigmahat.checks.motor import LINEAR, Fitted, delay, explains, variants, with_form, with_inertia
+from sigmahat.checks.motor import (
+    LINEAR,
+    Fitted,
+    delay,
+    explains,
+    variants,
+    with_all_powers,
+    with_form,
+    with_inertia,
+)
 from sigmahat.checks.relation import Relation
 from sigmahat.checks.view import View
 from sigmahat.identification.quantities import WIDE
@@ -33,6 +42,8 @@ def dynamics(seen: View, here: Relation) -> Iterator[Finding]:
     zero = _zero(seen, found, here.pieces)
     if zero is not None:
         yield zero
+    elif found.form.symmetric:
+        yield from _asymmetry(seen, found, here.pieces)
     if not seen.has_sensor:
         yield from _late(seen, here, found)
         yield from _encoder_lag(seen, found)
@@ -77,6 +88,15 @@ def _zero(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | Non
     severity = Severity.WRONG if _is_more_than_bias(seen, found, zero) else Severity.NOTE
     (key, proposed), *others = keys
     return Finding(Kind.ZERO, severity, key, zero, "rad", 0.0, proposed, others)
+
+
+def _asymmetry(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Iterator[Finding]:
+    """A spring that is softer to one side, where only odd powers are used."""
+    with_all = with_all_powers(seen, pieces, found.form)
+    if explains(found.fit, with_all):
+        times = math.sqrt(found.error / float(np.sum(with_all.squares)))
+        key = "rls.symmetric"
+        yield Finding(Kind.ASYMMETRY, Severity.NOTE, key, times, "", 1.0, proposed=False)
 
 
 def _is_more_than_bias(seen: View, found: Fitted, zero: float) -> bool:

@@ -30,6 +30,7 @@ class Kind(Enum):
     SIGN = "sign of the torque"
     STIFFNESS_SIGN = "sign of the stiffness"
     ZERO = "zero of the deformation"
+    ASYMMETRY = "symmetry of the spring"
     TORQUE_LAG = "lag of the torque"
     ENCODER_LAG = "lag between the encoders"
     INERTIA = "inertia of the motor"

@@ -71,10 +71,9 @@ def fitted(seen: View, pieces: Sequence[Signals]) -> Fitted | None:
         return None
     f_0 = _band(seen, pieces)
     m_most = _ORDERS if np.ptp(pieces[0].set_point) > 0 else 1
-    form = Form(f_0, min(2.5 * f_0, _HIGHEST / seen.T), _ORDERS, m_most, _is_symmetric(seen))
-    (n, m), _ = choose(_equations(seen, pieces, form), form.n, form.m)
-    form = replace(form, n=n, m=m)
-    system = _equations(seen, pieces, form)
+    symmetric = bool(seen.every["rls.symmetric"])
+    form = Form(f_0, min(2.5 * f_0, _HIGHEST / seen.T), _ORDERS, m_most, symmetric)
+    form, system = _chosen(seen, pieces, form)
     line = _equations(seen, pieces, replace(form, n=1, m=1, symmetric=True))
     return Fitted(form, fit(system), fit(line), Spring(form, system.units))
 
@@ -144,11 +143,20 @@ def _band(seen: View, pieces: Sequence[Signals]) -> float:
     if seen.has_sensor:
         return f_0
     noise = TorqueNoise(tau, theta, inertia, T)
-    return min(f_0, coherent_range(longest, seen.gamma, _is_symmetric(seen), f_0, noise))
+    return min(f_0, coherent_range(longest, seen.gamma, f_0, noise))
 
 
-def _is_symmetric(seen: View) -> bool:
-    return bool(seen.every["rls.symmetric"])
+def with_all_powers(seen: View, pieces: Sequence[Signals], form: Form) -> Fit:
+    """The fit of a spring that need not be symmetric."""
+    form = replace(form, n=2 * _ORDERS, symmetric=False)
+    return fit(_chosen(seen, pieces, form)[1])
+
+
+def _chosen(seen: View, pieces: Sequence[Signals], form: Form) -> tuple[Form, Equations]:
+    """The form and its equations with the orders that predict best, up to those of `form`."""
+    (n, m), _ = choose(_equations(seen, pieces, form), form.n, form.m)
+    form = replace(form, n=n, m=m)
+    return form, _equations(seen, pieces, form)
 
 
 def _equations(seen: View, pieces: Sequence[Signals], form: Form) -> Equations:

@@ -105,6 +105,8 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.STIFFNESS_SIGN: "the stiffness would be {measured}, below 0; a deformation of the "
     "wrong sign or scale does that",
     Kind.ZERO: "the spring has no torque at a deformation of {measured}, not at 0",
+    Kind.ASYMMETRY: "the torque is not symmetric in phi: the errors are {value:.3g} times as "
+    "large as with all powers",
     Kind.TORQUE_LAG: "the torque comes {ms} later than the motion explains",
     Kind.ENCODER_LAG: "the viscous friction would be negative, as if q were recorded {ms} {later} "
     "than theta",

@@ -42,9 +42,7 @@ class TorqueNoise:
         return density
 
 
-def coherent_range(
-    piece: Signals, gamma: float, symmetric: bool, highest: float, noise: TorqueNoise
-) -> float:
+def coherent_range(piece: Signals, gamma: float, highest: float, noise: TorqueNoise) -> float:
     """Frequency above which the deformation is noise [Hz]; inf if it is not up to `highest`.
 
     Bands of half an octave. From the frequency on, the coherence of deformation and torque is below
@@ -54,9 +52,9 @@ def coherent_range(
     T = noise.T
     if highest <= _LOWEST or len(piece.theta) * T < 2 * _SEGMENT:
         return math.inf
-    low = Form(min(_FIRST, highest), min(_FIRST, highest), symmetric=symmetric)
+    low = Form(min(_FIRST, highest), min(_FIRST, highest))
     found = fit(equations([piece], T, gamma, low))
-    all_of_it = equations([piece], T, gamma, Form(highest, highest, symmetric=symmetric))
+    all_of_it = equations([piece], T, gamma, Form(highest, highest))
     first_half = slice(0, len(all_of_it.y) // 2)
     coefficients = np.array([found.value[name] for name in all_of_it.names])
     parts = all_of_it.X[first_half] * coefficients

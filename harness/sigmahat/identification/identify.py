@@ -26,6 +26,9 @@ from sigmahat.logs.replay import parameters, replay
 from sigmahat.logs.sampling import Samples, sample
 
 _LONGEST = 600.0  # [s] of a log that are used
+_POWERS = 6
+"""rls.n of every joint. A power that a joint does not need makes the interval of the stiffness
+little wider; without one that it needs, the stiffness is outside of its interval."""
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _V_A_TICKS = 10000
@@ -53,18 +56,19 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     longest = max(pieces, key=lambda piece: len(piece.theta))
     tau_variance = variance(longest.tau)
     theta_variance = variance(longest.theta, _step(every["encoder.theta"]))
-    B, symmetric = float(every["motor.B"]), bool(every["rls.symmetric"])
+    B = float(every["motor.B"])
+    symmetric = bool(configuration.parameters.get("rls.symmetric", False))
     f_0 = bandwidth(tau_variance, theta_variance, B * abs(gamma), T)
     coherent = math.inf
     if not torque_constant:
         noise = TorqueNoise(tau_variance, theta_variance, B * abs(gamma), T)
-        coherent = coherent_range(longest, gamma, symmetric, f_0, noise)
+        coherent = coherent_range(longest, gamma, f_0, noise)
     motor = fit_motor(
         pieces, T, gamma, symmetric, min(f_0, coherent), _known_inertia(every, configuration)
     )
     V_a = _best_V_a(fmu, samples, start, longest, f_0)
     quantities = dict(motor.quantities)
-    form = motor_form(min(f_0, coherent), T, symmetric)
+    form = motor_form(min(f_0, coherent), T)
     if quantities["B"].determined:  # until here it was that of the configuration
         f_0 = bandwidth(tau_variance, theta_variance, quantities["B"].value * abs(gamma), T)
     nominal = configuration.ports["tau"].torque_constant
@@ -74,8 +78,9 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     zero = quantities["zero"].value if _is_wrong(quantities.get("zero"), pieces) else 0.0
     return Identified(
         quantities=quantities,
-        n=motor.orders[0],
-        m=motor.orders[1],
+        symmetric=symmetric,
+        n=_POWERS,
+        m=motor.m,
         tau_variance=tau_variance,
         theta_variance=theta_variance,
         bandwidth=2 * math.pi * min(f_0, coherent),

@@ -11,17 +11,16 @@ import numpy as np
 
 from sigmahat.identification.quantities import Quantity
 from sigmahat.identification.regression import (
-    CONSTANT,
     COULOMB_VELOCITY,
     MOTOR,
     Equations,
     Fit,
     Form,
-    Orders,
     Signals,
     choose,
     equations,
     fit,
+    is_more,
     is_worse,
 )
 from sigmahat.identification.spring import Spring
@@ -61,8 +60,8 @@ class MotorFit:
     """B, D_theta and tau_coulomb, and the zero of the deformation where there is one."""
     gain: tuple[float, float]
     """Of the torque, if it was measured: value and half of the 95 % interval."""
-    orders: Orders
-    """Of the polynomial."""
+    m: int
+    """Order of the polynomial in the set-point."""
     spring: float
     """Largest torque of the spring in the log [N.m]."""
 
@@ -90,10 +89,9 @@ def fit_motor(
     """
     longest = max(pieces, key=lambda piece: len(piece.theta))
     m_most = _M if np.ptp(longest.set_point) > 0 else 1
-    form = replace(motor_form(f_0, T, symmetric), n=_N, m=m_most)
+    form = replace(motor_form(f_0, T), n=_N, m=m_most)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
-    (n, m), smallest = choose(equations(without_sensor, T, gamma, form), _N, m_most)
-    form = replace(form, n=n, m=m)
+    form = _with_spring(without_sensor, T, gamma, form, symmetric)
     systems = _systems(pieces, T, gamma, form)
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
     fits = _fits(systems)
@@ -102,15 +100,32 @@ def fit_motor(
         fits = _fits(systems, inertia)
         quantities |= {name: _motor_quantity(name, fits, torque) for name in MOTOR[1:]}
     spring = Spring(form, systems.first.units)
-    if CONSTANT in fits.first.value and "gain" not in fits.first.value:
+    if "gain" not in fits.first.value:
         quantities["zero"] = _zero(spring, fits, pieces, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
-    return MotorFit(quantities, gain, smallest, spring.largest(fits.first, pieces, abs(gamma)))
+    return MotorFit(quantities, gain, form.m, spring.largest(fits.first, pieces, abs(gamma)))
 
 
-def motor_form(f_0: float, T: float, symmetric: bool) -> Form:
+def motor_form(f_0: float, T: float) -> Form:
     """The equation with a linear spring, and filters for a low pass of f_0 [Hz]."""
-    return Form(f_0, min(2.5 * f_0, _WIDEST / T), symmetric=symmetric)
+    return Form(f_0, min(2.5 * f_0, _WIDEST / T))
+
+
+def _with_spring(
+    pieces: Sequence[Signals], T: float, gamma: float, form: Form, symmetric: bool
+) -> Form:
+    """The form with the polynomial that predicts best what was left out, up to its orders.
+
+    It has odd powers alone unless all powers are significantly better: in slow motion, the more a
+    spring may do, the less the log shows of friction.
+    """
+    orders, errors = choose(equations(pieces, T, gamma, form), form.n, form.m)
+    odd = replace(form, n=orders[0], m=orders[1])
+    if symmetric:
+        return odd
+    form = replace(form, n=2 * form.n, symmetric=False)
+    orders, less = choose(equations(pieces, T, gamma, form), form.n, form.m)
+    return replace(form, n=orders[0], m=orders[1]) if is_more(np.log(errors / less)) else odd
 
 
 @dataclass(frozen=True)

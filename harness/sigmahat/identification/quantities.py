@@ -76,11 +76,12 @@ class Identified:
 
     quantities: Mapping[str, Quantity]
     """B, D_theta, tau_coulomb, zero of the deformation, and torque_constant if it was asked for."""
+    symmetric: bool
+    """For rls.symmetric."""
     n: int
-    """For rls.n, see m."""
+    """For rls.n."""
     m: int
-    """For rls.m. The orders are the smallest whose error, in a cross-validation, is not
-    significantly above that of the best ones."""
+    """For rls.m: the order whose error, in a cross-validation, is the least."""
     tau_variance: float
     """Variance of the noise of the torque [(N.m)2]."""
     theta_variance: float
@@ -121,6 +122,7 @@ def as_dict(identified: Identified) -> dict[str, Any]:
             }
             for name, quantity in identified.quantities.items()
         },
+        "rls.symmetric": identified.symmetric,
         "rls.n": identified.n,
         "rls.m": identified.m,
         "tau noise variance [(N.m)2]": identified.tau_variance,
@@ -145,7 +147,8 @@ def summary(identified: Identified) -> str:
     lines += [f"  {_advice(each)}" for each in identified.advice]
     lines += [
         "",
-        f"orders          rls.n = {identified.n}, rls.m = {identified.m} (cross-validation)",
+        f"powers          rls.n = {identified.n}, rls.m = {identified.m} (cross-validation), "
+        f"{'odd ones of phi alone' if identified.symmetric else 'odd and even ones of phi'}",
         f"noise           torque {math.sqrt(identified.tau_variance):.2g} N.m, "
         f"motor position {math.sqrt(identified.theta_variance):.2g} rad (standard deviations)",
         f"filter          V_a = {identified.V_a:.2g} rad2/s4; "

@@ -301,8 +301,13 @@ def fit(e: Equations) -> Fit:
 
 def is_worse(one: Fit, other: Fit) -> bool:
     """Whether the squared errors of one fit are significantly larger than those of the other."""
-    more = one.squares - other.squares
-    return bool(np.mean(more) > 2 * np.std(more, ddof=1) / math.sqrt(len(more)))
+    return is_more(one.squares - other.squares)
+
+
+def is_more(differences: Array) -> bool:
+    """Whether the mean of independent differences is significantly above 0."""
+    error = np.std(differences, ddof=1) / math.sqrt(len(differences))
+    return bool(np.mean(differences) > 2 * error)
 
 
 def _nothing(e: Equations) -> Fit:
@@ -330,15 +335,11 @@ Orders = tuple[int, int]
 """n and m of (16), as in rls.n and rls.m."""
 
 
-def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, Orders]:
-    """The orders with the least error on parts that were left out, and the smallest as good ones.
+def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, Array]:
+    """The orders with the least error on parts that were left out, and that error, see left_out.
 
-    equations      with all columns up to the orders n_most, m_most
-
-    As good are orders whose error, in the mean over the parts, is not significantly larger (5 %).
+    equations  with all columns up to the orders n_most, m_most
     """
-    from scipy.special import stdtrit
-
     others = [name for name in equations.names if name not in eta(n_most, m_most)]
     errors = {
         (n, m): left_out(equations.only([*others, *eta(n, m)]))
@@ -346,10 +347,4 @@ def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, Orde
         for m in range(1, m_most + 1)
     }
     best = min(errors, key=lambda each: float(np.mean(errors[each])))
-
-    def as_good(each: Orders) -> bool:
-        worse = errors[each] - errors[best]
-        limit = float(stdtrit(len(worse) - 1, 0.95))
-        return bool(np.mean(worse) <= limit * np.std(worse, ddof=1) / math.sqrt(len(worse)))
-
-    return best, min(filter(as_good, errors), key=lambda each: (each[0] * each[1], each))
+    return best, errors[best]

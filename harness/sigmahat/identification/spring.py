@@ -28,7 +28,7 @@ class Spring:
         """
         polynomial = np.zeros(self._exponents[-1] + 1)
         polynomial[self._exponents] = self._at(_mean_set_point(pieces), fit)
-        polynomial[0] += fit.value[CONSTANT]
+        polynomial[0] += fit.value.get(CONSTANT, 0.0)
         if not np.all(np.isfinite(polynomial)):
             return math.nan
         roots = np.polynomial.polynomial.polyroots(np.trim_zeros(polynomial, "b"))
@@ -44,8 +44,9 @@ class Spring:
         by_eta = np.outer(x**self._exponents, self._of_set_point(set_point)).ravel()
         names = list(fit.value)
         gradient = np.zeros(len(names))
-        gradient[names.index(CONSTANT)] = 1.0
         gradient[-len(by_eta) :] = by_eta
+        if CONSTANT in names:
+            gradient[names.index(CONSTANT)] = 1.0
         slope = self.slope(fit, zero, pieces)
         if not abs(slope) > 0:
             return math.inf

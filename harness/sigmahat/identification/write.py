@@ -44,6 +44,7 @@ def write(found: Identified, path: Path) -> list[str]:
     document = _without_what_is_not_known(read_document(path))
     values: dict[str, Any] = {
         "filter.V_a": found.V_a,
+        "rls.symmetric": found.symmetric,
         "rls.n": found.n,
         "rls.m": found.m,
         "noise.tau": math.sqrt(found.tau_variance),
@@ -60,7 +61,7 @@ def write(found: Identified, path: Path) -> list[str]:
                 values[f"motor.{name}"] = q.value
             if name == "B":  # but not for D_theta, which changes with the temperature
                 values["prior.B"] = q.half_width / q.value
-    values = {name: _short(value) for name, value in values.items() if value != 0}
+    values = {name: _short(value) for name, value in values.items() if value is False or value != 0}
     parameters = document.setdefault("parameters", tomlkit.table())
     given = dict(toml_file.dotted(parameters.unwrap()))
     unknown = {name: each for name, each in _unknown(found).items() if name not in given}
