@@ -106,3 +106,17 @@ def test_a_deformation_that_is_noise_limits_the_bandwidth(
     noise = TorqueNoise(torque=9e-6, position=0.0, inertia=1e-3, T=T)
     limit = coherent_range(motor(noise_of_phi), 50.0, 40.0, noise)
     assert (limit < 6.0) if is_noise else limit == math.inf
+
+
+def test_a_torque_that_is_late_does_not_look_like_friction(tmp_path: Path) -> None:
+    # GIVEN a torque that acts 2 ms after it is recorded, and a spring that looks like friction then
+    joint, late = motor(1e-7), 2
+    q = joint.theta + joint.phi
+    t: Array = np.arange(len(q)) * np.float64(T)
+    log = {"t": t, "theta": joint.theta, "q": q, "theta_c": np.zeros(len(q))}
+    found = identified(
+        {**log, "tau": np.roll(joint.tau, -late)}, tmp_path / "log.toml", CONFIGURATION
+    )
+    for name, true in (("B", 2e-5), ("D_theta", 1e-3)):
+        quantity = found.quantities[name]
+        assert abs(quantity.value - true) <= quantity.half_width < 0.05 * true

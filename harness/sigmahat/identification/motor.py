@@ -164,8 +164,14 @@ def _frictions(form: Form) -> list[Form]:
 
 
 def _systems(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Variants[Equations]:
-    """With the form of friction of the least errors, if the plain one is significantly worse."""
-    every = {each: equations(pieces, T, gamma, each) for each in _frictions(form)}
+    """With the form of friction of the least errors, if the plain one is significantly worse.
+
+    The torque is late in all of them if this explains the log significantly better.
+    """
+    late = replace(form, delay=True)
+    at_once, moved = (fit(equations(pieces, T, gamma, each)) for each in (form, late))
+    forms = _frictions(late if is_worse(at_once, moved) else form)
+    every = {each: equations(pieces, T, gamma, each) for each in forms}
     fits = {each: fit(system) for each, system in every.items()}
     plain = next(iter(every))
     best = min(fits, key=lambda each: float(np.nan_to_num(np.sum(fits[each].squares), nan=np.inf)))

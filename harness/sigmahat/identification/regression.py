@@ -81,6 +81,9 @@ class Form:
     stribeck_exponent: float = 2.0
     """delta, usually 1 or 2."""
 
+    delay: bool = False
+    """Whether the torque may be late: tau(t - delay) = tau(t) - delay tau'(t)."""
+
     def names(self, sensor: bool) -> list[str]:
         """Names of the columns. With a torque sensor the polynomial is replaced by a gain."""
         has_constant = sensor or self.symmetric  # else it is a coefficient of the polynomial
@@ -88,6 +91,7 @@ class Form:
             *MOTOR,
             *(["load"] if self.load_friction else []),
             *(["stribeck"] if self.stribeck_velocity else []),
+            *(["delay"] if self.delay else []),
             *([CONSTANT] if has_constant else []),
             *(["gain"] if sensor else eta(self.n, self.m)),
         ]
@@ -199,6 +203,8 @@ def _half(
     if form.stribeck_velocity:
         speed = np.abs(_first(low_pass(s.theta, form.wide, h / 2), h / 2))[kept]
         raw.append(np.exp(-((speed / form.stribeck_velocity) ** form.stribeck_exponent)) * friction)
+    if form.delay:
+        raw.append(np.gradient(tau, h))
     if CONSTANT in form.names(sensor):
         raw.append(np.ones_like(tau))
     if sensor:  # tau_e/gamma = B gamma theta'' + ... - gain tau
