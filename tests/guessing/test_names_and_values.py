@@ -140,6 +140,23 @@ def test_signs_and_zeros() -> None:
     assert only({**columns, "load_cell_Nm": -m.tau_e}).ports["tau_e_sensor"].sign == -1
 
 
+def test_a_hand_on_the_link_leaves_the_sign_of_the_torque_open() -> None:
+    """GIVEN a motor that only holds its position, with springs of its controller, WHEN the link is
+    moved by hand THEN nobody is told a sign: the power of the torque has the other one there."""
+    t, B, D, K = T * np.arange(20_000), 8e-5, 8e-4, 600.0
+    w, amplitude = 2 * np.pi * np.array([[0.4], [1.1]]), np.array([[0.2], [0.05]])
+    theta = np.sum(amplitude * np.sin(w * t), axis=0)
+    velocity = np.sum(amplitude * w * np.cos(w * t), axis=0)
+    acceleration = np.sum(-amplitude * w**2 * np.sin(w * t), axis=0)
+    tau = -(10.0 * theta + 8.0 * velocity) / GEAR
+    q = theta + GEAR * (B * GEAR * acceleration + D * GEAR * velocity - tau) / K
+    assert np.mean(tau * velocity) < 0
+    found = guess(LogInMemory(Path("log"), {"t": t, "theta": theta, "q": q, "tau": tau}))[""]
+    port = found.ports["tau"]
+    assert port.column == "tau" and port.sign == 1
+    assert port.notes["sign"].startswith("CHECK: the log does not show it")
+
+
 def test_a_torque_beside_an_angle_is_measured() -> None:
     m = joint(False)
     found = only({"t": m.t, "angle_rad": m.q, "torque_Nm": 40 * m.q})

@@ -269,6 +269,8 @@ def _torque(port: PortGuess, roles: Roles) -> PortGuess:
         notes["unit"] = f"CHECK: its name says none{'' if said else '; or is it a current, in A?'}"
     if roles.drive.sign < 0:
         notes["sign"] = "CHECK: else the motor would gain power from friction"
+    elif roles.drive.sign == 0:
+        notes["sign"] = "CHECK: the log does not show it; 1 if a torque above 0 turns theta upwards"
     sign = -1 if roles.drive.sign < 0 else 1
     notes["gear_ratio"] = "CHECK: that of the gear if the torque is measured after it"
     return replace(port, unit=unit, sign=sign, wrap=None, notes=notes)

@@ -13,6 +13,9 @@ _SMOOTH = 15  # samples of the polynomial with which columns are differentiated
 _DERIVATIVE = 0.97  # correlation from which on a column is the derivative of another one
 _COPY = 1e-4  # rest of a fit over the column, up to which it is a copy in another unit
 _BLOCKS = 8
+_BY_HAND = 0.8
+"""Correlation of deformation and velocity: 0.96 and more where a hand moves the link, below 0.5
+where the motor does."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +79,8 @@ def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     tau = B x'' + D x' + C sign(x') + K (x - y) for a linear spring, where only the part of y that
     does not go as x does counts. The equation has the acceleration of the motor, not of the link:
     it explains the torque better if x is the motor. Friction takes power from the motor, on the
-    average, and that gives the torque its sign.
+    average, and that gives the torque its sign. A hand that moves the link gives the motor power:
+    then the deformation goes as the velocity, and the sign is not sure.
     """
     if len(x) < 8 * _SMOOTH or not np.ptp(x) or not np.ptp(tau):
         return Drive(0.0, 0)
@@ -98,6 +102,8 @@ def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     factors = np.linalg.lstsq(parts, torque, rcond=1e-10)[0]
     spread = float(np.var(torque))
     explained = 1 - float(np.var(torque - parts @ factors)) / spread if spread else 0.0
+    if line(velocity, -behind).correlation > _BY_HAND:
+        return Drive(explained, 0)
     sign = _sign(np.array_split((torque - torque.mean()) * velocity, _BLOCKS))
     return Drive(explained, sign)
 

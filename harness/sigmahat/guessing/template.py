@@ -32,6 +32,7 @@ _MEANING = {
 _MOTOR_UNITS = {"motor.B": "kg.m2", "motor.D_theta": "N.m.s/rad"}
 _TORQUES = {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3, "N.cm": 1e-2}
 _RANGE = (1.0, 100.0)  # of the set-point
+_GAIN = 0.02  # relative, the start value of the FMU
 _MOST_LISTED, _LONGEST_LIST = 200, 40_000  # columns, and bytes of their lines together
 _HEAD = """\
 Configuration for {log}{joint}, guessed from names and values of its columns.
@@ -187,11 +188,10 @@ def _add_motor(table: Table, theta: PortGuess | None, defaults: Mapping[str, flo
         _add(table, name, value, f"[{_MOTOR_UNITS[name]}] {NOT_YOURS}")
         _add(table, name.replace("motor.", "prior."), ANOTHER_ROBOT, WIDE_PRIOR)
     _add(table, "prior.tau_coulomb", ANY_COULOMB, WIDE_PRIOR)
-    for line in (
-        "torque.held = true   # if a drive holds each value of tau until the next one",
-        "prior.torque_gain = 0.02   # how wrong the gain of tau may be: no data show it",
-    ):
-        table.add(tomlkit.comment(line))
+    gain = "CHECK: how well is the gain of tau known, to 0.02, 0.05 or 0.1? No log shows it"
+    _add(table, "prior.torque_gain", _GAIN, gain)
+    held = "torque.held = true   # if a drive holds each value of tau until the next one"
+    table.add(tomlkit.comment(held))
 
 
 def _add_ranges(table: Table, guess: JointGuess) -> None:
