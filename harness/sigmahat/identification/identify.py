@@ -26,9 +26,6 @@ from sigmahat.logs.replay import parameters, replay
 from sigmahat.logs.sampling import Samples, sample
 
 _LONGEST = 600.0  # [s] of a log that are used
-_POWERS = 6
-"""rls.n of every joint. A power that a joint does not need makes the interval of the stiffness
-little wider; without one that it needs, the stiffness is outside of its interval."""
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _V_A_TICKS = 10000
@@ -78,9 +75,9 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     zero = quantities["zero"].value if _is_wrong(quantities.get("zero"), pieces) else 0.0
     return Identified(
         quantities=quantities,
-        symmetric=symmetric,
-        n=_POWERS,
-        m=motor.m,
+        symmetric=motor.polynomial.symmetric,
+        n=motor.polynomial.n,
+        m=motor.polynomial.m,
         tau_variance=tau_variance,
         theta_variance=theta_variance,
         bandwidth=2 * math.pi * min(f_0, coherent),

@@ -22,6 +22,7 @@ from sigmahat.identification.regression import (
     fit,
     is_more,
     is_worse,
+    left_out,
 )
 from sigmahat.identification.spring import Spring
 
@@ -33,6 +34,11 @@ _RELATIVE = 0.1
 """Half width of the interval over the value, up to which the value is determined."""
 _NEGLIGIBLE = 0.005
 """The same for Coulomb friction, over the torque: it may be determined to be zero."""
+_POWERS = 6
+"""rls.n of every joint. A power that a joint does not need makes the interval of the stiffness
+little wider; without one that it needs, the stiffness is outside of its interval."""
+_LOSS = 0.2
+"""Mean logarithm of the ratio of squared errors from which _POWERS powers predict much worse."""
 _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
 """Relative error without any noise, at a period of 1 ms: reversals fall between samples."""
 _OF_COVERED = 0.05
@@ -60,8 +66,8 @@ class MotorFit:
     """B, D_theta and tau_coulomb, and the zero of the deformation where there is one."""
     gain: tuple[float, float]
     """Of the torque, if it was measured: value and half of the 95 % interval."""
-    m: int
-    """Order of the polynomial in the set-point."""
+    polynomial: Form
+    """Orders and symmetry of the polynomial for the estimator."""
     spring: float
     """Largest torque of the spring in the log [N.m]."""
 
@@ -91,7 +97,7 @@ def fit_motor(
     m_most = _M if np.ptp(longest.set_point) > 0 else 1
     form = replace(motor_form(f_0, T), n=_N, m=m_most)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
-    form = _with_spring(without_sensor, T, gamma, form, symmetric)
+    form, polynomial = _with_spring(without_sensor, T, gamma, form, symmetric)
     systems = _systems(pieces, T, gamma, form)
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
     fits = _fits(systems)
@@ -103,7 +109,7 @@ def fit_motor(
     if "gain" not in fits.first.value:
         quantities["zero"] = _zero(spring, fits, pieces, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
-    return MotorFit(quantities, gain, form.m, spring.largest(fits.first, pieces, abs(gamma)))
+    return MotorFit(quantities, gain, polynomial, spring.largest(fits.first, pieces, abs(gamma)))
 
 
 def motor_form(f_0: float, T: float) -> Form:
@@ -113,19 +119,34 @@ def motor_form(f_0: float, T: float) -> Form:
 
 def _with_spring(
     pieces: Sequence[Signals], T: float, gamma: float, form: Form, symmetric: bool
-) -> Form:
+) -> tuple[Form, Form]:
     """The form with the polynomial that predicts best what was left out, up to its orders.
 
     It has odd powers alone unless all powers are significantly better: in slow motion, the more a
     spring may do, the less the log shows of friction.
+
+    The second form is the one for the estimator: _POWERS powers, unless they predict what was left
+    out much worse, because the log shows too little of the spring. Then it has as few as predict
+    not significantly worse.
     """
     orders, errors = choose(equations(pieces, T, gamma, form), form.n, form.m)
-    odd = replace(form, n=orders[0], m=orders[1])
-    if symmetric:
-        return odd
-    form = replace(form, n=2 * form.n, symmetric=False)
-    orders, less = choose(equations(pieces, T, gamma, form), form.n, form.m)
-    return replace(form, n=orders[0], m=orders[1]) if is_more(np.log(errors / less)) else odd
+    best = replace(form, n=orders[0], m=orders[1])
+    if not symmetric:
+        form = replace(form, n=2 * form.n, symmetric=False)
+        orders, less = choose(equations(pieces, T, gamma, form), form.n, form.m)
+        if is_more(np.log(errors / less)):
+            best, errors = replace(form, n=orders[0], m=orders[1]), less
+    wide = replace(form, n=_POWERS, m=best.m, symmetric=symmetric)
+    all_powers = left_out(equations(pieces, T, gamma, wide))
+    if float(np.mean(np.log(all_powers / errors))) <= _LOSS:
+        return best, wide
+    fewer = (replace(best, n=n) for n in range(1, best.n))
+    enough = (
+        each
+        for each in fewer
+        if not is_more(np.log(left_out(equations(pieces, T, gamma, each)) / errors))
+    )
+    return best, next(enough, best)
 
 
 @dataclass(frozen=True)
