@@ -48,6 +48,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
     (void)memset(estimator, 0, sizeof *estimator);
     (void)memset(estimate, 0, sizeof *estimate);
     start_curve(p, p->setPoint.offset, estimate);
+    estimate->change_age = -1;
     sh_method_of(p)->start(estimator, p, estimate);
     judge(p->setPoint.offset, estimate);
 }

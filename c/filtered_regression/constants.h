@@ -105,6 +105,30 @@
 #define SH_DRIFTS ((sh_real)0.8)
 #define SH_IS_CONSTANT ((sh_real)0.95)
 
+/* ---- change of the spring, change.c ------------------------------------------------------ */
+
+/* Evidence above which the estimate is in doubt, and, times the root of its usual error, the spring has
+ * changed [1]. Without a change, it stayed below 51 in 206 runs of 20 s with every misfit.
+ */
+#define SH_MAY_HAVE_CHANGED ((sh_real)20)
+#define SH_HAS_CHANGED ((sh_real)60)
+
+/* Largest evidence of one block [1]: one block alone, which may be a blow, is none. */
+#define SH_LARGEST_EVIDENCE ((sh_real)25)
+
+/* Number of blocks over which the usual error is a mean, and most that one of them counts, in usual
+ * errors [1]: 20 s, so that a change does not become usual before it is detected.
+ */
+#define SH_LEVEL_BLOCKS ((sh_real)400)
+#define SH_LARGEST_LEVEL ((sh_real)9)
+
+/* Number of blocks after which a hypothesis ends that has no evidence, and any one [1]: 1 s and 4 s. */
+#define SH_SHORTEST_TEST ((sh_real)10)
+#define SH_LONGEST_TEST ((sh_real)80)
+
+/* Number of blocks from which a change can be seen [1]. */
+#define SH_SHORTEST_PAST ((sh_real)40)
+
 /* ---- choice of columns, refit.c ---------------------------------------------------------- */
 
 /* Gain of the logarithm of the evidence from which a group is used: at first, and for each block [1].

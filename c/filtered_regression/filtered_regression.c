@@ -141,6 +141,9 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p, co
     if (estimate->sigma < 0) {
         doubt = SH_DOUBT_NEGATIVE_STIFFNESS;
     }
+    if (sh_change_is_likely(state)) {
+        doubt = SH_DOUBT_CHANGE;
+    }
     return doubt;
 }
 
@@ -168,6 +171,7 @@ static void report_coefficients(const sh_regression_state *state, const sh_param
             : 0;
     estimate->delay_hat = sum[SH_OF_DELAY];
     estimate->hysteresis_hat = sum[SH_OF_HYSTERESIS];
+    estimate->change_age = state->history.change_age;
     estimate->misfit = sh_sqrt(sh_fmax(1, state->misfit));
     estimate->doubt = doubt_of(state, p, sum, estimate);
 }
@@ -222,6 +226,7 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
     sh_signals_start(&state->signals, &state->history, p);
     sh_information_start(&state->data, state->columns.size, SH_LEAST_INFORMATION);
     sh_blocks_start(state);
+    sh_change_start(state);
     sh_refit_start(state, p);
     sh_joint_point_at(&at, &state->columns, p, 0, 0, 0, p->setPoint.offset, state->history.play);
     stiffness = evaluate_at(state, p, &at, &point);
@@ -337,6 +342,14 @@ static sh_real update(sh_regression_state *state, const sh_parameters *p, const 
     return share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
 }
 
+/* Lets the next posterior begin as soon as the data contain a change of the spring. */
+static void follow_change(sh_regression_state *state, const sh_parameters *p)
+{
+    if (sh_change_step(state)) {
+        sh_refit_restart(state, p);
+    }
+}
+
 /* After a gap, or a change of the modality, the filters start again. */
 static void resume(sh_regression_state *state)
 {
@@ -368,6 +381,9 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     if (estimator->started && (estimator->skipped > 0 || state->modality != p->modality)) {
         resume(state);
     }
+    if (state->history.change_age >= 0) {
+        state->history.change_age += (1 + estimator->skipped) * p->samplePeriod;
+    }
     sh_signals_take(state, p, z, set_point, &at); /* 1. Filter the signals. */
     y = sh_columns_row(state, p, x);              /* 2. Build the row. */
     if (!are_acceptable(&at, x, size)) {
@@ -383,6 +399,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
         epsilon = predict(state, p, x);              /* 4. Predict and compare. */
         rho = update(state, p, x, w, noise.lasting); /* 5. Update. */
         sh_refit_step(state, p, x, w);               /* 6. Choose columns. */
+        follow_change(state, p);
     }
     if (!report(state, p, &at, y, estimate)) { /* 7. Report. */
         return refuse(state, &before);

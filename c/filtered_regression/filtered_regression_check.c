@@ -38,7 +38,7 @@ static int are_data(const sh_regression_state *state)
 
     if (state->data.size != size || state->refit.frozen.size != size ||
         blocks->constant.size != size || blocks->drifting.size != size ||
-        blocks->recent.size != size) {
+        blocks->recent.size != size || state->change.changed.size != size) {
         return 0;
     }
     return 1;
@@ -100,6 +100,16 @@ static int is_refit(const sh_refit *refit, int size)
     return 1;
 }
 
+/* How far the columns of the spring have their prior back, and whether the estimate follows. */
+static int is_change(const sh_change *change, int size)
+{
+    if (change->opened < 0 || change->opened > size || change->adopted < 0 ||
+        change->adopted > size || change->following < 0 || change->following > 1) {
+        return 0;
+    }
+    return 1;
+}
+
 static int are_flags(const sh_regression_state *state)
 {
     if (state->signals.begun < 0 || state->signals.begun > 1 || state->friction_drifts < 0 ||
@@ -118,7 +128,8 @@ int sh_filtered_regression_check_state(const sh_estimator *estimator, const sh_p
         !is_choice(state, &state->posterior) || !knows_motor(state, &state->posterior) ||
         !is_choice(state, &state->refit.posterior) ||
         !knows_motor(state, &state->refit.posterior) ||
-        !is_refit(&state->refit, state->columns.size) || !are_flags(state)) {
+        !is_refit(&state->refit, state->columns.size) ||
+        !is_change(&state->change, state->columns.size) || !are_flags(state)) {
         return 1;
     }
     return 0;

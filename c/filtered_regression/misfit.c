@@ -55,8 +55,10 @@ void sh_blocks_interrupt(sh_blocks *blocks)
     blocks->window = blocks->window_square = blocks->independent = blocks->rounding = 0;
 }
 
-/* The mean row of the block, sum h w x / sum h w. Each information uses its row up. */
-static void take_mean(const sh_blocks *blocks, sh_information *a, sh_real weight)
+/* Takes the mean row of the block, sum h w x / sum h w. Each information uses its row up. Returns the
+ * square of the error of its prediction over the variance of this error.
+ */
+static sh_real take_mean(const sh_blocks *blocks, sh_information *a, sh_real weight)
 {
     sh_real mean[SH_MAX_ROW] = {0};
     int i;
@@ -64,7 +66,8 @@ static void take_mean(const sh_blocks *blocks, sh_information *a, sh_real weight
     for (i = 0; i < a->size + SH_RIGHT_SIDES; ++i) {
         mean[i] = blocks->sum[i] / blocks->weight;
     }
-    (void)sh_information_take(a, mean, weight);
+    weight = sh_information_take(a, mean, weight);
+    return sh_limited(weight * sh_square(mean[a->size + SH_RIGHT_Y]), SH_LARGE);
 }
 
 static int is_acceptable(const sh_blocks *blocks, int size, sh_real variance)
@@ -99,15 +102,19 @@ static void end_block(sh_regression_state *state, const sh_parameters *p)
     const sh_real count = blocks->independent / blocks->window_square;
 
     if (is_acceptable(blocks, state->columns.size, variance)) {
-        take_mean(blocks, &blocks->constant, 1 / variance);
-        take_mean(blocks, &blocks->drifting, 1 / variance);
-        take_mean(blocks, &blocks->recent, 1 / variance);
+        const sh_real constant = take_mean(blocks, &blocks->constant, 1 / variance);
+        const sh_real drifting = take_mean(blocks, &blocks->drifting, 1 / variance);
+        const sh_real changed =
+            sh_change_is_ready(state) ? take_mean(blocks, &state->change.changed, 1 / variance) : 0;
+
+        (void)take_mean(blocks, &blocks->recent, 1 / variance);
         blocks->count += count;
         blocks->recent_count += count;
         blocks->duration += count * blocks->length * state->signals.design.T;
         if (blocks->count > SH_MOST_BLOCKS) {
             forget_blocks(blocks, SH_MOST_BLOCKS / blocks->count);
         }
+        sh_change_judge(state, p, state->friction_drifts ? drifting : constant, changed);
     }
     sh_blocks_interrupt(blocks);
 }

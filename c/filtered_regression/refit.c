@@ -93,6 +93,12 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p)
     sh_posterior_copy(&state->posterior, &state->refit.posterior);
 }
 
+void sh_refit_restart(sh_regression_state *state, const sh_parameters *p)
+{
+    state->refit.trial = 0;
+    start_refit(state, p);
+}
+
 /* The next group that can be tried, 0 if there is none. */
 static int next_trial(sh_regression_state *state, const sh_parameters *p)
 {
@@ -155,6 +161,9 @@ static void end_refit(sh_regression_state *state, const sh_parameters *p)
         decide_about_group(state);
     } else {
         sh_posterior_copy(&state->posterior, &refit->posterior);
+        if (state->change.adopted == state->columns.size) {
+            state->change.following = 0;
+        }
         if (state->posterior.inertia >= 0) {
             sh_posterior_remove(&state->posterior, 0, p->prior.B);
         }

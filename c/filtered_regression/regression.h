@@ -202,10 +202,32 @@ void sh_friction_drift(sh_regression_state *state, sh_real time);
 void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real R,
                sh_real time);
 
+/* ---- change.c ---------------------------------------------------------------------------- */
+
+void sh_change_start(sh_regression_state *state);
+
+/* Whether the information of the hypothesis that the spring has changed may take a block. */
+int sh_change_is_ready(const sh_regression_state *state);
+
+/* Detail 15: compares the hypotheses by the squares of their errors over the variances in a block, as
+ * before the block and, if that one is ready, as changed.
+ */
+void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
+                     sh_real changed);
+
+/* Goes on with opening columns. Returns 1 when the data of all samples contain a change, else 0. */
+int sh_change_step(sh_regression_state *state);
+
+/* Whether the present estimate is in doubt. */
+int sh_change_is_likely(const sh_regression_state *state);
+
 /* ---- refit.c ----------------------------------------------------------------------------- */
 
 /* Starts posterior and refit from the prior. */
 void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
+
+/* Starts again, from data that contain a change of the spring. */
+void sh_refit_restart(sh_regression_state *state, const sh_parameters *p);
 
 /* Detail 6: takes a row x of weight w [1/(N.m)2], and advances the refit in every second call. */
 void sh_refit_step(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w);

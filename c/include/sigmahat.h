@@ -84,14 +84,15 @@ enum {
 
 /* Why the estimate is not confident. If several reasons hold, it is the one that stands last. */
 enum {
-    SH_DOUBT_NONE = 1,          /* it is confident */
-    SH_DOUBT_NO_CLAIM,          /* the method computes no uncertainty that contains all errors */
-    SH_DOUBT_NOT_EXCITED,       /* sigma_std is too large, as the motion was too small or short */
-    SH_DOUBT_MISFIT,            /* sigma_std is too large, as the data contradict the model */
-    SH_DOUBT_OUT_OF_RANGE,      /* the deformation is beyond what the parameters are made for */
-    SH_DOUBT_FRICTION,          /* D_theta_hat is beyond three std deviations of its prior */
-    SH_DOUBT_INERTIA,           /* B_hat is beyond three std deviations of its prior */
-    SH_DOUBT_NEGATIVE_STIFFNESS /* sigma is below 0 */
+    SH_DOUBT_NONE = 1,           /* it is confident */
+    SH_DOUBT_NO_CLAIM,           /* the method computes no uncertainty that contains all errors */
+    SH_DOUBT_NOT_EXCITED,        /* sigma_std is too large, as the motion was too small or short */
+    SH_DOUBT_MISFIT,             /* sigma_std is too large, as the data contradict the model */
+    SH_DOUBT_OUT_OF_RANGE,       /* the deformation is beyond what the parameters are made for */
+    SH_DOUBT_FRICTION,           /* D_theta_hat is beyond three std deviations of its prior */
+    SH_DOUBT_INERTIA,            /* B_hat is beyond three std deviations of its prior */
+    SH_DOUBT_NEGATIVE_STIFFNESS, /* sigma is below 0 */
+    SH_DOUBT_CHANGE /* the stiffness may have changed, and the estimate does not follow yet */
 };
 
 /* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. They
@@ -283,9 +284,10 @@ typedef struct {
     sh_real hysteresis_hat;          /* half the height of the hysteresis loop [N.m] */
     sh_real sigma_per_gain;          /* relative change of sigma with a relative change of the
                                         gain of the torque [1] */
-    int doubt;                       /* SH_DOUBT_*: why the estimate is not confident */
-    int confident;                   /* 1: doubt is SH_DOUBT_NONE */
-    int valid;                       /* 0: the last tick was skipped, see sh_estimator_tick */
+    sh_real change_age; /* time since a change of the stiffness was last detected [s]; -1: none */
+    int doubt;          /* SH_DOUBT_*: why the estimate is not confident */
+    int confident;      /* 1: doubt is SH_DOUBT_NONE */
+    int valid;          /* 0: the last tick was skipped, see sh_estimator_tick */
 } sh_estimate;
 
 /* Torque and stiffness of the spring at a deformation and a set-point. */

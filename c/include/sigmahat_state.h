@@ -155,8 +155,9 @@ typedef struct {
     sh_real resting;               /* samples since phi changed */
     sh_real unsure;                /* samples for which the sign of the velocity has been unknown */
     sh_real settling;              /* time until the filters have forgotten their start [s] */
-    sh_real starting; /* time left in which samples may show that the motor was moving [s] */
-    sh_real rough;    /* mean square of the noise of theta, from its fourth differences [rad2] */
+    sh_real starting;   /* time left in which samples may show that the motor was moving [s] */
+    sh_real rough;      /* mean square of the noise of theta, from its fourth differences [rad2] */
+    sh_real change_age; /* time since the last change of the spring [s], -1 if there was none */
     sh_real excess, excess_mean; /* noise over what rounding explains, now and its mean [1] */
 } sh_history;
 
@@ -190,6 +191,18 @@ typedef struct {
     sh_real rounding;    /* sum of squares of the rounding of theta [rad2] */
 } sh_blocks;
 
+/* Whether the spring has changed, change.c. */
+typedef struct {
+    sh_information changed; /* of blocks, if the spring has changed since this hypothesis began */
+    int opened;  /* columns that have been looked at to give those of the spring their prior back */
+    int adopted; /* the same in the data of all samples, after a change */
+    int following;  /* 1: a change was detected, and the estimate does not contain it yet */
+    sh_real blocks; /* since the hypothesis began */
+    sh_real level,
+        judged;       /* mean square of a block's error over its variance, and of how many blocks */
+    sh_real evidence; /* of the change [1] */
+} sh_change;
+
 /* The next posterior while it is computed from all data, refit.c. */
 typedef struct {
     sh_information frozen; /* copy of the data at the begin */
@@ -213,6 +226,7 @@ typedef struct {
     sh_posterior posterior; /* the estimate */
     sh_refit refit;
     sh_blocks blocks;
+    sh_change change;
     sh_real surplus, spread; /* of all samples, see sh_posterior */
     sh_real rounding;        /* information about sigma that is only rounding of phi, of all samples
                                 [(rad/N.m)2] */

@@ -10,6 +10,7 @@ const DOUBTS = {
   FrictionOutsidePrior: "friction far from what was given",
   InertiaOutsidePrior: "inertia far from what was given",
   NegativeStiffness: "stiffness below 0",
+  Change: "the stiffness changes",
 };
 
 /** In words, of a value of the output doubt. */

@@ -138,7 +138,10 @@ def test_the_estimate_follows_a_spring_that_ages_and_does_not_change_at_rest(c: 
     z = joint.measurements()
     found = estimator.run(z)
     assert error(found, joint, 20.0) < 0.05
-    assert error(Estimator(c, REGRESSION).run(z), joint, 20.0) > 0.2
+    # without drift the change is noticed instead, detail 15; without memory it is not
+    assert error(Estimator(c, REGRESSION).run(z), joint, 20.0) < 0.1
+    fixed = {**REGRESSION, "regression.memory": 0.0}
+    assert error(Estimator(c, fixed).run(z), joint, 20.0) > 0.2
 
     rest = z[-1:].repeat(1000, 0)
     rest[:, 1] = rest[:, 0]

@@ -139,7 +139,7 @@ DOUBTS = {
     for number, name in enumerate(
         (
             *("NONE", "NO_CLAIM", "NOT_EXCITED", "MISFIT", "OUT_OF_RANGE", "FRICTION", "INERTIA"),
-            "NEGATIVE_STIFFNESS",
+            *("NEGATIVE_STIFFNESS", "CHANGE"),
         ),
         1,
     )

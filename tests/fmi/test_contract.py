@@ -33,6 +33,7 @@ OUTPUTS = {
     "epsilon": "N.m",
     "sigma_std": "N.m/rad",
     "tau_e_std": "N.m",
+    "change_age": "s",
 }
 PARAMETERS = {
     "samplePeriod": ("fixed", "s", 1e-3),
@@ -119,6 +120,7 @@ ITEMS = {
     "doubt": [
         *("None", "NoClaim", "NotExcited", "Misfit", "OutOfRange"),
         *("FrictionOutsidePrior", "InertiaOutsidePrior", "NegativeStiffness"),
+        "Change",
     ],
 }
 FMUS = [

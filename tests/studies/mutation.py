@@ -40,6 +40,7 @@ REQUIRED = 0.9  # share of the mutants that the tests have to notice
 # For each file, the tests of other files that use it. They are run besides its own tests.
 _REGRESSION = ("regression_oracle", "filtered_regression", "misfit_columns", "evaluate")
 USERS = {
+    "change": (),
     "columns": ("regression_columns", *_REGRESSION),
     "estimator_check": (),
     "filtered_regression": ("prior", "stiffness_estimator", *_REGRESSION),

@@ -29,6 +29,7 @@ _KEYS = {
     "FrictionOutsidePrior": "motor.D_theta",
     "InertiaOutsidePrior": "motor.B",
     "NegativeStiffness": "ports.q.sign",
+    "Change": "rls.n",
 }
 
 

@@ -21,6 +21,7 @@ _DOUBTS = {
     "FrictionOutsidePrior": "the friction found is beyond prior.D_theta",
     "InertiaOutsidePrior": "the inertia found is beyond prior.B",
     "NegativeStiffness": "the stiffness found is negative",
+    "Change": "the stiffness seems to change",
 }
 _ABSENT = {
     "tau_coulomb": "Coulomb friction",

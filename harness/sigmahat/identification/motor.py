@@ -127,7 +127,7 @@ def _with_spring(
 
     The second form is the one for the estimator: _POWERS powers, unless they predict what was left
     out much worse, because the log shows too little of the spring. Then it has as few as predict
-    not significantly worse.
+    not significantly worse. A spring that is said to be symmetric has few unknowns as it is.
     """
     orders, errors = choose(equations(pieces, T, gamma, form), form.n, form.m)
     best = replace(form, n=orders[0], m=orders[1])
@@ -138,7 +138,7 @@ def _with_spring(
             best, errors = replace(form, n=orders[0], m=orders[1]), less
     wide = replace(form, n=_POWERS, m=best.m, symmetric=symmetric)
     all_powers = left_out(equations(pieces, T, gamma, wide))
-    if float(np.mean(np.log(all_powers / errors))) <= _LOSS:
+    if symmetric or float(np.mean(np.log(all_powers / errors))) <= _LOSS:
         return best, wide
     fewer = (replace(best, n=n) for n in range(1, best.n))
     enough = (

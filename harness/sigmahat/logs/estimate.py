@@ -68,6 +68,8 @@ class Estimate:
     """Relative change of the stiffness with a relative change of the gain of the torque [1]."""
     curve: Curve
     """Torque and stiffness over the deformation."""
+    changes: Sequence[float]
+    """Times since the start of the log at which a change of the stiffness was detected [s]."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""
     learned_from: Sequence[str] = ()
@@ -94,6 +96,7 @@ class Estimate:
             "motor": self.motor,
             "joint": self.joint,
             "sigma_per_gain": self.sigma_per_gain,
+            "changes [s]": self.changes,
             "notes": self.notes,
             "learned_from": self.learned_from,
             "parameters": self.parameters,
@@ -161,6 +164,7 @@ def _result(replay: Replay, found: Curve) -> Estimate:
         joint={name: last[name] for name in last if name.endswith("_hat") and name not in _MOTOR},
         sigma_per_gain=last["sigma_per_gain"],
         curve=found,
+        changes=[samples.T * tick for tick in statistics.changes],
         notes=[*continued, *samples.notes],
         learned_from=before,
     )

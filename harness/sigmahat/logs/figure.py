@@ -151,6 +151,9 @@ def draw(replay: Replay, answer: Answer) -> Figure:
             limits += _interval(axes, replay)
         _set_limits(axes, min(limits), max(limits))
         _shade(axes, skipped)
+        for number, tick in enumerate(replay.statistics.changes):
+            label = None if number else "the stiffness changes"
+            axes.axvline(replay.samples.T * tick, color="black", linestyle=":", label=label)
         axes.set_ylabel(label)
         axes.margins(x=0.01)
         axes.legend(loc="upper right", ncols=3)

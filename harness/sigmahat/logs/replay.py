@@ -28,6 +28,7 @@ OUTPUTS = (
     "rho",
     "epsilon",
     "sigma_std",
+    "tau_e_std",
     "D_theta_hat",
     "B_hat",
     "tau_coulomb_hat",
@@ -38,6 +39,7 @@ OUTPUTS = (
     "eccentric_hat",
     "delay_hat",
     "hysteresis_hat",
+    "change_age",
     "sigma_per_gain",
 )
 """Real outputs that are recorded."""

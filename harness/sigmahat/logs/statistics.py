@@ -40,6 +40,9 @@ class ReplayStatistics:
         self._used: dict[str, tuple[float, float]] = {}
         self.last: dict[str, float] = {}
         """Real outputs of the last tick."""
+        self.changes: list[int] = []
+        """Ticks at which a change of the stiffness was detected."""
+        self._change_age = -1.0
         self.last_doubt = ""
         """Item of the output doubt at the last tick."""
 
@@ -64,6 +67,10 @@ class ReplayStatistics:
         shown = spread(self.ticks, count, self._stride)
         for name in NEEDED:
             self._points[name].append(outputs[name][shown])
+        age = np.concatenate([[self._change_age], outputs["change_age"]])
+        new = (age[1:] >= 0) & ((age[1:] < age[:-1]) | (age[:-1] < 0))
+        self.changes += (self.ticks + np.flatnonzero(new)).tolist()
+        self._change_age = float(age[-1])
         self.skipped += int(np.count_nonzero(~outputs["valid"]))
         self.ticks += count
         self.last = {name: float(outputs[name][-1]) for name in OUTPUTS}

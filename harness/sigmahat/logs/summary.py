@@ -51,6 +51,9 @@ def _second_half(result: Estimate) -> Iterator[str]:
     if result.parameters["method"] == "FilteredRegression":
         reasons = ", ".join(f"{item} {100 * share:.3g} %" for item, share in result.doubt.items())
         why = f" ({reasons})" if reasons else ""
+        if result.changes:
+            times = ", ".join(f"{t:.4g}" for t in result.changes)
+            yield f"  the stiffness changed at t = {times} s since the start of the log"
         yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time{why}"
 
 

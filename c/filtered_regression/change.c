@@ -1,0 +1,121 @@
+/* A stiffness that changes (detail 15): two hypotheses predict each block of samples, and the estimate
+ * follows the one that does so better.
+ *
+ *     0  the joint is as before: the information of all blocks
+ *     1  the spring has changed since t: the same at t, but the columns of the spring have their prior back
+ *
+ * Both know motor and friction equally well, so a change of the spring is no reason to learn them again.
+ */
+#include "constants.h"
+#include "information.h"
+#include "regression.h"
+
+void sh_change_start(sh_regression_state *state)
+{
+    sh_change *change = &state->change;
+
+    sh_information_start(&change->changed, state->columns.size, SH_LEAST_INFORMATION);
+    change->opened = state->columns.size;
+    change->adopted = state->columns.size;
+    change->level = 1;
+    change->blocks = SH_SHORTEST_TEST; /* it begins with the first block that can show a change */
+    state->history.change_age = -1;
+}
+
+/* P += e e', the prior of column i, if it is one of the spring */
+static void open_column(const sh_columns *columns, sh_information *a, int i)
+{
+    if (sh_column_is(&columns->column[i], SH_IS_SPRING)) {
+        sh_real e[SH_MAX_COLUMNS] = {0};
+
+        e[i] = 1;
+        sh_information_drift(a, e, 1);
+    }
+}
+
+/* Hypothesis 1 begins now. */
+static void begin(sh_regression_state *state)
+{
+    const sh_blocks *blocks = &state->blocks;
+    sh_change *change = &state->change;
+
+    sh_information_copy(&change->changed,
+                        state->friction_drifts ? &blocks->drifting : &blocks->constant);
+    change->opened = 0;
+    change->evidence = change->blocks = 0;
+}
+
+/* The blocks are those of hypothesis 1; the data of all samples follow column by column. */
+static void adopt(sh_regression_state *state)
+{
+    sh_blocks *blocks = &state->blocks;
+    sh_change *change = &state->change;
+
+    sh_information_copy(&blocks->constant, &change->changed);
+    sh_information_copy(&blocks->drifting, &change->changed);
+    sh_information_start(&blocks->recent, state->columns.size, 1);
+    blocks->recent_count = 0;
+    change->adopted = 0;
+    change->following = 1;
+    state->history.change_age = 0;
+    begin(state);
+}
+
+int sh_change_is_ready(const sh_regression_state *state)
+{
+    return state->change.opened == state->columns.size;
+}
+
+/* g = max(0, g + min(z_0 / l, 25) - 2 z_1 / l - 2), where z are squares of errors over their variances
+ * and l >= 1 is their usual size: a misfit makes both hypotheses wrong all the time.
+ */
+void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
+                     sh_real changed)
+{
+    sh_change *change = &state->change;
+    const sh_real level = change->level;
+
+    if (!(p->regression.memory > 0)) { /* switched off */
+        return;
+    }
+    change->judged = sh_fmin(change->judged + 1, SH_LEVEL_BLOCKS);
+    change->level =
+        sh_fmax(level + (sh_fmin(before, SH_LARGEST_LEVEL * level) - level) / change->judged, 1);
+    if (!sh_change_is_ready(state) || state->blocks.count < SH_SHORTEST_PAST) {
+        return;
+    }
+    change->blocks += 1;
+    if (change->blocks > (change->evidence > 0 ? SH_LONGEST_TEST : SH_SHORTEST_TEST)) {
+        begin(state);
+        return;
+    }
+    change->evidence = sh_fmax(change->evidence + sh_fmin(before / level, SH_LARGEST_EVIDENCE) -
+                                   2 * sh_fmin(changed / level, SH_LARGEST_EVIDENCE / 2) - 2,
+                               0);
+    if (change->evidence > SH_HAS_CHANGED * sh_sqrt(level) && change->following == 0) {
+        adopt(state);
+    }
+}
+
+/* One column a tick, so that no tick takes long. */
+int sh_change_step(sh_regression_state *state)
+{
+    sh_change *change = &state->change;
+    const int size = state->columns.size;
+
+    if (change->opened < size) {
+        open_column(&state->columns, &change->changed, change->opened);
+        change->opened += 1;
+    }
+    if (change->adopted < size) {
+        open_column(&state->columns, &state->data, change->adopted);
+        change->adopted += 1;
+        return change->adopted == size;
+    }
+    return 0;
+}
+
+int sh_change_is_likely(const sh_regression_state *state)
+{
+    return state->change.following || state->change.evidence > SH_MAY_HAVE_CHANGED;
+}

@@ -1,0 +1,86 @@
+"""Detail 15 of FilteredRegression: a stiffness that changes is noticed and followed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from c_library import Array, Estimator, Library, load
+from regression_joint import Joint, T
+
+REGRESSION = {"method": 2, "rls.n": 3}
+CHANGE = 9
+AT = 15.0  # [s]
+
+
+@pytest.fixture(scope="module")
+def c(build: Path) -> Library:
+    return load(build)
+
+
+def step(factor: float) -> Callable[[Array], Array]:
+    return lambda t: np.where(t < AT, 1.0, factor)
+
+
+@pytest.mark.parametrize("frequency", [0.5, 1.0, 3.0])
+@pytest.mark.parametrize("factor", [2.0, 0.5, 1.3])
+def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, factor: float) -> None:
+    """GIVEN a stiffness that changes at 15 s, THEN this is detected, the estimate is hardly ever
+    confident and wrong by 20 %, and at the end it is right and confident, with the same motor."""
+    joint = Joint(
+        duration=30.0, frequency=frequency, amplitude=0.8 / frequency, stiffness=step(factor)
+    )
+    found = Estimator(c, REGRESSION).run(joint.measurements())
+    age, error = found["change_age"], np.abs(found["sigma"] / joint.sigma - 1)
+    later = joint.t >= AT
+    assert np.all(age[~later] == -1)
+    first = np.flatnonzero(age >= 0)[0]
+    assert joint.t[first] - AT < 5.0 / min(frequency, 1.0)
+    assert age[first] == pytest.approx(0.0, abs=2 * T)
+    assert found["doubt"][first] == CHANGE and not found["confident"][first]
+    assert T * np.count_nonzero(found["confident"].astype(bool) & (error > 0.2)) < 1.0
+    assert error[-1] < 0.1 and found["confident"][-1]
+    assert abs(found["sigma"][-1] - joint.sigma[-1]) < 4 * found["sigma_std"][-1]
+    assert found["D_theta_hat"][-1] == pytest.approx(1e-3, rel=0.05)
+
+
+def test_the_age_is_the_time_since_the_last_change(c: Library) -> None:
+    """Ticks without a measurement count, too, and those in which the filters settle."""
+    z = Joint(duration=25.0, stiffness=step(2.0)).measurements()
+    z[22_000:23_000, 0] = np.nan
+    age = Estimator(c, REGRESSION).run(z)["change_age"]
+    assert age[-1] - age[21_999] == pytest.approx((len(age) - 22_000) * T)
+
+
+@pytest.mark.parametrize(
+    ("joint", "parameters"),
+    [
+        (Joint(duration=60.0), {}),
+        (Joint(duration=60.0, tau_coulomb=0.03, seed=3), {}),
+        (Joint(duration=60.0, noise=0.02, seed=4), {}),  # six times the noise that is configured
+        (
+            Joint(duration=60.0, tau_coulomb=0.015, seed=5),
+            {"motor.D_theta": 1.3e-3, "prior.B": 0.1},
+        ),
+        (Joint(duration=60.0, deformation=0.2, seed=6), {"rls.n": 1, "prior.power": 0.0}),
+    ],
+    ids=["nothing", "friction", "noise", "wrong motor", "wrong basis"],
+)
+def test_a_misfit_is_no_change(c: Library, joint: Joint, parameters: dict[str, float]) -> None:
+    found = Estimator(c, {**REGRESSION, **parameters}).run(joint.measurements())
+    assert np.all(found["change_age"] == -1)
+
+
+def test_without_memory_no_change_is_looked_for(c: Library) -> None:
+    joint = Joint(duration=20.0, stiffness=step(2.0))
+    found = Estimator(c, {**REGRESSION, "regression.memory": 0.0}).run(joint.measurements())
+    assert np.all(found["change_age"] == -1)
+    assert not np.any(found["doubt"] == CHANGE)
+
+
+def test_the_paper_looks_for_no_change(c: Library) -> None:
+    found = Estimator(c, {"method": 1}).run(Joint(duration=1.0).measurements())
+    assert np.all(found["change_age"] == -1)
