@@ -152,8 +152,8 @@ def draw(replay: Replay, answer: Answer) -> Figure:
         _set_limits(axes, min(limits), max(limits))
         _shade(axes, skipped)
         for number, tick in enumerate(replay.statistics.changes):
-            label = None if number else "the stiffness changes"
-            axes.axvline(replay.samples.T * tick, color="black", linestyle=":", label=label)
+            legend = None if number else "the stiffness changes"
+            axes.axvline(replay.samples.T * tick, color="black", linestyle=":", label=legend)
         axes.set_ylabel(label)
         axes.margins(x=0.01)
         axes.legend(loc="upper right", ncols=3)
