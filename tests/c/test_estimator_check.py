@@ -54,6 +54,7 @@ INTEGERS_OF_FILTERED_REGRESSION = [
     *("columns.column.j", "refit.row", "refit.waits", "refit.trial", "refit.last_trial"),
     *("refit.used", "refit.frozen.size"),
     *("blocks.constant.size", "blocks.drifting.size", "blocks.recent.size"),
+    *("change.changed.size", "change.opened", "change.adopted", "change.following"),
     *(
         f"{posterior}.{member}"
         for posterior in ("posterior", "refit.posterior")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 
 import pytest
@@ -42,7 +43,8 @@ def test_a_state_that_is_none_of_fmi_is_refused(name: str) -> None:
         for state in (0, 3, 5, 15, 16):
             assert forge(fmu, "I", STATE, state) == ERROR
             assert "values that this FMU never saves" in fmu.messages[-1][2]
-        assert forge(fmu, "I", STATE, 4) == OK
+        for state in (1, 2, 4, 8):
+            assert forge(fmu, "I", STATE, state) == OK
 
 
 def test_a_parameter_out_of_its_range_is_refused() -> None:
@@ -50,6 +52,18 @@ def test_a_parameter_out_of_its_range_is_refused() -> None:
         fmu.initialise()
         assert forge(fmu, "d", HEADER, -1.0) == ERROR  # samplePeriod
         assert "samplePeriod = -1 is out of its range" in fmu.messages[-1][2]
+
+
+def test_a_plant_whose_position_is_no_number_is_refused() -> None:
+    """The positions stand behind the parameters: each place of the state is tried."""
+    with Instance(sigmahat.fmu("AwasPlant")) as fmu:
+        fmu.initialise()
+        state = fmu.save()
+        size = len(fmu.serialise(state))
+        fmu.free(state)
+        refused = [forge(fmu, "d", place, math.nan) for place in range(HEADER, size, 8)]
+        assert refused.count(ERROR) > 6
+        assert any("never saves" in text for *_, text in fmu.messages)
 
 
 def test_a_step_has_a_finite_end() -> None:
