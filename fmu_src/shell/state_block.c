@@ -107,9 +107,10 @@ void sh_block_read(sh_instance *instance, const void *block)
 
 void sh_block_sign(void *block)
 {
-    const uint64_t sum = checksum(block, sh_block_size());
+    state_header header = header_of(block);
 
-    (void)memcpy((char *)block + offsetof(state_header, checksum), &sum, sizeof sum);
+    header.checksum = checksum(block, sh_block_size());
+    (void)memcpy(block, &header, sizeof header);
 }
 
 const char *sh_bytes_defect(const void *bytes, size_t size)

@@ -20,7 +20,7 @@
 
 #include "fmi3FunctionTypes.h"
 
-enum { MAX_VARIABLES = 64 };
+enum { MAX_VARIABLES = 256 };
 
 #define FUNCTION(name) name##TYPE *name = (name##TYPE *)FIND(library, #name)
 #define CHECK(call)                                                                                \
