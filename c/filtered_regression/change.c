@@ -22,14 +22,11 @@ void sh_change_start(sh_regression_state *state)
     state->history.change_age = -1;
 }
 
-/* P += e e', the prior of column i, if it is one of the spring */
+/* Column i gets its prior back, if it is one of the spring. */
 static void open_column(const sh_columns *columns, sh_information *a, int i)
 {
     if (sh_column_is(&columns->column[i], SH_IS_SPRING)) {
-        sh_real e[SH_MAX_COLUMNS] = {0};
-
-        e[i] = 1;
-        sh_information_drift(a, e, 1);
+        sh_information_drift_one(a, i, 1);
     }
 }
 
@@ -66,7 +63,7 @@ int sh_change_is_ready(const sh_regression_state *state)
     return state->change.opened == state->columns.size;
 }
 
-/* g = max(0, g + min(z_0 / l, 25) - 2 z_1 / l - 2), where z are squares of errors over their variances
+/* g = max(0, g + min(z_0 / l, 25) - 2 min(z_1 / l, 12.5) - 2), where z are squares of errors over their variances
  * and l >= 1 is their usual size: a misfit makes both hypotheses wrong all the time.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,

@@ -342,14 +342,6 @@ static sh_real update(sh_regression_state *state, const sh_parameters *p, const 
     return share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
 }
 
-/* Lets the next posterior begin as soon as the data contain a change of the spring. */
-static void follow_change(sh_regression_state *state, const sh_parameters *p)
-{
-    if (sh_change_step(state)) {
-        sh_refit_restart(state, p);
-    }
-}
-
 /* After a gap, or a change of the modality, the filters start again. */
 static void resume(sh_regression_state *state)
 {
@@ -399,7 +391,6 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
         epsilon = predict(state, p, x);              /* 4. Predict and compare. */
         rho = update(state, p, x, w, noise.lasting); /* 5. Update. */
         sh_refit_step(state, p, x, w);               /* 6. Choose columns. */
-        follow_change(state, p);
     }
     if (!report(state, p, &at, y, estimate)) { /* 7. Report. */
         return refuse(state, &before);

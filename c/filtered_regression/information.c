@@ -251,3 +251,11 @@ void sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
     c = sh_fmin(c, SH_LARGEST_GROWTH / vAv);
     (void)sh_information_take(a, row, -c / (1 + c * vAv));
 }
+
+void sh_information_drift_one(sh_information *a, int i, sh_real c)
+{
+    sh_real v[SH_MAX_COLUMNS] = {0};
+
+    v[i] = 1;
+    sh_information_drift(a, v, c);
+}

@@ -91,4 +91,7 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least);
  */
 void sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
+/* The same for parameter i alone. */
+void sh_information_drift_one(sh_information *a, int i, sh_real c);
+
 #endif

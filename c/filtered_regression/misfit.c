@@ -209,10 +209,7 @@ static void let_friction_drift(const sh_columns *columns, sh_information *a, sh_
 
     for (i = 0; i < columns->size; ++i) {
         if (sh_column_is(&columns->column[i], SH_IS_FRICTION)) {
-            sh_real v[SH_MAX_COLUMNS] = {0};
-
-            v[i] = 1;
-            sh_information_drift(a, v, variance);
+            sh_information_drift_one(a, i, variance);
         }
     }
 }

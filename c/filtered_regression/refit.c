@@ -93,12 +93,6 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p)
     sh_posterior_copy(&state->posterior, &state->refit.posterior);
 }
 
-void sh_refit_restart(sh_regression_state *state, const sh_parameters *p)
-{
-    state->refit.trial = 0;
-    start_refit(state, p);
-}
-
 /* The next group that can be tried, 0 if there is none. */
 static int next_trial(sh_regression_state *state, const sh_parameters *p)
 {
@@ -227,5 +221,9 @@ void sh_refit_step(sh_regression_state *state, const sh_parameters *p, const sh_
     refit->waits = !refit->waits;
     if (!refit->waits) {
         advance_refit(state, p, x, w);
+    }
+    if (sh_change_step(state)) { /* the next posterior is to contain the change, at once */
+        refit->trial = 0;
+        start_refit(state, p);
     }
 }

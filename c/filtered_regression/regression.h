@@ -226,10 +226,9 @@ int sh_change_is_likely(const sh_regression_state *state);
 /* Starts posterior and refit from the prior. */
 void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 
-/* Starts again, from data that contain a change of the spring. */
-void sh_refit_restart(sh_regression_state *state, const sh_parameters *p);
-
-/* Detail 6: takes a row x of weight w [1/(N.m)2], and advances the refit in every second call. */
+/* Detail 6: takes a row x of weight w [1/(N.m)2], and advances the refit in every second call. It starts
+ * again once the data contain a change of the spring.
+ */
 void sh_refit_step(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w);
 
 #endif
