@@ -22,7 +22,6 @@ from sigmahat.identification.regression import (
     fit,
     is_more,
     is_worse,
-    left_out,
 )
 from sigmahat.identification.spring import Spring
 
@@ -131,22 +130,20 @@ def _with_spring(
     """
     orders, errors = choose(equations(pieces, T, gamma, form), form.n, form.m)
     best = replace(form, n=orders[0], m=orders[1])
-    if not symmetric:
-        form = replace(form, n=2 * form.n, symmetric=False)
-        orders, less = choose(equations(pieces, T, gamma, form), form.n, form.m)
-        if is_more(np.log(errors / less)):
-            best, errors = replace(form, n=orders[0], m=orders[1]), less
-    wide = replace(form, n=_POWERS, m=best.m, symmetric=symmetric)
-    all_powers = left_out(equations(pieces, T, gamma, wide))
-    if symmetric or float(np.mean(np.log(all_powers / errors))) <= _LOSS:
-        return best, wide
-    fewer = (replace(best, n=n) for n in range(1, best.n))
+    if symmetric:
+        return best, replace(best, n=_POWERS)
+    form = replace(form, n=2 * form.n, symmetric=False)
+    all_orders, all_errors = choose(equations(pieces, T, gamma, form), form.n, form.m)
+    if is_more(np.log(errors[orders] / all_errors[all_orders])):
+        orders, errors = all_orders, all_errors
+        best = replace(form, n=orders[0], m=orders[1])
+    n, m = orders
+    if float(np.mean(np.log(all_errors[_POWERS, m] / errors[orders]))) <= _LOSS:
+        return best, replace(form, n=_POWERS, m=m)
     enough = (
-        each
-        for each in fewer
-        if not is_more(np.log(left_out(equations(pieces, T, gamma, each)) / errors))
+        fewer for fewer in range(1, n) if not is_more(np.log(errors[fewer, m] / errors[orders]))
     )
-    return best, next(enough, best)
+    return best, replace(best, n=next(enough, n))
 
 
 @dataclass(frozen=True)

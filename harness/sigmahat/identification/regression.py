@@ -341,8 +341,9 @@ Orders = tuple[int, int]
 """n and m of (16), as in rls.n and rls.m."""
 
 
-def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, Array]:
-    """The orders with the least error on parts that were left out, and that error, see left_out.
+def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, dict[Orders, Array]]:
+    """The orders with the least error on parts that were left out, and the errors of all, see
+    left_out.
 
     equations  with all columns up to the orders n_most, m_most
     """
@@ -353,4 +354,4 @@ def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, Arra
         for m in range(1, m_most + 1)
     }
     best = min(errors, key=lambda each: float(np.mean(errors[each])))
-    return best, errors[best]
+    return best, errors
