@@ -68,6 +68,7 @@ def complete(root: Element) -> str:
     """
     for reference, variable in enumerate(variables(root)):
         variable.set("valueReference", str(reference))
+        variable.attrib.pop("array", None)
     _remove_unused_units(root)
     _add_display_units(root)
     _add_model_structure(root)

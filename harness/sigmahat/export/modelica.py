@@ -115,7 +115,7 @@ def _variable(root: Element, variable: Element, types: dict[str, str]) -> Variab
     """None for an element of an array but the first, and for a source: sources are connected."""
     kind, given = variable[0], variable.attrib
     name, _, index = given["name"].partition("[")
-    if name.startswith("signal.") or index not in ("", "0,0]"):
+    if name.startswith("signal.") or (index and "array" not in given):
         return None
     group, _, last = name.rpartition(".")
     start = kind.get("start", "")
@@ -139,19 +139,10 @@ def _variable(root: Element, variable: Element, types: dict[str, str]) -> Variab
         limits=tuple(f"{limit}={kind.get(limit)}" for limit in ("min", "max") if kind.get(limit)),
         nominal=kind.get("nominal", "1"),
         unit=kind.get("unit", "1"),
-        description=_described(given["description"]),
-    )
-
-
-def _described(text: str) -> str:
-    """A description without sources; that of the first element of an array as that of the array."""
-    text = re.sub(r"; signal\.\w+ is added to it$", "", text).replace("[0,0]", "")
-    # Indices are from 1 in Modelica.
-    text = text.replace(
-        "Coefficient of setPoint^0", "Coefficients: [i+1,j+1] is that of setPoint^0"
-    )
-    return text.replace("setPoint^0 phi^1", "setPoint^j phi^(2 i + 1)").replace(
-        "setPoint^0 phi^0", "setPoint^j phi^i"
+        # Indices are from 1 in Modelica.
+        description=re.sub(r"; signal\.\w+ is added to it$", "", given["description"])
+        if not index
+        else given["array"].replace("[i,j]", "[i+1,j+1]"),
     )
 
 

@@ -187,11 +187,11 @@ def _systems(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> V
     The torque is late in all of them if this explains the log significantly better.
     """
     late = replace(form, delay=True)
-    at_once, moved = (fit(equations(pieces, T, gamma, each)) for each in (form, late))
-    forms = _frictions(late if is_worse(at_once, moved) else form)
-    every = {each: equations(pieces, T, gamma, each) for each in forms}
+    both = {each: equations(pieces, T, gamma, each) for each in (form, late)}
+    plain = late if is_worse(*map(fit, both.values())) else form
+    every = {plain: both[plain]}
+    every |= {each: equations(pieces, T, gamma, each) for each in _frictions(plain)[1:]}
     fits = {each: fit(system) for each, system in every.items()}
-    plain = next(iter(every))
     best = min(fits, key=lambda each: float(np.nan_to_num(np.sum(fits[each].squares), nan=np.inf)))
     chosen = best if is_worse(fits[plain], fits[best]) else plain
     filters = (
