@@ -73,7 +73,7 @@ static const struct {
     [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, SH_SIGNAL_MEAN, SH_OF_LOAD_FRICTION, 0,
                         SH_IS_MOTOR},
     [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, SH_SIGNAL_NONE, SH_OF_LOAD_FRICTION, 0,
-                         SH_IS_MOTOR},
+                         SH_IS_MOTOR | SH_IS_DRIVE},
     [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, SH_SIGNAL_NONE, SH_OF_DELAY, 0, 0},
     [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, SH_SIGNAL_NONE, SH_OF_NOTHING, 0, SH_IS_MOTOR},
     [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_CURVE, 1, CURVE},
@@ -478,20 +478,35 @@ sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
     return y;
 }
 
+/* The noise nu of the torque is the share lambda of the prediction error of the row without it, and a
+ * column of slope c = d(x beta)/d(-nu) returns a part of it:
+ *
+ *     nu = lambda epsilon / (1 - lambda c) .
+ *
+ * What is left has the variance (1 - lambda) N_tau, as y has of it too.
+ */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_parameters *p,
-                                sh_real noise, sh_real *x)
+                                const sh_sample_noise *noise, sh_real epsilon, sh_real *x,
+                                sh_column_noise *left)
 {
-    const sh_real torque = torque_in_y(state, p) - noise;
+    const sh_real torque = torque_in_y(state, p), sign = torque > 0 ? 1 : -1;
+    const sh_real slope = sign * drive_friction(&state->signals, 1);
     sh_real change = 0;
     int i;
 
+    left->information = left->gain = 0;
     for (i = 0; i < state->columns.size && !sh_is_measured(p); ++i) {
         const sh_column *column = &state->columns.column[i];
 
-        if (column->kind == SH_COLUMN_DRIVE) {
-            const sh_real entry = column->prior * drive_friction(&state->signals, torque);
+        if (sh_column_is(column, SH_IS_DRIVE)) {
+            const sh_real by_torque = column->prior * slope;
+            const sh_real returned = clip(by_torque * state->beta[i], SH_LARGEST_RETURN);
+            const sh_real nu = noise->share * epsilon / (1 - noise->share * returned);
+            const sh_real entry = column->prior * drive_friction(&state->signals, torque - nu);
 
-            change += (entry - x[i]) * state->beta[i];
+            left->gain = (1 - noise->share) * noise->torque * by_torque;
+            left->information = left->gain * by_torque;
+            change = (entry - x[i]) * state->beta[i];
             x[i] = entry;
         }
     }

@@ -66,6 +66,21 @@
 /* Relative error of the removed information [1]: rounding repeats with the motion. */
 #define SH_REMOVAL_ERROR ((sh_real)0.05)
 
+/* ---- noise in the column of the motor's torque, columns.c and posterior.c ------------------ */
+
+/* Largest share of the noise that the column returns to the prediction [1]: ten times the friction that
+ * is expected.
+ */
+#define SH_LARGEST_RETURN ((sh_real)0.5)
+
+/* Relative error of the variance of the torque's noise [1]: noise.tau is known to 10 %. */
+#define SH_TORQUE_NOISE_ERROR ((sh_real)0.2)
+
+/* Least share of the information that is left [1]: less would consist of rounding errors in single
+ * precision.
+ */
+#define SH_LEAST_REST ((sh_real)1e-3)
+
 /* ---- misfit and forgetting, misfit.c ----------------------------------------------------- */
 
 /* Duration of a block [s]: several times 1/w, and short beside a motion. */

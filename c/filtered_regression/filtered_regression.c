@@ -180,7 +180,7 @@ static void report_coefficients(const sh_regression_state *state, const sh_param
  * stiffness overflow.
  */
 static int report(sh_regression_state *state, const sh_parameters *p, const sh_joint_point *at,
-                  sh_real y, sh_estimate *estimate)
+                  sh_real y, sh_real y_fit, sh_estimate *estimate)
 {
     const sh_real largest_delay = SH_LARGEST_DELAY * p->prior.delay;
     sh_point point;
@@ -203,7 +203,7 @@ static int report(sh_regression_state *state, const sh_parameters *p, const sh_j
     report_coefficients(state, p, at, &stiffness, estimate);
     /* What the next row depends on. */
     state->modality = p->modality;
-    state->y = y;
+    state->y = y_fit;
     state->sigma = point.sigma;
     state->delay = sh_fmin(sh_fmax(estimate->delay_hat, -largest_delay), largest_delay);
     state->stiffness_known = sh_sqrt(stiffness.variance) < SH_KNOWN_STIFFNESS * point.sigma;
@@ -289,7 +289,8 @@ static sh_real weight_of(const sh_sample_noise *noise, const sh_real *x, int siz
 /* epsilon = y - x' beta. Its share that is noise of the torque is removed from the column of the
  * motor's torque, which contains this noise too; then epsilon is computed again (detail 14).
  */
-static sh_real predict(const sh_regression_state *state, const sh_parameters *p, sh_real *x)
+static sh_real predict(const sh_regression_state *state, const sh_parameters *p,
+                       const sh_sample_noise *noise, sh_real *x, sh_column_noise *left)
 {
     sh_real epsilon = x[state->columns.size + SH_RIGHT_Y];
     int i;
@@ -297,17 +298,21 @@ static sh_real predict(const sh_regression_state *state, const sh_parameters *p,
     for (i = 0; i < state->columns.size; ++i) {
         epsilon -= x[i] * state->beta[i];
     }
-    return epsilon -
-           sh_columns_remove_noise(state, p, sh_noise_share_of_torque(state, p) * epsilon, x);
+    return epsilon - sh_columns_remove_noise(state, p, noise, epsilon, x, left);
 }
 
 /* Updates what is rounding in the columns of b (detail 7) and of the spring (point 5). */
-static void update_rounding(sh_regression_state *state, const sh_parameters *p, sh_real w)
+static void update_rounding(sh_regression_state *state, const sh_parameters *p,
+                            const sh_column_noise *left, sh_real w)
 {
     sh_posterior *const now = &state->posterior, *const next = &state->refit.posterior;
     const sh_real N = sh_limited(sh_noise_of_inertia(state, p) * w, SH_LARGE);
     sh_real Q;
 
+    state->of_drive.information += left->information * w;
+    state->of_drive.gain += left->gain * w;
+    next->of_drive.information += left->information * w * next->weight;
+    next->of_drive.gain += left->gain * w * next->weight;
     state->rounding += sh_limited(sh_noise_of_deformation(&state->signals) * w, SH_LARGE);
     if (now->inertia < 0) {
         return;
@@ -326,14 +331,14 @@ static void update_rounding(sh_regression_state *state, const sh_parameters *p, 
  * prediction over the one of the sample.
  */
 static sh_real update(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
-                      sh_real w, sh_real lasting)
+                      const sh_column_noise *left, sh_real w, sh_real lasting)
 {
     const int size = state->columns.size;
     const sh_real share = sh_posterior_take(&state->posterior, x, size, w); /* 1 / (1 + rho) */
     sh_real row[SH_MAX_ROW] = {0};
     int i;
 
-    update_rounding(state, p, w);
+    update_rounding(state, p, left, w);
     for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
         row[i] = x[i];
     }
@@ -383,16 +388,17 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     }
     if (is_settled(state, p, x)) {
         const sh_sample_noise noise = sh_noise_of_sample(state, p);
+        sh_column_noise left;
 
         w = weight_of(&noise, x, size); /* 3. Weigh it. */
         if (!(w > 0)) {
             return refuse(state, &before);
         }
-        epsilon = predict(state, p, x);              /* 4. Predict and compare. */
-        rho = update(state, p, x, w, noise.lasting); /* 5. Update. */
+        epsilon = predict(state, p, &noise, x, &left);      /* 4. Predict and compare. */
+        rho = update(state, p, x, &left, w, noise.lasting); /* 5. Update. */
         sh_refit_step(state, p, x, w);               /* 6. Choose columns. */
     }
-    if (!report(state, p, &at, y, estimate)) { /* 7. Report. */
+    if (!report(state, p, &at, y, y - epsilon, estimate)) { /* 7. Report. */
         return refuse(state, &before);
     }
     estimate->a = w > 0 ? 1 : 0;

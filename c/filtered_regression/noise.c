@@ -67,6 +67,16 @@ static void watch_noise(sh_history *history, const sh_signals *signals, const sh
         sh_fmin(T / SH_EXCESS_TIME, 1) * (history->excess - history->excess_mean);
 }
 
+/* lambda = N_tau / (N_tau + N_theta + variance of the friction whose sign is unknown), detail 14 */
+static sh_real share_of_torque(const sh_regression_state *state, const sh_parameters *p,
+                               sh_real torque, sh_real friction)
+{
+    const sh_real theta = sh_fmax(state->history.rough, sh_square(state->signals.count) / 12);
+    const sh_real sum = torque + inertial_noise(&state->signals, p) * theta + friction;
+
+    return sum > 0 ? torque / sum : 0;
+}
+
 /* R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
  *     + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
  *
@@ -83,7 +93,7 @@ sh_sample_noise sh_noise_of_sample(sh_regression_state *state, const sh_paramete
     const sh_history *history = &state->history;
     const sh_real rounding = sh_square(state->sigma) * counts_squared(&state->signals) / 12;
     sh_real R = rounding + sh_square(p->noise.tau_e), stays = rounding * history->resting;
-    sh_sample_noise noise;
+    sh_sample_noise noise = {0, 0, 0, 0};
 
     watch_noise(&state->history, &state->signals, p);
     if (!sh_is_measured(p)) {
@@ -93,20 +103,12 @@ sh_sample_noise sh_noise_of_sample(sh_regression_state *state, const sh_paramete
                 (1 + SH_EXCESS * (history->excess - 1)) +
             friction / white(&state->signals);
         stays += friction * history->unsure;
+        noise.torque = torque_noise(&state->signals, p);
+        noise.share = share_of_torque(state, p, noise.torque, friction);
     }
     noise.lasting = sh_square(1 + stays / R);
     noise.R = R * noise.lasting;
     return noise;
-}
-
-/* N_tau / (N_tau + N_theta) */
-sh_real sh_noise_share_of_torque(const sh_regression_state *state, const sh_parameters *p)
-{
-    const sh_real theta = sh_fmax(state->history.rough, sh_square(state->signals.count) / 12);
-    const sh_real torque = torque_noise(&state->signals, p);
-    const sh_real sum = torque + inertial_noise(&state->signals, p) * theta;
-
-    return sum > 0 ? torque / sum : 0;
 }
 
 sh_real sh_noise_of_deformation(const sh_signals *signals)

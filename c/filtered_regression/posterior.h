@@ -43,6 +43,11 @@ sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, s
  */
 void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B);
 
+/* Removes of_drive, the noise in the column of the motor's torque, as far as its coefficient does not
+ * become less certain than its prior (detail 14).
+ */
+void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B);
+
 /* The estimate beta [size: size] of all columns; 0 for those that are not used. */
 void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta, int size);
 

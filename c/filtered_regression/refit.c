@@ -36,11 +36,11 @@ static int is_tried(const sh_regression_state *state, const sh_parameters *p, in
 }
 
 /* Which columns stand behind others: those of the spring, whose variances then need few rows of U, and
- * behind them friction and inertia.
+ * behind them those of the motor from whose information noise is removed, or whose variance is used.
  */
 static int place_of(const sh_column *column)
 {
-    return sh_column_is(column, SH_IS_FRICTION | SH_IS_INERTIA) ? 2
+    return sh_column_is(column, SH_IS_DRIVE | SH_IS_FRICTION | SH_IS_INERTIA) ? 2
            : sh_column_is(column, SH_IS_SPRING)                 ? 1
                                                                 : 0;
 }
@@ -82,6 +82,8 @@ static void start_refit(sh_regression_state *state, const sh_parameters *p)
     sh_posterior_start(&refit->posterior, &state->columns, chosen, size, weight);
     refit->posterior.surplus = state->surplus * weight;
     refit->posterior.spread = state->spread * weight * weight;
+    refit->posterior.of_drive.information = state->of_drive.information * weight;
+    refit->posterior.of_drive.gain = state->of_drive.gain * weight;
     sh_information_copy(&refit->frozen, &state->data);
     refit->row = 0;
 }
@@ -158,9 +160,10 @@ static void end_refit(sh_regression_state *state, const sh_parameters *p)
         if (state->change.adopted == state->columns.size) {
             state->change.following = 0;
         }
-        if (state->posterior.inertia >= 0) {
+        if (state->posterior.inertia >= 0) { /* first: its rounding would bias the next one */
             sh_posterior_remove(&state->posterior, 0, p->prior.B);
         }
+        sh_posterior_remove_noise(&state->posterior, p->prior.B);
     }
     sh_misfit_judge(state, p);
     refit->trial = 0;

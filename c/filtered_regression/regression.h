@@ -21,6 +21,14 @@ typedef struct {
     sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
 } sh_joint_point;
 
+/* Variance of a sample, whose inverse is its weight. */
+typedef struct {
+    sh_real R;       /* [(N.m)2] */
+    sh_real lasting; /* factor in R by errors that last, >= 1 */
+    sh_real torque;  /* variance of y after the filter by noise of the torque [(N.m)2] */
+    sh_real share;   /* over the whole variance of y after the filter, 0..1 */
+} sh_sample_noise;
+
 /* ---- columns.c --------------------------------------------------------------------------- */
 
 enum {
@@ -55,7 +63,8 @@ enum {
     SH_IS_MOTOR = 8, /* 0 where the torque of the spring is measured or modelled */
     SH_IS_FRICTION = 16, /* friction of the motor that may drift */
     SH_IS_COULOMB = 32,  /* tau_C */
-    SH_IS_INERTIA = 64   /* b */
+    SH_IS_INERTIA = 64,  /* b */
+    SH_IS_DRIVE = 128    /* friction by the torque of the motor */
 };
 
 /* Which quantity of the joint a coefficient is, or contributes to. */
@@ -127,11 +136,14 @@ sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, c
  */
 sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x);
 
-/* Detail 14: removes noise [N.m] from the column of the motor's torque in x, which y contains too.
+/* Detail 14: removes from the column of the motor's torque in x the noise that y contains too, if the
+ * prediction error of y is epsilon [N.m]. Sets what is left of it, times R.
+ *
  * Returns by how much the prediction of y grows [N.m].
  */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_parameters *p,
-                                sh_real noise, sh_real *x);
+                                const sh_sample_noise *noise, sh_real epsilon, sh_real *x,
+                                sh_column_noise *left);
 
 /* ---- signals.c --------------------------------------------------------------------------- */
 
@@ -155,17 +167,8 @@ sh_real sh_signals_roughness(const sh_signals *signals);
 
 /* ---- noise.c ----------------------------------------------------------------------------- */
 
-/* Variance of a sample, whose inverse is its weight. */
-typedef struct {
-    sh_real R;       /* [(N.m)2] */
-    sh_real lasting; /* factor in R by errors that last, >= 1 */
-} sh_sample_noise;
-
 /* Detail 4: variance of the sample, with the noise of theta as the last samples show it. */
 sh_sample_noise sh_noise_of_sample(sh_regression_state *state, const sh_parameters *p);
-
-/* Detail 14: share of the torque's noise in the variance of y after the filter, 0..1. */
-sh_real sh_noise_share_of_torque(const sh_regression_state *state, const sh_parameters *p);
 
 /* Variance of the rounding of phi after the filter [rad2], of which 1/R is information about sigma
  * that is only rounding.

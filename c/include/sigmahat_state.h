@@ -161,15 +161,22 @@ typedef struct {
     sh_real excess, excess_mean; /* noise over what rounding explains, now and its mean [1] */
 } sh_history;
 
+/* What the noise of the motor's torque in its column adds to the equation of its coefficient. */
+typedef struct {
+    sh_real information; /* [1] */
+    sh_real gain;        /* to the right-hand side SH_RIGHT_GAIN [N.m] */
+} sh_column_noise;
+
 /* Prior and data, which are weighted by the misfit, in the order of its own columns. */
 typedef struct {
     sh_information information;
     int column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */
-    int coulomb, inertia;       /* places of these among its own, -1 if none */
+    int drive, coulomb, inertia; /* places of these among its own, -1 if none */
     sh_real weight;             /* of the data, one over the variance factor of the misfit [1] */
     sh_real surplus;            /* information about b that is rounding, still contained [1] */
     sh_real removed;            /* removed so far [1] */
     sh_real spread;             /* variance of both, as it acts on the estimate of b [1] */
+    sh_column_noise of_drive;   /* still contained */
 } sh_posterior;
 
 /* Means over blocks of samples, misfit.c. */
@@ -227,14 +234,15 @@ typedef struct {
     sh_refit refit;
     sh_blocks blocks;
     sh_change change;
-    sh_real surplus, spread; /* of all samples, see sh_posterior */
+    sh_real surplus, spread;  /* of all samples, see sh_posterior */
+    sh_column_noise of_drive; /* the same */
     sh_real rounding;        /* information about sigma that is only rounding of phi, of all samples
                                 [(rad/N.m)2] */
     sh_real misfit,
         variance_factor; /* reduced chi-square of the blocks, factor of the variances [1] */
     /* The last estimate, on which the next row depends: */
     sh_real beta[SH_MAX_COLUMNS]; /* by column, in std deviations of the priors */
-    sh_real y;                    /* of the sample [N.m] */
+    sh_real y;                    /* of the sample, as it was fitted [N.m] */
     sh_real sigma;                /* stiffness [N.m/rad] */
     sh_real delay;                /* of the torque [s] */
     int stiffness_known;          /* 1: columns that need the stiffness have an effect */

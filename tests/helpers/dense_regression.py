@@ -37,10 +37,12 @@ EQUATION = ("POWER", "NOMINAL", "VISCOUS", "COULOMB", "INERTIA")
 class Posterior:
     """Prior and data of some columns: covariance P and estimates of both sides."""
 
-    def __init__(self, chosen: list[int], weight: float, prior_B: float) -> None:
+    def __init__(self, chosen: list[int], weight: float, prior_B: float, drive: int) -> None:
         n = len(chosen)
         self.removal_error = 0.05 / prior_B if prior_B > 0 else 0.0
         self.chosen, self.weight = chosen, weight
+        self.drive = chosen.index(drive) if drive in chosen else -1
+        self.of_drive = np.zeros(2)  # noise in its column: information, and by the gain
         self.surplus = self.removed = self.spread = 0.0
         self.P: Long = np.eye(n, dtype=np.longdouble)
         self.beta: Long = np.zeros((n, SIDES), dtype=np.longdouble)
@@ -79,6 +81,27 @@ class Posterior:
         self.P = self.P + gain * np.outer(along, along)
         self.surplus -= back
         self.removed += back
+
+    def remove_noise(self) -> None:
+        """Of the torque in its own column."""
+        N, by_gain = self.of_drive
+        if self.drive < 0 or N <= 0:
+            return
+        beta, P = self.weighted()
+        i = self.drive
+        D = 1 / P[i, i]
+        left = max(D - 1 - N, 1e-3 * (D - 1))
+        removed_noise = D - 1 - left
+        share = left / (left + removed_noise + (0.2 * by_gain) ** 2)
+        by_gain *= removed_noise / N
+        sides = D * beta[i] - np.array([by_gain, 0])
+        back = D - 1 - left * share
+        # The same, for the matrices without the weight of b: A - back e e', A beta - right e
+        right = np.array([by_gain, 0]) + (1 - share) * sides
+        gain = 1 / (1 - back * self.P[i, i])
+        along = self.P[:, i].copy()
+        self.beta = self.beta + gain * np.outer(along, back * self.beta[i] - right)
+        self.P = self.P + back * gain * np.outer(along, along)
 
     def weighted(self) -> tuple[Long, Long]:
         """Estimates and covariance with the weight of the data about b after the removal."""
@@ -153,6 +176,7 @@ class Oracle:
         self.blocks = start_blocks(n, self.w, self.T)
         self.q = self.factor = 1.0
         self.surplus = self.spread = self.rounding = 0.0
+        self.of_drive = np.zeros(2)
         self.trial = self.last_trial = self.row = self.alternate = self.since = 0
         self.friction_drifts = self.known = False
         self.beta: Long = np.zeros(n, dtype=np.longdouble)
@@ -199,7 +223,8 @@ class Oracle:
         ]
         if trial:
             chosen += [i for i in self.of_group(trial) if self.is_distinct(i)]
-        return Posterior(chosen, weight, self.p["prior.B"])
+        drive = self.kinds.index("DRIVE") if "DRIVE" in self.kinds else -1
+        return Posterior(chosen, weight, self.p["prior.B"], drive)
 
     def of_group(self, group: int) -> list[int]:
         return [i for i in range(self.n) if self.group(i) == group]
@@ -212,15 +237,17 @@ class Oracle:
         self.build = self.posterior(self.trial, weight)
         self.build.surplus = self.surplus * weight
         self.build.spread = self.spread * weight**2
+        self.build.of_drive = self.of_drive * weight
         self.row = 0
 
     def end_pass(self, k: int) -> None:
         if not self.trial:
             self.build.solve(self.data)
             self.live = self.build
-            self.build = Posterior([], 1.0, 0.0)  # until the next pass starts
+            self.build = Posterior([], 1.0, 0.0, -1)  # until the next pass starts
             if self.p["prior.B"] > 0:
                 self.live.remove(0.0, self.p["prior.B"])
+            self.live.remove_noise()
             return
         own = sum(self.group(i) != self.trial for i in self.build.chosen)
         gain = self.evidence(len(self.build.chosen)) - self.evidence(own)
@@ -309,6 +336,7 @@ class Oracle:
             blocks.count *= keep
             self.surplus *= keep
             self.spread *= keep**2
+            self.of_drive *= keep
             self.rounding *= keep
         v = np.where([kind in CURVE for kind in self.kinds], self.before[: self.n], 0)
         power = v @ v
@@ -352,10 +380,10 @@ class Oracle:
         inertial = (self.p["motor.gamma"] ** 2 * self.p["motor.B"]) ** 2 * self.gain_second
         return torque, inertial
 
-    def share_of_torque(self) -> float:
+    def share_of_torque(self, unknown: float) -> float:
         torque, inertial = self.noise()
         rough = max(self.rough, resolution(self.p["encoder.theta"]) ** 2 / 12)
-        return torque / (torque + inertial * rough)
+        return torque / (torque + inertial * rough + self.friction_variance(unknown))
 
     def watch(self, roughness: float) -> None:
         torque, inertial = self.noise()
@@ -410,9 +438,8 @@ class Oracle:
         counts = [resolution(self.p[key]) for key in ("encoder.theta", "encoder.q")]
         self.rounding += 3 / 16 * self.w * self.T * float(np.square(counts).sum()) / 12 / R
         epsilon = float(row[-1] - row[:-SIDES] @ self.beta)
-        for i, kind in enumerate(self.kinds):
-            if kind == "DRIVE" and row[-SIDES] != 0:  # its torque without the noise that y has, too
-                row[i] *= abs(1 - self.share_of_torque() * epsilon / row[-SIDES])
+        if "DRIVE" in self.kinds and not filtered.measured and row[-SIDES] != 0:
+            self.remove_noise(row, self.share_of_torque(filtered.unknown_f[at]), epsilon, R)
         epsilon = float(row[-1] - row[:-SIDES] @ self.beta)
         rho = self.live.learn(row, 1 / R)
         prior_B = self.p["prior.B"]
@@ -432,6 +459,16 @@ class Oracle:
         self.take_block(row, R, last, rough, filtered.measured)
         self.advance_pass(k)
         return epsilon, rho
+
+    def remove_noise(self, row: Long, share: float, epsilon: float, R: float) -> None:
+        """Of the torque from its own column, where y contains it, too."""
+        i, torque = self.kinds.index("DRIVE"), row[-SIDES]
+        slope = row[i] / torque
+        returned = np.clip(slope * self.beta[i], -0.5, 0.5)
+        row[i] *= abs(1 - share * epsilon / (1 - share * returned) / torque)
+        of_drive = (1 - share) * self.noise()[0] * slope * np.array([slope, 1]) / R
+        self.of_drive += of_drive.astype(float)
+        self.build.of_drive += of_drive.astype(float) * self.build.weight
 
     def is_settled(self, filtered: Filtered, at: int, row: Long) -> bool:
         self.settling = max(self.settling - self.T, 0)
@@ -497,6 +534,7 @@ class Oracle:
             settled = self.is_settled(filtered, at, row)
             epsilon, rho = self.learn(k, filtered, row, rough[at]) if settled else (0.0, 0.0)
             self.report(k, filtered.y[at], epsilon, rho, settled)
+            self.y = float(filtered.y[at]) - epsilon
 
     def deform(self, k: int, at: int) -> None:
         phi = self.inputs.phi
@@ -520,7 +558,6 @@ class Oracle:
         self.sigma = float(dF @ beta[:, 1] + self.inputs.nominal_slope[k])
         by_gain, variance = float(dF @ beta[:, 0]), float(dF @ P @ dF)
         self.known = math.sqrt(variance) < 0.2 * self.sigma
-        self.y = y
         of: dict[str, float] = {}
         for i, (kind, index, prior) in enumerate(self.columns):
             scale = self.inputs.l[k] ** index if kind == "DAMPING" else 1.0
