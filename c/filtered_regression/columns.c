@@ -478,19 +478,24 @@ sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
     return y;
 }
 
-/* The noise nu of the torque is the share lambda of the prediction error of the row without it, and a
- * column of slope c = d(x beta)/d(-nu) returns a part of it:
+/* The noise nu of the torque is the share lambda of the prediction error of the row without it. The column
+ * of the motor's torque returns c = d(x beta)/d(-nu) of it, so that
  *
  *     nu = lambda epsilon / (1 - lambda c) .
- *
- * What is left has the variance (1 - lambda) N_tau, as y has of it too.
  */
+static sh_real noise_of_torque(const sh_sample_noise *noise, sh_real c, sh_real epsilon)
+{
+    return noise->share * epsilon / (1 - noise->share * clip(c, SH_LARGEST_RETURN));
+}
+
+/* What is left has the variance (1 - lambda) N_tau, and so much in common with the torque in y. */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_parameters *p,
                                 const sh_sample_noise *noise, sh_real epsilon, sh_real *x,
                                 sh_column_noise *left)
 {
+    const sh_signals *signals = &state->signals;
     const sh_real torque = torque_in_y(state, p), sign = torque > 0 ? 1 : -1;
-    const sh_real slope = sign * drive_friction(&state->signals, 1);
+    const sh_real slope = sign * drive_friction(signals, 1);
     sh_real change = 0;
     int i;
 
@@ -500,9 +505,8 @@ sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_param
 
         if (sh_column_is(column, SH_IS_DRIVE)) {
             const sh_real by_torque = column->prior * slope;
-            const sh_real returned = clip(by_torque * state->beta[i], SH_LARGEST_RETURN);
-            const sh_real nu = noise->share * epsilon / (1 - noise->share * returned);
-            const sh_real entry = column->prior * drive_friction(&state->signals, torque - nu);
+            const sh_real nu = noise_of_torque(noise, by_torque * state->beta[i], epsilon);
+            const sh_real entry = column->prior * drive_friction(signals, torque - nu);
 
             left->gain = (1 - noise->share) * noise->torque * by_torque;
             left->information = left->gain * by_torque;

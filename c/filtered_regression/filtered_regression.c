@@ -301,18 +301,16 @@ static sh_real predict(const sh_regression_state *state, const sh_parameters *p,
     return epsilon - sh_columns_remove_noise(state, p, noise, epsilon, x, left);
 }
 
-/* Updates what is rounding in the columns of b (detail 7) and of the spring (point 5). */
-static void update_rounding(sh_regression_state *state, const sh_parameters *p,
-                            const sh_column_noise *left, sh_real w)
+/* Updates what is noise in columns: of b (detail 7), of the torque (14), and of the spring (point 5). */
+static void update_noise(sh_regression_state *state, const sh_parameters *p,
+                         const sh_column_noise *left, sh_real w)
 {
     sh_posterior *const now = &state->posterior, *const next = &state->refit.posterior;
     const sh_real N = sh_limited(sh_noise_of_inertia(state, p) * w, SH_LARGE);
     sh_real Q;
 
-    state->of_drive.information += left->information * w;
-    state->of_drive.gain += left->gain * w;
-    next->of_drive.information += left->information * w * next->weight;
-    next->of_drive.gain += left->gain * w * next->weight;
+    state->noise.information += sh_limited(left->information * w, SH_LARGE);
+    state->noise.gain += sh_limited(left->gain * w, SH_LARGE);
     state->rounding += sh_limited(sh_noise_of_deformation(&state->signals) * w, SH_LARGE);
     if (now->inertia < 0) {
         return;
@@ -338,7 +336,7 @@ static sh_real update(sh_regression_state *state, const sh_parameters *p, const 
     sh_real row[SH_MAX_ROW] = {0};
     int i;
 
-    update_rounding(state, p, left, w);
+    update_noise(state, p, left, w);
     for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
         row[i] = x[i];
     }
@@ -396,7 +394,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
         }
         epsilon = predict(state, p, &noise, x, &left);      /* 4. Predict and compare. */
         rho = update(state, p, x, &left, w, noise.lasting); /* 5. Update. */
-        sh_refit_step(state, p, x, w);               /* 6. Choose columns. */
+        sh_refit_step(state, p, x, w);                      /* 6. Choose columns. */
     }
     if (!report(state, p, &at, y, y - epsilon, estimate)) { /* 7. Report. */
         return refuse(state, &before);

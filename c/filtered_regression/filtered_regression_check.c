@@ -64,14 +64,11 @@ static int is_choice(const sh_regression_state *state, const sh_posterior *poste
 /* A posterior knows where two of its columns are. */
 static int knows_motor(const sh_regression_state *state, const sh_posterior *posterior)
 {
-    int drive = -1, coulomb = -1, inertia = -1, i;
+    int coulomb = -1, inertia = -1, i;
 
     for (i = 0; i < posterior->information.size; ++i) {
         const sh_column *column = &state->columns.column[posterior->column[i]];
 
-        if (sh_column_is(column, SH_IS_DRIVE)) {
-            drive = i;
-        }
         if (sh_column_is(column, SH_IS_COULOMB)) {
             coulomb = i;
         }
@@ -79,7 +76,7 @@ static int knows_motor(const sh_regression_state *state, const sh_posterior *pos
             inertia = i;
         }
     }
-    if (posterior->drive != drive || posterior->coulomb != coulomb || posterior->inertia != inertia) {
+    if (posterior->coulomb != coulomb || posterior->inertia != inertia) {
         return 0;
     }
     return 1;

@@ -253,8 +253,8 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
     state->surplus *= factor;
     state->spread *= factor * factor;
     state->rounding *= factor;
-    state->of_drive.information *= factor;
-    state->of_drive.gain *= factor;
+    state->noise.information *= factor;
+    state->noise.gain *= factor;
 }
 
 /* P += drift time / (v'v + R) v v', where v are the columns of the curve in the row x */

@@ -8,15 +8,12 @@ void sh_posterior_start(sh_posterior *posterior, const sh_columns *columns, cons
 {
     int i;
 
-    posterior->drive = posterior->coulomb = posterior->inertia = -1;
+    posterior->coulomb = posterior->inertia = -1;
     /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < size; ++i) {
         const sh_column *column = &columns->column[chosen[i]];
 
         posterior->column[i] = chosen[i];
-        if (sh_column_is(column, SH_IS_DRIVE)) {
-            posterior->drive = i;
-        }
         if (sh_column_is(column, SH_IS_COULOMB)) {
             posterior->coulomb = i;
         }
@@ -27,7 +24,6 @@ void sh_posterior_start(sh_posterior *posterior, const sh_columns *columns, cons
     sh_information_start(&posterior->information, size, 1);
     posterior->weight = weight;
     posterior->surplus = posterior->removed = posterior->spread = 0;
-    posterior->of_drive.information = posterior->of_drive.gain = 0;
 }
 
 void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
@@ -38,14 +34,12 @@ void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
     for (i = 0; i < from->information.size; ++i) {
         to->column[i] = from->column[i];
     }
-    to->drive = from->drive;
     to->coulomb = from->coulomb;
     to->inertia = from->inertia;
     to->weight = from->weight;
     to->surplus = from->surplus;
     to->removed = from->removed;
     to->spread = from->spread;
-    to->of_drive = from->of_drive;
 }
 
 sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w)
@@ -112,39 +106,33 @@ static sh_last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
 
 /* D is the information about the coefficient if all others are estimated, N the part that is noise, and
  * I = D - 1 - N (1: the prior). The data have the equation I beta = s without bias. The variance of s is
- * I + N + Q, with Q = (0.2 G)^2, where G is the bias of s if all noise of the torque were still there. So
- * the data get the weight I^2 / (I + N + Q), by a sample of negative weight.
+ * I + N + Q, with Q = (0.2 G)^2, where G is the share of the noise of y that is left in the column. So the
+ * data get the weight I^2 / (I + N + Q), by a sample of negative weight.
  */
-void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B)
+void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
+                               const sh_column_noise *noise)
 {
     const sh_last_row last = weighed_last(posterior, prior_B);
-    const int size = posterior->information.size, i = posterior->drive;
-    const sh_column_noise *noise = &posterior->of_drive;
-    sh_real row[SH_MAX_ROW] = {0}, D, N, I, Q, share, removed, gain;
+    const sh_real all = noise->information * posterior->weight;
+    const int size = posterior->information.size;
+    sh_real row[SH_MAX_ROW] = {0}, G = noise->gain * posterior->weight, D, N, I, Q, share, less;
     sh_combination found;
 
-    if (i < 0 || i >= size || !(noise->information > 0)) {
-        return;
-    }
     row[i] = 1;
     found = sh_information_combine(&posterior->information, &last, row);
     D = 1 / found.variance;
-    I = sh_fmax(D - 1 - noise->information, SH_LEAST_REST * (D - 1));
-    if (!(I > 0) || !isfinite(D)) {
+    if (!(all > 0) || !(D > 1) || !isfinite(D)) {
         return;
     }
+    I = sh_fmax(D - 1 - all, SH_LEAST_REST * (D - 1));
     N = D - 1 - I;
-    Q = sh_square(SH_TORQUE_NOISE_ERROR * noise->gain);
+    Q = sh_square(SH_TORQUE_NOISE_ERROR * G);
+    G *= N / all;
     share = I / (I + N + Q);
-    removed = D - 1 - I * share;
-    if (!(removed > 0)) {
-        return;
-    }
-    gain = noise->gain * N / noise->information; /* the part of N in the other right-hand side */
-    row[size + SH_RIGHT_GAIN] =
-        (gain + (1 - share) * (D * found.value[SH_RIGHT_GAIN] - gain)) / removed;
-    row[size + SH_RIGHT_Y] = (1 - share) * D * found.value[SH_RIGHT_Y] / removed;
-    (void)sh_information_take(&posterior->information, row, -removed);
+    less = D - 1 - I * share;
+    row[size + SH_RIGHT_GAIN] = (G + (1 - share) * (D * found.value[SH_RIGHT_GAIN] - G)) / less;
+    row[size + SH_RIGHT_Y] = (1 - share) * D * found.value[SH_RIGHT_Y] / less;
+    (void)sh_information_take(&posterior->information, row, -less);
 }
 
 void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta, int size)

@@ -43,10 +43,14 @@ sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, s
  */
 void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B);
 
-/* Removes of_drive, the noise in the column of the motor's torque, as far as its coefficient does not
- * become less certain than its prior (detail 14).
+/* Removes the noise in column i of the data (detail 14), as far as its coefficient does not become less
+ * certain than its prior.
+ *
+ * i      place of the column among those of the posterior
+ * noise  of the samples, each with its weight, but without the weight of the posterior
  */
-void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B);
+void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
+                               const sh_column_noise *noise);
 
 /* The estimate beta [size: size] of all columns; 0 for those that are not used. */
 void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta, int size);

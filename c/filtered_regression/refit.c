@@ -36,13 +36,13 @@ static int is_tried(const sh_regression_state *state, const sh_parameters *p, in
 }
 
 /* Which columns stand behind others: those of the spring, whose variances then need few rows of U, and
- * behind them those of the motor from whose information noise is removed, or whose variance is used.
+ * behind them those of the motor, whose information is changed or whose variance is used.
  */
 static int place_of(const sh_column *column)
 {
     return sh_column_is(column, SH_IS_DRIVE | SH_IS_FRICTION | SH_IS_INERTIA) ? 2
-           : sh_column_is(column, SH_IS_SPRING)                 ? 1
-                                                                : 0;
+           : sh_column_is(column, SH_IS_SPRING)                               ? 1
+                                                                              : 0;
 }
 
 /* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */
@@ -82,8 +82,6 @@ static void start_refit(sh_regression_state *state, const sh_parameters *p)
     sh_posterior_start(&refit->posterior, &state->columns, chosen, size, weight);
     refit->posterior.surplus = state->surplus * weight;
     refit->posterior.spread = state->spread * weight * weight;
-    refit->posterior.of_drive.information = state->of_drive.information * weight;
-    refit->posterior.of_drive.gain = state->of_drive.gain * weight;
     sh_information_copy(&refit->frozen, &state->data);
     refit->row = 0;
 }
@@ -147,6 +145,22 @@ static void decide_about_group(sh_regression_state *state)
     }
 }
 
+/* Details 7 and 14. The inertia comes first: its rounding would bias the other one. */
+static void remove_noise(sh_regression_state *state, const sh_parameters *p)
+{
+    sh_posterior *posterior = &state->posterior;
+    int i;
+
+    if (posterior->inertia >= 0) {
+        sh_posterior_remove(posterior, 0, p->prior.B);
+    }
+    for (i = 0; i < posterior->information.size; ++i) {
+        if (sh_column_is(&state->columns.column[posterior->column[i]], SH_IS_DRIVE)) {
+            sh_posterior_remove_noise(posterior, p->prior.B, i, &state->noise);
+        }
+    }
+}
+
 /* All rows have been taken. The next refit is a trial after every one that changed the estimate. */
 static void end_refit(sh_regression_state *state, const sh_parameters *p)
 {
@@ -160,10 +174,7 @@ static void end_refit(sh_regression_state *state, const sh_parameters *p)
         if (state->change.adopted == state->columns.size) {
             state->change.following = 0;
         }
-        if (state->posterior.inertia >= 0) { /* first: its rounding would bias the next one */
-            sh_posterior_remove(&state->posterior, 0, p->prior.B);
-        }
-        sh_posterior_remove_noise(&state->posterior, p->prior.B);
+        remove_noise(state, p);
     }
     sh_misfit_judge(state, p);
     refit->trial = 0;

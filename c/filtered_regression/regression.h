@@ -137,7 +137,7 @@ sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, c
 sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x);
 
 /* Detail 14: removes from the column of the motor's torque in x the noise that y contains too, if the
- * prediction error of y is epsilon [N.m]. Sets what is left of it, times R.
+ * prediction error of y is epsilon [N.m]. Sets the noise that is left, times R.
  *
  * Returns by how much the prediction of y grows [N.m].
  */

@@ -161,7 +161,7 @@ typedef struct {
     sh_real excess, excess_mean; /* noise over what rounding explains, now and its mean [1] */
 } sh_history;
 
-/* What the noise of the motor's torque in its column adds to the equation of its coefficient. */
+/* What the noise of the motor's torque in its own column adds to the equation of the coefficient. */
 typedef struct {
     sh_real information; /* [1] */
     sh_real gain;        /* to the right-hand side SH_RIGHT_GAIN [N.m] */
@@ -171,12 +171,11 @@ typedef struct {
 typedef struct {
     sh_information information;
     int column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */
-    int drive, coulomb, inertia; /* places of these among its own, -1 if none */
+    int coulomb, inertia;       /* places of these among its own, -1 if none */
     sh_real weight;             /* of the data, one over the variance factor of the misfit [1] */
     sh_real surplus;            /* information about b that is rounding, still contained [1] */
     sh_real removed;            /* removed so far [1] */
     sh_real spread;             /* variance of both, as it acts on the estimate of b [1] */
-    sh_column_noise of_drive;   /* still contained */
 } sh_posterior;
 
 /* Means over blocks of samples, misfit.c. */
@@ -234,8 +233,8 @@ typedef struct {
     sh_refit refit;
     sh_blocks blocks;
     sh_change change;
-    sh_real surplus, spread;  /* of all samples, see sh_posterior */
-    sh_column_noise of_drive; /* the same */
+    sh_real surplus, spread; /* of all samples, see sh_posterior */
+    sh_column_noise noise;   /* of all samples */
     sh_real rounding;        /* information about sigma that is only rounding of phi, of all samples
                                 [(rad/N.m)2] */
     sh_real misfit,
