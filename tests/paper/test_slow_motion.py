@@ -1,14 +1,15 @@
 """Slow motion with a noisy torque: noise is not learned as friction, and the interval holds.
 
 The bound is the posterior of a regression with the same columns without noise (Cramer and Rao, with
-priors van Trees): no estimator can know the stiffness better from these data. No column of the delay:
-it contains the derivative of the noise, which is not removed.
+priors van Trees): no estimator can know the stiffness better from these data. There is no
+column of the delay: it contains the derivative of the noise, which is not removed.
 """
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from c_library import Array, Estimator, Library
 from dense_regression import START
@@ -25,7 +26,7 @@ PRIORS = {
 }
 
 
-def bound(c: Library, p: dict[str, float], run: dict[str, Array], at: Array) -> Array:
+def bound(c: Library, p: dict[str, float], run: dict[str, Array], at: NDArray[np.intp]) -> Array:
     """Least standard deviation of the stiffness at samples `at`, after all data [N.m/rad]."""
     z = np.column_stack([run[name] for name in TRUE[:5]])
     everything = slice(0, len(z))
@@ -37,8 +38,9 @@ def bound(c: Library, p: dict[str, float], run: dict[str, Array], at: Array) -> 
     used = [i for i, kind in enumerate(kinds) if GROUPS.get(kind, 0) == 0]
     x = filtered.rows[:, used] / (p["motor.gamma"] * p["noise.tau"])
     P = np.linalg.inv(np.eye(len(used)) + x.T @ x)
-    dF = inputs.dF[np.ix_(at, used)]
-    return np.sqrt(np.einsum("ij,jk,ik->i", dF, P, dF))
+    dF = inputs.dF[at][:, used]
+    std: Array = np.sqrt(np.einsum("ij,jk,ik->i", dF, P, dF))
+    return std
 
 
 def slow_run(frequency: float, coulomb: float, noise: float, seed: int) -> dict[str, Array]:
