@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from sigmahat.joint import curve as joint
-from sigmahat.joint.curve_text import (
+from sigmahat.joint.curve import (
     FAMILY_HEAD,
     STIFFNESS_HEAD,
     family_rows,

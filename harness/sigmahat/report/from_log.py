@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.files.output import write_json
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import CURVE, Curve, read_curve
 from sigmahat.joint.sheet import Sheet
+from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimatedSignal, Replayed, read_estimate
 from sigmahat.plotting.style import plain_title, plain_unit
 from sigmahat.report.contents import Contents, TextTable, number
 from sigmahat.report.curve_panels import curve_panels, curve_table
-from sigmahat.report.findings import findings_table
 from sigmahat.report.time_panels import (
     Estimate,
     quantity_panels,
@@ -27,6 +28,53 @@ from sigmahat.report.time_panels import (
     sampling,
     stiffness_panels,
 )
+
+
+@dataclass(frozen=True)
+class ShownFinding:
+    """A finding as it is shown."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    severity: Text
+    """How much it matters: "wrong", "rests on", "note"."""
+    text: Text
+    """A sentence: the key of the configuration, the number, and a value that is proposed."""
+
+
+@dataclass(frozen=True)
+class FindingsFile:
+    """The contents of the file."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    format: Text
+    version: int
+    findings: list[ShownFinding]
+
+
+FINDINGS = Format("findings.json", "sigmahat findings", 1, FindingsFile)
+"""Of the file."""
+
+
+def write_findings(findings: Sequence[ShownFinding], folder: Path) -> None:
+    """Writes the file into a folder of results; an empty list says that nothing was found."""
+    contents = FindingsFile(FINDINGS.name, FINDINGS.version, list(findings))
+    write_json(asdict(contents), folder / FINDINGS.file)
+
+
+def findings_table(folder: Path) -> list[TextTable]:
+    """The table of the file in a folder; none if there is no file.
+
+    Raises ValueError, which says what is wrong, for a damaged file.
+    """
+    if not (folder / FINDINGS.file).is_file():
+        return []
+    found = FINDINGS.read(folder).findings
+    rows = [[each.severity, each.text] for each in found]
+    note = "" if rows else "Nothing in the log contradicts the configuration."
+    return [TextTable("Checks", ["", "finding"], rows, [True, True], note=note)]
+
 
 _OF_THE_METHOD = ("a", "rho")
 """Outputs about the inner working of the method; they are not in the table."""

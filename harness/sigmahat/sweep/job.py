@@ -11,9 +11,8 @@ from sigmahat.files.output import output_folder
 from sigmahat.runs.engine import Progress
 from sigmahat.runs.pool import WorkersLostError, spread
 from sigmahat.sweep.cluster import spread_on_cluster
-from sigmahat.sweep.execution import execute, fmu_digest
 from sigmahat.sweep.plan import Outcome, Plan
-from sigmahat.sweep.preparation import check
+from sigmahat.sweep.preparation import check, execute, fmu_digest
 from sigmahat.sweep.records import Records, records
 from sigmahat.sweep.rows import build
 from sigmahat.sweep.summary import write_summary
