@@ -74,7 +74,7 @@ def _import(*modules: str) -> None:
 
 
 @click.command()
-@click.argument("log", type=click.Path(path_type=Path))
+@common.log_argument
 @click.option(
     "--with",
     "config",

@@ -13,10 +13,8 @@ from sigmahat.page.inputs import in_grid, style
 from sigmahat.page.setup import Setup
 
 if TYPE_CHECKING:
-    from sigmahat.report.plots import Plot
-
-if TYPE_CHECKING:
     from sigmahat.checks.findings import Checked, Finding
+    from sigmahat.report.plots import Plot
 
 
 class ResultPanel:
@@ -41,7 +39,7 @@ class ResultPanel:
 
     def _panels(self) -> list[UIElement]:
         from sigmahat.joint.curve import curve_text
-        from sigmahat.report.curve_panels import curve_panels
+        from sigmahat.logs.curve_panels import curve_panels
         from sigmahat.report.plots import plots
 
         assert self._setup.answer is not None
@@ -89,9 +87,9 @@ class FindingsPanel:
         self._shown = now
         rows: list[UIElement] = []
         if setup.open_keys:
-            rows.append(_words_of_findings(f"Fill in: {', '.join(setup.open_keys)}.", "wrong"))
+            rows.append(_line(f"Fill in: {', '.join(setup.open_keys)}.", "wrong"))
         elif setup.problem:
-            rows.append(_words_of_findings(f"Not checked: {setup.problem}.", "wrong"))
+            rows.append(_line(f"Not checked: {setup.problem}.", "wrong"))
         if setup.checked is not None and not setup.open_keys:
             rows += self._findings(setup.checked)
         self.root.children = rows
@@ -101,12 +99,12 @@ class FindingsPanel:
 
         rows: list[UIElement] = []
         if not checked.is_wrong:
-            rows.append(_words_of_findings(nothing_found(checked), "fine"))
+            rows.append(_line(nothing_found(checked), "fine"))
         for severity, title in TITLES.items():
             found = checked.of(severity)
             if found:
                 kind = "wrong" if severity.value == "wrong" else ""
-                rows.append(_words_of_findings(title, f"title {kind}"))
+                rows.append(_line(title, f"title {kind}"))
                 rows += [self._finding(each, sentence(each)) for each in found]
         return rows
 
@@ -124,16 +122,16 @@ class FindingsPanel:
             button.on_click(partial(self._setup.set, key, value))
             buttons.append(button)
         if not buttons:
-            return _words_of_findings(text)
+            return _line(text)
         flow: dict[str, str | None] = {"flex-wrap": "wrap"}
         return Column(
-            _words_of_findings(text),
+            _line(text),
             Row(*buttons, sizing_mode="stretch_width", styles=flow),
             sizing_mode="stretch_width",
         )
 
 
-def _words_of_findings(text: str, kind: str = "") -> Div:
+def _line(text: str, kind: str = "") -> Div:
     """A paragraph."""
     styles: dict[str, str | None] = {"color": "var(--ink)", "overflow-wrap": "anywhere"}
     if "title" in kind:

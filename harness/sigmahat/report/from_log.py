@@ -13,21 +13,31 @@ from numpy.typing import NDArray
 
 from sigmahat.files.output import write_json
 from sigmahat.joint import sheet
-from sigmahat.joint.curve import CURVE, Curve, read_curve
+from sigmahat.joint.curve import (
+    CURVE,
+    FAMILY_HEAD,
+    STIFFNESS_HEAD,
+    Curve,
+    family_rows,
+    polynomial_in_words,
+    reach_in_words,
+    read_curve,
+    stiffness_rows,
+)
 from sigmahat.joint.sheet import Sheet
 from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
+from sigmahat.logs.curve_panels import curve_panels
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimatedSignal, Replayed, read_estimate
-from sigmahat.plotting.style import plain_title, plain_unit
-from sigmahat.report.contents import Contents, TextTable, number
-from sigmahat.report.curve_panels import curve_panels, curve_table
-from sigmahat.report.time_panels import (
+from sigmahat.logs.time_panels import (
     Estimate,
     quantity_panels,
     reduce,
     sampling,
     stiffness_panels,
 )
+from sigmahat.plotting.style import plain_text, plain_title, plain_unit
+from sigmahat.report.contents import Contents, TextTable, number
 
 
 @dataclass(frozen=True)
@@ -101,7 +111,10 @@ def from_log(folder: Path) -> Contents:
     doubt = signals.pop("doubt", None)
     t = signals.pop("t").values
     answer = _answer(folder)
-    reduced = reduce(t, {name: signal.values for name, signal in signals.items()})
+    drawn = {name: signal.values for name, signal in signals.items()}
+    if answer is not None and answer.sheet.method != "FilteredRegression":
+        drawn.pop("sigma_std", None)  # the method gives no interval
+    reduced = reduce(t, drawn)
     tables = [] if answer is None else _found(answer)
     tables += findings_table(folder)
     tables += [_estimates(signals, used), *([] if doubt is None else [_doubts(doubt)])]
@@ -194,6 +207,19 @@ _WORDS = {
     "hysteresis": "hysteresis",
 }
 _FROM = {"prior": "the configuration (prior)", "identify": "identify", "exact": "taken as exact"}
+
+
+def curve_table(curve: Curve) -> TextTable:
+    """The stiffness with its interval, over which range it holds, and the polynomial."""
+    several = len(curve.branches) > 1
+    head = [plain_text(cell) for cell in (FAMILY_HEAD if several else STIFFNESS_HEAD)]
+    rows = list(family_rows(curve) if several else stiffness_rows(curve))
+    words = plain_text(polynomial_in_words(curve.polynomial))
+    reach = plain_text(reach_in_words(curve))
+    note = f"It holds {reach}; beyond, where the plots are faded, it is a guess. {words}."
+    if not curve.claims:
+        note += " The method claims no interval."
+    return TextTable("Stiffness", head, rows, [False] * len(rows[0]), note=note)
 
 
 def found_table(sheet: Sheet) -> TextTable:

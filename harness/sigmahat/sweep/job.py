@@ -72,10 +72,10 @@ def _run(plan: Plan, done: Records, scheduler: str | None, progress: Progress) -
 
 
 def _draw(table: SweepTable, folder: Path) -> None:
+    from sigmahat.plotting.figure import stacked
     from sigmahat.plotting.save import save
-    from sigmahat.sweep.curves import abscissas
-    from sigmahat.sweep.figures import against_parameters, distributions
+    from sigmahat.sweep.panels import against_parameters, distributions
 
-    save(distributions, table, folder / "distributions")
-    if abscissas(table):
-        save(against_parameters, table, folder / "parameters")
+    save(stacked, distributions(table), folder / "distributions")
+    if panels := list(against_parameters(table)):
+        save(stacked, panels, folder / "parameters")
