@@ -115,23 +115,26 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     const sh_last_row last = weighed_last(posterior, prior_B);
     const sh_real all = noise->information * posterior->weight;
     const int size = posterior->information.size;
-    sh_real row[SH_MAX_ROW] = {0}, G = noise->gain * posterior->weight, D, N, I, Q, share, less;
+    sh_real row[SH_MAX_ROW] = {0}, G = noise->gain * posterior->weight, D, N, I, Q, lost, less;
     sh_combination found;
 
     row[i] = 1;
     found = sh_information_combine(&posterior->information, &last, row);
     D = 1 / found.variance;
-    if (!(all > 0) || !(D > 1) || !isfinite(D)) {
+    if (!(all > 0) || !(D > 1) || !(D <= SH_LARGE)) {
         return;
     }
     I = sh_fmax(D - 1 - all, SH_LEAST_REST * (D - 1));
     N = D - 1 - I;
     Q = sh_square(SH_TORQUE_NOISE_ERROR * G);
     G *= N / all;
-    share = I / (I + N + Q);
-    less = D - 1 - I * share;
-    row[size + SH_RIGHT_GAIN] = (G + (1 - share) * (D * found.value[SH_RIGHT_GAIN] - G)) / less;
-    row[size + SH_RIGHT_Y] = (1 - share) * D * found.value[SH_RIGHT_Y] / less;
+    lost = (N + Q) / (I + N + Q); /* 1 - I / (I + N + Q) */
+    less = N + I * lost;
+    if (!(less > 0)) {
+        return;
+    }
+    row[size + SH_RIGHT_GAIN] = (G + lost * (D * found.value[SH_RIGHT_GAIN] - G)) / less;
+    row[size + SH_RIGHT_Y] = lost * D * found.value[SH_RIGHT_Y] / less;
     (void)sh_information_take(&posterior->information, row, -less);
 }
 

@@ -1,6 +1,6 @@
 """The public names, for lazy_loader and type checkers; see __init__.py."""
 
-from .export.plant_description import PlantVariable as PlantVariable
+from .export.plant_fmu import PlantVariable as PlantVariable
 from .export.plant_fmu import write_plant_fmu as write_plant_fmu
 from .fmi.installed import fmu as fmu
 from .fmi.instance import FmuError as FmuError

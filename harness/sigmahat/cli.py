@@ -32,20 +32,8 @@ def cli() -> None:
 
 
 for command in (
-    *(
-        reproduce,
-        compare,
-        scenarios,
-        init,
-        open_page,
-        check,
-        identify,
-        estimate,
-        validate,
-        export,
-        sweep,
-        report,
-    ),
+    *(reproduce, compare, scenarios, init, open_page, check),
+    *(identify, estimate, validate, export, sweep, report),
 ):
     cli.add_command(command)
 

@@ -11,7 +11,7 @@ import fmpy
 import pytest
 
 from c_library import REPOSITORY, Library
-from sigmahat.export import c_parameters
+from sigmahat.export import c_variables
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +23,7 @@ def listed(estimator_fmu: Path) -> list[Any]:
 
 def test_the_table_in_c_is_made_from_the_list() -> None:
     """If not: cmake --build build --target parameter_table."""
-    made = c_parameters.table(REPOSITORY / "modelDescription" / "StiffnessEstimator.xml")
+    made = c_variables.parameter_table(REPOSITORY / "modelDescription" / "StiffnessEstimator.xml")
     assert (REPOSITORY / "c" / "parameters.inc").read_text(encoding="utf-8") == made
 
 

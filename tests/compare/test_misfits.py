@@ -11,13 +11,18 @@ import pytest
 
 from plant_runs import QUIET, times
 from sigmahat.compare.misfits import motion
-from sigmahat.compare.misfits.conditions import CONDITIONS, Condition, Group
+from sigmahat.compare.misfits.conditions import (
+    CONDITIONS,
+    LAST_LOOK,
+    Condition,
+    Group,
+    all_misfits,
+    other_joint,
+)
 from sigmahat.compare.misfits.experiment import Experiment, draw
-from sigmahat.compare.misfits.job import compare, pairs
+from sigmahat.compare.misfits.job import compare, pairs, settings
 from sigmahat.compare.misfits.joints import AWAS, JOINTS, SEA_1K, SEA_5K, Joint
-from sigmahat.compare.misfits.random_joint import LAST_LOOK, all_misfits, other_joint
 from sigmahat.compare.misfits.score import Score, score
-from sigmahat.compare.misfits.settings import settings
 from sigmahat.runs.scenario import Sine, Sines
 
 EXACT: Mapping[str, float] = {**QUIET, "encoder.theta": 0.0, "encoder.q": 0.0}

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from closed_form_joint import CUBIC, LINEAR, OF_THETA_C, closed_form_log
 from recorded_logs import CONFIGURATION, Array, awas_log, write_log
 from sigmahat.cli import main
-from sigmahat.joint.curve import CURVE, Branch, nearest, read_curve
-from sigmahat.joint.curve_text import curve_text, polynomial_in_words
+from sigmahat.joint.curve import CURVE, Branch, curve_text, nearest, polynomial_in_words, read_curve
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.curve import reaches

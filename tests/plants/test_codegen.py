@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from sigmahat.export import plant_codegen
-from sigmahat.export.elimination import Elimination
+from sigmahat.export.plant_codegen import Elimination
 from sigmahat.plants.equations import PlantEquations
 
 

@@ -16,7 +16,7 @@ from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.cli import main
 from sigmahat.joint.curve import CURVE
 from sigmahat.plotting.style import limits
-from sigmahat.report.findings import FINDINGS, ShownFinding, write_findings
+from sigmahat.report.from_log import FINDINGS, ShownFinding, write_findings
 
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nprior.B = 0.2\nrls.n = 3\n'
 GAP = slice(20_000, 20_200)

@@ -20,11 +20,11 @@ from pathlib import Path
 import numpy as np
 import tomlkit
 
+from sigmahat.compare.misfits.conditions import other_joint
 from sigmahat.compare.misfits.experiment import Experiment, draw
+from sigmahat.compare.misfits.job import settings
 from sigmahat.compare.misfits.joints import JOINTS
 from sigmahat.compare.misfits.motion import run
-from sigmahat.compare.misfits.random_joint import other_joint
-from sigmahat.compare.misfits.settings import settings
 from sigmahat.identification.identify import identify
 from sigmahat.identification.quantities import Quantity
 from sigmahat.logs.configuration import read_configuration

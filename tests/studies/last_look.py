@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import sys
 
-from sigmahat.compare.misfits.conditions import CONDITIONS, Group
+from sigmahat.compare.misfits.conditions import CONDITIONS, LAST_LOOK, Group
 from sigmahat.compare.misfits.job import compare
 from sigmahat.compare.misfits.joints import JOINTS
-from sigmahat.compare.misfits.random_joint import LAST_LOOK
 from sigmahat.compare.misfits.table import table
 
 if __name__ == "__main__":

@@ -15,8 +15,8 @@ import distributed
 import pytest
 
 from sigmahat.runs.pool import WorkerError
-from sigmahat.sweep.execution import execute, fmu_digest
-from sigmahat.sweep.plan_file import read_plan
+from sigmahat.sweep.plan import read_plan
+from sigmahat.sweep.preparation import execute, fmu_digest
 from sweeps import QUICK, records, run, start, wait_for_records
 
 DASK = [sys.executable, "-m", "dask"]

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from sigmahat.fmi.instance import FmuError
-from sigmahat.sweep.plan import Drawn, values
-from sigmahat.sweep.plan_file import read_plan
+from sigmahat.sweep.plan import Drawn, read_plan, values
 from sigmahat.sweep.preparation import check
 
 PLAN = """\

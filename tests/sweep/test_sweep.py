@@ -17,8 +17,7 @@ from sigmahat.paper.reproduction import reproduce
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.metrics import INDICES, Indices
 from sigmahat.sweep.job import sweep
-from sigmahat.sweep.plan import Outcome, Plan
-from sigmahat.sweep.plan_file import read_plan
+from sigmahat.sweep.plan import Outcome, Plan, read_plan
 from sigmahat.sweep.records import Records
 from sigmahat.sweep.table import ParameterColumn, Role, read
 from sweeps import QUICK, records, refused, run, start, wait_for_records

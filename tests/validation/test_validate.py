@@ -14,7 +14,7 @@ from recorded_logs import CONFIGURATION, Array, awas_log, read_estimate, write_l
 from sigmahat.cli import main
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.frozen import stiffness_at
+from sigmahat.logs.curve import stiffness_at
 from sigmahat.logs.job import Replay
 from sigmahat.logs.learned import read_learned
 from sigmahat.logs.readers.formats import open_log

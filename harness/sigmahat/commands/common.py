@@ -47,23 +47,12 @@ def config_option(what: str) -> Callable[[_Command], _Command]:
     )
 
 
-def json_option(command: _Command) -> _Command:
-    """Gives a command the option --json."""
-    text = "Print the result as JSON, and no warnings."
-    return click.option(
-        "--json", is_flag=True, expose_value=False, callback=_for_scripts, help=text
-    )(command)
+def _flag(name: str, text: str) -> Callable[[_Command], _Command]:
+    return click.option(name, is_flag=True, expose_value=False, callback=_for_scripts, help=text)
 
 
-def quiet_option(command: _Command) -> _Command:
-    """Gives a command the option --quiet."""
-    return click.option(
-        "--quiet",
-        is_flag=True,
-        expose_value=False,
-        callback=_for_scripts,
-        help="Print nothing but errors.",
-    )(command)
+json_option = _flag("--json", "Print the result as JSON, and no warnings.")
+quiet_option = _flag("--quiet", "Print nothing but errors.")
 
 
 def answer(text: str, values: object = None) -> None:

@@ -45,9 +45,9 @@ def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path 
     from sigmahat.files.output import output_folder
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.estimate import estimate as run
+    from sigmahat.logs.estimate import summary
     from sigmahat.logs.readers.formats import open_log
-    from sigmahat.logs.summary import summary
-    from sigmahat.report.findings import ShownFinding, write_findings
+    from sigmahat.report.from_log import ShownFinding, write_findings
 
     common.need_fmu("StiffnessEstimator")
     out = out or Path("sigmahat-results", log.stem)
@@ -74,7 +74,7 @@ def _import(*modules: str) -> None:
 
 
 @click.command()
-@click.argument("log", type=click.Path(path_type=Path))
+@common.log_argument
 @click.option(
     "--with",
     "config",

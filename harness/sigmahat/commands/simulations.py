@@ -48,8 +48,7 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
     """
     from sigmahat.files.output import output_folder
     from sigmahat.paper.reproduction import progress_length, reproduce
-    from sigmahat.paper.result_files import as_dict, write_results
-    from sigmahat.paper.table import conditions, table
+    from sigmahat.paper.result_files import as_dict, conditions, table, write_results
     from sigmahat.runs.metrics import MSREP_IN_WORDS
 
     chosen = common.ready_scenario(name)
@@ -250,7 +249,7 @@ def sweep(
         --set estimator.motor.D_theta=0.9e-3:1.1e-3:5 --out friction
     """
     from sigmahat.sweep.job import sweep as run
-    from sigmahat.sweep.plan_file import read_plan
+    from sigmahat.sweep.plan import read_plan
     from sigmahat.sweep.summary import as_dicts, conditions, summary
 
     out = out or Path("sigmahat-results", "sweep")

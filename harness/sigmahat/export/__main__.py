@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from sigmahat.export import amalgamation, archive, c_variables, description, source_files
+from sigmahat.export import amalgamation, archive, c_variables, description
 
 
 @click.group()
@@ -49,7 +49,7 @@ def pack(
     """
     import fmpy
 
-    files = source_files.with_headers(source_files.for_version(sources, fmi))
+    files = description.with_headers(description.for_version(sources, fmi))
     contents = {
         "documentation/licenses/license.txt": licence,
         **{f.relative_to(shown).as_posix(): f for f in shown.rglob("*") if f.is_file()},
@@ -163,9 +163,7 @@ def amalgamate(
 @click.argument("out", type=click.Path(dir_okay=False, path_type=Path))
 def write_parameters(template: Path, out: Path) -> None:
     """Write OUT, the parameters of TEMPLATE as a table in C."""
-    from sigmahat.export import c_parameters
-
-    out.write_text(c_parameters.table(template), encoding="utf-8")
+    out.write_text(c_variables.parameter_table(template), encoding="utf-8")
 
 
 @main.command("modelica")

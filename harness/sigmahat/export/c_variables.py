@@ -2,9 +2,10 @@
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from xml.etree.ElementTree import Element
 
-from sigmahat.export.templates import items, variables
+from sigmahat.export.templates import items, render, variables
 
 SEED, SAMPLE_PERIOD = "noise.seed", "noise.samplePeriod"
 """Parameters of a plant with noise besides those of its equations."""
@@ -137,3 +138,50 @@ def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> st
             "",
         ]
     )
+
+
+_LARGEST = {"rls.n": "SH_MAX_N", "rls.m": "SH_MAX_M"}
+"""Sizes that can be given to the compiler."""
+
+
+def parameter_table(template: Path) -> str:
+    """The text of the file for the template of an estimator with one motor.
+
+    The coefficients ``rls.eta_0`` are not in it: they start at 0, and any finite one is allowed.
+    """
+    rows: dict[str, list[str]] = {"REAL": [], "INTEGER": []}
+    root = render(template, "")
+    for variable in variables(root):
+        if variable.attrib["causality"] == "parameter" and "[" not in variable.attrib["name"]:
+            macro = "REAL" if variable[0].tag == "Real" else "INTEGER"
+            rows[macro].append(f"    {macro}({', '.join(_row(root, variable))})")
+    return "\n".join(
+        [
+            "/* Generated from modelDescription/ by the target parameter_table; do not edit.",
+            " * A row: place in sh_parameters, start, least and largest value, range in words.",
+            " */",
+            "static const real_parameter REALS[] = {",
+            *rows["REAL"],
+            "};",
+            "",
+            "static const integer_parameter INTEGERS[] = {",
+            *rows["INTEGER"],
+            "};",
+            "",
+        ]
+    )
+
+
+def _row(root: Element, variable: Element) -> tuple[str, ...]:
+    name, kind = variable.attrib["name"], variable[0]
+    start, low, high = kind.attrib["start"], kind.get("min"), kind.get("max")
+    if kind.tag == "Boolean":
+        return name, {"false": "0", "true": "1"}[start], "0", "1", '"0 or 1"'
+    if kind.tag == "Enumeration":
+        words = [f"{item['value']} ({item['name']})" for item in items(root, kind)]
+        allowed = f"{', '.join(words[:-1])} or {words[-1]}"
+        return name, start, "1", str(len(words)), f'"{allowed}"'
+    if name in _LARGEST:
+        return name, start, str(low), _LARGEST[name], f'"{low} to " SH_TEXT_OF({_LARGEST[name]})'
+    allowed = f"{low} to {high}" if high else f">= {low}" if low else "finite"
+    return name, start, low or "-INFINITY", high or "INFINITY", f'"{allowed}"'

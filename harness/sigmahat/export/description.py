@@ -4,13 +4,14 @@ These are value references, display units, the model structure, source files, an
 that no variable has are left out.
 """
 
+import copy
 import hashlib
-from collections.abc import Callable, Iterable
+import re
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from sigmahat.export import fmi3_description, source_files
 from sigmahat.export.c_variables import c_table
 from sigmahat.export.templates import render, variables
 
@@ -104,18 +105,183 @@ def write(
     out.mkdir(parents=True, exist_ok=True)
     root = render(template, version)
     sources = list(sources)
-    _add_source_files(root, source_files.names(source_files.for_version(sources, 2)))
+    _add_source_files(root, file_names(for_version(sources, 2)))
     guid = complete(root)
     (out / "variables.h").write_text(c_table(root, struct, storage(root), guid), encoding="utf-8")
     _write_xml(root, out / "modelDescription.xml")
-    names = source_files.names(source_files.for_version(sources, 3))
-    described = fmi3_description.build_description(template.stem, names)
+    names = file_names(for_version(sources, 3))
+    described = build_description(template.stem, names)
     (out / "fmi3").mkdir(exist_ok=True)
-    _write_xml(fmi3_description.twin(root), out / "fmi3/modelDescription.xml")
+    _write_xml(for_fmi3(root), out / "fmi3/modelDescription.xml")
     _write_xml(described, out / "fmi3/buildDescription.xml")
-    shown = fmi3_description.terminals_and_icons(root)
+    shown = terminals_and_icons(root)
     _write_xml(shown, out / "fmi3/terminalsAndIcons.xml")
 
 
 def _write_xml(root: Element, file: Path) -> None:
     ElementTree.ElementTree(root).write(file, encoding="UTF-8", xml_declaration=True)
+
+
+def for_version(files: Iterable[Path], fmi: int) -> list[Path]:
+    """The files of an FMU of FMI 2.0 or 3.0: not those in the folder of the other version."""
+    return [file for file in files if file.parent.name != {2: "fmi3", 3: "fmi2"}[fmi]]
+
+
+def file_names(files: Iterable[Path]) -> list[str]:
+    """The names of the C files among some files, which are those to compile."""
+    return [file.name for file in files if file.suffix == ".c"]
+
+
+def with_headers(files: Iterable[Path]) -> list[Path]:
+    """The files given, and the headers they include from each other's folders, in any depth.
+
+    A header in none of these folders is the importer's (FMI) or the compiler's. Raises
+    ``ValueError`` for two files of one name: in the FMU all are in one folder.
+    """
+    waiting = list(files)
+    folders = sorted({file.parent for file in waiting})
+    found: dict[str, Path] = {}
+    while waiting:
+        file = waiting.pop()
+        if file.name not in found:
+            found[file.name] = file
+            for name in re.findall(r'^#include "(.+)"', file.read_text("utf-8"), re.MULTILINE):
+                waiting += [folder / name for folder in folders if (folder / name).is_file()]
+        elif found[file.name] != file:
+            raise ValueError(f"expected one file {file.name}, got {found[file.name]} and {file}")
+    return list(found.values())
+
+
+_TYPES = {"Real": "Float64", "Integer": "Int32", "Boolean": "Boolean", "Enumeration": "Enumeration"}
+
+
+def for_fmi3(root: Element) -> Element:
+    """Model description of FMI 3.0 for the complete one of FMI 2.0, which is left as it is."""
+    made = Element("fmiModelDescription", {**root.attrib, "fmiVersion": "3.0"})
+    made.set("instantiationToken", made.attrib.pop("guid"))
+    (identifier,) = (e.attrib["modelIdentifier"] for e in root.findall("CoSimulation"))
+    ElementTree.SubElement(
+        made,
+        "CoSimulation",
+        modelIdentifier=identifier,
+        canGetAndSetFMUState="true",
+        canSerializeFMUState="true",
+        canHandleVariableCommunicationStepSize="true",
+    )
+    for part in ("UnitDefinitions", "TypeDefinitions", "LogCategories", "DefaultExperiment"):
+        made.extend(map(copy.deepcopy, root.findall(part)))
+    for definition in made.findall("TypeDefinitions"):
+        _convert_types(definition)
+    for units in made.findall("UnitDefinitions"):
+        _add_second(units)
+    for categories in made.findall("LogCategories"):  # FMI 3.0 has no requests for status
+        categories.remove(categories.findall("Category[@name='logStatusDiscard']")[0])
+    made.append(_model_variables(root))
+    made.append(_model_structure(root))
+    ElementTree.indent(made)
+    return made
+
+
+def _convert_types(definitions: Element) -> None:
+    for simple in list(definitions):
+        converted = ElementTree.SubElement(definitions, "EnumerationType", simple.attrib)
+        converted.extend(simple.findall("Enumeration/Item"))
+        definitions.remove(simple)
+
+
+def _add_second(units: Element) -> None:
+    """The unit of time, for FMUs that use it for nothing else."""
+    if units.find("Unit[@name='s']") is None:
+        ElementTree.SubElement(ElementTree.SubElement(units, "Unit", name="s"), "BaseUnit", s="1")
+
+
+def _model_variables(root: Element) -> Element:
+    made = Element("ModelVariables")
+    listed = variables(root)
+    for variable in listed:
+        kind = variable[0]
+        ElementTree.SubElement(made, _TYPES[kind.tag], {**variable.attrib, **kind.attrib})
+    ElementTree.SubElement(
+        made,
+        "Float64",
+        name="time",
+        valueReference=str(len(listed)),
+        causality="independent",
+        variability="continuous",
+        unit="s",
+        description="Simulation time",
+    )
+    return made
+
+
+def _model_structure(root: Element) -> Element:
+    """Outputs and initial unknowns, by value references instead of indices from 1."""
+    made = Element("ModelStructure")
+    for part, tag in (("Outputs", "Output"), ("InitialUnknowns", "InitialUnknown")):
+        for unknown in root.findall(f"ModelStructure/{part}/Unknown"):
+            known = [str(int(i) - 1) for i in unknown.attrib["dependencies"].split()]
+            ElementTree.SubElement(
+                made,
+                tag,
+                valueReference=str(int(unknown.attrib["index"]) - 1),
+                dependencies=" ".join(known),
+                dependenciesKind=" ".join(["dependent"] * len(known)),
+            )
+    return made
+
+
+def build_description(identifier: str, sources: Sequence[str]) -> Element:
+    """``sources/buildDescription.xml``: the C files that an importer has to compile."""
+    root = Element("fmiBuildDescription", fmiVersion="3.0")
+    configuration = ElementTree.SubElement(
+        root, "BuildConfiguration", modelIdentifier=identifier, description="C99"
+    )
+    files = ElementTree.SubElement(configuration, "SourceFileSet", language="C99")
+    for source in sources:
+        ElementTree.SubElement(files, "SourceFile", name=source)
+    ElementTree.indent(root)
+    return root
+
+
+def terminals_and_icons(root: Element) -> Element:
+    """``terminalsAndIcons/terminalsAndIcons.xml``: the icon, and the measurements as a bus.
+
+    A plant has the terminal ``measurements`` with what its sensors give, an estimator one of the
+    same name with its inputs. Members of one name belong together, so that a tool which knows
+    terminals connects both in one go.
+    """
+    made = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    shown = ElementTree.SubElement(made, "GraphicalRepresentation")
+    corners = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
+    ElementTree.SubElement(shown, "CoordinateSystem", corners, suggestedScalingFactorTo_mm="0.1")
+    ElementTree.SubElement(shown, "Icon", corners)
+    members = dict(_measurements(root))
+    if members:
+        listed = ElementTree.SubElement(made, "Terminals")
+        terminal = ElementTree.SubElement(
+            listed,
+            "Terminal",
+            name="measurements",
+            matchingRule="bus",
+            terminalKind="org.sigmahat.measurements",
+            description="Measured positions and torques of the joint",
+        )
+        for name, member in members.items():
+            ElementTree.SubElement(
+                terminal,
+                "TerminalMemberVariable",
+                variableName=name,
+                memberName=member,
+                variableKind="signal",
+            )
+    ElementTree.indent(made)
+    return made
+
+
+def _measurements(root: Element) -> list[tuple[str, str]]:
+    """Variables of the terminal and their names in it."""
+    names = [(v.attrib["causality"], v.attrib["name"]) for v in variables(root)]
+    measured = [name for kind, name in names if kind == "output" and "_measured" in name]
+    if measured:
+        return [(name, name.replace("_measured", "")) for name in measured]
+    return [(name, name.replace("_sensor", "")) for kind, name in names if kind == "input"]

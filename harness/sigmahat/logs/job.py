@@ -1,20 +1,120 @@
-"""A log that is replayed through one estimator: the steps of every command, in their order."""
+"""A log that is replayed through one estimator: its steps, and the statistics of its outputs."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import Any
+
+import numpy as np
 
 from sigmahat.fmi.instance import Slave
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import Answer, curve
 from sigmahat.logs.learned import Learned, go_on
-from sigmahat.logs.log import Log
-from sigmahat.logs.measured import points_of, shown_points
-from sigmahat.logs.replay import parameters, play
+from sigmahat.logs.log import Array, Log
+from sigmahat.logs.measured import NEEDED, points_of, shown_points, spread
+from sigmahat.logs.replay import OUTPUTS, parameters, play
 from sigmahat.logs.sampling import sample
-from sigmahat.logs.statistics import ReplayStatistics
+
+_BUCKETS = 4000
+_OPERATION = ("phi", "setPoint")
+_POINTS = 20_000
+DRAWN = ("sigma", "sigma_std", "tau_e", "tau_e_residual", "phi", "setPoint")
+
+
+class ReplayStatistics:
+    """Minimum and maximum of each output in up to 4000 intervals, and figures of the second half.
+
+    The minima and maxima give the same picture as all values, and their number does not grow with
+    the log.
+    """
+
+    def __init__(self, ticks: int) -> None:
+        self.bucket = -(-ticks // _BUCKETS)
+        """Ticks in an interval; each chunk but the last must be a multiple of it."""
+        self._parts: dict[str, list[Array]] = {name: [] for name in DRAWN}
+        self._half = ticks // 2
+        self.ticks = self._later = self.skipped = 0
+        self._doubts: Counter[str] = Counter()
+        self._squares = 0.0
+        self._low = {name: np.inf for name in DRAWN}
+        self._high = {name: -np.inf for name in DRAWN}
+        self._stride = -(-ticks // _POINTS)
+        self._points: dict[str, list[np.ndarray[Any, Any]]] = {name: [] for name in NEEDED}
+        self._used: dict[str, tuple[float, float]] = {}
+        self.last: dict[str, float] = {}
+        """Real outputs of the last tick."""
+        self.changes: list[int] = []
+        """Ticks at which a change of the stiffness was detected."""
+        self._change_age = -1.0
+        self.last_doubt = ""
+        """Item of the output doubt at the last tick."""
+
+    def add(self, outputs: Mapping[str, np.ndarray[Any, Any]]) -> None:
+        """Adds the outputs of the next ticks."""
+        count = len(outputs["valid"])
+        for name in DRAWN:
+            values = outputs[name]
+            starts = np.arange(0, count, self.bucket)
+            low = np.minimum.reduceat(values, starts)
+            high = np.maximum.reduceat(values, starts)
+            self._parts[name].append(np.column_stack([low, high]))
+        first = max(0, self._half - self.ticks)
+        if first < count:
+            valid = outputs["valid"][first:]
+            self._squares += float(np.sum(outputs["epsilon"][first:][valid] ** 2))
+            self._later += int(np.count_nonzero(valid))
+            self._doubts.update(outputs["doubt"][first:].tolist())
+            for name in DRAWN:
+                self._low[name] = min(self._low[name], float(outputs[name][first:].min()))
+                self._high[name] = max(self._high[name], float(outputs[name][first:].max()))
+        shown = spread(self.ticks, count, self._stride)
+        for name in NEEDED:
+            self._points[name].append(outputs[name][shown])
+        age = np.concatenate([[self._change_age], outputs["change_age"]])
+        new = (age[1:] >= 0) & ((age[1:] < age[:-1]) | (age[:-1] < 0))
+        self.changes += (self.ticks + np.flatnonzero(new)).tolist()
+        self._change_age = float(age[-1])
+        self.skipped += int(np.count_nonzero(~outputs["valid"]))
+        self.ticks += count
+        self.last = {name: float(outputs[name][-1]) for name in OUTPUTS}
+        self.last_doubt = str(outputs["doubt"][-1])
+        learning = outputs["valid"] & (outputs["a"] > 0)
+        for name in _OPERATION if learning.any() else ():
+            used = outputs[name][learning]
+            least, most = self._used.get(name, (np.inf, -np.inf))
+            self._used[name] = min(least, float(used.min())), max(most, float(used.max()))
+
+    def ends(self, name: str) -> Array:
+        """Minimum and maximum in each interval, [size: intervals x 2]."""
+        return np.concatenate(self._parts[name])
+
+    def later(self, name: str) -> tuple[float, float]:
+        """Minimum and maximum in the second half of the log."""
+        return self._low[name], self._high[name]
+
+    def used(self, name: str) -> tuple[float, float] | None:
+        """Least and largest phi or setPoint at the samples that the regression used, if any."""
+        return self._used.get(name)
+
+    @property
+    def spread_over_log(self) -> dict[str, np.ndarray[Any, Any]]:
+        """Outputs NEEDED of up to 20000 ticks, evenly over the log."""
+        return {name: np.concatenate(parts) for name, parts in self._points.items()}
+
+    @property
+    def doubts(self) -> dict[str, float]:
+        """Share of the ticks in the second half by item of the output doubt, the largest first."""
+        ticks = self._doubts.total()
+        return {item: count / ticks for item, count in self._doubts.most_common()}
+
+    @property
+    def rms(self) -> float:
+        """RMS of the prediction error of the torque in the second half [N.m]."""
+        return float(np.sqrt(self._squares / max(self._later, 1)))
+
 
 _CHUNK = 1 << 14  # ticks that are replayed at a time, about
 

@@ -15,11 +15,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from sigmahat.logs.configuration import PORTS
 from sigmahat.page.edits import TITLES
-from sigmahat.page.findings import FindingsPanel
 from sigmahat.page.inputs import Choice, style
 from sigmahat.page.look import HEIGHT, WIDTH
 from sigmahat.page.ports import ParameterPanel, PortPanel
-from sigmahat.page.result import ResultPanel
+from sigmahat.page.result import FindingsPanel, ResultPanel
 from sigmahat.page.setup import Setup
 
 _TEMPLATES = Environment(

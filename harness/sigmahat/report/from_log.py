@@ -3,30 +3,88 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.files.output import write_json
 from sigmahat.joint import sheet
-from sigmahat.joint.curve import CURVE, Curve, read_curve
+from sigmahat.joint.curve import (
+    CURVE,
+    FAMILY_HEAD,
+    STIFFNESS_HEAD,
+    Curve,
+    family_rows,
+    polynomial_in_words,
+    reach_in_words,
+    read_curve,
+    stiffness_rows,
+)
 from sigmahat.joint.sheet import Sheet
+from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
+from sigmahat.logs.curve_panels import curve_panels
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimatedSignal, Replayed, read_estimate
-from sigmahat.plotting.style import plain_title, plain_unit
-from sigmahat.report.contents import Contents, TextTable, number
-from sigmahat.report.curve_panels import curve_panels, curve_table
-from sigmahat.report.findings import findings_table
-from sigmahat.report.time_panels import (
+from sigmahat.logs.time_panels import (
     Estimate,
     quantity_panels,
     reduce,
     sampling,
     stiffness_panels,
 )
+from sigmahat.plotting.style import plain_text, plain_title, plain_unit
+from sigmahat.report.contents import Contents, TextTable, number
+
+
+@dataclass(frozen=True)
+class ShownFinding:
+    """A finding as it is shown."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    severity: Text
+    """How much it matters: "wrong", "rests on", "note"."""
+    text: Text
+    """A sentence: the key of the configuration, the number, and a value that is proposed."""
+
+
+@dataclass(frozen=True)
+class FindingsFile:
+    """The contents of the file."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    format: Text
+    version: int
+    findings: list[ShownFinding]
+
+
+FINDINGS = Format("findings.json", "sigmahat findings", 1, FindingsFile)
+"""Of the file."""
+
+
+def write_findings(findings: Sequence[ShownFinding], folder: Path) -> None:
+    """Writes the file into a folder of results; an empty list says that nothing was found."""
+    contents = FindingsFile(FINDINGS.name, FINDINGS.version, list(findings))
+    write_json(asdict(contents), folder / FINDINGS.file)
+
+
+def findings_table(folder: Path) -> list[TextTable]:
+    """The table of the file in a folder; none if there is no file.
+
+    Raises ValueError, which says what is wrong, for a damaged file.
+    """
+    if not (folder / FINDINGS.file).is_file():
+        return []
+    found = FINDINGS.read(folder).findings
+    rows = [[each.severity, each.text] for each in found]
+    note = "" if rows else "Nothing in the log contradicts the configuration."
+    return [TextTable("Checks", ["", "finding"], rows, [True, True], note=note)]
+
 
 _OF_THE_METHOD = ("a", "rho")
 """Outputs about the inner working of the method; they are not in the table."""
@@ -53,7 +111,10 @@ def from_log(folder: Path) -> Contents:
     doubt = signals.pop("doubt", None)
     t = signals.pop("t").values
     answer = _answer(folder)
-    reduced = reduce(t, {name: signal.values for name, signal in signals.items()})
+    drawn = {name: signal.values for name, signal in signals.items()}
+    if answer is not None and answer.sheet.method != "FilteredRegression":
+        drawn.pop("sigma_std", None)  # the method gives no interval
+    reduced = reduce(t, drawn)
     tables = [] if answer is None else _found(answer)
     tables += findings_table(folder)
     tables += [_estimates(signals, used), *([] if doubt is None else [_doubts(doubt)])]
@@ -146,6 +207,19 @@ _WORDS = {
     "hysteresis": "hysteresis",
 }
 _FROM = {"prior": "the configuration (prior)", "identify": "identify", "exact": "taken as exact"}
+
+
+def curve_table(curve: Curve) -> TextTable:
+    """The stiffness with its interval, over which range it holds, and the polynomial."""
+    several = len(curve.branches) > 1
+    head = [plain_text(cell) for cell in (FAMILY_HEAD if several else STIFFNESS_HEAD)]
+    rows = list(family_rows(curve) if several else stiffness_rows(curve))
+    words = plain_text(polynomial_in_words(curve.polynomial))
+    reach = plain_text(reach_in_words(curve))
+    note = f"It holds {reach}; beyond, where the plots are faded, it is a guess. {words}."
+    if not curve.claims:
+        note += " The method claims no interval."
+    return TextTable("Stiffness", head, rows, [False] * len(rows[0]), note=note)
 
 
 def found_table(sheet: Sheet) -> TextTable:

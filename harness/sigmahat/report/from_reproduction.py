@@ -11,19 +11,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from sigmahat.paper.result_files import SEEDS, TIME, read_result_files
-from sigmahat.plotting.style import QUANTITIES, plain_axis
-from sigmahat.report.contents import (
-    COLORS,
-    TRUE,
-    Contents,
-    Curve,
-    Kind,
-    Panel,
-    TextTable,
-    of_file,
-)
-from sigmahat.report.time_panels import (
+from sigmahat.logs.time_panels import (
     SIDES,
     Estimate,
     of_side,
@@ -32,6 +20,10 @@ from sigmahat.report.time_panels import (
     sampling,
     stiffness_panels,
 )
+from sigmahat.paper.result_files import SEEDS, TIME, read_result_files
+from sigmahat.plotting.panels import COLORS, TRUE, Curve, Kind, Panel
+from sigmahat.plotting.style import QUANTITIES, plain_axis
+from sigmahat.report.contents import Contents, TextTable, of_file
 
 _MAIN = "RESIDUAL"
 """What is shown of one estimator is shown of the one that needs no sensor of torque."""

@@ -25,8 +25,8 @@ from bokeh.models import (
 from bokeh.plotting import figure
 from numpy.typing import NDArray
 
+from sigmahat.plotting.panels import Curve, Kind, Panel
 from sigmahat.plotting.style import with_margin
-from sigmahat.report.contents import Curve, Kind, Panel
 
 _HEIGHT = 300
 

@@ -11,9 +11,8 @@ from sigmahat.files.output import output_folder
 from sigmahat.runs.engine import Progress
 from sigmahat.runs.pool import WorkersLostError, spread
 from sigmahat.sweep.cluster import spread_on_cluster
-from sigmahat.sweep.execution import execute, fmu_digest
 from sigmahat.sweep.plan import Outcome, Plan
-from sigmahat.sweep.preparation import check
+from sigmahat.sweep.preparation import check, execute, fmu_digest
 from sigmahat.sweep.records import Records, records
 from sigmahat.sweep.rows import build
 from sigmahat.sweep.summary import write_summary
@@ -73,10 +72,10 @@ def _run(plan: Plan, done: Records, scheduler: str | None, progress: Progress) -
 
 
 def _draw(table: SweepTable, folder: Path) -> None:
+    from sigmahat.plotting.figure import stacked
     from sigmahat.plotting.save import save
-    from sigmahat.sweep.curves import abscissas
-    from sigmahat.sweep.figures import against_parameters, distributions
+    from sigmahat.sweep.panels import against_parameters, distributions
 
-    save(distributions, table, folder / "distributions")
-    if abscissas(table):
-        save(against_parameters, table, folder / "parameters")
+    save(stacked, distributions(table), folder / "distributions")
+    if panels := list(against_parameters(table)):
+        save(stacked, panels, folder / "parameters")

@@ -1,19 +1,24 @@
-"""The scenario of a run of a sweep: only what is compared, with the parameters of the run."""
+"""One run of a sweep: its scenario with the parameters of the run, and how a process runs it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
+from functools import lru_cache
 
-from sigmahat.fmi.instance import Slave, Value
+from sigmahat.fmi.installed import fmu as installed_fmu
+from sigmahat.fmi.instance import FmuError, Slave, Value
 from sigmahat.fmi.master import EstimatorFmu, Plant
 from sigmahat.fmi.opened import installed
 from sigmahat.fmi.unknown_name import unknown
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.engine import SEED
+from sigmahat.runs.engine import SEED, indices_by_comparison, measured
+from sigmahat.runs.pool import WorkerError
 from sigmahat.runs.scenario import Scenario
 from sigmahat.runs.signals import PLANT, to_record
-from sigmahat.sweep.plan import Plan, Run
+from sigmahat.sweep.plan import Outcome, Plan, Run
 
 ALL = "estimator"
 """Owner of a parameter of all estimators."""
@@ -105,3 +110,44 @@ def check(plan: Plan) -> None:
 def _models(run: Run) -> dict[str, Plant | EstimatorFmu]:
     scenario = prepare(run)
     return {PLANT: scenario.plant, **scenario.estimators}
+
+
+def fmu_names(scenarios: Sequence[str]) -> list[str]:
+    """Names of the FMUs of some scenarios, sorted, each once."""
+    chosen = [scenario(name) for name in scenarios]
+    estimators = {e.fmu for each in chosen for e in each.estimators.values()}
+    return sorted(estimators | {each.plant.fmu for each in chosen})
+
+
+def fmu_digest(scenarios: Sequence[str]) -> str:
+    """Of the FMUs of some scenarios, as they are installed here: 32 hexadecimal digits."""
+    text = hashlib.sha256()
+    for name in fmu_names(scenarios):
+        text.update(installed_fmu(name).read_bytes())
+    return text.hexdigest()[:32]
+
+
+def sweep_digest(plan: Plan) -> str:
+    """Differs between sweeps that would not give the same numbers: 32 hexadecimal digits."""
+    text = hashlib.sha256(fmu_digest(plan.scenarios).encode())
+    for run in plan.runs:
+        text.update(json.dumps(asdict(run)).encode())
+    return text.hexdigest()[:32]
+
+
+def execute(run: Run, fmus: str) -> Outcome:
+    """Does a run. Raises WorkerError if the FMUs here are not those of this digest."""
+    if _digest(run.scenario) != fmus:
+        raise WorkerError(
+            "a worker has other FMUs than this machine; install the same sigmahat on both"
+        )
+    try:
+        indices = measured(prepare(run), run.seed, indices_by_comparison)
+    except (FmuError, ValueError) as error:
+        return Outcome(run.number, {}, " ".join(str(error).split()))
+    return Outcome(run.number, indices, None)
+
+
+@lru_cache
+def _digest(scenario: str) -> str:
+    return fmu_digest([scenario])

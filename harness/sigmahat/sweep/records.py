@@ -17,8 +17,8 @@ from filelock import FileLock, Timeout
 
 from sigmahat.files.output import created_folder
 from sigmahat.runs.metrics import Indices
-from sigmahat.sweep.execution import sweep_digest
 from sigmahat.sweep.plan import Outcome, Plan
+from sigmahat.sweep.preparation import sweep_digest
 
 NAME = "runs.jsonl"
 

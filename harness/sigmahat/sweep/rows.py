@@ -12,9 +12,8 @@ from sigmahat.fmi.opened import installed
 from sigmahat.runs.metrics import INDICES, Indices
 from sigmahat.runs.scenario import Scenario
 from sigmahat.runs.signals import PLANT, source_and_variable
-from sigmahat.sweep.execution import fmu_names
 from sigmahat.sweep.plan import Outcome, Plan
-from sigmahat.sweep.preparation import ALL, parameters_by_owner, reduced
+from sigmahat.sweep.preparation import ALL, fmu_names, parameters_by_owner, reduced
 from sigmahat.sweep.table import (
     ESTIMATION,
     FAILURE,

@@ -114,7 +114,7 @@ class Agreement:
 def agreement(
     before: Mapping[str, Array], alone: Mapping[str, Array], torque_gain: float
 ) -> Agreement:
-    """Compares two estimates at the same points, logs.frozen.stiffness_at.
+    """Compares two estimates at the same points, logs.curve.stiffness_at.
 
     torque_gain  relative standard deviation of the gain of the torque: it is one error of both, so
                  that it does not explain a difference

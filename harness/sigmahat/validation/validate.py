@@ -14,7 +14,7 @@ from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.joint.start_values import as_fixed_curve, start_values
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.frozen import stiffness_at
+from sigmahat.logs.curve import stiffness_at
 from sigmahat.logs.job import Replay
 from sigmahat.logs.learned import read_learned
 from sigmahat.logs.log import Array, Log, LogError

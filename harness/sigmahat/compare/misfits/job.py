@@ -13,12 +13,42 @@ from sigmahat.compare.misfits.experiment import Experiment, draw
 from sigmahat.compare.misfits.joints import JOINTS, Joint
 from sigmahat.compare.misfits.motion import Motion, run
 from sigmahat.compare.misfits.score import SETTLED, Score, score
-from sigmahat.compare.misfits.settings import settings
-from sigmahat.fmi.instance import Slave
+from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.logs.replay import replay
 from sigmahat.logs.sampling import Samples
 from sigmahat.runs.engine import Progress, run_all
+
+
+def settings(experiment: Experiment, torque_gain: float) -> dict[str, Value]:
+    """Start values of StiffnessEstimator, with method FilteredRegression.
+
+    torque_gain  prior standard deviation of the gain of the measured torque [1]
+    """
+    joint, plant, errors = experiment.joint, experiment.plant, experiment.errors
+    given: dict[str, Value] = {
+        "method": "FilteredRegression",
+        "modality": "Residual",
+        "samplePeriod": experiment.T,
+        "rls.n": joint.order,
+        "rls.m": joint.order,
+        "range.phi": joint.range_phi,
+        "noise.tau": 3.2e-3,
+        "encoder.theta": plant["encoder.theta"],
+        "encoder.q": plant["encoder.q"],
+        "motor.gamma": plant["motor.gamma"],
+        "motor.D_theta": (1 + errors["D_theta"]) * plant["motor.D_theta"],
+        "motor.B": (1 + errors["B"]) * plant["motor.B"],
+        "prior.tau_e": 45.0,
+        "prior.D_theta": 0.2,
+        "prior.B": 0.1,
+        # What is known of the kind of joint, not of this one, whose friction may be another.
+        "prior.tau_coulomb": joint.plant["motor.tau_coulomb"],
+        "prior.torque_gain": torque_gain,
+        "regression.bandwidth": 350.0,
+    }
+    return {**given, **experiment.estimator}
+
 
 ESTIMATOR = "StiffnessEstimator"
 

@@ -1,4 +1,4 @@
-"""The panels and the table of a curve: torque and stiffness over the deformation."""
+"""The panels of a curve: torque and stiffness over the deformation."""
 
 from __future__ import annotations
 
@@ -8,17 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from sigmahat.joint import curve as joint
-from sigmahat.joint.curve_text import (
-    FAMILY_HEAD,
-    STIFFNESS_HEAD,
-    family_rows,
-    polynomial_in_words,
-    reach_in_words,
-    stiffness_rows,
-)
 from sigmahat.logs.measured import MeasuredPoints
-from sigmahat.plotting.style import QUANTITIES, around, limits, plain_axis, plain_text
-from sigmahat.report.contents import COLORS, Curve, Panel, TextTable
+from sigmahat.plotting.panels import COLORS, Curve, Panel
+from sigmahat.plotting.style import QUANTITIES, around, limits, plain_axis
 
 
 def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
@@ -64,16 +56,3 @@ def _scale(curves: list[Curve]) -> tuple[float, float] | None:
         if each.behind is not None and len(each.behind[1]):
             shown.append(np.array(limits(each.behind[1])))
     return around(shown, 0.1)
-
-
-def curve_table(curve: joint.Curve) -> TextTable:
-    """The stiffness with its interval, over which range it holds, and the polynomial."""
-    several = len(curve.branches) > 1
-    head = [plain_text(cell) for cell in (FAMILY_HEAD if several else STIFFNESS_HEAD)]
-    rows = list(family_rows(curve) if several else stiffness_rows(curve))
-    words = plain_text(polynomial_in_words(curve.polynomial))
-    reach = plain_text(reach_in_words(curve))
-    note = f"It holds {reach}; beyond, where the plots are faded, it is a guess. {words}."
-    if not curve.claims:
-        note += " The method claims no interval."
-    return TextTable("Stiffness", head, rows, [False] * len(rows[0]), note=note)

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.joint.curve import NORMAL_95
+from sigmahat.plotting.panels import COLORS, TRUE, Curve, Panel
 from sigmahat.plotting.style import limits, plain_axis, with_margin
-from sigmahat.report.contents import COLORS, TRUE, Curve, Panel
 
 BUDGET = 400_000
 """Values of all signals together; as 4 bytes in base64 they are 2 MB of a report."""
@@ -24,7 +24,7 @@ class Reduced:
     """Signals over common times."""
 
     t: NDArray[np.float64]
-    signals: dict[str, NDArray[np.float32]]
+    signals: Mapping[str, NDArray[Any]]
     """Of the shape of t."""
     bucket: int
     """Samples of which the least and the greatest are kept; 1: every sample is there."""

@@ -1,14 +1,24 @@
-"""What is drawn of a sweep, as data, for its figures and its report."""
+"""The panels of a sweep, for its figures and its report."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.plotting.panels import COLORS, Curve, Kind, Panel
 from sigmahat.runs.metrics import INDICES, Index, mean_interval
-from sigmahat.sweep.table import ESTIMATION, FAILURE, SCENARIO, ParameterColumn, Role, SweepTable
+from sigmahat.sweep.table import (
+    ESTIMATION,
+    FAILURE,
+    SCENARIO,
+    ParameterColumn,
+    Role,
+    SweepTable,
+    title,
+)
 
 Column = NDArray[np.float64]
 _BINS = 40
@@ -84,3 +94,51 @@ def log_bins(values: Column) -> list[float]:
     margin = 0.02 * max(high - low, 0.1)
     edges: list[float] = np.logspace(low - margin, high + margin, _BINS + 1).tolist()
     return edges
+
+
+def distributions(sweep: SweepTable) -> list[Panel]:
+    """Histograms of the error of all runs, with and without the start-up."""
+    return [_distribution(sweep, index) for index in drawn_indices(sweep)]
+
+
+def _distribution(sweep: SweepTable, index: Index) -> Panel:
+    every = {part.label: part.rows.numbers(index) for part in parts(sweep)}
+    edges = np.array(log_bins(np.concatenate([x[x > 0] for x in every.values()])))
+    curves = [
+        Curve(label, COLORS[i % len(COLORS)], edges, np.histogram(x, edges)[0], Kind.STEPS)
+        for i, (label, x) in enumerate(every.items())
+    ]
+    return Panel(
+        f"Distribution of {index.name(time_of(index))}",
+        index.title(time_of(index)),
+        "runs",
+        curves,
+        x_log=True,
+        linked=False,
+    )
+
+
+def against_parameters(sweep: SweepTable) -> Iterator[Panel]:
+    """The error after start-up over each parameter, or over the error of that parameter."""
+    for column in abscissas(sweep):
+        index = drawn_indices(sweep)[-1]
+        yield Panel(
+            f"{index.name(time_of(index))} over {column.name}",
+            title(column),
+            index.title(time_of(index)),
+            list(_curves(sweep, column, index)),
+            y_log=True,
+            linked=False,
+            caption=("" if has_a_value_for_each_run(sweep, column) else "mean and 95 % interval"),
+        )
+
+
+def _curves(sweep: SweepTable, column: ParameterColumn, index: Index) -> Iterator[Curve]:
+    for i, part in enumerate(parts(sweep)):
+        color = COLORS[i % len(COLORS)]
+        x, y = part.rows.numbers(column), part.rows.numbers(index)
+        if has_a_value_for_each_run(sweep, column):
+            yield Curve(part.label, color, x, y, Kind.POINTS)
+        else:
+            at, mean, half = map(np.array, interval_at(x, y))
+            yield Curve(part.label, color, at, mean, Kind.MEANS, half)

@@ -1,0 +1,79 @@
+"""Panels with curves as data: Matplotlib draws them for files, Bokeh for pages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+TRUE = "#8f8f8f"
+"""Colour of what an estimate is compared with."""
+COLORS = ("#1f83c4", "#12a37c", "#e06a1a", "#c9589b", "#b58900", "#56b4e9")
+"""Okabe and Ito, shifted to be read on white and on black."""
+
+
+class Kind(Enum):
+    """How a curve is drawn."""
+
+    LINE = "line"
+    POINTS = "points"
+    MEANS = "means"
+    """Points with intervals, and a line through them."""
+    STEPS = "steps"
+    """y between edges x, of which there is one more."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A line, or points, in one colour and with one switch."""
+
+    label: str
+    color: str
+    x: NDArray[Any]
+    y: NDArray[Any]
+    kind: Kind = Kind.LINE
+    half: NDArray[Any] | None = None
+    """Half widths of the intervals of means."""
+    band: tuple[NDArray[Any], NDArray[Any]] | None = None
+    """Lower and upper end of the intervals of a line."""
+    within: NDArray[np.bool_] | None = None
+    """Where a line is not faded, because the data reach it; None: everywhere."""
+    behind: tuple[NDArray[Any], NDArray[Any]] | None = None
+    """x and y of points that a line was fitted to."""
+    width: float = 1.4
+
+    @property
+    def low(self) -> NDArray[Any]:
+        """Lower ends of the intervals of means; a logarithmic scale has no place for 0."""
+        assert self.half is not None
+        low: NDArray[Any] = np.maximum(self.y - self.half, 1e-3 * self.y)
+        return low
+
+    @property
+    def high(self) -> NDArray[Any]:
+        """Upper ends of the intervals of means."""
+        assert self.half is not None
+        high: NDArray[Any] = self.y + self.half
+        return high
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A plot."""
+
+    title: str
+    x_label: str
+    y_label: str
+    curves: Sequence[Curve]
+    x_log: bool = False
+    y_log: bool = False
+    linked: bool = True
+    """Its x axis moves with those of the other panels that are linked."""
+    caption: str = ""
+    """Below its title."""
+    y_range: tuple[float, float] | None = None
+    """What is shown at first, where an estimate jumps before it converges."""
