@@ -140,23 +140,6 @@ def test_a_deformation_far_beyond_its_range_is_reported_once(
             assert fmu.call("fmi2Reset") == OK
 
 
-def test_the_estimator_starts_with_the_first_good_measurement(estimator_fmu: Path) -> None:
-    """It starts at the position of that measurement and does not take it for a motion from 0."""
-    with Instance(estimator_fmu) as late, Instance(estimator_fmu) as prompt:
-        for fmu in (late, prompt):
-            fmu.initialise()
-        late.set_all({"theta": math.nan})
-        assert late.step(0.0, 1e-3) == WARNING
-        sample = {"theta": 2.0, "q": 2.001, "tau": 0.1}
-        for fmu in (late, prompt):
-            fmu.set_all(sample)
-        for k in range(5):
-            assert prompt.step(k * 1e-3, 1e-3) == OK
-            assert late.step((k + 1) * 1e-3, 1e-3) == OK
-        names = ["sigma", "theta_dot", "tau_e_residual"]
-        assert late.get_all(names) == prompt.get_all(names)
-
-
 INSTANTIATED, INITIALISATION, STEP, TERMINATED = "instantiated", "initialisation", "step", "end"
 EVERYWHERE = {INSTANTIATED, INITIALISATION, STEP, TERMINATED}
 SETTABLE, READABLE = EVERYWHERE - {TERMINATED}, EVERYWHERE - {INSTANTIATED}
@@ -271,22 +254,6 @@ def test_a_step_cannot_be_cancelled(estimator_fmu: Path) -> None:
         assert fmu.step(0.0, 1e-3) == OK
 
 
-def test_a_call_after_initialisation_is_refused(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
-        fmu.initialise()
-        for status in (fmu.setup(), fmu.enter(), fmu.exit()):
-            assert status == ERROR
-            assert "between steps" in fmu.messages[-1][2]
-        assert fmu.set("rls.n", 2) == ERROR
-        assert "rls.n" in fmu.messages[-1][2] and "fixed" in fmu.messages[-1][2]
-        assert fmu.set("sigma", 1.0) == ERROR
-        assert "output" in fmu.messages[-1][2]
-        assert fmu.step(0.0, 1e-3) == OK
-        assert fmu.call("fmi2Terminate") == OK
-        assert fmu.step(1e-3, 1e-3) == ERROR
-        assert fmu.get("sigma") == 0.0
-
-
 def test_unknown_references_and_null_arguments_are_refused(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise()
@@ -363,41 +330,6 @@ def test_importers_with_unusual_arguments_can_run_it(
         assert fmu.step(0.0, 1e-3) == OK
         assert fmu.step(5.0, 1e-3) == ERROR  # with a message, even if there is no logger
         assert set(fmu.environments) <= {4711}
-
-
-def test_only_chosen_log_categories_are_logged(estimator_fmu: Path) -> None:
-    def choose(fmu: Instance, on: bool, *names: bytes) -> int:
-        return fmu.call(
-            "fmi2SetDebugLogging",
-            int(on),
-            ctypes.c_size_t(len(names)),
-            (ctypes.c_char_p * len(names))(*names),
-        )
-
-    with Instance(estimator_fmu) as fmu:
-        declared = {category.name for category in fmu.description.logCategories or []} or {
-            "logEvents",
-            "logStatusWarning",
-            "logStatusDiscard",
-            "logStatusError",
-            "logAll",
-        }
-        for name in declared:
-            assert choose(fmu, True, name.encode()) == OK
-        assert choose(fmu, True, b"logStatusWarning") == OK
-        fmu.initialise()
-        assert fmu.step(1.0, 1e-3) == ERROR
-        assert fmu.messages == []
-        assert choose(fmu, True, b"logAll") == OK
-        assert fmu.step(1.0, 1e-3) == ERROR
-        assert fmu.messages[-1][1] == "logStatusError"
-        assert choose(fmu, True, b"no such category") == WARNING  # nothing is chosen
-        assert fmu.step(1.0, 1e-3) == ERROR
-        assert fmu.messages[-1][1] == "logStatusError"
-        assert choose(fmu, True, b"no such category", b"logStatusError") == WARNING
-        assert "no such category" in fmu.messages[-1][2]
-        assert fmu.step(1.0, 1e-3) == ERROR  # the others are chosen
-        assert fmu.messages[-1][1] == "logStatusError"
 
 
 @pytest.mark.parametrize(
