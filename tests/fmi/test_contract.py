@@ -9,7 +9,9 @@ from typing import Any
 import fmpy
 import pytest
 
+import sigmahat
 from fmi_instance import ERROR, OK, Instance
+from fmi_runs import ESTIMATORS, PLANTS
 
 B = 0.0025 / (2 * math.pi)
 NO_UNIT = ""
@@ -84,13 +86,7 @@ ITEMS = {
         "Change",
     ],
 }
-FMUS = [
-    "estimator_fmu",
-    "antagonistic_fmu",
-    "plant_fmu",
-    "flexible_joint_fmu",
-    "antagonistic_plant_fmu",
-]
+FMUS = ESTIMATORS + PLANTS
 
 
 @pytest.fixture(scope="module")
@@ -104,15 +100,15 @@ def variables(description: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("fmu", FMUS)
-def test_fmpy_finds_no_problem(fmu: str, request: pytest.FixtureRequest) -> None:
+def test_fmpy_finds_no_problem(fmu: str) -> None:
     from fmpy.validation import validate_fmu
 
-    assert validate_fmu(str(request.getfixturevalue(fmu))) == []
+    assert validate_fmu(str(sigmahat.fmu(fmu))) == []
 
 
 @pytest.mark.parametrize("fmu", FMUS)
-def test_it_runs_with_its_start_values(fmu: str, request: pytest.FixtureRequest) -> None:
-    path = request.getfixturevalue(fmu)
+def test_it_runs_with_its_start_values(fmu: str) -> None:
+    path = sigmahat.fmu(fmu)
     outputs = [
         v.name
         for v in fmpy.read_model_description(str(path)).modelVariables
