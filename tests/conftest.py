@@ -52,18 +52,6 @@ def antagonistic_fmu() -> Path:
 
 
 @pytest.fixture(scope="session")
-def flexible_joint_fmu() -> Path:
-    """Path of FlexibleJointPlant.fmu."""
-    return sigmahat.fmu("FlexibleJointPlant")
-
-
-@pytest.fixture(scope="session")
-def antagonistic_plant_fmu() -> Path:
-    """Path of AntagonisticVsaPlant.fmu."""
-    return sigmahat.fmu("AntagonisticVsaPlant")
-
-
-@pytest.fixture(scope="session")
 def twin(build: Path) -> Callable[[str], Path]:
     """Path of the twin for FMI 3.0 of an FMU, with the binary of this machine."""
     return lambda name: build / "fmi3" / f"{name}_FMI3.fmu"

@@ -10,7 +10,7 @@ import pytest
 
 import c_library
 from c_library import Estimator, Library
-from c_regression import PLAIN, covariance
+from c_regression import covariance
 from oracle import MODEL, RESIDUAL, SENSOR
 from reference_plant import table1_recording
 from regression_joint import GAMMA, Joint, T
@@ -60,17 +60,6 @@ def test_errors_of_the_friction_are_estimated(c: Library, frequency: float, wron
     assert found["D_theta_hat"][-1] == pytest.approx(1e-3, abs=0.1 * abs(wrong - 1) * 1e-3)
     assert found["tau_coulomb_hat"][-1] == pytest.approx(0.015, rel=0.1)
     assert error(found, joint, 2.0) < 0.02
-
-
-@pytest.mark.parametrize("frequency", [1.0, 8.0])
-def test_an_error_of_the_inertia_is_estimated(c: Library, frequency: float) -> None:
-    joint = Joint(frequency=frequency, amplitude=0.8 / frequency, tau_coulomb=0.015)
-    wrong = {"motor.D_theta": 1.1e-3, "motor.B": 1.1 * 2.3e-5}
-    # At one slow sine, theta'' is nearly proportional to the error of an eccentric link encoder, to
-    # a delay of the torque, and to damping. With them, the data know b 300 times less.
-    found = Estimator(c, {**ALL, **wrong, **PLAIN}).run(joint.measurements())
-    assert found["B_hat"][-1] == pytest.approx(2.3e-5, rel=0.03)
-    assert error(found, joint, 2.0) < 0.03
 
 
 def test_rounding_alone_does_not_change_the_inertia(c: Library) -> None:
@@ -198,29 +187,6 @@ def test_friction_of_unknown_sign_increases_the_standard_deviation(c: Library) -
 # Start and gaps
 
 
-def test_the_estimate_continues_after_lost_samples(c: Library) -> None:
-    joint = Joint(duration=6.0)
-    z = joint.measurements()
-    z[3000:3050, 0] = math.nan
-    found = Estimator(c, REGRESSION).run(z)
-    assert not np.any(found["valid"][3000:3050])
-    assert np.all(found["valid"][3050:])
-    assert np.all(found["a"][3052:3080] == 0)  # no update while the filters settle
-    assert error(found, joint, 3.05) < 0.02
-
-
-def test_the_filters_start_again_when_the_modality_changes(c: Library) -> None:
-    joint = Joint(duration=6.0)
-    z = joint.measurements()
-    estimator = Estimator(c, REGRESSION)
-    estimator.run(z[:3000])
-    c.set(estimator.parameters, "modality", SENSOR)
-    found = estimator.run(z[3000:])
-    assert np.all(found["a"][:30] == 0)  # no update while the filters settle
-    assert np.all(found["a"][50:] == 1)
-    assert np.all(np.abs(found["sigma"] / joint.sigma[3000:] - 1) < 0.05)
-
-
 @pytest.mark.parametrize("where", [3, 40, 1000])
 def test_a_tick_with_a_huge_deformation_is_skipped(c: Library, where: int) -> None:
     """GIVEN a deformation whose powers overflow, WHEN it is received while the filters settle or
@@ -235,18 +201,6 @@ def test_a_tick_with_a_huge_deformation_is_skipped(c: Library, where: int) -> No
         np.testing.assert_array_equal(found[name][500 + where], found[name][499 + where])
     assert np.flatnonzero(found["valid"] == 0).tolist() == [500, 500 + where]
     assert np.all(np.isfinite(covariance(estimator)))
-
-
-def test_the_first_sample_is_the_first_good_one(c: Library) -> None:
-    """GIVEN a first sample whose powers overflow, THEN the next one starts the filters."""
-    z = Joint(duration=1.0).measurements()
-    found = []
-    for bad in (math.nan, 1e11):
-        z[0, 1] = bad
-        run = Estimator(c, {**ALL, "rls.n": 8, "rls.m": 5, "range.phi": 1e-3}).run(z)
-        assert run["valid"][:2].tolist() == [0, 1]
-        found.append(run.tobytes())
-    assert found[0] == found[1]
 
 
 # The paper's method
@@ -264,38 +218,6 @@ def test_the_standard_deviation_of_the_paper_is_that_of_white_noise(c: Library) 
     want = 0.01 * GAMMA * math.sqrt(1e-20 * (F @ P @ F))
     assert found["tau_e_std"][-1] == pytest.approx(want, rel=1e-6)
     assert found["B_hat"][-1] == 2.3e-5
-
-
-@pytest.mark.parametrize("symmetric", [0, 1])
-def test_torque_and_stiffness_are_those_of_the_coefficients(c: Library, symmetric: int) -> None:
-    """GIVEN a nominal curve, a spring with more powers than rls.n and rls.m have, and a joint with
-    damping and a bias, THEN tau_e and sigma are the polynomial with eta, of the spring alone."""
-    values = {
-        **REGRESSION,
-        "rls.symmetric": symmetric,
-        "rls.n": 2,
-        "rls.m": 2,
-        "prior.nominal": 0.3,
-    }
-    estimator = Estimator(c, {**values, "prior.gap": 0.0})
-    for (i, j), value in np.ndenumerate(np.array([[5.0, 0.2], [30.0, 0.4]])):
-        estimator.parameters.rls.eta_0[i][j] = value
-    c.start(estimator.state, estimator.parameters, estimator.estimate)
-    regression = estimator.state.method.regression
-    used = regression.refit.used
-    used[1] = used[2] = 1  # powers of the deformation and of the set-point
-    joint = Joint(duration=0.9)
-    z = joint.measurements()
-    for sample in z:
-        assert estimator.tick(sample)
-    e = estimator.estimate
-    eta = np.array([list(row) for row in e.eta])
-    powers = 2 * np.arange(8) + 1 if symmetric else np.arange(8)
-    of_set_point = e.setPoint ** np.arange(5)
-    assert eta[2, 0] != 0 != eta[3, 0] and eta[0 if symmetric else 1, 2] != 0
-    assert e.tau_e == pytest.approx(e.phi**powers @ eta @ of_set_point, rel=1e-9)
-    slopes = powers * e.phi ** np.maximum(powers - 1.0, 0.0)
-    assert e.sigma == pytest.approx(slopes @ eta @ of_set_point, rel=1e-9)
 
 
 @pytest.mark.parametrize("velocity", [0.0, 1.0])

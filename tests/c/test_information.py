@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import pytest
@@ -91,29 +90,6 @@ def test_a_negative_weight_removes_a_sample(c: Library, size: int) -> None:
     assert a.matrix == pytest.approx(matrix)
     a.check()
     assert a.a.squares == pytest.approx(squares, rel=1e-8)
-
-
-def test_a_sample_of_zeros_changes_only_the_residual(c: Library) -> None:
-    a = Information(c, 4)
-    a.fill(np.random.default_rng(1), 9)
-    before, rest = [part.copy() for part in factors(a.a)], a.a.squares
-    assert a.take(np.zeros(4), np.array([3.0, 5.0]), 2.0) == (2.0, 5.0)
-    for part, of_before in zip(factors(a.a), before, strict=True):
-        assert np.array_equal(part, of_before)
-    assert a.a.squares == pytest.approx(rest + 2.0 * 5.0**2)
-
-
-@pytest.mark.parametrize("size", SIZES)
-def test_a_combination_has_its_values_and_variance(c: Library, size: int) -> None:
-    rng = np.random.default_rng(size)
-    a = Information(c, size)
-    a.fill(rng, size + 2)
-    combination, last = rng.normal(size=size), c.new("sh_last_row")
-    last[0] = c.lib.sh_information_last(a.a)
-    found = c.lib.sh_information_combine(a.a, last, c.pointer(combination))
-    inverse = np.linalg.inv(a.matrix)
-    assert found.variance == pytest.approx(combination @ inverse @ combination, rel=1e-9)
-    assert list(found.value) == pytest.approx(combination @ inverse @ a.right, rel=1e-8)
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -213,29 +189,3 @@ def test_columns_that_are_almost_equal(c: Library, distance: float) -> None:
         if precision == 1.0:
             assert a.solve(Y) == pytest.approx(want, rel=rel)
         assert np.all(factors(a.a)[1] > 0)
-
-
-@pytest.mark.parametrize("size", SIZES)
-def test_a_row_is_a_sample_for_another_information(c: Library, size: int) -> None:
-    """All rows with their weights make the same information as all samples."""
-    a, b = Information(c, size, 1e-9), Information(c, size, 1e-9)
-    a.fill(np.random.default_rng(size), size + 4)
-    U, D, z = factors(a.a)
-    for i in range(size):
-        b.take(U[i], z[i], D[i])
-    assert b.matrix == pytest.approx(a.matrix, rel=1e-8, abs=1e-8)
-    b.check()
-
-
-def test_a_copy_is_equal_and_independent(c: Library) -> None:
-    a = Information(c, 4)
-    a.fill(np.random.default_rng(8), 10)
-    copy: Any = c.new("sh_information")
-    c.lib.sh_information_copy(copy, a.a)
-    before = factors(copy)
-    for part, other in zip(before, factors(a.a), strict=True):
-        assert np.array_equal(part, other)
-    assert (copy.size, copy.squares) == (a.a.size, a.a.squares)
-    a.take(np.ones(4), np.ones(SIDES), 1.0)
-    for part, other in zip(before, factors(copy), strict=True):
-        assert np.array_equal(part, other)

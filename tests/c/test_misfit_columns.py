@@ -92,6 +92,38 @@ def test_a_joint_without_a_misfit_has_no_columns_of_one(c: Library, group: int) 
     assert found["misfit"][-1] < 1.2
 
 
+COLUMNS_OF: dict[str, tuple[str, ...]] = {
+    "prior.nominal": ("NOMINAL",),
+    "prior.bias": ("BIAS",),
+    "prior.damping": ("DAMPING",),
+    "prior.eccentric": ("SIN_Q", "COS_Q"),
+    "prior.load_friction": ("LOAD", "DRIVE"),
+    "prior.delay": ("DELAY",),
+    "prior.reversal": ("REVERSAL",),
+    "prior.power": ("HIGHER_POWER", "SET_POWER"),
+    "prior.gap": ("DEAD_ZONE",),
+    "prior.hysteresis": ("HYSTERESIS",),
+    "prior.eccentric_motor": ("SIN_M", "COS_M"),
+    "prior.D_theta": ("VISCOUS",),
+    "prior.tau_coulomb": ("COULOMB", "DRIVE", "REVERSAL"),
+    "prior.B": ("INERTIA",),
+}
+
+
+@pytest.mark.parametrize("prior", COLUMNS_OF)
+def test_a_prior_of_zero_removes_its_columns_and_no_other(c: Library, prior: str) -> None:
+    values = {
+        "method": 2,
+        "prior.B": 0.1,
+        "prior.nominal": 0.2,
+        "rls.eta_0": [[1.0] + [0.0] * 4] * 8,
+    }
+    of_all = coefficients(Estimator(c, values))
+    without = coefficients(Estimator(c, {**values, prior: 0.0}))
+    assert without == [name for name in of_all if name[0] not in COLUMNS_OF[prior]]
+    assert {kind for kind, _ in of_all} - {kind for kind, _ in without} == set(COLUMNS_OF[prior])
+
+
 @pytest.mark.parametrize("prior", [name for name in PLAIN if name != "prior.torque_gain"])
 def test_a_prior_of_zero_is_the_limit_of_small_priors(c: Library, prior: str) -> None:
     z = MisfitJoint(duration=3.0).measurements()

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-import gmpy2
 import numpy as np
 import pytest
 
@@ -318,21 +317,6 @@ def test_a_filtered_deformation_is_the_difference_of_two_filtered_positions(
     assert found == pytest.approx(want, abs=1e-12)
 
 
-@pytest.mark.parametrize("filter_kind", FILTERS)
-@pytest.mark.parametrize("every", [2, 10])
-def test_stiffness_is_estimated_although_samples_are_lost_regularly(
-    c: Library, every: int, filter_kind: int
-) -> None:
-    # GIVEN a bus that loses every second or every tenth sample WHEN one second has passed
-    # THEN the residual still follows the torque, and the stiffness is estimated from it
-    recording = table1_recording()
-    z = recording.measurements()
-    z[::every, 0] = math.nan
-    estimates = Estimator(c, {"filter.kind": filter_kind}).run(z)
-    after = relative(estimates, recording.true_sigma)[1000:]
-    assert 100 * np.mean(after**2) < 0.02
-
-
 # Long runs
 
 
@@ -463,15 +447,3 @@ def test_initial_estimate_against_the_oracle(c: Library) -> None:
     got = Estimator(c, {**DEFAULTS, "rls.eta_0": eta_0.tolist()}).run(z)
     errors = compare(got, want, want.tau_e_residual)
     assert max(errors.values()) < 1e-9, errors
-
-
-@pytest.mark.slow("the oracle computes in many digits")
-def test_the_oracle_gives_the_same_doubles_with_twice_the_digits() -> None:
-    # The most difficult case: P decreases from 1e20 to below one
-    z = table1_recording().measurements()[:1500]
-    values = {**DEFAULTS, "rls.kind": STANDARD}
-    usual = oracle.estimator(values, z, [{}])[0]
-    with gmpy2.context(gmpy2.get_context(), precision=oracle.bits(2 * oracle.DIGITS)):
-        twice = oracle.estimator(values, z, [{}])[0]
-    for name in oracle.Estimate.names():
-        assert np.all(getattr(usual, name) == getattr(twice, name)), name

@@ -124,8 +124,9 @@ def test_unknown_scenario(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("command", ["reproduce", "compare"])
-@pytest.mark.parametrize("seeds", ["0", "-3", "two", "1.5"])
+@pytest.mark.parametrize(
+    ("command", "seeds"), [("reproduce", "0"), ("reproduce", "two"), ("compare", "1.5")]
+)
 def test_bad_number_of_seeds(command: str, seeds: str, tmp_path: Path) -> None:
     assert "--seeds" in refused(command, "--seeds", seeds, cwd=tmp_path)
     assert list(tmp_path.iterdir()) == []
@@ -188,8 +189,8 @@ def test_fmus_not_built(
 @pytest.mark.parametrize(
     ("command", "seeds", "delay"),
     [
-        *(("reproduce", "1", 0.2), ("reproduce", "100", 0.0), ("reproduce", "100", 0.3)),
-        *(("reproduce", "100", 1.0), ("reproduce", "100", 3.5), ("compare", "100", 3.5)),
+        *(("reproduce", "1", 0.2), ("reproduce", "100", 0.0), ("reproduce", "100", 1.0)),
+        ("compare", "100", 3.5),
     ],
 )
 def test_interrupt(command: str, seeds: str, delay: float, tmp_path: Path) -> None:

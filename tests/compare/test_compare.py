@@ -15,10 +15,8 @@ from misfit_priors import WITHOUT_MISFITS
 from sigmahat.cli import main
 from sigmahat.compare import conditions, labels
 from sigmahat.compare.conditions import JOINTS, METHODS, REGRESSION, Joint
-from sigmahat.compare.figure import draw
 from sigmahat.compare.job import Row, compare
 from sigmahat.compare.table import table
-from sigmahat.plotting.save import save
 
 FRICTION = "r(0) = 70 mm, Coulomb friction 0.02 N.m"
 BOUNDS = {  # MSREP [%] by group and case, for 0.1, 0.3, 1, 3, 8 and 20 Hz
@@ -138,29 +136,6 @@ def test_printed_table(runs: list[list[Row]]) -> None:
                 if math.isnan(value)
                 else float(cell) == pytest.approx(value, rel=1e-3)
             )
-
-
-def test_figure(runs: list[list[Row]], tmp_path: Path) -> None:
-    rows = runs[0]
-    figure = draw(rows)
-    shown = [each for axes in figure.axes for each in axes.get_lines()]
-    assert len(shown) == len(METHODS) * len(BOUNDS)
-    for axes in figure.axes:
-        assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
-        assert "[Hz]" in axes.get_xlabel()
-    assert "[%]" in figure.axes[0].get_ylabel()
-    (legend,) = figure.legends
-    texts = [text.get_text() for text in legend.get_texts()]
-    assert sorted(texts) == sorted(str(each.get_label()) for each in shown)
-    assert len(set(texts)) == len(texts)
-    (curve,) = [
-        s for s in shown if s.get_label() == "FilteredRegression: r(0) = 130 mm, D_theta +10 %"
-    ]
-    np.testing.assert_array_equal(np.asarray(curve.get_xdata()), [0.1, 0.3, 1, 3, 8, 20])
-    expected = [row.error(REGRESSION) for row in rows if labels.group(row) == "r(0) = 130 mm"]
-    np.testing.assert_array_equal(np.asarray(curve.get_ydata()), expected)
-    save(draw, rows, tmp_path / "compare")
-    assert {path.name for path in tmp_path.iterdir()} == {"compare.png", "compare.svg"}
 
 
 @pytest.mark.slow("two joints of the comparison, twice over two seeds")

@@ -7,7 +7,6 @@ import json
 import math
 from pathlib import Path
 
-import numpy as np
 import pytest
 from lxml import etree
 from PIL import Image
@@ -73,30 +72,6 @@ def test_means_are_those_of_the_rows_of_a_class() -> None:
     ]
     (line,) = [line for line in table(made).splitlines() if "mean of 2 rows, SEA1k" in line]
     assert [float(cell) for cell in line.split()[-6:]] == [2.0, 10.0, 80.0, 0.0, 0.0, 0.0]
-
-
-def test_figure(rows: list[Row]) -> None:
-    figure = draw(rows)
-    (axes,) = figure.axes
-    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
-    assert "[%]" in axes.get_xlabel() and "[%]" in axes.get_ylabel()
-    markers = [line for line in axes.get_lines() if line.get_marker() not in ("None", "")]
-    points = markers[::-1]
-    assert len(points) == len(rows)
-    for row, point in zip(rows, points, strict=True):
-        np.testing.assert_array_equal(point.get_xydata(), [[row.score.claim, row.score.error]])
-    joints = {(row.joint.name, point.get_marker()) for row, point in zip(rows, points, strict=True)}
-    groups = {
-        (row.condition.group, point.get_color()) for row, point in zip(rows, points, strict=True)
-    }
-    assert len({marker for _, marker in joints}) == len(joints) == 3
-    assert len({color for _, color in groups}) == len(groups) == 3
-    (corner,) = axes.patches
-    box = corner.get_window_extent().transformed(axes.transData.inverted())
-    assert (box.x1, box.y0) == pytest.approx((2, 10))
-    (legend,) = figure.legends
-    texts = [text.get_text() for text in legend.get_texts()]
-    assert texts == ["AwAS", "SEA1k", "SEA5k", "clean", "class 1", "class 2"]
 
 
 def test_every_class_has_a_color_of_its_own_and_any_value_is_in_the_figure() -> None:

@@ -1,5 +1,4 @@
-/* What FMI 2.0 and FMI 3.0 both have, under one name: a driver is linked with fmi2_calls.c or with
- * fmi3_calls.c.
+/* What FMI 2.0 and FMI 3.0 both have, under one name; -DSH_FMI=2 or -DSH_FMI=3 chooses the version.
  *
  * Instances and states are pointers in both versions. A status has the same numbers.
  */
@@ -8,39 +7,131 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
+#include "drive.h"
 #include "model.h"
 
+#define fmi_terminate(instance) ((sh_status)FMI(Terminate)(instance))
+#define fmi_reset(instance) ((sh_status)FMI(Reset)(instance))
+#define fmi_free_instance(instance) FMI(FreeInstance)(instance)
+#define fmi_exit_initialization(instance) ((sh_status)FMI(ExitInitializationMode)(instance))
+#define fmi_set_debug_logging(instance, on, n, categories)                                         \
+    ((sh_status)FMI(SetDebugLogging)(instance, (on) != 0, n, categories))
+#define fmi_get_state(instance, state) ((sh_status)FMI_STATE(Get, )(instance, state))
+#define fmi_set_state(instance, state) ((sh_status)FMI_STATE(Set, )(instance, state))
+#define fmi_free_state(instance, state) ((sh_status)FMI_STATE(Free, )(instance, state))
+#define fmi_state_size(instance, state, size)                                                      \
+    ((sh_status)FMI_STATE(Serialized, Size)(instance, state, size))
+#define fmi_serialize_state(instance, state, bytes, size)                                          \
+    ((sh_status)FMI_STATE(Serialize, )(instance, state, (void *)(bytes), size))
+
+#if SH_FMI == 2
+
+#include "fmi2Functions.h"
+
+#define FMI(name) fmi2##name
+#define FMI_STATE(before, after) fmi2##before##FMUstate##after
+#define fmi_deserialize_state(instance, bytes, size, state)                                        \
+    ((sh_status)fmi2DeSerializeFMUstate(instance, (const fmi2Byte *)(bytes), size, state))
+#define fmi_get_reals(instance, references, n, values)                                             \
+    ((sh_status)fmi2GetReal(instance, references, n, values))
+#define fmi_set_reals(instance, references, n, values)                                             \
+    ((sh_status)fmi2SetReal(instance, references, n, values))
+#define fmi_do_step(instance, t, h) ((sh_status)fmi2DoStep(instance, t, h, fmi2True))
+
+static inline void fmi_ignore(fmi2ComponentEnvironment environment, fmi2String name,
+                              fmi2Status status, fmi2String category, fmi2String message, ...)
+{
+    (void)environment, (void)name, (void)status, (void)category, (void)message;
+}
+
 /* A new instance with all messages switched on; they are ignored. */
-void *fmi_instantiate(void);
-void fmi_free_instance(void *instance);
-sh_status fmi_set_debug_logging(void *instance, int on, size_t n, const char *const categories[]);
+static inline void *fmi_instantiate(void)
+{
+    static const fmi2CallbackFunctions callbacks = {fmi_ignore, calloc, free, NULL, NULL};
+
+    return fmi2Instantiate("test", fmi2CoSimulation, sh_fmu_model.guid, NULL, &callbacks, fmi2False,
+                           fmi2True);
+}
 
 /* In FMI 2.0 two calls: if the first one fails, the second one is left out. */
-sh_status fmi_enter_initialization(void *instance, int tolerance_defined, double tolerance,
-                                   double start_time, int stop_time_defined, double stop_time);
-sh_status fmi_exit_initialization(void *instance);
-sh_status fmi_do_step(void *instance, double t, double h);
-sh_status fmi_terminate(void *instance);
-sh_status fmi_reset(void *instance);
+static inline sh_status fmi_enter_initialization(void *instance, int tolerance_defined,
+                                                 double tolerance, double start_time,
+                                                 int stop_time_defined, double stop_time)
+{
+    const fmi2Status status = fmi2SetupExperiment(instance, tolerance_defined, tolerance,
+                                                  start_time, stop_time_defined, stop_time);
+
+    return (sh_status)(status == fmi2OK ? fmi2EnterInitializationMode(instance) : status);
+}
 
 /* Time of the instance [s], or `otherwise` if it does not tell it now. */
-double fmi_time(void *instance, double otherwise);
+static inline double fmi_time(void *instance, double otherwise)
+{
+    fmi2GetRealStatus(instance, fmi2LastSuccessfulTime, &otherwise);
+    return otherwise;
+}
 
-/* Reads or writes Real variables. values [size: n] */
-sh_status fmi_get_reals(void *instance, const uint32_t references[], size_t n, double values[]);
-sh_status fmi_set_reals(void *instance, const uint32_t references[], size_t n,
-                        const double values[]);
+/* Sets the time derivative of an input for the next step. FMI 3.0 has none. */
+static inline sh_status fmi_set_slope(void *instance, uint32_t input, double slope)
+{
+    const fmi2Integer order = 1;
 
-/* Sets the time derivative of an input for the next step. FMI 3.0 has none: there, it does nothing.
- */
-sh_status fmi_set_slope(void *instance, uint32_t input, double slope);
+    return (sh_status)fmi2SetRealInputDerivatives(instance, &input, 1, &order, &slope);
+}
 
-sh_status fmi_get_state(void *instance, void **state);
-sh_status fmi_set_state(void *instance, void *state);
-sh_status fmi_free_state(void *instance, void **state);
-sh_status fmi_state_size(void *instance, void *state, size_t *size);
-sh_status fmi_serialize_state(void *instance, void *state, uint8_t bytes[], size_t size);
-sh_status fmi_deserialize_state(void *instance, const uint8_t bytes[], size_t size, void **state);
+#else
+
+#include "fmi3Functions.h"
+
+#define FMI(name) fmi3##name
+#define FMI_STATE(before, after) fmi3##before##FMUState##after
+#define fmi_deserialize_state(instance, bytes, size, state)                                        \
+    ((sh_status)fmi3DeserializeFMUState(instance, bytes, size, state))
+#define fmi_get_reals(instance, references, n, values)                                             \
+    ((sh_status)fmi3GetFloat64(instance, references, n, values, n))
+#define fmi_set_reals(instance, references, n, values)                                             \
+    ((sh_status)fmi3SetFloat64(instance, references, n, values, n))
+#define fmi_enter_initialization(instance, has_tolerance, tolerance, start, has_stop, stop)        \
+    ((sh_status)fmi3EnterInitializationMode(instance, (has_tolerance) != 0, tolerance, start,      \
+                                            (has_stop) != 0, stop))
+#define fmi_set_slope(instance, input, slope) ((void)(slope), SH_OK)
+
+static inline void fmi_ignore(fmi3InstanceEnvironment environment, fmi3Status status,
+                              fmi3String category, fmi3String message)
+{
+    (void)environment, (void)status, (void)category, (void)message;
+}
+
+static inline void *fmi_instantiate(void)
+{
+    return fmi3InstantiateCoSimulation("test", sh_fmu_model.guid, NULL, fmi3False, fmi3True,
+                                       fmi3False, fmi3False, NULL, 0, NULL, fmi_ignore, NULL);
+}
+
+static inline double fmi_time(void *instance, double otherwise)
+{
+    const fmi3ValueReference time = (fmi3ValueReference)sh_fmu_model.count;
+
+    fmi3GetFloat64(instance, &time, 1, &otherwise, 1);
+    return otherwise;
+}
+
+static inline sh_status fmi_do_step(void *instance, double t, double h)
+{
+    fmi3Boolean event = fmi3True, terminate = fmi3True, early = fmi3True;
+    double reached = -1.0;
+    const fmi3Status status =
+        fmi3DoStep(instance, t, h, fmi3True, &event, &terminate, &early, &reached);
+
+    if (status <= fmi3Warning) {
+        check(!event && !terminate && !early && reached == fmi_time(instance, -1.0),
+              "after a step fmi3DoStep tells what happened");
+    }
+    return (sh_status)status;
+}
+
+#endif
 
 #endif

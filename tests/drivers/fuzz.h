@@ -1,6 +1,6 @@
 /* A sequence of FMI calls with arguments of any kind, chosen by the bytes of a fuzzer.
  *
- * fuzz.c and fuzz_states.c make the calls that every version of FMI has, fuzz_fmi2.c or fuzz_fmi3*.c
+ * fuzz.c and fuzz_states.c make the calls that every version of FMI has, fuzz_fmi2.c or fuzz_fmi3.c
  * those of one version, and fuzz_arguments.c the arguments. Most of these are valid, because else no
  * sequence would get past its first calls.
  */
@@ -58,9 +58,5 @@ void *some_instance(sequence *s);
 void set_integers(sequence *s);
 void get_integers(sequence *s);
 void call_of_this_version(sequence *s);
-void call_what_is_not_provided(sequence *s);
-
-/* FMI 3.0 only. */
-void use_types_of_no_variable(sequence *s);
 
 #endif

@@ -141,7 +141,7 @@ static void set_up(sequence *s)
     }
 }
 
-void call_what_is_not_provided(sequence *s)
+static void call_what_is_not_provided(sequence *s)
 {
     const fmi2ValueReference reference = byte(s);
     const fmi2Integer order = 1;

@@ -163,17 +163,9 @@ static void step_without_results(sequence *s)
 
 void call_of_this_version(sequence *s)
 {
-    switch (below(s, 8)) {
-    case 0:
-        use_types_of_no_variable(s);
-        break;
-    case 1:
+    if (seldom(s, 8)) {
         step_without_results(s);
-        break;
-    case 2:
-        call_what_is_not_provided(s);
-        break;
-    default:
+    } else {
         use_values(s);
     }
 }

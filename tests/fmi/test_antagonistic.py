@@ -133,26 +133,3 @@ def test_messages_name_the_motor(antagonistic_fmu: Path) -> None:
         pair.set_all({"tau_1": math.nan})
         assert pair.step(0.0, 1e-3) == WARNING
         assert "Motor 1" in pair.messages[-1][2]
-
-
-def test_a_restored_state_gives_the_same_outputs(
-    antagonistic_fmu: Path, estimator_fmu: Path
-) -> None:
-    names = ["sigma", "sigma_1", "rho_2"]
-
-    def run(instances: list[Instance]) -> list[list[float]]:
-        values = []
-        for k in range(20, 40):
-            step(instances, k)
-            values.append(instances[0].get_all(names))
-        return values
-
-    with trio(antagonistic_fmu, estimator_fmu, {}) as instances:
-        for k in range(20):
-            step(instances, k)
-        states = [instance.save() for instance in instances]
-        first = run(instances)
-        for instance, state in zip(instances, states, strict=True):
-            assert instance.restore(state) == OK
-            instance.free(state)
-        assert run(instances) == first

@@ -9,7 +9,9 @@ from typing import Any
 import fmpy
 import pytest
 
+import sigmahat
 from fmi_instance import ERROR, OK, Instance
+from fmi_runs import ESTIMATORS, PLANTS
 
 B = 0.0025 / (2 * math.pi)
 NO_UNIT = ""
@@ -71,45 +73,6 @@ PARAMETERS = {
     "regression.memory": ("tunable", "s", 20),
 }
 ONE, COUNTS = "1", "1"
-PLANT_IN = ("input", None)
-PLANT_OUT = ("output", None)
-PLANT_TUNABLE = ("parameter", "tunable")
-PLANT_FIXED = ("parameter", "fixed")
-PLANT = {  # AwasPlant: causality, variability, unit, start (None: any)
-    **dict.fromkeys(["tau", "tau_c", "tau_ext"], (PLANT_IN, "N.m", 0.0)),
-    **dict.fromkeys(["q", "theta", "theta_c", "phi"], (PLANT_OUT, "rad", None)),
-    **dict.fromkeys(["q_dot", "theta_dot", "theta_c_dot"], (PLANT_OUT, "rad/s", None)),
-    "r": (PLANT_OUT, "m", None),
-    "tau_e": (PLANT_OUT, "N.m", None),
-    "sigma": (PLANT_OUT, "N.m/rad", None),
-    **dict.fromkeys(["q_measured", "theta_measured", "theta_c_measured"], (PLANT_OUT, "rad", None)),
-    **dict.fromkeys(["tau_measured", "tau_e_measured"], (PLANT_OUT, "N.m", None)),
-    "link.M": (PLANT_TUNABLE, "kg.m2", 0.1),
-    "link.D_q": (PLANT_TUNABLE, "N.m.s/rad", 0.15),
-    "link.mgl": (PLANT_TUNABLE, "N.m", 0.0),
-    "motor.B": (PLANT_TUNABLE, "kg.m2", 2.3e-5),
-    "motor.D_theta": (PLANT_TUNABLE, "N.m.s/rad", 1e-3),
-    "motor.gamma": (PLANT_TUNABLE, ONE, 50.0),
-    "motor.tau_coulomb": (PLANT_TUNABLE, "N.m", 0.0),
-    "motor_c.B": (PLANT_TUNABLE, "kg.m2", 1.29e-7),
-    "motor_c.D": (PLANT_TUNABLE, "N.m.s/rad", 0.0141),
-    "motor_c.gamma": (PLANT_TUNABLE, ONE, 23.0),
-    "spring.k_s": (PLANT_TUNABLE, "N/m", 14220.0),
-    "spring.r_0": (PLANT_TUNABLE, "m", 0.1),
-    "spring.b": (PLANT_TUNABLE, "m/rad", B),
-    "encoder.q": (PLANT_FIXED, COUNTS, 40000.0),
-    "encoder.theta": (PLANT_FIXED, COUNTS, 40000.0),
-    "encoder.theta_c": (PLANT_FIXED, COUNTS, 1024.0),
-    "noise.tau_variance": (PLANT_FIXED, None, 1e-5),
-    "noise.tau_e_variance": (PLANT_FIXED, None, 1e-3),
-    "noise.seed": (PLANT_FIXED, None, 1),
-    "noise.samplePeriod": (PLANT_FIXED, "s", 1e-3),
-    **dict.fromkeys(["initial.q", "initial.theta"], (PLANT_FIXED, "rad", 0.0)),
-    "initial.theta_c": (PLANT_FIXED, "rad", 0.030 / B),
-    **dict.fromkeys(
-        ["initial.q_dot", "initial.theta_dot", "initial.theta_c_dot"], (PLANT_FIXED, "rad/s", 0.0)
-    ),
-}
 ITEMS = {
     "method": ["Paper2011", "FilteredRegression"],
     "modality": ["Residual", "Sensor", "Model"],
@@ -123,13 +86,7 @@ ITEMS = {
         "Change",
     ],
 }
-FMUS = [
-    "estimator_fmu",
-    "antagonistic_fmu",
-    "plant_fmu",
-    "flexible_joint_fmu",
-    "antagonistic_plant_fmu",
-]
+FMUS = ESTIMATORS + PLANTS
 
 
 @pytest.fixture(scope="module")
@@ -143,15 +100,15 @@ def variables(description: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("fmu", FMUS)
-def test_fmpy_finds_no_problem(fmu: str, request: pytest.FixtureRequest) -> None:
+def test_fmpy_finds_no_problem(fmu: str) -> None:
     from fmpy.validation import validate_fmu
 
-    assert validate_fmu(str(request.getfixturevalue(fmu))) == []
+    assert validate_fmu(str(sigmahat.fmu(fmu))) == []
 
 
 @pytest.mark.parametrize("fmu", FMUS)
-def test_it_runs_with_its_start_values(fmu: str, request: pytest.FixtureRequest) -> None:
-    path = request.getfixturevalue(fmu)
+def test_it_runs_with_its_start_values(fmu: str) -> None:
+    path = sigmahat.fmu(fmu)
     outputs = [
         v.name
         for v in fmpy.read_model_description(str(path)).modelVariables
@@ -160,18 +117,6 @@ def test_it_runs_with_its_start_values(fmu: str, request: pytest.FixtureRequest)
     result = fmpy.simulate_fmu(str(path), stop_time=1.0, output_interval=1e-3, output=outputs)
     assert len(result) == 1001
     assert all(math.isfinite(result[name].astype(float).sum()) for name in outputs)
-
-
-@pytest.mark.parametrize("fmu", FMUS)
-def test_every_unit_is_defined_and_everything_has_a_description(
-    fmu: str, request: pytest.FixtureRequest
-) -> None:
-    description: Any = fmpy.read_model_description(str(request.getfixturevalue(fmu)))
-    units = {unit.name for unit in description.unitDefinitions}
-    assert description.variableNamingConvention == "structured"
-    for variable in description.modelVariables:
-        assert variable.description
-        assert variable.type != "Real" or variable.unit is None or variable.unit in units
 
 
 def test_inputs_and_outputs_are_those_of_the_contract(variables: dict[str, Any]) -> None:
@@ -208,18 +153,6 @@ def test_a_parameter_is_that_of_the_contract(name: str, variables: dict[str, Any
     assert (variable.causality, variable.variability) == ("parameter", variability)
     assert unit is None or (variable.unit or NO_UNIT) == unit
     assert start is None or start_of(variable) == pytest.approx(start, rel=1e-15)
-
-
-@pytest.mark.parametrize("name", PLANT)
-def test_a_variable_of_the_awas_plant_is_that_of_the_contract(name: str, plant_fmu: Path) -> None:
-    (causality, variability), unit, start = PLANT[name]
-    found: Any = fmpy.read_model_description(str(plant_fmu)).modelVariables
-    (variable,) = [v for v in found if v.name == name]
-    assert variable.causality == causality
-    assert variability is None or variable.variability == variability
-    assert unit is None or variable.unit == unit
-    assert start is None or start_of(variable) == pytest.approx(start, rel=1e-15)
-    assert variable.type == ("Integer" if name == "noise.seed" else "Real")
 
 
 @pytest.mark.parametrize("name", ITEMS)

@@ -14,9 +14,8 @@ from lxml import etree
 
 import sigmahat
 from fmi_instance import OK, Instance
+from fmi_runs import ESTIMATORS, PLANTS
 
-ESTIMATORS = ["StiffnessEstimator", "AntagonisticStiffnessEstimator"]
-PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant", "RealJointPlant"]
 FMUS = ESTIMATORS + PLANTS
 
 # Exponents of the base units in each symbol. A power is written behind a symbol: kg.m2.

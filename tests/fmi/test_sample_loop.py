@@ -18,7 +18,7 @@ import sigmahat
 from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.fmi import native
 from sigmahat.fmi.instance import Fmu, FmuError, Slave
-from sigmahat.fmi.master import EstimatorFmu, Plant, Recording, simulate
+from sigmahat.fmi.master import Plant, Recording, simulate
 from sigmahat.fmi.sample_loop import SampleLoop
 from sigmahat.paper.scenarios import SCENARIOS, scenario
 from sigmahat.runs.scenario import Scenario, T
@@ -214,19 +214,6 @@ def pythonfmu(script: str, folder: Path) -> str:
     )
     (made,) = folder.glob("*.fmu")
     return str(made)
-
-
-def test_an_estimator_of_another_maker(tmp_path: Path) -> None:
-    script = Path(__file__).parents[2] / "bench" / "paper2011_slave.py"
-    ours = TABLE1.estimators["RESIDUAL"]
-    theirs = EstimatorFmu(
-        pythonfmu(str(script), tmp_path), {}, ours.connections, ["sigma", "theta_dot"]
-    )
-    found = simulate(TABLE1.plant, {"ours": ours, "theirs": theirs}, T, 1500).estimators
-    late = slice(1000, None)
-    np.testing.assert_allclose(
-        found["theirs"]["sigma"][late], found["ours"]["sigma"][late], rtol=1e-3
-    )
 
 
 def test_a_plant_of_another_maker_that_takes_no_slopes(tmp_path: Path) -> None:

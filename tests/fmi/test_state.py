@@ -105,24 +105,6 @@ def test_a_restored_state_continues_bit_for_bit(name: str, fmi: Version) -> None
         assert result == whole[point:]
 
 
-@every_fmu
-def test_instances_do_not_influence_each_other(name: str, fmi: Version) -> None:
-    expected = []
-    for start in (0.0, 1.0):
-        with fmi.instance(fmi.path(name)) as alone:
-            alone.initialise(start=start)
-            expected.append(fmi.driver(alone).run([(start + t, h) for t, h in STEPS]))
-    with fmi.instance(fmi.path(name)) as first, fmi.instance(fmi.path(name)) as second:
-        drivers = [fmi.driver(first), fmi.driver(second)]
-        first.initialise()
-        second.initialise(start=1.0)
-        got: list[list[bytes]] = [[], []]
-        for t, h in STEPS:
-            got[0].append(drivers[0].step(t, h))
-            got[1].append(drivers[1].step(1.0 + t, h))
-        assert got == expected
-
-
 @pytest.mark.parametrize("at", ["instantiated", "initialisation", "terminated"])
 def test_a_state_contains_the_mode_of_the_instance(at: str, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:

@@ -24,6 +24,8 @@ N = 7000
         ("/joint_states.position[knee_link]", "position", "link", None),
         ("/right_knee_drive/current.data", "current", "motor", None),
         ("/right_knee_drive/current.time", "time", "motor", None),
+        ("field.position0", "position", None, None),
+        ("field.effort0", "torque", None, None),
         ("i_q", "current", None, None),
         ("iq_A", "current", None, "A"),
         ("Motorstrom in mA", "current", "motor", "mA"),

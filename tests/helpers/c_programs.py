@@ -24,15 +24,6 @@ DRIVERS = REPOSITORY / "tests" / "drivers"
 VERSIONS = ["fmi2", "fmi3"]
 
 
-def _driver_sources(driver: str, version: str) -> list[Path]:
-    """The C source files of a program, which makes the calls of a version of FMI."""
-    files = [DRIVERS / name for name in (f"{driver}.c", "drive.c", f"{version}_calls.c")]
-    if driver == "fuzz":
-        files += [DRIVERS / "fuzz_arguments.c", DRIVERS / "fuzz_states.c"]
-        files += sorted(DRIVERS.glob(f"fuzz_{version}*.c"))
-    return files
-
-
 def sources(fmu: str, build: Path, version: str) -> list[Path]:
     """The C source files of an FMU, with the functions of a version of FMI."""
     files = sorted([*(FMU_SOURCES / "shell").glob("*.c"), *(FMU_SOURCES / version).glob("*.c")])
@@ -63,15 +54,13 @@ def compile_driver(
     """
     program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{version}_{fmu}"
     folders = [*FOLDERS, FMU_SOURCES, FMU_SOURCES / "shell", build / "fmu" / fmu]
-    files = [*_driver_sources(driver, version), *sources(fmu, build, version)]
+    names = [driver, "drive"]
+    if driver == "fuzz":
+        names += ["fuzz_arguments", "fuzz_states", f"fuzz_{version}"]
+    files = [*(DRIVERS / f"{name}.c" for name in names), *sources(fmu, build, version)]
     command = [
-        *(
-            compiler,
-            "-gdwarf-4",
-            "-O1",
-            "-ffp-contract=off",
-            *flags,
-        ),  # valgrind cannot read newer debug information
+        # -gdwarf-4: valgrind cannot read newer debug information
+        *(compiler, "-gdwarf-4", "-O1", "-ffp-contract=off", *flags, f"-DSH_FMI={version[-1]}"),
         *(f"-I{path}" for path in folders),
         f"-isystem{Path(fmpy.__file__).parent / 'c-code'}",
         *(str(path) for path in files),

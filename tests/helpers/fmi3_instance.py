@@ -7,15 +7,13 @@ from __future__ import annotations
 
 import ctypes
 import math
-import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import fmpy
 import fmpy.fmi3 as fmi3
 
-from fmi_instance import OK
+from fmi_instance import OK, unpacked
 from fmi_runs import SIGNALS
 
 C_TYPES: dict[str, tuple[str, Any]] = {
@@ -43,13 +41,12 @@ class Instance3:
         early_return: bool = False,
         intermediate: Sequence[int] = (),
     ) -> None:
-        self.description: Any = fmpy.read_model_description(str(fmu))
+        self.description, folder = unpacked(fmu)
         self.variables = {v.name: v for v in self.description.modelVariables}
-        self.folder = fmpy.extract(str(fmu))
         self.messages: list[tuple[int, str, str]] = []  # status, category, message
         self.slave: Any = fmi3.FMU3Slave(
             guid=self.description.guid,
-            unzipDirectory=self.folder,
+            unzipDirectory=folder,
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             instanceName="test",
         )
@@ -84,7 +81,6 @@ class Instance3:
     def __exit__(self, *_: object) -> None:
         self.dll.fmi3FreeInstance(ctypes.c_void_p(self.handle))
         self.slave.freeLibrary()
-        shutil.rmtree(self.folder)
 
     def _log(self, environment: int, status: int, category: bytes, text: bytes) -> None:
         assert environment == 4711

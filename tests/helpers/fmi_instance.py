@@ -5,9 +5,11 @@ FMPy only loads the library; its error handling is not used.
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import shutil
 from collections.abc import Mapping, Sequence
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,14 @@ import fmpy
 import fmpy.fmi2 as fmi2
 
 OK, WARNING, DISCARD, ERROR = 0, 1, 2, 3
+
+
+@cache
+def unpacked(fmu: Path) -> tuple[Any, str]:
+    """Model description of an FMU, and the folder of its files until this process ends."""
+    folder = fmpy.extract(str(fmu))
+    atexit.register(partial(shutil.rmtree, folder, ignore_errors=True))
+    return fmpy.read_model_description(str(fmu)), folder
 
 
 class Instance:
@@ -34,16 +44,15 @@ class Instance:
         memory: bool = False,
         logging_on: bool = True,
     ) -> None:
-        self.description: Any = fmpy.read_model_description(str(fmu))
+        self.description, folder = unpacked(fmu)
         self.variables = {v.name: v for v in self.description.modelVariables}
-        self.folder = fmpy.extract(str(fmu))
         self.messages: list[tuple[int, str, str]] = []  # status, category, message
         self.environments: list[int | None] = []  # that the logger received
         self.names: set[str] = set()  # of the instance, that the logger received
         self.blocks: set[int] = set()  # of memory that the instance allocated and has not freed
         slave = fmi2.FMU2Slave(
             guid=self.description.guid,
-            unzipDirectory=self.folder,
+            unzipDirectory=folder,
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             instanceName="test",
         )
@@ -80,7 +89,6 @@ class Instance:
         if self.component:
             self.dll.fmi2FreeInstance(ctypes.c_void_p(self.component))
         self.slave.freeLibrary()
-        shutil.rmtree(self.folder)
 
     def _log(
         self, environment: Any, name: bytes, status: int, category: bytes, text: bytes

@@ -204,34 +204,6 @@ def _bag(m: Motion) -> Columns:
     return {name: values[:n] for name, values in columns.items()}
 
 
-# --- rostopic echo -p: times in nanoseconds, numbered elements of arrays
-
-
-@_style(
-    "rostopic echo",
-    "echo.csv",
-    {
-        "theta": ("field.position0", "rad"),
-        "q": ("field.position1", "rad"),
-        "tau": ("field.effort0", "N.m"),
-    },
-    AFTER_GEAR,
-)
-def _rostopic(m: Motion) -> Columns:
-    stamp = 1_700_000_000_123_456_789 + np.round(m.t * 1e9).astype(np.int64)
-    return {
-        "%time": stamp,
-        "field.header.seq": np.arange(len(m.t)),
-        "field.header.stamp": stamp - 41_000,
-        "field.position0": m.theta,
-        "field.position1": m.q,
-        "field.velocity0": m.velocity,
-        "field.velocity1": np.gradient(m.q, m.t),
-        "field.effort0": noisy(m.tau, 2e-3, 8),
-        "field.effort1": np.zeros_like(m.t),
-    }
-
-
 # --- German: semicolons, decimal commas, degrees before the gear
 
 
@@ -307,32 +279,6 @@ def _letters(m: Motion) -> Columns:
         "q": noisy(m.q, 5e-6, 12),
         "i": -current(m, 13),
         "w": m.velocity * GEAR,
-    }
-
-
-# --- Italian: the lever that sets the stiffness in degrees of its motor
-
-
-@_style(
-    "Italian",
-    "prova.h5",
-    {
-        "theta": ("angolo_motore_gradi", "deg"),
-        "q": ("angolo_giunto_gradi", "deg"),
-        "theta_c": ("angolo_motore_rigidezza_gradi", "deg"),
-        "tau": ("coppia_motore_Nm", "N.m"),
-    },
-    AFTER_GEAR,
-    has_lever=True,
-)
-def _italian(m: Motion) -> Columns:
-    return {
-        "tempo_s": m.t,
-        "angolo_motore_gradi": counts(m.theta, 2**21) * 360 / 2**21,
-        "angolo_giunto_gradi": counts(m.q, 2**19) * 360 / 2**19,
-        "angolo_motore_rigidezza_gradi": m.lever * 4000,
-        "coppia_motore_Nm": noisy(m.tau, 2e-3, 16),
-        "riferimento_gradi": m.target * DEG,
     }
 
 

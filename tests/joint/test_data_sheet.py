@@ -218,28 +218,6 @@ def test_the_fmu_begins_with_what_was_learned_to_the_last_bit(case: Path, tmp_pa
     assert outputs["tau_e"] == sheet["check"]["tau_e"]
 
 
-def test_the_first_sample_gives_the_last_stiffness(case: Path) -> None:
-    """At the deformation and the set-point of the end, up to rounding: the estimator adds up the
-    products of its columns, the FMU those of the curve."""
-    assert first_sigma(case) == pytest.approx(sheet_of(case)["at_the_end"]["sigma"], rel=1e-12)
-
-
-def first_sigma(folder: Path) -> float:
-    sheet = sheet_of(folder)
-    at, start = sheet["at_the_end"], sheet["start_values"]
-    theta_c = (at["set_point"] - start["setPoint.offset"]) / start["setPoint.scale"]
-    inputs = {"q": at["phi"], "theta_c": theta_c}
-    return float(
-        fmpy.simulate_fmu(
-            sigmahat.fmu("StiffnessEstimator"),
-            start_values={**for_fmpy(start), **inputs},
-            stop_time=1e-3,
-            output_interval=1e-3,
-            output=["sigma"],
-        )["sigma"][-1]
-    )
-
-
 # ---- files for other tools ----------------------------------------------------------------------
 
 

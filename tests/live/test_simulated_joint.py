@@ -115,8 +115,7 @@ def test_the_browser_lets_the_page_send_nothing(page: LivePage) -> None:
     assert page.page.driver.execute_async_script(script) == "connect-src"
 
 
-@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-@pytest.mark.parametrize("width", [1400, 360])
+@pytest.mark.parametrize(("width", "dark"), [(1400, False), (360, True)], ids=["desk", "phone"])
 def test_it_fits_the_window_without_a_complaint(width: int, dark: bool, site: Path) -> None:
     with live_page(site / "live", width, dark) as live:
         simulate(live, 10)

@@ -33,9 +33,9 @@ def confined() -> Iterator[Confined]:
         yield process
 
 
-@pytest.mark.slow("a minute of commands, each in a process of its own")
+@pytest.mark.slow("hundreds of commands, each in a process of its own")
 @settings(
-    max_examples=800,
+    max_examples=200,
     deadline=None,
     derandomize=True,
     database=None,

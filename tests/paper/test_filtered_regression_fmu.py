@@ -65,7 +65,7 @@ def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
 
 
 @pytest.mark.parametrize("period", [1e-3, 1e-4])
-@pytest.mark.parametrize("velocity", [0.3, 0.5, 1.0, 2.4])
+@pytest.mark.parametrize("velocity", [0.3, 2.4])
 @pytest.mark.parametrize("friction", [0.0, 0.02])
 def test_motor_that_turns_at_the_start(
     c: Library, period: float, velocity: float, friction: float

@@ -99,8 +99,7 @@ def test_every_variable_of_an_fmu_has_its_row(name: str, site: Path) -> None:
 
 
 @pytest.mark.slow("eight pages in a browser, each loaded and drawn")
-@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-@pytest.mark.parametrize("width", [1400, 400])
+@pytest.mark.parametrize(("width", "dark"), [(1400, False), (400, True)], ids=["desk", "phone"])
 def test_pages_fit_the_window_without_a_complaint(width: int, dark: bool, site: Path) -> None:
     with opened(site / "index.html", width, dark) as page:
         for name in SEEN:

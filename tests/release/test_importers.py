@@ -99,14 +99,14 @@ def test_libcosim_gives_the_same_trajectories(run: Run, capfd: pytest.CaptureFix
     run.assert_same(np.array([run.trajectory[0], *rows[1:]]))
 
 
-def compiled(driver: str, target: str, build: Path, program: Path) -> Path:
-    """``drivers/DRIVER.c``, compiled for a target of the cross compiler."""
-    source = Path(__file__).parents[1] / "drivers" / f"{driver}.c"
+def master(fmi: int, target: str, build: Path, program: Path) -> Path:
+    """``drivers/master.c`` for a version of FMI and a target of the cross compiler."""
+    source = Path(__file__).parents[1] / "drivers" / "master.c"
     # With -s and in a folder outside of the sources as the binaries of the release: so what the
     # compiler made of its C library for them is used again, which takes minutes to make.
     compile_files(
         target,
-        ["-std=c99", "-O2", "-s", f"-I{HEADERS}", source, "-o", program],
+        ["-std=c99", "-O2", "-s", f"-DSH_FMI={fmi}", f"-I{HEADERS}", source, "-o", program],
         build / "cross-compiler",
         program.parent,
     )
@@ -147,7 +147,7 @@ def wine() -> str:
 @pytest.fixture(scope="module")
 def windows_master(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     program = tmp_path_factory.mktemp("windows") / "master.exe"
-    return compiled("windows_master", "x86_64-windows-gnu", build, program)
+    return master(2, "x86_64-windows-gnu", build, program)
 
 
 @each_fmu
@@ -169,10 +169,10 @@ def test_the_windows_binary_of_a_twin_gives_the_same_trajectories(
     name: str, released: Path, build: Path, tmp_path: Path
 ) -> None:
     run = Run(released / f"{name}.fmu")
-    master = compiled("fmi3_master", "x86_64-windows-gnu", build, tmp_path / "master.exe")
+    program = master(3, "x86_64-windows-gnu", build, tmp_path / "master.exe")
     fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))
     library = f"binaries/x86_64-windows/{name.removesuffix('_FMI3')}.dll"
-    assert_same_in(run, [wine(), str(master), library], build, tmp_path)
+    assert_same_in(run, [wine(), str(program), library], build, tmp_path)
 
 
 @two_twins
@@ -183,9 +183,9 @@ def test_the_binary_for_arm_gives_the_same_trajectories(
     if not libraries.is_dir():
         missing("the C library for aarch64", "apt-get install libc6-dev-arm64-cross")
     run = Run(released / f"{name}.fmu")
-    master = compiled("fmi3_master", "aarch64-linux-gnu.2.34", build, tmp_path / "master")
+    program = master(3, "aarch64-linux-gnu.2.34", build, tmp_path / "master")
     fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))
     library = tmp_path / f"binaries/aarch64-linux/{name.removesuffix('_FMI3')}.so"
     assert_same_in(
-        run, [emulator, "-L", str(libraries), str(master), str(library)], build, tmp_path
+        run, [emulator, "-L", str(libraries), str(program), str(library)], build, tmp_path
     )

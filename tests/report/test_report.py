@@ -60,7 +60,6 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
         done = command(
             *{
                 "reproduction": ("reproduce",),
-                "pair": ("reproduce", "--scenario", "antagonistic"),
                 "log": ("estimate", "knee.parquet"),
                 "sweep": (
                     "sweep", "--modality", "RESIDUAL,SENSOR", "--seeds", "4", "--set",
@@ -77,9 +76,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     return make
 
 
-@pytest.mark.parametrize(
-    ("kind", "plots"), [("reproduction", 7), ("pair", 18), ("log", 7), ("sweep", 4)]
-)
+@pytest.mark.parametrize(("kind", "plots"), [("reproduction", 7), ("log", 7), ("sweep", 4)])
 @pytest.mark.slow("a browser draws the report")
 def test_the_file_alone_shows_every_plot(
     kind: str, plots: int, results: Callable[[str], Path], tmp_path: Path

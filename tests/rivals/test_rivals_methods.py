@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from closed_form_joint import LINEAR, TAU_COULOMB, closed_form_log
-from rivals.methods import METHODS, kalman, least_squares
-from rivals.records import Array, JointLog
+from closed_form_joint import LINEAR, closed_form_log
+from rivals.methods import METHODS, least_squares
+from rivals.records import JointLog
 from rivals.score import score
-from rivals.spring import spring
 
 KINDS = ("series_elastic", "variable_stiffness")
 ERRORS = {
@@ -74,48 +73,3 @@ def test_the_frequency_of_the_dynamics_is_that_of_the_fastest_motion() -> None:
     # What passes the decimation is below 0.8 times the new Nyquist frequency.
     T = log.sample_period
     assert 2 * f <= 0.8 / T / least_squares.decimation(T, f) / 2
-
-
-def test_columns_are_those_of_the_equation() -> None:
-    log = closed_form_log("series_elastic", noise_tau=0.0, counts=0)
-    known = log.known
-    beta = [known.B, known.D_theta, TAU_COULOMB, 0.0, LINEAR * known.range_phi, 0.0]
-    rows = least_squares.regression(log)
-    assert rows.X[:, least_squares.COULOMB] @ rows.X[:, least_squares.COULOMB] > 0
-    np.testing.assert_allclose(rows.X @ beta, rows.y, atol=2e-3 * np.abs(rows.y).max())
-
-
-def test_the_derivatives_of_the_kalman_filter_are_those_of_its_prediction() -> None:
-    log = closed_form_log("variable_stiffness")
-    u = kalman.inputs(log, 500)
-
-    def predicted(x: Array) -> kalman.Filter:
-        each = kalman.Filter(log, spring(log))
-        each.x = x.copy()
-        each.walk[:] = 0.0
-        each.P = np.eye(len(x))
-        each.predict(u)
-        return each
-
-    x = kalman.Filter(log, spring(log)).x
-    x[[kalman.THETA, kalman.VELOCITY, kalman.COULOMB]] = 0.01, 0.003, TAU_COULOMB
-    step = 1e-6 * np.maximum(np.abs(x), 1e-2)
-    F = np.column_stack(
-        [
-            (predicted(x + h * e).x - predicted(x - h * e).x) / (2 * h)
-            for h, e in zip(step, np.eye(len(x)), strict=True)
-        ]
-    )
-    P = predicted(x).P
-    P[kalman.VELOCITY, kalman.VELOCITY] -= noise_of_the_velocity(log, x)
-    np.testing.assert_allclose(P, F @ F.T, rtol=1e-5, atol=1e-8)
-
-
-def noise_of_the_velocity(log: JointLog, x: Array) -> float:
-    """What a prediction adds: all of the variance of an exactly known state."""
-    each = kalman.Filter(log, spring(log))
-    each.x = x.copy()
-    each.walk[:] = 0.0
-    each.P = np.zeros_like(each.P)
-    each.predict(kalman.inputs(log, 500))
-    return float(each.P[kalman.VELOCITY, kalman.VELOCITY])

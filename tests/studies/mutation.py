@@ -41,7 +41,7 @@ REQUIRED = 0.9  # share of the mutants that the tests have to notice
 _REGRESSION = ("regression_oracle", "filtered_regression", "misfit_columns", "evaluate")
 USERS = {
     "change": (),
-    "columns": ("regression_columns", *_REGRESSION),
+    "columns": _REGRESSION,
     "estimator_check": (),
     "filtered_regression": ("prior", "stiffness_estimator", *_REGRESSION),
     "filtered_regression_check": ("estimator_check",),
@@ -57,7 +57,7 @@ USERS = {
     "parameters": ("stiffness_estimator",),
     "posterior": _REGRESSION,
     "refit": _REGRESSION,
-    "signals": ("regression_columns", *_REGRESSION),
+    "signals": _REGRESSION,
     "state_variable_filter": _REGRESSION,
     "stiffness_estimator": ("prior", "filtered_regression", "evaluate"),
     "torque_basis": ("stiffness_estimator",),

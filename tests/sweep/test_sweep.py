@@ -109,27 +109,6 @@ def test_killed_and_resumed_is_the_same_file(tmp_path: Path) -> None:
     assert path.read_bytes() == complete
 
 
-@pytest.mark.slow("several sweeps, each in processes of its own")
-def test_more_seeds_than_before_are_those_of_one_sweep(tmp_path: Path) -> None:
-    settings = ["--set", "estimator.residual.K_I=200,300", "--set", "plant.link.M=normal(0.1,5e-3)"]
-    arguments = [*QUICK, *settings, "--seeds"]
-    path = tmp_path / "grown" / "runs.jsonl"
-    # GIVEN a sweep with few seeds, and the same one with all of them
-    assert run(*arguments, "2", "--out", "grown", cwd=tmp_path).returncode == 0
-    few = path.read_bytes()
-    whole = run(*arguments, "5", "--out", "whole", cwd=tmp_path)
-    # WHEN it gets more seeds
-    grown = run(*arguments, "5", "--out", "grown", cwd=tmp_path)
-    # THEN only the runs that were missing were done, and all that was written is the same
-    assert (grown.returncode, grown.stderr) == (0, "")
-    assert grown.stdout.splitlines()[:-1] == whole.stdout.splitlines()[:-1]
-    assert path.read_bytes().startswith(few)
-    contents = [json.loads(line) for line in path.read_bytes().splitlines()]
-    assert sum("number" in content for content in contents) == 2 * 5
-    for name in FILES - {"runs.jsonl"}:
-        assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "grown" / name).read_bytes()
-
-
 def made_up(path: Path, plan: Plan) -> dict[int, Outcome]:
     """Adds an outcome of every run that the records in a file lack; returns all of them."""
     opened = Records(path, plan)

@@ -39,14 +39,6 @@ class Spring:
     k_3: float  # [N.m/rad3]
     damping: float  # [N.m.s/rad]
 
-    def torque(self, phi: float) -> float:
-        """What it stores [N.m]."""
-        return self.stiffness * phi + self.k_3 * phi**3
-
-    def slope(self, phi: float) -> float:
-        """Of the torque [N.m/rad]."""
-        return self.stiffness + 3 * self.k_3 * phi**2
-
 
 @dataclass(frozen=True)
 class Tendons:
