@@ -232,3 +232,14 @@ def test_the_estimator_is_given_a_prior_of_the_gain_where_there_is_an_error_of_i
         has_error = each.group in (Group.GAIN, Group.RANDOM)
         assert (each.torque_gain > 0) is has_error
         assert settings(draw(AWAS, 1), each.torque_gain)["prior.torque_gain"] == each.torque_gain
+
+
+@pytest.mark.slow("120 joints of 20 s are simulated and estimated")
+def test_what_confident_means() -> None:
+    """The sentence of docs/filtered-regression.md, on joints that nobody has tuned on."""
+    random = [each for each in CONDITIONS if each.group is Group.RANDOM]
+    found = [row.score for row in compare(random, JOINTS, range(401, 441), processes=2)]
+    together = sum(found, Score())
+    assert together.confident >= 90
+    assert together.wrong <= 0.003 * together.confident
+    assert together.coverage >= 90
