@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -114,3 +115,24 @@ def test_check_names_a_spring_that_is_not_symmetric(
     path.write_text(CONFIGURATION + "rls.symmetric = false\n")
     after = check(log_of(stiffer, 3), read_configuration(path)).findings
     assert not any(each.kind is Kind.ASYMMETRY for each in after)
+
+
+def test_what_identify_wrote_is_not_asked_for(path: Path) -> None:
+    """GIVEN odd powers that identify has chosen, THEN the next run is as free as the first."""
+    log = log_of(STIFFER, 4)
+    free = identify(log, read_configuration(path))
+    assert not free.symmetric
+    write(replace(free, symmetric=True), path)
+    configuration = read_configuration(path)
+    assert configuration.parameters["rls.symmetric"] and configuration.symmetric_chosen
+    again = identify(log, configuration)
+    assert not again.symmetric
+    write(again, path)
+    configuration = read_configuration(path)
+    assert configuration.parameters["rls.symmetric"] is False and not configuration.symmetric_chosen
+    # THEN what somebody has asked for is not marked, however often identify runs
+    path.write_text(CONFIGURATION + ODD)
+    for _ in range(2):
+        write(identify(log, read_configuration(path)), path)
+        assert read_configuration(path).parameters["rls.symmetric"]
+        assert not read_configuration(path).symmetric_chosen

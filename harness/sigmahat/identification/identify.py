@@ -54,7 +54,8 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     tau_variance = variance(longest.tau)
     theta_variance = variance(longest.theta, _step(every["encoder.theta"]))
     B = float(every["motor.B"])
-    symmetric = bool(configuration.parameters.get("rls.symmetric", False))
+    asked = bool(configuration.parameters.get("rls.symmetric", False))
+    symmetric = asked and not configuration.symmetric_chosen
     f_0 = bandwidth(tau_variance, theta_variance, B * abs(gamma), T)
     coherent = math.inf
     if not torque_constant:

@@ -17,6 +17,7 @@ from sigmahat.identification.regression import MOTOR
 from sigmahat.logs.configuration import (
     ANOTHER_ROBOT,
     ANY_COULOMB,
+    CHOSEN,
     NOT_YOURS,
     WIDE_PRIOR,
     Port,
@@ -29,7 +30,7 @@ _ABOVE = 1.4
 _ROOM = 1.2
 """Ranges over the largest values of the log: another motion may go further."""
 _MIDDLE = "not known: the middle of what identify holds possible"
-_NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE)
+_NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE, CHOSEN)
 """Comments of values that the next log may tell."""
 
 
@@ -69,7 +70,10 @@ def write(found: Identified, path: Path) -> list[str]:
     priors = {name: _short(value) for name, value in _wide_priors(found, comments).items()}
     wide = {name: value for name, value in priors.items() if not given.get(name)}
     for name, value in values.items():
-        toml_file.set_dotted(parameters, name, tomlkit.item(value))
+        item = tomlkit.item(value)
+        if name == "rls.symmetric" and value and not given.get(name):
+            item.comment(CHOSEN)
+        toml_file.set_dotted(parameters, name, item)
     for name, (value, comment) in unknown.items():
         toml_file.set_dotted(parameters, name, tomlkit.item(_short(value)).comment(comment))
     for name, value in wide.items():

@@ -40,6 +40,8 @@ FILL_IN = "FILL IN"
 """Instead of a column that nobody has named; and so begin comments on what is missing."""
 NOT_YOURS = "not known: of another robot, until identify finds it or you set it"
 """Comment of a motor parameter that nobody has set."""
+CHOSEN = "chosen by identify; without this comment, it is your choice"
+"""Comment of rls.symmetric where nobody asked for it."""
 WIDE_PRIOR = "wide, because it is not known; make it smaller if you know better"
 """Comment of a prior of such a parameter."""
 ANOTHER_ROBOT = 1000.0
@@ -128,6 +130,8 @@ class Configuration:
     """By input of `StiffnessEstimator`."""
     parameters: Mapping[str, Value]
     """Start values of `StiffnessEstimator`, by its names."""
+    symmetric_chosen: bool = False
+    """Whether identify chose rls.symmetric: the next run may choose again."""
 
     def need_ports(self, modality: str) -> None:
         """Raises LogError if a port is missing that the modality needs."""
@@ -176,7 +180,9 @@ def checked_configuration(document: tomlkit.TOMLDocument, path: Path) -> Configu
         raise LogError(f"{path}: {_explain(errors[0])}") from error
     if not file.ports:
         raise LogError(f"{path}: {_NO_PORTS}")
-    return Configuration(path, file.time, file.ports, dict(toml_file.dotted(file.parameters)))
+    chosen = any(line.rstrip().endswith(CHOSEN) for line in tomlkit.dumps(document).splitlines())
+    values = dict(toml_file.dotted(file.parameters))
+    return Configuration(path, file.time, file.ports, values, chosen)
 
 
 def read_document(path: Path) -> tomlkit.TOMLDocument:

@@ -132,9 +132,9 @@ def estimate(
         result = _result(replay, answered.curve)
     write_curve(answered.curve, folder / CURVE)
     write_points(answered.points, folder / POINTS)
-    write_replayed(
-        log.path, result.ticks, result.skipped, result.T, result.notes, folder / REPLAYED.file
-    )
+    changed = [f"the stiffness changed at {t:.4g} s" for t in result.changes]
+    notes = [*result.notes, *changed]
+    write_replayed(log.path, result.ticks, result.skipped, result.T, notes, folder / REPLAYED.file)
     _save_figure(replay, answered, folder)
     return result
 

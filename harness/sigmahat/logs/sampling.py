@@ -107,6 +107,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
         values[:, i] = resampled.values
     names = tuple(configuration.ports)
     notes += put_right(values, names, configuration.ports, T)
+    notes += _whole_turns(values, names, configuration)
     notes += _skipped(values, T)
     return Samples(T, names, values, _tick_of(rows, T, ticks), notes)
 
@@ -232,6 +233,34 @@ def put_right(
                 f"{names[column]}: {turns:+d} periods of its counter during the gap after "
                 f"{(end - 1) * T:.6g} s, by the motion of the other encoder"
             )
+
+
+def _whole_turns(
+    values: Array, names: Sequence[str], configuration: Configuration
+) -> Iterator[str]:
+    """Moves theta or q by whole periods of its counter, so that the deformation is in range.phi.
+
+    A counter that was switched on in another turn is that far off. Nothing moves without range.phi
+    in the configuration, nor where the deformation stays beyond it.
+
+    values  as in put_right, after it
+    """
+    phi_most = configuration.parameters.get("range.phi")
+    if phi_most is None or not {"theta", "q"} <= set(names):
+        return
+    theta, q = (list(names).index(name) for name in ("theta", "q"))
+    phi = values[:, q] - values[:, theta]
+    phi = phi[np.isfinite(phi)]
+    periods = {name: _period(name, configuration.ports[name]) for name in ("theta", "q")}
+    name = min(periods, key=lambda each: periods[each])
+    if not len(phi) or not np.isfinite(periods[name]):
+        return
+    middle = float(np.median(phi))
+    turns = round(middle / periods[name])
+    if turns and abs(middle - turns * periods[name]) <= float(phi_most) < abs(middle):
+        turns *= 1 if name == "theta" else -1
+        values[:, theta if name == "theta" else q] += turns * periods[name]
+        yield f"{name}: {turns:+d} periods of its counter, so that the deformation is in range.phi"
 
 
 def _period(name: str, port: Port) -> float:

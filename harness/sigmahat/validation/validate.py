@@ -24,6 +24,9 @@ from sigmahat.validation.agreement import Agreement, TorqueError, agreement, tor
 
 _INSTANTS = 20_000
 """At which the stiffness is compared, at most: they are evenly spaced over the log."""
+_MOST_ERROR = 0.15
+"""Error of the predicted torque over its standard deviation, above which the curve is wrong: logs
+of a robot have up to 0.13 below 2 Hz, docs/robot.md, and one with a wrong zero has 0.19."""
 
 
 @dataclass(frozen=True)
@@ -53,8 +56,31 @@ class Validation:
 
     @property
     def agree(self) -> bool | None:
-        """Whether the logs agree; None if they cannot tell."""
-        return None if self.repeated else self.stiffness.agree
+        """Whether the logs agree; None if they cannot tell, or agree on what cannot be."""
+        agree = self.stiffness.agree
+        return None if self.repeated or (agree and self.fault is not None) else agree
+
+    @property
+    def fault(self) -> str | None:
+        """What is wrong with both estimates, with its likely cause; None if nothing is."""
+        for which, (value, half) in (
+            ("that was learned", self.stiffness.before),
+            ("of this log", self.stiffness.alone),
+        ):
+            if value + half < 0:
+                return (
+                    f"the stiffness {which} is negative, {value:.5g} +- {half:.2g} N.m/rad: a "
+                    "torque or an angle has the wrong sign; check sign of the ports, motor.gamma"
+                )
+        error = self.torque_below or self.torque
+        if error is not None and error.relative > _MOST_ERROR:
+            return (
+                f"the learned curve does not predict the torque, its error is "
+                f"{100 * error.relative:.3g} % of the standard deviation: check the sign, "
+                "zero, counts_per_turn, torque_constant and gear_ratio of the ports, motor.gamma "
+                "and prior.torque_gain"
+            )
+        return None
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON; units are in the names."""
@@ -75,6 +101,7 @@ class Validation:
             "overlap": both.overlap,
             "z": both.z,
             "agree": self.agree,
+            "fault": self.fault,
             "notes": self.notes,
         }
 
@@ -177,10 +204,13 @@ def _value(value: tuple[float, float]) -> str:
 
 
 def _verdict(result: Validation) -> Iterator[str]:
+    if result.fault is not None:
+        yield result.fault
     if result.repeated:
         yield "cannot tell: this log is one of those that were learned from"
     elif result.agree is None:
-        yield "cannot tell: an interval is wider than the stiffness itself"
+        wide = "an interval is wider than the stiffness itself"
+        yield f"cannot tell: {'see above' if result.stiffness.agree else wide}"
     elif result.agree:
         yield "the logs agree"
     else:
