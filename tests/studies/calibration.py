@@ -93,7 +93,8 @@ def trust(scenario: Scenario, recording: Recording) -> tuple[float, float, float
     confident = estimate["confident"][late] > 0
     inside = error <= 1.96 * estimate["sigma_std"][late]
     wrong = confident & (error > 0.2 * true)
-    return 100 * float(np.mean(inside)), 100 * float(np.mean(confident)), 100 * float(np.mean(wrong))
+    every, sure, danger = (100 * float(np.mean(share)) for share in (inside, confident, wrong))
+    return every, sure, danger
 
 
 if __name__ == "__main__":
