@@ -182,3 +182,24 @@ def test_the_gear_ratio_of_theta_is_that_of_the_motor(estimator_fmu: Path) -> No
         for given, gamma in (("", 70), ("motor.gamma = 0", 70), ("motor.gamma = 35", 35)):
             Path("log.toml").write_text(f"{text}[parameters]\n{given}\n")
             assert parameters(fmu, read_configuration(Path("log.toml")))["motor.gamma"] == gamma
+
+
+@pytest.mark.parametrize(
+    ("step", "unit", "period"), [(2.0, "ms", "0.002"), (1000.0, "us", "0.001"), (2e-3, None, "")]
+)
+def test_a_time_in_another_unit_is_doubted(
+    step: float, unit: str | None, period: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """GIVEN times in ms or us under a name that says s, THEN init names the likely unit."""
+    t = step * np.arange(1000)
+    motion = np.sin(np.arange(1000) / 100)
+    values = {"time_s": t, "theta": motion, "q": 0.9 * motion, "tau": motion**2}
+    write_log(values, Path("log.csv"))
+    main(["init", "log.csv"])
+    text = capsys.readouterr().out
+    if unit is None:
+        assert "implausible" not in text
+    else:
+        assert f'If time_s is in {unit}, set time.unit = "{unit}"' in text
+        assert f"samplePeriod = {period}" in text
+        assert "implausible" in Path("log.toml").read_text()

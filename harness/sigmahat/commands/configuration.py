@@ -76,6 +76,8 @@ def _files(one: Path, joints: Mapping[str, JointGuess], named: bool) -> dict[str
 
 def _text(log: Path, joint: JointGuess, path: Path) -> str:
     """What was guessed, and what is next."""
+    from sigmahat.guessing.template import period_of
+
     lines = [f"joint {joint.name}"] if joint.name else []
     lines += [
         f"{port:13} {each.column} [{each.unit or 'unit not known'}]"
@@ -84,7 +86,11 @@ def _text(log: Path, joint: JointGuess, path: Path) -> str:
     text = path.read_text(encoding="utf-8")
     asked = sum("FILL IN" in line for line in text.splitlines() if not line.startswith("#"))
     option = "" if path == common.configuration_of(log) else f" --config {path}"
-    fill_in = f"fill in {asked} values (FILL IN)" if asked else "nothing to fill in"
+    values = "value" if asked == 1 else "values"
+    fill_in = f"fill in {asked} {values} (FILL IN)" if asked else "nothing to fill in"
+    period = period_of(joint)
+    if "CHECK" in period:
+        lines.append(period.removeprefix("[s] "))
     then = "estimate" if "tau" not in joint.ports and "tau_e_sensor" in joint.ports else "identify"
     lines += ["", f"Check {path}, {fill_in}, then: sigmahat {then} {log}{option}"]
     return "\n".join(lines)

@@ -19,6 +19,8 @@ _MISSING = 1.8  # usual steps: a longer one holds rows that are lost
 _GAP = 3.0  # usual steps: a longer one is a gap
 _EPOCH = {"ns": 1e17, "us": 1e14, "ms": 1e11, "s": 1e8}  # from about 1973 on
 _FASTEST, _SLOWEST = 2e-5, 0.2  # usual time between rows of a log [s]
+FASTEST_ROWS, SLOWEST_ROWS = 2e-5, 0.05
+"""Time between rows outside of which a stiffness can hardly be estimated [s]."""
 
 
 def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:
@@ -46,6 +48,21 @@ def unit_of(meaning: Meaning, facts: Facts, values: Array) -> str:
         if _FASTEST <= step * seconds(unit) <= _SLOWEST:
             return unit
     return "s"
+
+
+def likely_unit(unit: str, T: float) -> str | None:
+    """The unit that the times have more likely, if rows are implausibly far apart; else None.
+
+    unit  that they are taken in
+    T     usual time between rows in that unit [s]
+    """
+    if FASTEST_ROWS <= T <= SLOWEST_ROWS:
+        return None
+    steps = T / seconds(unit)
+    likely = ("s", "ms", "us", "ns")
+    return next(
+        (each for each in likely if FASTEST_ROWS <= steps * seconds(each) <= SLOWEST_ROWS), None
+    )
 
 
 def interval(times: Array) -> float:

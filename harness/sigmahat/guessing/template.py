@@ -9,6 +9,7 @@ from itertools import accumulate
 import tomlkit
 from tomlkit.items import Item, Table
 
+from sigmahat.guessing.columns import likely_unit
 from sigmahat.guessing.facts import TURN
 from sigmahat.guessing.guess import JointGuess, Seen
 from sigmahat.guessing.ports import PortGuess
@@ -21,6 +22,7 @@ from sigmahat.logs.configuration import (
     WIDE_PRIOR,
 )
 from sigmahat.logs.log import Log
+from sigmahat.logs.units import seconds
 
 _MEANING = {
     "theta": "principal motor, after its gear",
@@ -158,10 +160,22 @@ def _empty_port(name: str) -> Table:
     return table
 
 
+def period_of(guess: JointGuess) -> str:
+    """The unit of the sample period, and whether it is plausible."""
+    likely = likely_unit(guess.time_unit, guess.T)
+    if likely is None:
+        return "[s]"
+    T = guess.T / seconds(guess.time_unit) * seconds(likely)
+    return (
+        f"[s] CHECK: {guess.T:g} s between rows is implausible. If {guess.time} is in {likely}, "
+        f'set time.unit = "{likely}" and samplePeriod = {T:g}'
+    )
+
+
 def _parameters(guess: JointGuess, defaults: Mapping[str, float]) -> Table:
     table, ports = tomlkit.table(), guess.ports
     _comment(table, "of StiffnessEstimator.fmu, by their names; others keep their start values")
-    period = "[s]" if guess.time is not None else "[s] FILL IN: no column says it"
+    period = "[s] FILL IN: no column says it" if guess.time is None else period_of(guess)
     _add(table, "samplePeriod", guess.T, period)
     _add(table, "method", "FilteredRegression", "or Paper2011, which needs exact motor data")
     sensor = _is_sensor(guess)
