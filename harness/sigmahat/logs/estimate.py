@@ -12,6 +12,7 @@ from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import CURVE, Curve, curve_text, stiffness_points, write_curve
+from sigmahat.logs.changes import StiffnessChange
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import Answer
 from sigmahat.logs.data_sheet import MOTOR, UNITS, absent, data_sheet, exact, priors
@@ -67,8 +68,8 @@ class Estimate:
     """Relative change of the stiffness with a relative change of the gain of the torque [1]."""
     curve: Curve
     """Torque and stiffness over the deformation."""
-    changes: Sequence[float]
-    """Times since the start of the log at which a change of the stiffness was detected [s]."""
+    changes: Sequence[StiffnessChange]
+    """That were detected."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""
     learned_from: Sequence[str] = ()
@@ -95,7 +96,7 @@ class Estimate:
             "motor": self.motor,
             "joint": self.joint,
             "sigma_per_gain": self.sigma_per_gain,
-            "changes [s]": self.changes,
+            "changes": [{"t [s]": each.t, "relative": each.relative} for each in self.changes],
             "notes": self.notes,
             "learned_from": self.learned_from,
             "parameters": self.parameters,
@@ -132,7 +133,7 @@ def estimate(
         result = _result(replay, answered.curve)
     write_curve(answered.curve, folder / CURVE)
     write_points(answered.points, folder / POINTS)
-    changed = [f"the stiffness changed at {t:.4g} s" for t in result.changes]
+    changed = [each.in_words for each in result.changes]
     notes = [*result.notes, *changed]
     write_replayed(log.path, result.ticks, result.skipped, result.T, notes, folder / REPLAYED.file)
     _save_figure(replay, answered, folder)
@@ -163,7 +164,7 @@ def _result(replay: Replay, found: Curve) -> Estimate:
         joint={name: last[name] for name in last if name.endswith("_hat") and name not in _MOTOR},
         sigma_per_gain=last["sigma_per_gain"],
         curve=found,
-        changes=[samples.T * tick for tick in statistics.changes],
+        changes=replay.changes.found,
         notes=[*continued, *samples.notes],
         learned_from=before,
     )
@@ -219,9 +220,7 @@ def _second_half(result: Estimate) -> Iterator[str]:
     if result.parameters["method"] == "FilteredRegression":
         reasons = ", ".join(f"{item} {100 * share:.3g} %" for item, share in result.doubt.items())
         why = f" ({reasons})" if reasons else ""
-        if result.changes:
-            times = ", ".join(f"{t:.4g}" for t in result.changes)
-            yield f"  the stiffness changed at t = {times} s since the start of the log"
+        yield from (f"  {each.in_words}" for each in result.changes)
         yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time{why}"
 
 

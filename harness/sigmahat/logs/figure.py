@@ -36,9 +36,9 @@ def draw(replay: Replay, answer: Answer) -> Figure:
     every = below.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
     for axes, panel in zip(every, panels, strict=True):
         _shade(axes, skipped)
-        for number, tick in enumerate(replay.statistics.changes):
+        for number, change in enumerate(replay.changes.found):
             legend = None if number else "the stiffness changes"
-            axes.axvline(replay.samples.T * tick, color="black", linestyle=":", label=legend)
+            axes.axvline(change.t, color="black", linestyle=":", label=legend)
         draw_panel(axes, panel)
         axes.margins(x=0.01)
     every[-1].set_xlabel("time since the start of the log t [s]")

@@ -10,6 +10,7 @@ import numpy as np
 
 from sigmahat.fmi.instance import Slave
 from sigmahat.joint.stored import LearnedLog
+from sigmahat.logs.changes import Changes
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import Answer, curve
 from sigmahat.logs.learned import Learned, go_on
@@ -46,9 +47,6 @@ class ReplayStatistics:
         self._used: dict[str, tuple[float, float]] = {}
         self.last: dict[str, float] = {}
         """Real outputs of the last tick."""
-        self.changes: list[int] = []
-        """Ticks at which a change of the stiffness was detected."""
-        self._change_age = -1.0
         self.last_doubt = ""
         """Item of the output doubt at the last tick."""
 
@@ -73,10 +71,6 @@ class ReplayStatistics:
         shown = spread(self.ticks, count, self._stride)
         for name in NEEDED:
             self._points[name].append(outputs[name][shown])
-        age = np.concatenate([[self._change_age], outputs["change_age"]])
-        new = (age[1:] >= 0) & ((age[1:] < age[:-1]) | (age[:-1] < 0))
-        self.changes += (self.ticks + np.flatnonzero(new)).tolist()
-        self._change_age = float(age[-1])
         self.skipped += int(np.count_nonzero(~outputs["valid"]))
         self.ticks += count
         self.last = {name: float(outputs[name][-1]) for name in OUTPUTS}
@@ -144,6 +138,8 @@ class Replay:
         """Time that the estimator has reached [s]."""
         self.samples = sample(log, configuration, float(self.every["samplePeriod"]))
         self.statistics = ReplayStatistics(len(self.samples.values))
+        self.changes = Changes(self.every, self.samples.T)
+        """Of the stiffness, as far as the log is replayed."""
         self.logs = [] if learned is None else list(learned.logs)
         """What the estimator has learned from; at the end this log, too."""
 
@@ -162,8 +158,12 @@ class Replay:
         call. digest is the SHA-256 of the log for the record.
         """
         statistics, ticks, done = self.statistics, len(self.samples.values), 0
+        of_curve = self.changes.names
         chunk = statistics.bucket * max(1, _CHUNK // statistics.bucket)
-        for outputs in play(self.slave, self.samples, chunk, self.t):
+        for outputs in play(self.slave, self.samples, chunk, self.t, of_curve):
+            self.changes.add(outputs)
+            for name in of_curve:
+                del outputs[name]
             statistics.add(outputs)
             add(outputs)
             now = done + len(outputs["valid"])

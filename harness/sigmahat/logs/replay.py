@@ -92,18 +92,21 @@ def replay(
 
 
 def play(
-    slave: Slave, samples: Samples, chunk: int, t_0: float = 0.0
+    slave: Slave, samples: Samples, chunk: int, t_0: float = 0.0, more: Sequence[str] = ()
 ) -> Iterator[dict[str, NDArray[Any]]]:
     """The same for an estimator that has reached the time t_0 [s].
 
     The sample at t_0 + t_k is the input of the tick at that time; ports that are not configured
     keep their values, which are 0 at the start and after a gap.
+
+    more  Real outputs that are recorded besides OUTPUTS
     """
     inputs = slave.fmu.references(samples.names, "input")
     for first in range(0, len(samples.values), chunk):
         values = np.ascontiguousarray(samples.values[first : first + chunk])
         t = t_0 + samples.T * np.arange(first, first + len(values), dtype=np.float64)
-        recorder, loop = Recorder(slave, (*OUTPUTS, *FLAGS, _REASON), len(values)), SampleLoop()
+        names = (*OUTPUTS, *more, *FLAGS, _REASON)
+        recorder, loop = Recorder(slave, names, len(values)), SampleLoop()
         loop.set_real(slave, inputs, values)
         loop.step(slave, step_times(t, samples.T))
         recorder.add_to(loop)

@@ -49,6 +49,8 @@ class Contents:
     """PNG files."""
     every: tuple[float, float] | None = None
     """Times between which every sample is drawn [s]; None: everywhere."""
+    marks: Sequence[float] = ()
+    """Times at which the panels over time have a dotted line [s]."""
 
 
 def number(value: object) -> str:

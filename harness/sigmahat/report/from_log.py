@@ -26,6 +26,7 @@ from sigmahat.joint.curve import (
 )
 from sigmahat.joint.sheet import Sheet
 from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
+from sigmahat.logs.changes import detected
 from sigmahat.logs.curve_panels import curve_panels
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimatedSignal, Replayed, read_estimate
@@ -115,12 +116,17 @@ def from_log(folder: Path) -> Contents:
     if answer is not None and answer.sheet.method != "FilteredRegression":
         drawn.pop("sigma_std", None)  # the method gives no interval
     reduced = reduce(t, drawn)
+    marks = []
+    if "change_age" in signals:  # older versions have none
+        confident = signals["confident"].values.astype(bool)
+        marks = t[detected(signals["change_age"].values, confident)].tolist()
+    marked = ["Dotted lines: changes of the stiffness, see Samples."] if marks else []
     tables = [] if answer is None else _found(answer)
     tables += findings_table(folder)
     tables += [_estimates(signals, used), *([] if doubt is None else [_doubts(doubt)])]
     return Contents(
         f"Log: {folder.resolve().name}",
-        [f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}"],
+        [f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}", *marked],
         [*tables, *([] if answer is None else [estimator_table(answer.sheet)])],
         [
             *stiffness_panels(reduced, [Estimate("estimate", {"sigma": "sigma"})]),
@@ -129,6 +135,7 @@ def from_log(folder: Path) -> Contents:
         answer=[] if answer is None else list(curve_panels(answer.curve, answer.points)),
         notes=[*([] if answer is None else answer.replayed.notes), *sampling(reduced)],
         every=reduced.every if reduced.bucket > 1 else None,
+        marks=marks,
     )
 
 

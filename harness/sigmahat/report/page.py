@@ -87,7 +87,7 @@ def report(folder: Path) -> str:
 
 def _page(contents: Contents) -> str:
     """The report as HTML."""
-    made = plots([*contents.answer, *contents.panels], contents.every)
+    made = plots([*contents.answer, *contents.panels], contents.every, contents.marks)
     script, divs = components([plot.figure for plot in made]) if made else ("", [])
     loader = FileSystemLoader(Path(__file__).parent)
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)

@@ -18,6 +18,7 @@ from bokeh.models import (
     Range1d,
     ResetTool,
     SaveTool,
+    Span,
     TeeHead,
     WheelZoomTool,
     Whisker,
@@ -41,8 +42,10 @@ class Plot:
     """Each curve and the name that all its models have."""
 
 
-def plots(panels: Sequence[Panel], every: tuple[float, float] | None) -> list[Plot]:
-    """The plots of panels; every is shaded in those that are linked."""
+def plots(
+    panels: Sequence[Panel], every: tuple[float, float] | None, marks: Sequence[float] = ()
+) -> list[Plot]:
+    """The plots of panels; those that are linked have every shaded, and dotted lines at marks."""
     sources: dict[int, ColumnDataSource] = {}
     linked = _time_range(panels)
     made = []
@@ -51,6 +54,10 @@ def plots(panels: Sequence[Panel], every: tuple[float, float] | None) -> list[Pl
         if every is not None and panel.linked:
             plot.add_layout(
                 BoxAnnotation(left=every[0], right=every[1], fill_color="#888888", fill_alpha=0.12)
+            )
+        for mark in marks if panel.linked else ():
+            plot.add_layout(
+                Span(location=mark, dimension="height", line_dash="dotted", line_color="#888888")
             )
         switches = []
         for j, curve in enumerate(panel.curves):

@@ -1,0 +1,72 @@
+"""A stiffness that changes in a log: when and by how much, on the screen and in the report."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from browser import opened
+from recorded_logs import CONFIGURATION, read_estimate, write_log
+from regression_joint import Joint
+from sigmahat.cli import main
+from sigmahat.logs.changes import Changes
+
+REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\n'
+MARKS = """
+return [...Bokeh.documents[0]._all_models.values()]
+  .filter(m => m.type === "Span").map(m => m.location);
+"""
+
+
+@pytest.mark.parametrize("factor", [2.0, 0.5])
+def test_a_step_has_its_time_its_size_and_its_mark(
+    factor: float,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
+    joint = Joint(duration=30.0, stiffness=lambda t: np.where(t < 15.0, 1.0, factor))
+    columns = dict(zip(("theta", "q", "theta_c", "tau"), joint.measurements().T, strict=False))
+    write_log({"t": joint.t, **columns}, Path("log.parquet"))
+    Path("log.toml").write_text(REGRESSION)
+    assert main(["estimate", "log.parquet", "--out", "out", "--json"]) == 0
+    (change,) = json.loads(capsys.readouterr().out)["changes"]
+    assert 15.0 < change["t [s]"] < 20.0
+    assert change["relative"] == pytest.approx(factor - 1, abs=0.1 * factor)
+    words = f"the stiffness changed by {100 * change['relative']:+.0f} % at {change['t [s]']:.4g} s"
+    assert words in json.loads(Path("out/estimate.json").read_text())["notes"]
+    # THEN the table, which the report marks, has the same time and no coefficient
+    table = read_estimate(Path("out"))
+    assert not any("eta[" in name for name in table.column_names)
+    assert main(["report", "out", "--quiet"]) == 0
+    with opened(tmp_path / "out" / "report.html") as page:
+        marks = np.array(page.run(MARKS))
+        assert len(marks) > 3 and np.allclose(marks, change["t [s]"])
+        text = page.run("return document.body.textContent")
+    assert words in text and "Dotted lines: changes of the stiffness" in text
+
+
+def test_the_size_needs_a_confident_estimate_before_and_after() -> None:
+    """GIVEN sigma = 10 + 2 phi setPoint, later 30 + 2 phi setPoint; at the change both are 2."""
+    every = {"rls.n": 3, "rls.m": 2, "rls.symmetric": False}
+    changes = Changes(every, 0.5)
+    slopes = {"eta[1,0]": np.repeat([10.0, 30.0], 4), "eta[2,1]": np.ones(8)}
+    outputs = {name: slopes.get(name, np.zeros(8)) for name in changes.names} | {
+        "change_age": np.array([-1.0, -1.0, -1.0, -1.0, 0.0, 0.0, 0.5, 0.0]),
+        "confident": np.array([False, True, False, False, False, False, True, False]),
+        "phi": np.full(8, 2.0),
+        "setPoint": np.full(8, 2.0),
+    }
+    # THEN the start at 2.5 s is of the change at 2 s, which the estimate did not follow yet
+    for part in (slice(0, 5), slice(5, 8)):
+        changes.add({name: values[part] for name, values in outputs.items()})
+    first, second = changes.found
+    assert first.t == 2.0 and first.relative == pytest.approx(38.0 / 18.0 - 1)
+    assert first.in_words == "the stiffness changed by +111 % at 2 s"
+    assert second.t == 3.5 and second.relative is None
+    assert second.in_words == "the stiffness changed at 3.5 s, by how much is not known"
