@@ -69,10 +69,13 @@ def test_a_counter_that_begins_in_another_turn(
     assert moved in found["notes"]
     value, half = found["stiffness of this log [N.m/rad]"]
     assert abs(value - KNEE["spring.k_1"]) < half < 50
-    # THEN without range.phi nothing is moved, for nobody knows how large the deformation may be
+    # THEN without range.phi nothing is moved, for nobody knows how large the deformation may be,
+    # but what was seen is named with the key
     status, found = validate(folder, WRAPPED.replace("range.phi = 0.03\n", ""), monkeypatch, capsys)
     assert status == 1 and not found["agree"]
     assert not any("periods of its counter" in note for note in found["notes"])
+    assert "the counter of theta began -8 of its periods away" in found["fault"]
+    assert "range.phi" in found["fault"] and "ports.theta.zero" in found["fault"]
 
 
 @pytest.mark.parametrize(

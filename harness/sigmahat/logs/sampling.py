@@ -246,21 +246,38 @@ def _whole_turns(
     values  as in put_right, after it
     """
     phi_most = configuration.parameters.get("range.phi")
-    if phi_most is None or not {"theta", "q"} <= set(names):
+    if phi_most is None:
         return
+    name, turns = turns_from(0.0, float(phi_most), values, names, configuration.ports)
+    if turns:
+        values[:, list(names).index(name)] += turns * _period(name, configuration.ports[name])
+        yield f"{name}: {turns:+d} periods of its counter, so that the deformation is in range.phi"
+
+
+def turns_from(
+    center: float, most: float, values: Array, names: Sequence[str], ports: Mapping[str, Port]
+) -> tuple[str, int]:
+    """The port that wraps, theta or q, and by how many periods it has to move; 0 if by none.
+
+    It moves if the median of the deformation is further than most from center, and then no more.
+
+    center, most  [rad]
+    values        as in put_right, after it
+    """
+    if not {"theta", "q"} <= set(names):
+        return "", 0
     theta, q = (list(names).index(name) for name in ("theta", "q"))
     phi = values[:, q] - values[:, theta]
     phi = phi[np.isfinite(phi)]
-    periods = {name: _period(name, configuration.ports[name]) for name in ("theta", "q")}
+    periods = {name: _period(name, ports[name]) for name in ("theta", "q")}
     name = min(periods, key=lambda each: periods[each])
     if not len(phi) or not np.isfinite(periods[name]):
-        return
-    middle = float(np.median(phi))
-    turns = round(middle / periods[name])
-    if turns and abs(middle - turns * periods[name]) <= float(phi_most) < abs(middle):
-        turns *= 1 if name == "theta" else -1
-        values[:, theta if name == "theta" else q] += turns * periods[name]
-        yield f"{name}: {turns:+d} periods of its counter, so that the deformation is in range.phi"
+        return "", 0
+    away = float(np.median(phi)) - center
+    turns = round(away / periods[name])
+    if abs(away - turns * periods[name]) <= most < abs(away):
+        return name, turns if name == "theta" else -turns
+    return name, 0
 
 
 def _period(name: str, port: Port) -> float:

@@ -13,13 +13,14 @@ from sigmahat.files.output import sha256
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.joint.start_values import as_fixed_curve, start_values
+from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import stiffness_at
 from sigmahat.logs.job import Replay
 from sigmahat.logs.learned import read_learned
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.replay import parameters
-from sigmahat.logs.sampling import Samples
+from sigmahat.logs.sampling import Samples, turns_from
 from sigmahat.validation.agreement import Agreement, TorqueError, agreement, torque_errors
 
 _INSTANTS = 20_000
@@ -53,6 +54,8 @@ class Validation:
     """The learned stiffness beside that of this log alone."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""
+    turned: str | None
+    """That a counter began in another turn than in the logs that were learned from, in words."""
 
     @property
     def agree(self) -> bool | None:
@@ -62,7 +65,9 @@ class Validation:
 
     @property
     def fault(self) -> str | None:
-        """What is wrong with both estimates, with its likely cause; None if nothing is."""
+        """What is wrong with the estimates, with its likely cause; None if nothing is."""
+        if self.turned is not None:
+            return self.turned
         for which, (value, half) in (
             ("that was learned", self.stiffness.before),
             ("of this log", self.stiffness.alone),
@@ -156,6 +161,26 @@ def validate(log: Log, configuration: Configuration, start_from: Path) -> Valida
         torque_below=below,
         stiffness=agreement(before, alone, float(every["prior.torque_gain"])),
         notes=samples.notes,
+        turned=_turned(samples, configuration, learned.logs),
+    )
+
+
+def _turned(
+    samples: Samples, configuration: Configuration, logs: Sequence[LearnedLog]
+) -> str | None:
+    """Whether the deformation is whole periods of a counter away from where it was."""
+    ranges = [each.phi for each in logs if each.phi is not None]
+    if not ranges:
+        return None
+    low, high = min(low for low, _ in ranges), max(high for _, high in ranges)
+    center, most = (low + high) / 2, high - low
+    name, turns = turns_from(center, most, samples.values, samples.names, configuration.ports)
+    if not turns:
+        return None
+    return (
+        f"the counter of {name} began {-turns:+d} of its periods away from the logs that were "
+        "learned from, so that the deformation is wrong: set range.phi to the largest deformation, "
+        f"{max(abs(low), abs(high)):.2g} rad or a little more, or ports.{name}.zero for this log"
     )
 
 
