@@ -21,8 +21,8 @@ class StiffnessChange:
     t: float
     """Time since the start of the log [s]."""
     relative: float | None
-    """From the last confident estimate before to the first one after, over the former [1]; None
-    without one of them."""
+    """From the last confident estimate before it to the last one before the next change, over the
+    former [1]; None without one of them."""
 
     @property
     def in_words(self) -> str:
@@ -65,7 +65,7 @@ class Changes:
         self._T, self._ticks, self._age, self._followed = T, 0, -1.0, True
         self._eta: NDArray[np.float64] | None = None  # of the last confident tick since a change
         self._at = 0.0, 0.0  # deformation and set-point of the last change
-        self._before: float | None = None  # the stiffness there; None once the size is known
+        self._before: float | None = None  # the stiffness there
         self._found: list[StiffnessChange] = []
 
     @property
@@ -87,10 +87,10 @@ class Changes:
                 self._found.append(StiffnessChange(self._T * (self._ticks + begin), None))
             inside = confident[(confident >= begin) & (confident < end)]
             if len(inside):
+                self._eta, self._followed = eta[inside[-1]], True
                 if self._before is not None and self._before > 0:
-                    relative = self._stiffness(eta[inside[0]]) / self._before - 1
+                    relative = self._stiffness(self._eta) / self._before - 1
                     self._found[-1] = StiffnessChange(self._found[-1].t, relative)
-                self._before, self._eta, self._followed = None, eta[inside[-1]], True
         self._ticks, self._age = self._ticks + len(age), float(age[-1])
 
     def _stiffness(self, eta: NDArray[np.float64]) -> float:
