@@ -217,10 +217,10 @@ static void clear_underflowed(sh_ud_factor *P)
     int i, j;
 
     for (j = 0; j < P->size; ++j) {
-        for (i = 0; i < j && !(P->D[j] > 0); ++i) {
-            P->U[place(P->size, i, j)] = 0;
-        }
         if (!(P->D[j] > 0)) {
+            for (i = 0; i < j; ++i) {
+                P->U[place(P->size, i, j)] = 0;
+            }
             P->work.f[j] = 0;
         }
     }
@@ -240,18 +240,15 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
     const int size = P->size;
     sh_real *u = P->U, *g = P->work.g, *s = P->work.f;
     int stride = size * SH_PANEL; /* from the begin of a panel to that of the next */
-    int are_positive = 1, i, j;
+    int i, j;
 
     for (j = 0; j < size; ++j) {
         const sh_real beta = 1 + w * P->work.rho[j];
 
         P->D[j] *= beta / (1 + w * P->work.rho[j + 1]);
         P->work.f[j] = w * P->work.f[j] / beta; /* s_j */
-        are_positive &= P->D[j] > 0;
     }
-    if (!are_positive) { /* outside of the loop, which is faster without a branch */
-        clear_underflowed(P);
-    }
+    clear_underflowed(P);
     /* Panel after panel, as an entry of p depends on its own row of U alone; two at a time, as they
      * share the factors of the columns. In the first column of a panel only the one on the diagonal
      * is not zero: there p becomes g_i, and u does not change.
