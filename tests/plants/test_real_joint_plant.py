@@ -27,6 +27,25 @@ MISFITS: Mapping[str, Mapping[str, float]] = {
     "Stribeck": {"motor.stribeck": 0.5, "motor.v_stribeck": 0.1},
     "bent friction": {"motor.v_bend": 2.0},
     "cogging": {"motor.cogging": 0.02, "motor.cogging_order": 6.0},
+    "ripple": {"motor.ripple": 0.1, "motor.ripple_order": 4.0},
+    "LuGre friction": {"motor.lugre": 0.02, "motor.lugre_theta": 5e-4},
+    "LuGre friction by load": {
+        "motor.lugre_load": 0.2,
+        "motor.lugre_theta": 5e-4,
+        "motor.lugre_damping": 1e-3,
+    },
+    "knees": {
+        "spring.k_knee_1": 40.0,
+        "spring.knee_1": 1e-3,
+        "spring.k_knee_2": 80.0,
+        "spring.knee_2": 2e-3,
+    },
+    "step of the stiffness": {"spring.k_step": 1.0, "spring.step_at": 0.053},
+    "slow change of the stiffness": {
+        "spring.k_step": -0.5,
+        "spring.step_at": 0.053,
+        "spring.step_for": 0.1,
+    },
     "contact": {"contact.k": 20.0, "contact.d": 0.2},
     "gravity": {"link.mgl": 1.0},
 }
@@ -52,22 +71,36 @@ def run(h: float, given: Array, start: Mapping[str, float], *names: str) -> dict
     return run_plant("RealJointPlant", INPUTS, h, given, {**BASE, **start}, [*STATES, *names])
 
 
+def spring(p: Mapping[str, float], x: float, r: float, t: float) -> tuple[float, float]:
+    """Elastic torque and stiffness at the deformation x [rad], arm r [m], time t [s]."""
+    arm = p["spring.k_s"] * r * r
+    torque = p["spring.k_1"] * x + p["spring.k_3"] * x**3 + arm * math.sin(2 * x)
+    rising = p["spring.k_1"] + 3 * p["spring.k_3"] * x**2 + 2 * arm * math.cos(2 * x)
+    for k, knee in (("k_knee_1", "knee_1"), ("k_knee_2", "knee_2")):
+        free = min(max(x, -p[f"spring.{knee}"]), p[f"spring.{knee}"])
+        torque += p[f"spring.{k}"] * (x - free)
+        rising += p[f"spring.{k}"] * (x != free)
+    late, ramp = t - p["spring.step_at"], p["spring.step_for"]
+    done = float(late >= 0) if ramp == 0 else min(max(late / ramp, 0.0), 1.0)
+    stiffer = 1 + p["spring.k_step"] * done
+    return stiffer * torque, stiffer * rising
+
+
 def equations(start: Mapping[str, float]) -> reference_joints.Derivative:
-    """d/dt of q, theta, q_dot, theta_dot and the torque of the hysteresis."""
+    """d/dt of q, theta, q_dot, theta_dot, the torque of the hysteresis, bristles [rad] and time."""
     none = {name: 0.0 for name in EVERYTHING} | {"spring.k_3": 0.0, "spring.k_s": 0.0}
-    p = {**none, "spring.dahl_phi": 1e-3, "motor.v_stribeck": 0.1, **BASE, **start}
+    p = {**none, "spring.dahl_phi": 1e-3, "motor.v_stribeck": 0.1, "motor.lugre_theta": 1e-4}
+    p |= {**BASE, **start}
     M, D_q, B, D, gamma = 0.1, 0.15, 2.3e-5, 1e-3, 50.0
 
     def derivative(state: Array, tau: float, tau_ext: float, r: float, d: float, c: float) -> Array:
-        q, theta, v_q, v, z = state
+        q, theta, v_q, v, z, bent, t = state
         shown = p["gear.kinematic_error"] * math.sin(p["gear.kinematic_order"] * gamma * theta)
         x = q - theta + shown
         inside = abs(x) <= p["spring.gap"] > 0
         x = 0.0 if inside else x - math.copysign(p["spring.gap"], x)
-        arm = p["spring.k_s"] * r * r
-        tau_e = p["spring.k_1"] * x + p["spring.k_3"] * x**3 + arm * math.sin(2 * x)
+        tau_e, rising = spring(p, x, r, t)
         if not inside:
-            rising = p["spring.k_1"] + 3 * p["spring.k_3"] * x**2 + 2 * arm * math.cos(2 * x)
             tau_e += p["spring.damping"] * rising * (v_q - v)
         tau_e += z
         bend = 1.0 + (v / p["motor.v_bend"]) ** 2 if p["motor.v_bend"] else 1.0
@@ -77,16 +110,25 @@ def equations(start: Mapping[str, float]) -> reference_joints.Derivative:
         friction += p["motor.tau_coulomb"] * (1 + c) * (peak * sign + p["motor.uneven"])
         friction += p["motor.load_friction"] * abs(tau_e) / gamma * sign
         cogging = p["motor.cogging"] * math.sin(p["motor.cogging_order"] * gamma * theta)
+        # C. Canudas de Wit: z' = v - |v| z / g(v) and F = sigma_0 z + sigma_1 z'
+        g = p["motor.lugre_theta"] * peak
+        bending = v - abs(v) * bent / g
+        sigma_0 = p["motor.lugre"] + p["motor.lugre_load"] * abs(tau_e) / gamma
+        sigma_0 /= p["motor.lugre_theta"]
+        friction += sigma_0 * (bent + p["motor.lugre_damping"] * bending)
         against = tau_e + D_q * v_q + p["link.mgl"] * math.sin(q)
         against += p["contact.k"] * q + p["contact.d"] * v_q
+        rippled = p["motor.ripple"] * math.sin(p["motor.ripple_order"] * gamma * theta)
         relative = v_q - v
         return np.array(
             [
                 v_q,
                 v,
                 (tau_ext - against) / M,
-                (tau - friction + cogging + tau_e / gamma) / (B * gamma),
+                (tau * (1 + rippled) - friction + cogging + tau_e / gamma) / (B * gamma),
                 (p["spring.dahl"] * relative - abs(relative) * z) / p["spring.dahl_phi"],
+                bending,
+                1.0,
             ]
         )
 
@@ -100,7 +142,7 @@ def test_with_every_misfit_the_motion_is_the_solution_of_the_equations(
 ) -> None:
     h, start = 1e-2, {**spring, **EVERYTHING}
     given = inputs(h, 1.0)
-    reference = reference_joints.solve(equations(start), h, given, np.zeros(5))[:, :4]
+    reference = reference_joints.solve(equations(start), h, given, np.zeros(7))[:, :4]
     assert relative_error(run(h, given, start), reference).max() < 1e-7
 
 
@@ -108,7 +150,7 @@ def test_with_every_misfit_the_motion_is_the_solution_of_the_equations(
 def test_each_misfit_enters_as_in_the_equations(name: str) -> None:
     h, start = 1e-2, {**LINEAR, **MISFITS[name]}
     given = inputs(h, 0.2)
-    reference = reference_joints.solve(equations(start), h, given, np.zeros(5))[:, :4]
+    reference = reference_joints.solve(equations(start), h, given, np.zeros(7))[:, :4]
     found = run(h, given, start)
     assert relative_error(found, reference).max() < 1e-7
     assert relative_error(run(h, given, LINEAR), reference).max() > 1e-4  # it has an effect
@@ -120,7 +162,7 @@ def test_a_jump_of_the_torque_is_stepped_over() -> None:
     start = {"spring.gap": 1e-3, "spring.damping": 0.1}
     begin = {"initial.q": 2.0, "initial.theta": 2.0, "initial.q_dot": 1.0}
     given = np.zeros((21, 5))
-    moving = np.array([2.0, 2.0, 1.0, 0.0, 0.0])
+    moving = np.array([2.0, 2.0, 1.0, 0.0, 0.0, 0.0, 0.0])
     reference = reference_joints.solve(equations({"spring.k_1": 150.0, **start}), h, given, moving)
     assert relative_error(run(h, given, {**start, **begin}), reference[:, :4]).max() < 1e-7
 
@@ -161,8 +203,9 @@ def test_the_measured_torque_has_a_gain_and_a_bias() -> None:
 
 
 def test_stiffness_is_the_slope_of_the_torque_and_0_in_the_dead_zone() -> None:
-    start = {**LINEAR, "spring.k_s": 1000.0, "spring.gap": 1e-3}
-    for phi in (-0.02, -1.2e-3, 1.2e-3, 0.02):
+    start = {**LINEAR, "spring.k_s": 1000.0, "spring.gap": 1e-3, "spring.k_step": 0.5}
+    start |= {"spring.k_knee_1": 40.0, "spring.k_knee_2": -30.0}
+    for phi in (-0.02, -8e-3, -1.2e-3, 1.2e-3, 8e-3, 0.02):
         stiffness, difference = slope("RealJointPlant", start, phi)
         assert stiffness == pytest.approx(difference, rel=1e-5)
     assert slope("RealJointPlant", start, 5e-4) == (0.0, 0.0)

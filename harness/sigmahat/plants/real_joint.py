@@ -33,6 +33,8 @@ theta = position(plant, "theta")
 q_dot = velocity(plant, "q_dot")
 theta_dot = velocity(plant, "theta_dot")
 tau_dahl = plant.state("tau_dahl", start=0.0, scale=1.0)
+bristle = plant.state("bristle", start=0.0, scale=1.0)  # over the deflection at which it slides
+clock = plant.state("clock", start=0.0, scale=1e12)  # integrated exactly: it needs no small steps
 
 # The gear has a kinematic error, once or several times per turn of the motor.
 phi = q - theta
@@ -50,7 +52,23 @@ k_3 = plant.parameter("spring.k_3")
 k_awas = plant.parameter("spring.k_s") * r**2
 elastic = k_1 * x + k_3 * x**3 + k_awas * ca.sin(2 * x)  # (28)
 slope = k_1 + 3 * k_3 * x**2 + 2 * k_awas * ca.cos(2 * x)  # (4), (29)
-sigma = ca.if_else(engaged, slope, 0)
+
+# Beyond each knee the torque has another slope, as that of a harmonic drive.
+for knee in (1, 2):
+    beyond = ca.fabs(x) - plant.parameter(f"spring.knee_{knee}")
+    change = plant.parameter(f"spring.k_knee_{knee}")
+    elastic += change * ca.sign(x) * ca.fmax(beyond, 0)
+    slope += ca.if_else(beyond > 0, change, 0)
+
+# The stiffness changes at a time since the start, at once or in a ramp.
+k_step = plant.parameter("spring.k_step")
+since = clock - plant.parameter("spring.step_at")
+step_for = plant.parameter("spring.step_for")
+ramp = ca.fmin(ca.fmax(since, 0) / ca.if_else(step_for > 0, step_for, 1), 1)
+changed = 1 + k_step * ca.if_else(step_for > 0, ramp, since >= 0)
+plant.derivative(clock, ca.SX(1))
+elastic *= changed
+sigma = ca.if_else(engaged, slope * changed, 0)
 
 # Hysteresis: P. Dahl, "A solid friction model", 1968, of the exponent 1.
 dahl = plant.parameter("spring.dahl") * phi_dot - ca.fabs(phi_dot) * tau_dahl
@@ -71,7 +89,19 @@ coulomb *= (1 + stribeck) * sign + plant.parameter("motor.uneven")
 of_load = plant.parameter("motor.load_friction") * ca.fabs(tau_e) / gamma * sign
 cogging = ca.sin(plant.parameter("motor.cogging_order") * gamma * theta)
 cogging *= plant.parameter("motor.cogging")
-on_motor = tau + cogging - viscous - coulomb - of_load + tau_e / gamma
+ripple = ca.sin(plant.parameter("motor.ripple_order") * gamma * theta)
+ripple *= plant.parameter("motor.ripple") * tau
+
+# LuGre friction, C. Canudas de Wit et al., IEEE Transactions on Automatic Control 40(3), 1995. The
+# load presses more bristles together, so the whole torque is proportional to the level.
+lugre, lugre_load = plant.parameter("motor.lugre"), plant.parameter("motor.lugre_load")
+level = lugre + lugre_load * ca.fabs(tau_e) / gamma
+slip = theta_dot - ca.fabs(theta_dot) * bristle / (1 + stribeck)
+slip /= plant.parameter("motor.lugre_theta")
+plant.derivative(bristle, ca.if_else(lugre + lugre_load > 0, slip, 0))
+sliding = level * (bristle + plant.parameter("motor.lugre_damping") * slip)
+
+on_motor = tau + ripple + cogging - viscous - coulomb - of_load - sliding + tau_e / gamma
 plant.derivative(theta, theta_dot)
 plant.derivative(theta_dot, on_motor / (plant.parameter("motor.B") * gamma))
 plant.output("theta", theta)
