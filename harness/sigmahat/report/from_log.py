@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.files.output import write_json
+from sigmahat.files.tables import read_csv
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
     CURVE,
@@ -19,6 +20,7 @@ from sigmahat.joint.curve import (
     STIFFNESS_HEAD,
     Curve,
     family_rows,
+    headline,
     polynomial_in_words,
     reach_in_words,
     read_curve,
@@ -30,6 +32,7 @@ from sigmahat.logs.changes import detected
 from sigmahat.logs.curve_panels import curve_panels
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimatedSignal, Replayed, read_estimate
+from sigmahat.logs.several import JOINTS
 from sigmahat.logs.time_panels import (
     Estimate,
     quantity_panels,
@@ -38,7 +41,7 @@ from sigmahat.logs.time_panels import (
     stiffness_panels,
 )
 from sigmahat.plotting.style import plain_text, plain_title, plain_unit
-from sigmahat.report.contents import Contents, TextTable, number
+from sigmahat.report.contents import Contents, TextTable, number, of_file
 
 
 @dataclass(frozen=True)
@@ -137,6 +140,28 @@ def from_log(folder: Path) -> Contents:
         every=reduced.every if reduced.bucket > 1 else None,
         marks=marks,
     )
+
+
+def from_joints(folder: Path) -> Contents:
+    """The table of several joints, and the curve of each.
+
+    Raises ValueError, which says what to do, for a file that is missing or damaged.
+    """
+    table = read_csv(folder / JOINTS)
+    if table.column_names[:1] != ["joint"]:
+        raise ValueError(f"{folder / JOINTS}: no table of `sigmahat estimate`; run it again")
+    names = list(dict.fromkeys(map(str, table["joint"].to_pylist())))
+    panels, lines = [], []
+    for name in names:
+        answer = _answer(folder / name)
+        if answer is None:
+            raise ValueError(f"{folder / name}: no result of `sigmahat estimate`; run it again")
+        lines.append(f"{name}: {headline(answer.curve, answer.sheet.doubt)}")
+        of_curve = list(curve_panels(answer.curve, answer.points))
+        panels += [replace(each, title=f"{name}: {each.title}") for each in of_curve[1:]]
+    note = f"Each joint has a report of its own: sigmahat report {folder}/{names[0]}"
+    stiffness = replace(of_file("Stiffness", table), note=note)
+    return Contents(f"Joints: {folder.resolve().name}", lines, [stiffness], panels)
 
 
 def _answer(folder: Path) -> _Answer | None:
