@@ -55,11 +55,16 @@ def joint_option(command: _Command) -> _Command:
     return click.option("--joint", metavar="NAME", default="", help=text)(command)
 
 
-def joints_of(config: Path, joint: str) -> list[str]:
-    """The joint that was asked for, else all of a configuration; [""] if it names none."""
+def joints_of(log: Path, config: Path, joint: str) -> list[str]:
+    """The joint that was asked for, else all of a configuration; [""] if it names none.
+
+    Raises LogError if the log or the configuration cannot be read.
+    """
     from sigmahat.logs.configuration import joints_of as every
     from sigmahat.logs.configuration import read_document
+    from sigmahat.logs.readers.formats import open_log
 
+    open_log(log)  # a log that is missing is said before a configuration that is
     return [joint] if joint else every(read_document(config), config)
 
 
@@ -71,10 +76,20 @@ def for_each(joints: Sequence[str], job: Callable[[str], _Result]) -> dict[str, 
 
     found: dict[str, _Result] = {}
     with progress("Joints", len(joints)) as bar:
-        for place, result in spread([partial(job, joint) for joint in joints]):
+        for place, result in spread([partial(_with_name, job, joint) for joint in joints]):
             found[joints[place]] = result
             bar.update(1)
     return {joint: found[joint] for joint in joints}
+
+
+def _with_name(job: Callable[[str], _Result], joint: str) -> _Result:
+    """The result of a job; its errors name the joint."""
+    from sigmahat.logs.log import LogError
+
+    try:
+        return job(joint)
+    except LogError as error:
+        raise LogError(f"joint {joint}: {error}") from error
 
 
 def answer_of_joints(
@@ -106,7 +121,7 @@ def answer(text: str, values: object = None, head: str = "") -> None:
         print_json(values)
     elif not options.get(_QUIET):
         if head:
-            click.secho(f"{printable(head)}\n", bold=True)
+            click.secho(printable(head), bold=True)
         click.echo(printable(text))
 
 

@@ -143,7 +143,7 @@ def check(log: Path, config: Path | None, joint: str) -> int:
     common.need_fmu("StiffnessEstimator")
     config = config or common.configuration_of(log)
     with common.errors_in_one_line(config, "--config"):
-        joints = common.joints_of(config, joint)
+        joints = common.joints_of(log, config, joint)
         checked = common.for_each(joints, partial(_checked, log, config))
     texts = {name: f"{log} with {config}\n{summary(each)}" for name, each in checked.items()}
     common.answer_of_joints(texts, {name: as_dict(each) for name, each in checked.items()})
@@ -194,7 +194,7 @@ def identify(
     config = config or common.configuration_of(log)
     texts, values = {}, {}
     with common.errors_in_one_line(config, "--config"):
-        joints = common.joints_of(config, joint)
+        joints = common.joints_of(log, config, joint)
         job = partial(_identified, log, config, torque_constant, dry_run)
         document = read_document(config)
         for name, (found, checked) in common.for_each(joints, job).items():

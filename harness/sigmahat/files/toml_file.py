@@ -18,7 +18,7 @@ else:
 
 
 _LONGEST = 256_000
-_MOST_KEYS = 2000
+_MOST_KEYS = 1000
 _DEEPEST = 6
 
 

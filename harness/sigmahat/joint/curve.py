@@ -209,14 +209,22 @@ def headline(curve: Curve, doubt: str) -> str:
     every = len(curve.branches) - 1
     count = min(every + 1, _MOST_SETTINGS)
     chosen = [curve.branches[every * i // max(count - 1, 1)] for i in range(count)]
-    several = every > 0
-    parts = [
-        (f"at set-point {branch.set_point:.4g}: " if several else "") + _in_one_line(branch)
-        for branch in chosen
-    ]
+    if every:
+        text = ", ".join(f"{_plus_minus(each)} at {each.set_point:.4g}" for each in chosen)
+        text += " (N.m/rad at set-points)"
+    else:
+        text = _in_one_line(chosen[0])
     if curve.claims:
-        parts.append("confident" if doubt == "None" else f"not confident ({doubt})")
-    return ("; " if several else ", ").join(parts)
+        text += ", confident" if doubt == "None" else f", not confident ({doubt})"
+    return text
+
+
+def _plus_minus(branch: Branch) -> str:
+    """The stiffness in the middle with half the width of its interval, without the unit."""
+    _, sigma, interval = stiffness_in_the_middle(branch)
+    if interval is None:
+        return f"{sigma:.4g}"
+    return f"{sigma:.4g} +- {(interval[1] - interval[0]) / 2:.3g}"
 
 
 def stiffness_in_the_middle(branch: Branch) -> tuple[float, float, Range | None]:
@@ -229,8 +237,7 @@ def _in_one_line(branch: Branch) -> str:
     """The stiffness in the middle; and its range where it varies by more than its interval."""
     phi, sigma, interval = stiffness_in_the_middle(branch)
     half = 0.0 if interval is None else (interval[1] - interval[0]) / 2
-    text = f"{sigma:.4g}" + ("" if interval is None else f" +- {half:.3g}")
-    text += f" N.m/rad at {phi:.3g} rad"
+    text = f"{_plus_minus(branch)} N.m/rad at {phi:.3g} rad"
     within = branch.sigma[branch.within]
     if len(within) and np.ptp(within) > max(half, _CURVED * abs(sigma)):
         low, high = branch.reach

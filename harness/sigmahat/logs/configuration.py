@@ -182,7 +182,6 @@ def checked_configuration(
 
     Raises LogError, which says where it is wrong.
     """
-    where = f"{path}, joint {joint}" if joint else f"{path}"
     known = joints_of(document, path)
     if joint not in known:
         several = f"expected the name of one of its joints ({', '.join(known)})"
@@ -193,9 +192,9 @@ def checked_configuration(
     except ValidationError as error:
         # A misspelt key is the reason why another one is missing.
         errors = sorted(error.errors(), key=lambda each: each["type"] != _MISSPELT)
-        raise LogError(f"{where}: {_explain(errors[0])}") from error
+        raise LogError(f"{path}: {_explain(errors[0])}") from error
     if not file.ports:
-        raise LogError(f"{where}: {_NO_PORTS}")
+        raise LogError(f"{path}: {_NO_PORTS}")
     chosen = any(line.rstrip().endswith(CHOSEN) for line in tomlkit.dumps(own).splitlines())
     values = dict(toml_file.dotted(file.parameters))
     return Configuration(path, file.time, file.ports, values, chosen, joint)

@@ -17,7 +17,7 @@ JOINTS = "joints.csv"
 """Name of the file in the folder of results."""
 _TITLES = (
     *("joint", "setPoint", "phi [rad]", "sigma [N.m/rad]", "sigma low [N.m/rad]"),
-    *("sigma high [N.m/rad]", "not confident"),
+    *("sigma high [N.m/rad]", "confident"),
 )
 
 
@@ -30,5 +30,5 @@ def _rows(found: Mapping[str, Estimate]) -> Iterator[list[Any]]:
     for name, each in found.items():
         for branch in each.curve.branches:
             phi, sigma, interval = stiffness_in_the_middle(branch)
-            reason = "" if each.doubt_at_end == "None" else each.doubt_at_end
-            yield [name, branch.set_point, phi, sigma, *(interval or (None, None)), reason]
+            sure = "yes" if each.doubt_at_end == "None" else f"no: {each.doubt_at_end}"
+            yield [name, branch.set_point, phi, sigma, *(interval or (None, None)), sure]
