@@ -12,6 +12,7 @@ from recorded_logs import write_log
 from sigmahat.cli import main
 from sigmahat.fmi.instance import Fmu
 from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.joints import of_joint
 from sigmahat.logs.replay import parameters
 
 
@@ -130,39 +131,32 @@ def two_joints() -> dict[str, np.ndarray]:
     }
 
 
-def port_columns(path: str) -> dict[str, str]:
-    document = tomlkit.parse(Path(path).read_text()).unwrap()
+def port_columns(path: str, joint: str = "") -> dict[str, str]:
+    document = of_joint(tomlkit.parse(Path(path).read_text()), joint).unwrap()
     return {name: port["column"] for name, port in document["ports"].items()}
 
 
-def test_all_joints_in_one_go(capsys: pytest.CaptureFixture[str]) -> None:
+def test_all_joints_in_one_file() -> None:
     write_log(two_joints(), Path("leg.csv"))
     assert main(["init", "leg.csv"]) == 0
-    assert "--config leg-knee.toml" in capsys.readouterr().out
+    text = Path("leg.toml").read_text()
+    for once in ("torque_constant = 0", "samplePeriod", "motor.B"):
+        assert text.count(once) == 1
     for joint in ("hip", "knee"):
-        assert port_columns(f"leg-{joint}.toml") == {
+        assert port_columns("leg.toml", joint) == {
             "theta": f"{joint}_motor_pos_rad",
             "q": f"{joint}_link_pos_rad",
             "tau": f"{joint}_current_A",
         }
-    assert main(["init", "leg.csv", "--joint", "knee"]) == 0
-    assert Path("leg.toml").read_text() == Path("leg-knee.toml").read_text()
+    assert main(["init", "leg.csv", "--joint", "knee", "--config", "knee.toml"]) == 0
+    assert port_columns("knee.toml") == port_columns("leg.toml", "knee")
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["--joint", "kne"], "unknown joint 'kne'; did you mean 'knee'"),
-        (["--config", "one.toml"], "several joints (hip, knee); choose one with --joint"),
-    ],
-)
-def test_a_joint_that_is_not_clear(
-    options: list[str], words: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_joint_that_is_not_clear(capsys: pytest.CaptureFixture[str]) -> None:
     write_log(two_joints(), Path("leg.csv"))
-    assert main(["init", "leg.csv", *options]) == 2
+    assert main(["init", "leg.csv", "--joint", "kne"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert words in line
+    assert "unknown joint 'kne'; did you mean 'knee'" in line
     assert not list(Path().glob("*.toml"))
 
 
@@ -170,10 +164,10 @@ def test_a_motor_never_goes_with_the_link_of_another_joint() -> None:
     log = two_joints()
     write_log({n: log[n] for n in ("t", "hip_motor_pos_rad", "knee_link_pos_rad")}, Path("l.csv"))
     assert main(["init", "l.csv"]) == 0
-    assert port_columns("l-hip.toml")["theta"] == "hip_motor_pos_rad"
-    assert port_columns("l-hip.toml")["q"] == "FILL IN"
-    assert port_columns("l-knee.toml")["q"] == "knee_link_pos_rad"
-    assert port_columns("l-knee.toml")["theta"] == "FILL IN"
+    assert port_columns("l.toml", "hip")["theta"] == "hip_motor_pos_rad"
+    assert port_columns("l.toml", "hip")["q"] == "FILL IN"
+    assert port_columns("l.toml", "knee")["q"] == "knee_link_pos_rad"
+    assert port_columns("l.toml", "knee")["theta"] == "FILL IN"
 
 
 def test_the_gear_ratio_of_theta_is_that_of_the_motor(estimator_fmu: Path) -> None:

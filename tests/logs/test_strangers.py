@@ -203,9 +203,13 @@ def test_many_columns_that_move_are_guessed_in_time(tmp_path: Path, confined: Co
         ("rls.n = 3", "rls.n = [1]", "rls.n: expected Integer, got [1]"),
         ("samplePeriod = 0.001", "samplePeriod = 1e-12", "check time.unit and samplePeriod"),
         ('column = "tau"', 'column = "tau"\ndelay = 1e300', "check its delay"),
-        ("[time]", "".join(f"a.b.c.d{i} = 1\n" for i in range(300)) + "[time]", "at most 200 keys"),
+        (
+            "[time]",
+            "".join(f"a.b.c.d{i} = 1\n" for i in range(1100)) + "[time]",
+            "at most 1000 keys",
+        ),
         ("[time]", f"a = {'[' * 90}{']' * 90}\n[time]", "at most 6 tables in tables"),
-        ("[time]", f"# {'x' * 100_000}\n[time]", "at most 64000 bytes"),
+        ("[time]", f"# {'x' * 300_000}\n[time]", "at most 256000 bytes"),
     ],
 )
 def test_a_configuration_that_would_take_for_ever(

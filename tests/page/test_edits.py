@@ -9,6 +9,8 @@ import tomlkit
 
 from checked_logs import knee_log
 from recorded_logs import write_log
+from sigmahat.logs.configuration import read_document
+from sigmahat.logs.joints import of_joint
 from sigmahat.logs.readers.formats import open_log
 from sigmahat.page.edits import comment_of, remove_value, set_value, to_fill_in, value_of
 from sigmahat.page.jobs import guessed
@@ -90,7 +92,7 @@ def test_another_column_is_guessed_anew(tmp_path: Path) -> None:
     assert "theta" not in setup.get("ports.q.column")
 
 
-def test_joints_have_files_and_edits_of_their_own(tmp_path: Path) -> None:
+def test_joints_have_one_file_and_edits_of_their_own(tmp_path: Path) -> None:
     knee = knee_log()
     columns: dict[str, object] = {"t": knee["t"]}
     for joint in ("hip", "knee"):
@@ -101,16 +103,17 @@ def test_joints_have_files_and_edits_of_their_own(tmp_path: Path) -> None:
     setup.set("ports.tau.torque_constant", 0.07)
     setup.set_joint("knee")
     assert setup.get("ports.tau.torque_constant") == 0
+    assert setup.write_draft() == tmp_path / "leg.draft.toml"
+    assert setup.write_draft() == tmp_path / "leg.draft-2.toml"
     setup.write(overwrite=False)
-    setup.set_joint("hip")
-    assert setup.get("ports.tau.torque_constant") == 0.07
-    assert setup.write_drafts() == [tmp_path / "leg-hip.draft.toml"]
-    assert setup.write_drafts() == [tmp_path / "leg-hip.draft-2.toml"]
-    assert {path.name for path in tmp_path.glob("*.toml")} == {
-        "leg-knee.toml",
-        "leg-hip.draft.toml",
-        "leg-hip.draft-2.toml",
-    }
+    assert setup.write_draft() is None
+    found = read_document(tmp_path / "leg.toml")
+    for joint, constant in (("hip", 0.07), ("knee", 0)):
+        assert of_joint(found, joint)["ports"]["tau"]["torque_constant"] == constant
+    again = Setup(setup.log, setup.path)
+    again.start_from(found)
+    again.set_joint("knee")
+    assert again.text_of_file == setup.text_of_file
 
 
 def test_a_file_that_exists_is_overwritten_on_demand_only(tmp_path: Path) -> None:

@@ -10,8 +10,9 @@ import json
 import logging
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from sigmahat.runs.scenario import Scenario
 
 _Command = TypeVar("_Command", bound=Callable[..., object])
+_Result = TypeVar("_Result")
 _JSON, _QUIET = "sigmahat.json", "sigmahat.quiet"
 
 
@@ -47,6 +49,60 @@ def config_option(what: str) -> Callable[[_Command], _Command]:
     )
 
 
+def joint_option(command: _Command) -> _Command:
+    """Gives a command the option --joint."""
+    text = "Only this one of the joints of the configuration.  [default: each of them]"
+    return click.option("--joint", metavar="NAME", default="", help=text)(command)
+
+
+def joints_of(log: Path, config: Path, joint: str) -> list[str]:
+    """The joint that was asked for, else all of a configuration; [""] if it names none.
+
+    Raises LogError if the log or the configuration cannot be read.
+    """
+    from sigmahat.logs.configuration import joints_of as every
+    from sigmahat.logs.configuration import read_document
+    from sigmahat.logs.readers.formats import open_log
+
+    open_log(log)  # a log that is missing is said before a configuration that is
+    return [joint] if joint else every(read_document(config), config)
+
+
+def for_each(joints: Sequence[str], job: Callable[[str], _Result]) -> dict[str, _Result]:
+    """Does a job for each joint, by its name; the jobs of several joints in other processes."""
+    if len(joints) == 1:
+        return {joints[0]: job(joints[0])}
+    from sigmahat.runs.pool import spread
+
+    found: dict[str, _Result] = {}
+    with progress("Joints", len(joints)) as bar:
+        for place, result in spread([partial(_with_name, job, joint) for joint in joints]):
+            found[joints[place]] = result
+            bar.update(1)
+    return {joint: found[joint] for joint in joints}
+
+
+def _with_name(job: Callable[[str], _Result], joint: str) -> _Result:
+    """The result of a job; its errors name the joint."""
+    from sigmahat.logs.log import LogError
+
+    try:
+        return job(joint)
+    except LogError as error:
+        raise LogError(f"joint {joint}: {error}") from error
+
+
+def answer_of_joints(
+    texts: Mapping[str, str], values: Mapping[str, object], after: str = ""
+) -> None:
+    """Prints what was found about each joint; that of a configuration of one joint has no head."""
+    if list(texts) == [""]:
+        answer(texts[""], values[""])
+    else:
+        titled = (f"joint {name}\n{text}" for name, text in texts.items())
+        answer("\n\n".join(titled), {"joints": values})
+
+
 def _flag(name: str, text: str) -> Callable[[_Command], _Command]:
     return click.option(name, is_flag=True, expose_value=False, callback=_for_scripts, help=text)
 
@@ -55,12 +111,17 @@ json_option = _flag("--json", "Print the result as JSON, and no warnings.")
 quiet_option = _flag("--quiet", "Print nothing but errors.")
 
 
-def answer(text: str, values: object = None) -> None:
-    """Prints the result: values after --json, nothing after --quiet, else the text."""
+def answer(text: str, values: object = None, head: str = "") -> None:
+    """Prints the result: values after --json, nothing after --quiet, else the text.
+
+    head  is printed before, in bold
+    """
     options = click.get_current_context().meta
     if options.get(_JSON):
         print_json(values)
     elif not options.get(_QUIET):
+        if head:
+            click.secho(printable(head), bold=True)
         click.echo(printable(text))
 
 
@@ -84,7 +145,8 @@ def folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | No
 
 def progress(label: str, length: int) -> Any:
     """A progress bar on stderr, hidden where nobody sees it or wants it."""
-    hidden = click.get_current_context().meta.get(_QUIET) or not sys.stderr.isatty()
+    context = click.get_current_context(silent=True)  # none in the process of one of several joints
+    hidden = context is None or context.meta.get(_QUIET) or not sys.stderr.isatty()
     return click.progressbar(length=length, label=label, file=sys.stderr, hidden=hidden)
 
 

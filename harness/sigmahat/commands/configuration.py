@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,9 @@ import click
 from sigmahat.commands import common
 
 if TYPE_CHECKING:
+    from sigmahat.checks.findings import Checked
     from sigmahat.guessing.guess import JointGuess
+    from sigmahat.identification.quantities import Identified
 
 
 @click.command()
@@ -30,7 +33,7 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. Ports, units, signs and gear are guessed
     from names and values of the columns. What cannot be guessed is marked with FILL IN.
 
-    For a log of several joints, one file for each of them is written, LOG-JOINT.toml.
+    For a log of several joints the file has a section for each of them, and what they share once.
 
     \b
     Example: sigmahat init knee.csv
@@ -48,52 +51,42 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
         guessed = guess(opened)
         if joint is not None:
             guessed = {"": one_joint(opened, guessed, joint)}
-        files = _files(one, guessed, named=config is not None)
-        for path in files.values():
-            if path.exists() and not force:
-                raise click.ClickException(
-                    f"{path} exists; --force overwrites it, --config names another file"
-                )
+        if one.exists() and not force:
+            raise click.ClickException(
+                f"{one} exists; --force overwrites it, --config names another file"
+            )
         fmu = installed("StiffnessEstimator")
         motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
-        for name, path in files.items():
-            write_whole(template.write(opened, guessed[name], motor), path)
-    common.answer("\n\n".join(_text(log, guessed[name], path) for name, path in files.items()))
+        write_whole(template.write(opened, guessed, motor), one)
+    common.answer(_text(log, guessed, one))
 
 
-def _files(one: Path, joints: Mapping[str, JointGuess], named: bool) -> dict[str, Path]:
-    """The file of each joint."""
-    if len(joints) == 1:
-        return dict.fromkeys(joints, one)
-    if named:
-        names = ", ".join(joints)
-        raise click.ClickException(
-            f"--config names one file, but the log has several joints ({names}); "
-            "choose one with --joint"
-        )
-    return {name: one.with_name(f"{one.stem}-{name}{one.suffix}") for name in joints}
-
-
-def _text(log: Path, joint: JointGuess, path: Path) -> str:
+def _text(log: Path, joints: Mapping[str, JointGuess], path: Path) -> str:
     """What was guessed, and what is next."""
-    from sigmahat.guessing.template import period_of
-
-    lines = [f"joint {joint.name}"] if joint.name else []
-    lines += [
-        f"{port:13} {each.column} [{each.unit or 'unit not known'}]"
-        for port, each in joint.ports.items()
-    ]
+    lines = [line for joint in joints.values() for line in _guessed(joint)]
     text = path.read_text(encoding="utf-8")
     asked = sum("FILL IN" in line for line in text.splitlines() if not line.startswith("#"))
     option = "" if path == common.configuration_of(log) else f" --config {path}"
     values = "value" if asked == 1 else "values"
     fill_in = f"fill in {asked} {values} (FILL IN)" if asked else "nothing to fill in"
+    by_sensor = all("tau" not in each.ports for each in joints.values())
+    then = "estimate" if by_sensor and "tau_e_sensor" in text else "identify"
+    lines += [f"Check {path}, {fill_in}, then: sigmahat {then} {log}{option}"]
+    return "\n".join(lines)
+
+
+def _guessed(joint: JointGuess) -> Iterator[str]:
+    """Lines about one joint."""
+    from sigmahat.guessing.template import period_of
+
+    if joint.name:
+        yield f"joint {joint.name}"
+    for port, each in joint.ports.items():
+        yield f"{port:13} {each.column} [{each.unit or 'unit not known'}]"
     period = period_of(joint)
     if "CHECK" in period:
-        lines.append(period.removeprefix("[s] "))
-    then = "estimate" if "tau" not in joint.ports and "tau_e_sensor" in joint.ports else "identify"
-    lines += ["", f"Check {path}, {fill_in}, then: sigmahat {then} {log}{option}"]
-    return "\n".join(lines)
+        yield period.removeprefix("[s] ")
+    yield ""
 
 
 @click.command("open")
@@ -123,8 +116,8 @@ def open_page(log: Path, config: Path | None, port: int) -> None:
     with common.errors_in_one_line(path, "--config"):
         opened = open_log(log)
         document = read_document(path) if path.exists() else None
-        drafts = serve(opened, path, document, port, click.echo)
-    for draft in drafts:
+        draft = serve(opened, path, document, port, click.echo)
+    if draft is not None:
         click.echo(f"Edits that were not written are in {draft}; to go on from them:")
         click.echo(f"  sigmahat open {log} --config {draft}")
 
@@ -132,9 +125,10 @@ def open_page(log: Path, config: Path | None, port: int) -> None:
 @click.command()
 @common.log_argument
 @common.config_option("File from `sigmahat init`.")
+@common.joint_option
 @common.json_option
 @common.quiet_option
-def check(log: Path, config: Path | None) -> int:
+def check(log: Path, config: Path | None, joint: str) -> int:
     """Say what in the configuration of LOG is likely wrong, and which key to look at.
 
     Signs, units, gear ratios, zeros and delays show in the log; what no log can show is listed.
@@ -143,23 +137,31 @@ def check(log: Path, config: Path | None) -> int:
     \b
     Example: sigmahat check knee.csv --config knee.toml
     """
-    from sigmahat.checks.check import check as run
     from sigmahat.checks.findings import as_dict
     from sigmahat.checks.text import summary
-    from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.readers.formats import open_log
 
     common.need_fmu("StiffnessEstimator")
     config = config or common.configuration_of(log)
     with common.errors_in_one_line(config, "--config"):
-        checked = run(open_log(log), read_configuration(config))
-    common.answer(f"{log} with {config}\n{summary(checked)}", as_dict(checked))
-    return 1 if checked.is_wrong else 0
+        joints = common.joints_of(log, config, joint)
+        checked = common.for_each(joints, partial(_checked, log, config))
+    texts = {name: f"{log} with {config}\n{summary(each)}" for name, each in checked.items()}
+    common.answer_of_joints(texts, {name: as_dict(each) for name, each in checked.items()})
+    return 1 if any(each.is_wrong for each in checked.values()) else 0
+
+
+def _checked(log: Path, config: Path, joint: str) -> Checked:
+    from sigmahat.checks.check import check
+    from sigmahat.logs.configuration import read_configuration
+    from sigmahat.logs.readers.formats import open_log
+
+    return check(open_log(log), read_configuration(config, joint))
 
 
 @click.command()
 @common.log_argument
 @common.config_option("It is read, then updated.")
+@common.joint_option
 @click.option(
     "--torque-constant",
     is_flag=True,
@@ -168,7 +170,9 @@ def check(log: Path, config: Path | None) -> int:
 @click.option("--dry-run", is_flag=True, help="Do not change the configuration.")
 @common.json_option
 @common.quiet_option
-def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: bool) -> None:
+def identify(
+    log: Path, config: Path | None, joint: str, torque_constant: bool, dry_run: bool
+) -> None:
     """Identify B, D_theta and Coulomb friction from LOG; write them into the configuration.
 
     A value that the motion does not determine is not written: "cannot tell". Comments are kept.
@@ -176,29 +180,53 @@ def identify(log: Path, config: Path | None, torque_constant: bool, dry_run: boo
     \b
     Example: sigmahat identify knee.csv --config knee.toml
     """
-    from sigmahat.checks.check import check_identified
+    import tomlkit
+
     from sigmahat.checks.findings import as_dict as checks_as_dict
     from sigmahat.checks.text import IN_LOG
     from sigmahat.checks.text import summary as of_checks
-    from sigmahat.identification.identify import identify as run
+    from sigmahat.files.output import write_whole
     from sigmahat.identification.quantities import as_dict, summary
-    from sigmahat.identification.write import write
-    from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.readers.formats import open_log
+    from sigmahat.identification.write import update
+    from sigmahat.logs.configuration import read_document
 
     common.need_fmu("StiffnessEstimator")
     config = config or common.configuration_of(log)
+    texts, values = {}, {}
     with common.errors_in_one_line(config, "--config"):
-        opened = open_log(log)
-        before = read_configuration(config)
-        found = run(opened, before, torque_constant)
-        written: list[str] = []
+        joints = common.joints_of(log, config, joint)
+        job = partial(_identified, log, config, torque_constant, dry_run)
+        document = read_document(config)
+        for name, (found, checked) in common.for_each(joints, job).items():
+            written = [] if dry_run else update(document, found, name)
+            texts[name] = f"{log}\n{summary(found)}"
+            if written:
+                texts[name] += f"\n\nWritten into {config}: {', '.join(written)}"
+            texts[name] += f"\n\n{of_checks(checked, IN_LOG)}"
+            values[name] = {
+                **as_dict(found),
+                "written": written,
+                "checks": checks_as_dict(checked),
+            }
         if not dry_run:
-            written = write(found, config)
-        checked = check_identified(opened, before, read_configuration(config))
-    text = f"{log}\n{summary(found)}"
-    if written:
-        text += f"\n\nWritten into {config}: {', '.join(written)}"
-    text += f"\n\n{of_checks(checked, IN_LOG)}"
-    values = {**as_dict(found), "written": written, "checks": checks_as_dict(checked)}
-    common.answer(text, values)
+            write_whole(tomlkit.dumps(document), config)
+    common.answer_of_joints(texts, values)
+
+
+def _identified(
+    log: Path, config: Path, torque_constant: bool, dry_run: bool, joint: str
+) -> tuple[Identified, Checked]:
+    """What is identified of a joint, and the checks with it; no file is written."""
+    from sigmahat.checks.check import check_identified
+    from sigmahat.identification.identify import identify
+    from sigmahat.identification.write import update
+    from sigmahat.logs.configuration import checked_configuration, read_document
+    from sigmahat.logs.readers.formats import open_log
+
+    opened, document = open_log(log), read_document(config)
+    before = checked_configuration(document, config, joint)
+    found = identify(opened, before, torque_constant)
+    if not dry_run:
+        update(document, found, joint)
+    after = checked_configuration(document, config, joint)
+    return found, check_identified(opened, before, after)

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from threading import Thread
+from typing import TYPE_CHECKING
 
 import click
 
 from sigmahat.commands import common
+
+if TYPE_CHECKING:
+    from sigmahat.checks.findings import Checked
+    from sigmahat.logs.estimate import Estimate
+    from sigmahat.validation.validate import Validation
 
 
 @click.command()
@@ -25,45 +32,77 @@ from sigmahat.commands import common
     type=click.Path(path_type=Path),
     help="Go on from what was learned before: the folder of another log, or its state.json.",
 )
+@common.joint_option
 @common.json_option
 @common.quiet_option
-def estimate(log: Path, config: Path | None, out: Path | None, start_from: Path | None) -> None:
+def estimate(
+    log: Path, config: Path | None, out: Path | None, start_from: Path | None, joint: str
+) -> None:
     """Replay LOG through the estimator, and add the stiffness to its table.
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag; `sigmahat init LOG` writes the
     configuration. Writes a table (CSV for CSV, else Parquet), the stiffness over the deformation
     (estimate.curve.csv), a figure, a data sheet of the joint
     (joint.json) for `sigmahat export`, and what was learned (state.json) for --start-from.
+    Each of several joints has a folder of its own there, and a row in joints.csv.
 
     \b
     Example: sigmahat estimate knee.parquet --config knee.toml --out knee
     """
-    from sigmahat.checks.check import check
     from sigmahat.checks.findings import as_dict
-    from sigmahat.checks.text import IN_LOG, sentence
+    from sigmahat.checks.text import IN_LOG
     from sigmahat.checks.text import summary as of_checks
-    from sigmahat.files.output import output_folder
-    from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.estimate import estimate as run
+    from sigmahat.files.tables import aligned
     from sigmahat.logs.estimate import summary
-    from sigmahat.logs.readers.formats import open_log
-    from sigmahat.report.from_log import ShownFinding, write_findings
+    from sigmahat.logs.several import write_joints
 
     common.need_fmu("StiffnessEstimator")
     out = out or Path("sigmahat-results", log.stem)
+    config = config or common.configuration_of(log)
     with common.errors_in_one_line(out):
-        opened = open_log(log)
-        configuration = read_configuration(config or common.configuration_of(log))
-        # Check and figure need them; reading and replaying the log need little of Python.
-        Thread(target=_import, args=["scipy.signal", "matplotlib.figure"]).start()
-        checked = check(opened, configuration)
-        with output_folder(out) as folder, common.progress("Replaying", 1000) as bar:
-            result = run(opened, configuration, folder, bar.update, start_from)
-            shown = [ShownFinding(f.severity.value, sentence(f)) for f in checked.findings]
-            write_findings(shown, folder)
+        joints = common.joints_of(log, config, joint)
+        found = common.for_each(joints, partial(_estimated, log, config, out, start_from))
+        if len(joints) > 1:
+            write_joints({name: each for name, (each, _) in found.items()}, out)
+    values = {name: {**each.as_dict(), "checks": as_dict(c)} for name, (each, c) in found.items()}
     where = f"Table, curve, figure (PNG, SVG), joint.json and state.json are in {out.resolve()}"
-    text = f"{summary(result)}\n\n{of_checks(checked, IN_LOG)}\n\n{where}"
-    common.answer(text, {**result.as_dict(), "checks": as_dict(checked)})
+    if len(found) == 1:
+        ((name, (result, checked)),) = found.items()
+        text = f"{summary(result)}\n\n{of_checks(checked, IN_LOG)}\n\n{where}"
+        common.answer(text, values[name], result.headline)
+    else:
+        rows = [(name, result.headline) for name, (result, _) in found.items()]
+        lines = ["\n".join(map(str.rstrip, aligned(rows, left=(0, 1))))]
+        wrong = [name for name, (_, checked) in found.items() if checked.is_wrong]
+        lines += [f"Something is likely wrong: sigmahat check {log} --joint {n}" for n in wrong]
+        text = f"{where}/JOINT, the table above in joints.csv"
+        common.answer("\n\n".join([*lines, text]), {"joints": values})
+
+
+def _estimated(
+    log: Path, config: Path, out: Path, start_from: Path | None, joint: str
+) -> tuple[Estimate, Checked]:
+    """The estimate of a joint, whose files are written, and what the checks say."""
+    from sigmahat.checks.check import check
+    from sigmahat.checks.text import sentence
+    from sigmahat.files.output import output_folder
+    from sigmahat.logs.configuration import read_configuration
+    from sigmahat.logs.estimate import estimate
+    from sigmahat.logs.readers.formats import open_log
+    from sigmahat.report.from_log import ShownFinding, write_findings
+
+    opened = open_log(log)
+    configuration = read_configuration(config, joint)
+    # Check and figure need them; reading and replaying the log need little of Python.
+    Thread(target=_import, args=["scipy.signal", "matplotlib.figure"]).start()
+    checked = check(opened, configuration)
+    if start_from is not None and start_from.is_dir():
+        start_from /= joint
+    with output_folder(out / joint) as folder, common.progress("Replaying", 1000) as bar:
+        result = estimate(opened, configuration, folder, bar.update, start_from)
+        shown = [ShownFinding(f.severity.value, sentence(f)) for f in checked.findings]
+        write_findings(shown, folder)
+    return result, checked
 
 
 def _import(*modules: str) -> None:
@@ -87,9 +126,10 @@ def _import(*modules: str) -> None:
     type=click.Path(path_type=Path),
     help="What was learned: its folder, or state.json.  [default: sigmahat-results/CONFIG]",
 )
+@common.joint_option
 @common.json_option
 @common.quiet_option
-def validate(log: Path, config: Path, start_from: Path | None) -> int:
+def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> int:
     """Check with LOG what was learned from another log of the same joint.
 
     LOG is replayed with the stiffness that was learned, and alone. Exit status: 0 if the logs
@@ -98,18 +138,26 @@ def validate(log: Path, config: Path, start_from: Path | None) -> int:
     \b
     Example: sigmahat validate second.csv --with knee.toml
     """
-    from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.readers.formats import open_log
     from sigmahat.validation.validate import summary
-    from sigmahat.validation.validate import validate as run
 
     common.need_fmu("StiffnessEstimator")
     start_from = start_from or Path("sigmahat-results", config.stem)
     with common.errors_in_one_line(start_from, "--start-from"):
-        opened = open_log(log)
-        result = run(opened, read_configuration(config), start_from)
-    common.answer(summary(result), result.as_dict())
-    return 0 if result.agree else 1
+        joints = common.joints_of(log, config, joint)
+        found = common.for_each(joints, partial(_validated, log, config, start_from))
+    texts = {name: summary(each) for name, each in found.items()}
+    common.answer_of_joints(texts, {name: each.as_dict() for name, each in found.items()})
+    return 0 if all(each.agree for each in found.values()) else 1
+
+
+def _validated(log: Path, config: Path, start_from: Path, joint: str) -> Validation:
+    from sigmahat.logs.configuration import read_configuration
+    from sigmahat.logs.readers.formats import open_log
+    from sigmahat.validation.validate import validate
+
+    if start_from.is_dir():
+        start_from /= joint
+    return validate(open_log(log), read_configuration(config, joint), start_from)
 
 
 _SUFFIXES = {"ssv": ".ssv", "matlab": ".m", "modelica": ".mo"}

@@ -17,8 +17,8 @@ else:
     import tomli as tomllib
 
 
-_LONGEST = 64_000
-_MOST_KEYS = 200
+_LONGEST = 256_000
+_MOST_KEYS = 1000
 _DEEPEST = 6
 
 

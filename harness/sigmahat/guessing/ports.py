@@ -41,7 +41,10 @@ class PortGuess:
     gear_ratio: float | None
     """None if it has to be filled in."""
     moves: float | None
-    """Of theta: how far it moves over how far the link moves, about; None if that is not known."""
+    """Of theta: how far it moves over how far the link moves, about; None if that is not known.
+
+    Of a motor in counts it is counts per turn of the link.
+    """
     counts_per_turn: float | None
     """For the unit counts; None if it has to be filled in."""
     wrap: float | None
@@ -222,15 +225,16 @@ def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGues
         moves = f"the motor moves {gear:.4g} times as far as the link"
         notes = {**theta.notes, "gear_ratio": f"{'CHECK' if sure else 'FILL IN'}: {moves}"}
         return replace(theta, gear_ratio=float(whole) if sure else None, moves=gear, notes=notes)
+    product = None
+    note = "FILL IN: 1 if it is measured after the gear"
     if q.unit in TURN:
         product = slope * TURN[q.unit]
-        note = f"FILL IN: times counts_per_turn it is about {product:.4g}"
     elif theta.unit == "counts" and q.unit == "counts" and q.counts_per_turn:
         product = slope * q.counts_per_turn
+    if product is not None:
         note = f"FILL IN: times counts_per_turn it is about {product:.4g}"
-    else:
-        note = "FILL IN: 1 if it is measured after the gear"
-    return replace(theta, gear_ratio=None, notes={**theta.notes, "gear_ratio": note})
+    notes = {**theta.notes, "gear_ratio": note}
+    return replace(theta, gear_ratio=None, moves=product, notes=notes)
 
 
 def _ratio(theta: PortGuess, q: PortGuess) -> float | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import accumulate
 
 import tomlkit
@@ -21,6 +22,7 @@ from sigmahat.logs.configuration import (
     PORTS,
     WIDE_PRIOR,
 )
+from sigmahat.logs.joints import together
 from sigmahat.logs.log import Log
 from sigmahat.logs.units import seconds
 
@@ -35,6 +37,8 @@ _MOTOR_UNITS = {"motor.B": "kg.m2", "motor.D_theta": "N.m.s/rad"}
 _TORQUES = {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3, "N.cm": 1e-2}
 _RANGE = (1.0, 100.0)  # of the set-point
 _GAIN = 0.02  # relative, the start value of the FMU
+_ALIKE = 1.2
+"""Of what a log says about gear ratios: soft joints move further than their motors."""
 _MOST_LISTED, _LONGEST_LIST = 200, 40_000  # columns, and bytes of their lines together
 _HEAD = """\
 Configuration for {log}{joint}, guessed from names and values of its columns.
@@ -49,17 +53,50 @@ optional: unit (rad, deg, turn, counts; N.m, mN.m, A; mm for theta_c), sign, zer
 gear_ratio (encoder or torque on the other side of the gear), counts_per_turn,
 torque_constant [N.m/A], mm_per_turn (of the motor, for theta_c in mm), scale (instead
 of a unit), wrap (period of a counter that starts again), time (a column of its own)."""
+_OF_SEVERAL = """
+
+What all joints share stands once, below. Each joint has sections [joints.NAME...], whose
+keys come before the shared ones: move a key there if a joint differs."""
 
 
-def write(log: Log, guess: JointGuess, fmu_defaults: Mapping[str, float]) -> str:
+def write(log: Log, joints: Mapping[str, JointGuess], fmu_defaults: Mapping[str, float]) -> str:
     """The text of a configuration. Where nothing in the log looks like a port, it asks for it.
 
+    joints        of the log, by name; what several have in common stands once
     fmu_defaults  start values of motor.B and motor.D_theta of the estimator
     """
-    columns = "\n".join(_listed(guess))
-    joint = f", joint {guess.name}" if guess.name else ""
+    columns = "\n".join(_listed(joints))
+    name = "" if len(joints) > 1 else next(iter(joints.values())).name
+    head = _HEAD.format(log=log.path.name, joint=name and f", joint {name}", columns=columns)
+    if len(joints) > 1:
+        head += _OF_SEVERAL
+    documents = {
+        name: _document(guess, head, fmu_defaults) for name, guess in _with_one_gear(joints).items()
+    }
+    one = next(iter(documents.values()))
+    return tomlkit.dumps(together(documents) if len(documents) > 1 else one)
+
+
+def _with_one_gear(joints: Mapping[str, JointGuess]) -> Mapping[str, JointGuess]:
+    """Joints whose gear ratios must be filled in and look alike, with one comment for all."""
+    motors = {name: each.ports["theta"] for name, each in joints.items() if "theta" in each.ports}
+    moves = [each.moves or 0.0 for each in motors.values() if each.gear_ratio is None]
+    if len(moves) < len(joints) or min(moves) <= 0 or max(moves) > _ALIKE * min(moves):
+        return joints
+    note = next(iter(motors.values())).notes["gear_ratio"]
+    for name, motor in motors.items():
+        motors[name] = replace(motor, notes={**motor.notes, "gear_ratio": note})
+    return {
+        name: replace(each, ports={**each.ports, "theta": motors[name]})
+        for name, each in joints.items()
+    }
+
+
+def _document(
+    guess: JointGuess, head: str, fmu_defaults: Mapping[str, float]
+) -> tomlkit.TOMLDocument:
     document = tomlkit.document()
-    for line in _HEAD.format(log=log.path.name, joint=joint, columns=columns).splitlines():
+    for line in head.splitlines():
         document.add(tomlkit.comment(line))
     document.add(tomlkit.nl())
     document.add("time", _time(guess))
@@ -80,17 +117,26 @@ def write(log: Log, guess: JointGuess, fmu_defaults: Mapping[str, float]) -> str
         ports[last].add(tomlkit.nl())
     document.add("ports", ports)
     document.add("parameters", _parameters(guess, fmu_defaults))
-    return tomlkit.dumps(document)
+    return document
 
 
-def _listed(guess: JointGuess) -> Iterator[str]:
+def _listed(joints: Mapping[str, JointGuess]) -> Iterator[str]:
     """A line for each column, no more of them than fit a configuration."""
-    lines = [f"  {_seen(each)}" for each in guess.columns]
+    rows = zip(*(each.columns for each in joints.values()), strict=True)
+    lines = [f"  {_seen(_used(dict(zip(joints, row, strict=True))))}" for row in rows]
     ends = accumulate(len(line.encode()) for line in lines)
     shown = min(_MOST_LISTED, sum(end < _LONGEST_LIST for end in ends))
     yield from lines[:shown]
     if shown < len(lines):
         yield f"  and {len(lines) - shown} more, left out here"
+
+
+def _used(column: Mapping[str, Seen]) -> Seen:
+    """A column as the joint sees it that uses it; for the first joint if none does."""
+    for name, seen in column.items():
+        if seen.what.startswith("ports."):
+            return replace(seen, what=f"{name} {seen.what}".strip())
+    return next(iter(column.values()))
 
 
 def _seen(column: Seen) -> str:

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, MutableMapping
+from collections.abc import Mapping
+from copy import copy
 from pathlib import Path
 from typing import Any
 
 import tomlkit
+from tomlkit.items import Item
 
 from sigmahat.files import toml_file
 from sigmahat.files.output import write_whole
 from sigmahat.fmi.opened import installed
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import MOTOR
+from sigmahat.logs import joints
 from sigmahat.logs.configuration import (
     ANOTHER_ROBOT,
     ANY_COULOMB,
@@ -34,15 +37,29 @@ _NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE, CHOSEN)
 """Comments of values that the next log may tell."""
 
 
-def write(found: Identified, path: Path) -> list[str]:
-    """Writes what is determined into [parameters] and [ports.tau], everything into [identified].
+def write(found: Identified, path: Path, joint: str = "") -> list[str]:
+    """Writes what was identified into a file, as `update` does; joint is one of several in it.
+
+    Returns the keys that were written. The file is replaced at once, or not changed.
+    """
+    document = read_document(path)
+    written = update(document, found, joint)
+    write_whole(tomlkit.dumps(document), path)
+    return written
+
+
+def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -> list[str]:
+    """Sets what is determined in [parameters] and [ports.tau], everything in [identified].
 
     What is not determined gets a wide prior, unless the file has one above 0. If nobody has set its
     value either, a comment says so: no value of another robot stays unnoticed.
 
-    Returns the keys that were written. The file is replaced at once, or not changed.
+    Returns the keys that were set.
     """
-    document = _without_what_is_not_known(read_document(path))
+    _remove_what_is_not_known(document, joint)
+    own = joints.section(document, joint)
+    every = joints.of_joint(document, joint)
+    given = dict(toml_file.dotted(every.get("parameters", tomlkit.table()).unwrap()))
     values: dict[str, Any] = {
         "filter.V_a": found.V_a,
         "rls.symmetric": found.symmetric,
@@ -63,8 +80,7 @@ def write(found: Identified, path: Path) -> list[str]:
             if name == "B":  # but not for D_theta, which changes with the temperature
                 values["prior.B"] = q.half_width / q.value
     values = {name: _short(value) for name, value in values.items() if value is False or value != 0}
-    parameters = document.setdefault("parameters", tomlkit.table())
-    given = dict(toml_file.dotted(parameters.unwrap()))
+    parameters = own.setdefault("parameters", tomlkit.table())
     unknown = {name: each for name, each in _unknown(found).items() if name not in given}
     comments = {name: comment for name, (_, comment) in unknown.items()}
     priors = {name: _short(value) for name, value in _wide_priors(found, comments).items()}
@@ -82,13 +98,14 @@ def write(found: Identified, path: Path) -> list[str]:
     written = [f"parameters.{name}" for name in (*values, *unknown, *wide)]
     constant = found.quantities.get("torque_constant")
     if constant is not None and constant.determined:
-        document["ports"]["tau"]["torque_constant"] = _short(constant.value)
+        item = tomlkit.item(_short(constant.value))
+        joints.set_item(own, ("ports", "tau", "torque_constant"), item)
         written.append("ports.tau.torque_constant")
-    if found.zero and "q" in document["ports"]:
-        _move_zero(document["ports"]["q"], found.zero)
+    if found.zero and "q" in every["ports"]:
+        zero = tomlkit.item(_moved_zero(every["ports"]["q"].unwrap(), found.zero))
+        joints.set_item(own, ("ports", "q", "zero"), zero)
         written.append("ports.q.zero")
-    document["identified"] = _record(found)
-    write_whole(tomlkit.dumps(document), path)
+    own["identified"] = _record(found)
     return written
 
 
@@ -136,38 +153,50 @@ def _wide_priors(found: Identified, comments: Mapping[str, str]) -> dict[str, fl
     return priors
 
 
-def _move_zero(port: MutableMapping[str, Any], zero: float) -> None:
-    """Moves the zero of [ports.q] by an angle of the link [rad]."""
-    read = Port(**{key: value.unwrap() for key, value in port.items()})
+def _moved_zero(port: Mapping[str, Any], zero: float) -> float:
+    """The zero of [ports.q], moved by an angle of the link [rad]."""
+    read = Port(**port)
     angle = read.sign * factor("q", read) / read.gear_ratio
-    port["zero"] = float(f"{read.zero + zero / angle:.9g}")
+    return float(f"{read.zero + zero / angle:.9g}")
 
 
-def _without_what_is_not_known(document: tomlkit.TOMLDocument) -> tomlkit.TOMLDocument:
-    """Without what `init` or an earlier run wrote because they could not tell: this one may be
-    able to. A value that somebody has put in its place stays.
+def _remove_what_is_not_known(document: tomlkit.TOMLDocument, joint: str) -> None:
+    """Removes what `init` or an earlier run wrote because they could not tell: this one may be able
+    to. A value that somebody has put in its place stays.
     """
     fmu = installed("StiffnessEstimator")
-    start = {name: float(fmu.variable(f"motor.{name}").start) for name in ("B", "D_theta")}
-    lines = tomlkit.dumps(document).splitlines(keepends=True)
-    kept = [line for line in lines if not _is_not_known(line.rstrip(), start)]
-    return tomlkit.parse("".join(kept))
+    start = {name: float(fmu.variable(name).start) for name in ("motor.B", "motor.D_theta")}
+    if joint:
+        _give_to_the_joints(document, start)
+    for place, item in joints.items(document, joint).items():
+        if _is_not_known(place[-1], item, start):
+            joints.remove(joints.section(document, joint), place)
 
 
-def _is_not_known(line: str, start: Mapping[str, float]) -> bool:
-    """Whether a line has a value that nobody knows.
+def _give_to_the_joints(document: tomlkit.TOMLDocument, start: Mapping[str, float]) -> None:
+    """Moves what is not known of all joints into the section of each: some may know it soon."""
+    names = joints.names(document)
+    for place, item in joints.items(document).items():
+        if place[0] != joints.JOINTS and _is_not_known(place[-1], item, start):
+            joints.remove(document, place)
+            for name in names:
+                if place not in joints.items(document, name):
+                    joints.set_item(joints.section(document, name), place, copy(item))
+
+
+def _is_not_known(name: str, item: Item, start: Mapping[str, float]) -> bool:
+    """Whether a parameter has a value that nobody knows.
 
     start  start values of the FMU, of motor.B and so on
     """
-    if not line.endswith(_NOT_KNOWN):
+    comment, value = item.trivia.comment.rstrip(), item.unwrap()
+    if not comment.endswith(_NOT_KNOWN):
         return False
-    ((key, value),) = toml_file.dotted(tomlkit.parse(line).unwrap())
-    name = key.rpartition(".")[2]  # the line may be in a table [parameters.prior]
-    if line.endswith(NOT_YOURS):
+    if comment.endswith(NOT_YOURS):
         return bool(value == start.get(name, value))
-    if line.endswith(WIDE_PRIOR):
+    if comment.endswith(WIDE_PRIOR):
         # Of the Coulomb friction it is the end of an interval, which looks like any other value.
-        return bool(name == "tau_coulomb" or value >= WIDE)
+        return bool(name == "prior.tau_coulomb" or value >= WIDE)
     return True
 
 
@@ -193,4 +222,5 @@ def _record(found: Identified) -> tomlkit.items.Table:
     table["theta_noise"].comment("standard deviation, rounding included [rad]")
     table["bandwidth"] = float(f"{found.bandwidth:.4g}")
     table["bandwidth"].comment("of a filter that balances both [rad/s]")
+    table.add(tomlkit.nl())
     return table

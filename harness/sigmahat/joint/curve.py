@@ -195,6 +195,60 @@ FAMILY_HEAD = (
 )
 
 
+_MOST_SETTINGS = 4
+"""Of the stiffness, that a headline names."""
+
+
+def headline(curve: Curve, doubt: str) -> str:
+    """The stiffness with its 95 % interval in one line, for each setting of a variable stiffness.
+
+    doubt  item of the output doubt at the end
+    """
+    if not curve.branches:
+        return "no stiffness: the estimator used no sample of the log"
+    every = len(curve.branches) - 1
+    count = min(every + 1, _MOST_SETTINGS)
+    chosen = [curve.branches[every * i // max(count - 1, 1)] for i in range(count)]
+    if every:
+        text = ", ".join(f"{_plus_minus(each)} at {each.set_point:.4g}" for each in chosen)
+        text += " (N.m/rad at set-points)"
+    else:
+        text = _in_one_line(chosen[0])
+    if curve.claims:
+        text += ", confident" if doubt == "None" else f", not confident ({doubt})"
+    return text
+
+
+def _plus_minus(branch: Branch) -> str:
+    """The stiffness in the middle with half the width of its interval, without the unit."""
+    _, sigma, interval = stiffness_in_the_middle(branch)
+    if interval is None:
+        return f"{sigma:.4g}"
+    return f"{sigma:.4g} +- {(interval[1] - interval[0]) / 2:.3g}"
+
+
+def stiffness_in_the_middle(branch: Branch) -> tuple[float, float, Range | None]:
+    """Deformation in the middle of the data [rad], stiffness there and its interval [N.m/rad]."""
+    phi = characteristic(branch.reach)[1]
+    return phi, *_at(branch, phi)
+
+
+def _in_one_line(branch: Branch) -> str:
+    """The stiffness in the middle; and its range where it varies by more than its interval."""
+    phi, sigma, interval = stiffness_in_the_middle(branch)
+    half = 0.0 if interval is None else (interval[1] - interval[0]) / 2
+    text = f"{_plus_minus(branch)} N.m/rad at {phi:.3g} rad"
+    within = branch.sigma[branch.within]
+    if len(within) and np.ptp(within) > max(half, _CURVED * abs(sigma)):
+        low, high = branch.reach
+        text += f" ({within.min():.4g} to {within.max():.4g} from {low:.3g} to {high:.3g} rad)"
+    return text
+
+
+_CURVED = 0.01
+"""A smaller relative change of the stiffness is not named."""
+
+
 def curve_text(curve: Curve) -> list[str]:
     """Lines for a terminal, at most 3 or 4 of many set-points; none without data."""
     if not curve.branches:

@@ -14,6 +14,8 @@
     [parameters]            # of the FMU, by their names there
     motor.B = 2.3e-5
 
+joints.py says how one file configures several joints.
+
 The file is TOML, because people can read it and tomlkit keeps its comments when identify writes.
 """
 
@@ -31,6 +33,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Value
 from sigmahat.fmi.unknown_name import unknown
+from sigmahat.logs import joints
 from sigmahat.logs.log import LogError
 
 PORTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sensor": "N.m"}
@@ -132,6 +135,8 @@ class Configuration:
     """Start values of `StiffnessEstimator`, by its names."""
     symmetric_chosen: bool = False
     """Whether identify chose rls.symmetric: the next run may choose again."""
+    joint: str = ""
+    """Of a file of several joints, the one that this is."""
 
     def need_ports(self, modality: str) -> None:
         """Raises LogError if a port is missing that the modality needs."""
@@ -162,27 +167,45 @@ class _File:
     """What identify writes for people to read."""
 
 
-def read_configuration(path: Path) -> Configuration:
-    """Reads and checks a file. Raises LogError, which says where it is wrong."""
-    return checked_configuration(read_document(path), path)
+def read_configuration(path: Path, joint: str = "") -> Configuration:
+    """Reads and checks a file; of a file of several joints, the configuration of one of them.
+
+    Raises LogError, which says where it is wrong.
+    """
+    return checked_configuration(read_document(path), path, joint)
 
 
-def checked_configuration(document: tomlkit.TOMLDocument, path: Path) -> Configuration:
+def checked_configuration(
+    document: tomlkit.TOMLDocument, path: Path, joint: str = ""
+) -> Configuration:
     """The configuration that a document is, which need not be in its file yet.
 
     Raises LogError, which says where it is wrong.
     """
+    known = joints_of(document, path)
+    if joint not in known:
+        several = f"expected the name of one of its joints ({', '.join(known)})"
+        raise LogError(f"{path}: {unknown('joint', joint, known) if joint else several}")
+    own = joints.of_joint(document, joint)
     try:
-        file = TypeAdapter(_File).validate_python(document.unwrap())
+        file = TypeAdapter(_File).validate_python(own.unwrap())
     except ValidationError as error:
         # A misspelt key is the reason why another one is missing.
         errors = sorted(error.errors(), key=lambda each: each["type"] != _MISSPELT)
         raise LogError(f"{path}: {_explain(errors[0])}") from error
     if not file.ports:
         raise LogError(f"{path}: {_NO_PORTS}")
-    chosen = any(line.rstrip().endswith(CHOSEN) for line in tomlkit.dumps(document).splitlines())
+    chosen = any(line.rstrip().endswith(CHOSEN) for line in tomlkit.dumps(own).splitlines())
     values = dict(toml_file.dotted(file.parameters))
-    return Configuration(path, file.time, file.ports, values, chosen)
+    return Configuration(path, file.time, file.ports, values, chosen, joint)
+
+
+def joints_of(document: tomlkit.TOMLDocument, path: Path) -> list[str]:
+    """The joints of a file, [""] if it is of one. Raises LogError for an impossible name."""
+    try:
+        return joints.names(document)
+    except ValueError as error:
+        raise LogError(f"{path}: {error}") from error
 
 
 def read_document(path: Path) -> tomlkit.TOMLDocument:

@@ -11,7 +11,14 @@ from sigmahat.files.output import sha256
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.joint import sheet
-from sigmahat.joint.curve import CURVE, Curve, curve_text, stiffness_points, write_curve
+from sigmahat.joint.curve import (
+    CURVE,
+    Curve,
+    curve_text,
+    headline,
+    stiffness_points,
+    write_curve,
+)
 from sigmahat.logs.changes import StiffnessChange
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import Answer
@@ -66,6 +73,8 @@ class Estimate:
     """What else it estimated, at the end, by output of the FMU: bias_hat, damping_hat and so on."""
     sigma_per_gain: float
     """Relative change of the stiffness with a relative change of the gain of the torque [1]."""
+    doubt_at_end: str
+    """Why it was not confident at the last tick: item of `doubt`; "None" if it was."""
     curve: Curve
     """Torque and stiffness over the deformation."""
     changes: Sequence[StiffnessChange]
@@ -75,9 +84,15 @@ class Estimate:
     learned_from: Sequence[str] = ()
     """Logs that were learned from before this one."""
 
+    @property
+    def headline(self) -> str:
+        """The stiffness in one line."""
+        return headline(self.curve, self.doubt_at_end)
+
     def as_dict(self) -> dict[str, Any]:
         """For JSON; units are in the names."""
         return {
+            "answer": self.headline,
             "log": str(self.log),
             "ticks": self.ticks,
             "skipped": self.skipped,
@@ -163,6 +178,7 @@ def _result(replay: Replay, found: Curve) -> Estimate:
         motor={name: last[name] for name in _MOTOR},
         joint={name: last[name] for name in last if name.endswith("_hat") and name not in _MOTOR},
         sigma_per_gain=last["sigma_per_gain"],
+        doubt_at_end=statistics.last_doubt,
         curve=found,
         changes=replay.changes.found,
         notes=[*continued, *samples.notes],

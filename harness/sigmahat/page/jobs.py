@@ -13,7 +13,7 @@ from sigmahat.fmi.instance import FmuError, Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.guessing import template
 from sigmahat.guessing.columns import read_columns
-from sigmahat.guessing.guess import JointGuess, guess_chosen, guess_of
+from sigmahat.guessing.guess import guess_chosen, guess_of
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import Answer
 from sigmahat.logs.job import Replay
@@ -22,16 +22,16 @@ from sigmahat.page.look import look
 from sigmahat.page.setup import Chosen, Setup
 
 
-def guessed(log: Log) -> tuple[Mapping[str, JointGuess], Mapping[str, str], Chosen]:
-    """The joints of a log, the configuration of each as `init` writes it, and what guesses units,
-    signs and gear of columns that somebody chooses.
+def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
+    """The configuration of each joint of a log as `init` writes it, and what guesses units, signs
+    and gear of columns that somebody chooses.
     """
     columns = read_columns(log)
     joints = guess_of(columns, log)
     fmu = installed("StiffnessEstimator")
     motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
-    templates = {name: template.write(log, joint, motor) for name, joint in joints.items()}
-    return joints, templates, partial(guess_chosen, columns)
+    templates = {name: template.write(log, {name: joint}, motor) for name, joint in joints.items()}
+    return templates, partial(guess_chosen, columns)
 
 
 def replayed(

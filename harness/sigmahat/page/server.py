@@ -52,7 +52,7 @@ def serve(
     document: tomlkit.TOMLDocument | None,
     port: int,
     say: Callable[[str], object],
-) -> list[Path]:
+) -> Path | None:
     """Serves the page of a log, and opens it in the browser.
 
     Who has the address can use it: it contains a token that nobody guesses. A page of another
@@ -63,7 +63,7 @@ def serve(
     port      0 for any that is free
     say       is called with the address, and what the browser does
 
-    Returns the files with edits that were not written, after Ctrl-C. Raises ValueError if the port
+    Returns the file with edits that were not written, after Ctrl-C. Raises ValueError if the port
     is in use.
     """
     setup = Setup(log, path)
@@ -79,7 +79,7 @@ def serve(
         threading.Thread(target=partial(_open, address, say), daemon=True).start()
         server.io_loop.start()
     server.stop()
-    return setup.write_drafts()
+    return setup.write_draft()
 
 
 def _listen(token: str, port: int, window: Callable[[Document], object]) -> tuple[BaseServer, int]:

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 import tomlkit
 
 from sigmahat.files.output import write_whole
-from sigmahat.logs.configuration import PORTS
+from sigmahat.logs.configuration import PORTS, joints_of
+from sigmahat.logs.joints import of_joint, together
 from sigmahat.logs.log import Log
 from sigmahat.page import edits
 from sigmahat.page.edits import BY_SCALE, OF_PORT
@@ -22,7 +23,6 @@ from sigmahat.page.look import Look
 
 if TYPE_CHECKING:
     from sigmahat.checks.findings import Checked
-    from sigmahat.guessing.guess import JointGuess
     from sigmahat.guessing.ports import PortGuess
     from sigmahat.logs.curve import Answer
 
@@ -39,7 +39,7 @@ class Setup:
         """Starts from the file, if there is one. Raises LogError if it is not TOML."""
         self.log = log
         self.path = path
-        """The file to write; each joint of a log of several has its own."""
+        """The file to write."""
         self.document: tomlkit.TOMLDocument = tomlkit.document()
         self.is_new = True
         """Whether there was no file to start from."""
@@ -47,9 +47,8 @@ class Setup:
         """Whether somebody has changed something that is not written yet."""
         self.looks: Mapping[str, Look] = {}
         """What the columns look like, by name; empty until it is known."""
-        self.joints: Mapping[str, JointGuess] = {}
-        """By name; empty until they are known, and where there was a file to start from."""
         self.joint = ""
+        """Which joint of the log is shown."""
         self.busy = "Looking at the columns ..."
         """What is being computed; empty if nothing is."""
         self.problem = ""
@@ -65,9 +64,7 @@ class Setup:
         self._asked = 0.0
         self._shown: set[Callable[[], object]] = set()
         self._chosen: Chosen = lambda names: {}
-        self._drafts: dict[str, tuple[tomlkit.TOMLDocument, bool]] = {}
-        self._templates: Mapping[str, str] = {}
-        self._first_path = path
+        self._joints: dict[str, tomlkit.TOMLDocument] = {}
 
     # Windows
 
@@ -88,8 +85,18 @@ class Setup:
 
     @property
     def text(self) -> str:
-        """The configuration as it would be written."""
+        """The configuration of the joint that is shown."""
         return tomlkit.dumps(self.document)
+
+    @property
+    def joints(self) -> list[str]:
+        """Names of the joints; empty until they are known."""
+        return list(self._joints)
+
+    @property
+    def text_of_file(self) -> str:
+        """The configuration of all joints, as it would be written."""
+        return tomlkit.dumps(together(self._joints)) if len(self._joints) > 1 else self.text
 
     @property
     def is_ready(self) -> bool:
@@ -97,9 +104,13 @@ class Setup:
         return bool(self.document)
 
     def start_from(self, document: tomlkit.TOMLDocument) -> None:
-        """Takes the contents of the file."""
-        self.document, self.is_new = document, False
-        self.changed()
+        """Takes the contents of the file. Raises LogError for a joint that has no possible name."""
+        self.is_new = False
+        self._start({name: of_joint(document, name) for name in joints_of(document, self.path)})
+
+    def _start(self, joints: dict[str, tomlkit.TOMLDocument]) -> None:
+        self._joints = joints
+        self.set_joint(next(iter(joints)))
 
     def get(self, key: str) -> Any:
         """The value of a key; None if it is not there."""
@@ -161,27 +172,15 @@ class Setup:
 
     # What the jobs have found
 
-    def guessed(
-        self, joints: Mapping[str, JointGuess], templates: Mapping[str, str], chosen: Chosen
-    ) -> None:
-        """Takes what was guessed; templates are the configurations that `init` writes, by joint."""
+    def guessed(self, templates: Mapping[str, str], chosen: Chosen) -> None:
+        """Takes what was guessed: the configuration of each joint as `init` writes it."""
         self._chosen = chosen
         if self.is_new:
-            self.joints, self._templates = joints, templates
-            self.set_joint(next(iter(joints)))
+            self._start({name: tomlkit.parse(text) for name, text in templates.items()})
 
     def set_joint(self, name: str) -> None:
-        """Goes to another joint of the log; edits of the one before are kept."""
-        if self.is_ready:
-            self._drafts[self.joint] = self.document, self.is_edited
-        self.joint = name
-        if name in self._drafts:
-            self.document, self.is_edited = self._drafts.pop(name)
-        else:
-            self.document, self.is_edited = tomlkit.parse(self._templates[name]), False
-        if len(self.joints) > 1:
-            one = self._first_path
-            self.path = one.with_name(f"{one.stem}-{name}{one.suffix}")
+        """Shows another joint of the log."""
+        self.joint, self.document = name, self._joints[name]
         # All that was found and asked is of the joint before.
         self.message, self.problem, self.asks_to_overwrite = "", "", False
         self.checked = self.answer = None
@@ -198,7 +197,7 @@ class Setup:
     def is_on_disk(self) -> bool:
         """Whether the file exists, and is as the page shows it."""
         try:
-            return self.path.read_text(encoding="utf-8") == self.text
+            return self.path.read_text(encoding="utf-8") == self.text_of_file
         except (OSError, ValueError):
             return False
 
@@ -212,7 +211,7 @@ class Setup:
             self.message = f"{self.path} exists, and is other than what is shown here."
         else:
             try:
-                write_whole(self.text, self.path)
+                write_whole(self.text_of_file, self.path)
             except OSError as error:
                 self.message = f"Cannot write {self.path}: {error.strerror}."
             else:
@@ -226,18 +225,12 @@ class Setup:
         option = "" if self.path == default else f" --config {self.path}"
         return f"Next: sigmahat identify {log}{option}, then sigmahat estimate {log}{option}"
 
-    def write_drafts(self) -> list[Path]:
-        """Writes edits that are not written, each into a file of a new name. Returns the files."""
-        drafts = {self.path: self.document} if self.is_edited else {}
-        one = self._first_path
-        for name, (document, is_edited) in self._drafts.items():
-            if is_edited:
-                drafts[one.with_name(f"{one.stem}-{name}{one.suffix}")] = document
-        written = []
-        for path, document in drafts.items():
-            draft, count = path.with_suffix(".draft.toml"), 2
-            while draft.exists():
-                draft, count = path.with_suffix(f".draft-{count}.toml"), count + 1
-            write_whole(tomlkit.dumps(document), draft)
-            written.append(draft)
-        return written
+    def write_draft(self) -> Path | None:
+        """Writes edits that are not written into a file of a new name. Returns it, if there are."""
+        if not self.is_edited:
+            return None
+        draft, count = self.path.with_suffix(".draft.toml"), 2
+        while draft.exists():
+            draft, count = self.path.with_suffix(f".draft-{count}.toml"), count + 1
+        write_whole(self.text_of_file, draft)
+        return draft

@@ -41,6 +41,8 @@ class Contents:
     """Below the title."""
     tables: Sequence[TextTable]
     panels: Sequence[Panel]
+    headline: str = ""
+    """The result in one line, above all lines."""
     answer: Sequence[Panel] = ()
     """Panels that stand above all others, and above the tables."""
     notes: Sequence[str] = ()

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.files.output import write_json
+from sigmahat.files.tables import read_csv
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
     CURVE,
@@ -19,6 +21,7 @@ from sigmahat.joint.curve import (
     STIFFNESS_HEAD,
     Curve,
     family_rows,
+    headline,
     polynomial_in_words,
     reach_in_words,
     read_curve,
@@ -30,6 +33,7 @@ from sigmahat.logs.changes import detected
 from sigmahat.logs.curve_panels import curve_panels
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimatedSignal, Replayed, read_estimate
+from sigmahat.logs.several import JOINTS
 from sigmahat.logs.time_panels import (
     Estimate,
     quantity_panels,
@@ -38,7 +42,7 @@ from sigmahat.logs.time_panels import (
     stiffness_panels,
 )
 from sigmahat.plotting.style import plain_text, plain_title, plain_unit
-from sigmahat.report.contents import Contents, TextTable, number
+from sigmahat.report.contents import Contents, TextTable, number, of_file
 
 
 @dataclass(frozen=True)
@@ -126,17 +130,43 @@ def from_log(folder: Path) -> Contents:
     tables += [_estimates(signals, used), *([] if doubt is None else [_doubts(doubt)])]
     return Contents(
         f"Log: {folder.resolve().name}",
-        [f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}", *marked],
+        [
+            *_origin(answer, folder),
+            f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}",
+            *marked,
+        ],
         [*tables, *([] if answer is None else [estimator_table(answer.sheet)])],
         [
             *stiffness_panels(reduced, [Estimate("estimate", {"sigma": "sigma"})]),
             *quantity_panels(reduced, ""),
         ],
+        headline="" if answer is None else headline(answer.curve, answer.sheet.doubt),
         answer=[] if answer is None else list(curve_panels(answer.curve, answer.points)),
         notes=[*([] if answer is None else answer.replayed.notes), *sampling(reduced)],
         every=reduced.every if reduced.bucket > 1 else None,
         marks=marks,
     )
+
+
+def from_joints(folder: Path) -> Contents:
+    """The table of several joints, and the curve of each.
+
+    Raises ValueError, which says what to do, for a file that is missing or damaged.
+    """
+    table = read_csv(folder / JOINTS)
+    if table.column_names[:1] != ["joint"]:
+        raise ValueError(f"{folder / JOINTS}: no table of `sigmahat estimate`; run it again")
+    names = list(dict.fromkeys(map(str, table["joint"].to_pylist())))
+    panels = []
+    for name in names:
+        answer = _answer(folder / name)
+        if answer is None:
+            raise ValueError(f"{folder / name}: no result of `sigmahat estimate`; run it again")
+        of_curve = list(curve_panels(answer.curve, answer.points))
+        panels += [replace(each, title=f"{name}: {each.title}") for each in of_curve[1:]]
+    note = f"Each joint has a report of its own: sigmahat report {folder}/{names[0]}"
+    stiffness = replace(of_file("Stiffness", table), note=note)
+    return Contents(f"Joints: {folder.resolve().name}", [], [stiffness], panels)
 
 
 def _answer(folder: Path) -> _Answer | None:
@@ -149,6 +179,18 @@ def _answer(folder: Path) -> _Answer | None:
         read_curve(folder / CURVE, found.polynomial),
         read_points(folder / POINTS),
     )
+
+
+def _origin(answer: _Answer | None, folder: Path) -> Iterator[str]:
+    """From what, when and with which version the results were made."""
+    if answer is not None:
+        made = datetime.fromtimestamp((folder / REPLAYED.file).stat().st_mtime).astimezone()
+        version, source = answer.sheet.sigmahat, answer.sheet.configuration.file
+        yield f"{answer.replayed.log} with {source}; sigmahat {version}, {made:%Y-%m-%d %H:%M %Z}"
+
+
+def _rows(t: NDArray[Any], used: NDArray[np.bool_], answer: _Answer | None) -> str:
+    return f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}"
 
 
 def _skipped(answer: _Answer | None, used: NDArray[np.bool_]) -> str:

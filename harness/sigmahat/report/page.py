@@ -13,9 +13,10 @@ from bokeh.resources import Resources
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from sigmahat.files.tables import read_csv
+from sigmahat.logs.several import JOINTS
 from sigmahat.paper.result_files import TABLE
 from sigmahat.report.contents import Contents, of_file
-from sigmahat.report.from_log import from_log
+from sigmahat.report.from_log import from_joints, from_log
 from sigmahat.report.from_reproduction import from_reproduction
 from sigmahat.report.from_sweep import from_sweep
 from sigmahat.report.plots import plots
@@ -71,6 +72,7 @@ def report(folder: Path) -> str:
         TABLE: from_reproduction,
         "estimate.parquet": from_log,
         "estimate.csv": from_log,
+        JOINTS: from_joints,
         METHODS: partial(from_comparison, METHODS),
         MISFITS: partial(from_comparison, MISFITS),
     }

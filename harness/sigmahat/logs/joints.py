@@ -1,0 +1,150 @@
+"""A configuration of several joints: what they share stands once, all else in their sections.
+
+    [ports.theta]                  # of every joint
+    counts_per_turn = 4096
+
+    [joints.elbow.ports.theta]     # of one; it comes before what all joints share
+    column = "elbow_motor"
+
+A configuration of one joint has no section [joints], and its joint has the name "".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, MutableMapping
+from typing import Any
+
+import tomlkit
+from tomlkit.container import Container
+from tomlkit.items import Item, Table
+
+from sigmahat.files import toml_file
+
+JOINTS = "joints"
+"""Name of the section."""
+Place = tuple[str, ...]
+"""Of a value, its sections and its key: ("ports", "q", "unit"), ("parameters", "motor.B")."""
+
+
+_NAME = re.compile(r"\w[\w.-]*")
+
+
+def names(document: Mapping[str, Any]) -> list[str]:
+    """The joints of a document, [""] for a configuration of one joint.
+
+    Raises ValueError for a name that a folder cannot have.
+    """
+    joints = document.get(JOINTS)
+    if not isinstance(joints, Mapping) or not joints:
+        return [""]
+    for name, each in joints.items():
+        if not _NAME.fullmatch(name):
+            raise ValueError(
+                f"[joints] has the name {name!r}; expected letters, digits, '_', '-' and '.'"
+            )
+        if not isinstance(each, Mapping):
+            raise ValueError(f"joints.{name}: expected a table [joints.{name}], got {each!r}")
+    return list(joints)
+
+
+def of_joint(document: tomlkit.TOMLDocument, name: str) -> tomlkit.TOMLDocument:
+    """The configuration of one joint, with its comments; the document is unchanged."""
+    own = tomlkit.parse(tomlkit.dumps(document))
+    if name:
+        of_the_joint = items(own, name)
+        del own[JOINTS]
+        for place, item in of_the_joint.items():
+            set_item(own, place, item)
+    return own
+
+
+def together(joints: Mapping[str, tomlkit.TOMLDocument]) -> tomlkit.TOMLDocument:
+    """One document of the configurations of several joints: what is equal in all stands once.
+
+    Comments on lines of their own are those of the first joint.
+    """
+    first = next(iter(joints.values()))
+    values = [items(each) for each in joints.values()]
+    shared = {
+        place
+        for place, item in values[0].items()
+        if all(place in each and each[place] == item for each in values[1:])
+        and all(_comment(each[place]) == _comment(item) for each in values[1:])
+    }
+    document = tomlkit.parse(tomlkit.dumps(first))
+    for place in values[0].keys() - shared:
+        remove(document, place)
+    sections = tomlkit.table(is_super_table=True)
+    for name, own in zip(joints, values, strict=True):
+        section = tomlkit.table(is_super_table=True)
+        for place, item in own.items():
+            if place not in shared:
+                set_item(section, place, item)
+        sections[name] = section
+    document[JOINTS] = sections
+    return document
+
+
+def section(document: tomlkit.TOMLDocument, name: str) -> MutableMapping[str, Any]:
+    """Where the keys of a joint stand: its section, or the whole document for the joint ""."""
+    found: MutableMapping[str, Any] = document
+    return found[JOINTS][name] if name else found
+
+
+def _comment(item: Item) -> str:
+    return item.trivia.comment
+
+
+def items(document: tomlkit.TOMLDocument, joint: str = "") -> dict[Place, Item]:
+    """Every value with its comment, in the order of the document.
+
+    joint  only what stands in the section of this joint; its places begin there
+    """
+    every = dict(_items(document, ()))
+    if not joint:
+        return every
+    above = (JOINTS, joint)
+    return {place[2:]: item for place, item in every.items() if place[:2] == above}
+
+
+def _items(container: Container, above: Place) -> Iterator[tuple[Place, Item]]:
+    # Not container.items(), which gives true and false without their comments.
+    for key, item in container.body:
+        if key is None:
+            continue
+        if not isinstance(item, Table):
+            yield (*above, key.key), item
+        elif above[-1:] == ("parameters",):
+            for (last,), value in _items(item.value, ()):
+                yield (*above, f"{key.key}.{last}"), value
+        else:
+            yield from _items(item.value, (*above, key.key))
+
+
+def set_item(document: MutableMapping[str, Any], place: Place, item: Item) -> None:
+    """Sets a value; the sections above it are made if they are missing."""
+    *above, name = place
+    table: Any = document
+    for depth, each in enumerate(above):
+        # A table with tables only has no header of its own.
+        is_super = len(above) > depth + 1
+        if each not in table:
+            table[each] = tomlkit.table(is_super_table=is_super)
+        table = table[each]
+    toml_file.set_dotted(table, name, item)
+
+
+def remove(document: MutableMapping[str, Any], place: Place) -> None:
+    """Removes a value, and the dotted group that it leaves empty."""
+    *above, name = place
+    table: Any = document
+    for each in above:
+        table = table[each]
+    group, _, last = name.partition(".")
+    if name in table:
+        del table[name]
+    else:
+        del table[group][last]
+        if not table[group]:
+            del table[group]
