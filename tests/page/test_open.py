@@ -50,7 +50,7 @@ def test_from_an_empty_configuration_to_the_written_file(
             hand.types("motor.D_theta", "5e-4")
             hand.accepts("motor.B")
             other.sees("nothing in 20.001 s of the log contradicts the configuration")
-            other.sees("the answer as a curve")
+            other.sees("the stiffness as a curve")
             other.presses("write")
             hand.sees("Written:")
             capsys.readouterr()
@@ -73,6 +73,29 @@ def test_from_an_empty_configuration_to_the_written_file(
     assert written["parameters"]["motor"].pop("B") == pytest.approx(1e-4, rel=0.01)
     del own["parameters"]["motor"]["B"]
     assert written == own
+
+
+@pytest.mark.slow("a browser, and the command")
+def test_one_button_identifies_and_estimates(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_log(knee_log(), Path("knee.csv"))
+    assert main(["init", "knee.csv", "--quiet"]) == 0
+    Path("knee.toml").write_text(by_hand(Path("knee.toml").read_text()))
+    with served("knee.csv", folder=tmp_path) as page, opened(page.address) as window:
+        hand = Hand(window)
+        hand.sees("the stiffness as a curve")
+        assert "phi^11" not in hand.text()  # of orders that nobody has chosen
+        hand.presses("estimate")
+        hand.sees("Results: ")
+        assert float(hand.value("motor.B")) == pytest.approx(1e-4, rel=0.01)
+        assert Path("sigmahat-results/knee/estimate.png").is_file()
+        assert main(["estimate", "knee.csv", "--json"]) == 0
+        hand.sees(json.loads(capsys.readouterr().out)["answer"])
+        place = window.run("return document.querySelector('h1').nextElementSibling.offsetTop")
+        assert place < 100  # on the first screen
+        assert window.complaints() == []
 
 
 @pytest.mark.slow("a browser")

@@ -48,6 +48,11 @@ def nothing_found(checked: Checked) -> str:
     return f"checked: nothing in {seconds} of the log contradicts the configuration"
 
 
+def rows(checked: Checked) -> list[tuple[str, str]]:
+    """Severity and sentence of each finding."""
+    return [(each.severity.value, sentence(each)) for each in checked.findings]
+
+
 def sentence(finding: Finding) -> str:
     """The finding, the key to look at, and what it should be, in one line."""
     return f"{finding.key}: {_what(finding)}{_proposal(finding)}"

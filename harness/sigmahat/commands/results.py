@@ -84,12 +84,10 @@ def _estimated(
 ) -> tuple[Estimate, Checked]:
     """The estimate of a joint, whose files are written, and what the checks say."""
     from sigmahat.checks.check import check
-    from sigmahat.checks.text import sentence
-    from sigmahat.files.output import output_folder
+    from sigmahat.checks.text import rows
     from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.estimate import estimate
     from sigmahat.logs.readers.formats import open_log
-    from sigmahat.report.from_log import ShownFinding, write_findings
+    from sigmahat.report.estimated import estimated
 
     opened = open_log(log)
     configuration = read_configuration(config, joint)
@@ -98,10 +96,10 @@ def _estimated(
     checked = check(opened, configuration)
     if start_from is not None and start_from.is_dir():
         start_from /= joint
-    with output_folder(out / joint) as folder, common.progress("Replaying", 1000) as bar:
-        result = estimate(opened, configuration, folder, bar.update, start_from)
-        shown = [ShownFinding(f.severity.value, sentence(f)) for f in checked.findings]
-        write_findings(shown, folder)
+    with common.progress("Replaying", 1000) as bar:
+        result = estimated(
+            opened, configuration, rows(checked), out / joint, bar.update, start_from
+        )
     return result, checked
 
 

@@ -249,14 +249,16 @@ _CURVED = 0.01
 """A smaller relative change of the stiffness is not named."""
 
 
-def curve_text(curve: Curve) -> list[str]:
-    """Lines for a terminal, at most 3 or 4 of many set-points; none without data."""
+def curve_text(curve: Curve, polynomial: bool = True) -> list[str]:
+    """Lines for a terminal, at most 3 or 4 of many set-points; none without data.
+
+    polynomial  whether it is shown
+    """
     if not curve.branches:
         return []
-    lines = [
-        f"the answer as a curve, {reach_in_words(curve)}:",
-        f"  {polynomial_in_words(curve.polynomial)}",
-    ]
+    lines = [f"the stiffness as a curve, {reach_in_words(curve)}:"]
+    if polynomial:
+        lines.append(f"  {polynomial_in_words(curve.polynomial)}")
     rows: list[Sequence[str]] = [STIFFNESS_HEAD, *stiffness_rows(curve)]
     if len(curve.branches) > 1:
         every = list(family_rows(curve))

@@ -215,3 +215,5 @@ class Answer:
     """Torque and stiffness over the deformation."""
     points: MeasuredPoints
     """That stand behind it."""
+    doubt: str
+    """Item of the output doubt at the end."""

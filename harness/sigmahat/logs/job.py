@@ -178,4 +178,4 @@ class Replay:
         """The curve and the points behind it, at the end."""
         outputs = self.statistics.spread_over_log
         found = curve(self.slave, self.every, self.logs, points_of(outputs, self.method))
-        return Answer(found, shown_points(outputs, self.method))
+        return Answer(found, shown_points(outputs, self.method), self.statistics.last_doubt)

@@ -64,7 +64,7 @@ OF_PORT = (
 """Of each port."""
 PARAMETERS = (
     NumberField("samplePeriod", "sample period [s]", "0.001"),
-    NumberField("motor.gamma", "motor.gamma", "gear ratio of theta"),
+    NumberField("motor.gamma", "motor.gamma", "of theta"),
     NumberField("motor.B", "motor.B [kg.m²]"),
     NumberField("motor.D_theta", "motor.D_theta [N.m.s/rad]"),
 )

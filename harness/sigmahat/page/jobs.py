@@ -6,6 +6,7 @@ import logging
 import threading
 from collections.abc import Callable, Mapping
 from functools import partial
+from pathlib import Path
 
 import tomlkit
 
@@ -71,6 +72,7 @@ class Jobs:
         self._news = threading.Condition()
         self._version = 0
         self._text: str | None = None
+        self._estimate: str | None = None
         # It must not keep the program alive, whatever it is at.
         setup.changed = self.wanted
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -90,14 +92,26 @@ class Jobs:
             self._news.notify()
         setup.show()
 
+    def estimate(self) -> None:
+        """Identifies and estimates with the configuration as it is now."""
+        setup = self._setup
+        setup.busy = "Identifying ..."
+        with self._news:
+            self._estimate = setup.text
+            self._news.notify()
+        setup.show()
+
     def _run(self) -> None:
         self._try(self._look)
         while True:
             with self._news:
-                self._news.wait_for(lambda: self._text is not None)
-                version, text = self._version, self._text
-                self._text = None
-            self._try(partial(self._check, version, str(text)))
+                self._news.wait_for(lambda: self._text is not None or self._estimate is not None)
+                version, text, last = self._version, self._text, self._estimate
+                self._text = self._estimate = None
+            if last is not None:
+                self._try(partial(self._identify_and_estimate, version, last))
+            else:
+                self._try(partial(self._check, version, str(text)))
 
     def _try(self, job: Callable[[], object]) -> None:
         try:
@@ -144,6 +158,29 @@ class Jobs:
             self._later(partial(self._refused, version, str(error).removeprefix(f"{path}: ")))
         else:
             self._later(partial(self._show, version, answer=found, busy=""))
+
+    def _identify_and_estimate(self, version: int, text: str) -> None:
+        """Writes the results, and gives the setup the configuration with what was identified."""
+        from sigmahat.checks.check import check
+        from sigmahat.checks.text import rows
+        from sigmahat.identification.identify import identify
+        from sigmahat.identification.write import update
+        from sigmahat.logs.configuration import checked_configuration
+        from sigmahat.report.estimated import estimated
+
+        setup, document = self._setup, tomlkit.parse(text)
+        out = Path("sigmahat-results", setup.log.path.stem, setup.joint)
+        try:
+            if not setup.is_by_sensor:
+                found = identify(setup.log, checked_configuration(document, setup.path))
+                update(document, found)
+            self._later(partial(self._show, version, busy="Estimating ..."))
+            configuration = checked_configuration(document, setup.path)
+            estimated(setup.log, configuration, rows(check(setup.log, configuration)), out)
+        except _REFUSED as error:
+            self._later(partial(self._refused, version, str(error).removeprefix(f"{setup.path}: ")))
+        else:
+            self._later(partial(setup.estimated, text, document, out))
 
     def _refused(self, version: int | None, problem: str) -> None:
         self._show(version, problem=problem, checked=None, answer=None, busy="")

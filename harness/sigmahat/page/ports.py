@@ -147,13 +147,15 @@ class ParameterPanel:
 
     def _parameter(self, name: str) -> Choice:
         options = [(item, item) for item in CHOICES[name]]
-        return Choice(
+        choice = Choice(
             name,
             name,
             options,
             lambda: str(self._setup.get(name) or CHOICES[name][0]),
             lambda item: self._setup.set(name, item),
         )
+        choice.widget.styles = {"grid-column": "1 / -1"}  # FilteredRegression needs the width
+        return choice
 
     def show(self) -> None:
         """Shows the configuration as it is."""

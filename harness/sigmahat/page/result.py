@@ -48,7 +48,8 @@ class ResultPanel:
             nothing = "No curve: the estimator learned nothing from the log."
             return [_words(nothing)]
         made = plots(list(curve_panels(curve, points)), None)
-        text = "\n".join(curve_text(curve))
+        # Before identify has chosen its order, the polynomial has more powers than the spring.
+        text = "\n".join(curve_text(curve, self._setup.get("rls.n") is not None))
         return [
             _words(_legend(made)),
             in_grid([plot.figure for plot in made], "30rem"),

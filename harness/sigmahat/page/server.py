@@ -69,7 +69,9 @@ def serve(
     setup = Setup(log, path)
     jobs = Jobs(setup, IOLoop.current().add_callback)
     token = secrets.token_urlsafe(16)
-    server, port = _listen(token, port, lambda window: Window(setup, window, jobs.start))
+    server, port = _listen(
+        token, port, lambda window: Window(setup, window, jobs.start, jobs.estimate)
+    )
     address = f"http://{_HOST}:{port}/{token}"
     with _until_a_signal(server.io_loop):
         server.start()

@@ -62,6 +62,7 @@ class Setup:
         self.asks_to_overwrite = False
         """Whether the file exists, and was not overwritten."""
         self._asked = 0.0
+        self._then: Callable[[], object] | None = None
         self._shown: set[Callable[[], object]] = set()
         self._chosen: Chosen = lambda names: {}
         self._joints: dict[str, tomlkit.TOMLDocument] = {}
@@ -201,9 +202,14 @@ class Setup:
         except (OSError, ValueError):
             return False
 
-    def write(self, overwrite: bool) -> None:
-        """Writes the file; one that exists only if it is to be overwritten, after the question."""
-        if overwrite and not (self.asks_to_overwrite and monotonic() > self._asked + _DOUBLE_CLICK):
+    def write(self, overwrite: bool, then: Callable[[], object] | None = None) -> None:
+        """Writes the file; one that exists only if it is to be overwritten, after the question.
+
+        then  is called when the file is written, also after the question
+        """
+        if not overwrite:
+            self._then = then
+        elif not (self.asks_to_overwrite and monotonic() > self._asked + _DOUBLE_CLICK):
             return
         self.asks_to_overwrite = self.path.exists() and not (overwrite or self.is_on_disk)
         if self.asks_to_overwrite:
@@ -217,6 +223,8 @@ class Setup:
             else:
                 self.message = f"Written: {self.path.resolve()}. {self._next()}"
                 self.is_edited = False
+                if self._then is not None:
+                    self._then()
         self.show()
 
     def _next(self) -> str:
@@ -224,6 +232,33 @@ class Setup:
         log, default = self.log.path, Path(f"{self.log.path.stem}.toml")
         option = "" if self.path == default else f" --config {self.path}"
         return f"Next: sigmahat identify {log}{option}, then sigmahat estimate {log}{option}"
+
+    @property
+    def is_by_sensor(self) -> bool:
+        """Whether the torque is that of a sensor: then there is no motor to identify."""
+        return bool(self.get("modality") == "Sensor")
+
+    def estimated(self, before: str, document: tomlkit.TOMLDocument, folder: Path) -> None:
+        """Takes the configuration with which results were written into a folder, and writes it.
+
+        before  the configuration from which this began; if it was edited since, the edits stay
+        """
+        results = f"Results: {folder.resolve()}."
+        if self.text != before:
+            self.message = f"{results} They are of the configuration before your last edit."
+            self.changed()
+            return
+        self.document = self._joints[self.joint] = document
+        try:
+            write_whole(self.text_of_file, self.path)
+        except OSError as error:
+            results += f" Cannot write {self.path}: {error.strerror}."
+        else:
+            self.is_edited = False
+            results += f" Written: {self.path.name}. Next: sigmahat report {folder}"
+        self.changed()
+        self.message = results
+        self.show()
 
     def write_draft(self) -> Path | None:
         """Writes edits that are not written into a file of a new name. Returns it, if there are."""

@@ -43,12 +43,41 @@ class ColumnsPanel:
         )
 
 
-class SavingBar:
-    """Button and message."""
+class Headline:
+    """The result in one line, on the first screen."""
 
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
-        self._write = Button(button_type="primary", name="write", width=220, stylesheets=[style()])
+        styles: dict[str, str | None] = {"color": "var(--ink)", "font-weight": "700"}
+        styles |= {"font-size": "1.15rem", "overflow-wrap": "anywhere"}
+        self.root = Div(
+            name="headline", sizing_mode="stretch_width", styles=styles, stylesheets=[style()]
+        )
+
+    def show(self) -> None:
+        """Shows the last result, faded while another one is computed."""
+        from sigmahat.joint.curve import headline
+
+        setup = self._setup
+        found = setup.answer
+        self.root.text = "" if found is None else escape(headline(found.curve, found.doubt))
+        self.root.styles = {**self.root.styles, "opacity": "0.45" if setup.busy else "1"}
+
+
+class SavingBar:
+    """Button and message."""
+
+    def __init__(self, setup: Setup, estimate: Callable[[], object]) -> None:
+        self._setup = setup
+        self._estimate = Button(
+            label="Identify and estimate",
+            button_type="primary",
+            name="estimate",
+            width=220,
+            stylesheets=[style()],
+        )
+        self._write = Button(name="write", width=180, stylesheets=[style()])
+        self._estimate.on_click(lambda: setup.write(overwrite=False, then=estimate))
         self._overwrite = Button(
             label="Overwrite it", name="overwrite", width=130, stylesheets=[style()]
         )
@@ -63,6 +92,7 @@ class SavingBar:
         # Write stays where it is when the others come.
         flow: dict[str, str | None] = {"flex-wrap": "wrap-reverse"}
         self.root = Row(
+            self._estimate,
             self._write,
             self._overwrite,
             self._words,
@@ -76,6 +106,7 @@ class SavingBar:
         setup = self._setup
         self._write.label = f"Write {setup.path.name}"
         self._write.disabled = not setup.is_ready
+        self._estimate.disabled = not setup.is_ready or bool(setup.open_keys or setup.problem)
         self._overwrite.visible = setup.asks_to_overwrite
         self._words.text = escape(setup.message)
         self._words.visible = bool(setup.message)
@@ -95,8 +126,14 @@ class Panel(Protocol):
 class Window:
     """Shows a setup in a document."""
 
-    def __init__(self, setup: Setup, document: Document, ready: Callable[[], object]) -> None:
-        """ready is called when the browser has drawn the page."""
+    def __init__(
+        self,
+        setup: Setup,
+        document: Document,
+        ready: Callable[[], object],
+        estimate: Callable[[], object],
+    ) -> None:
+        """ready is called when the browser has drawn the page, estimate by the button."""
         self._setup, self._document = setup, document
         self._is_due = False
         self._joint = Choice("joint", "joint", [], lambda: setup.joint, setup.set_joint)
@@ -110,7 +147,8 @@ class Window:
             ParameterPanel(setup),
             FindingsPanel(setup),
             ResultPanel(setup),
-            SavingBar(setup),
+            SavingBar(setup, estimate),
+            Headline(setup),
         )
         for panel in self._panels:
             document.add_root(panel.root)

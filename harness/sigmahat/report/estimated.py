@@ -1,0 +1,32 @@
+"""A log through the estimator into a folder of results, with what the checks say about it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from sigmahat.files.output import output_folder
+from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.estimate import Estimate, estimate
+from sigmahat.logs.log import Log
+from sigmahat.report.from_log import ShownFinding, write_findings
+
+
+def estimated(
+    log: Log,
+    configuration: Configuration,
+    findings: Sequence[tuple[str, str]],
+    out: Path,
+    progress: Callable[[int], object] = lambda thousandths: None,
+    start_from: Path | None = None,
+) -> Estimate:
+    """The estimate; with the findings it is written into out, all files or none.
+
+    findings  of the checks: severity and sentence
+
+    Raises what `estimate` raises, OSError if out cannot be written to.
+    """
+    with output_folder(out) as folder:
+        result = estimate(log, configuration, folder, progress, start_from)
+        write_findings([ShownFinding(*each) for each in findings], folder)
+    return result
