@@ -83,6 +83,10 @@ def _what(f: Finding) -> str:
     template = _SENTENCES[f.kind]
     if f.kind is Kind.SLOPE and f.about == "sign":
         template = "q moves against theta"
+    elif f.kind is Kind.SLOPE and f.about == "swap":
+        template = (
+            "the columns of theta and q are swapped: the link would move {value:.4g} times as far"
+        )
     elif f.kind is Kind.TORQUE_LAG and f.measured < 0:
         template = "the torque comes {ms} earlier than the motion explains, or the spring is damped"
     return template.format(
