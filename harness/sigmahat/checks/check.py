@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from sigmahat.checks.columns import columns
+from sigmahat.checks.columns import at_rest, columns
 from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.relation import distance, relation, slope_of
@@ -144,6 +144,10 @@ def _per_gain(outputs: Outputs, method: object) -> float:
 
 def _contradictions(seen: View) -> Iterator[Finding]:
     """What the log contradicts. What would only be a consequence of another is left out."""
+    still = list(at_rest(seen))
+    if still:
+        yield from still
+        return
     recorded = list(columns(seen))
     if any(each.kind is Kind.JUMP for each in recorded):
         yield from recorded

@@ -83,6 +83,10 @@ def _guessed(joint: JointGuess) -> Iterator[str]:
         yield f"joint {joint.name}"
     for port, each in joint.ports.items():
         yield f"{port:13} {each.column} [{each.unit or 'unit not known'}]"
+    if not {"theta", "q"} & joint.ports.keys():
+        yield "no position moves: the joint is at rest, or the log has no column of a position"
+    elif {"theta", "tau"} <= joint.ports.keys() and "q" not in joint.ports:
+        yield "no position of a link moves: it is locked, its encoder is dead, or not recorded"
     period = period_of(joint)
     if "CHECK" in period:
         yield period.removeprefix("[s] ")

@@ -87,6 +87,9 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     rows -= start
     values = np.empty((ticks, len(configuration.ports)))
     for i, (name, port) in enumerate(configuration.ports.items()):
+        if port.value is not None:
+            values[:, i] = port.value
+            continue
         t = rows
         if port.time is not None:
             t = _times(log, configuration, port.time, T, notes)
@@ -128,7 +131,7 @@ def _times(
     """Times of rows [s]; nan where a row has none."""
     if name is None:
         notes.append(f"no time column: rows taken as {T:g} s apart")
-        first = next(iter(configuration.ports.values())).column
+        first = next(each.column for each in configuration.ports.values() if each.column)
         return T * np.arange(log.samples(first), dtype=np.float64)
     times = log.read(name) * seconds(configuration.time.unit)
     finite = np.isfinite(times)
@@ -223,16 +226,21 @@ def put_right(
     if not np.isfinite(periods[own]):
         return
     column, period = both[own], periods[own]
+    moved: list[tuple[int, float]] = []
     begins, ends = stretches(np.isfinite(values[:, both]).all(axis=1))
     for end, begin in zip(ends[:-1], begins[1:], strict=True):
         step = values[begin] - values[end - 1]
         turns = round((step[both[1 - own]] - step[column]) / period)
         if turns:
             values[begin:, column] += turns * period
-            yield (
-                f"{names[column]}: {turns:+d} periods of its counter during the gap after "
-                f"{(end - 1) * T:.6g} s, by the motion of the other encoder"
-            )
+            moved.append((turns, (end - 1) * T))
+    if moved:
+        turns, t = moved[0]
+        also = f" and during {len(moved) - 1} more" if len(moved) > 1 else ""
+        yield (
+            f"{names[column]}: {turns:+d} periods of its counter during the gap after "
+            f"{t:.6g} s{also}, by the motion of the other encoder"
+        )
 
 
 def _whole_turns(
