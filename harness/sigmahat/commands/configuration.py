@@ -58,7 +58,7 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
         fmu = installed("StiffnessEstimator")
         motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
         write_whole(template.write(opened, guessed, motor), one)
-    common.answer(_text(log, guessed, one))
+    common.answer("\n".join([*opened.notes, _text(log, guessed, one)]))
 
 
 def _text(log: Path, joints: Mapping[str, JointGuess], path: Path) -> str:

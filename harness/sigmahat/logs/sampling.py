@@ -65,7 +65,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     """As sample()."""
     if not (np.isfinite(T) and T > 0.0):
         raise LogError(f"{configuration.path}: samplePeriod: expected more than 0 s, got {T:g}")
-    notes: list[str] = []
+    notes: list[str] = list(log.notes)
     rows = _times(log, configuration, configuration.time.column, T, notes)
     start, end = float(np.nanmin(rows)), float(np.nanmax(rows))
     step = float(np.nanmedian(np.diff(rows))) if len(rows) > 1 else T
@@ -139,6 +139,11 @@ def _times(
     if len(given) < 2:
         raise LogError(f"{log.path}: time column {name!r} holds fewer than two numbers")
     steps = np.diff(given)
+    if np.all(steps >= 0) and not np.all(steps > 0) and steps.any():
+        again = np.flatnonzero(finite)[1:][steps == 0]
+        times[again] = np.nan
+        notes.append(f"{name}: {len(again)} rows with the time of the row before left out")
+        return times
     if not np.all(steps > 0):
         i = int(np.argmax(steps <= 0))
         row = np.flatnonzero(finite)[i + 1] + 1
