@@ -16,7 +16,11 @@ from sigmahat.checks.check import check
 from sigmahat.checks.findings import Checked, Kind, Severity
 from sigmahat.checks.text import sentence
 from sigmahat.cli import main
+from sigmahat.fmi.instance import Slave
+from sigmahat.fmi.opened import installed
+from sigmahat.joint.curve import stiffness_in_the_middle
 from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.job import Replay
 from sigmahat.logs.log import LogInMemory
 
 
@@ -63,6 +67,71 @@ def test_the_proposed_value_is_the_right_one(name: str, tmp_path: Path) -> None:
 def test_a_proposed_delay_puts_the_torque_right(tmp_path: Path) -> None:
     late = RIGHT.replace('"current"', '"late_current"\ndelay = 0.010')
     assert not checked(knee_log(), late, tmp_path).is_wrong
+
+
+@pytest.mark.parametrize("gear", [10.0, 1000.0, 0.01, -100.0, 101.0])
+@pytest.mark.parametrize("gamma", [True, False])
+def test_a_wrong_gear_ratio_is_named_with_the_right_one(
+    gear: float, gamma: bool, tmp_path: Path
+) -> None:
+    """Whether motor.gamma is as wrong, because it is that of the encoder, or right."""
+    text = RIGHT.replace("gear_ratio = 100", f"gear_ratio = {gear}")
+    if gamma:
+        text = text.replace("gamma = 100", f"gamma = {abs(gear)}")
+    first = checked(knee_log(), text, tmp_path).of(Severity.WRONG)[0]
+    assert (first.key, first.proposed) == ("ports.theta.gear_ratio", 100.0)
+
+
+def test_columns_that_are_swapped_are_said_as_that(tmp_path: Path) -> None:
+    text = RIGHT.replace("motor_counts", "X").replace("link_deg", "motor_counts")
+    (found,) = checked(knee_log(), text.replace("X", "link_deg"), tmp_path).of(Severity.WRONG)
+    assert (found.key, found.proposed) == ("ports.theta.column", "motor_counts")
+    assert "swapped" in sentence(found)
+
+
+def test_what_identify_will_set_is_no_finding_before_it(tmp_path: Path) -> None:
+    text = RIGHT.replace("range.phi = 0.03\n", "").replace("prior.tau_e = 20\n", "")
+    text = text.replace("B = 1.05e-4", "B = 2.3e-5").replace("prior.B = 0.1", "prior.B = 1000")
+    strong = {**KNEE, "spring.k_1": 2e4, "motor.gamma": GEAR, "motor.B": 2e-3}
+    for plant in (KNEE, strong):
+        log = joint_log(plant, 1e-3, 400.0)
+        columns = {
+            "t": log["t"],
+            "motor_counts": np.round(log["theta"] * 409600 / 6.283185307179586),
+        }
+        columns |= {"link_deg": np.degrees(log["q"]), "current": log["tau"] / 0.05}
+        found = checked(columns, text.replace("zero = 1500\n", ""), tmp_path)
+        assert [sentence(each) for each in found.of(Severity.WRONG)] == []
+
+
+@pytest.mark.parametrize(
+    ("still", "words"),
+    [
+        (["motor_counts", "link_deg"], "the joint is at rest"),
+        (["link_deg"], "the link does not move while the motor does"),
+        (["motor_counts"], "the motor does not move while the link does"),
+    ],
+)
+def test_positions_that_do_not_change(still: list[str], words: str, tmp_path: Path) -> None:
+    log = {name: np.full_like(c, c[0]) if name in still else c for name, c in knee_log().items()}
+    (found,) = checked(log, RIGHT, tmp_path).of(Severity.WRONG)
+    assert words in sentence(found)
+
+
+def test_a_link_that_is_locked_on_purpose_needs_no_column(tmp_path: Path) -> None:
+    plant = {**KNEE, "contact.k": 1e7, "contact.d": 1e3}
+    log = joint_log(plant, 1e-3)
+    text = parameters(KNEE, 1e-3).replace('[ports.q]\ncolumn = "q"', "[ports.q]\nvalue = 0")
+    assert not checked({n: log[n] for n in ("t", "theta", "tau")}, text, tmp_path).is_wrong
+    with Slave(installed("StiffnessEstimator"), "estimator") as slave:
+        columns = LogInMemory(Path("log"), {n: log[n] for n in ("t", "theta", "tau")})
+        replay = Replay(slave, columns, read_configuration(tmp_path / "log.toml"))
+        replay.run()
+        branch = replay.answer().curve.branches[0]
+    _, _, interval = stiffness_in_the_middle(branch)
+    assert interval is not None
+    low, high = interval
+    assert low < KNEE["spring.k_1"] < high < 1.2 * low
 
 
 def parameters(plant: Mapping[str, float], T: float) -> str:

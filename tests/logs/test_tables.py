@@ -82,6 +82,49 @@ def test_dates_are_times_and_stay_as_they_are(
     assert np.allclose(read_estimate(Path())["t"].values, plain_log()["t"], rtol=0, atol=1e-12)
 
 
+def test_a_text_as_programs_write_it_is_read_with_a_word(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Windows-1252, a line of units, decimal commas, a time twice, and a last line that is cut."""
+    monkeypatch.chdir(tmp_path)
+    write_log(plain_log(), Path("clean.csv"))
+    lines = Path("clean.csv").read_text().replace('"', "").splitlines()
+    names = lines[0].split(",")
+    units = {"t": "s", "theta": "rad", "q": "rad", "theta_c": "mm", "tau": "N.m"}
+    text = [
+        ";".join([*names, "Größe"]),
+        ";".join([units.get(name, "") for name in names] + ["µm"]),
+        *(";".join([*_cells(line), "1"]) for line in lines[1:]),
+    ]
+    text.insert(20, text[19])
+    text[-1] = ";".join(text[-1].split(";")[:2])
+    Path("dirty.csv").write_bytes("\r\n".join(text).encode("cp1252"))
+
+    assert main(["init", "dirty.csv"]) == 0
+    said = capsys.readouterr().out
+    for each in ("read as windows-1252", "line 2 has the units", "a row with 2 of"):
+        assert each in said
+    configuration = CONFIGURATION
+    for name in ("t", "theta", "q", "theta_c", "tau"):
+        unit = f" [{units[name]}]"
+        configuration = configuration.replace(f'column = "{name}"', f'column = "{name}{unit}"')
+    Path("dirty.toml").write_text(configuration)
+    Path("clean.toml").write_text(CONFIGURATION)
+    for name in ("clean", "dirty"):
+        assert main(["estimate", f"{name}.csv", "--out", name]) == 0
+    said = capsys.readouterr().out
+    assert "1 rows with the time of the row before left out" in said
+    clean, dirty = read_estimate(Path("clean")), read_estimate(Path("dirty"))
+    got = np.delete(dirty["sigma"].values, 18)  # the time that stands twice
+    assert np.array_equal(got[: ROWS - 1], clean["sigma"].values[: ROWS - 1])
+    last = Path("dirty/estimate.csv").read_text().splitlines()[-1]
+    assert ";" in last and "." not in last.replace("FilteredRegression", "")
+
+
+def _cells(line: str) -> list[str]:
+    return [cell.replace(".", ",") for cell in line.split(",")]
+
+
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
 def test_estimates_are_read_as_they_were_written(
     suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
-from sigmahat.checks.columns import columns
+from sigmahat.checks.columns import at_rest, columns
 from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
-from sigmahat.checks.relation import relation
+from sigmahat.checks.relation import distance, relation, slope_of
 from sigmahat.checks.replayed import Outputs, play, replayed
 from sigmahat.checks.view import View, view
-from sigmahat.fmi.instance import Slave, Value
+from sigmahat.fmi.instance import FmuError, Slave, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.data_sheet import absent, exact
-from sigmahat.logs.log import Log
+from sigmahat.logs.log import Log, LogError
 from sigmahat.logs.replay import parameters
 
 _INERTIA = (Kind.INERTIA, Kind.TORQUE_SCALE)
@@ -33,7 +35,7 @@ def check(log: Log, configuration: Configuration) -> Checked:
     fmu = installed("StiffnessEstimator")
     seen = _view(log, configuration)
     every = seen.every
-    findings = list(_contradictions(seen))
+    findings = _swapped(seen) or [_tried(seen, each) for each in _contradictions(seen)]
     with Slave(fmu, "check") as slave:
         outputs = play(slave, seen)
     if not any(each.severity is Severity.WRONG for each in findings):
@@ -78,6 +80,63 @@ def _view(log: Log, configuration: Configuration) -> View:
     return view(log, configuration, _every(configuration))
 
 
+_UNLIKE = 5.0  # slope of q on theta: a soft spring does not make it so large
+_ALIKE = 1.5
+
+
+def _swapped(seen: View) -> list[Finding]:
+    """The columns of theta and q, if motor and link move alike with each in place of the other."""
+    ports = seen.configuration.ports
+    if not {"theta", "q"} <= ports.keys():
+        return []
+    now = slope_of(seen.pieces, seen.T)
+    if now is None or distance(abs(now), 1.0) < math.log(_UNLIKE):
+        return []
+    theta, q = ports["theta"], ports["q"]
+    turned = {
+        "theta": replace(theta, column=q.column, time=q.time, zero=q.zero),
+        "q": replace(q, column=theta.column, time=theta.time, zero=theta.zero),
+    }
+    try:
+        other = _view(seen.log, replace(seen.configuration, ports={**ports, **turned}))
+    except LogError:
+        return []
+    slope = slope_of(other.pieces, other.T)
+    if slope is None or distance(abs(slope), 1.0) > math.log(_ALIKE):
+        return []
+    second = [("ports.q.column", theta.column)]
+    return [
+        Finding(
+            Kind.SLOPE, Severity.WRONG, "ports.theta.column", now, "", 1.0, q.column, second, "swap"
+        )
+    ]
+
+
+def _tried(seen: View, finding: Finding) -> Finding:
+    """A finding without the value that it proposes, if that does not mend it."""
+    if finding.severity is not Severity.WRONG or finding.proposed is None:
+        return finding
+    try:
+        after = _view(seen.log, changed(seen.configuration, finding.key, finding.proposed))
+    except (LogError, FmuError):
+        return replace(finding, proposed=None)
+    found = [each for each in _contradictions(after) if each.severity is Severity.WRONG]
+    is_mended = all((each.kind, each.about) != (finding.kind, finding.about) for each in found)
+    return finding if is_mended else replace(finding, proposed=None)
+
+
+def changed(configuration: Configuration, key: str, value: Any) -> Configuration:
+    """A configuration with another value of a key, as "ports.tau.sign" or "motor.gamma"."""
+    section, _, name = key.partition(".")
+    if section == "time":
+        return replace(configuration, time=replace(configuration.time, **{name: value}))
+    if section != "ports":
+        return replace(configuration, parameters={**configuration.parameters, key: value})
+    port, _, name = name.partition(".")
+    own = replace(configuration.ports[port], **{name: value})
+    return replace(configuration, ports={**configuration.ports, port: own})
+
+
 def _per_gain(outputs: Outputs, method: object) -> float:
     """Relative change of the stiffness with a relative change of the gain of the torque."""
     return float(outputs["sigma_per_gain"][-1]) if method == "FilteredRegression" else 1.0
@@ -85,6 +144,10 @@ def _per_gain(outputs: Outputs, method: object) -> float:
 
 def _contradictions(seen: View) -> Iterator[Finding]:
     """What the log contradicts. What would only be a consequence of another is left out."""
+    still = list(at_rest(seen))
+    if still:
+        yield from still
+        return
     recorded = list(columns(seen))
     if any(each.kind is Kind.JUMP for each in recorded):
         yield from recorded
@@ -92,10 +155,12 @@ def _contradictions(seen: View) -> Iterator[Finding]:
     here = relation(seen)
     yield from here.findings
     keys = {each.key for each in here.findings}
+    if "ports.theta.gear_ratio" in keys:
+        return  # the torque behind the gear is as wrong
     for each in recorded:
         if not any(key.startswith(f"ports.{each.about}.") for key in keys):
             yield each
-    if not any(key.endswith("gear_ratio") for key in keys):
+    if "ports.q.gear_ratio" not in keys:
         yield from gears(seen.configuration, seen.every)
     yield from dynamics(seen, here)
 

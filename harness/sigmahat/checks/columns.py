@@ -25,6 +25,8 @@ _PERIODS = (360.0, 2 * math.pi, *(2.0**k for k in range(8, 33)))
 def columns(seen: View) -> Iterator[Finding]:
     """All of it, for every port."""
     for name, port in seen.configuration.ports.items():
+        if port.value is not None:
+            continue
         values = seen.log.read(port.column)
         finite = np.isfinite(values)
         values = values if finite.all() else values[finite]  # a long log needs much memory
@@ -33,6 +35,24 @@ def columns(seen: View) -> Iterator[Finding]:
             yield from _step(seen, name, port, values)
         if name == "tau":
             yield from _saturation(values)
+
+
+def at_rest(seen: View) -> Iterator[Finding]:
+    """Positions that do not change: nothing of the joint shows then."""
+    ports = [name for name in ("theta", "q") if name in seen.samples.names]
+    still = [name for name in ports if _is_still(seen, name)]
+    if still and seen.every["modality"] != "Sensor":
+        what = "joint" if still == ports else still[0]
+        measured = float(len(seen.samples.values)) * seen.T
+        key = f"ports.{still[-1]}.column"
+        yield Finding(Kind.AT_REST, Severity.WRONG, key, measured, "s", about=what)
+
+
+def _is_still(seen: View, name: str) -> bool:
+    """Whether a position is one value throughout, and nobody has said that it is."""
+    values = seen.samples.values[:, list(seen.samples.names).index(name)]
+    known = values[np.isfinite(values)]
+    return seen.configuration.ports[name].value is None and float(np.ptp(known)) == 0
 
 
 def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:

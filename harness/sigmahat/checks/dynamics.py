@@ -13,12 +13,13 @@ from sigmahat.checks.motor import (
     Fitted,
     delay,
     explains,
+    gear_error,
     variants,
     with_all_powers,
     with_form,
     with_inertia,
 )
-from sigmahat.checks.relation import Relation
+from sigmahat.checks.relation import Relation, gear_of
 from sigmahat.checks.view import View
 from sigmahat.identification.quantities import WIDE
 from sigmahat.identification.regression import MOTOR, Signals
@@ -39,6 +40,10 @@ def dynamics(seen: View, here: Relation) -> Iterator[Finding]:
     if sign is not None:
         yield sign
         return  # with a wrong sign the rest means nothing
+    gear = None if here.findings else _gear(seen, found, here.pieces)
+    if gear is not None:
+        yield gear
+        return  # the deformation is wrong, and all that follows from it
     zero = _zero(seen, found, here.pieces)
     if zero is not None:
         yield zero
@@ -70,6 +75,28 @@ def _sign(seen: View, found: Fitted) -> Finding | None:
     return Finding(kind, Severity.WRONG, key, sigma, "N.m/rad", None, None, others)
 
 
+_LEAST_GEAR = 2e-3
+"""Relative error of a gear ratio: encoders and gears have smaller ones."""
+_MUCH = 0.3
+"""Squared errors over those before, if a gear ratio explains the log."""
+
+
+def _gear(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | None:
+    """A gear ratio that is wrong by a little, if it explains much of the torque."""
+    if "theta" not in seen.configuration.ports:
+        return None
+    error = gear_error(seen, pieces, found.form)
+    if error is None or not abs(error.value - 1) > error.half_width + _LEAST_GEAR:
+        return None
+    # A spring that is not symmetric, or whose zero is wrong, is no gear.
+    others = min(found.error, float(np.sum(with_all_powers(seen, pieces, found.form).squares)))
+    if not float(np.sum(error.fit.squares)) < _MUCH * others:
+        return None
+    change = gear_of(seen.configuration.ports["theta"], error.value)
+    slope = 1 / error.value
+    return Finding(Kind.SLOPE, Severity.WRONG, change.key, slope, "", 1.0, change.value)
+
+
 def _zero(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | None:
     """The zero of the deformation, where it matters: for an odd polynomial."""
     if not found.form.symmetric:
@@ -85,7 +112,9 @@ def _zero(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | Non
     keys = [("ports.q.zero", _moved(ports["q"], "q", zero))]
     if "theta" in ports:
         keys.append(("ports.theta.zero", _moved(ports["theta"], "theta", -zero)))
-    severity = Severity.WRONG if _is_more_than_bias(seen, found, zero) else Severity.NOTE
+    # One within the deformations of the log is left to identify, which sets it.
+    is_wrong = abs(zero) > covered / 2 and _is_more_than_bias(seen, found, zero)
+    severity = Severity.WRONG if is_wrong else Severity.NOTE
     (key, proposed), *others = keys
     return Finding(Kind.ZERO, severity, key, zero, "rad", 0.0, proposed, others)
 
@@ -163,10 +192,11 @@ def inertia(seen: View, pieces: Sequence[Signals], found: Fitted) -> Iterator[Fi
         return
     B = found.linear.value["B"]
     unit, rounded = "kg.m2", float(f"{B:.3g}")
-    is_known = float(seen.every["prior.B"]) < WIDE  # else nobody has said that B is right
+    if float(seen.every["prior.B"]) >= WIDE:
+        return  # nobody has said that B is right, and identify will find it
     gamma = abs(seen.gamma)
     geared = [each for each in (gamma, 1 / gamma) if not _differs(B, each * given, _LIKE)]
-    is_given = "motor.B" in seen.configuration.parameters and is_known
+    is_given = "motor.B" in seen.configuration.parameters
     if is_given and geared and gamma > _LIKE**2:
         port = seen.configuration.ports["tau"]
         proposed = float(f"{port.gear_ratio * geared[0]:.6g}")
@@ -174,7 +204,7 @@ def inertia(seen: View, pieces: Sequence[Signals], found: Fitted) -> Iterator[Fi
         others = [("motor.B", rounded)]
         yield Finding(kind, Severity.WRONG, key, B, unit, given, proposed, others)
         return
-    is_wrong = is_known and (given == _AWAS or _differs(B, given, _LARGE))
+    is_wrong = given == _AWAS or _differs(B, given, _LARGE)
     severity = Severity.WRONG if is_wrong else Severity.NOTE
     constant = [("ports.tau.torque_constant", None)]
     yield Finding(Kind.INERTIA, severity, "motor.B", B, unit, given, rounded, constant)

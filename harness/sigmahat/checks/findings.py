@@ -25,6 +25,7 @@ class Severity(Enum):
 class Kind(Enum):
     """What was checked."""
 
+    AT_REST = "positions that do not change"
     SLOPE = "slope of q on theta"
     GEAR = "motor.gamma and the gear ratio"
     SIGN = "sign of the torque"

@@ -33,6 +33,7 @@ from sigmahat.logs.log import Array
 LINEAR = "eta[0,0]"
 """The column of a linear spring."""
 _DELAY = "delay"
+_GEAR = "gear"
 _HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Coulomb friction
 _SLOWEST = 0.1  # [s] between ticks: slower ones do not show the motion of a joint
 _ORDERS = 3
@@ -90,6 +91,18 @@ class Delay:
     """The motor equation with the torque moved."""
 
 
+@dataclass(frozen=True)
+class GearError:
+    """The gear ratio of the motor's encoder beside the one that the motion shows."""
+
+    value: float
+    """Configured gear ratio over the right one [1]."""
+    half_width: float
+    """Half of the 95 % interval [1]."""
+    fit: Fit
+    """The motor equation with theta corrected."""
+
+
 def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Delay | None:
     """How late the torque is; None if no value is found.
 
@@ -99,12 +112,36 @@ def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Delay | None:
     late = 0.0
     for _ in range(_STEPS):
         moved = [replace(piece, tau=_moved(piece.tau, late / seen.T)) for piece in pieces]
-        found = fit(_with_delay(seen, moved, form))
+        slopes = [-np.gradient(piece.tau, seen.T) for piece in moved]
+        found = fit(_with_column(seen, moved, form, slopes, _DELAY))
         step, half_width = found.value[_DELAY], found.half_width[_DELAY]
         late += step
         if not math.isfinite(late) or abs(late) > _LONGEST:
             return None
     return Delay(late, half_width + abs(step), found) if math.isfinite(half_width) else None
+
+
+def gear_error(seen: View, pieces: Sequence[Signals], form: Form) -> GearError | None:
+    """By how much the motor moves too far for its gear ratio; None if the motion does not show it.
+
+    With theta (1 + delta) for theta, the spring takes phi - delta theta: its torque has a share of
+    theta, which is a column here. Newton's method: theta is corrected until there is no share left.
+    """
+    whole = 1.0
+    for _ in range(_STEPS):
+        scaled = [
+            replace(each, theta=whole * each.theta, phi=each.phi + (1 - whole) * each.theta)
+            for each in pieces
+        ]
+        found = fit(_with_column(seen, scaled, form, [each.theta for each in scaled], _GEAR))
+        spring = found.value[LINEAR] / Spring(form, _equations(seen, scaled, form).units).units[0]
+        if not (spring and math.isfinite(found.half_width[_GEAR])):
+            return None
+        step, half_width = -found.value[_GEAR] / spring, abs(found.half_width[_GEAR] / spring)
+        whole *= 1 + step
+        if not 0.5 < whole < 2:
+            return None
+    return GearError(whole, half_width + abs(step), found)
 
 
 def variants(form: Form) -> list[Form]:
@@ -166,13 +203,15 @@ def _equations(seen: View, pieces: Sequence[Signals], form: Form) -> Equations:
     return every.only([name for name in every.names if name not in MOTOR])
 
 
-def _with_delay(seen: View, pieces: Sequence[Signals], form: Form) -> Equations:
+def _with_column(
+    seen: View, pieces: Sequence[Signals], form: Form, signals: Sequence[Array], name: str
+) -> Equations:
+    """The equations with one more column, a signal for each piece; it is filtered as the torque."""
     system = _equations(seen, pieces, form)
-    slopes = [replace(piece, tau=np.gradient(piece.tau, seen.T)) for piece in pieces]
-    small = replace(form, n=1, m=1)
-    column = -equations(slopes, seen.T, seen.gamma, small).y[:, None]
+    as_torques = [replace(piece, tau=own) for piece, own in zip(pieces, signals, strict=True)]
+    column = equations(as_torques, seen.T, seen.gamma, replace(form, n=1, m=1)).y[:, None]
     X, Z = np.hstack([system.X, column]), np.hstack([system.Z, column])
-    return replace(system, X=X, Z=Z, names=[*system.names, _DELAY])
+    return replace(system, X=X, Z=Z, names=[*system.names, name])
 
 
 def _moved(tau: Array, ticks: float) -> Array:

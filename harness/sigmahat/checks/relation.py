@@ -36,6 +36,8 @@ class Change:
     key: str
     value: Proposal
     factor: float
+    fits_any: bool = False
+    """Whether it is made for the slope of the log, whatever that is."""
 
 
 def changes(name: str, port: Port, gamma: float) -> Iterator[Change]:
@@ -45,8 +47,8 @@ def changes(name: str, port: Port, gamma: float) -> Iterator[Change]:
     gamma  gear ratio of the motor
     """
     where, gear = f"ports.{name}", abs(port.gear_ratio)
-    if name == "theta" and gear == 1:
-        yield Change(f"{where}.gear_ratio", abs(gamma), 1 / abs(gamma))
+    if name == "theta" and gear != abs(gamma):
+        yield Change(f"{where}.gear_ratio", abs(gamma), gear / abs(gamma))
     if gear != 1:
         yield Change(f"{where}.gear_ratio", 1.0, gear)
     if port.scale is None and port.unit in (None, *_ANGLES):
@@ -61,6 +63,19 @@ def changes(name: str, port: Port, gamma: float) -> Iterator[Change]:
             yield Change(f"{where}.counts_per_turn", value, 1 / times)
 
 
+def gear_of(theta: Port, slope: float) -> Change:
+    """The gear ratio with which the motor moves as far as the link."""
+    gear = abs(theta.gear_ratio) / slope
+    whole = round(gear)
+    likely = float(whole) if whole and abs(gear / whole - 1) < _WHOLE else float(f"{gear:.4g}")
+    return Change("ports.theta.gear_ratio", likely, slope, fits_any=True)
+
+
+def _unlikely(name: str, change: Change, slope: float) -> float:
+    """Small for a change that comes first."""
+    return _ANY if change.fits_any else round(distance(_on_theta(name, change), slope), 1)
+
+
 def like(one: float, other: float) -> bool:
     """Whether two positive factors may be the same."""
     return distance(one, other) < _LIKE
@@ -71,6 +86,10 @@ def distance(one: float, other: float) -> float:
     return abs(math.log(one / other))
 
 
+_WHOLE = 0.02
+"""Gear ratios are whole numbers more often than not: up to this, the nearest one is proposed."""
+_ANY = 0.05
+"""Distance of a gear ratio that is made for the slope: what agrees by itself comes first."""
 _SLOW = 1.0  # [Hz]
 _ENOUGH = 0.1  # of the motion must be slow, else all of it is taken
 _CORRELATED = 0.9
@@ -97,7 +116,7 @@ def relation(seen: View) -> Relation:
     here = Relation((), seen.pieces, fitted(seen, seen.pieces))
     if not {"theta", "q"} <= set(seen.samples.names):
         return here
-    found = _slope(seen.pieces, seen.T)
+    found = slope_of(seen.pieces, seen.T)
     if found is None:
         return here
     here = _scale(seen, here, found)
@@ -107,13 +126,16 @@ def relation(seen: View) -> Relation:
 def _scale(seen: View, here: Relation, slope: float) -> Relation:
     if not abs(np.log(abs(slope))) > np.log(_DIFFERENT):
         return here
-    every = [
+    every: list[tuple[str, Change]] = [
+        ("theta", gear_of(seen.configuration.ports["theta"], abs(slope)))
+    ]
+    every += [
         (name, change)
         for name in PORTS
         for change in changes(name, seen.configuration.ports[name], seen.gamma)
         if like(_on_theta(name, change), abs(slope))
     ]
-    every.sort(key=lambda each: round(distance(_on_theta(*each), abs(slope)), 1))
+    every.sort(key=lambda each: _unlikely(each[0], each[1], abs(slope)))
     best: tuple[str, Change] | None = None
     found = here
     for name, change in every:
@@ -131,7 +153,7 @@ def _scale(seen: View, here: Relation, slope: float) -> Relation:
     others = [
         (change.key, change.value)
         for name, change in every
-        if (name, change) != best and distance(_on_theta(name, change), factor) < _AS_WELL
+        if change.key != best[1].key and distance(_on_theta(name, change), factor) < _AS_WELL
     ]
     key, proposed = first.key, first.value
     finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, proposed, others)
@@ -148,6 +170,15 @@ def _sign(seen: View, here: Relation, slope: float) -> Relation:
         is_stiff = before.linear.value[LINEAR] * seen.gamma < 0
         if is_worse(after.fit, before.fit) or (is_stiff and not _is_better(before, after)):
             return here
+    gear = seen.configuration.ports["theta"].gear_ratio
+    if gear < 0:
+        key, others = (
+            "ports.theta.gear_ratio",
+            [("ports.q.sign", -seen.configuration.ports["q"].sign)],
+        )
+        finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, -gear, others, "sign")
+        flipped = [_scaled(piece, "theta", -1.0) for piece in here.pieces]
+        return Relation([*here.findings, finding], flipped, fitted(seen, flipped))
     # With the sign of theta instead, all that moves the motor has the other sign.
     motor = _sign_of_motor(after)
     name = "theta" if motor < 0 else "q"
@@ -200,7 +231,7 @@ def _is_better(before: Fitted | None, after: Fitted | None) -> bool:
     return is_worse(before.fit, after.fit) and after.error < _BETTER * before.error
 
 
-def _slope(pieces: Sequence[Signals], T: float) -> float | None:
+def slope_of(pieces: Sequence[Signals], T: float) -> float | None:
     """Slope of q on theta by total least squares, in slow motion if there is any."""
     if not pieces:
         return None

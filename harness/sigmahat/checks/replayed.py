@@ -54,15 +54,17 @@ def replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
 
 
 def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:
-    every, is_regression = seen.every, seen.every["method"] == "FilteredRegression"
+    every, known = seen.every, seen.configuration.parameters
+    is_regression = every["method"] == "FilteredRegression"
     phi, given = float(np.max(np.abs(outputs["phi"]))), float(every["range.phi"])
-    if is_regression and not given / _WIDE < phi < given:
+    # What identify will set is no finding before it.
+    if is_regression and "range.phi" in known and not given / _WIDE < phi < given:
         severity = Severity.WRONG if phi > _ROOM * given else Severity.NOTE
         proposed = float(f"{_ROOM * phi:.3g}")
         yield Finding(Kind.RANGE, severity, "range.phi", phi, "rad", given, proposed)
     torque = max((float(np.max(np.abs(p.tau))) for p in seen.pieces), default=0.0)
     torque, given = abs(seen.gamma) * torque, float(every["prior.tau_e"])
-    if is_regression and torque > _TORQUE * given > 0:
+    if is_regression and "prior.tau_e" in known and torque > _TORQUE * given > 0:
         proposed = float(f"{_ROOM * torque:.3g}")
         key = "prior.tau_e"
         yield Finding(Kind.RANGE, Severity.WRONG, key, torque, "N.m", given, proposed)

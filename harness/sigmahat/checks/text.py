@@ -80,9 +80,15 @@ def _number(value: float | None, unit: str) -> str:
 
 def _what(f: Finding) -> str:
     """The sentence of its kind, filled in."""
-    template = _SENTENCES[f.kind]
+    template = _SENTENCES.get(f.kind, "")
     if f.kind is Kind.SLOPE and f.about == "sign":
         template = "q moves against theta"
+    elif f.kind is Kind.SLOPE and f.about == "swap":
+        template = (
+            "the columns of theta and q are swapped: the link would move {value:.4g} times as far"
+        )
+    elif f.kind is Kind.AT_REST:
+        template = _STILL[f.about]
     elif f.kind is Kind.TORQUE_LAG and f.measured < 0:
         template = "the torque comes {ms} earlier than the motion explains, or the spring is damped"
     return template.format(
@@ -102,6 +108,13 @@ def _what(f: Finding) -> str:
     )
 
 
+_STILL = {
+    "joint": "the joint is at rest throughout the {measured} of the log; record one that moves",
+    "q": "the link does not move while the motor does: its encoder is dead, or the column is "
+    "another one. If the link is locked on purpose, write ports.q.value = 0 in place of the column",
+    "theta": "the motor does not move while the link does: its encoder is dead, or the column is "
+    "another one",
+}
 _INERTIA = "the log shows an inertia of {measured}, {ratio:.3g} times motor.B"
 _SENTENCES: Mapping[Kind, str] = {
     Kind.SLOPE: "q moves {value:.4g} times as far as theta, expected about 1",

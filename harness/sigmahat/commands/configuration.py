@@ -58,7 +58,7 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
         fmu = installed("StiffnessEstimator")
         motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
         write_whole(template.write(opened, guessed, motor), one)
-    common.answer(_text(log, guessed, one))
+    common.answer("\n".join([*opened.notes, _text(log, guessed, one)]))
 
 
 def _text(log: Path, joints: Mapping[str, JointGuess], path: Path) -> str:
@@ -83,6 +83,10 @@ def _guessed(joint: JointGuess) -> Iterator[str]:
         yield f"joint {joint.name}"
     for port, each in joint.ports.items():
         yield f"{port:13} {each.column} [{each.unit or 'unit not known'}]"
+    if not {"theta", "q"} & joint.ports.keys():
+        yield "no position moves: the joint is at rest, or the log has no column of a position"
+    elif {"theta", "tau"} <= joint.ports.keys() and "q" not in joint.ports:
+        yield "no position of a link moves: it is locked, its encoder is dead, or not recorded"
     period = period_of(joint)
     if "CHECK" in period:
         yield period.removeprefix("[s] ")

@@ -126,6 +126,22 @@ class Column:
     empty if it holds no numbers."""
 
 
+_LOST = 1e-3  # of the rows; fewer gaps leave stretches that are long enough
+_LONGEST_GAP = 10  # rows that a motion of a joint allows to interpolate over
+
+
+def lost_rows(times: Array, T: float) -> float | None:
+    """Longest of the short gaps between rows [s], if single rows are lost throughout; else None.
+
+    T  usual time between rows [s]
+    """
+    steps = np.diff(times[np.isfinite(times)])
+    short = steps[(steps > _MISSING * T) & (steps < (_LONGEST_GAP + 0.5) * T)]
+    if not len(short) > _LOST * len(steps):
+        return None
+    return float(f"{round(float(short.max()) / T) * T:.6g}")
+
+
 @dataclass(frozen=True)
 class Columns:
     """All columns of a log."""
@@ -137,6 +153,8 @@ class Columns:
     """Their smallest and largest values, by name."""
     intervals: Mapping[str | None, float]
     """Usual time between rows [s], by clock; by None where there is none."""
+    gaps: Mapping[str | None, float | None]
+    """As `lost_rows`, by clock."""
     window_T: float
     """Time between the samples of the windows [s]."""
 
@@ -158,6 +176,8 @@ def read_columns(log: Log) -> Columns:
     times = {name: values[name] * seconds(unit) for name, unit in units.items()}
     intervals: dict[str | None, float] = {name: interval(t) for name, t in times.items()}
     intervals[None] = 1e-3
+    gaps: dict[str | None, float | None] = {n: lost_rows(t, intervals[n]) for n, t in times.items()}
+    gaps[None] = None
     clocks = {name: _clock_of(name, log, list(units)) for name in log.columns}
     signals = [name for name in log.columns if name not in units]
     moving = [name for name in signals if facts[name].varies]
@@ -171,6 +191,7 @@ def read_columns(log: Log) -> Columns:
         units,
         {name: (facts[name].low, facts[name].high) for name in units},
         intervals,
+        gaps,
         T,
     )
 

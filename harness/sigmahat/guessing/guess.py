@@ -92,6 +92,8 @@ class JointGuess:
     time_unit: str
     T: float
     """Usual time between rows [s]."""
+    longest_gap: float | None
+    """Where single rows are lost, the longest gap that this leaves [s]."""
     ports: Mapping[str, PortGuess]
     """By port, in the order of PORTS; only those that have a column."""
     columns: Sequence[Seen]
@@ -160,7 +162,13 @@ def _joint(name: str, roles: Roles, columns: Columns, log: Log) -> JointGuess:
             low, high = columns.spans[column]
             seen.append(Seen(column, samples, low, high, what))
     return JointGuess(
-        name, main, columns.clocks.get(main or "", "s"), columns.intervals[main], ports, seen
+        name,
+        main,
+        columns.clocks.get(main or "", "s"),
+        columns.intervals[main],
+        columns.gaps[main],
+        ports,
+        seen,
     )
 
 

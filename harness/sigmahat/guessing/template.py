@@ -157,8 +157,11 @@ def _time(guess: JointGuess) -> Table:
     else:
         table.add("column", guess.time)
         table.add("unit", guess.time_unit)
-    gap = "longest_gap = 0.01   # [s] interpolate over shorter gaps; else ticks are skipped"
-    table.add(tomlkit.comment(gap))
+    shorter = "[s] interpolate over shorter gaps; else ticks are skipped"
+    if guess.longest_gap is None:
+        table.add(tomlkit.comment(f"longest_gap = 0.01   # {shorter}"))
+    else:
+        _add(table, "longest_gap", guess.longest_gap, f"{shorter}. Rows are lost in this log")
     table.add(tomlkit.nl())
     return table
 
@@ -202,6 +205,9 @@ def _empty_port(name: str) -> Table:
     _comment(table, f"{_MEANING[name]}, {PORTS[name]}")
     _add(table, "column", FILL_IN, "no column looks like it: name one of the list above")
     _add(table, "unit", PORTS[name])
+    if name == "q":
+        locked = "value = 0   # in place of the column, if the link is locked on purpose"
+        table.add(tomlkit.comment(locked))
     table.add(tomlkit.nl())
     return table
 

@@ -23,6 +23,7 @@ from sigmahat.identification.regression import Form, Signals, shortest, signals_
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.replay import parameters, replay
+from sigmahat.logs.resampling import stretches
 from sigmahat.logs.sampling import Samples, sample
 
 _LONGEST = 600.0  # [s] of a log that are used
@@ -30,6 +31,18 @@ _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _V_A_TICKS = 10000
 _V_A_HIGHEST = 0.1  # low pass of the velocity to compare with, in sampling frequencies
+
+
+def _too_short(samples: Samples, needed: float) -> str:
+    """Why no stretch of a log is long enough [s], and what to do."""
+    duration = len(samples.values) * samples.T
+    if duration < needed:
+        return f"the log is {duration:.3g} s long, expected at least {needed:.3g} s"
+    gaps, _ = stretches(np.isnan(samples.values).any(axis=1))
+    return (
+        f"expected a stretch of {needed:.3g} s without a gap, got {len(gaps)} gaps in "
+        f"{duration:.4g} s; to interpolate over short ones, set time.longest_gap [s]"
+    )
 
 
 def identify(log: Log, configuration: Configuration, torque_constant: bool = False) -> Identified:
@@ -49,7 +62,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     T, gamma = samples.T, float(every["motor.gamma"])
     pieces = list(signals_of(samples, every, sensor=torque_constant))
     if not pieces:
-        raise LogError(f"{log.path}: no stretch of {shortest(T) * T:g} s without a gap")
+        raise LogError(f"{log.path}: {_too_short(samples, shortest(T) * T)}")
     longest = max(pieces, key=lambda piece: len(piece.theta))
     tau_variance = variance(longest.tau)
     theta_variance = variance(longest.theta, _step(every["encoder.theta"]))

@@ -81,8 +81,10 @@ class Port:
 
     __pydantic_config__ = _NO_OTHER_KEYS
 
-    column: str
+    column: str = ""
     """Its name in the log."""
+    value: Number | None = None
+    """Instead of a column: what the port is throughout, in its unit, as for a locked link."""
     time: str | None = None
     """Column with the times of this one, where it has its own; in the unit of [time]."""
     unit: str | None = None
@@ -195,6 +197,13 @@ def checked_configuration(
         raise LogError(f"{path}: {_explain(errors[0])}") from error
     if not file.ports:
         raise LogError(f"{path}: {_NO_PORTS}")
+    for name, port in file.ports.items():
+        if (port.value is None) == (not port.column):
+            what = "has no column" if port.value is None else "has a column and a value"
+            raise LogError(
+                f"{path}: [ports.{name}] {what}; name a column of the log, or set value "
+                "where the port does not change"
+            )
     chosen = any(line.rstrip().endswith(CHOSEN) for line in tomlkit.dumps(own).splitlines())
     values = dict(toml_file.dotted(file.parameters))
     return Configuration(path, file.time, file.ports, values, chosen, joint)

@@ -33,6 +33,8 @@ class Log(ABC):
         """The file."""
         self.columns = columns
         """Number of samples of each column."""
+        self.notes: list[str] = []
+        """What had to be done to read the file, in sentences."""
 
     def read(self, name: str) -> Array:
         """One column, [size: samples]; nan where a sample is missing.

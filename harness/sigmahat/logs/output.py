@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute
 import pyarrow.csv
 import pyarrow.parquet
 from numpy.typing import NDArray
@@ -25,7 +26,7 @@ from sigmahat.files import tables
 from sigmahat.files.output import write_json
 from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs.log import Log, LogError
-from sigmahat.logs.readers.tables import CsvLog
+from sigmahat.logs.readers.tables import CsvLog, dialect
 from sigmahat.logs.sampling import Samples
 
 _ROWS = 1 << 15
@@ -51,8 +52,8 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
 
     def __init__(self, log: Log, samples: Samples, units: Mapping[str, str], folder: Path) -> None:
         """units  of the outputs that have one, by name"""
-        self._text = isinstance(log, CsvLog)
-        self._path = folder / f"{_STEM}.{'csv' if self._text else 'parquet'}"
+        self._dialect = log.dialect if isinstance(log, CsvLog) else None
+        self._path = folder / f"{_STEM}.{'csv' if self._dialect else 'parquet'}"
         self._units = units
         self._tick_of_row = samples.tick_of_row
         self._T = samples.T
@@ -79,8 +80,10 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
             title = tables.title(_PREFIX + each.name, each.unit)
             table = table.append_column(title, pa.array(each.values))
         self._row, self._tick = end, self._tick + ticks
+        if self._dialect is not None and self._dialect.decimal == ",":
+            table = _with_commas(table)
         if self._writer is None:
-            writer = pa.csv.CSVWriter if self._text else pa.parquet.ParquetWriter
+            writer = pa.csv.CSVWriter if self._dialect else pa.parquet.ParquetWriter
             self._writer = writer(self._path, table.schema, **self._options())
         self._finish()
         self._written = self._thread.submit(self._writer.write_table, table)
@@ -92,8 +95,9 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
             self._written = None
 
     def _options(self) -> dict[str, Any]:
-        if self._text:
-            return {"write_options": pa.csv.WriteOptions(quoting_style="needed")}
+        if self._dialect is not None:
+            options = pa.csv.WriteOptions(quoting_style="needed", delimiter=self._dialect.delimiter)
+            return {"write_options": options}
         return {"use_dictionary": False}  # measured numbers hardly repeat
 
     def __exit__(
@@ -109,6 +113,15 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
             self._thread.shutdown()
             if self._writer is not None:
                 self._writer.close()
+
+
+def _with_commas(table: pa.Table) -> pa.Table:
+    """A table whose numbers are texts with decimal commas."""
+    for i, field in enumerate(table.schema):
+        if pa.types.is_floating(field.type):
+            text = pa.compute.replace_substring(table.column(i).cast(pa.string()), ".", ",")
+            table = table.set_column(i, field.name, text)
+    return table
 
 
 class _Rows:
@@ -156,15 +169,19 @@ def read_estimate(folder: Path) -> dict[str, EstimatedSignal]:
 def _titles(path: Path) -> list[str]:
     if path.suffix == ".parquet":
         return list(pa.parquet.read_schema(path).names)
-    with pa.csv.open_csv(path) as first:
-        return list(first.schema.names)
+    try:
+        return list(dialect(path).names)
+    except LogError as error:
+        raise LogError(f"{path}: not readable as CSV; run `sigmahat estimate` again") from error
 
 
 def _table(path: Path, titles: list[str]) -> pa.Table:
     if path.suffix == ".parquet":
         return pa.parquet.read_table(path, columns=titles)
-    options = pa.csv.ConvertOptions(include_columns=titles)
-    return pa.csv.read_csv(path, convert_options=options)
+    found = dialect(path)
+    options = pa.csv.ConvertOptions(include_columns=titles, decimal_point=found.decimal)
+    parse = pa.csv.ParseOptions(delimiter=found.delimiter)
+    return pa.csv.read_csv(path, parse_options=parse, convert_options=options)
 
 
 @dataclass(frozen=True)

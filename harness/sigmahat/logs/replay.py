@@ -61,7 +61,7 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
     """
     start = dict(configuration.parameters)
     for name, port in configuration.ports.items():
-        counts = counts_per_turn(port)
+        counts = counts_per_turn(port) if port.value is None else 0.0  # not rounded
         if counts is not None and f"encoder.{name}" in fmu.variables:
             start.setdefault(f"encoder.{name}", counts)
     theta = configuration.ports.get("theta")

@@ -65,7 +65,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     """As sample()."""
     if not (np.isfinite(T) and T > 0.0):
         raise LogError(f"{configuration.path}: samplePeriod: expected more than 0 s, got {T:g}")
-    notes: list[str] = []
+    notes: list[str] = list(log.notes)
     rows = _times(log, configuration, configuration.time.column, T, notes)
     start, end = float(np.nanmin(rows)), float(np.nanmax(rows))
     step = float(np.nanmedian(np.diff(rows))) if len(rows) > 1 else T
@@ -87,6 +87,9 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     rows -= start
     values = np.empty((ticks, len(configuration.ports)))
     for i, (name, port) in enumerate(configuration.ports.items()):
+        if port.value is not None:
+            values[:, i] = port.value
+            continue
         t = rows
         if port.time is not None:
             t = _times(log, configuration, port.time, T, notes)
@@ -128,7 +131,7 @@ def _times(
     """Times of rows [s]; nan where a row has none."""
     if name is None:
         notes.append(f"no time column: rows taken as {T:g} s apart")
-        first = next(iter(configuration.ports.values())).column
+        first = next(each.column for each in configuration.ports.values() if each.column)
         return T * np.arange(log.samples(first), dtype=np.float64)
     times = log.read(name) * seconds(configuration.time.unit)
     finite = np.isfinite(times)
@@ -136,6 +139,11 @@ def _times(
     if len(given) < 2:
         raise LogError(f"{log.path}: time column {name!r} holds fewer than two numbers")
     steps = np.diff(given)
+    if np.all(steps >= 0) and not np.all(steps > 0) and steps.any():
+        again = np.flatnonzero(finite)[1:][steps == 0]
+        times[again] = np.nan
+        notes.append(f"{name}: {len(again)} rows with the time of the row before left out")
+        return times
     if not np.all(steps > 0):
         i = int(np.argmax(steps <= 0))
         row = np.flatnonzero(finite)[i + 1] + 1
@@ -223,16 +231,21 @@ def put_right(
     if not np.isfinite(periods[own]):
         return
     column, period = both[own], periods[own]
+    moved: list[tuple[int, float]] = []
     begins, ends = stretches(np.isfinite(values[:, both]).all(axis=1))
     for end, begin in zip(ends[:-1], begins[1:], strict=True):
         step = values[begin] - values[end - 1]
         turns = round((step[both[1 - own]] - step[column]) / period)
         if turns:
             values[begin:, column] += turns * period
-            yield (
-                f"{names[column]}: {turns:+d} periods of its counter during the gap after "
-                f"{(end - 1) * T:.6g} s, by the motion of the other encoder"
-            )
+            moved.append((turns, (end - 1) * T))
+    if moved:
+        turns, t = moved[0]
+        also = f" and during {len(moved) - 1} more" if len(moved) > 1 else ""
+        yield (
+            f"{names[column]}: {turns:+d} periods of its counter during the gap after "
+            f"{t:.6g} s{also}, by the motion of the other encoder"
+        )
 
 
 def _whole_turns(

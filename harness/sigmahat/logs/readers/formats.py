@@ -7,6 +7,13 @@ from pathlib import Path
 from sigmahat.logs.limits import check_columns
 from sigmahat.logs.log import Log, LogError
 
+_PACKED = (
+    (b"\x1f\x8b", "compressed with gzip", "unpack it: gunzip --keep {}"),
+    (b"PK\x03\x04", "an Excel workbook or a ZIP archive", "save the sheet as CSV, or unpack it"),
+    (b"\xff\xfe", "text in UTF-16", "convert it: iconv -f UTF-16 -t UTF-8 {}"),
+    (b"BZh", "compressed with bzip2", "unpack it: bunzip2 --keep {}"),
+    (b"\x28\xb5\x2f\xfd", "compressed with Zstandard", "unpack it: unzstd {}"),
+)
 _HEAD = 520  # bytes; in files of MATLAB the signature of HDF5 is at byte 512
 
 
@@ -56,6 +63,9 @@ def _reader(path: Path, head: bytes) -> Log:
         from sigmahat.logs.readers.bags import read_bag
 
         return read_bag(path)
+    for begin, what, then in _PACKED:
+        if head.startswith(begin):
+            raise LogError(f"{path}: {what}; {then.format(path)}, and name what comes out")
     if b"\0" in head:
         raise LogError(
             f"{path}: unknown format; expected CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag"

@@ -5,6 +5,8 @@ from __future__ import annotations
 import weakref
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import IO, Any
@@ -27,6 +29,7 @@ from sigmahat.logs.log import (
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 _ALWAYS_READ = 100_000_000  # bytes without compression that every file may have
+_LINES = 20  # that are looked at before the text is parsed
 _FEW = 100  # rows with text that are looked at at a time
 
 
@@ -93,10 +96,25 @@ class ParquetLog(Log):
         return batch
 
 
+@dataclass(frozen=True)
+class Dialect:
+    """How a text file with a table is written."""
+
+    names: Sequence[str]
+    """Of the columns; with a row of units below them, name and unit."""
+    delimiter: str
+    """Between the columns."""
+    decimal: str
+    """Point or comma in numbers."""
+    encoding: str
+    head: int
+    """Lines before the first row."""
+
+
 class CsvLog(Log):
     """A text file: one line that names the columns, then numbers between , or ; or tabs.
 
-    With ; between them the numbers may have decimal commas.
+    With ; between them the numbers may have decimal commas. A second line may have units.
 
     The text is parsed once, into a temporary Parquet file: so a long log needs little memory. Only
     a column that does not begin with numbers, such as dates, is parsed again when it is read.
@@ -104,16 +122,35 @@ class CsvLog(Log):
 
     def __init__(self, path: Path) -> None:
         """Raises LogError for a file that is no such table."""
-        names, delimiter, decimal = _header(path)
-        self._names = names
-        self._parse = pa.csv.ParseOptions(delimiter=delimiter)
-        self._decimal = decimal
+        self.dialect = dialect(path)
+        """How the file is written."""
+        names = self._names = list(self.dialect.names)
+        self._cut: list[int] = []
+        self._parse = pa.csv.ParseOptions(
+            delimiter=self.dialect.delimiter, invalid_row_handler=self._left_out
+        )
         super().__init__(path, dict.fromkeys(names, 0))
+        if self.dialect.encoding != "utf-8":
+            self.notes.append(f"read as {self.dialect.encoding}: the file is not UTF-8")
+        if self.dialect.head > 1:
+            self.notes.append("line 2 has the units of the columns")
         file = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
         weakref.finalize(self, file.close)  # which removes it
         self._copy = self._copied(file)
         self._types = {field.name: field.type for field in self._copy.schema_arrow}
         self.columns = dict.fromkeys(names, self._copy.metadata.num_rows)
+        if self._cut:
+            self.notes.append(
+                f"a row with {self._cut[0]} of {len(names)} values was left out, as of a file that "
+                "was cut"
+            )
+
+    def _left_out(self, row: pa.csv.InvalidRow) -> str:
+        """Leaves out one row that is too short: the last one of a recording that was stopped."""
+        if row.actual_columns >= row.expected_columns or self._cut:
+            return "error"
+        self._cut.append(row.actual_columns)
+        return "skip"
 
     def _read(self, name: str) -> Array:
         if _numeric(self._types[name]):
@@ -167,34 +204,47 @@ class CsvLog(Log):
 
     def _stream(self, types: Mapping[str, pa.DataType]) -> pa.csv.CSVStreamingReader:
         """A reader of all columns; without types the first block decides."""
-        options = pa.csv.ConvertOptions(column_types=types, decimal_point=self._decimal)
+        self._cut.clear()  # the text is parsed more than once
+        options = pa.csv.ConvertOptions(column_types=types, decimal_point=self.dialect.decimal)
         return pa.csv.open_csv(self.path, self._options(), self._parse, options)
 
     def _parsed(self, copy: pa.parquet.ParquetFile, name: str) -> pa.ChunkedArray:
         """A column that a copy holds as text, in the type that fits all of its values."""
         text = pa.BufferOutputStream()
         pa.csv.write_csv(copy.read([name], use_threads=False), text)
-        options = pa.csv.ConvertOptions(decimal_point=self._decimal)
+        options = pa.csv.ConvertOptions(decimal_point=self.dialect.decimal)
         return pa.csv.read_csv(pa.BufferReader(text.getvalue()), convert_options=options).column(0)
 
     def _options(self) -> pa.csv.ReadOptions:
-        return pa.csv.ReadOptions(block_size=_BLOCK, column_names=self._names, skip_rows=1)
+        return pa.csv.ReadOptions(
+            use_threads=False,
+            block_size=_BLOCK,
+            column_names=self._names,
+            skip_rows=self.dialect.head,
+            encoding=self.dialect.encoding,
+        )
 
 
-def _header(path: Path) -> tuple[list[str], str, str]:
-    """Names of the columns, the delimiter between them, and the decimal point."""
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        try:
-            lines = [file.readline(_BLOCK), file.readline(_BLOCK)]
-        except UnicodeDecodeError as error:
-            raise LogError(
-                f"{path}: neither text nor a known binary format; expected CSV, Parquet, MAT, "
-                "HDF5, MCAP or a ROS 2 bag"
-            ) from error
+def _first_lines(path: Path) -> tuple[list[str], str]:
+    """The first lines, and the encoding. Raises LogError for a file that is no text."""
+    for encoding in ("utf-8", "windows-1252"):
+        with path.open(encoding=encoding, newline="") as file, suppress(UnicodeDecodeError):
+            lines = [file.readline(_BLOCK) for _ in range(_LINES)]
+            if all(c.isprintable() or c in "\t\r\n\ufeff" for line in lines for c in line):
+                return lines, encoding
+    raise LogError(
+        f"{path}: neither text nor a known binary format; expected CSV, Parquet, MAT, "
+        "HDF5, MCAP or a ROS 2 bag"
+    )
+
+
+def dialect(path: Path) -> Dialect:
+    """How a text file with a table is written. Raises LogError if it is none."""
+    lines, encoding = _first_lines(path)
     for i, line in enumerate(lines, 1):
         if len(line) >= _BLOCK:
             raise LogError(f"{path}: line {i} is longer than {_BLOCK} characters")
-    head, first = (line.strip("\r\n") for line in lines)
+    head, first, *rows = (line.strip("\r\n").removeprefix("\ufeff") for line in lines)
     delimiter = max(",;\t", key=head.count)
     names = [cell.strip().strip('"') for cell in head.split(delimiter)]
     if delimiter not in head:
@@ -210,8 +260,21 @@ def _header(path: Path) -> tuple[list[str], str, str]:
     check_columns(path, len(names))
     if not first:
         raise LogError(f"{path}: no rows below the names of the columns; record it again")
-    comma = delimiter == ";" and "," in first and "." not in first
-    return names, delimiter, "," if comma else "."
+    units = [cell.strip().strip('"') for cell in first.split(delimiter)]
+    has_units = len(units) == len(names) and rows[0] != "" and not any(map(_may_be_value, units))
+    if has_units:
+        given = zip(names, (unit.strip("[]()") for unit in units), strict=True)
+        names = [f"{name} [{unit}]" if unit else name for name, unit in given]
+    else:
+        rows.insert(0, first)
+    text = "".join(rows)
+    comma = delimiter == ";" and "," in text and "." not in text
+    return Dialect(names, delimiter, "," if comma else ".", encoding, 2 if has_units else 1)
+
+
+def _may_be_value(cell: str) -> bool:
+    """Whether a cell begins like a number, a date or a value that is missing, and not as a unit."""
+    return cell[:1].isdigit() or (is_number(cell.replace(",", ".")) and cell != "")
 
 
 def _is_flat(kind: pa.DataType) -> bool:
