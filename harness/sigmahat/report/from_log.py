@@ -41,8 +41,10 @@ from sigmahat.logs.time_panels import (
     sampling,
     stiffness_panels,
 )
+from sigmahat.plotting.panels import Panel
 from sigmahat.plotting.style import plain_text, plain_title, plain_unit
 from sigmahat.report.contents import Contents, TextTable, number, of_file
+from sigmahat.report.residuals import residual_panels, residuals
 
 
 @dataclass(frozen=True)
@@ -139,6 +141,7 @@ def from_log(folder: Path) -> Contents:
         [
             *stiffness_panels(reduced, [Estimate("estimate", {"sigma": "sigma"})]),
             *quantity_panels(reduced, ""),
+            *_residuals(t, drawn, used, answer),
         ],
         headline="" if answer is None else headline(answer.curve, answer.sheet.doubt),
         answer=[] if answer is None else list(curve_panels(answer.curve, answer.points)),
@@ -167,6 +170,21 @@ def from_joints(folder: Path) -> Contents:
     note = f"Each joint has a report of its own: sigmahat report {folder}/{names[0]}"
     stiffness = replace(of_file("Stiffness", table), note=note)
     return Contents(f"Joints: {folder.resolve().name}", [], [stiffness], panels)
+
+
+def _residuals(
+    t: NDArray[Any],
+    drawn: Mapping[str, NDArray[Any]],
+    used: NDArray[np.bool_],
+    answer: _Answer | None,
+) -> Iterator[Panel]:
+    """Panels about the residual of FilteredRegression; the other method predicts no friction."""
+    if answer is None or answer.sheet.method != "FilteredRegression":
+        return
+    bandwidth = float(answer.sheet.start_values["regression.bandwidth"])
+    found = residuals(t, drawn, used, bandwidth)
+    if found is not None:
+        yield from residual_panels(found)
 
 
 def _answer(folder: Path) -> _Answer | None:

@@ -1,0 +1,131 @@
+"""Where a model fails: the torque that was predicted beside the measured one, and the residual.
+
+Every tick is predicted before the estimator learns from it. So the second half of a log is held
+out: no sample of it was known when its torque was predicted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sigmahat.plotting.panels import COLORS, TRUE, Curve, Panel
+from sigmahat.plotting.style import QUANTITIES, around, plain_axis
+
+Array = NDArray[np.float64]
+
+_NORMAL_95 = 1.96
+_SHOWN = 600  # samples of the torque over time
+_LAGS, _BINS = 40, 20
+_FEWEST = 200  # independent residuals
+_OVER = ("phi", "theta_dot", "tau_e")
+"""Signals with which the residual is compared."""
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """The second half of a log, one sample in each period of the estimator's filters."""
+
+    T: float
+    """Time between the samples [s]."""
+    t: Array
+    """[s]"""
+    residual: Array
+    """Measured torque less the predicted one [N.m]."""
+    signals: Mapping[str, Array]
+    """Of _OVER, at the same times."""
+
+    @property
+    def fit(self) -> float:
+        """1 - |residual| / |measured torque less its mean| (normalised RMS error) [%]."""
+        measured = self.signals["tau_e"] + self.residual
+        return 100 * (1 - float(np.std(self.residual) / np.std(measured)))
+
+
+def residuals(
+    t: Array, signals: Mapping[str, NDArray[Any]], used: NDArray[np.bool_], bandwidth: float
+) -> Residuals | None:
+    """None if the second half is too short to say anything.
+
+    signals    outputs of the estimator at the times t: epsilon and those of _OVER
+    used       whether the estimator used the sample
+    bandwidth  of its filters [rad/s]: samples nearer than half a period of it say the same
+    """
+    rows = np.flatnonzero(used & (np.arange(len(t)) >= len(t) // 2))
+    if len(rows) < 2:
+        return None
+    step = float(np.median(np.diff(t)))
+    stride = max(1, round(np.pi / bandwidth / step)) if step > 0 else 1
+    rows = rows[::stride]
+    if len(rows) < _FEWEST:
+        return None
+    every = {name: np.asarray(signals[name], np.float64)[rows] for name in (*_OVER, "epsilon")}
+    return Residuals(stride * step, t[rows], every.pop("epsilon"), every)
+
+
+def residual_panels(found: Residuals) -> Iterator[Panel]:
+    """The torque over time, the autocorrelation of the residual, and its mean over each signal."""
+    predicted, torque = found.signals["tau_e"], QUANTITIES["tau_e"]
+    shown = slice(-_SHOWN, None)
+    yield Panel(
+        "Torque, measured and predicted before it was known",
+        plain_axis("t"),
+        plain_axis("tau_e"),
+        [
+            Curve("measured", TRUE, found.t[shown], (predicted + found.residual)[shown], width=2.4),
+            Curve("predicted", COLORS[0], found.t[shown], predicted[shown]),
+        ],
+        linked=False,
+        caption=f"fit {found.fit:.1f} % in the second half of the log",
+    )
+    lags = found.T * np.arange(1, _LAGS + 1)
+    limit = _NORMAL_95 / np.sqrt(len(found.residual))
+    yield Panel(
+        "Autocorrelation of the residual",
+        "lag [s]",
+        "correlation [1]",
+        [
+            Curve("residual", COLORS[0], lags, autocorrelation(found.residual, _LAGS)),
+            Curve(
+                "no correlation", TRUE, lags, np.zeros(_LAGS),
+                band=(np.full(_LAGS, -limit), np.full(_LAGS, limit)),
+            ),
+        ],
+        linked=False,
+        caption="band: 95 % of the correlations of white noise",
+    )  # fmt: skip
+    for name in _OVER:
+        x, mean, half = means(found.signals[name], found.residual)
+        yield Panel(
+            f"Residual over the {QUANTITIES[name].words}",
+            plain_axis(name),
+            f"residual [{torque.unit.replace('.', '·')}]",
+            [
+                Curve("mean", COLORS[0], x, mean, band=(mean - half, mean + half)),
+                Curve("0", TRUE, x, np.zeros(len(x))),
+            ],
+            linked=False,
+            caption="band: 95 %; where it does not hold 0, the model fails",
+            y_range=around([mean - half, mean + half], 0.1),
+        )
+
+
+def autocorrelation(x: Array, lags: int) -> Array:
+    """Correlation of a signal with itself, 1 to `lags` samples later [size: lags]."""
+    x = x - x.mean()
+    power = float(np.mean(x**2)) or 1.0
+    return np.array([np.mean(x[k:] * x[:-k]) / power for k in range(1, lags + 1)])
+
+
+def means(x: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Mean of y in bins of x with as many samples each, and half the width of its 95 % interval."""
+    order = np.argsort(x, kind="stable")
+    bins = np.array_split(order, _BINS)
+    center = np.array([x[each].mean() for each in bins])
+    mean = np.array([y[each].mean() for each in bins])
+    std = np.array([y[each].std(ddof=1) / np.sqrt(len(each)) for each in bins])
+    return center, mean, _NORMAL_95 * std
