@@ -138,7 +138,7 @@ static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const
     sh_paper2011_state *const state = &estimator->method.paper2011;
     const sh_paper2011_filters before = state->filters;
     const sh_real tau_e_residual = track(&state->filters, p, z, dt);
-    sh_real F[SH_MAX_PARAMETERS], dF[SH_MAX_PARAMETERS], factor;
+    sh_real F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0}, factor;
     sh_real phi = z->q - z->theta;
     int kind = p->rls.kind;
     sh_innovation innovation = {0, 0, 0, 0};

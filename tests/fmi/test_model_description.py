@@ -164,6 +164,12 @@ def distinct(fmu: Instance, choices: dict[str, int]) -> dict[str, float]:
             start[name] = float(v.max)
         elif name == "spring.gap":
             start[name] = 1e-3  # so that the spring is engaged
+        elif name in ("spring.knee_1", "spring.knee_2"):
+            start[name] = (
+                0.3  # below the deformation, and above it when it is 1.2345 times as large
+            )
+        elif name in ("spring.step_at", "spring.step_for"):
+            start[name] = 0.0  # so that the stiffness has changed at the start
         elif v.causality == "parameter" and v.type == "Real" and float(v.start) == 0:
             start[name] = 0.3 + 0.01 * k
     return start

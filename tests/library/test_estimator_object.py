@@ -301,3 +301,18 @@ def test_many_estimates_are_evaluated_at_the_same_points(z: dict[str, NDArray[np
         alone.run(**z)
         for name, values in alone.evaluate([0.0, 0.01]).items():
             assert np.array_equal(found[name][joint], values)
+
+
+@pytest.mark.parametrize(("given", "warned"), [(0.004, True), (0.02, False), (0.3, True)])
+def test_a_range_that_is_far_from_the_motion_is_warned_of_once(
+    given: float, warned: bool, caplog: pytest.LogCaptureFixture
+) -> None:
+    t = 1e-3 * np.arange(2000)
+    theta = 0.3 * np.sin(6 * t)
+    q = theta + 0.01 * np.cos(7 * t)
+    estimator = sigmahat.Estimator({"method": "FilteredRegression", "range.phi": given})
+    for _ in range(2):
+        estimator.run(theta, q, np.cos(t))
+    words = [each.getMessage() for each in caplog.records]
+    assert len(words) == warned
+    assert all(f"reaches 0.01 rad, but range.phi is {given}" in each for each in words)

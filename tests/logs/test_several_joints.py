@@ -87,6 +87,18 @@ def test_one_of_them_by_its_name(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize(
+    ("joint", "words"),
+    [("knees", "unknown joint 'knees'; did you mean 'knee'"), ("hip", "of one joint, expected no")],
+)
+def test_a_name_that_is_not_there(
+    joint: str, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    config = "knee.toml" if joint == "hip" else "leg.toml"
+    assert main(["check", "leg.csv", "--config", config, "--joint", joint]) == 2
+    assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
     ("text", "words"),
     [
         ('[joints."../x".ports.q]\ncolumn = "t"', "[joints] has the name '../x'"),

@@ -47,6 +47,38 @@ def test_the_commands_of_the_page_on_c_masters_work(tmp_path: Path) -> None:
     assert printed and float(printed[1]) == pytest.approx(150.0, rel=1e-3)
 
 
+def test_the_c_to_copy_estimates_a_stiffness(tmp_path: Path, build: Path) -> None:
+    """Compiled with the amalgamation; a motor moves against a spring of 400 N.m/rad."""
+    (code,) = blocks("../controller.md", "c")
+    main = """
+    #include <math.h>
+    #include <stdio.h>
+    int main(void) {
+        double sigma = 0, std = 0;
+        int k, sure = 0;
+        if (start() != 0) return 1;
+        for (k = 0; k < 8000; ++k) {
+            const double t = k * 1e-3, w = 6.3, u = 20;
+            const double theta = 0.05 * sin(w * t) + 0.02 * sin(u * t);
+            const double v = 0.05 * w * cos(w * t) + 0.02 * u * cos(u * t);
+            const double a = -0.05 * w * w * sin(w * t) - 0.02 * u * u * sin(u * t);
+            const double phi = -0.01 * sin(3 * t) - 0.004 * sin(14 * t);
+            sure = tick(theta, theta + phi, 1e-2 * a + 5e-2 * v - 400 * phi / 100, &sigma, &std);
+        }
+        printf("%d %g %g", sure, sigma, std);
+        return 0;
+    }
+    """
+    (tmp_path / "main.c").write_text(code + main)
+    amalgamation, program = build / "amalgamation", tmp_path / "program"
+    strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{amalgamation}"]
+    sources = [tmp_path / "main.c", amalgamation / "sigmahat.c"]
+    subprocess.run(["cc", *strict, *sources, "-o", program, "-lm"], check=True)
+    sure, sigma, std = subprocess.run([program], check=True, capture_output=True).stdout.split()
+    assert sure == b"1"
+    assert abs(float(sigma) - 400) < 2 * float(std) < 40
+
+
 @pytest.fixture(scope="module")
 def page() -> dict[str, Any]:
     """Variables of the code blocks of the FMPy page, after all of them ran in their order."""

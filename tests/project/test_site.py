@@ -34,6 +34,19 @@ SEEN = [
 """Pages to look at: tables, formulas, pictures, code, signatures."""
 FMUS = sorted(path.stem for path in (DOCS.parent / "modelDescription").glob("[A-Z]*.xml"))
 WORDS = ["motor.gamma", "MSREP", "wrap"]
+QUESTIONS = {
+    "forget": "parameters",
+    "check complains": "how-to-log",
+    "C code": "controller",
+    "Simulink": "how-to/simulink",
+    "torque constant": "how-to-log",
+    "several joints": "how-to-log",
+    "confident": "filtered-regression",
+    "stiffness changes": "filtered-regression",
+    "install": "start",
+    "export": "how-to/joint",
+}
+"""What new users type into the search, and the page that answers it."""
 
 
 def pages(site: Path) -> list[Path]:
@@ -116,7 +129,7 @@ def test_pages_fit_the_window_without_a_complaint(width: int, dark: bool, site: 
 def test_the_search_finds(site: Path) -> None:
     found = {}
     with opened(site / "index.html") as page:
-        for word in WORDS:
+        for word in (*WORDS, *QUESTIONS):
             page.driver.get(f"{(site / 'search.html').as_uri()}?q={word}")
             done = text_to_be_present_in_element(("id", "search-results"), "finished")
             WebDriverWait(page.driver, 10).until(done)
@@ -128,3 +141,5 @@ def test_the_search_finds(site: Path) -> None:
     assert [link.endswith("#stiffnessestimator-motor-gamma") for link in rows] == [True]
     assert any("paper.html" in link for link in found["MSREP"])
     assert any("how-to-log.html" in link for link in found["wrap"])
+    for word, name in QUESTIONS.items():
+        assert any(f"/{name}.html" in link for link in found[word][:3]), (word, found[word][:5])

@@ -18,7 +18,7 @@ _NOISE = 3.0  # standard deviation over the configured one
 _LEARNED = 0.5
 _DOUBTED = 0.5  # share of the second half
 _ROOM = 1.2  # of a range over the largest value
-_WIDE = 10.0  # a range over the largest value
+_WIDE = 5.0  # a range over the largest value
 _TORQUE = 3.0  # torque over the configured one
 
 Outputs = Mapping[str, np.ndarray[Any, Any]]

@@ -92,9 +92,7 @@ def _with_name(job: Callable[[str], _Result], joint: str) -> _Result:
         raise LogError(f"joint {joint}: {error}") from error
 
 
-def answer_of_joints(
-    texts: Mapping[str, str], values: Mapping[str, object], after: str = ""
-) -> None:
+def answer_of_joints(texts: Mapping[str, str], values: Mapping[str, object]) -> None:
     """Prints what was found about each joint; that of a configuration of one joint has no head."""
     if list(texts) == [""]:
         answer(texts[""], values[""])

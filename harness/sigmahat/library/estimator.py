@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -20,6 +21,8 @@ RECORD = ("sigma", "sigma_std", "tau_e", "phi", "misfit", "confident", "valid")
 POINT = ("tau_e", "tau_e_std", "sigma", "sigma_std")
 """What evaluate() gives, in the order of the library."""
 
+_LONG = 1.0  # [s] a motion that is compared with range.phi
+_FAR, _WIDE = 1.2, 8.0  # largest deformation over range.phi, and the inverse
 _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("theta", "q", "tau_e_sensor")}
 """Inputs without which a modality has no torque. Model needs no more than theta and q."""
 
@@ -27,10 +30,11 @@ _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("theta", "q", "tau_e_se
 class Estimator:
     """The estimator of StiffnessEstimator.fmu, without an FMU between, for one joint or many.
 
-    The results are those of the FMU, to the last bit; there are no messages, but the outputs valid
-    and doubt say the same. What it has learned stays from call to call, until reset(). A copy, by
-    `copy.copy`, goes on by itself. While it computes, other threads of Python run; an object may be
-    used by one thread at a time, and cannot be pickled. Memory: 131 kB a joint.
+    The results are those of the FMU, to the last bit. There are no messages of the FMU, but the
+    outputs valid and doubt say the same; `run` logs a warning if range.phi is far from the motion.
+    What it has learned stays from call to call, until reset(). A copy, by `copy.copy`, goes on by
+    itself. While it computes, other threads of Python run; an object may be used by one thread at a
+    time, and cannot be pickled. Memory: 149 kB a joint.
 
     >>> import numpy as np, sigmahat
     >>> estimator = sigmahat.Estimator({"method": "FilteredRegression", "motor.gamma": 100})
@@ -69,6 +73,7 @@ class Estimator:
         """All parameters of each joint as they are now, given ones and the FMU's."""
         self._needed = self._inputs_needed()
         self._tick: Callable[[Sequence[ArrayLike | None]], dict[str, Any]] | None = None
+        self._is_warned = False
 
     def run(
         self,
@@ -104,6 +109,9 @@ class Estimator:
         outputs = {name: self._joints.empty(name, joints, samples) for name in self._record}
         rows = [arrays[n].reshape(joints, samples) if n in arrays else None for n in INPUTS]
         self._joints.run(rows, outputs)
+        self._compare_with_range(
+            arrays["q"].reshape(joints, -1), arrays["theta"].reshape(joints, -1)
+        )
         fmu = self._joints.fmu
         return Series(
             {name: self._joints.named(name, v).reshape(shape) for name, v in outputs.items()},
@@ -209,6 +217,22 @@ class Estimator:
 
     def __reduce__(self) -> str:
         raise TypeError("an Estimator cannot be pickled; make one where it is needed")
+
+    def _compare_with_range(self, q: Array, theta: Array) -> None:
+        """Logs a warning, once, if the motion is far from range.phi, by which priors are scaled."""
+        for joint, every in enumerate(self.parameters):
+            phi = q[joint] - theta[joint]
+            moved = np.abs(phi[np.isfinite(phi)])
+            is_long = len(moved) * float(every["samplePeriod"]) > _LONG
+            if every["method"] != "FilteredRegression" or not is_long or self._is_warned:
+                continue
+            most, given = float(moved.max()), float(every["range.phi"])
+            if most > _FAR * given or 0 < _WIDE * most < given:
+                self._is_warned = True
+                logging.getLogger("sigmahat").warning(
+                    "the deformation reaches %.3g rad, but range.phi is %.3g rad: set it to about "
+                    "the largest deformation, or the stiffness may be wrong", most, given,
+                )  # fmt: skip
 
     def _inputs_needed(self) -> dict[str, str]:
         """Inputs that must be given, and the modality that needs each."""

@@ -186,8 +186,11 @@ def checked_configuration(
     """
     known = joints_of(document, path)
     if joint not in known:
-        several = f"expected the name of one of its joints ({', '.join(known)})"
-        raise LogError(f"{path}: {unknown('joint', joint, known) if joint else several}")
+        what = f"expected the name of one of its joints ({', '.join(known)})"
+        if joint:
+            one = f"it is the configuration of one joint, expected no name, got {joint!r}"
+            what = one if known == [""] else unknown("joint", joint, known)
+        raise LogError(f"{path}: {what}")
     own = joints.of_joint(document, joint)
     try:
         file = TypeAdapter(_File).validate_python(own.unwrap())
