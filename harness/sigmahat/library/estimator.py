@@ -221,12 +221,12 @@ class Estimator:
     def _compare_with_range(self, q: Array, theta: Array) -> None:
         """Logs a warning, once, if the motion is far from range.phi, by which priors are scaled."""
         for joint, every in enumerate(self.parameters):
-            phi = q[joint] - theta[joint]
-            moved = np.abs(phi[np.isfinite(phi)])
-            is_long = len(moved) * float(every["samplePeriod"]) > _LONG
+            is_long = q.shape[1] * float(every["samplePeriod"]) > _LONG
             if every["method"] != "FilteredRegression" or not is_long or self._is_warned:
                 continue
-            most, given = float(moved.max()), float(every["range.phi"])
+            phi = q[joint] - theta[joint]
+            moved = np.abs(phi[np.isfinite(phi)])
+            most, given = float(moved.max(initial=0.0)), float(every["range.phi"])
             if most > _FAR * given or 0 < _WIDE * most < given:
                 self._is_warned = True
                 logging.getLogger("sigmahat").warning(
