@@ -52,7 +52,8 @@ def _is_still(seen: View, name: str) -> bool:
     """Whether a position is one value throughout, and nobody has said that it is."""
     values = seen.samples.values[:, list(seen.samples.names).index(name)]
     known = values[np.isfinite(values)]
-    return seen.configuration.ports[name].value is None and float(np.ptp(known)) == 0
+    is_known = seen.configuration.ports[name].value is not None or not len(known)
+    return not is_known and float(np.ptp(known)) == 0
 
 
 def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
