@@ -170,6 +170,23 @@ def test_no_configuration(folder: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert "sigmahat init" in refused(["other.csv"], capsys)
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("motor.gamma = 50", "motor.gamma = 50\nrange.phi = -1", "error: parameter range.phi = -1"),
+        ("motor.gamma = 50", "motor.gamma = 50\nrls.n = 99", "error: parameter rls.n = 99"),
+        ("samplePeriod = 0.001", "samplePeriod = 1.5", "samples 1.5 s apart do not show"),
+    ],
+)
+def test_no_message_names_a_function_of_an_fmu(
+    old: str, new: str, words: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_log(plain_log(rows=20_000), folder / "log.csv")
+    Path("log.toml").write_text(CONFIGURATION.replace(old, new))
+    line = refused(["log.csv"], capsys, "identify")
+    assert words in line and "fmi2" not in line
+
+
 def test_identify_needs_its_ports(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_log(plain_log(), folder / "log.csv")
     line = refused(["log.csv", "--torque-constant"], capsys, "identify")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import logging
+import re
 import shutil
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 _Command = TypeVar("_Command", bound=Callable[..., object])
 _Result = TypeVar("_Result")
+_CALL = re.compile(r"^\w+: (?:fmi\w+: )?[Pp]arameter")
+"""Instance and function of an FMU's message about a parameter, which users do not call."""
 _JSON, _QUIET = "sigmahat.json", "sigmahat.quiet"
 
 
@@ -195,7 +198,7 @@ def errors_in_one_line(out: Path, option: str = "--out") -> Iterator[None]:
     try:
         yield
     except (FmuError, ValueError, WorkerError) as error:
-        raise click.ClickException(str(error)) from error
+        raise click.ClickException(_CALL.sub("parameter", str(error))) from error
     except OSError as error:
         kind = "folder" if option == "--out" else "file"
         where = f"cannot write {error.filename or out}: {error.strerror or error}"
