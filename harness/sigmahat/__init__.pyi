@@ -1,5 +1,8 @@
 """The public names, for lazy_loader and type checkers; see __init__.py."""
 
+from .checks.check import check as check
+from .checks.findings import Checked as Checked
+from .checks.findings import Finding as Finding
 from .export.plant_fmu import PlantVariable as PlantVariable
 from .export.plant_fmu import write_plant_fmu as write_plant_fmu
 from .fmi.installed import fmu as fmu
@@ -7,8 +10,8 @@ from .fmi.instance import FmuError as FmuError
 from .fmi.master import EstimatorFmu as EstimatorFmu
 from .fmi.master import Plant as Plant
 from .fmi.master import Recording as Recording
-from .fmi.master import Series as Series
 from .fmi.master import simulate as simulate
+from .fmi.series import Series as Series
 from .identification.identify import identify as identify
 from .identification.quantities import Identified as Identified
 from .identification.quantities import Quantity as Quantity

@@ -41,6 +41,7 @@ def run_without(module: str, *arguments: str, cwd: Path) -> subprocess.Completed
         ("distributed", "sweep --scheduler tcp://localhost:1", "sigmahat[dask]"),
         ("h5py", "estimate log.h5", "sigmahat[hdf5]"),
         ("rosbags", "init log.mcap", "sigmahat[bags]"),
+        ("mcap", "estimate log.csv --config log.toml --to mcap", "sigmahat[mcap]"),
     ],
 )
 def test_one_line_says_what_to_install(

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 import sigmahat
 from modelica_package import NO_NOISE, REPOSITORY, compiled, modification
 from sigmahat.export.templates import render, variables
-from sigmahat.fmi.master import Plant, Series, simulate
+from sigmahat.fmi.master import Plant, simulate
+from sigmahat.fmi.series import Series
 from sigmahat.paper.awas import SECTION_VI_B
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import Sine, T

@@ -32,11 +32,21 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     help="Go on from what was learned before: the folder of another log, or its state.json.",
 )
+@click.option(
+    "--to",
+    type=click.Choice(["mcap"]),
+    help="Write the estimates as messages, too: estimate.mcap, for Foxglove and PlotJuggler.",
+)
 @common.joint_option
 @common.json_option
 @common.quiet_option
 def estimate(
-    log: Path, config: Path | None, out: Path | None, start_from: Path | None, joint: str
+    log: Path,
+    config: Path | None,
+    out: Path | None,
+    start_from: Path | None,
+    to: str | None,
+    joint: str,
 ) -> None:
     """Replay LOG through the estimator, and add the stiffness to its table.
 
@@ -57,11 +67,13 @@ def estimate(
     from sigmahat.logs.several import write_joints
 
     common.need_fmu("StiffnessEstimator")
+    if to is not None:
+        import_module("mcap")  # a package that is missing is said before the work
     out = out or Path("sigmahat-results", log.stem)
     config = config or common.configuration_of(log)
     with common.errors_in_one_line(out):
         joints = common.joints_of(log, config, joint)
-        found = common.for_each(joints, partial(_estimated, log, config, out, start_from))
+        found = common.for_each(joints, partial(_estimated, log, config, out, start_from, to))
         if len(joints) > 1:
             write_joints({name: each for name, (each, _) in found.items()}, out)
     values = {name: {**each.as_dict(), "checks": as_dict(c)} for name, (each, c) in found.items()}
@@ -80,7 +92,7 @@ def estimate(
 
 
 def _estimated(
-    log: Path, config: Path, out: Path, start_from: Path | None, joint: str
+    log: Path, config: Path, out: Path, start_from: Path | None, to: str | None, joint: str
 ) -> tuple[Estimate, Checked]:
     """The estimate of a joint, whose files are written, and what the checks say."""
     from sigmahat.checks.check import check
@@ -98,7 +110,13 @@ def _estimated(
         start_from /= joint
     with common.progress("Replaying", 1000) as bar:
         result = estimated(
-            opened, configuration, rows(checked), out / joint, bar.update, start_from
+            opened,
+            configuration,
+            rows(checked),
+            out / joint,
+            bar.update,
+            start_from,
+            mcap=to == "mcap",
         )
     return result, checked
 
@@ -158,7 +176,9 @@ def _validated(log: Path, config: Path, start_from: Path, joint: str) -> Validat
     return validate(open_log(log), read_configuration(config, joint), start_from)
 
 
-_SUFFIXES = {"ssv": ".ssv", "matlab": ".m", "modelica": ".mo"}
+_START_VALUES = {"ssv": ".ssv", "matlab": ".m", "modelica": ".mo"}
+_MODELS = {"mjcf": ".xml", "sdf": ".sdf", "urdf": ".urdf", "drake": ".drake.sdf"}
+_SUFFIXES = {**_START_VALUES, **_MODELS}
 
 
 @click.command()
@@ -167,26 +187,29 @@ _SUFFIXES = {"ssv": ".ssv", "matlab": ".m", "modelica": ".mo"}
     "--to",
     required=True,
     type=click.Choice(list(_SUFFIXES)),
-    help="ssv: parameter set for SSP; matlab: function; modelica: record.",
+    help="Start values: ssv, a parameter set for SSP; matlab, a function; modelica, a record. "
+    "Joint for a simulator: mjcf (MuJoCo), sdf (Gazebo), urdf, drake (SDF with its elements).",
 )
 @click.option(
     "--out",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="File to write.  [default: SHEET with the suffix .ssv, .m or .mo]",
+    help=f"File to write.  [default: SHEET with the suffix {', '.join(_SUFFIXES.values())}]",
 )
 @click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
 @common.quiet_option
 def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
-    """Write start values of the FMU from the data sheet of a joint.
+    """Write the data sheet of a joint as start values of the FMU, or as a joint for a simulator.
 
     SHEET is the joint.json that `sigmahat estimate` wrote, or its folder. An FMU with these start
-    values begins with the stiffness that was learned.
+    values begins with the stiffness that was learned. The joint is two hinges, motor and
+    flexibility, with the intervals of their numbers.
 
     \b
-    Example: sigmahat export sigmahat-results/knee --to ssv
+    Example: sigmahat export sigmahat-results/knee --to mjcf
     """
     from sigmahat.fmi.opened import installed
     from sigmahat.joint import parameter_file
+    from sigmahat.joint.robot_model import write_model
     from sigmahat.joint.sheet import FORMAT
 
     common.need_fmu("StiffnessEstimator")
@@ -197,9 +220,13 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
             raise click.ClickException(
                 f"{path} exists; --force overwrites it, --out names another file"
             )
-        fmu = installed("StiffnessEstimator")
-        parameter_file.write(contents, fmu, to, path)
-    common.answer(f"{len(contents.start_values)} start values are in {path.resolve()}")
+        if to in _MODELS:
+            write_model(contents, to, path)
+            text = f"The joint as two hinges is in {path.resolve()}; its link is a placeholder"
+        else:
+            parameter_file.write(contents, installed("StiffnessEstimator"), to, path)
+            text = f"{len(contents.start_values)} start values are in {path.resolve()}"
+    common.answer(text)
 
 
 @click.command()

@@ -175,7 +175,7 @@ def compile_folder(sources: Path, binary: Path) -> None:
 
 
 def write_plant_fmu(
-    plant: PlantEquations, variables: Mapping[str, PlantVariable], fmu: Path
+    plant: PlantEquations, variables: Mapping[str, PlantVariable], fmu: str | Path
 ) -> None:
     """Write the FMU of a plant, with the binary of this machine and its sources.
 
@@ -205,7 +205,7 @@ def write_plant_fmu(
         place.mkdir(parents=True)
         compile_folder(sources, place / f"{plant.name}{fmpy.sharedLibraryExtension}")
         files = [file for file in folder.rglob("*") if file.is_file()]
-        archive.write(fmu, {file.relative_to(folder).as_posix(): file for file in files})
+        archive.write(Path(fmu), {file.relative_to(folder).as_posix(): file for file in files})
 
 
 def _write_description(

@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import named
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
+from sigmahat.fmi.series import Series
 
 Signal = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Values of an input at the times given [s]."""
@@ -53,21 +53,6 @@ class EstimatorFmu:
     """Which output of the plant feeds each input."""
     record: Sequence[str]
     """Variables to record."""
-
-
-@dataclass(frozen=True)
-class Series:
-    """What was recorded of one FMU."""
-
-    values: Mapping[str, NDArray[Any]]
-    """Recorded variables by name, each of shape (N + 1,), in the unit of the variable."""
-    units: Mapping[str, str]
-    """Unit of each recorded Real, as in the model description."""
-    parameters: Mapping[str, Value]
-    """All parameters of the FMU as they were at the start."""
-
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        return self.values[name]
 
 
 @dataclass(frozen=True)
@@ -136,8 +121,8 @@ def simulate(
 
         return Recording(
             t,
-            _series(truth, plant.start),
-            {name: _series(recorders[name], each.start) for name, each in estimators.items()},
+            _series(truth, plant.start, t),
+            {name: _series(recorders[name], each.start, t) for name, each in estimators.items()},
         )
 
 
@@ -167,5 +152,6 @@ def _connect(loop: SampleLoop, plant: Slave, slave: Slave, connections: Mapping[
     loop.set_real(slave, slave.fmu.references(connections.keys(), "input"), wires)
 
 
-def _series(recorder: Recorder, start: Mapping[str, Value]) -> Series:
-    return Series(recorder.columns(), recorder.units, recorder.slave.fmu.parameters(start))
+def _series(recorder: Recorder, start: Mapping[str, Value], t: NDArray[np.float64]) -> Series:
+    fmu = recorder.slave.fmu
+    return Series.of(fmu, recorder.columns(), fmu.parameters(start), t)

@@ -16,7 +16,7 @@ from lxml import etree
 
 from sigmahat.files.output import write_whole
 from sigmahat.fmi.instance import Fmu, Value
-from sigmahat.joint.sheet import Sheet
+from sigmahat.joint.sheet import Sheet, origin
 
 _CURVE = "rls.eta_0["
 _NAMESPACES = {
@@ -75,17 +75,10 @@ def _starts(sheet: Sheet, fmu: Fmu) -> Iterator[_Start]:
         )
 
 
-def _origin(sheet: Sheet) -> Iterator[str]:
-    """Where the values are from, a line each."""
+def _head(sheet: Sheet) -> Iterator[str]:
+    """What the file is and where its values are from, a line each."""
     yield f"Start values of {sheet.fmu.name}.fmu, with which it begins with what was learned."
-    for log in sheet.logs:
-        yield f"learned from {_one_line(log.file)}, SHA-256 {log.sha256}"
-    yield f"written by sigmahat {_one_line(sheet.sigmahat)}"
-
-
-def _one_line(text: str) -> str:
-    """Without what could end a line, a comment or a string of any of the formats."""
-    return re.sub(r"-(?=-)", "- ", re.sub(r"[^\w .,:/\\+()@=-]", "_", text, flags=re.ASCII))
+    yield from origin(sheet)
 
 
 def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
@@ -103,7 +96,7 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
             f"the name of the file, {name!r}, names what is in it: expected characters that XML "
             "has; choose another with --out"
         ) from error
-    for line in _origin(sheet):
+    for line in _head(sheet):
         root.addprevious(etree.Comment(f" {line} "))
     parameters = etree.SubElement(root, _SSV + "Parameters")
     for s in listed:
@@ -129,7 +122,7 @@ def _matlab(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     """A function that returns a structure: parameter motor.B is field motor.B."""
     _identifier(name)
     lines = [f"function p = {name}", f"%{name.upper()} {sheet.fmu.name}: what was learned."]
-    lines += [f"%   {line}" for line in _origin(sheet)]
+    lines += [f"%   {line}" for line in _head(sheet)]
     lines += [
         "%   rls.eta_0 is a matrix, whose indices begin with 1: rls.eta_0(i + 1, j + 1) is",
         "%   rls.eta_0[i,j] of the FMU. An enumeration is the number of its item.",
@@ -150,7 +143,7 @@ def _modelica(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
         group, _, _ = s.name.rpartition(".")
         groups.setdefault("" if s.name.startswith(_CURVE) else group, []).append(s)
     title = f"{sheet.fmu.name}: what was learned"
-    lines = [f'record {name} "{title}"', *(f"  // {line}" for line in _origin(sheet))]
+    lines = [f'record {name} "{title}"', *(f"  // {line}" for line in _head(sheet))]
     lines += [
         "  // rls.eta_0[i + 1, j + 1] is rls.eta_0[i,j] of the FMU, whose indices begin with 0.",
         "  // An enumeration is the number of its item.",

@@ -5,7 +5,8 @@ Numbers are written with all of their digits, so that what is read is what was e
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -170,6 +171,18 @@ FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)
 def write(sheet: Sheet, path: Path) -> None:
     """Writes a sheet. A number that is not finite becomes null."""
     write_json(asdict(sheet), path)
+
+
+def origin(sheet: Sheet) -> Iterator[str]:
+    """Where its values are from, a line each, for comments in other files."""
+    for log in sheet.logs:
+        yield f"learned from {one_line(log.file)}, SHA-256 {log.sha256}"
+    yield f"written by sigmahat {one_line(sheet.sigmahat)}"
+
+
+def one_line(text: str) -> str:
+    """Without what could end a line, a comment or a string of other formats."""
+    return re.sub(r"-(?=-)", "- ", re.sub(r"[^\w .,:/\\+()@=-]", "_", text, flags=re.ASCII))
 
 
 def powers_of_phi(symmetric: bool, n: int) -> list[int]:

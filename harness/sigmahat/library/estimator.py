@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sigmahat.fmi.instance import Value
-from sigmahat.fmi.master import Series
+from sigmahat.fmi.series import Series
 from sigmahat.library.joints import INPUTS, Joints
 
 Array = NDArray[np.float64]
@@ -112,12 +112,9 @@ class Estimator:
         self._compare_with_range(
             arrays["q"].reshape(joints, -1), arrays["theta"].reshape(joints, -1)
         )
-        fmu = self._joints.fmu
-        return Series(
-            {name: self._joints.named(name, v).reshape(shape) for name, v in outputs.items()},
-            {n: fmu.variable(n).unit for n in outputs if fmu.variable(n).unit is not None},
-            self.parameters[0],
-        )
+        named = {name: self._joints.named(name, v).reshape(shape) for name, v in outputs.items()}
+        t = float(self.parameters[0]["samplePeriod"]) * np.arange(samples, dtype=np.float64)
+        return Series.of(self._joints.fmu, named, self.parameters[0], t)
 
     def tick(
         self,

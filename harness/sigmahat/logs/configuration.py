@@ -169,11 +169,12 @@ class _File:
     """What identify writes for people to read."""
 
 
-def read_configuration(path: Path, joint: str = "") -> Configuration:
+def read_configuration(path: str | Path, joint: str = "") -> Configuration:
     """Reads and checks a file; of a file of several joints, the configuration of one of them.
 
     Raises LogError, which says where it is wrong.
     """
+    path = Path(path)
     return checked_configuration(read_document(path), path, joint)
 
 

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from sigmahat.files.output import sha256
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import installed
+from sigmahat.fmi.series import Series
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
     CURVE,
@@ -83,6 +88,8 @@ class Estimate:
     """What had to be done to the samples of the log, in sentences."""
     learned_from: Sequence[str] = ()
     """Logs that were learned from before this one."""
+    series: Series | None = None
+    """The outputs at each tick; None if they were written into a folder."""
 
     @property
     def headline(self) -> str:
@@ -121,36 +128,68 @@ class Estimate:
 def estimate(
     log: Log,
     configuration: Configuration,
-    folder: Path,
+    folder: str | Path | None = None,
     progress: Callable[[int], object] = lambda thousandths: None,
-    start_from: Path | None = None,
+    start_from: str | Path | None = None,
+    mcap: bool = False,
 ) -> Estimate:
-    """Replays the log and writes into folder: the table (estimate.csv or .parquet), the curve
+    """Replays the log. Without a folder the outputs at all ticks are in the result, as `series`.
+
+    With a folder, which exists, it writes there: the table (estimate.csv or .parquet), the curve
     (estimate.curve.csv) and the measured points behind it (estimate.points.csv), the figure
     (estimate.png and .svg), the data sheet of the joint (joint.json), what was learned
-    (state.json), and notes for the report (estimate.json).
+    (state.json), and notes for the report (estimate.json); with mcap also estimate.mcap.
 
     Now and then progress is called with the thousandths of the log done since the last call.
     With start_from, a folder of results or its state.json, the estimator goes on from there.
 
     Raises LogError for a log and configuration that do not fit, and for a start_from that does not
-    fit the configuration; FmuError if the FMU refuses.
+    fit the configuration; FmuError if the FMU refuses; ModuleNotFoundError without the package
+    mcap.
     """
-    learned = None if start_from is None else read_learned(start_from)
+    learned = None if start_from is None else read_learned(Path(start_from))
+    digest = sha256(log.path) if log.path.exists() else ""
     with Slave(installed("StiffnessEstimator"), "estimator") as slave:
         replay = Replay(slave, log, configuration, learned)
-        units = {name: slave.fmu.variable(name).unit for name in OUTPUTS}
-        with EstimateWriter(log, replay.samples, units, folder) as table:
-            replay.run(table.add, progress, sha256(log.path))
-        write_learned(slave, replay.every, replay.logs, folder / LEARNED.file)
-        answered = replay.answer()
-        sheet.write(data_sheet(replay, answered.curve), folder / sheet.FORMAT.file)
-        result = _result(replay, answered.curve)
+        if folder is None:
+            kept: list[Mapping[str, NDArray[Any]]] = []
+            replay.run(kept.append, progress, digest)
+            return replace(_result(replay, replay.answer().curve), series=_series(replay, kept))
+        return _written(replay, Path(folder), progress, digest, mcap)
+
+
+def _series(replay: Replay, kept: Sequence[Mapping[str, NDArray[Any]]]) -> Series:
+    values = {name: np.concatenate([each[name] for each in kept]) for name in kept[0]}
+    t = replay.samples.T * np.arange(len(replay.samples.values), dtype=np.float64)
+    return Series.of(replay.slave.fmu, values, replay.every, t)
+
+
+def _written(
+    replay: Replay, folder: Path, progress: Callable[[int], object], digest: str, mcap: bool
+) -> Estimate:
+    """The result, after all files are written."""
+    fmu = replay.slave.fmu
+    units = {name: fmu.variable(name).unit for name in OUTPUTS}
+    with ExitStack() as files:
+        table = files.enter_context(EstimateWriter(replay.log, replay.samples, units, folder))
+        adds: list[Callable[[Mapping[str, NDArray[Any]]], object]] = [table.add]
+        if mcap:
+            from sigmahat.logs.mcap_file import MCAP, McapFile
+
+            messages = McapFile(folder / MCAP, fmu, replay.samples.T)
+            adds.append(files.enter_context(messages).add)
+        replay.run(lambda outputs: [add(outputs) for add in adds], progress, digest)
+    write_learned(replay.slave, replay.every, replay.logs, folder / LEARNED.file)
+    answered = replay.answer()
+    sheet.write(data_sheet(replay, answered.curve), folder / sheet.FORMAT.file)
+    result = _result(replay, answered.curve)
     write_curve(answered.curve, folder / CURVE)
     write_points(answered.points, folder / POINTS)
     changed = [each.in_words for each in result.changes]
     notes = [*result.notes, *changed]
-    write_replayed(log.path, result.ticks, result.skipped, result.T, notes, folder / REPLAYED.file)
+    write_replayed(
+        replay.log.path, result.ticks, result.skipped, result.T, notes, folder / REPLAYED.file
+    )
     _save_figure(replay, answered, folder)
     return result
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from sigmahat.files import tables
 from sigmahat.files.tables import aligned, numeric_columns, read_csv, write_csv
-from sigmahat.fmi.master import Recording, Series
+from sigmahat.fmi.master import Recording
+from sigmahat.fmi.series import Series
 from sigmahat.paper.reproduction import Result
 from sigmahat.runs.metrics import INDICES, Index
 from sigmahat.runs.scenario import Scenario

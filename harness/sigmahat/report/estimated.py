@@ -19,14 +19,16 @@ def estimated(
     out: Path,
     progress: Callable[[int], object] = lambda thousandths: None,
     start_from: Path | None = None,
+    mcap: bool = False,
 ) -> Estimate:
     """The estimate; with the findings it is written into out, all files or none.
 
     findings  of the checks: severity and sentence
+    mcap      whether estimate.mcap is written, too
 
     Raises what `estimate` raises, OSError if out cannot be written to.
     """
     with output_folder(out) as folder:
-        result = estimate(log, configuration, folder, progress, start_from)
+        result = estimate(log, configuration, folder, progress, start_from, mcap)
         write_findings([ShownFinding(*each) for each in findings], folder)
     return result

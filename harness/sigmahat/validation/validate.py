@@ -122,7 +122,7 @@ def _torque(error: TorqueError | None) -> dict[str, float] | None:
     }
 
 
-def validate(log: Log, configuration: Configuration, start_from: Path) -> Validation:
+def validate(log: Log, configuration: Configuration, start_from: str | Path) -> Validation:
     """Replays a log with what was learned before, and alone, and compares.
 
     start_from  a folder of results of `estimate`, or its state.json
@@ -130,7 +130,7 @@ def validate(log: Log, configuration: Configuration, start_from: Path) -> Valida
     Raises LogError for a log, a configuration and a start_from that do not fit, and for method
     Paper2011, which claims no interval; FmuError if the FMU refuses.
     """
-    learned = read_learned(start_from)
+    learned = read_learned(Path(start_from))
     fmu = installed("StiffnessEstimator")
     every = fmu.parameters(parameters(fmu, configuration))
     if every["method"] != "FilteredRegression":

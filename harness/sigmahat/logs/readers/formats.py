@@ -17,13 +17,14 @@ _PACKED = (
 _HEAD = 520  # bytes; in files of MATLAB the signature of HDF5 is at byte 512
 
 
-def open_log(path: Path) -> Log:
+def open_log(path: str | Path) -> Log:
     """A log in CSV, Parquet, MAT (v5 to v7.3), HDF5, MCAP, or a ROS 2 bag.
 
     Only the file itself is read, or the files in the folder of the bag: not what it names
     elsewhere. Raises LogError if the file is missing, empty, damaged, or of another format, and if
     it holds more than limits.py allows.
     """
+    path = Path(path)
     if path.is_dir():
         if not (path / "metadata.yaml").is_file():
             raise LogError(f"{path}: a folder without metadata.yaml is no ROS 2 bag; name a file")

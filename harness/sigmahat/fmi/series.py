@@ -1,0 +1,80 @@
+"""Variables of an FMU over time, and the same as tables of other libraries."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sigmahat.fmi.instance import Fmu, Value
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+
+@dataclass(frozen=True)
+class Series:
+    """What was recorded of one FMU, or of an estimator for several joints."""
+
+    values: Mapping[str, NDArray[Any]]
+    """Recorded variables by name, of shape (N,) or (joints, N), in the unit of the variable."""
+    units: Mapping[str, str]
+    """Unit of each recorded Real, as in the model description."""
+    parameters: Mapping[str, Value]
+    """All parameters of the FMU as they were at the start; those of the first joint."""
+    t: NDArray[np.float64]
+    """Time of each sample since the first one [s], shape (N,)."""
+    descriptions: Mapping[str, str]
+    """Of each recorded variable, as in the model description."""
+
+    @staticmethod
+    def of(
+        fmu: Fmu,
+        values: Mapping[str, NDArray[Any]],
+        parameters: Mapping[str, Value],
+        t: NDArray[np.float64],
+    ) -> Series:
+        """Variables of an FMU, with what it says about them."""
+        variables = {name: fmu.variable(name) for name in values}
+        units = {name: v.unit for name, v in variables.items() if v.unit is not None}
+        descriptions = {name: v.description or "" for name, v in variables.items()}
+        return Series(values, units, parameters, t, descriptions)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self.values[name]
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """A column for each variable; the index is "t" [s], or "joint" and "t" for several joints.
+
+        `attrs["unit"]` and `attrs["description"]` have those of the columns. Needs pandas.
+        """
+        import pandas
+
+        shapes = {values.shape for values in self.values.values()} or {self.t.shape}
+        index: Any = pandas.Index(self.t, name="t")
+        if any(len(shape) == 2 for shape in shapes):
+            joints = range(next(iter(shapes))[0])
+            index = pandas.MultiIndex.from_product([joints, self.t], names=["joint", "t"])
+        columns = {name: values.reshape(-1) for name, values in self.values.items()}
+        frame: pandas.DataFrame = pandas.DataFrame(columns, index=index)
+        frame.attrs |= {"unit": dict(self.units), "description": dict(self.descriptions)}
+        return frame
+
+    def to_xarray(self) -> xarray.Dataset:
+        """A variable for each, with the attributes "unit" and "description", over "t" [s].
+
+        Several joints are the dimension "joint". Needs xarray: `pip install sigmahat[xarray]`.
+        """
+        import xarray
+
+        found = xarray.Dataset(coords={"t": ("t", self.t, {"unit": "s"})})
+        for name, values in self.values.items():
+            about = {"description": self.descriptions[name]}
+            if name in self.units:
+                about["unit"] = self.units[name]
+            found[name] = (("joint", "t")[-values.ndim :], values, about)
+        return found

@@ -1,0 +1,183 @@
+"""The joint of a data sheet as a simulator has it: two hinges with one axis.
+
+The first hinge is the motor behind its gear. The second one is the flexibility: its angle is the
+deformation phi, and the torque of its spring is -tau_e.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from sigmahat.joint.sheet import Parameter, Sheet
+from sigmahat.joint.stored import Range
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of a hinge, behind the gear."""
+
+    value: float
+    interval: Range | None
+    """Of 95 %; None if it is taken as exact or nothing is claimed."""
+    unit: str
+    interval_from: str
+    """"identify", "prior" or "estimate", or why there is none."""
+
+
+@dataclass(frozen=True)
+class Spring:
+    """Torque of the spring: sum of stiffness[i] (phi - reference)^(i + 1)."""
+
+    reference: float
+    """Deformation without torque [rad]."""
+    stiffness: tuple[float, ...]
+    """[N.m/rad], [N.m/rad2] and so on."""
+    error: float
+    """Largest error of this torque over the largest torque, in the range of the data [1]."""
+
+
+@dataclass(frozen=True)
+class TwoHinges:
+    """What a simulator needs of a joint."""
+
+    gear_ratio: float
+    rotor_inertia: float
+    """Of the motor on its own axis [kg.m2]."""
+    armature: Quantity
+    """Inertia of the motor behind the gear."""
+    damping: Quantity
+    """Viscous friction of the motor behind the gear."""
+    frictionloss: Quantity
+    """Coulomb friction of the motor behind the gear."""
+    spring: Spring
+    spring_damping: Quantity
+    reach: Range
+    """Deformation of the data [rad]."""
+    factor: Quantity
+    """By which all of the stiffness may be multiplied: 1, with the interval of the estimate."""
+    absent: tuple[str, ...]
+    """What the joint has and two hinges have not, in words."""
+
+    def quantities(self, name: str) -> Iterator[tuple[str, Quantity]]:
+        """What has an interval or could have one, by the name of its hinge and what it is."""
+        yield f"{name}_motor.armature", self.armature
+        yield f"{name}_motor.damping", self.damping
+        yield f"{name}_motor.frictionloss", self.frictionloss
+        yield f"{name}_flexibility.damping", self.spring_damping
+        yield f"{name}_flexibility.stiffness.factor", self.factor
+
+
+def two_hinges(sheet: Sheet, degree: int) -> TwoHinges:
+    """The hinges of a joint, whose spring is a polynomial of at most this degree.
+
+    A spring with a set-point is that at the last set-point of the log.
+
+    Raises ValueError for a sheet without data or without a stiffness above 0.
+    """
+    p, reach = sheet.parameters, sheet.polynomial.phi
+    if reach is None:
+        raise ValueError("no deformation in the data sheet: expected that of a joint that moved")
+    gamma = p["gamma"].value
+    return TwoHinges(
+        gear_ratio=gamma,
+        rotor_inertia=max(p["B"].value, 0.0),
+        armature=_scaled(p["B"], gamma**2, "kg.m2"),
+        damping=_scaled(p["D_theta"], gamma**2, "N.m.s/rad"),
+        frictionloss=_scaled(p.get("tau_coulomb"), gamma, "N.m"),
+        spring=_spring(sheet, reach, degree),
+        spring_damping=_scaled(p.get("damping"), 1.0, "N.m.s/rad"),
+        reach=reach,
+        factor=_factor(sheet),
+        absent=tuple(_absent(sheet, reach)),
+    )
+
+
+def _scaled(parameter: Parameter | None, factor: float, unit: str) -> Quantity:
+    """A parameter of the motor behind the gear; nothing of it is below 0.
+
+    The value is that of the estimator, the interval may be that of `identify`: it is made wider
+    where it does not contain the value.
+    """
+    if parameter is None:
+        return Quantity(0.0, None, unit, "absent")
+    value, interval = max(factor * parameter.value, 0.0), None
+    if parameter.interval is not None:
+        low, high = (max(factor * end, 0.0) for end in parameter.interval)
+        interval = min(low, value), max(high, value)
+    return Quantity(value, interval, unit, parameter.interval_from)
+
+
+def _factor(sheet: Sheet) -> Quantity:
+    """Half of the interval of the stiffness over the stiffness, in the mean over the deformation.
+
+    The torque, which is the integral of the stiffness, has at most this error.
+    """
+    setting = sheet.at_the_end.set_point
+    near = min((abs(each.set_point - setting) for each in sheet.curve or ()), default=0.0)
+    curve = [c for c in sheet.curve or () if abs(c.set_point - setting) <= near and c.interval]
+    if not curve:
+        return Quantity(1.0, None, "1", f"{sheet.method} claims none")
+    width = sum(c.interval[1] - c.interval[0] for c in curve if c.interval)
+    half = width / 2 / sum(abs(c.sigma) for c in curve)
+    return Quantity(1.0, (max(1 - half, 0.0), 1 + half), "1", "estimate")
+
+
+_POINTS = 201
+
+
+def _spring(sheet: Sheet, reach: Range, degree: int) -> Spring:
+    """The polynomial of the sheet, or the nearest one of this degree in the range of the data."""
+    source = sheet.polynomial
+    phi = np.linspace(*reach, _POINTS)
+    torque, _ = source.at(phi, sheet.at_the_end.set_point)
+    powers = [power for power in source.powers_of_phi if power <= degree]
+    size = float(np.max(np.abs(phi)))
+    X = (phi[:, None] / size) ** np.array(powers)
+    scaled = np.linalg.lstsq(X, torque, rcond=None)[0]
+    coefficients = np.zeros(degree + 1)
+    coefficients[powers] = scaled / size ** np.array(powers)
+    fitted = Polynomial(coefficients)
+    reference = _zero(fitted, phi)
+    shifted = fitted(Polynomial([reference, 1.0])).coef
+    stiffness = [float(each) for each in np.append(shifted, np.zeros(degree))[1 : degree + 1]]
+    while len(stiffness) > 1 and not stiffness[-1]:
+        del stiffness[-1]
+    if not stiffness[0] > 0:
+        raise ValueError(
+            f"the stiffness is {stiffness[0]:.4g} N.m/rad where the spring has no torque: expected "
+            "one above 0; see `sigmahat check`"
+        )
+    error = float(np.max(np.abs(fitted(phi) - torque)) / max(np.max(np.abs(torque)), 1e-300))
+    return Spring(reference, tuple(stiffness), error)
+
+
+def _zero(torque: Polynomial, phi: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
+    """Deformation without torque, the one nearest to the middle of the data [rad]."""
+    if not torque.coef[0]:
+        return 0.0
+    roots = torque.roots()
+    real = roots[np.abs(roots.imag) <= 1e-9 * np.abs(roots)].real
+    if not len(real):
+        raise ValueError("the torque of the spring is nowhere 0: its deformation has no reference")
+    return float(real[np.argmin(np.abs(real - (phi[0] + phi[-1]) / 2))])
+
+
+_SHOWN = 0.01
+"""Of the largest torque: what is smaller is not named."""
+
+
+def _absent(sheet: Sheet, reach: Range) -> Iterator[str]:
+    """What was found in the joint, and has no place in the model."""
+    p, setting = sheet.parameters, sheet.at_the_end.set_point
+    torque = float(np.max(np.abs(sheet.polynomial.at(np.array(reach), setting)[0])))
+    shown = {"hysteresis": _SHOWN * torque, "load_friction": _SHOWN, "delay": 0.0}
+    for name, smallest in shown.items():
+        if name in p and abs(p[name].value) > smallest:
+            unit = "" if p[name].unit == "1" else f" {p[name].unit}"
+            yield f"{name.replace('_', ' ')} {p[name].value:.3g}{unit}"
+    if sheet.polynomial.is_of_set_point:
+        yield f"how the stiffness is adjusted (this is the spring at set-point {setting:.6g})"

@@ -1,0 +1,172 @@
+"""A joint from a log in a simulator: what `export` writes, in MuJoCo and in Drake's parsers."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomlkit
+from numpy.typing import NDArray
+
+from recorded_logs import write_log
+from sigmahat.cli import main
+
+Array = NDArray[np.float64]
+T, STEPS, GEAR = 1e-3, 8, 100.0
+COUNTS = (4096, 262144)  # a turn of the motor on its axis, of the link
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint that is drawn; all behind the gear."""
+
+    k_1: float
+    k_3: float
+    damping: float
+    """Of the spring [N.m.s/rad]."""
+    armature: float
+    viscous: float
+    coulomb: float
+    link: float
+    """Length of a rod with a mass at its end [m]."""
+
+    @staticmethod
+    def drawn(seed: int) -> Joint:
+        rng = np.random.default_rng(seed)
+        k_1 = float(np.exp(rng.uniform(np.log(100), np.log(3000))))
+        largest = 40 / k_1  # [rad] about
+        return Joint(
+            k_1=k_1,
+            k_3=k_1 * rng.uniform(0, 1) / largest**2 if seed % 2 else 0.0,
+            damping=1e-3 * k_1 * rng.uniform(0.2, 2),
+            armature=rng.uniform(0.3, 2.0),
+            viscous=rng.uniform(1, 10),
+            coulomb=rng.uniform(0.2, 2),
+            link=rng.uniform(0.4, 0.6),
+        )
+
+    @property
+    def model(self) -> str:
+        return f"""<mujoco><option timestep="{T / STEPS}" integrator="implicit"/><worldbody>
+          <body><inertial pos="0 0 0" mass="0.01" diaginertia="1e-5 1e-5 1e-5"/>
+            <joint axis="0 1 0" armature="{self.armature}" damping="{self.viscous}"
+                   frictionloss="{self.coulomb}"/>
+            <body><joint axis="0 1 0" stiffness="{self.k_1} 0 {self.k_3}"
+                         damping="{self.damping}"/>
+              <geom type="capsule" size="0.04" density="700" fromto="0 0 0 0 0 -{self.link}"/>
+              <geom type="sphere" size="0.06" pos="0 0 -{self.link}" mass="2"/></body></body>
+          </worldbody></mujoco>"""
+
+    def motion(self, frequencies: tuple[float, ...], seconds: float, seed: int) -> dict[str, Array]:
+        """What a controller of the position makes of it, at 1 kHz."""
+        import mujoco
+
+        model = mujoco.MjModel.from_xml_string(self.model)
+        data, rng, rows = mujoco.MjData(model), np.random.default_rng(seed), []
+        for k in range(round(seconds / T)):
+            waves = zip((0.6, 0.25, 0.1), frequencies, strict=True)
+            target = sum(a * np.sin(2 * np.pi * f * k * T) for a, f in waves)
+            torque = 300.0 * (target - data.qpos[0]) - 20.0 * data.qvel[0]
+            data.qfrc_applied[0] = torque
+            rows.append([k * T, *data.qpos, *data.qvel, torque])
+            for _ in range(STEPS):
+                mujoco.mj_step(model, data)
+        t, theta, phi, _, phi_dot, torque = np.array(rows).T
+        return {
+            "time_s": t,
+            "motor_counts": np.round(theta * GEAR * COUNTS[0] / (2 * np.pi)),
+            "link_counts": np.round((theta + phi) * COUNTS[1] / (2 * np.pi)),
+            "torque_Nm": torque / GEAR + rng.normal(0, 0.003, len(t)),
+            "tau_e": self.k_1 * phi + self.k_3 * phi**3 + self.damping * phi_dot,
+            "phi": phi,
+            "phi_dot": phi_dot,
+        }
+
+
+def estimated(joint: Joint, folder: Path) -> Path:
+    """The folder of results of a log of 20 s, by the documented path."""
+    log = joint.motion((0.35, 1.1, 2.3), 20.0, 1)
+    write_log({n: log[n] for n in list(log)[:4]}, folder / "knee.csv")
+    configuration = folder / "knee.toml"
+    csv = str(folder / "knee.csv")
+    assert main(["init", csv, "--config", str(configuration), "--quiet"]) == 0
+    document = tomlkit.parse(configuration.read_text())
+    ports: Any = document["ports"]
+    ports["theta"]["gear_ratio"], ports["theta"]["counts_per_turn"] = GEAR, COUNTS[0]
+    ports["q"]["counts_per_turn"] = COUNTS[1]
+    configuration.write_text(tomlkit.dumps(document))
+    of_log = [csv, "--config", str(configuration), "--quiet"]
+    assert main(["identify", *of_log]) == 0
+    assert main(["estimate", *of_log, "--out", str(folder / "knee")]) == 0
+    return folder / "knee"
+
+
+def within_band(model_file: Path, log: dict[str, Array]) -> tuple[float, float]:
+    """Share of a run in which its torque lies between those of the ends of the ranges; and half of
+    that band over the RMS of the torque.
+    """
+    import mujoco
+
+    torques = []
+    for stiffer, damped in itertools.product((0, 1), (0, 1)):
+        model = mujoco.MjModel.from_xml_path(str(model_file))
+        factor, damping = (
+            model.numeric_data[model.numeric(f"joint_flexibility.{name}").adr[0] + end]
+            for name, end in (("stiffness.factor", stiffer), ("damping", damped))
+        )
+        model.jnt_stiffness[1] *= factor
+        model.jnt_stiffnesspoly[1] *= factor
+        model.dof_damping[1] = damping
+        data, torque = mujoco.MjData(model), np.empty_like(log["phi"])
+        for i, (phi, phi_dot) in enumerate(zip(log["phi"], log["phi_dot"], strict=True)):
+            data.qpos[1], data.qvel[1] = phi, phi_dot
+            mujoco.mj_forward(model, data)
+            torque[i] = -data.qfrc_spring[1] - data.qfrc_damper[1]
+        torques.append(torque)
+    low, high = np.min(torques, axis=0), np.max(torques, axis=0)
+    inside = (log["tau_e"] >= low) & (log["tau_e"] <= high)
+    size = float(np.sqrt(np.mean(log["tau_e"] ** 2)))
+    return float(np.mean(inside)), float(np.sqrt(np.mean((high - low) ** 2))) / 2 / size
+
+
+@pytest.mark.slow("joints are simulated, identified and estimated")
+@pytest.mark.parametrize("seed", [0, 1])
+def test_the_torque_of_another_run_is_within_the_ranges(seed: int, tmp_path: Path) -> None:
+    pytest.importorskip("mujoco", reason="to install MuJoCo: cmake --workflow --preset rivals")
+    joint = Joint.drawn(seed)
+    results = estimated(joint, tmp_path)
+    assert main(["export", str(results), "--to", "mjcf", "--quiet"]) == 0
+    share, half = within_band(results / "joint.xml", joint.motion((0.27, 0.9, 2.9), 8.0, 2))
+    assert share > 0.9
+    assert half < 0.25
+
+
+@pytest.mark.slow("a joint is simulated, identified and estimated")
+def test_drake_and_mujoco_read_the_other_formats(tmp_path: Path) -> None:
+    mujoco = pytest.importorskip("mujoco", reason="to install it: cmake --workflow --preset rivals")
+    plants = pytest.importorskip("pydrake.multibody.plant", reason="preset rivals installs Drake")
+    parsing, tree = (
+        pytest.importorskip(f"pydrake.multibody.{name}") for name in ("parsing", "tree")
+    )
+    joint = Joint.drawn(2)
+    results = estimated(joint, tmp_path)
+    for kind in ("sdf", "drake", "urdf"):
+        assert main(["export", str(results), "--to", kind, "--quiet"]) == 0
+    for file in ("joint.sdf", "joint.drake.sdf"):
+        plant = plants.MultibodyPlant(1e-3)
+        parsing.Parser(plant).AddModels(str(results / file))
+        plant.Finalize()
+        spring = plant.get_force_element(tree.ForceElementIndex(1))
+        assert spring.default_stiffness() == pytest.approx(joint.k_1, rel=0.05)
+        damping = plant.GetJointByName("joint_motor").default_damping()
+        assert damping == pytest.approx(joint.viscous, rel=0.1)
+    (drive,) = map(plant.get_joint_actuator, plant.GetJointActuatorIndices())
+    reflected = drive.default_rotor_inertia() * drive.default_gear_ratio() ** 2
+    assert reflected == pytest.approx(joint.armature, rel=0.05)
+    model = mujoco.MjModel.from_xml_path(str(results / "joint.urdf"))
+    assert model.dof_damping[0] == pytest.approx(joint.viscous, rel=0.1)
+    assert model.dof_frictionloss[0] == pytest.approx(joint.coulomb, rel=0.1)
