@@ -19,7 +19,7 @@ PAGES = sorted(
 FILE = re.compile(r"`([\w./-]+\.(?:c|h|py|toml|xml|js|mo|cmake))`")
 NOT_OURS = re.compile(
     r"NAME|Name|LOG|^build/|modelDescription\.xml|buildDescription\.xml|^(rls|fmpy/simulation|joint|"
-    r"arm|arm-elbow|knee\.draft|desr)\.\w+$"
+    r"arm|arm-elbow|motion|knee\.draft|desr)\.\w+$"
 )
 """Places of names, files of FMUs and of users, and the parameter rls.c."""
 

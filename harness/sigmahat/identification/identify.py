@@ -15,11 +15,10 @@ import numpy as np
 from sigmahat.fmi.instance import Fmu, Slave, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.identification.coherence import TorqueNoise, coherent_range
-from sigmahat.identification.motor import KnownInertia, fit_motor, motor_form
-from sigmahat.identification.next_motion import advice
+from sigmahat.identification.motor import KnownInertia, fit_motor
 from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
-from sigmahat.identification.quantities import WIDE, Advice, Identified, Quantity
-from sigmahat.identification.regression import Form, Signals, shortest, signals_of
+from sigmahat.identification.quantities import WIDE, Identified, Quantity
+from sigmahat.identification.regression import Signals, shortest, signals_of
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.replay import parameters, replay
@@ -84,7 +83,6 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     )
     V_a = _best_V_a(fmu, samples, start, longest, f_0)
     quantities = dict(motor.quantities)
-    form = motor_form(min(f_0, coherent), T)
     if quantities["B"].determined:  # until here it was that of the configuration
         f_0 = bandwidth(tau_variance, theta_variance, quantities["B"].value * abs(gamma), T)
     nominal = configuration.ports["tau"].torque_constant
@@ -109,26 +107,12 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         B=B,
         D_theta=float(every["motor.D_theta"]),
         notes=samples.notes,
-        advice=_advice(pieces, T, form, quantities, every),
     )
 
 
 def _largest(pieces: Sequence[Signals], name: str) -> float:
     """Largest magnitude of a signal."""
     return max(float(np.max(np.abs(getattr(piece, name)))) for piece in pieces)
-
-
-def _advice(
-    pieces: Sequence[Signals],
-    T: float,
-    form: Form,
-    quantities: Mapping[str, Quantity],
-    every: Mapping[str, Value],
-) -> Sequence[Advice]:
-    """What to record next."""
-    steps = _step(every["encoder.theta"]), _step(every["encoder.q"])
-    gamma, B = float(every["motor.gamma"]), float(every["motor.B"])
-    return advice(pieces, T, gamma, form, quantities, B, steps)
 
 
 def _step(counts: Value) -> float:

@@ -94,7 +94,7 @@ def fit_motor(
     """
     longest = max(pieces, key=lambda piece: len(piece.theta))
     m_most = _M if np.ptp(longest.set_point) > 0 else 1
-    form = replace(motor_form(f_0, T), n=_N, m=m_most)
+    form = replace(_motor_form(f_0, T), n=_N, m=m_most)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     form, polynomial = _with_spring(without_sensor, T, gamma, form, symmetric)
     systems = _systems(pieces, T, gamma, form)
@@ -111,7 +111,7 @@ def fit_motor(
     return MotorFit(quantities, gain, polynomial, spring.largest(fits.first, pieces, abs(gamma)))
 
 
-def motor_form(f_0: float, T: float) -> Form:
+def _motor_form(f_0: float, T: float) -> Form:
     """The equation with a linear spring, and filters for a low pass of f_0 [Hz]."""
     return Form(f_0, min(2.5 * f_0, _WIDEST / T))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from sigmahat.identification.regression import COULOMB_VELOCITY
@@ -40,34 +40,6 @@ class Quantity:
         """The name of `determined` up to version 0.1."""
         warnings.warn("Quantity.told is now .determined", DeprecationWarning, stacklevel=2)
         return self.determined
-
-
-@dataclass(frozen=True)
-class Motion:
-    """Sines of the motor, after its gear, that are added."""
-
-    sines: Sequence[tuple[float, float]]
-    """Amplitude [rad] and frequency [Hz] of each."""
-    duration: float
-    """[s]"""
-    torque: float
-    """Peak of the torque on the axis of the motor [N.m]."""
-    reversals: int
-    """Number of reversals of the motor."""
-
-
-@dataclass(frozen=True)
-class Advice:
-    """What to record for a quantity that is not well known."""
-
-    name: str
-    """B, D_theta, tau_coulomb or stiffness."""
-    known_to: float
-    """Half of the 95 % interval over the value [1]; inf or nan if the log does not show it."""
-    motion: Motion | None
-    """None: no candidate makes it known, or the log does not show the spring at all."""
-    would_be: float
-    """The same as known_to after the motion, alone [1]."""
 
 
 @dataclass(frozen=True)
@@ -107,8 +79,6 @@ class Identified:
     """That of the configuration [N.m.s/rad]."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""
-    advice: Sequence[Advice] = ()
-    """What to record next, for each quantity that the log does not determine."""
 
 
 def as_dict(identified: Identified) -> dict[str, Any]:
@@ -134,7 +104,6 @@ def as_dict(identified: Identified) -> dict[str, Any]:
         "largest phi [rad]": identified.phi,
         "largest setPoint [1]": identified.set_point,
         "largest gamma tau [N.m]": identified.torque,
-        "next motion": [asdict(each) for each in identified.advice],
         "notes": list(identified.notes),
     }
 
@@ -144,7 +113,8 @@ def summary(identified: Identified) -> str:
     lines = [f"  {note}" for note in identified.notes]
     lines.append("")
     lines += [f"{name:16}{_text(each)}" for name, each in identified.quantities.items()]
-    lines += [f"  {_advice(each)}" for each in identified.advice]
+    if not all(each.determined for each in identified.quantities.values()):
+        lines.append("  `sigmahat motion` proposes what to record for more, from this log: --after")
     lines += [
         "",
         f"powers          rls.n = {identified.n}, rls.m = {identified.m} (cross-validation), "
@@ -176,25 +146,3 @@ def _text(quantity: Quantity) -> str:
     if math.isfinite(quantity.half_width):
         return f"cannot tell: somewhere from {low:.2g} to {high:.2g} {quantity.unit}"
     return "cannot tell: the motion does not show it"
-
-
-def _advice(advice: Advice) -> str:
-    """What to record next, in a sentence."""
-    known = f"known to {_percent(advice.known_to)}" if math.isfinite(advice.known_to) else "unknown"
-    start = f"{advice.name} is {known}:"
-    motion = advice.motion
-    if motion is None:
-        return (
-            f"{start} no motion with up to twice the torque of this log would show it well; "
-            "record one with more load on the link"
-        )
-    sines = " and ".join(f"{f:g} Hz with +- {A:.2g} rad" for A, f in motion.sines)
-    return (
-        f"{start} record {motion.duration:g} s of theta = sines of {sines} (about "
-        f"{motion.torque:.2g} N.m of the motor, {motion.reversals} reversals), which would give "
-        f"{_percent(advice.would_be)}"
-    )
-
-
-def _percent(share: float) -> str:
-    return f"+- {100 * share:.2g} %"

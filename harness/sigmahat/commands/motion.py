@@ -1,0 +1,133 @@
+"""The command that proposes a motion to record."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from sigmahat.commands import common
+
+if TYPE_CHECKING:
+    from sigmahat.motion.design import Design
+    from sigmahat.motion.joints import Limits, Ranges
+
+_POSITIVE = click.FloatRange(min=0, min_open=True, max=1e6)
+
+
+def _limit(name: str, text: str) -> click.Option:
+    return click.Option([f"--{name}"], type=_POSITIVE, required=True, help=text)
+
+
+@click.command(
+    params=[
+        _limit("angle", "Most to either side of the start [rad]."),
+        _limit("velocity", "Largest velocity [rad/s]."),
+        _limit("torque", "Largest torque of the motor behind its gear [N.m]."),
+        _limit("deformation", "Largest deformation of the transmission [rad]."),
+    ]
+)
+@click.argument("config", required=False, type=click.Path(path_type=Path, dir_okay=False))
+@click.option(
+    "--seconds",
+    type=click.FloatRange(5, 600),
+    default=30.0,
+    show_default=True,
+    help="Its duration.",
+)
+@click.option(
+    "--start",
+    type=click.FloatRange(-1e6, 1e6),
+    default=0.0,
+    show_default=True,
+    help="Position of the motor behind its gear at the start [rad].",
+)
+@click.option(
+    "--after",
+    type=click.Path(path_type=Path),
+    help="Use what this log shows of the joint; CONFIG is its configuration.",
+)
+@click.option(
+    "--out",
+    callback=common.folder,
+    help="Folder to write into.  [default: sigmahat-results/motion]",
+)
+@common.joint_option
+@common.json_option
+@common.quiet_option
+def motion(
+    config: Path | None,
+    angle: float,
+    velocity: float,
+    torque: float,
+    deformation: float,
+    seconds: float,
+    start: float,
+    after: Path | None,
+    out: Path | None,
+    joint: str,
+) -> None:
+    """Propose a motion of the motor that will show the stiffness of a joint.
+
+    The motion is a sum of sines that keeps the limits, all behind the gear, for each joint of a
+    set: those that may have such limits or, with --after, those that the log may be of. It stays
+    below their resonance, begins and ends at rest, and is written as CSV, as a trajectory for ROS,
+    and as C. From CONFIG it takes gear ratio, encoders and noise.
+
+    \b
+    Example: sigmahat motion --angle 1 --velocity 2 --torque 100 --deformation 0.02
+    """
+    from sigmahat.files.output import output_folder
+    from sigmahat.logs.configuration import read_configuration
+    from sigmahat.logs.readers.formats import open_log
+    from sigmahat.motion import design, files, known
+    from sigmahat.motion.joints import Limits, of_limits
+
+    common.need_fmu("StiffnessEstimator")
+    if after is not None and config is None:
+        raise click.UsageError("--after LOG needs CONFIG, the configuration of the log")
+    limits = Limits(angle, velocity, torque, deformation)
+    out = out or Path("sigmahat-results", "motion")
+    with common.errors_in_one_line(out):
+        configuration = None if config is None else read_configuration(config, joint)
+        joints = of_limits(limits)
+        if after is not None and configuration is not None:
+            joints = known.of_log(open_log(after), configuration, start)
+        sensors = known.sensors(configuration, limits)
+        with common.progress("Trying motions", design.trials()) as bar:
+            found = design.design(joints, limits, sensors, seconds, bar.update)
+        with output_folder(out) as folder:
+            files.write(found.motion, joint or "joint", start, sensors.T, folder)
+    where = f"{', '.join(files.FILES)} are in {out.resolve()}"
+    values = {
+        "half_widths": found.half_widths,
+        "peaks": vars(found.peaks),
+        "motion": vars(found.motion),
+        "joints": {"from": vars(joints.low), "to": vars(joints.high)},
+    }
+    text = "\n".join([*_lines(found, joints, limits), "", where])
+    common.answer(text, values, _expected(found))
+
+
+def _expected(found: Design) -> str:
+    median, most = (f"{100 * found.quantile(share):.2g} %" for share in (0.5, 0.9))
+    others = f"nine of ten joints: +- {most} or less"
+    if found.not_shown:
+        others = f"not shown in {found.not_shown} of {len(found.half_widths)} joints"
+    return f"expected: stiffness +- {median} after {found.motion.duration:g} s ({others})"
+
+
+def _lines(found: Design, joints: Ranges, limits: Limits) -> list[str]:
+    motion, peaks, low, high = found.motion, found.peaks, joints.low, joints.high
+    return [
+        f"four sines, {motion.frequencies[0]:.3g} to {motion.frequencies[-1]:.3g} Hz",
+        f"largest of all joints tried: {peaks.angle:.3g} of {limits.angle:g} rad, "
+        f"{peaks.velocity:.3g} of {limits.velocity:g} rad/s, {peaks.torque:.3g} of "
+        f"{limits.torque:g} N.m, deformation {peaks.deformation:.3g} of {limits.deformation:g} rad",
+        f"joints: stiffness {low.k:.3g} to {high.k:.3g} N.m/rad, inertia of the link "
+        f"{low.M:.3g} to {high.M:.3g} kg.m2,",
+        f"  weight up to {high.weight:.3g} N.m, motor {low.B:.3g} to {high.B:.3g} kg.m2, "
+        f"Coulomb friction up to {high.tau_coulomb:.3g} N.m",
+        "no promise for other joints, and none for backlash, hysteresis or contact",
+    ]

@@ -1,0 +1,154 @@
+"""Which motion shows the stiffness of a set of joints best, within limits that hold for all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from sigmahat.logs.log import LogError
+from sigmahat.motion.joints import Joint, Limits, Ranges
+from sigmahat.motion.multisine import Multisine
+from sigmahat.motion.record import Sensors, relative_half_width
+from sigmahat.runs.pool import spread
+
+_RATIOS = (1.0, 1.618, 2.713, 4.237)  # of the frequencies: no multiples of each other
+_PHASES = (0.0, 1.0, 2.0, 3.0)
+_OF_RESONANCE = (0.15, 0.3, 0.5)  # the highest frequency over the lowest resonance
+_EXPONENTS = (1.0, 2.0)  # amplitudes fall with the frequency to this power
+_HIGHEST = 5.0  # [Hz] no motion of a stiff joint is faster
+_CYCLES = 2.0  # of the slowest sine, at least
+_RAMP = 0.15  # of the duration, at most
+_LONGEST_RAMP = 2.0  # [s]
+_COARSE = 0.02  # [s] samples in which peaks are sought
+_MARGIN = 0.97  # of the limits, for joints between those that are tried
+_COMPARED, _PROMISED = 6, 20  # joints by which candidates are compared, and of the promise
+
+NOT_SHOWN = 1.0
+"""Half width over the stiffness: above it the motion does not show the stiffness."""
+
+
+@dataclass(frozen=True)
+class Design:
+    """A motion, and what to expect of it."""
+
+    motion: Multisine
+    peaks: Limits
+    """The largest of all joints that were tried."""
+    half_widths: Sequence[float]
+    """Of the stiffness in the middle of the data over the stiffness, of drawn joints, sorted."""
+
+    @property
+    def not_shown(self) -> int:
+        """Number of the joints whose stiffness the motion does not show."""
+        return sum(each > NOT_SHOWN for each in self.half_widths)
+
+    def quantile(self, share: float) -> float:
+        """A half width that this share of the joints does not exceed."""
+        return float(np.quantile(self.half_widths, share))
+
+
+def design(
+    joints: Ranges,
+    limits: Limits,
+    sensors: Sensors,
+    duration: float,
+    progress: Callable[[int], object] = lambda done: None,
+) -> Design:
+    """The motion of the smallest half widths, in their geometric mean, among sums of four sines.
+
+    progress  is given the number of joints that were tried since the last call, of `trials()`
+
+    Raises LogError if no motion of this duration keeps the limits away from the resonance.
+    """
+    candidates = list(_candidates(joints, limits, duration))
+    if not candidates:
+        slowest = min(each.resonance for each in joints.corners())
+        longest = _CYCLES * _RATIOS[-1] / (_OF_RESONANCE[-1] * slowest)
+        raise LogError(
+            f"no motion of {duration:g} s keeps the limits of all joints and stays below the "
+            f"lowest resonance, {slowest:.3g} Hz; expected {longest:.3g} s or more, or wider limits"
+        )
+    compared = list(joints.draw(_COMPARED, np.random.default_rng(1)))
+    pairs = [(motion, joint) for motion in candidates for joint in compared]
+    found = np.array(_widths(pairs, sensors, progress)).reshape(len(candidates), _COMPARED)
+    # The mean of the logarithms: a joint that the motion does not show counts, how little does not.
+    means = np.mean(np.log(np.minimum(found, NOT_SHOWN)), axis=1)
+    best = candidates[int(np.argmin(means))]
+    drawn = list(joints.draw(_PROMISED, np.random.default_rng(2)))
+    widths = _widths([(best, joint) for joint in drawn], sensors, progress)
+    tried = [*joints.corners(), *drawn]
+    return Design(best, _peaks(best, tried), sorted(widths))
+
+
+def trials() -> int:
+    """Number of joints that are tried, at most."""
+    return len(_OF_RESONANCE) * len(_EXPONENTS) * _COMPARED + _PROMISED
+
+
+def _widths(
+    pairs: Sequence[tuple[Multisine, Joint]], sensors: Sensors, progress: Callable[[int], object]
+) -> list[float]:
+    jobs = [partial(relative_half_width, joint, motion, sensors) for motion, joint in pairs]
+    found = [np.inf] * len(jobs)
+    for place, width in spread(jobs):
+        found[place] = width
+        progress(1)
+    return found
+
+
+def _candidates(joints: Ranges, limits: Limits, duration: float) -> Iterator[Multisine]:
+    tried = list(joints.corners())
+    lowest = min(each.resonance for each in tried)
+    ramp = min(_LONGEST_RAMP, _RAMP * duration)
+    for share in _OF_RESONANCE:
+        highest = min(share * lowest, _HIGHEST)
+        frequencies = [highest * ratio / _RATIOS[-1] for ratio in _RATIOS]
+        if frequencies[0] * (duration - 2 * ramp) < _CYCLES * (1 - 2 * _RAMP):
+            continue
+        for exponent in _EXPONENTS:
+            amplitudes = [f**-exponent for f in frequencies]
+            motion = Multisine(amplitudes, frequencies, _PHASES, duration, ramp)
+            scaled = _within(motion, tried, limits)
+            if scaled is not None:
+                yield scaled
+
+
+def _within(motion: Multisine, joints: Sequence[Joint], limits: Limits) -> Multisine | None:
+    """The motion as large as the limits allow; None if not even rest keeps them."""
+    position, velocity, _ = motion.at(motion.times(_COARSE))
+    angle, speed = float(np.max(np.abs(position))), float(np.max(np.abs(velocity)))
+    scale = _MARGIN * min(limits.angle / angle, limits.velocity / speed)
+    rest = _peaks(motion.scaled(_REST * scale), joints)
+    room_of_torque = _MARGIN * limits.torque - rest.torque
+    room_of_deformation = _MARGIN * limits.deformation - rest.deformation
+    if min(room_of_torque, room_of_deformation) <= 0:
+        return None
+    for _ in range(_STEPS):  # the peaks are almost linear in the scale
+        peaks = _peaks(motion.scaled(scale), joints)
+        factor = min(
+            room_of_torque / max(peaks.torque - rest.torque, 1e-300),
+            room_of_deformation / max(peaks.deformation - rest.deformation, 1e-300),
+        )
+        if factor >= 1:
+            return motion.scaled(scale)
+        scale *= factor * _MARGIN
+    return None
+
+
+_REST, _STEPS = 1e-6, 6
+
+
+def _peaks(motion: Multisine, joints: Sequence[Joint]) -> Limits:
+    """The largest angle, velocity, torque and deformation of any of the joints."""
+    position, velocity, _ = motion.at(motion.times(_COARSE))
+    torque = deformation = 0.0
+    for joint in joints:
+        _, phi, tau = joint.move(motion, _COARSE)
+        torque = max(torque, float(np.max(np.abs(tau))))
+        deformation = max(deformation, float(np.max(np.abs(phi))))
+    return Limits(
+        float(np.max(np.abs(position))), float(np.max(np.abs(velocity))), torque, deformation
+    )

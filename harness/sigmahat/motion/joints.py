@@ -1,0 +1,128 @@
+"""Joints that a motion has to suit: drawn from limits, or from what a log shows; how they move."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+
+import numpy as np
+from scipy import signal
+
+from sigmahat.motion.multisine import Array, Multisine
+
+Rng = np.random.Generator
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What the motion may reach, behind the gear."""
+
+    angle: float
+    """To either side of the position at the start [rad]."""
+    velocity: float
+    """[rad/s]"""
+    torque: float
+    """Of the motor [N.m]."""
+    deformation: float
+    """[rad]"""
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint; all behind the gear. In `Ranges` each is the least and the largest value."""
+
+    k: float
+    """Stiffness [N.m/rad]."""
+    M: float
+    """Inertia of the link [kg.m2]."""
+    D_q: float
+    """Viscous friction of the link [N.m.s/rad]."""
+    weight: float
+    """Largest torque of its weight [N.m]."""
+    angle: float
+    """Of the link at the start, 0 where the weight hangs [rad]."""
+    B: float
+    """Inertia of the motor [kg.m2]."""
+    D_theta: float
+    """Its viscous friction [N.m.s/rad]."""
+    tau_coulomb: float
+    """Its Coulomb friction [N.m]."""
+
+    @property
+    def resonance(self) -> float:
+        """Of link and spring with the motor held [Hz]."""
+        return float(np.sqrt(self.k / self.M)) / (2 * np.pi)
+
+    def move(self, motion: Multisine, T: float) -> tuple[Array, Array, Array]:
+        """Motor [rad], deformation [rad] and torque of the motor [N.m] at k T.
+
+        The link is linear, (2), but for its weight, which is that at the angle of the motor.
+        Between the samples its inputs are linear: so the response is exact.
+        """
+        theta, velocity, acceleration = motion.at(motion.times(T))
+        load = self.M * acceleration + self.D_q * velocity
+        load += self.weight * np.sin(self.angle + theta)
+        # M phi'' + (D_q + c) phi' + k phi = -load
+        c = _DAMPING * 2 * np.sqrt(self.k * self.M)
+        A = np.array([[0.0, 1.0], [-self.k / self.M, -(self.D_q + c) / self.M]])
+        b, C = np.array([[0.0], [1.0 / self.M]]), np.array([[1.0, 0.0]])
+        Ad, bd, Cd, dd, _ = signal.cont2discrete((A, b, C, np.zeros((1, 1))), T, "foh")
+        numerator, denominator = signal.ss2tf(Ad, bd, Cd, dd)
+        start = signal.lfilter_zi(numerator[0], denominator) * -load[0]
+        phi: Array = signal.lfilter(numerator[0], denominator, -load, zi=start)[0]
+        friction = self.D_theta * velocity + self.tau_coulomb * np.tanh(velocity / _SLOW)
+        return theta, phi, self.B * acceleration + friction - self.k * phi
+
+
+_DAMPING = 0.02  # of the spring, over the critical one
+_SLOW = 1e-3  # [rad/s] below it the Coulomb friction is smaller
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """The set of joints: each quantity between two values, drawn evenly over its logarithm.
+
+    The angle is drawn evenly.
+    """
+
+    low: Joint
+    high: Joint
+
+    def draw(self, count: int, rng: Rng) -> Iterator[Joint]:
+        for _ in range(count):
+            yield Joint(**{f.name: self._drawn(f.name, rng) for f in fields(Joint)})
+
+    def _drawn(self, name: str, rng: Rng) -> float:
+        low, high = getattr(self.low, name), getattr(self.high, name)
+        if name == "angle" or low <= 0:
+            return float(rng.uniform(low, high))
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+    def corners(self) -> Iterator[Joint]:
+        """All joints with each quantity at one of its ends; the angle at four places."""
+        names = [f.name for f in fields(Joint) if f.name != "angle"]
+        angles = np.linspace(self.low.angle, self.high.angle, 4, endpoint=False)
+        for i in range(2 ** len(names)):
+            ends = {
+                n: getattr(self.high if i >> j & 1 else self.low, n) for j, n in enumerate(names)
+            }
+            for angle in angles:
+                yield Joint(**ends, angle=float(angle))
+
+
+def of_limits(limits: Limits) -> Ranges:
+    """Joints that somebody may have who gives these limits, and nothing else."""
+    k = limits.torque / limits.deformation
+    speed_up = limits.torque / limits.velocity  # [N.m.s/rad] times the time to the full velocity
+    low = Joint(k, 0.1 * speed_up, 0.0, 0.0, 0.0, 0.02 * speed_up, 0.0, 0.0)
+    high = Joint(
+        k=4 * k,
+        M=0.4 * speed_up,
+        D_q=0.02 * speed_up,
+        weight=0.2 * limits.torque,
+        angle=2 * np.pi,
+        B=0.4 * speed_up,
+        D_theta=0.2 * speed_up,
+        tau_coulomb=0.1 * limits.torque,
+    )
+    return Ranges(low, high)

@@ -1,0 +1,90 @@
+"""What a log, or a configuration alone, says about a joint and its sensors."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sigmahat.fmi.opened import installed
+from sigmahat.identification.noise import low_pass
+from sigmahat.joint.curve import stiffness_in_the_middle
+from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.estimate import Estimate, estimate
+from sigmahat.logs.log import Log, LogError
+from sigmahat.logs.replay import parameters
+from sigmahat.logs.sampling import sample
+from sigmahat.motion.joints import Joint, Limits, Ranges
+from sigmahat.motion.record import NOISE, Sensors
+
+_COUNTS = 400_000.0  # a turn behind the gear, where no configuration says it
+_PERIOD = 1e-3  # [s]
+_WITHIN = 1.2  # what the log shows, times and over this
+_LINK_BELOW = 20.0  # [Hz] motion of the link that is used
+
+
+def sensors(configuration: Configuration | None, limits: Limits) -> Sensors:
+    """Those of a configuration; what it does not say is assumed."""
+    noise = NOISE * limits.torque
+    if configuration is None:
+        return Sensors(1.0, (_COUNTS, _COUNTS), 0.02, noise, _PERIOD)
+    fmu = installed("StiffnessEstimator")
+    every = fmu.parameters(parameters(fmu, configuration))
+    gamma = float(every["motor.gamma"])
+    if "noise.tau" in configuration.parameters:
+        noise = abs(gamma) * float(every["noise.tau"])
+    return Sensors(
+        gear_ratio=gamma,
+        counts=(float(every["encoder.theta"]), float(every["encoder.q"])),
+        torque_gain=float(every["prior.torque_gain"]),
+        noise=noise,
+        T=float(every["samplePeriod"]) or _PERIOD,
+    )
+
+
+def of_log(log: Log, configuration: Configuration, start: float) -> Ranges:
+    """The joint of a log: the stiffness within its interval, all else within 20 %.
+
+    start  position of the motor from which the next motion begins [rad]
+
+    Raises LogError for a log that does not show stiffness and inertia of the link.
+    """
+    found = estimate(log, configuration)
+    if not found.curve.branches:
+        raise LogError(f"{log.path}: {found.headline}; give the limits alone, without --after")
+    _, sigma, interval = stiffness_in_the_middle(found.curve.branches[0])
+    low, high = interval or (sigma, sigma)
+    M, D_q, weight, angle = _link(log, configuration, found)
+    if min(low, M) <= 0:
+        raise LogError(
+            f"{log.path}: expected a log that shows stiffness and inertia of the link, got "
+            f"{low:.3g} to {high:.3g} N.m/rad and {M:.3g} kg.m2; give the limits alone, without "
+            "--after"
+        )
+    gamma = float(found.parameters["motor.gamma"])
+    B, D_theta = gamma**2 * found.motor["B_hat"], gamma**2 * found.motor["D_theta_hat"]
+    tau_coulomb = abs(gamma) * found.motor["tau_coulomb_hat"]
+    values = M, D_q, weight, angle + start, max(B, 1e-9), D_theta, tau_coulomb
+    least, most = (
+        [each if i == 3 else max(each, 0.0) * factor for i, each in enumerate(values)]
+        for factor in (1 / _WITHIN, _WITHIN)
+    )
+    return Ranges(Joint(low, *least), Joint(high, *most))
+
+
+def _link(
+    log: Log, configuration: Configuration, found: Estimate
+) -> tuple[float, float, float, float]:
+    """Inertia, friction, largest torque of the weight, and its angle at q = 0, by least squares.
+
+    The torque of the spring moves the link: M q'' + D_q q' + weight sin(q + angle) = -tau_e, (2).
+    """
+    samples = sample(log, configuration, found.T)
+    values = samples.values[np.isfinite(samples.values).all(axis=1)]
+    theta, q = (values[:, samples.names.index(name)] for name in ("theta", "q"))
+    setting = found.curve.branches[0].set_point
+    torque, _ = found.curve.polynomial.at(q - theta, setting)
+    below = min(_LINK_BELOW, 0.1 / found.T)
+    q, torque = (low_pass(each, below, found.T) for each in (q, torque))
+    velocity = np.gradient(q, found.T)
+    X = np.column_stack([np.gradient(velocity, found.T), velocity, np.sin(q), np.cos(q)])
+    M, D_q, sine, cosine = np.linalg.lstsq(X, -torque, rcond=1e-9)[0].tolist()
+    return M, D_q, float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))

@@ -1,0 +1,167 @@
+"""The proposed motion: closed form, other solvers, a C compiler, and joints that nobody tried."""
+
+from __future__ import annotations
+
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from scipy.integrate import solve_ivp
+
+from command_line import refused
+from sigmahat.cli import main
+from sigmahat.identification.identify import identify
+from sigmahat.identification.write import update
+from sigmahat.logs.configuration import checked_configuration, read_document
+from sigmahat.motion import known
+from sigmahat.motion.joints import Joint, Limits, Ranges, of_limits
+from sigmahat.motion.multisine import Multisine
+from sigmahat.motion.record import Sensors, _log, relative_half_width
+
+LIMITS = Limits(angle=0.8, velocity=1.5, torque=60.0, deformation=0.03)
+OPTIONS = ["--angle", "0.8", "--velocity", "1.5", "--torque", "60", "--deformation", "0.03"]
+JOINT = Joint(k=3000, M=6, D_q=0.3, weight=8, angle=1, B=2, D_theta=3, tau_coulomb=2)
+MOTION = Multisine([0.1, 0.06, 0.03], [0.4, 0.65, 1.1], [0.0, 1.0, 2.0], 20.0, 2.0)
+SENSORS = Sensors(gear_ratio=100, counts=(4e5, 4e5), torque_gain=0.02, noise=0.2, T=1e-3)
+
+
+def test_velocity_and_acceleration_are_the_derivatives() -> None:
+    t = MOTION.times(1e-4)
+    position, velocity, acceleration = MOTION.at(t)
+    np.testing.assert_allclose(np.gradient(position, t)[1:-1], velocity[1:-1], atol=1e-6)
+    np.testing.assert_allclose(np.gradient(velocity, t)[1:-1], acceleration[1:-1], atol=1e-5)
+    for each in (position, velocity, acceleration):
+        assert each[0] == 0 and abs(each[-1]) < 1e-12
+
+
+def test_a_joint_moves_as_a_solver_says() -> None:
+    T = 2e-3
+    _, phi, tau = JOINT.move(MOTION, T)
+    c = 0.02 * 2 * np.sqrt(JOINT.k * JOINT.M)
+
+    def derivatives(t: float, x: np.ndarray) -> list[float]:
+        (position,), (velocity,), (acceleration,) = MOTION.at(np.array([t]))
+        load = JOINT.M * acceleration + JOINT.D_q * velocity
+        load += JOINT.weight * np.sin(JOINT.angle + position)
+        return [x[1], (-load - JOINT.k * x[0] - (JOINT.D_q + c) * x[1]) / JOINT.M]
+
+    start = [-JOINT.weight * np.sin(JOINT.angle) / JOINT.k, 0.0]
+    solved = solve_ivp(derivatives, (0, 20), start, "Radau", MOTION.times(T), rtol=1e-8, atol=1e-11)
+    np.testing.assert_allclose(phi, solved.y[0], atol=2e-5 * np.abs(phi).max())
+    _, velocity, acceleration = MOTION.at(MOTION.times(T))
+    friction = JOINT.D_theta * velocity + JOINT.tau_coulomb * np.tanh(velocity / 1e-3)
+    np.testing.assert_allclose(tau, JOINT.B * acceleration + friction - JOINT.k * phi)
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The files of a motion that begins at 0.5 rad."""
+    folder = tmp_path_factory.mktemp("motion")
+    more = ["--seconds", "20", "--start", "0.5", "--out", str(folder), "--quiet"]
+    with pytest.MonkeyPatch.context() as patch:  # not so many joints as a user needs
+        patch.setattr("sigmahat.motion.design._COMPARED", 1)
+        patch.setattr("sigmahat.motion.design._PROMISED", 2)
+        assert main(["motion", *OPTIONS, *more]) == 0
+    return folder
+
+
+def rows(folder: Path) -> np.ndarray:
+    return np.loadtxt(folder / "motion.csv", delimiter=",", skiprows=1)
+
+
+def test_the_csv_begins_and_ends_at_rest_and_keeps_the_limits(written: Path) -> None:
+    t, position, velocity, acceleration = rows(written).T
+    np.testing.assert_allclose(np.diff(t), 1e-3)
+    for end in (0, -1):
+        assert position[end] == pytest.approx(0.5)
+        assert abs(velocity[end]) < 1e-9 and abs(acceleration[end]) < 1e-9
+    assert np.abs(position - 0.5).max() <= LIMITS.angle
+    assert np.abs(velocity).max() <= LIMITS.velocity
+    for joint in of_limits(LIMITS).draw(300, np.random.default_rng(4)):
+        load = joint.M * acceleration + joint.D_q * velocity
+        load += joint.weight * np.sin(joint.angle + position - 0.5)
+        # Below the resonance: the spring has the torque of the load, and little more.
+        assert np.abs(load).max() / joint.k <= LIMITS.deformation
+        torque = joint.B * acceleration + joint.D_theta * velocity + load
+        assert np.abs(torque).max() + joint.tau_coulomb <= LIMITS.torque
+
+
+def test_the_c_code_and_the_trajectory_for_ros_are_the_csv(written: Path, tmp_path: Path) -> None:
+    table = rows(written)
+    program = tmp_path / "program.c"
+    program.write_text(
+        "#include <stdio.h>\nvoid motion(double, double *, double *, double *);\n"
+        "int main(void) { double p, v, a; for (int k = 0; k <= 20000; k++) {"
+        'motion(k * 1e-3, &p, &v, &a); printf("%.17g %.17g %.17g\\n", p, v, a); } return 0; }\n'
+    )
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
+    binary = str(tmp_path / "program")
+    sources = [str(program), str(written / "motion.c")]
+    subprocess.run(["cc", *flags, *sources, "-o", binary, "-lm"], check=True)
+    output = subprocess.run([binary], check=True, capture_output=True, text=True).stdout
+    found = np.array([line.split() for line in output.splitlines()], dtype=float)
+    np.testing.assert_allclose(found, table[:, 1:], atol=1e-9)
+
+    trajectory = yaml.safe_load((written / "motion.yaml").read_text())
+    assert trajectory["joint_names"] == ["joint"]
+    points = trajectory["points"]
+    times = [p["time_from_start"]["sec"] + p["time_from_start"]["nanosec"] / 1e9 for p in points]
+    np.testing.assert_allclose(times, table[::10, 0], atol=1e-9)
+    for column, key in ((1, "positions"), (2, "velocities"), (3, "accelerations")):
+        np.testing.assert_allclose([p[key][0] for p in points], table[::10, column], atol=1e-7)
+
+
+def test_what_a_log_says_contains_the_joint(tmp_path: Path) -> None:
+    configuration = tmp_path / "knee.toml"
+    configuration.write_text(
+        "".join(f'ports.{name}.column = "{name}"\n' for name in ("theta", "q", "tau"))
+        + '[parameters]\nmethod = "FilteredRegression"\nmotor.gamma = 100\n'
+        "samplePeriod = 1e-3\nencoder.theta = 4e5\nencoder.q = 4e5\n"
+    )
+    log = _log(JOINT, MOTION, SENSORS)
+    document = read_document(configuration)
+    update(document, identify(log, checked_configuration(document, configuration)))
+    found = known.of_log(log, checked_configuration(document, configuration), start=0.0)
+    for name in ("k", "M", "weight", "B", "tau_coulomb"):
+        low, true, high = (getattr(each, name) for each in (found.low, JOINT, found.high))
+        assert low <= true <= high, name
+    assert found.low.angle == pytest.approx(JOINT.angle, abs=0.1)
+
+
+def test_a_motion_that_is_larger_promises_more() -> None:
+    small, large = (relative_half_width(JOINT, MOTION.scaled(f), SENSORS) for f in (0.2, 1.0))
+    assert 1.96 * SENSORS.torque_gain * 0.99 < large < small  # no motion shows the gain
+
+
+def test_joints_of_limits_and_corners() -> None:
+    joints = of_limits(LIMITS)
+    assert joints.low.k * LIMITS.deformation == pytest.approx(LIMITS.torque)
+    for joint in joints.draw(50, np.random.default_rng(1)):
+        assert all(vars(joints.low)[n] <= v <= vars(joints.high)[n] for n, v in vars(joint).items())
+    only = Ranges(JOINT, replace(JOINT, k=2 * JOINT.k))
+    assert {each.k for each in only.corners()} == {JOINT.k, 2 * JOINT.k}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["--seconds", "5"], "expected"),
+        (["--after", "log.csv"], "needs CONFIG"),
+        (["--seconds", "1"], "5<=x<=600"),
+        (["--torque", "-1"], "0<x<=1000000.0"),
+        (["missing.toml"], "missing.toml"),
+    ],
+)
+def test_wrong_arguments(
+    arguments: list[str],
+    expected: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert expected in refused(capsys, "motion", *OPTIONS, *arguments)
+    assert not list(tmp_path.iterdir())
