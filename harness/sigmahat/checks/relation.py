@@ -8,7 +8,7 @@ equation must fit the torque as well as before, or better.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -114,13 +114,18 @@ class Relation:
 def relation(seen: View) -> Relation:
     """Compares the motion of q with that of theta, and puts scale and sign right."""
     here = Relation((), seen.pieces, fitted(seen, seen.pieces))
-    if not {"theta", "q"} <= set(seen.samples.names):
+    if not {"theta", "q"} <= set(seen.samples.names) or _is_from_torque(seen.configuration.ports):
         return here
     found = slope_of(seen.pieces, seen.T)
     if found is None:
         return here
     here = _scale(seen, here, found)
     return _sign(seen, here, found)
+
+
+def _is_from_torque(ports: Mapping[str, Port]) -> bool:
+    """Whether theta is the compliance of a test bench, from the torque: it drives no link."""
+    return "tau_e_sensor" in ports and ports["theta"].column == ports["tau_e_sensor"].column
 
 
 def _scale(seen: View, here: Relation, slope: float) -> Relation:

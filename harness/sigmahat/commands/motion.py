@@ -53,7 +53,7 @@ def _limit(name: str, text: str) -> click.Option:
     callback=common.folder,
     help="Folder to write into.  [default: sigmahat-results/motion]",
 )
-@common.joint_option
+@click.option("--joint", metavar="NAME", default="", help="Which of several joints of CONFIG.")
 @common.json_option
 @common.quiet_option
 def motion(

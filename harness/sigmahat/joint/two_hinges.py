@@ -87,7 +87,7 @@ def two_hinges(sheet: Sheet, degree: int) -> TwoHinges:
         rotor_inertia=max(p["B"].value, 0.0),
         armature=_scaled(p["B"], gamma**2, "kg.m2"),
         damping=_scaled(p["D_theta"], gamma**2, "N.m.s/rad"),
-        frictionloss=_scaled(p.get("tau_coulomb"), gamma, "N.m"),
+        frictionloss=_scaled(p.get("tau_coulomb"), abs(gamma), "N.m"),
         spring=_spring(sheet, reach, degree),
         spring_damping=_scaled(p.get("damping"), 1.0, "N.m.s/rad"),
         reach=reach,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 
@@ -99,15 +100,15 @@ class Ranges:
         return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
     def corners(self) -> Iterator[Joint]:
-        """All joints with each quantity at one of its ends; the angle at four places."""
-        names = [f.name for f in fields(Joint) if f.name != "angle"]
-        angles = np.linspace(self.low.angle, self.high.angle, 4, endpoint=False)
-        for i in range(2 ** len(names)):
-            ends = {
-                n: getattr(self.high if i >> j & 1 else self.low, n) for j, n in enumerate(names)
-            }
-            for angle in angles:
-                yield Joint(**ends, angle=float(angle))
+        """All joints with each quantity at one of its ends; the angle at up to four places."""
+        ends = {
+            f.name: {getattr(self.low, f.name), getattr(self.high, f.name)} for f in fields(Joint)
+        }
+        ends["angle"] = set(
+            np.linspace(self.low.angle, self.high.angle, 4, endpoint=False).tolist()
+        )
+        for values in itertools.product(*ends.values()):
+            yield Joint(*values)
 
 
 def of_limits(limits: Limits) -> Ranges:
