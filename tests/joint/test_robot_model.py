@@ -94,6 +94,16 @@ def test_a_parser_of_urdf_reads_the_motor_behind_its_gear(results: Path) -> None
     assert rotor.izz == pytest.approx(gamma**2 * parameters["B"]["value"])
 
 
+def test_friction_has_no_direction(results: Path, tmp_path: Path) -> None:
+    sheet = sheet_of(results)
+    for name in ("gamma", "tau_coulomb"):
+        value = -7.0 if name == "gamma" else 0.5
+        sheet["parameters"][name] |= {"value": value, "interval": None}
+    (tmp_path / "joint.json").write_text(json.dumps(sheet))
+    robot = URDF.from_xml_file(str(exported(tmp_path, "urdf")))
+    assert robot.joint_map["joint_motor"].dynamics.friction == pytest.approx(3.5)
+
+
 def test_ranges_contain_the_values(results: Path) -> None:
     tree: Any = etree.parse(exported(results, "mjcf"))
     ranges = {

@@ -16,7 +16,9 @@ from sigmahat.cli import main
 from sigmahat.identification.identify import identify
 from sigmahat.identification.write import update
 from sigmahat.logs.configuration import checked_configuration, read_document
+from sigmahat.logs.log import LogError
 from sigmahat.motion import known
+from sigmahat.motion.design import design
 from sigmahat.motion.joints import Joint, Limits, Ranges, of_limits
 from sigmahat.motion.multisine import Multisine
 from sigmahat.motion.record import Sensors, _log, relative_half_width
@@ -72,6 +74,7 @@ def rows(folder: Path) -> np.ndarray:
     return np.loadtxt(folder / "motion.csv", delimiter=",", skiprows=1)
 
 
+@pytest.mark.slow("eight logs are identified and estimated, to choose the motion")
 def test_the_csv_begins_and_ends_at_rest_and_keeps_the_limits(written: Path) -> None:
     t, position, velocity, acceleration = rows(written).T
     np.testing.assert_allclose(np.diff(t), 1e-3)
@@ -136,6 +139,12 @@ def test_a_motion_that_is_larger_promises_more() -> None:
     assert 1.96 * SENSORS.torque_gain * 0.99 < large < small  # no motion shows the gain
 
 
+def test_limits_that_the_weight_takes_are_named() -> None:
+    heavy = Ranges(JOINT, replace(JOINT, weight=80))
+    with pytest.raises(LogError, match=r"weight and friction alone need up to 82 N\.m"):
+        design(heavy, LIMITS, SENSORS, 20.0)
+
+
 def test_joints_of_limits_and_corners() -> None:
     joints = of_limits(LIMITS)
     assert joints.low.k * LIMITS.deformation == pytest.approx(LIMITS.torque)
@@ -152,6 +161,8 @@ def test_joints_of_limits_and_corners() -> None:
         (["--after", "log.csv"], "needs CONFIG"),
         (["--seconds", "1"], "5<=x<=600"),
         (["--torque", "-1"], "0<x<=1000000.0"),
+        (["--torque", "nan"], "expected a number, got nan"),
+        (["--start", "nan"], "expected a number, got nan"),
         (["missing.toml"], "missing.toml"),
     ],
 )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,7 +14,20 @@ if TYPE_CHECKING:
     from sigmahat.motion.design import Design
     from sigmahat.motion.joints import Limits, Ranges
 
-_POSITIVE = click.FloatRange(min=0, min_open=True, max=1e6)
+
+class _Number(click.FloatRange):
+    """A number in a range; nan is in none, though no comparison says so."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, context: click.Context | None
+    ) -> float:
+        number = float(super().convert(value, param, context))
+        if math.isnan(number):
+            self.fail("expected a number, got nan.", param, context)
+        return number
+
+
+_POSITIVE = _Number(min=0, min_open=True, max=1e6)
 
 
 def _limit(name: str, text: str) -> click.Option:
@@ -31,14 +45,14 @@ def _limit(name: str, text: str) -> click.Option:
 @click.argument("config", required=False, type=click.Path(path_type=Path, dir_okay=False))
 @click.option(
     "--seconds",
-    type=click.FloatRange(5, 600),
+    type=_Number(5, 600),
     default=30.0,
     show_default=True,
     help="Its duration.",
 )
 @click.option(
     "--start",
-    type=click.FloatRange(-1e6, 1e6),
+    type=_Number(-1e6, 1e6),
     default=0.0,
     show_default=True,
     help="Position of the motor behind its gear at the start [rad].",
@@ -111,10 +125,14 @@ def motion(
 
 
 def _expected(found: Design) -> str:
+    from sigmahat.motion.design import NOT_SHOWN
+
     median, most = (f"{100 * found.quantile(share):.2g} %" for share in (0.5, 0.9))
     others = f"nine of ten joints: +- {most} or less"
     if found.not_shown:
         others = f"not shown in {found.not_shown} of {len(found.half_widths)} joints"
+    if found.quantile(0.5) > NOT_SHOWN:
+        return f"expected: the stiffness is {others} after {found.motion.duration:g} s"
     return f"expected: stiffness +- {median} after {found.motion.duration:g} s ({others})"
 
 

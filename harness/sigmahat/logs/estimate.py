@@ -148,14 +148,13 @@ def estimate(
     mcap.
     """
     learned = None if start_from is None else read_learned(Path(start_from))
-    digest = sha256(log.path) if log.path.exists() else ""
     with Slave(installed("StiffnessEstimator"), "estimator") as slave:
         replay = Replay(slave, log, configuration, learned)
         if folder is None:
             kept: list[Mapping[str, NDArray[Any]]] = []
-            replay.run(kept.append, progress, digest)
+            replay.run(kept.append, progress)
             return replace(_result(replay, replay.answer().curve), series=_series(replay, kept))
-        return _written(replay, Path(folder), progress, digest, mcap)
+        return _written(replay, Path(folder), progress, mcap)
 
 
 def _series(replay: Replay, kept: Sequence[Mapping[str, NDArray[Any]]]) -> Series:
@@ -165,7 +164,7 @@ def _series(replay: Replay, kept: Sequence[Mapping[str, NDArray[Any]]]) -> Serie
 
 
 def _written(
-    replay: Replay, folder: Path, progress: Callable[[int], object], digest: str, mcap: bool
+    replay: Replay, folder: Path, progress: Callable[[int], object], mcap: bool
 ) -> Estimate:
     """The result, after all files are written."""
     fmu = replay.slave.fmu
@@ -174,10 +173,10 @@ def _written(
         table = files.enter_context(EstimateWriter(replay.log, replay.samples, units, folder))
         adds: list[Callable[[Mapping[str, NDArray[Any]]], object]] = [table.add]
         if mcap:
-            from sigmahat.logs.mcap_file import MCAP, McapFile
+            from sigmahat.logs.mcap_file import MCAP, mcap_file
 
-            messages = McapFile(folder / MCAP, fmu, replay.samples.T)
-            adds.append(files.enter_context(messages).add)
+            adds.append(files.enter_context(mcap_file(folder / MCAP, fmu, replay.samples.T)))
+        digest = sha256(replay.log.path)
         replay.run(lambda outputs: [add(outputs) for add in adds], progress, digest)
     write_learned(replay.slave, replay.every, replay.logs, folder / LEARNED.file)
     answered = replay.answer()

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -24,20 +23,30 @@ MCAP = "estimate.mcap"
 """Name of the file in the folder of results."""
 _TOPIC = "/estimate"
 
+Outputs = Mapping[str, NDArray[Any]]
 
-class McapFile(AbstractContextManager["McapFile"]):
-    """Writes the outputs of the ticks."""
 
-    def __init__(self, path: Path, fmu: Fmu, T: float) -> None:
-        """T  time between ticks [s]"""
-        self._fmu, self._T, self._ticks = fmu, T, 0
-        self._file = path.open("wb")
-        self._writer = Writer(self._file)
-        self._writer.start(library="sigmahat")
+@contextmanager
+def mcap_file(path: Path, fmu: Fmu, T: float) -> Iterator[Callable[[Outputs], None]]:
+    """Yields a function that writes a message for each of the next ticks, given their outputs.
+
+    T  time between ticks [s]
+    """
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(library="sigmahat")
+        yield _Messages(writer, fmu, T).add
+        writer.finish()  # type: ignore[no-untyped-call]
+
+
+class _Messages:
+    """The ticks that were written so far."""
+
+    def __init__(self, writer: Writer, fmu: Fmu, T: float) -> None:
+        self._writer, self._fmu, self._T, self._ticks = writer, fmu, T, 0
         self._channel: int | None = None
 
-    def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
-        """Writes a message for each of the next ticks."""
+    def add(self, outputs: Outputs) -> None:
         if self._channel is None:
             self._channel = self._registered(outputs)
         columns = [_with_null(values) for values in outputs.values()]
@@ -47,7 +56,7 @@ class McapFile(AbstractContextManager["McapFile"]):
             self._writer.add_message(self._channel, stamp, data, stamp)
             self._ticks += 1
 
-    def _registered(self, outputs: Mapping[str, NDArray[Any]]) -> int:
+    def _registered(self, outputs: Outputs) -> int:
         schema = {"type": "object", "title": "estimate", "properties": {}}
         schema["properties"] = {name: self._property(name, outputs[name]) for name in outputs}
         data = json.dumps(schema).encode()
@@ -60,17 +69,6 @@ class McapFile(AbstractContextManager["McapFile"]):
         kinds = {"b": "boolean", "f": "number"}
         described = f"{variable.description or name}{unit}"
         return {"type": kinds.get(values.dtype.kind, "string"), "description": described}
-
-    def __exit__(
-        self,
-        _kind: type[BaseException] | None,
-        _error: BaseException | None,
-        _trace: TracebackType | None,
-    ) -> None:
-        try:
-            self._writer.finish()  # type: ignore[no-untyped-call]
-        finally:
-            self._file.close()
 
 
 def _with_null(values: NDArray[Any]) -> list[Any]:

@@ -61,16 +61,12 @@ def design(
 
     progress  is given the number of joints that were tried since the last call, of `trials()`
 
-    Raises LogError if no motion of this duration keeps the limits away from the resonance.
+    Raises LogError if no motion of this duration keeps the limits and stays below the resonance.
     """
-    candidates = list(_candidates(joints, limits, duration))
+    corners = list(joints.corners())
+    candidates = list(_candidates(corners, limits, duration))
     if not candidates:
-        slowest = min(each.resonance for each in joints.corners())
-        longest = _CYCLES * _RATIOS[-1] / (_OF_RESONANCE[-1] * slowest)
-        raise LogError(
-            f"no motion of {duration:g} s keeps the limits of all joints and stays below the "
-            f"lowest resonance, {slowest:.3g} Hz; expected {longest:.3g} s or more, or wider limits"
-        )
+        raise LogError(_why_none(corners, limits, duration))
     compared = list(joints.draw(_COMPARED, np.random.default_rng(1)))
     pairs = [(motion, joint) for motion in candidates for joint in compared]
     found = np.array(_widths(pairs, sensors, progress)).reshape(len(candidates), _COMPARED)
@@ -79,8 +75,38 @@ def design(
     best = candidates[int(np.argmin(means))]
     drawn = list(joints.draw(_PROMISED, np.random.default_rng(2)))
     widths = _widths([(best, joint) for joint in drawn], sensors, progress)
-    tried = [*joints.corners(), *drawn]
-    return Design(best, _peaks(best, tried), sorted(widths))
+    return Design(best, _peaks(best, [*corners, *drawn]), sorted(widths))
+
+
+def _why_none(joints: Sequence[Joint], limits: Limits, duration: float) -> str:
+    """In a sentence: a motion would have to be longer, or rest takes too much of the limits."""
+    lowest = min(each.resonance for each in joints)
+    shortest = _shortest(_frequencies(lowest, _OF_RESONANCE[-1]))
+    if duration < shortest:
+        return (
+            f"no motion of {duration:g} s stays below the lowest resonance of the joints, "
+            f"{lowest:.3g} Hz; expected {shortest:.3g} s or more"
+        )
+    torque = max(each.weight + each.tau_coulomb for each in joints)
+    deformation = max(each.weight / each.k for each in joints)
+    return (
+        f"limits of {limits.torque:g} N.m and {limits.deformation:g} rad leave no room for a "
+        f"motion: weight and friction alone need up to {torque:.3g} N.m, and the weight deforms up "
+        f"to {deformation:.3g} rad; expected wider limits"
+    )
+
+
+def _frequencies(resonance: float, share: float) -> list[float]:
+    """Of the sines, the highest at a share of the lowest resonance [Hz]."""
+    highest = min(share * resonance, _HIGHEST)
+    return [highest * ratio / _RATIOS[-1] for ratio in _RATIOS]
+
+
+def _shortest(frequencies: Sequence[float]) -> float:
+    """Least duration that has enough of the slowest sine between its ramps [s]."""
+    ramps = 2 * _RAMP  # together, of the duration
+    cycles = _CYCLES / frequencies[0]
+    return min(cycles, cycles * (1 - ramps) + 2 * _LONGEST_RAMP)
 
 
 def trials() -> int:
@@ -99,19 +125,17 @@ def _widths(
     return found
 
 
-def _candidates(joints: Ranges, limits: Limits, duration: float) -> Iterator[Multisine]:
-    tried = list(joints.corners())
-    lowest = min(each.resonance for each in tried)
+def _candidates(joints: Sequence[Joint], limits: Limits, duration: float) -> Iterator[Multisine]:
+    lowest = min(each.resonance for each in joints)
     ramp = min(_LONGEST_RAMP, _RAMP * duration)
     for share in _OF_RESONANCE:
-        highest = min(share * lowest, _HIGHEST)
-        frequencies = [highest * ratio / _RATIOS[-1] for ratio in _RATIOS]
-        if frequencies[0] * (duration - 2 * ramp) < _CYCLES * (1 - 2 * _RAMP):
+        frequencies = _frequencies(lowest, share)
+        if duration < _shortest(frequencies):
             continue
         for exponent in _EXPONENTS:
             amplitudes = [f**-exponent for f in frequencies]
             motion = Multisine(amplitudes, frequencies, _PHASES, duration, ramp)
-            scaled = _within(motion, tried, limits)
+            scaled = _within(motion, joints, limits)
             if scaled is not None:
                 yield scaled
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from sigmahat.fmi.opened import installed
 from sigmahat.identification.noise import low_pass
+from sigmahat.identification.regression import signals_of
 from sigmahat.joint.curve import stiffness_in_the_middle
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.estimate import Estimate, estimate
@@ -77,14 +78,17 @@ def _link(
 
     The torque of the spring moves the link: M q'' + D_q q' + weight sin(q + angle) = -tau_e, (2).
     """
-    samples = sample(log, configuration, found.T)
-    values = samples.values[np.isfinite(samples.values).all(axis=1)]
-    theta, q = (values[:, samples.names.index(name)] for name in ("theta", "q"))
-    setting = found.curve.branches[0].set_point
-    torque, _ = found.curve.polynomial.at(q - theta, setting)
-    below = min(_LINK_BELOW, 0.1 / found.T)
-    q, torque = (low_pass(each, below, found.T) for each in (q, torque))
-    velocity = np.gradient(q, found.T)
-    X = np.column_stack([np.gradient(velocity, found.T), velocity, np.sin(q), np.cos(q)])
-    M, D_q, sine, cosine = np.linalg.lstsq(X, -torque, rcond=1e-9)[0].tolist()
+    T, setting = found.T, found.curve.branches[0].set_point
+    rows, torques = [], []
+    for piece in signals_of(sample(log, configuration, T), found.parameters):
+        torque, _ = found.curve.polynomial.at(piece.phi, setting)
+        below = min(_LINK_BELOW, 0.1 / T)
+        q, torque = (low_pass(each, below, T) for each in (piece.theta + piece.phi, torque))
+        velocity = np.gradient(q, T)
+        rows.append(np.column_stack([np.gradient(velocity, T), velocity, np.sin(q), np.cos(q)]))
+        torques.append(torque)
+    if not rows:
+        raise LogError(f"{log.path}: no stretch without a gap that is long enough")
+    X, y = np.concatenate(rows), -np.concatenate(torques)
+    M, D_q, sine, cosine = np.linalg.lstsq(X, y, rcond=1e-9)[0].tolist()
     return M, D_q, float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))
