@@ -57,8 +57,8 @@ def of_log(log: Log, configuration: Configuration, start: float) -> Ranges:
     if min(low, M) <= 0:
         raise LogError(
             f"{log.path}: expected a log that shows stiffness and inertia of the link, got "
-            f"{low:.3g} to {high:.3g} N.m/rad and {M:.3g} kg.m2; give the limits alone, without "
-            "--after"
+            f"{low:.3g} to {high:.3g} N.m/rad and {M:.3g} kg.m2; try `sigmahat check`, or give the "
+            "limits alone, without --after"
         )
     gamma = float(found.parameters["motor.gamma"])
     B, D_theta = gamma**2 * found.motor["B_hat"], gamma**2 * found.motor["D_theta_hat"]
