@@ -10,6 +10,7 @@ import click
 
 from sigmahat.commands.common import printable
 from sigmahat.commands.configuration import check, identify, init, open_page
+from sigmahat.commands.live import live
 from sigmahat.commands.motion import motion
 from sigmahat.commands.results import estimate, export, report, validate
 from sigmahat.commands.simulations import compare, reproduce, scenarios, sweep
@@ -34,7 +35,7 @@ def cli() -> None:
 
 for command in (
     *(reproduce, compare, scenarios, init, open_page, check, motion),
-    *(identify, estimate, validate, export, sweep, report),
+    *(identify, estimate, live, validate, export, sweep, report),
 ):
     cli.add_command(command)
 

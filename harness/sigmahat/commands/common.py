@@ -126,6 +126,12 @@ def answer(text: str, values: object = None, head: str = "") -> None:
         click.echo(printable(text))
 
 
+def is_quiet() -> bool:
+    """Whether nothing but the result is to be printed: after --quiet or --json."""
+    options = click.get_current_context().meta
+    return bool(options.get(_QUIET) or options.get(_JSON))
+
+
 def printable(text: str) -> str:
     """A text without what a terminal takes for a command, such as in the name of a column."""
     kept = "\n\t"

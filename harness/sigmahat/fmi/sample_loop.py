@@ -190,6 +190,9 @@ class Recorder:
             group = [v for v in variables if _KINDS[v.type] == kind]
             dtype = np.float64 if kind == "real" else np.int32
             self._tables[kind] = group, np.empty((samples, len(group)), dtype)
+        self._items = {
+            v.name: slave.fmu.items(v.name) for v in variables if v.type == "Enumeration"
+        }
         self.units = {v.name: v.unit for v in variables if v.unit is not None}
 
     def add_to(self, loop: SampleLoop) -> None:
@@ -207,6 +210,15 @@ class Recorder:
         loop = SampleLoop()
         self.add_to(loop)
         loop.run(k, k + 1)
+
+    def row(self, k: int) -> dict[str, Any]:
+        """Returns the values of row k by name, as columns() would."""
+        values: dict[str, Any] = {}
+        for group, table in self._tables.values():
+            for v, value in zip(group, table[k].tolist(), strict=True):
+                is_item = v.type == "Enumeration"
+                values[v.name] = self._items[v.name][value] if is_item else value
+        return values
 
     def columns(self) -> dict[str, NDArray[Any]]:
         """Returns the recorded values by name, each of shape (samples,); of an enumeration the

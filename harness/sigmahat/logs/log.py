@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 _NO_TEXT = r"^\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(?i:nan|inf|infinity))?\s*$"
 """An empty cell, or a number in the notation of Python."""
 _SHOWN = 100  # characters of a text
-_EXACT = 2**53  # largest magnitude up to which a float64 holds every integer
+EXACT = 2**53  # largest magnitude up to which a float64 holds every integer
 
 
 class Log(ABC):
@@ -72,7 +72,7 @@ class LogInMemory(Log):
 
     def _read(self, name: str) -> Array:
         array = self._arrays[name]
-        if array.dtype.kind in "iu" and len(array) and np.abs(array).max() > _EXACT:
+        if array.dtype.kind in "iu" and len(array) and np.abs(array).max() > EXACT:
             array = array.astype(np.int64) - array.astype(np.int64)[0]
         return array.astype(np.float64)
 
@@ -119,7 +119,7 @@ def holds_text(path: Path, name: str, row: int, text: str) -> LogError:
 def fits_float64(column: pa.ChunkedArray) -> bool:
     """Whether a float64 holds every integer of a column: nanoseconds since 1970 do not fit."""
     ends = pa.compute.min_max(column).as_py()
-    return ends["min"] is None or max(abs(ends["min"]), abs(ends["max"])) <= _EXACT
+    return ends["min"] is None or max(abs(ends["min"]), abs(ends["max"])) <= EXACT
 
 
 def is_number(text: str) -> bool:

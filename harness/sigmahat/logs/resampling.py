@@ -61,7 +61,9 @@ def at_ticks(
     nearest = np.round(position)
     at = (np.abs(position - nearest) <= AT_TICK) & (nearest >= 0) & (nearest < ticks)
     resampled = np.full(ticks, np.nan)
-    resampled[nearest[at].astype(np.int64)] = values[at]
+    resampled[nearest[at][::-1].astype(np.int64)] = values[at][
+        ::-1
+    ]  # the first one, if there are two
     interval = float(np.median(np.diff(t))) if len(t) > 1 else T
     even = bool(abs(interval / T - 1) < AT_TICK and np.count_nonzero(at) > 0.99 * len(t))
     if longest_gap is None:

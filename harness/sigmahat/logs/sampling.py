@@ -226,19 +226,21 @@ def put_right(
     if not {"theta", "q"} <= set(names):
         return
     both = [list(names).index(name) for name in ("theta", "q")]
-    periods = [_period(name, ports[name]) for name in ("theta", "q")]
+    periods = [counter_period(name, ports[name]) for name in ("theta", "q")]
     own = int(np.argmin(periods))  # the other counter starts again later, or never
     if not np.isfinite(periods[own]):
         return
     column, period = both[own], periods[own]
     moved: list[tuple[int, float]] = []
     begins, ends = stretches(np.isfinite(values[:, both]).all(axis=1))
-    for end, begin in zip(ends[:-1], begins[1:], strict=True):
-        step = values[begin] - values[end - 1]
+    until, total = [*begins[1:], len(values)], 0
+    steps = [values[b] - values[e - 1] for e, b in zip(ends[:-1], begins[1:], strict=True)]
+    for i, step in enumerate(steps):
         turns = round((step[both[1 - own]] - step[column]) / period)
+        total += turns
+        values[until[i] : until[i + 1], column] += total * period
         if turns:
-            values[begin:, column] += turns * period
-            moved.append((turns, (end - 1) * T))
+            moved.append((turns, (ends[i] - 1) * T))
     if moved:
         turns, t = moved[0]
         also = f" and during {len(moved) - 1} more" if len(moved) > 1 else ""
@@ -263,7 +265,9 @@ def _whole_turns(
         return
     name, turns = turns_from(0.0, float(phi_most), values, names, configuration.ports)
     if turns:
-        values[:, list(names).index(name)] += turns * _period(name, configuration.ports[name])
+        values[:, list(names).index(name)] += turns * counter_period(
+            name, configuration.ports[name]
+        )
         yield f"{name}: {turns:+d} periods of its counter, so that the deformation is in range.phi"
 
 
@@ -282,7 +286,7 @@ def turns_from(
     theta, q = (list(names).index(name) for name in ("theta", "q"))
     phi = values[:, q] - values[:, theta]
     phi = phi[np.isfinite(phi)]
-    periods = {name: _period(name, ports[name]) for name in ("theta", "q")}
+    periods = {name: counter_period(name, ports[name]) for name in ("theta", "q")}
     name = min(periods, key=lambda each: periods[each])
     if not len(phi) or not np.isfinite(periods[name]):
         return "", 0
@@ -293,7 +297,7 @@ def turns_from(
     return name, 0
 
 
-def _period(name: str, port: Port) -> float:
+def counter_period(name: str, port: Port) -> float:
     """Angle after which a counter starts again [rad]; inf if it does not."""
     if port.wrap is None:
         return np.inf

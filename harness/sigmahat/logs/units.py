@@ -59,9 +59,14 @@ def factor(name: str, port: Port) -> float:
     return _in(where, port.unit, target)
 
 
+def scale(name: str, port: Port) -> float:
+    """As factor, with the sign and the gear."""
+    return port.sign * factor(name, port) / port.gear_ratio
+
+
 def convert(name: str, port: Port, values: Array) -> Array:
     """Values of an unwrapped column in the unit of the port."""
-    times = port.sign * factor(name, port) / port.gear_ratio
+    times = scale(name, port)
     if (times, port.zero) == (1.0, 0.0):
         return values
     converted: Array = values - port.zero

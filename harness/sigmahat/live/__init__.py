@@ -1,0 +1,1 @@
+"""The estimator on a robot: samples as they arrive, estimates as they are computed."""

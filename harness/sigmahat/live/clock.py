@@ -1,0 +1,92 @@
+"""The stamps of a sender: which samples are in order, and whether the sender has started again."""
+
+from __future__ import annotations
+
+from sigmahat.logs.log import EXACT
+
+_LATE = 1.0
+"""A sample that is later than another by less was overtaken on its way [s]."""
+LONGEST_PAUSE = 10.0
+"""Samples after a longer pause are those of a sender that has started again [s]."""
+_STARTED = 20
+"""So many in order, far from the others, are those of a sender that has started again."""
+_ADAPT = 0.01
+
+
+class Clock:
+    """The times of one column, in seconds since its first one."""
+
+    def __init__(self, column: str, seconds: float) -> None:
+        """seconds  in the unit of the column"""
+        self.column = column
+        self._seconds = seconds
+        self.double = self.late = self.strays = self.lost = 0
+        """Samples with the time of the one before, late ones, ones far off; samples missing."""
+        self.usual = 0.0
+        """Usual time between two samples [s]."""
+        self.restart()
+
+    def restart(self) -> None:
+        """The next sample is the first one."""
+        self._first: int | float | None = None
+        self._shift: int = 0
+        self.now = self._floor = 0.0
+        self._stray: float | None = None
+        self._in_order = 0
+
+    def take(self, stamp: int | float) -> float | None:
+        """The time of the next sample [s]; None if it has to be left out.
+
+        As in a log, whole numbers beyond 2^53 are counted from the first one.
+        """
+        if stamp != stamp or (self._shift and not isinstance(stamp, int)):
+            self.strays += 1
+            return None
+        if self._first is None:
+            self._first = stamp
+            self._shift = stamp if isinstance(stamp, int) and abs(stamp) > EXACT else 0
+            self.now = self._floor = self._time(stamp)
+            return self.now
+        t = self._time(stamp)
+        if self._floor < t <= self.now + LONGEST_PAUSE:
+            self._count(t - self.now)
+            self.now = self._floor = t
+            self._stray, self._in_order = None, 0
+            return t
+        if self.now - _LATE < t <= max(self.now, self._floor):
+            self.double += t == self.now
+            self.late += t != self.now
+        else:
+            follows = self._stray is not None and self._stray < t < self._stray + LONGEST_PAUSE
+            self._in_order = self._in_order + 1 if follows else 1
+            self._stray = t
+            self.strays += 1
+        return None
+
+    @property
+    def has_restarted(self) -> bool:
+        """Whether the last samples are those of a sender that has started again."""
+        return self._in_order >= _STARTED
+
+    @property
+    def absolute(self) -> float:
+        """What has to be added to a time so that it counts as the column does [s]."""
+        return self._shift * self._seconds
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the column holds whole numbers that a float64 does not hold."""
+        return self._shift != 0
+
+    def give_up(self, t: float) -> None:
+        """Leaves out samples up to this time, if they still come [s]."""
+        self._floor = max(self._floor, t)
+
+    def _time(self, stamp: int | float) -> float:
+        return float(stamp - self._shift) * self._seconds
+
+    def _count(self, step: float) -> None:
+        if self.usual == 0.0:
+            self.usual = step
+        self.lost += max(round(step / self.usual) - 1, 0)
+        self.usual += _ADAPT * self.usual * (1 if step > self.usual else -1)

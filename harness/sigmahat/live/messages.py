@@ -1,0 +1,116 @@
+"""A message in JSON or CSV as columns of numbers. Nothing in it is trusted.
+
+JSON is an object, as PlotJuggler reads it: {"elbow": {"motor": [1.5, 2]}} are the columns
+"elbow/motor[0]" and "elbow/motor[1]". CSV is one line that ends with a line feed, since a number
+that is cut off is still a number. Its columns are named by a first line, or beforehand.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+Columns = Mapping[str, int | float]
+"""Numbers by the name of their column; nan where a value is missing."""
+
+LONGEST = 1 << 16
+"""Bytes of a message."""
+_DEEPEST = 8
+_LARGEST = 2**63
+_SHOWN = 60
+
+
+class Decoder:
+    """Reads the messages of one sender."""
+
+    def __init__(self, wanted: Sequence[str], columns: Sequence[str] = ()) -> None:
+        """wanted are the columns that are used; columns those of CSV, if no line names them."""
+        self._wanted = {name.lstrip("/"): name for name in wanted}
+        self._csv = [self._wanted.get(name.strip().lstrip("/")) for name in columns]
+
+    def columns(self, message: bytes) -> Columns | None:
+        """The columns that are used; None for a line that names columns.
+
+        Raises ValueError, which says what was expected and what came.
+        """
+        if len(message) > LONGEST:
+            raise ValueError(f"expected at most {LONGEST} bytes, got {len(message)}")
+        begin = message.lstrip()[:1]
+        found = self._of_json(message) if begin == b"{" else self._of_csv(message)
+        if found is not None and not found:
+            raise ValueError(f"expected one of {', '.join(self._wanted)}, got {_shown(message)}")
+        return found
+
+    def _of_json(self, message: bytes) -> Columns:
+        try:
+            document = json.loads(message)
+        except (ValueError, RecursionError) as error:
+            raise ValueError(f"expected a whole JSON object, got {_shown(message)}") from error
+        found = {}
+        for name, value in _flat(document, "", 0):
+            wanted = self._wanted.get(name)
+            if wanted is not None:
+                found[wanted] = _number(name, value)
+        return found
+
+    def _of_csv(self, message: bytes) -> Columns | None:
+        if not message.endswith(b"\n"):
+            raise ValueError(
+                f"expected JSON, or CSV that ends with a line feed, got {_shown(message)}"
+            )
+        try:
+            cells = [cell.strip() for cell in message.decode().split(",")]
+        except UnicodeDecodeError as error:
+            raise ValueError(f"expected text in UTF-8, got {_shown(message)}") from error
+        names = [self._wanted.get(cell.strip('"').lstrip("/")) for cell in cells]
+        if any(names):
+            self._csv = names
+            return None
+        if len(cells) != len(self._csv):
+            expected = f"{len(self._csv)} cells" if self._csv else "first a line that names columns"
+            raise ValueError(f"expected {expected}, got {_shown(message)}")
+        return {
+            name: _number(name, _parsed(cell))
+            for name, cell in zip(self._csv, cells, strict=True)
+            if name is not None
+        }
+
+
+def _flat(value: Any, above: str, depth: int) -> Iterator[tuple[str, Any]]:
+    if depth > _DEEPEST:
+        raise ValueError(f"expected at most {_DEEPEST} levels")
+    if isinstance(value, dict):
+        for key, each in value.items():
+            name = key.lstrip("/")
+            yield from _flat(each, f"{above}/{name}" if above else name, depth + 1)
+    elif isinstance(value, list):
+        for i, each in enumerate(value):
+            yield from _flat(each, f"{above}[{i}]", depth + 1)
+    else:
+        yield above, value
+
+
+def _parsed(cell: str) -> int | float | str | None:
+    for kind in (int, float):
+        try:
+            return kind(cell)
+        except ValueError:
+            pass
+    return cell or None
+
+
+def _number(name: str, value: Any) -> int | float:
+    if value is None:
+        return math.nan
+    if isinstance(value, float):
+        return value if math.isfinite(value) else math.nan
+    if isinstance(value, bool) or not isinstance(value, int) or abs(value) >= _LARGEST:
+        raise ValueError(f"{name}: expected a number, got {str(value)[:_SHOWN]!r}")
+    return value
+
+
+def _shown(message: bytes) -> str:
+    more = "..." if len(message) > _SHOWN else ""
+    return f"{message[:_SHOWN]!r}{more}"

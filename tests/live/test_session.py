@@ -1,0 +1,258 @@
+"""What is estimated on line is what `estimate` finds in the recording, to the last bit."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sigmahat.live.joint import OUTPUTS, Estimated
+from sigmahat.live.messages import Columns
+from sigmahat.live.session import Session
+from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.estimate import estimate
+from sigmahat.logs.readers.formats import open_log
+
+T = 0.002
+COUNTS, GEAR = 4096, 20
+SECOND = 1_000_000_000
+
+CONFIGURATION = f"""\
+[time]
+column = "t"
+[ports.theta]
+column = "arm/motor"
+unit = "counts"
+counts_per_turn = {COUNTS}
+gear_ratio = {GEAR}
+wrap = {COUNTS}
+[ports.q]
+column = "arm/link[0]"
+unit = "deg"
+sign = -1
+zero = 2.5
+[ports.tau]
+column = "arm/torque"
+[parameters]
+method = "FilteredRegression"
+samplePeriod = {T}
+motor.gamma = {GEAR}
+motor.B = 1e-3
+motor.D_theta = 1e-2
+range.phi = 0.06
+prior.tau_e = 30
+"""
+
+
+def messages(samples: int, seed: int = 1) -> list[dict[str, float | int]]:
+    """Of a joint with 400 N.m/rad that moves a load, at T."""
+    noise = np.random.default_rng(seed)
+    t = T * np.arange(samples)
+    theta = 0.8 * np.sin(3 * t) + 0.2 * np.sin(11 * t)
+    q = theta + 0.03 * np.sin(5 * t) + 0.02 * np.sin(13 * t)
+    counts = np.round(theta * GEAR * COUNTS / (2 * np.pi)) % COUNTS
+    speed = 2.4 * np.cos(3 * t) + 2.2 * np.cos(11 * t)
+    acceleration = -7.2 * np.sin(3 * t) - 24.2 * np.sin(11 * t)
+    torque = GEAR * (1e-3 * acceleration + 1e-2 * speed) + 400 * (theta - q) / GEAR
+    torque += noise.normal(0, 3e-3, samples)
+    columns = {
+        "t": t,
+        "arm/motor": counts,
+        "arm/link[0]": 2.5 - np.degrees(q),
+        "arm/torque": torque,
+    }
+    rows = zip(*(each.tolist() for each in columns.values()), strict=True)
+    return [dict(zip(columns, row, strict=True)) for row in rows]
+
+
+def live(
+    folder: Path, sent: Sequence[Columns], text: str = CONFIGURATION, start: Path | None = None
+) -> tuple[Session, list[Estimated]]:
+    """Everything goes through a session."""
+    config = folder / "arm.toml"
+    config.write_text(text)
+    out = folder / "out"
+    out.mkdir(exist_ok=True)
+    session = Session(config, out, start)
+    ticks = [tick for each in sent for tick in session.take(each, 0)]
+    return session, ticks + session.close()
+
+
+def same(ticks: Sequence[Estimated], series: Any) -> None:
+    """Every output of every tick is equal."""
+    for name in (*OUTPUTS, "confident", "valid", "doubt"):
+        np.testing.assert_array_equal([each.outputs[name] for each in ticks], series[name], name)
+
+
+def estimated(recording: Path, start: Path | None = None) -> Any:
+    """The outputs that `estimate` finds in a recording, with the configuration beside it."""
+    configuration = read_configuration(recording.with_suffix(".toml"))
+    return estimate(open_log(recording), configuration, start_from=start).series
+
+
+@st.composite
+def disturbed(draw: st.DrawFn) -> list[dict[str, Any]]:
+    """Messages that were late, lost, doubled or moved in time, with values that are missing."""
+    found = messages(draw(st.integers(300, 600)), draw(st.integers(0, 9)))
+    for each in found:
+        each["t"] += draw(st.sampled_from([0.0, 0.0, 0.0, 3e-7, 4e-4, -4e-4]))
+    for _ in range(draw(st.integers(0, 12))):
+        place = draw(st.integers(1, len(found) - 5))
+        what = draw(st.sampled_from(["lose", "double", "swap", "nan", "absent", "no stamp", "far"]))
+        match what:
+            case "lose":
+                del found[place : place + draw(st.sampled_from([1, 2, 3, 4, 80]))]
+            case "double":
+                found.insert(place, dict(found[place - 1]))
+            case "swap":
+                found[place], found[place + 1] = found[place + 1], found[place]
+            case "nan":
+                for each in found[place : place + draw(st.sampled_from([1, 3, 150]))]:
+                    each["arm/link[0]"] = math.nan
+            case "absent":
+                found[place].pop("arm/torque", None)
+            case "no stamp":
+                found[place].pop("t", None)
+            case "far":
+                found.insert(
+                    place, {**found[place], "t": draw(st.sampled_from([-50.0, 900.0, 1e300]))}
+                )
+    return found
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    sent=disturbed(), offset=st.sampled_from([0, 1_700_000_000]), delay=st.sampled_from([0, 3e-3])
+)
+def test_live_is_bit_identical_to_estimate(
+    sent: list[dict[str, Any]], offset: int, delay: float
+) -> None:
+    text = CONFIGURATION.replace("zero = 2.5", f"zero = 2.5\ndelay = {delay}")
+    for each in sent:
+        if "t" in each:
+            each["t"] += offset
+    with tempfile.TemporaryDirectory() as folder:
+        session, ticks = live(Path(folder), sent, text)
+        (recording,) = session.recordings
+        same(ticks, estimated(recording))
+
+
+def test_times_in_nanoseconds_are_not_rounded(tmp_path: Path) -> None:
+    sent = messages(1000)
+    for each in sent:
+        each["t"] = 1_700_000_000 * SECOND + round(each["t"] * SECOND)
+    text = CONFIGURATION.replace('column = "t"', 'column = "t"\nunit = "ns"')
+    session, ticks = live(tmp_path, sent, text)
+    assert sum(port.interpolated for joint in session.joints for port in joint.ports.values()) == 0
+    assert ticks[-1].t == pytest.approx(1_700_000_000 + 999 * T, abs=1e-6)
+    same(ticks, estimated(session.recordings[0]))
+
+
+def test_without_stamps_the_time_of_arrival_counts(tmp_path: Path) -> None:
+    config = tmp_path / "arm.toml"
+    config.write_text(CONFIGURATION.replace('column = "t"', ""))
+    session = Session(config, tmp_path)
+    ticks = []
+    for i, each in enumerate(messages(500)):
+        del each["t"]
+        ticks += session.take(
+            each, 1_700_000_000 * SECOND + round(i * T * SECOND) + 50_000 * (i % 3)
+        )
+    ticks += session.close()
+    assert len(ticks) == 500
+    same(ticks, estimated(session.recordings[0]))
+
+
+def two_topics(rate: int = 2) -> Iterator[dict[str, float]]:
+    """The link comes in messages of its own, half as often, and a little later."""
+    for i, each in enumerate(messages(1000)):
+        link = {"t_link": each["t"] + 7e-4, "arm/link[0]": each.pop("arm/link[0]")}
+        yield each
+        if i % rate == 0:
+            yield link
+
+
+TWO_TOPICS = CONFIGURATION.replace('"arm/link[0]"', '"arm/link[0]"\ntime = "t_link"').replace(
+    'column = "t"', 'column = "t"\nlongest_gap = 0.013'
+)
+
+
+def test_ports_with_times_of_their_own(tmp_path: Path) -> None:
+    session, ticks = live(tmp_path, list(two_topics()), TWO_TOPICS)
+    assert np.mean([each.outputs["valid"] for each in ticks]) > 0.99
+    same(ticks, estimated(session.recordings[0]))
+
+
+def test_a_topic_that_dies_does_not_stop_the_others(tmp_path: Path) -> None:
+    sent = [
+        each for i, each in enumerate(two_topics()) if "t_link" not in each or not 300 < i < 900
+    ]
+    config = tmp_path / "arm.toml"
+    config.write_text(TWO_TOPICS)
+    session = Session(config, tmp_path)
+    waited = 0.0
+    ticks: list[Estimated] = []
+    for each in sent:
+        ticks += session.take(each, 0)
+        if ticks and "t" in each:
+            waited = max(waited, each["t"] - ticks[-1].t)
+    ticks += session.close()
+    assert 0.1 < waited < 0.3
+    assert len(ticks) == 1000
+    same(ticks, estimated(session.recordings[0]))
+
+
+@pytest.mark.parametrize("again_at", [-3.0, 0.0, 60.0, 1e6])
+def test_a_sender_that_starts_again_is_noticed(again_at: float, tmp_path: Path) -> None:
+    """It begins a recording of its own, with which the estimator goes on."""
+    first, second = messages(3000, 1), messages(3000, 2)
+    for each in second:
+        each["t"] += again_at
+        each["arm/motor"] = (each["arm/motor"] + 1234) % COUNTS  # of another turn
+    session, ticks = live(tmp_path, [*first, *second])
+    one, two = session.recordings
+    same(ticks[:3000], estimated(one))
+    folder = tmp_path / "first"
+    folder.mkdir()
+    estimate(open_log(one), read_configuration(one.with_suffix(".toml")), folder)
+    same(ticks[3000:], estimated(two, start=folder))
+
+
+def test_what_was_learned_goes_on(tmp_path: Path) -> None:
+    sent = messages(6000)
+    live(tmp_path, sent[:3000])
+    _, ticks = live(tmp_path, sent[3000:], start=tmp_path / "out")
+    assert ticks[0].outputs["confident"]
+    assert [each.outputs["sigma"] for each in ticks] == pytest.approx([400] * 3000, rel=0.05)
+
+
+def test_many_joints_in_one_message(tmp_path: Path) -> None:
+    """Each of them as if it were alone."""
+    names = [f"a{i}" for i in range(1, 8)]
+    ports = CONFIGURATION[CONFIGURATION.index("[ports") : CONFIGURATION.index("[parameters]")]
+    several = CONFIGURATION.replace(ports, "") + "".join(
+        ports.replace("[ports", f"[joints.{n}.ports").replace("arm/", f"{n}/") for n in names
+    )
+    each_joint = [messages(400, seed) for seed in range(7)]
+    sent = [
+        {key.replace("arm/", f"{n}/"): v for n, one in zip(names, row) for key, v in one.items()}
+        for row in zip(*each_joint, strict=True)
+    ]
+    session, ticks = live(tmp_path, sent, several)
+    (recording,) = session.recordings
+    for place, name in enumerate(names):
+        own = [each for each in ticks if each.joint == name]
+        alone = tmp_path / name
+        alone.mkdir()
+        _, expected = live(alone, each_joint[place])
+        assert [each.outputs for each in own] == [each.outputs for each in expected]
+        configuration = read_configuration(recording.with_suffix(".toml"), name)
+        same(own, estimate(open_log(recording), configuration).series)
+        assert (tmp_path / "out" / name / "state.json").is_file()
