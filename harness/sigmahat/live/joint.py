@@ -13,7 +13,7 @@ import numpy as np
 
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
-from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.live.clock import Clock
 from sigmahat.live.messages import Columns
@@ -180,7 +180,7 @@ class LiveJoint:
     def _tick(self, clock: Clock) -> Estimated:
         assert self._start is not None
         self._counter.put_right(self._values[0])
-        self._times[0] = step_times(np.array([self._t_0 + self.T * self.ticks]), self.T)
+        self._times[0] = self._t_0 + self.T * self.ticks, self.T
         self._loop.run(0, 1)
         outputs = self._recorder.row(0)
         t = self._start + clock.absolute + self.T * self.ticks

@@ -101,11 +101,12 @@ class Session:
         if self._recording is None:
             now = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H-%M-%S-%f")
             names = [name or ARRIVAL for name in [*self.clocks, *self.columns]]
-            self._recording = Recording(self._out / f"{now}.parquet", list(dict.fromkeys(names)))
-        whole = [name or ARRIVAL for name, clock in self.clocks.items() if clock.is_whole]
+            whole = [name or ARRIVAL for name, clock in self.clocks.items() if clock.is_whole]
+            path = self._out / f"{now}.parquet"
+            self._recording = Recording(path, list(dict.fromkeys(names)), whole)
         if "" in times:
             columns = {**columns, ARRIVAL: arrival}
-        self._recording.add(columns, whole)
+        self._recording.add(columns)
 
     def end_recording(self) -> list[Estimated]:
         """Completes the recording, and writes what was learned: the ticks that had to wait.
