@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sender import CONFIGURATION, COUNTS, T, messages
 from sigmahat.live.joint import OUTPUTS, Estimated
 from sigmahat.live.messages import Columns
 from sigmahat.live.session import Session
@@ -20,56 +21,7 @@ from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.estimate import estimate
 from sigmahat.logs.readers.formats import open_log
 
-T = 0.002
-COUNTS, GEAR = 4096, 20
 SECOND = 1_000_000_000
-
-CONFIGURATION = f"""\
-[time]
-column = "t"
-[ports.theta]
-column = "arm/motor"
-unit = "counts"
-counts_per_turn = {COUNTS}
-gear_ratio = {GEAR}
-wrap = {COUNTS}
-[ports.q]
-column = "arm/link[0]"
-unit = "deg"
-sign = -1
-zero = 2.5
-[ports.tau]
-column = "arm/torque"
-[parameters]
-method = "FilteredRegression"
-samplePeriod = {T}
-motor.gamma = {GEAR}
-motor.B = 1e-3
-motor.D_theta = 1e-2
-range.phi = 0.06
-prior.tau_e = 30
-"""
-
-
-def messages(samples: int, seed: int = 1) -> list[dict[str, float | int]]:
-    """Of a joint with 400 N.m/rad that moves a load, at T."""
-    noise = np.random.default_rng(seed)
-    t = T * np.arange(samples)
-    theta = 0.8 * np.sin(3 * t) + 0.2 * np.sin(11 * t)
-    q = theta + 0.03 * np.sin(5 * t) + 0.02 * np.sin(13 * t)
-    counts = np.round(theta * GEAR * COUNTS / (2 * np.pi)) % COUNTS
-    speed = 2.4 * np.cos(3 * t) + 2.2 * np.cos(11 * t)
-    acceleration = -7.2 * np.sin(3 * t) - 24.2 * np.sin(11 * t)
-    torque = GEAR * (1e-3 * acceleration + 1e-2 * speed) + 400 * (theta - q) / GEAR
-    torque += noise.normal(0, 3e-3, samples)
-    columns = {
-        "t": t,
-        "arm/motor": counts,
-        "arm/link[0]": 2.5 - np.degrees(q),
-        "arm/torque": torque,
-    }
-    rows = zip(*(each.tolist() for each in columns.values()), strict=True)
-    return [dict(zip(columns, row, strict=True)) for row in rows]
 
 
 def live(
@@ -242,7 +194,11 @@ def test_many_joints_in_one_message(tmp_path: Path) -> None:
     )
     each_joint = [messages(400, seed) for seed in range(7)]
     sent = [
-        {key.replace("arm/", f"{n}/"): v for n, one in zip(names, row) for key, v in one.items()}
+        {
+            key.replace("arm/", f"{n}/"): v
+            for n, one in zip(names, row, strict=True)
+            for key, v in one.items()
+        }
         for row in zip(*each_joint, strict=True)
     ]
     session, ticks = live(tmp_path, sent, several)

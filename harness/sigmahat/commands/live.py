@@ -40,7 +40,7 @@ _LOOPBACK = "127.0.0.1"
     "targets",
     multiple=True,
     metavar="TARGET",
-    help="Send the estimates on: udp:PORT or udp:HOST:PORT, as JSON for PlotJuggler. Several times.",
+    help="Send the estimates on: udp:PORT or udp:HOST:PORT, JSON for PlotJuggler. May be repeated.",
 )
 @click.option(
     "--columns", default="", metavar="A,B,...", help="Columns of CSV without a title line."

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from numpy.typing import NDArray
 
 _ROWS = 1 << 13
 """Of a row group: seconds, so that writing it takes milliseconds."""
@@ -30,7 +31,10 @@ class Recording:
         self.path = path
         self._numbers = [name for name in columns if name not in whole]
         self._whole = [name for name in columns if name in whole]
-        kinds = [*[(n, pa.float64()) for n in self._numbers], *[(n, pa.int64()) for n in self._whole]]
+        kinds = [
+            *[(n, pa.float64()) for n in self._numbers],
+            *[(n, pa.int64()) for n in self._whole],
+        ]
         self._writer = pq.ParquetWriter(path, pa.schema(kinds))
         self._thread = ThreadPoolExecutor(1)  # so that no sample waits for the disk
         self._written: Future[None] | None = None
@@ -68,7 +72,7 @@ class Recording:
         if self._written is not None:
             self._written.result()
 
-    def _write(self, numbers: np.ndarray, whole: np.ndarray) -> None:  # type: ignore[type-arg]
+    def _write(self, numbers: NDArray[np.float64], whole: NDArray[np.int64]) -> None:
         arrays = [pa.array(np.ascontiguousarray(column)) for column in numbers.T]
         arrays += [pa.array(column, mask=column == _MISSING) for column in whole.T]
         self._writer.write_table(pa.Table.from_arrays(arrays, schema=self._writer.schema))

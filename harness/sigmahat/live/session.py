@@ -142,7 +142,7 @@ class Session:
         document = copy.deepcopy(self._document)
         for joint in self.joints:
             section = of_file.section(document, joint.configuration.joint)
-            time = {"longest_gap": joint.longest_gap}
+            time: dict[str, float | str] = {"longest_gap": joint.longest_gap}
             if not joint.time_column(""):
                 time |= {"column": ARRIVAL, "unit": "ns"}
             for key, value in time.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 import time
 from collections.abc import Sequence
@@ -39,7 +40,7 @@ class Terminal:
         lines = [line.rstrip() for line in aligned([_row(each) for each in self._last.values()])]
         if self._is_terminal:
             up, clear = f"\033[{self._lines}F" if self._lines else "", "\033[K"
-            lines = [f"{line[: click.get_terminal_size()[0] - 1]}{clear}" for line in lines]
+            lines = [f"{line[: shutil.get_terminal_size().columns - 1]}{clear}" for line in lines]
             click.echo(up + "\n".join(lines), err=True)
         else:
             click.echo("\n".join(lines), err=True)
