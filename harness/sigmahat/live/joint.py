@@ -28,6 +28,8 @@ from sigmahat.logs.sampling import counter_period, turns_from
 OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfit", "change_age")
 """Real outputs that are given on."""
 _FLAGS = ("confident", "valid")
+GIVEN = (*OUTPUTS, *_FLAGS, "doubt")
+"""All that are given on."""
 _PATIENCE = 0.2
 """How long a tick waits for a port of which nothing arrives while others go on [s]."""
 _WAITING = 1000
@@ -44,7 +46,7 @@ class Estimated:
     t: float
     """Time of the tick, as the sender counts it [s]."""
     outputs: Mapping[str, Any]
-    """OUTPUTS, "confident", "valid" and "doubt"."""
+    """GIVEN."""
 
 
 class LiveJoint:
@@ -82,8 +84,7 @@ class LiveJoint:
 
     def _prepare(self) -> None:
         self._values, self._times = np.zeros((1, len(self.ports))), np.zeros((1, 2))
-        names = (*OUTPUTS, "a", *_FLAGS, "doubt")
-        self._recorder, self._loop = Recorder(self.slave, names, 1), SampleLoop()
+        self._recorder, self._loop = Recorder(self.slave, ("a", *GIVEN), 1), SampleLoop()
         inputs = self.slave.fmu.references(self.ports, "input")
         self._loop.set_real(self.slave, inputs, self._values)
         self._loop.step(self.slave, self._times)

@@ -10,17 +10,26 @@ from contextlib import suppress
 from itertools import groupby
 from typing import Any
 
+from sigmahat.joint.curve import NORMAL_95
 from sigmahat.live.joint import Estimated
 
 Sink = Callable[[Sequence[Estimated]], None]
 """Sends the ticks of one message on."""
 
 
-def finite(outputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Outputs for JSON, which has no nan and no infinity."""
+BANDS = {"sigma_low": "sigma", "sigma_high": "sigma", "tau_e_low": "tau_e", "tau_e_high": "tau_e"}
+"""Ends of 95 % intervals that are sent besides the outputs."""
+
+
+def shown(outputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Outputs and BANDS for JSON, which has no nan and no infinity."""
+    values = dict(outputs)
+    for name in ("sigma", "tau_e"):
+        half = NORMAL_95 * values[f"{name}_std"]
+        values[f"{name}_low"], values[f"{name}_high"] = values[name] - half, values[name] + half
     return {
         name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in outputs.items()
+        for name, value in values.items()
     }
 
 
@@ -34,7 +43,7 @@ def udp(address: tuple[str, int]) -> Sink:
 
     def send(ticks: Sequence[Estimated]) -> None:
         for t, at_once in groupby(ticks, key=lambda each: each.t):
-            message = {"timestamp": t} | {e.joint or "joint": finite(e.outputs) for e in at_once}
+            message = {"timestamp": t} | {e.joint or "joint": shown(e.outputs) for e in at_once}
             with suppress(OSError):
                 sender.sendto(json.dumps(message).encode(), address)
 

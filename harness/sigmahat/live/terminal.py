@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import click
 
 from sigmahat.files.tables import aligned
+from sigmahat.joint.curve import NORMAL_95
 from sigmahat.live.joint import Estimated
 
 _EVERY = 0.5
@@ -57,7 +58,7 @@ def _row(last: Estimated) -> tuple[str, ...]:
     return (
         last.joint or "joint",
         f"{last.t:.1f} s",
-        f"{outputs['sigma']:.4g} +- {1.96 * outputs['sigma_std']:.2g} N.m/rad",
+        f"{outputs['sigma']:.4g} +- {NORMAL_95 * outputs['sigma_std']:.2g} N.m/rad",
         f"{outputs['tau_e']:.3g} N.m at {outputs['phi']:.3g} rad",
         "confident" if doubt == "None" else f"not confident ({doubt})",
     )

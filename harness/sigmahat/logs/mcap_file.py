@@ -18,6 +18,7 @@ from mcap.writer import Writer
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.json_schema import schema
 
 MCAP = "estimate.mcap"
 """Name of the file in the folder of results."""
@@ -57,18 +58,9 @@ class _Messages:
             self._ticks += 1
 
     def _registered(self, outputs: Outputs) -> int:
-        schema = {"type": "object", "title": "estimate", "properties": {}}
-        schema["properties"] = {name: self._property(name, outputs[name]) for name in outputs}
-        data = json.dumps(schema).encode()
+        data = json.dumps(schema(self._fmu, outputs)).encode()
         described = self._writer.register_schema("estimate", "jsonschema", data)
         return self._writer.register_channel(_TOPIC, "json", described)
-
-    def _property(self, name: str, values: NDArray[Any]) -> dict[str, Any]:
-        variable = self._fmu.variable(name, "output")
-        unit = f" [{variable.unit}]" if variable.unit else ""
-        kinds = {"b": "boolean", "f": "number"}
-        described = f"{variable.description or name}{unit}"
-        return {"type": kinds.get(values.dtype.kind, "string"), "description": described}
 
 
 def _with_null(values: NDArray[Any]) -> list[Any]:
