@@ -209,9 +209,15 @@ def test_what_was_learned_is_gone_on_with(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "expected"),
     [
-        (["--from", "serial:1"], "--from: expected udp:PORT, tcp:PORT, stdin or ros2, got 'serial:1'"),
+        (
+            ["--from", "serial:1"],
+            "--from: expected udp:PORT, tcp:PORT, stdin or ros2, got 'serial:1'",
+        ),
         (["--from", "udp:70000"], "--from: expected a port from 1 to 65535, got '70000'"),
-        (["--to", "tcp:1"], "--to: expected udp:PORT, udp:HOST:PORT, foxglove[:PORT] or ros2, got 'tcp:1'"),
+        (
+            ["--to", "tcp:1"],
+            "--to: expected udp:PORT, udp:HOST:PORT, foxglove[:PORT] or ros2, got 'tcp:1'",
+        ),
         (["--columns", "t,x"], "--columns lacks arm/motor"),
         (["--host", "203.0.113.1"], "cannot listen at 203.0.113.1, udp:9870:"),
         (["--replay", "none.csv"], "none.csv: No such file or directory"),

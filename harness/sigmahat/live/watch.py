@@ -60,13 +60,12 @@ def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> Counted:
 
 @contextmanager
 def _stopped_by_signal() -> Iterator[list[int]]:
-    """The signals that were received; a second one has its usual effect."""
+    """The signals that were received: a second one does not spoil what is being written."""
     stopped: list[int] = []
     before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
 
     def stop(number: int, _frame: FrameType | None) -> None:
         stopped.append(number)
-        signal.signal(number, before[signal.Signals(number)])
 
     for each in before:
         signal.signal(each, stop)

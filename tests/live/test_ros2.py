@@ -1,0 +1,109 @@
+"""A robot of another implementation of ROS 2 and DDS: RustDDS with ros2-client.
+
+Both run in a network of their own, whose loopback has multicast, by which they find each other.
+"""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gate import missing
+from sender import CONFIGURATION, messages
+from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.estimate import estimate
+from sigmahat.logs.readers.formats import open_log
+
+FIRST = 1_700_000_000_000_000_000  # [ns] since 1970
+NETWORK = (
+    "ip link set lo up && ip link set lo multicast on && ip route add 224.0.0.0/4 dev lo && "
+    "echo ready && exec sleep 600"
+)
+ROS = CONFIGURATION
+for before, after in {
+    '"t"': '"/joint_states.time"',
+    '"arm/motor"': '"/joint_states.position[arm_motor]"',
+    '"arm/link[0]"': '"/joint_states.position[arm]"',
+    '"arm/torque"': '"/joint_states.effort[arm_motor]"',
+}.items():
+    ROS = ROS.replace(before, after)
+
+
+@pytest.fixture
+def network() -> Iterator[list[str]]:
+    """How a command is run in a network of its own."""
+    if not all(map(shutil.which, ("unshare", "nsenter", "ip"))):
+        missing("unshare, nsenter and ip", "apt-get install util-linux iproute2")
+    own = ["unshare", "--map-root-user", "--net", "sh", "-c", NETWORK]
+    with subprocess.Popen(own, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as holder:
+        assert holder.stdout is not None
+        if holder.stdout.readline() != "ready\n":
+            pytest.skip("no network of one's own may be made here")
+        options = [f"--target={holder.pid}", "--user", "--net", "--preserve-credentials"]
+        yield ["nsenter", *options]
+        holder.kill()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="networks of a process are Linux")
+@pytest.mark.parametrize("reliability", ["reliable", "best-effort"])
+def test_joint_states_in_and_estimates_out(
+    reliability: str, network: list[str], build: Path, tmp_path: Path
+) -> None:
+    robot = build / "checkers" / "bin" / "ros2-robot"
+    if not robot.exists():
+        source = "tests/drivers/ros2_robot"
+        missing("ros2-robot", f"cargo install --root {build / 'checkers'} --path {source}")
+    config = tmp_path / "arm.toml"
+    config.write_text(ROS)
+    command = [sys.executable, "-m", "sigmahat", "live", str(config), "--out", str(tmp_path)]
+    live = subprocess.Popen(
+        [*network, *command, "--from", "ros2", "--to", "ros2"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    received = tmp_path / "received"
+    ours = subprocess.Popen(
+        [*network, str(robot), reliability, "arm_motor", "arm"],
+        stdin=subprocess.PIPE, stdout=received.open("w"), stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        assert ours.stdin is not None and ours.stderr is not None
+        assert ours.stderr.readline() == "somebody listens\n"
+        time.sleep(0.5)
+        for each in messages(1500):
+            stamp = FIRST + round(each["t"] * 1e9)
+            row = [each["arm/motor"], each["arm/torque"], each["arm/link[0]"], 0.0]
+            ours.stdin.write(" ".join([str(stamp), *map(repr, row)]) + "\n")
+            ours.stdin.flush()
+            time.sleep(1e-3)
+        ours.communicate(timeout=60)
+        live.send_signal(signal.SIGINT)
+        printed, errors = live.communicate(timeout=60)
+    finally:
+        live.kill()
+        ours.kill()
+    assert live.returncode == 0, errors
+    lines = defaultdict(list)
+    for line in received.read_text().splitlines():
+        kind, _, rest = line.partition(" ")
+        lines[kind].append(rest.split())
+    assert any(" ".join(each).startswith("0 sigmahat: stiffness of joint: confident") or
+               each[0] == "1" for each in lines["diagnosis"])  # fmt: skip
+    (recording,) = tmp_path.glob("*.parquet")
+    found = estimate(open_log(recording), read_configuration(recording.with_suffix(".toml"))).series
+    assert found is not None
+    ticks = len(found.t)
+    assert ticks == 1500 and "messages: 1500 read" in printed
+    stamps = [int(each[0]) for each in lines["estimate"]]
+    np.testing.assert_allclose(np.array(stamps) - FIRST, 1e9 * found.t, atol=2)
+    for name, output in (("stiffness", "sigma"), ("torque_std", "tau_e_std")):
+        values = [float(each[each.index(name) + 1]) for each in lines["estimate"]]
+        assert values == found[output].tolist()
