@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import socket
+
 import numpy as np
 
 T = 0.002
@@ -53,3 +55,10 @@ def messages(samples: int, seed: int = 1) -> list[dict[str, float | int]]:
     }
     rows = zip(*(each.tolist() for each in columns.values()), strict=True)
     return [dict(zip(columns, row, strict=True)) for row in rows]
+
+
+def free_port() -> int:
+    """A port of this computer that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

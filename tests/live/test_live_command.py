@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 
 from command_line import refused
-from sender import CONFIGURATION, messages
+from sender import CONFIGURATION, free_port, messages
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.estimate import estimate
 from sigmahat.logs.readers.formats import open_log
@@ -35,12 +35,6 @@ def nested(message: dict[str, Any]) -> bytes:
         "torque": message["arm/torque"],
     }
     return json.dumps({"t": message["t"], "arm": arm}).encode()
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @contextmanager

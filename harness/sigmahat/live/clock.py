@@ -6,11 +6,12 @@ from sigmahat.logs.log import EXACT
 
 _LATE = 1.0
 """A sample that is later than another by less was overtaken on its way [s]."""
-LONGEST_PAUSE = 10.0
-"""Samples after a longer pause are those of a sender that has started again [s]."""
+LONGEST_PAUSE = 1.0
+"""A sample after a longer pause is off, or that of a sender that has started again [s]."""
 _STARTED = 20
 """So many in order, far from the others, are those of a sender that has started again."""
 _ADAPT = 0.01
+_SHORTEST = 1e-6  # [s] between two samples
 
 
 class Clock:
@@ -87,6 +88,6 @@ class Clock:
 
     def _count(self, step: float) -> None:
         if self.usual == 0.0:
-            self.usual = step
+            self.usual = max(step, _SHORTEST)
         self.lost += max(round(step / self.usual) - 1, 0)
         self.usual += _ADAPT * self.usual * (1 if step > self.usual else -1)

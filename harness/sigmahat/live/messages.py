@@ -104,11 +104,13 @@ def _parsed(cell: str) -> int | float | str | None:
 def _number(name: str, value: Any) -> int | float:
     if value is None:
         return math.nan
-    if isinstance(value, float):
-        return value if math.isfinite(value) else math.nan
-    if isinstance(value, bool) or not isinstance(value, int) or abs(value) >= _LARGEST:
+    if isinstance(value, float) and not math.isfinite(value):
+        return math.nan
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not is_number or abs(value) >= _LARGEST:
         raise ValueError(f"{name}: expected a number, got {str(value)[:_SHOWN]!r}")
-    return value
+    number: int | float = value
+    return number
 
 
 def _shown(message: bytes) -> str:

@@ -1,6 +1,6 @@
 """All joints on line: messages in, estimates out, and a recording of what was received.
 
-A sender that starts again, or a pause of more than ten seconds, ends the recording and begins
+A sender that starts again, or a pause of more than a second, ends the recording and begins
 another one, with which the estimators go on: as `sigmahat estimate --start-from` does.
 """
 

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import logging
 import signal
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Iterator, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FrameType
 
+from sigmahat.live.messages import Columns
 from sigmahat.live.session import Session
 from sigmahat.live.sinks import Sink
-from sigmahat.live.sources import Inbox
+from sigmahat.live.sources import Inbox, Received
 
 _log = logging.getLogger("sigmahat")
 _IDLE = 0.1  # [s] until a signal is seen
+_SILENT = 5.0  # [s] after which it is said that nothing comes
+_FIRST = 100  # messages after which it is said what is wrong with them
 
 
 @dataclass
@@ -32,22 +36,24 @@ def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> Counted:
 
     The first message that cannot be read is named in a warning; all of them are counted.
     """
-    counted = Counted()
+    counted, seen = Counted(), set[str]()
+    waits_since: float | None = time.monotonic()
     with _stopped_by_signal() as stopped:
         while not stopped and not inbox.is_at_end:
             received = inbox.next(_IDLE)
             if received is None:
+                if waits_since is not None and time.monotonic() - waits_since > _SILENT:
+                    _log.warning("nothing has arrived in %g s; does the sender run?", _SILENT)
+                    waits_since = None
                 continue
-            try:
-                columns = received.read()
-            except ValueError as error:
-                counted.wrong += 1
-                if counted.wrong == 1:
-                    _log.warning("a message that cannot be read: %s; more are counted", error)
-                continue
-            counted.messages += 1
+            waits_since = None
+            columns = _read(received, counted)
             if columns is None:
                 continue
+            if counted.messages <= _FIRST:
+                seen.update(columns)
+            if counted.messages == _FIRST:
+                _look(session, seen)
             ticks = session.take(columns, received.arrival)
             if ticks:
                 for send in sinks:
@@ -56,6 +62,33 @@ def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> Counted:
         for send in sinks:
             send(last)
     return counted
+
+
+def _read(received: Received, counted: Counted) -> Columns | None:
+    try:
+        columns = received.read()
+    except ValueError as error:
+        counted.wrong += 1
+        if counted.wrong == 1:
+            _log.warning("a message that cannot be read: %s; more are counted", error)
+        return None
+    counted.messages += 1
+    return columns
+
+
+def _look(session: Session, seen: Set[str]) -> None:
+    """Warns of columns that never come, and of samples that are too far apart."""
+    for name in session.columns:
+        if name not in seen:
+            _log.warning("none of %d messages has %r, which the configuration names", _FIRST, name)
+    for joint in session.joints:
+        usual = session.clocks[joint.time_column("")].usual
+        if usual > joint.longest_gap:
+            _log.warning(
+                "samples are %.3g s apart, and at most %.3g s are interpolated: set samplePeriod, "
+                "or time.longest_gap", usual, joint.longest_gap,
+            )  # fmt: skip
+            return
 
 
 @contextmanager

@@ -1,0 +1,58 @@
+"""The loop in C: it estimates, and sends what `sigmahat live` would."""
+
+from __future__ import annotations
+
+import json
+import re
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from gate import need
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "live"
+STIFFNESS = 600.0  # of robot.c [N.m/rad]
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="it needs timerfd")
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    cmake, folder = need("cmake"), tmp_path_factory.mktemp("live")
+    need("cc")
+    for command in ([cmake, "-S", EXAMPLE, "-B", folder], [cmake, "--build", folder]):
+        subprocess.run([*map(str, command)], check=True, capture_output=True)
+    return folder / "live"
+
+
+def test_every_sample_is_sent(program: Path) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as viewer:
+        viewer.bind(("127.0.0.1", 0))
+        viewer.settimeout(10)
+        port = viewer.getsockname()[1]
+        running = subprocess.Popen(
+            [program, "5", str(port)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        last = 0.0
+        received = []
+        while last < 4.99:
+            received.append(json.loads(viewer.recv(4096)))
+            last = received[-1]["timestamp"]
+        printed, _ = running.communicate(timeout=10)
+    assert running.returncode == 0
+    found = re.search(r"(\d+) of 5000 samples missed; stiffness (\S+) \+- (\S+) N.m/rad", printed)
+    assert found is not None, printed
+    assert len(received) == 5000 - int(found[1])
+    estimate = received[-1]["joint"]
+    assert abs(estimate["sigma"] - STIFFNESS) < 1.96 * estimate["sigma_std"]
+    assert estimate["confident"] is True
+
+
+@pytest.mark.parametrize("arguments", [["0"], ["nan"], ["1", "0"], ["1", "70000"]])
+def test_wrong_arguments_are_said(arguments: list[str], program: Path) -> None:
+    done = subprocess.run([program, *arguments], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "expected live [SECONDS [PORT]]" in done.stderr

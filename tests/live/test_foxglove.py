@@ -1,0 +1,133 @@
+"""Estimates by the protocol of Foxglove: a client of the tests, and the page in the browser."""
+
+from __future__ import annotations
+
+import json
+import signal
+import struct
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from websocket import ABNF, WebSocket, create_connection
+
+from browser import opened
+from sender import CONFIGURATION, free_port, messages
+
+pytest.importorskip("foxglove")
+
+PORTS = CONFIGURATION[CONFIGURATION.index("[ports") : CONFIGURATION.index("[parameters]")]
+TWO_JOINTS = CONFIGURATION.replace(PORTS, "") + "".join(
+    PORTS.replace("[ports", f"[joints.{name}.ports") for name in ("elbow", "wrist")
+)
+"""Both have the same columns."""
+
+
+@contextmanager
+def replayed(folder: Path, samples: int, port: int) -> Iterator[subprocess.Popen[str]]:
+    """The command with a log, whose estimates go to a port."""
+    sent = messages(samples)
+    rows = [",".join(map(repr, each.values())) for each in sent]
+    (folder / "arm.csv").write_text("\n".join([",".join(sent[0]), *rows]) + "\n")
+    (folder / "arm.toml").write_text(TWO_JOINTS)
+    command = [sys.executable, "-m", "sigmahat", "live", "arm.toml", "--replay", "arm.csv"]
+    with subprocess.Popen(
+        [*command, "--to", f"foxglove:{port}", "--out", "out"],
+        cwd=folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+    ) as process:  # fmt: skip
+        assert process.stderr is not None
+        assert "Ctrl-C ends it" in process.stderr.readline()
+        yield process
+        process.kill()
+
+
+class Client:
+    """Of the protocol: channels by topic, and the messages of one of them."""
+
+    def __init__(self, port: int) -> None:
+        address = f"ws://127.0.0.1:{port}"
+        self._socket: WebSocket = create_connection(
+            address, timeout=10, subprotocols=["foxglove.sdk.v1"]
+        )
+        self.channels: dict[str, Any] = {}
+        while len(self.channels) < 2:
+            message = json.loads(self._socket.recv())
+            self.channels |= {each["topic"]: each for each in message.get("channels", [])}
+
+    def subscribe(self, topic: str) -> None:
+        subscription = {"id": 7, "channelId": self.channels[topic]["id"]}
+        self._socket.send(json.dumps({"op": "subscribe", "subscriptions": [subscription]}))
+
+    def next(self) -> tuple[int, Any]:
+        """Time [ns] and contents of the next message."""
+        while True:
+            kind, data = self._socket.recv_data()
+            if kind == ABNF.OPCODE_BINARY and data[0] == 1:
+                _, subscription, stamp = struct.unpack_from("<BIQ", data)
+                assert subscription == 7
+                return stamp, json.loads(data[13:])
+
+    def close(self) -> None:
+        self._socket.close()
+
+
+def test_a_client_receives_channels_and_samples(tmp_path: Path) -> None:
+    port = free_port()
+    with replayed(tmp_path, 4000, port) as process:
+        client = Client(port)
+        assert sorted(client.channels) == ["/elbow/estimate", "/wrist/estimate"]
+        channel = client.channels["/wrist/estimate"]
+        assert (channel["encoding"], channel["schemaEncoding"]) == ("json", "jsonschema")
+        properties = json.loads(channel["schema"])["properties"]
+        assert "[N.m/rad]" in properties["sigma"]["description"]
+        client.subscribe("/wrist/estimate")
+        stamp, first = client.next()
+        assert set(first) == set(properties)
+        later, _ = client.next()
+        assert later - stamp == 2_000_000
+        client.close()
+        client = Client(port)  # a viewer that comes back
+        client.subscribe("/elbow/estimate")
+        values = [client.next()[1] for _ in range(500)]
+        assert values[-1]["sigma_low"] < values[-1]["sigma"] < values[-1]["sigma_high"]
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        assert process.returncode == 0
+    layout = json.loads((tmp_path / "out" / "foxglove-layout.json").read_text())
+    assert [tab["title"] for tab in layout["content"]["tabs"]] == ["elbow", "wrist"]
+    assert '"/elbow/estimate.sigma_low"' in json.dumps(layout)
+
+
+def test_the_page_in_the_browser_watches(site: Path, tmp_path: Path) -> None:
+    port = free_port()
+    address = f"{(site / 'live' / 'index.html').as_uri()}?ws=ws://127.0.0.1:{port}"
+    with replayed(tmp_path, 20_000, port), opened(address) as page:
+        for _ in range(100):
+            shown = page.driver.find_element("id", "watched-sigma").text
+            if "±" in shown and page.run("return watch.last.confident"):
+                break
+            time.sleep(0.2)
+        sigma, _, rest = shown.partition(" ± ")
+        assert float(sigma) == pytest.approx(400, rel=0.1)
+        assert rest.endswith("N·m/rad")
+        options = page.run("return [...watch.field.options].map((each) => each.value)")
+        assert options == ["elbow", "wrist"]
+        page.run("watch.field.value = 'wrist'; watch.field.dispatchEvent(new Event('change'))")
+        time.sleep(1)
+        assert page.run("return watch.history.get('t').length") > 100
+        assert page.complaints() == []
+        policy = "return document.querySelector('meta[http-equiv]').content"
+        assert f"connect-src ws://127.0.0.1:{port};" in page.run(policy)
+
+
+@pytest.mark.parametrize("asked", ["http://127.0.0.1:1", "nothing", ""])
+def test_the_page_reaches_no_other_address(asked: str, site: Path) -> None:
+    with opened(f"{(site / 'live' / 'index.html').as_uri()}?ws={asked}") as page:
+        assert "?ws=ws://127.0.0.1:8765" in page.driver.find_element("id", "watch-message").text
+        policy = page.run("return document.querySelector('meta[http-equiv]').content")
+        assert policy.startswith("connect-src 'none';")
