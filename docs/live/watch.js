@@ -11,6 +11,7 @@ const watch = {
   open() {
     for (const section of document.querySelectorAll("main > section"))
       section.hidden = section.id !== "watch";
+    say("intro", "The stiffness of the joints of a robot, as sigmahat live estimates it while they move.");
     this.plots = ["watched-stiffness", "watched-torque"].map((id) => new Plot(document.getElementById(id)));
     this.field.addEventListener("change", () => this.choose(this.field.value));
     if (WATCHED) this.connect();
@@ -41,7 +42,7 @@ const watch = {
       const name = TOPIC.exec(topic)?.[1];
       if (name !== undefined) this.channels.set(name, id);
     }
-    const chosen = this.field.value, names = [...this.channels.keys()];
+    const chosen = this.field.value, names = [...this.channels.keys()].sort();
     this.field.replaceChildren(...names.map((name) => new Option(name)));
     if (names.length) this.choose(names.includes(chosen) ? chosen : names[0]);
   },
@@ -56,6 +57,7 @@ const watch = {
     const names = ["t", "sigma", "sigma_low", "sigma_high", "tau_e", "tau_e_low", "tau_e_high"];
     this.history = new Samples(names, MOST_SAMPLES);
     this.first = this.last = null;
+    this.isNew = false;
   },
 
   send(message) {

@@ -7,6 +7,7 @@ import re
 import socket
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -31,16 +32,15 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_every_sample_is_sent(program: Path) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as viewer:
         viewer.bind(("127.0.0.1", 0))
-        viewer.settimeout(10)
+        viewer.settimeout(1)
         port = viewer.getsockname()[1]
         running = subprocess.Popen(
             [program, "5", str(port)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
-        last = 0.0
         received = []
-        while last < 4.99:
-            received.append(json.loads(viewer.recv(4096)))
-            last = received[-1]["timestamp"]
+        with suppress(TimeoutError):  # after the last one
+            while True:
+                received.append(json.loads(viewer.recv(4096)))
         printed, _ = running.communicate(timeout=10)
     assert running.returncode == 0
     found = re.search(r"(\d+) of 5000 samples missed; stiffness (\S+) \+- (\S+) N.m/rad", printed)

@@ -103,6 +103,7 @@ def test_a_client_receives_channels_and_samples(tmp_path: Path) -> None:
     assert '"/elbow/estimate.sigma_low"' in json.dumps(layout)
 
 
+@pytest.mark.slow("a browser watches a log at its own pace")
 def test_the_page_in_the_browser_watches(site: Path, tmp_path: Path) -> None:
     port = free_port()
     address = f"{(site / 'live' / 'index.html').as_uri()}?ws=ws://127.0.0.1:{port}"

@@ -188,6 +188,7 @@ def test_a_replayed_log_takes_its_time(tmp_path: Path) -> None:
 
 
 @needs_signals
+@pytest.mark.slow("the command starts twice, and takes messages in real time")
 def test_what_was_learned_is_gone_on_with(tmp_path: Path) -> None:
     port = free_port()
     datagrams = [nested(each) for each in messages(2000)]

@@ -5,7 +5,6 @@ Both run in a network of their own, whose loopback has multicast, by which they 
 
 from __future__ import annotations
 
-import shutil
 import signal
 import subprocess
 import sys
@@ -17,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gate import missing
+from gate import missing, need
 from sender import CONFIGURATION, messages
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.estimate import estimate
@@ -41,19 +40,20 @@ for before, after in {
 @pytest.fixture
 def network() -> Iterator[list[str]]:
     """How a command is run in a network of its own."""
-    if not all(map(shutil.which, ("unshare", "nsenter", "ip"))):
-        missing("unshare, nsenter and ip", "apt-get install util-linux iproute2")
-    own = ["unshare", "--map-root-user", "--net", "sh", "-c", NETWORK]
+    unshare, nsenter = need("unshare"), need("nsenter")
+    need("ip")
+    own = [unshare, "--map-root-user", "--net", "sh", "-c", NETWORK]
     with subprocess.Popen(own, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as holder:
         assert holder.stdout is not None
         if holder.stdout.readline() != "ready\n":
             pytest.skip("no network of one's own may be made here")
         options = [f"--target={holder.pid}", "--user", "--net", "--preserve-credentials"]
-        yield ["nsenter", *options]
+        yield [nsenter, *options]
         holder.kill()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="networks of a process are Linux")
+@pytest.mark.slow("two programs find each other, and talk in real time")
 @pytest.mark.parametrize("reliability", ["reliable", "best-effort"])
 def test_joint_states_in_and_estimates_out(
     reliability: str, network: list[str], build: Path, tmp_path: Path
