@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from command_line import one_line
+from sender import CONFIGURATION
 
 WITHOUT = """
 import sys
@@ -42,6 +43,8 @@ def run_without(module: str, *arguments: str, cwd: Path) -> subprocess.Completed
         ("h5py", "estimate log.h5", "sigmahat[hdf5]"),
         ("rosbags", "init log.mcap", "sigmahat[bags]"),
         ("mcap", "estimate log.csv --config log.toml --to mcap", "sigmahat[mcap]"),
+        ("cyclonedds", "live log.toml --from ros2", "sigmahat[ros2]"),
+        ("foxglove", "live log.toml --to foxglove", "sigmahat[foxglove]"),
     ],
 )
 def test_one_line_says_what_to_install(
@@ -49,9 +52,11 @@ def test_one_line_says_what_to_install(
 ) -> None:
     (tmp_path / "log.h5").write_bytes(b"\x89HDF\r\n\x1a\n")
     (tmp_path / "log.mcap").write_bytes(b"\x89MCAP0\r\n")
+    (tmp_path / "log.toml").write_text(CONFIGURATION)
     line = one_line(run_without(package, *arguments.split(), cwd=tmp_path))
     command = shlex.join([sys.executable, "-m", "pip", "install", wanted])
-    assert line == f"sigmahat: error: {package} is not installed; to install it: {command}"
+    distribution = {"foxglove": "foxglove-sdk"}.get(package, package)
+    assert line == f"sigmahat: error: {distribution} is not installed; to install it: {command}"
 
 
 def test_what_sigmahat_does_not_require_is_a_fault_that_shows(tmp_path: Path) -> None:

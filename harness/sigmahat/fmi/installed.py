@@ -36,6 +36,10 @@ def version() -> str:
     return metadata.version("sigmahat")
 
 
+_DISTRIBUTIONS = {"foxglove": "foxglove-sdk"}
+"""Where a package is in a distribution of another name."""
+
+
 def how_to_install(package: str | None) -> str | None:
     """One line for a package that sigmahat requires, itself or with an extra, and that is missing.
 
@@ -43,8 +47,8 @@ def how_to_install(package: str | None) -> str | None:
     """
     for requirement in metadata.requires("sigmahat") or ():
         match = re.match(r"""([\w.-]+)[^;]*(?:;\s*extra\s*==\s*["'](.+)["'])?""", requirement)
-        if match and match[1] == package:
+        if match and match[1] == _DISTRIBUTIONS.get(package or "", package):
             wanted = f"sigmahat[{match[2]}]" if match[2] else "sigmahat"
             command = shlex.join([sys.executable, "-m", "pip", "install", wanted])
-            return f"{package} is not installed; to install it: {command}"
+            return f"{match[1]} is not installed; to install it: {command}"
     return None
