@@ -52,7 +52,7 @@ class Decoder:
         for name, value in _flat(document, "", 0):
             wanted = self._wanted.get(name)
             if wanted is not None:
-                found[wanted] = _number(name, value)
+                found[wanted] = number(name, value)
         return found
 
     def _of_csv(self, message: bytes) -> Columns | None:
@@ -72,7 +72,7 @@ class Decoder:
             expected = f"{len(self._csv)} cells" if self._csv else "first a line that names columns"
             raise ValueError(f"expected {expected}, got {_shown(message)}")
         return {
-            name: _number(name, _parsed(cell))
+            name: number(name, _parsed(cell))
             for name, cell in zip(self._csv, cells, strict=True)
             if name is not None
         }
@@ -101,7 +101,8 @@ def _parsed(cell: str) -> int | float | str | None:
     return cell or None
 
 
-def _number(name: str, value: Any) -> int | float:
+def number(name: str, value: Any) -> int | float:
+    """A value of a column; nan for one that is not finite. Raises ValueError for no number."""
     if value is None:
         return math.nan
     if isinstance(value, float) and not math.isfinite(value):
@@ -109,8 +110,8 @@ def _number(name: str, value: Any) -> int | float:
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not is_number or abs(value) >= _LARGEST:
         raise ValueError(f"{name}: expected a number, got {str(value)[:_SHOWN]!r}")
-    number: int | float = value
-    return number
+    found: int | float = value
+    return found
 
 
 def _shown(message: bytes) -> str:

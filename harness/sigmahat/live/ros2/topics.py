@@ -31,7 +31,7 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from sigmahat.live.joint import Estimated
-from sigmahat.live.messages import Columns
+from sigmahat.live.messages import Columns, number
 from sigmahat.live.ros2.types import (
     DiagnosticArray,
     DiagnosticStatus,
@@ -55,6 +55,7 @@ _RARELY = 1.0
 _OK, _WARN = 0, 1
 _LARGEST_DOMAIN = 232
 _AT_ONCE = 1000
+_MOST_JOINTS = 1000
 _INTERFACES = {
     "stiffness": "sigma",
     "stiffness_std": "sigma_std",
@@ -78,11 +79,13 @@ class Ros2:
                 f"ROS_DOMAIN_ID: expected a number from 0 to {_LARGEST_DOMAIN}, got {text!r}"
             )
         self._domain = DomainParticipant(int(text))
+        self._wanted: frozenset[str] = frozenset()
         self._first: int | None = None
         """Time of the first message [ns], from which the columns count."""
 
     def joint_states(self, columns: Sequence[str]) -> Source:
         """Reads the topics of columns. Raises ValueError for a column that names none."""
+        self._wanted = frozenset(columns)
         readers: dict[str, Any] = {}
         for column in columns:
             found = _COLUMN.fullmatch(column)
@@ -121,15 +124,20 @@ class Ros2:
             raise ValueError(f"{topic}: expected a time in the header, got 0")
         if self._first is None:
             self._first = stamp
-        found: dict[str, float] = {f"{topic}.time": (stamp - self._first) / _SECOND}
+        found: dict[str, int | float] = {f"{topic}.time": (stamp - self._first) / _SECOND}
         names = message.name
+        if len(names) > _MOST_JOINTS:
+            raise ValueError(f"{topic}: expected at most {_MOST_JOINTS} names, got {len(names)}")
         for field in ("position", "velocity", "effort"):
             values = getattr(message, field)
             if len(values) not in (0, len(names)):
                 raise ValueError(
                     f"{topic}.{field}: expected {len(names)} values, got {len(values)}"
                 )
-            found |= {f"{topic}.{field}[{n}]": v for n, v in zip(names, values, strict=False)}
+            for name, value in zip(names, values, strict=False):
+                column = f"{topic}.{field}[{name}]"
+                if column in self._wanted:
+                    found[column] = number(column, value)
         return found
 
     def publish(self) -> Sink:
