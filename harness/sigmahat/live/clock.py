@@ -17,9 +17,8 @@ _SHORTEST = 1e-6  # [s] between two samples
 class Clock:
     """The times of one column, in seconds since its first one."""
 
-    def __init__(self, column: str, seconds: float) -> None:
+    def __init__(self, seconds: float) -> None:
         """seconds  in the unit of the column"""
-        self.column = column
         self._seconds = seconds
         self.double = self.late = self.strays = self.lost = 0
         """Samples with the time of the one before, late ones, ones far off; samples missing."""

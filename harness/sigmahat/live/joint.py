@@ -48,6 +48,11 @@ class Estimated:
     outputs: Mapping[str, Any]
     """GIVEN."""
 
+    @property
+    def name(self) -> str:
+        """Of the joint, for people: that of a configuration of one joint has none."""
+        return self.joint or "joint"
+
 
 class LiveJoint:
     """The estimator of one joint, and the samples that wait for its next tick."""

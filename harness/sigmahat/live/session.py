@@ -46,7 +46,7 @@ class Session:
             for joint in self.joints
             for port in ("", *joint.ports)
         }
-        self.clocks = {name: Clock(name, seconds(unit)) for name, unit in self._units.items()}
+        self.clocks = {name: Clock(seconds(unit)) for name, unit in self._units.items()}
         """Of each time column."""
         ports = [port.port.column for joint in self.joints for port in joint.ports.values()]
         used = dict.fromkeys([*self.clocks, *filter(None, ports)])

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 import socket
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from itertools import groupby
 from typing import Any
 
+from sigmahat.files.output import finite
 from sigmahat.joint.curve import NORMAL_95
 from sigmahat.live.joint import Estimated
 
@@ -27,10 +27,8 @@ def shown(outputs: Mapping[str, Any]) -> dict[str, Any]:
     for name in ("sigma", "tau_e"):
         half = NORMAL_95 * values[f"{name}_std"]
         values[f"{name}_low"], values[f"{name}_high"] = values[name] - half, values[name] + half
-    return {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in values.items()
-    }
+    found: dict[str, Any] = finite(values)
+    return found
 
 
 def udp(address: tuple[str, int]) -> Sink:
@@ -43,7 +41,7 @@ def udp(address: tuple[str, int]) -> Sink:
 
     def send(ticks: Sequence[Estimated]) -> None:
         for t, at_once in groupby(ticks, key=lambda each: each.t):
-            message = {"timestamp": t} | {e.joint or "joint": shown(e.outputs) for e in at_once}
+            message = {"timestamp": t} | {e.name: shown(e.outputs) for e in at_once}
             with suppress(OSError):
                 sender.sendto(json.dumps(message).encode(), address)
 

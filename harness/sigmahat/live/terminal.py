@@ -56,7 +56,7 @@ def _row(last: Estimated) -> tuple[str, ...]:
     outputs = last.outputs
     doubt = outputs["doubt"]
     return (
-        last.joint or "joint",
+        last.name,
         f"{last.t:.1f} s",
         f"{outputs['sigma']:.4g} +- {NORMAL_95 * outputs['sigma_std']:.2g} N.m/rad",
         f"{outputs['tau_e']:.3g} N.m at {outputs['phi']:.3g} rad",

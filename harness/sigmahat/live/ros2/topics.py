@@ -151,7 +151,7 @@ class Ros2:
             for t, each in groupby(ticks, key=lambda tick: tick.t):
                 at_once = list(each)
                 header = _header(t, self._first or 0)
-                names = [tick.joint or "joint" for tick in at_once]
+                names = [tick.name for tick in at_once]
                 estimates.write(DynamicJointState(header, names, [_values(e) for e in at_once]))
                 if abs(t - said) >= _RARELY:
                     said = t
@@ -181,5 +181,5 @@ def _status(tick: Estimated) -> DiagnosticStatus:
         KeyValue(f"{name} [{unit}]" if unit else name, f"{tick.outputs[name]:.6g}")
         for name, unit in (("sigma", "N.m/rad"), ("sigma_std", "N.m/rad"), ("misfit", ""))
     ]
-    name = f"sigmahat: stiffness of {tick.joint or 'joint'}"
+    name = f"sigmahat: stiffness of {tick.name}"
     return DiagnosticStatus(_OK if is_ok else _WARN, name, text, "", values)
