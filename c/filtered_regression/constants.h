@@ -142,6 +142,13 @@
 #define SH_LEVEL_BLOCKS ((sh_real)400)
 #define SH_LARGEST_LEVEL ((sh_real)9)
 
+/* Misfit over its usual value above which the estimate is in doubt, and number of blocks after which the
+ * usual value is known [1]: 15 s. With 1.5, logs without a change are in doubt for 4 % of the time, with
+ * 2 twice as many changes are not noticed for over 1 s.
+ */
+#define SH_SUDDEN_MISFIT ((sh_real)1.7)
+#define SH_USUAL_BLOCKS ((sh_real)300)
+
 /* Number of blocks after which a hypothesis ends that has no evidence, and any one [1]: 1 s and 4 s. */
 #define SH_SHORTEST_TEST ((sh_real)10)
 #define SH_LONGEST_TEST ((sh_real)80)

@@ -205,8 +205,9 @@ typedef struct {
     int following;  /* 1: a change was detected, and the estimate does not contain it yet */
     sh_real blocks; /* since the hypothesis began */
     sh_real level,
-        judged;       /* mean square of a block's error over its variance, and of how many blocks */
-    sh_real evidence; /* of the change [1] */
+        judged; /* mean square of a block's error over its variance, and of how many blocks */
+    sh_real usual_misfit; /* of the estimate, the mean over as many blocks [1] */
+    sh_real evidence;     /* of the change [1] */
 } sh_change;
 
 /* The next posterior while it is computed from all data, refit.c. */
