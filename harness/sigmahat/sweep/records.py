@@ -1,7 +1,8 @@
 """The runs of a sweep that are done, on disk: one line for each, so that a sweep can go on later.
 
-A line is JSON. The first says which sweep it is. If the sweep gets more seeds later, another such
-line is appended, and the numbers of the runs behind it are those of the larger plan.
+A line is JSON. The first says which sweep it is, with however many seeds. A run is named by its
+setting, the place of scenario and listed values in the plan, and by its seed: so a sweep that gets
+more seeds later goes on in the same file.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from sigmahat.sweep.plan import Outcome, Plan
 from sigmahat.sweep.preparation import sweep_digest
 
 NAME = "runs.jsonl"
+_HINT = "choose another folder with --out, or delete this file"
 
 
 class Records:
@@ -33,28 +35,41 @@ class Records:
         """
         self.path = path
         self.outcomes: dict[int, Outcome] = {}
-        self._plan = plan
+        self._seeds = plan.seeds
         lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
         if lines and not lines[-1].endswith(b"\n"):
             lines.pop()  # what a kill cut off; that run is done again
-        self._seeds = 0  # of the last line that says which sweep it is
-        for i, line in enumerate(lines, 1):
-            content = self._parse(line, i)
-            if i == 1 or "sweep" in content:
-                self._seeds = self._seeds_of(content)
-            else:
-                self._take(content, i)
+        head = {"sweep": sweep_digest(replace(plan, seeds=1))}
+        contents = [self._parse(line, i) for i, line in enumerate(lines, 1)]
+        if contents and contents[0] != head:
+            raise ValueError(f"{path} is of another sweep, or of other FMUs; {_HINT}")
+        seeds = max((each["seed"] for each in contents[1:]), default=0)
+        if seeds > plan.seeds:
+            raise ValueError(
+                f"{path} is of this sweep with {seeds} seeds; "
+                f"expected as many or more, got {plan.seeds}; {_HINT}"
+            )
+        for i, each in enumerate(contents[1:], 2):
+            number = each["setting"] * plan.seeds + each["seed"] - 1
+            if number in self.outcomes or not 0 <= number < len(plan):
+                raise ValueError(
+                    f"{path}, line {i}: run of setting {each['setting']}, seed {each['seed']} is "
+                    "there twice; delete this line and start again"
+                )
+            indices = {name: Indices(*values) for name, values in each["indices"].items()}
+            self.outcomes[number] = Outcome(number, indices, each["failure"])
         self._file = path.open("ab")
         self._file.truncate(sum(map(len, lines)))
+        if not lines:
+            self._write(head)
 
     def add(self, outcome: Outcome) -> None:
         """Writes an outcome, which a process that is killed later does not lose."""
-        if self._seeds != self._plan.seeds:  # before the first of the runs that are new
-            self._seeds = self._plan.seeds
-            self._write(_head(self._plan))
         self.outcomes[outcome.number] = outcome
+        setting, seed = divmod(outcome.number, self._seeds)
         indices = {name: astuple(each) for name, each in outcome.indices.items()}
-        self._write({"number": outcome.number, "indices": indices, "failure": outcome.failure})
+        place = {"setting": setting, "seed": seed + 1}
+        self._write({**place, "indices": indices, "failure": outcome.failure})
 
     def close(self) -> None:
         """Closes the file."""
@@ -72,36 +87,6 @@ class Records:
             raise ValueError(
                 f"{self.path}, line {number}: damaged; {what} and start again"
             ) from error
-
-    def _seeds_of(self, head: Any) -> int:
-        """How many seeds the records behind this line are of."""
-        plan, hint = self._plan, "choose another folder with --out, or delete this file"
-        seeds = int(head.get("runs", 0)) * plan.seeds // len(plan)
-        if seeds < 1 or head != _head(replace(plan, seeds=seeds)):
-            raise ValueError(f"{self.path} is of another sweep, or of other FMUs; {hint}")
-        if seeds > plan.seeds:
-            raise ValueError(
-                f"{self.path} is of this sweep with {seeds} seeds; "
-                f"expected as many or more, got {plan.seeds}; {hint}"
-            )
-        return seeds
-
-    def _take(self, content: Any, line: int) -> None:
-        number = content["number"]
-        setting, seed = divmod(number, self._seeds)
-        numbered = setting * self._plan.seeds + seed
-        if numbered in self.outcomes or not 0 <= numbered < len(self._plan):
-            raise ValueError(
-                f"{self.path}, line {line}: run {number} is there twice; "
-                "delete this line and start again"
-            )
-        indices = {name: Indices(*values) for name, values in content["indices"].items()}
-        self.outcomes[numbered] = Outcome(numbered, indices, content["failure"])
-
-
-def _head(plan: Plan) -> dict[str, Any]:
-    """Says which sweep records are of."""
-    return {"sweep": sweep_digest(plan), "runs": len(plan)}
 
 
 @contextmanager
