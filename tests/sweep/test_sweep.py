@@ -16,9 +16,8 @@ import scipy.stats
 from sigmahat.paper.reproduction import reproduce
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.metrics import INDICES, Indices
-from sigmahat.sweep.job import sweep
+from sigmahat.sweep.job import Records, sweep
 from sigmahat.sweep.plan import Outcome, Plan, read_plan
-from sigmahat.sweep.records import Records
 from sigmahat.sweep.table import ParameterColumn, Role, read
 from sweeps import QUICK, records, refused, run, start, wait_for_records
 

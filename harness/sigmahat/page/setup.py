@@ -215,23 +215,25 @@ class Setup:
         if self.asks_to_overwrite:
             self._asked = monotonic()
             self.message = f"{self.path} exists, and is other than what is shown here."
-        else:
-            try:
-                write_whole(self.text_of_file, self.path)
-            except OSError as error:
-                self.message = f"Cannot write {self.path}: {error.strerror}."
-            else:
-                self.message = f"Written: {self.path.resolve()}. {self._next()}"
-                self.is_edited = False
-                if self._then is not None:
-                    self._then()
+        elif self._is_written():
+            log, default = self.log.path, Path(f"{self.log.path.stem}.toml")
+            option = "" if self.path == default else f" --config {self.path}"
+            self.message += f" Next: sigmahat identify {log}{option}, then sigmahat estimate {log}"
+            self.message += option
+            if self._then is not None:
+                self._then()
         self.show()
 
-    def _next(self) -> str:
-        """What to do with a file that is written."""
-        log, default = self.log.path, Path(f"{self.log.path.stem}.toml")
-        option = "" if self.path == default else f" --config {self.path}"
-        return f"Next: sigmahat identify {log}{option}, then sigmahat estimate {log}{option}"
+    def _is_written(self) -> bool:
+        """Writes the file; the message says where it is, or why it cannot be written."""
+        try:
+            write_whole(self.text_of_file, self.path)
+        except OSError as error:
+            self.message = f"Cannot write {self.path}: {error.strerror}."
+            return False
+        self.message = f"Written: {self.path.resolve()}."
+        self.is_edited = False
+        return True
 
     @property
     def is_by_sensor(self) -> bool:
@@ -249,13 +251,8 @@ class Setup:
             self.changed()
             return
         self.document = self._joints[self.joint] = document
-        try:
-            write_whole(self.text_of_file, self.path)
-        except OSError as error:
-            results += f" Cannot write {self.path}: {error.strerror}."
-        else:
-            self.is_edited = False
-            results += f" Written: {self.path.name}. Next: sigmahat report {folder}"
+        following = f" Next: sigmahat report {folder}" if self._is_written() else ""
+        results += f" {self.message}{following}"
         self.changed()
         self.message = results
         self.show()
