@@ -27,7 +27,7 @@ from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap, parameters
 from sigmahat.logs.resampling import AT_TICK
 from sigmahat.logs.sampling import counter_period, turns_from
-from sigmahat.logs.units import scale
+from sigmahat.logs.units import scale, seconds
 
 OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfit", "change_age")
 """Real outputs that are given on."""
@@ -112,8 +112,13 @@ class LivePort:
 class LiveJoint:
     """The estimator of one joint, and the samples that wait for its next tick."""
 
-    def __init__(self, configuration: Configuration, learned: Learned | None = None) -> None:
-        """Raises what logs/job.py does for what does not fit."""
+    def __init__(
+        self, configuration: Configuration, clocks: dict[str, Clock], learned: Learned | None
+    ) -> None:
+        """clocks  by time column, "" for the time of arrival; those that are missing are added
+
+        Raises what logs/job.py does for what does not fit.
+        """
         fmu = installed("StiffnessEstimator")
         start = parameters(fmu, configuration)
         self.configuration = configuration
@@ -133,6 +138,10 @@ class LiveJoint:
             raise LogError(
                 f"{configuration.path}: no port has a column; name those of the messages"
             )
+        unit = configuration.time.unit if configuration.time.column else "ns"
+        for name in ("", *self.ports):
+            clocks.setdefault(self.time_column(name), Clock(seconds(unit)))
+        self._clocks = clocks
         self.slave = Slave(fmu, configuration.joint or "estimator").__enter__()
         self.slave.initialize(start)
         self._t_0 = 0.0
@@ -158,13 +167,10 @@ class LiveJoint:
         for port in self.ports.values():
             port.restart()
 
-    def take(
-        self, columns: Columns, times: Mapping[str, float], clocks: Mapping[str, Clock]
-    ) -> Iterator[Estimated]:
+    def take(self, columns: Columns, times: Mapping[str, float]) -> Iterator[Estimated]:
         """Yields the ticks that a message makes possible.
 
-        times   of the time columns in the message [s]
-        clocks  by time column
+        times  of the time columns in the message [s]
         """
         for name, port in self.ports.items():
             t, value = times.get(self.time_column(name)), columns.get(port.port.column)
@@ -177,20 +183,20 @@ class LiveJoint:
         while self._waiting:
             port, t, value = self._waiting.popleft()
             port.add(t - self._start, value)
-        yield from self._run(self._start, clocks, is_end=False)
+        yield from self._run(self._start, is_end=False)
 
     def time_column(self, port: str) -> str:
         """With the times of a port; "" for the time of arrival."""
         own = self.ports[port].port.time if port else None
         return own or self.configuration.time.column or ""
 
-    def end(self, clocks: Mapping[str, Clock], recording: Path, digest: str) -> Iterator[Estimated]:
+    def end(self, recording: Path, digest: str) -> Iterator[Estimated]:
         """Yields the last ticks of a recording; the next sample will be the first of another one.
 
         recording, digest  the file, and its SHA-256
         """
         if self._start is not None:
-            yield from self._run(self._start, clocks, is_end=True)
+            yield from self._run(self._start, is_end=True)
         counts = self._ticks, self._skipped
         self._logs.append(LearnedLog(str(recording), digest, *counts, *self._used.values()))
         self._t_0 += self.T * self._ticks
@@ -205,9 +211,9 @@ class LiveJoint:
         """Writes what was learned, after the end of a recording."""
         write_learned(self.slave, self.every, self._logs, path)
 
-    def _run(self, start: float, clocks: Mapping[str, Clock], is_end: bool) -> Iterator[Estimated]:
-        clock = clocks[self.time_column("")]
-        newest = max(clocks[self.time_column(each)].now for each in self.ports)
+    def _run(self, start: float, is_end: bool) -> Iterator[Estimated]:
+        clock = self._clocks[self.time_column("")]
+        newest = max(self._clocks[self.time_column(each)].now for each in self.ports)
         while self._ticks <= (clock.now - start) / self.T + AT_TICK:
             for place, (name, port) in enumerate(self.ports.items()):
                 value = port.at(self._ticks)
@@ -217,7 +223,7 @@ class LiveJoint:
                     patience = max(_PATIENCE, self.longest_gap * (1 + AT_TICK))
                     if not is_end and newest <= at_tick + patience:
                         return
-                    clocks[self.time_column(name)].give_up(at_tick + AT_TICK * self.T)
+                    self._clocks[self.time_column(name)].give_up(at_tick + AT_TICK * self.T)
                     value = math.nan
                 self._values[0, place] = value
             yield self._tick(start + (clock.shift or 0) * clock.seconds)

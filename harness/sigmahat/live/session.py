@@ -20,7 +20,6 @@ from sigmahat.live.recording import Recording
 from sigmahat.logs import joints as of_file
 from sigmahat.logs.configuration import joints_of, read_configuration, read_document
 from sigmahat.logs.learned import LEARNED, Learned, read_learned
-from sigmahat.logs.units import seconds
 
 ARRIVAL = "arrival"
 """Column of a recording for messages without a stamp: time of arrival [ns] since 1970."""
@@ -35,17 +34,12 @@ class Session:
         Raises LogError for what does not fit, FmuError if the FMU refuses a value.
         """
         self._document, self._out = read_document(config), out
-        self.joints = [
-            LiveJoint(read_configuration(config, name), _learned(start_from, name))
-            for name in joints_of(self._document, config)
-        ]
         self.clocks: dict[str, Clock] = {}
         """Of each time column; "" for the time of arrival."""
-        for joint in self.joints:
-            time = joint.configuration.time
-            for port in ("", *joint.ports):
-                unit = time.unit if time.column else "ns"
-                self.clocks[joint.time_column(port)] = Clock(seconds(unit))
+        self.joints = [
+            LiveJoint(read_configuration(config, name), self.clocks, _learned(start_from, name))
+            for name in joints_of(self._document, config)
+        ]
         ports = [port.port.column for joint in self.joints for port in joint.ports.values()]
         self.columns = [name for name in dict.fromkeys([*self.clocks, *ports]) if name]
         """Columns of the messages that are used."""
@@ -79,7 +73,7 @@ class Session:
         if self._recording is None:
             self._recording = self._begin_recording()
         self._recording.add({**kept, ARRIVAL: arrival} if "" in times else kept)
-        found = (joint.take(columns, times, self.clocks) for joint in self.joints)
+        found = (joint.take(columns, times) for joint in self.joints)
         return [each for of_joint in found for each in of_joint]
 
     def _begin_recording(self) -> Recording:
@@ -103,7 +97,7 @@ class Session:
         digest = sha256(path)
         found: list[Estimated] = []
         for joint in self.joints:
-            found += joint.end(self.clocks, path, digest)
+            found += joint.end(path, digest)
             folder = self._out / joint.configuration.joint
             folder.mkdir(exist_ok=True)
             joint.write(folder / LEARNED.file)
