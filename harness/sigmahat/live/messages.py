@@ -60,7 +60,9 @@ class Decoder:
                 count = f"{len(self._csv)} cells" if self._csv else ""
                 expected = count or "first a line that names columns"
                 raise ValueError(f"expected {expected}, got {shown}")
-            values = [(name, _parsed(each)) for name, each in zip(self._csv, cells, strict=True)]
+            values = [
+                (name, _parsed(each.strip())) for name, each in zip(self._csv, cells, strict=True)
+            ]
         found = {name: number(name, value) for name, value in values if name is not None}
         if not found:
             raise ValueError(f"expected one of {', '.join(self._wanted)}, got {shown}")
@@ -88,7 +90,7 @@ def _parsed(cell: str) -> int | float | str | None:
     for kind in (int, float):
         with suppress(ValueError):
             return kind(cell)
-    return cell.strip() or None
+    return cell or None
 
 
 def number(name: str, value: Any) -> int | float:
