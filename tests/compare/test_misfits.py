@@ -197,34 +197,43 @@ def test_the_score_in_closed_form() -> None:
     confident = np.array([True, True, True, False, True])
     found = score(true, sigma, sigma_std, confident)
     assert found.instants == 4  # the last one is in the dead zone
-    assert found.error == pytest.approx(100 * math.sqrt((0.01**2 + 0.15**2 + 0.3**2 + 0.5**2) / 4))
-    assert found.claim == pytest.approx(100 * math.sqrt((0.01**2 + 0.01**2 + 0.2**2 + 0.02**2) / 4))
-    assert found.coverage == 50  # the first and the third
+    assert found.figures["error"] == pytest.approx(
+        100 * math.sqrt((0.01**2 + 0.15**2 + 0.3**2 + 0.5**2) / 4)
+    )
+    assert found.figures["claim"] == pytest.approx(
+        100 * math.sqrt((0.01**2 + 0.01**2 + 0.2**2 + 0.02**2) / 4)
+    )
+    assert found.figures["coverage"] == 50  # the first and the third
     # The second claims 1/115; the fourth 4 of an estimate of 100, which is more than 2 %.
-    assert found.dangerous == 25
-    assert (found.confident, found.wrong) == (75, 25)
+    assert found.figures["dangerous"] == 25
+    assert (found.figures["confident"], found.figures["wrong"]) == (75, 25)
 
 
 def test_scores_add_up_over_instants() -> None:
     one = score(np.ones(3), np.ones(3) * 1.3, np.ones(3), np.ones(3, np.bool_))
     other = score(np.ones(1), np.ones(1), np.zeros(1), np.zeros(1, np.bool_))
     both = sum([one, other], Score())
-    assert both.error == pytest.approx(30 * math.sqrt(3 / 4))
-    assert (both.coverage, both.confident, both.wrong) == (100, 75, 75)
-    assert math.isnan(Score().error)
+    assert both.figures["error"] == pytest.approx(30 * math.sqrt(3 / 4))
+    assert (both.figures["coverage"], both.figures["confident"], both.figures["wrong"]) == (
+        100,
+        75,
+        75,
+    )
+    assert math.isnan(Score().figures["error"])
 
 
 def test_a_large_error_counts_as_ten_times_the_stiffness() -> None:
     huge = score(np.ones(1), np.full(1, 1e9), np.full(1, 1e9), np.zeros(1, np.bool_))
-    assert (huge.error, huge.claim) == (1000, 1000)
+    assert (huge.figures["error"], huge.figures["claim"]) == (1000, 1000)
 
 
 def test_a_gain_of_the_torque_is_an_error_of_its_size_that_the_prior_covers() -> None:
     (row,) = compare([condition("gain 0.9, prior 0.1")], [AWAS], [1], processes=1)
     factor = 1 / 0.9  # of the measured torque, and so of the stiffness
-    assert row.score.error == pytest.approx(100 * (factor - 1), abs=0.5)
-    assert row.score.claim == pytest.approx(100 * 0.10 * factor, rel=0.1)
-    assert row.score.coverage > 90
+    figures = row.score.figures
+    assert figures["error"] == pytest.approx(100 * (factor - 1), abs=0.5)
+    assert figures["claim"] == pytest.approx(100 * 0.10 * factor, rel=0.1)
+    assert figures["coverage"] > 90
 
 
 def test_the_estimator_is_given_a_prior_of_the_gain_where_there_is_an_error_of_it() -> None:
@@ -240,6 +249,6 @@ def test_what_confident_means() -> None:
     random = [each for each in CONDITIONS if each.group is Group.RANDOM]
     found = [row.score for row in compare(random, JOINTS, range(401, 441), processes=2)]
     together = sum(found, Score())
-    assert together.confident >= 90
-    assert together.wrong <= 0.003 * together.confident
-    assert together.coverage >= 90
+    assert together.figures["confident"] >= 90
+    assert together.figures["wrong"] <= 0.003 * together.figures["confident"]
+    assert together.figures["coverage"] >= 90

@@ -18,7 +18,7 @@ from sigmahat.compare.misfits.figure import draw
 from sigmahat.compare.misfits.job import Row, compare
 from sigmahat.compare.misfits.joints import AWAS, JOINTS, SEA_1K
 from sigmahat.compare.misfits.score import Score
-from sigmahat.compare.misfits.table import FIGURES, figures, table
+from sigmahat.compare.misfits.table import FIGURES, IN_FILE, table
 
 NAMES = ("none", "uneven Coulomb friction 20 %", "n = 1, too small")
 
@@ -37,9 +37,10 @@ def test_rows_are_judged(rows: list[Row]) -> None:
         for joint in (JOINTS if name != "n = 1, too small" else [AWAS])
     ]
     assert {row.score.instants for row in rows} == {18000}
-    clean, uneven = (r.score for r in rows if r.joint is AWAS and r.condition.name in NAMES[:2])
-    assert clean.error < 1.0 and clean.coverage > 80 and clean.confident == 100
-    assert uneven.error != clean.error
+    both = [row for row in rows if row.joint is AWAS and row.condition.name in NAMES[:2]]
+    clean, uneven = (row.score.figures for row in both)
+    assert clean["error"] < 1.0 and clean["coverage"] > 80 and clean["confident"] == 100
+    assert uneven["error"] != clean["error"]
 
 
 def test_seeds_add_up(rows: list[Row]) -> None:
@@ -61,7 +62,7 @@ def test_printed_table(rows: list[Row]) -> None:
     for row, line in zip(rows, printed, strict=True):
         assert line.startswith(f"  {row.condition.name}, {row.joint.name} ")
         cells = [float(cell) for cell in line.split()[-len(FIGURES) :]]
-        assert cells == pytest.approx(list(figures(row.score).values()), abs=0.05)
+        assert cells == pytest.approx(list(row.score.figures.values()), abs=0.05)
 
 
 def test_means_are_those_of_the_rows_of_a_class() -> None:
@@ -105,8 +106,8 @@ def test_command(
     for row, line in zip(few, lines, strict=True):
         assert (line["condition"], line["joint"]) == (row.condition.name, row.joint.name)
         assert line["class"] == row.condition.group.value
-        for name, value in figures(row.score).items():
-            assert float(line[f"{FIGURES[name]} [%]"]) == value
+        for name, value in row.score.figures.items():
+            assert float(line[f"{IN_FILE.get(name, name)} [%]"]) == value
     with Image.open(out / "misfits.png") as image:
         assert image.width > 800 and len(image.convert("RGB").getcolors(10**6)) > 10
     svg = etree.parse(out / "misfits.svg").getroot()
@@ -114,7 +115,7 @@ def test_command(
 
     assert main([*arguments, "--json"]) == 0
     values = json.loads(capsys.readouterr().out)
-    assert [value["error"] for value in values] == [row.score.error for row in few]
+    assert [value["error"] for value in values] == [row.score.figures["error"] for row in few]
     assert not any(math.isnan(value["claim"]) for value in values)
 
 

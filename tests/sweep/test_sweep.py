@@ -16,9 +16,8 @@ import scipy.stats
 from sigmahat.paper.reproduction import reproduce
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.metrics import INDICES, Indices
-from sigmahat.sweep.job import sweep
+from sigmahat.sweep.job import Records, sweep
 from sigmahat.sweep.plan import Outcome, Plan, read_plan
-from sigmahat.sweep.records import Records
 from sigmahat.sweep.table import ParameterColumn, Role, read
 from sweeps import QUICK, records, refused, run, start, wait_for_records
 
@@ -99,8 +98,10 @@ def test_killed_and_resumed_is_the_same_file(tmp_path: Path) -> None:
     done = run(*arguments, "--out", "killed", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert path.read_bytes().startswith(before)
-    numbers = [json.loads(line)["number"] for line in records(path)]
-    assert sorted(numbers) == list(range(24))
+    done_runs = [json.loads(line) for line in records(path)]
+    assert sorted((each["setting"], each["seed"]) for each in done_runs) == [
+        (setting, seed) for setting in (0, 1) for seed in range(1, 13)
+    ]
     for name in FILES - {"runs.jsonl"}:
         assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "killed" / name).read_bytes()
     # AND once more, nothing is left to do
@@ -188,7 +189,7 @@ def test_records_that_do_not_fit(tmp_path: Path) -> None:
     path = tmp_path / "out" / "runs.jsonl"
     good = path.read_bytes()
     for damaged, words in (
-        (good.replace(b'"number": 1', b'"number": 0'), "line"),
+        (good.replace(b'"seed": 2', b'"seed": 1'), "line"),
         (good + records(path)[0], "line 4: run"),
         (b"\0" + good, "line 1: damaged; delete this file"),
     ):
