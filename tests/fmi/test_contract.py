@@ -9,9 +9,7 @@ from typing import Any
 import fmpy
 import pytest
 
-import sigmahat
-from fmi_instance import ERROR, OK, Instance
-from fmi_runs import ESTIMATORS, PLANTS
+from fmi_instance import Instance
 
 B = 0.0025 / (2 * math.pi)
 NO_UNIT = ""
@@ -86,7 +84,6 @@ ITEMS = {
         "Change",
     ],
 }
-FMUS = ESTIMATORS + PLANTS
 
 
 @pytest.fixture(scope="module")
@@ -97,26 +94,6 @@ def description(estimator_fmu: Path) -> Any:
 @pytest.fixture(scope="module")
 def variables(description: Any) -> dict[str, Any]:
     return {v.name: v for v in description.modelVariables}
-
-
-@pytest.mark.parametrize("fmu", FMUS)
-def test_fmpy_finds_no_problem(fmu: str) -> None:
-    from fmpy.validation import validate_fmu
-
-    assert validate_fmu(str(sigmahat.fmu(fmu))) == []
-
-
-@pytest.mark.parametrize("fmu", FMUS)
-def test_it_runs_with_its_start_values(fmu: str) -> None:
-    path = sigmahat.fmu(fmu)
-    outputs = [
-        v.name
-        for v in fmpy.read_model_description(str(path)).modelVariables
-        if v.causality == "output"
-    ]
-    result = fmpy.simulate_fmu(str(path), stop_time=1.0, output_interval=1e-3, output=outputs)
-    assert len(result) == 1001
-    assert all(math.isfinite(result[name].astype(float).sum()) for name in outputs)
 
 
 def test_inputs_and_outputs_are_those_of_the_contract(variables: dict[str, Any]) -> None:
@@ -161,22 +138,6 @@ def test_an_enumeration_has_the_items_of_the_contract(name: str, variables: dict
     assert [item.name for item in items] == ITEMS[name]
     assert [int(item.value) for item in items] == list(range(1, len(items) + 1))
     assert all(item.description for item in items)
-
-
-def test_symmetric_is_a_boolean_that_allows_0_and_1_only(
-    estimator_fmu: Path, variables: dict[str, Any]
-) -> None:
-    assert variables["rls.symmetric"].type == "Boolean"
-    for value in (0, 1):
-        with Instance(estimator_fmu) as fmu:
-            fmu.initialise({"rls.symmetric": value})
-            assert fmu.get("rls.symmetric") == value
-    for bad in (2, -1):
-        with Instance(estimator_fmu) as fmu:
-            assert fmu.setup() == OK
-            assert fmu.set("rls.symmetric", bad) == ERROR
-            message = fmu.messages[-1][2]
-            assert f"rls.symmetric = {bad} " in message and "[0, 1]" in message
 
 
 def test_initial_outputs_follow_the_initial_estimate(estimator_fmu: Path) -> None:
