@@ -5,7 +5,7 @@ file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py)
 list(FILTER tests EXCLUDE REGEX
      "controller|endurance|library_packages|descriptions_of_fmi3|model_description|mutation|sample_loop|stress")
 file(GLOB promises CONFIGURE_DEPENDS tests/proof/test_promises_of_*.py)
-list(APPEND tests ${promises} tests/plants/test_awas.py tests/plants/test_noise.py tests/plants/test_radau.py)
+list(APPEND tests ${promises} tests/plants/test_awas.py tests/plants/test_noise.py)
 add_custom_target(
   coverage
   COMMAND

@@ -31,16 +31,6 @@ def test_a_signal_is_an_input_that_is_linear_over_a_step(h: float) -> None:
     assert np.ptp(still["q"]) > 0.01
 
 
-def test_a_signal_is_added_to_the_input() -> None:
-    t = times(1e-3, 0.2)
-    ramp = np.outer(t, [1.0, 0.0, 2.0])
-    both = run_awas(1e-3, ramp, {**QUIET, **FIRST}, RECORD)
-    sine = sines(t) * [1.0, 0.0, 0.0]
-    summed = run_awas(1e-3, ramp + sine, QUIET, RECORD)
-    for name in RECORD:
-        np.testing.assert_allclose(both[name], summed[name], rtol=0, atol=1e-9)
-
-
 @pytest.mark.parametrize(
     ("name", "motors"),
     [
