@@ -9,8 +9,6 @@ from typing import Any
 import fmpy
 import pytest
 
-from fmi_instance import Instance
-
 B = 0.0025 / (2 * math.pi)
 NO_UNIT = ""
 # name: causality, variability (None: any), unit, start (None: any)
@@ -138,23 +136,3 @@ def test_an_enumeration_has_the_items_of_the_contract(name: str, variables: dict
     assert [item.name for item in items] == ITEMS[name]
     assert [int(item.value) for item in items] == list(range(1, len(items) + 1))
     assert all(item.description for item in items)
-
-
-def test_initial_outputs_follow_the_initial_estimate(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
-        fmu.initialise({"rls.eta_0[0,0]": 5.0, "rls.eta_0[0,2]": 0.01})
-        assert fmu.get("sigma") == pytest.approx(5.0 + 0.01 * 100.0**2, rel=1e-15)
-        assert fmu.get("tau_e") == 0.0
-        assert fmu.get("eta[0,2]") == 0.01
-        assert fmu.get("setPoint") == 100.0
-        assert fmu.get("valid") == 1
-
-
-def test_initial_outputs_follow_the_initial_estimate_in_the_general_basis(
-    estimator_fmu: Path,
-) -> None:
-    start = {"rls.symmetric": 0, "rls.eta_0[0,0]": 5.0, "rls.eta_0[0,2]": 0.01, "rls.eta_0[1,1]": 3}
-    with Instance(estimator_fmu) as fmu:
-        fmu.initialise(start)
-        assert fmu.get("tau_e") == pytest.approx(5.0 + 0.01 * 100.0**2, rel=1e-15)
-        assert fmu.get("sigma") == 3 * 100.0
