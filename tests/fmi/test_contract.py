@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
 import fmpy
 import pytest
 
-B = 0.0025 / (2 * math.pi)
-NO_UNIT = ""
 # name: causality, variability (None: any), unit, start (None: any)
 INPUTS = {
     "theta": "rad",
@@ -33,42 +30,6 @@ OUTPUTS = {
     "tau_e_std": "N.m",
     "change_age": "s",
 }
-PARAMETERS = {
-    "samplePeriod": ("fixed", "s", 1e-3),
-    "method": ("fixed", None, 1),
-    "modality": ("tunable", None, 1),
-    "motor.B": ("tunable", "kg.m2", 2.3e-5),
-    "motor.D_theta": ("tunable", "N.m.s/rad", 1e-3),
-    "motor.gamma": ("tunable", "1", 50),
-    "residual.K_I": ("tunable", "1/s", 300),
-    "filter.kind": ("fixed", None, 1),
-    "filter.weighting": ("fixed", None, 1),
-    "filter.V_a": ("tunable", None, None),
-    "filter.V_max": ("tunable", None, 10),
-    "filter.V_min": ("tunable", None, 0.1),
-    "filter.alpha": ("tunable", None, 6),
-    "filter.R": ("tunable", None, 10),
-    "filter.P_0": ("fixed", NO_UNIT, 1),
-    "encoder.theta": ("fixed", "1", 40000),
-    "encoder.q": ("fixed", "1", 40000),
-    "encoder.theta_c": ("fixed", "1", 1024),
-    "deformation": ("fixed", None, 1),
-    "setPoint.offset": ("fixed", "1", 100),
-    "setPoint.scale": ("fixed", "1/rad", -B * 1000),
-    "rls.kind": ("fixed", None, 1),
-    "rls.symmetric": ("fixed", None, 1),
-    "rls.n": ("fixed", None, 6),
-    "rls.m": ("fixed", None, 3),
-    "rls.P_0": ("fixed", NO_UNIT, 1e20),
-    "rls.c": ("fixed", "1", 1e-20),
-    "rls.a": ("fixed", "1", 0.1),
-    "model.k_s": ("tunable", "N/m", 14220),
-    "model.r_0": ("tunable", "m", 0.1),
-    "model.b": ("tunable", "m/rad", B),
-    "torque.held": ("tunable", None, 0),
-    "regression.memory": ("tunable", "s", 20),
-}
-ONE, COUNTS = "1", "1"
 ITEMS = {
     "method": ["Paper2011", "FilteredRegression"],
     "modality": ["Residual", "Sensor", "Model"],
@@ -112,22 +73,6 @@ def test_inputs_and_outputs_are_those_of_the_contract(variables: dict[str, Any])
             assert float(variables[f"rls.eta_0[{i},{j}]"].start) == 0.0
     for name in ("valid", "confident"):
         assert (variables[name].type, variables[name].causality) == ("Boolean", "output")
-
-
-def start_of(variable: Any) -> float:
-    """Start value as a number. FMPy gives it as text."""
-    if variable.type == "Boolean":
-        return {"false": 0.0, "true": 1.0}[variable.start]
-    return float(variable.start)
-
-
-@pytest.mark.parametrize("name", PARAMETERS)
-def test_a_parameter_is_that_of_the_contract(name: str, variables: dict[str, Any]) -> None:
-    variability, unit, start = PARAMETERS[name]
-    variable = variables[name]
-    assert (variable.causality, variable.variability) == ("parameter", variability)
-    assert unit is None or (variable.unit or NO_UNIT) == unit
-    assert start is None or start_of(variable) == pytest.approx(start, rel=1e-15)
 
 
 @pytest.mark.parametrize("name", ITEMS)
