@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
@@ -12,8 +10,7 @@ import pytest
 
 import oracle
 from c_library import Array, Library, covariance
-from c_sources import FOLDERS, LIBRARY
-from gate import need
+from c_real import compile_library
 from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
 from reference_plant import table1_recording
 
@@ -26,20 +23,8 @@ KINDS = {  # kind: factor and P_0; for ENHANCED those of the paper
 
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Library:
-    """The recursion in the plain C that pair.h has for processors without pairs of doubles."""
-    folder = tmp_path_factory.mktemp("plain")
-    suffix = ".dylib" if sys.platform == "darwin" else ".so"
-    subprocess.run(
-        [
-            *(need("cc"), "-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared"),
-            *("-U__SSE2__", "-U__aarch64__"),
-            *(f"-I{each}" for each in FOLDERS),
-            *(str(LIBRARY / name) for name in ("least_squares.c", "ud_factor.c")),
-            *("-lm", "-o", str(folder / f"libsigmahat_test_driver{suffix}")),
-        ],
-        check=True,
-    )
-    return Library(folder)
+    """The library in the plain C that pair.h has for processors without pairs of doubles."""
+    return compile_library(tmp_path_factory.getbasetemp(), "double", "-U__SSE2__", "-U__aarch64__")
 
 
 class Recursion:

@@ -18,14 +18,14 @@ LONG = "_Float64x"
 
 
 @cache
-def compile_library(parent: Path, real: str) -> Library:
+def compile_library(parent: Path, real: str, *flags: str) -> Library:
     """The library with `real`, one of REALS or LONG, compiled in a new folder of `parent`."""
     folder = Path(tempfile.mkdtemp(dir=parent))
     suffix = ".dylib" if sys.platform == "darwin" else ".so"
     drivers = REPOSITORY / "tests" / "drivers"
     subprocess.run(
         [
-            *(need("cc"), "-std=gnu99", "-O1", "-ffp-contract=off", "-fPIC", "-shared"),
+            *(need("cc"), "-std=gnu99", "-O1", "-ffp-contract=off", "-fPIC", "-shared", *flags),
             *("-D_GNU_SOURCE", f"-DSH_FOR_{LONG}(a,b)=a##f64x", f"-DSH_IS_{LONG}=0"),
             *(f"-DSH_REAL={real}", f"-I{drivers}", *(f"-I{each}" for each in FOLDERS)),
             *map(str, [*SOURCES, drivers / "run.c"]),

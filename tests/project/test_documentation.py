@@ -10,20 +10,13 @@ import pytest
 from lxml import etree
 
 import sigmahat
+from fmi_runs import ESTIMATORS, PLANTS
 
-FMUS = [
-    "StiffnessEstimator",
-    "AntagonisticStiffnessEstimator",
-    "AwasPlant",
-    "FlexibleJointPlant",
-    "AntagonisticVsaPlant",
-    "RealJointPlant",
-]
 INDEX = "documentation/index.html"
 ICON = "documentation/icon.svg"
 
 
-@pytest.fixture(scope="module", params=FMUS)
+@pytest.fixture(scope="module", params=ESTIMATORS + PLANTS)
 def files(request: pytest.FixtureRequest) -> dict[str, bytes]:
     """Contents of an FMU by name."""
     with zipfile.ZipFile(sigmahat.fmu(request.param)) as archive:

@@ -19,17 +19,9 @@ import pytest
 import sigmahat
 from gate import missing, need
 from recorded_logs import CONFIGURATION, awas_log, write_log
+from released_fmus import FMUS
 
 REPOSITORY = Path(__file__).parents[2]
-FMUS = {
-    "StiffnessEstimator.fmu",
-    "AntagonisticStiffnessEstimator.fmu",
-    "AwasPlant.fmu",
-    "FlexibleJointPlant.fmu",
-    "AntagonisticVsaPlant.fmu",
-    "RealJointPlant.fmu",
-}
-
 pytestmark = pytest.mark.slow(
     "pip fetches what building needs, builds the package, and installs it with all that it requires"
 )
@@ -129,7 +121,7 @@ def test_wheel_is_for_the_platform_and_any_python(wheel: Path) -> None:
     in_folder = {Path(f).name for f in files if f.startswith("sigmahat/fmus/")}
     native = {f"sigmahat_native{extension}" for extension in (".so", ".dll", ".dylib")}
     assert len(in_folder & native) == 1
-    assert in_folder - native == {*FMUS, "sigmahat-awas.ssp"}
+    assert in_folder - native == {*(f"{name}.fmu" for name in FMUS), "sigmahat-awas.ssp"}
     assert "sigmahat/py.typed" in files
     assert {f.split("/")[0] for f in files} == {"sigmahat", f"{name}-{version}.dist-info"}
 
