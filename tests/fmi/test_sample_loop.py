@@ -134,7 +134,7 @@ def test_interrupts_at_any_moment_end_it_and_leave_it_whole() -> None:
 def test_a_log_is_replayed_without_the_library(
     without_c: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    log = awas_log(1.0, 0.3, duration=1.0)
+    log = awas_log(4.0, 0.3, duration=0.25)
     del log["true"]
     write_log(log, tmp_path / "a.csv")
     (tmp_path / "a.toml").write_text(CONFIGURATION, encoding="utf-8")
