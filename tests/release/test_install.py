@@ -161,16 +161,3 @@ def test_every_command_has_what_it_needs(installed: Path, tmp_path: Path) -> Non
         "report sweep",
     ):
         assert run(installed / "sigmahat", *command.split(), cwd=tmp_path)
-
-
-def test_types_are_those_of_the_sources(installed: Path, tmp_path: Path) -> None:
-    program = tmp_path / "program.py"
-    program.write_text("import sigmahat\nreveal_type(sigmahat.fmu)\nsigmahat.fmu(1)\n")
-    done = subprocess.run(
-        [sys.executable, "-m", "mypy", "--python-executable", installed / "python", program],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-    )
-    assert 'Revealed type is "def (name: str) -> pathlib.Path"' in done.stdout
-    assert 'Argument 1 to "fmu" has incompatible type "int"; expected "str"' in done.stdout
