@@ -22,6 +22,7 @@ typedef struct {
     double time;              /* next communication point */
     double stop_time;         /* infinite if there is none */
     double longest_step;      /* of all steps so far */
+    int forged;               /* 1: a forged state was taken; its stop time is unknown */
 } sequence;
 
 /* The next byte; 0 when there are no more bytes. */

@@ -1,7 +1,7 @@
 """The documentation as a site: search, and how it looks in a browser.
 
-The build has checked that every page is in the navigation, that every link leads somewhere, and that
-Sphinx has nothing to warn of.
+The build has checked that every page is in the navigation, and that Sphinx has nothing to warn of,
+such as a link that leads nowhere.
 """
 
 from __future__ import annotations
