@@ -9,7 +9,6 @@ from typing import Any
 
 import fmpy
 import pytest
-from fmpy.validation import validate_fmu
 from lxml import etree
 
 import sigmahat
