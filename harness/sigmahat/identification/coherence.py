@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from sigmahat.identification.regression import MOTOR, Form, Signals, equations, fit
 from sigmahat.logs.log import Array
@@ -66,12 +67,7 @@ def coherent_range(piece: Signals, gamma: float, highest: float, noise: TorqueNo
 
 
 def _incoherent_above(torque: Array, spring: Array, highest: float, noise: TorqueNoise) -> float:
-    from scipy.signal import coherence, welch  # it takes a second, and is not always needed
-
-    h = 2 * noise.T  # every second sample
-    segment = round(_SEGMENT / h)
-    frequency, shared = coherence(torque, spring, 1 / h, nperseg=segment)
-    power = welch(spring, 1 / h, nperseg=segment)[1]
+    frequency, shared, power = spectra(torque, spring, 2 * noise.T)  # every second sample
     bands = math.ceil(2 * math.log2(highest / _LOWEST))
     limit = math.inf
     edges = np.geomspace(_LOWEST, highest, bands + 1)
@@ -82,3 +78,22 @@ def _incoherent_above(torque: Array, spring: Array, highest: float, noise: Torqu
         if np.mean(power[band]) > _LARGER * np.mean(noise.density(frequency[band])):
             limit = float(low)
     return limit
+
+
+def spectra(x: Array, y: Array, h: float) -> tuple[Array, Array, Array]:
+    """Frequencies [Hz], the coherence of two signals, and the density of y, one-sided.
+
+    Welch's method: segments of two seconds, half overlapping, with Hann windows and without their
+    means. scipy.signal, which has it, takes a second to import.
+
+    x, y  of one size, h [s] apart, at least two seconds
+    """
+    segment = round(_SEGMENT / h)
+    window = np.hanning(segment + 1)[:-1]
+    of_x, of_y = (
+        np.fft.rfft(window * (each - each.mean(axis=1, keepdims=True)))
+        for each in (sliding_window_view(s, segment)[:: segment - segment // 2] for s in (x, y))
+    )
+    xx, yy = (np.mean(np.abs(each) ** 2, axis=0) for each in (of_x, of_y))
+    coherence = np.abs(np.mean(of_x.conj() * of_y, axis=0)) ** 2 / (xx * yy)
+    return np.fft.rfftfreq(segment, h), coherence, 2 * h * yy / np.sum(window**2)

@@ -3,6 +3,9 @@
 A CSV log gives `estimate.csv`, every other log `estimate.parquet`: the log with the estimates. The
 titles of the estimates are "estimate.sigma [N.m/rad]" and so on; "estimate.t [s]" is the time of
 the tick since the start of the log. `estimate.json` has what no other file of the folder has.
+
+In Parquet the estimates are float32: seven digits, of numbers that are known to three or four. The
+columns of the log stay as they are, and so do times, whose digits count over hours.
 """
 
 from __future__ import annotations
@@ -32,7 +35,9 @@ from sigmahat.logs.sampling import Samples
 _ROWS = 1 << 15
 _STEM = "estimate"
 _PREFIX = "estimate."
+_REPEATED = 2  # rows per value, from which on a dictionary is shorter
 _TIME = "t"
+_TIMES = (_TIME, "change_age")
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,8 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
         """Writes the rows of the next ticks, whose outputs these are."""
         ticks = len(next(iter(outputs.values())))
-        end = int(np.searchsorted(self._tick_of_row, self._tick + ticks))
+        # Of the same type as the array, which would be converted as a whole.
+        end = int(np.searchsorted(self._tick_of_row, np.int32(self._tick + ticks)))
         tick_of_row = self._tick_of_row[self._row : end] - self._tick
         # A row for each tick, as usual: nothing has to be copied.
         usual = np.array_equal(tick_of_row, np.arange(ticks))
@@ -77,14 +83,16 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         estimates = [EstimatedSignal(_TIME, "s", times)]
         estimates += [EstimatedSignal(n, self._units.get(n), v[take]) for n, v in outputs.items()]
         for each in estimates:
-            title = tables.title(_PREFIX + each.name, each.unit)
-            table = table.append_column(title, pa.array(each.values))
+            values = pa.array(each.values)
+            if self._dialect is None and values.type == pa.float64() and each.name not in _TIMES:
+                values = values.cast(pa.float32())
+            table = table.append_column(tables.title(_PREFIX + each.name, each.unit), values)
         self._row, self._tick = end, self._tick + ticks
         if self._dialect is not None and self._dialect.decimal == ",":
             table = _with_commas(table)
         if self._writer is None:
             writer = pa.csv.CSVWriter if self._dialect else pa.parquet.ParquetWriter
-            self._writer = writer(self._path, table.schema, **self._options())
+            self._writer = writer(self._path, table.schema, **self._options(table))
         self._finish()
         self._written = self._thread.submit(self._writer.write_table, table)
 
@@ -94,11 +102,17 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
             self._written.result()
             self._written = None
 
-    def _options(self) -> dict[str, Any]:
+    def _options(self, first: pa.Table) -> dict[str, Any]:
         if self._dialect is not None:
             options = pa.csv.WriteOptions(quoting_style="needed", delimiter=self._dialect.delimiter)
             return {"write_options": options}
-        return {"use_dictionary": False}  # measured numbers hardly repeat
+        split = [name for name in first.column_names if _is_smooth(first[name])]
+        others = [name for name in first.column_names if name not in split]
+        return {
+            "compression": "zstd",
+            "use_byte_stream_split": split,
+            "use_dictionary": others,
+        }
 
     def __exit__(
         self,
@@ -113,6 +127,19 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
             self._thread.shutdown()
             if self._writer is not None:
                 self._writer.close()
+
+
+def _is_smooth(column: pa.ChunkedArray) -> bool:
+    """Whether these are numbers whose first bytes change slowly from row to row.
+
+    Measured numbers that were written in decimals and read again have all their bytes at random,
+    but few values.
+    """
+    if pa.types.is_integer(column.type):
+        return True
+    if not pa.types.is_floating(column.type):
+        return False
+    return bool(_REPEATED * pa.compute.count_distinct(column).as_py() > len(column))
 
 
 def _with_commas(table: pa.Table) -> pa.Table:
