@@ -12,7 +12,8 @@ from sigmahat.logs.log import Array
 _WINDOWS = 40
 _LOWEST = 5.0  # [Hz]
 _HIGHEST = 0.1  # of the sampling frequency
-_SETTLED = 8.0  # periods of the low pass, after which a step is attenuated to 1e-15
+SETTLED = 8.0
+"""Periods of the low pass, after which it has forgotten a step to 1e-15."""
 
 
 def variance(values: Array, resolution: float = 0.0) -> float:
@@ -57,7 +58,7 @@ def low_pass(values: Array, frequency: float, h: float) -> Array:
     """
     from scipy import fft
 
-    settled = math.ceil(_SETTLED / (frequency * h))
+    settled = math.ceil(SETTLED / (frequency * h))
     ends = [(settled, settled), *[(0, 0)] * (values.ndim - 1)]
     padded = np.pad(values, ends, mode="reflect", reflect_type="odd")
     size = fft.next_fast_len(len(padded), real=True)
