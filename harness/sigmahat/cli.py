@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Sequence
-from importlib.abc import MetaPathFinder
 
 import click
 
@@ -41,18 +40,8 @@ for command in (
     cli.add_command(command)
 
 
-class _WithoutPandas(MetaPathFinder):
-    """Pandas as if it was not installed: pyarrow would import it, and no command needs it."""
-
-    def find_spec(self, name: str, *_: object) -> None:
-        if name == "pandas":
-            raise ModuleNotFoundError(name=name)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit status; an error is one line on stderr."""
-    if arguments is None:  # this process is the command's own
-        sys.meta_path.insert(0, _WithoutPandas())
     with warnings.catch_warnings():
         # What numpy says of values that are not finite: the commands say it in their words.
         warnings.simplefilter("ignore", RuntimeWarning)

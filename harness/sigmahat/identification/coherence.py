@@ -97,7 +97,7 @@ def spectra(x: Array, y: Array, h: float) -> tuple[Array, Array, Array]:
         for each in (sliding_window_view(s, segment)[:: segment - segment // 2] for s in (x, y))
     )
     xx, yy = (np.mean(np.abs(each) ** 2, axis=0) for each in (of_x, of_y))
+    frequency: Array = np.arange(segment // 2 + 1) / (segment * h)
     coherence: Array = np.abs(np.mean(of_x.conj() * of_y, axis=0)) ** 2 / (xx * yy)
-    density: Array = 2 * h * yy / float(np.sum(window**2))
-    frequency: Array = np.fft.rfftfreq(segment, h)
+    density: Array = 2 * h * yy / np.sum(window**2)
     return frequency, coherence, density

@@ -100,7 +100,10 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
     if pa.types.is_integer(kind) and not fits_float64(column):
         first = next(x.as_py() for x in column if x.is_valid)
         column = pa.compute.subtract(column.cast(pa.int64()), first)
-    values: Array = np.array(column.cast(pa.float64(), safe=False).to_numpy())
+    # By way of tensors: to_numpy() imports pandas where it is installed, which takes long.
+    table = pa.table([column.cast(pa.float64(), safe=False)], [name])
+    parts = [batch.to_tensor(null_to_nan=True).to_numpy()[:, 0] for batch in table.to_batches()]
+    values: Array = np.concatenate([np.empty(0), *parts])
     return values
 
 

@@ -10,9 +10,11 @@ columns of the log stay as they are, and so do times, whose digits count over ho
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager
+from copy import copy
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import TracebackType
@@ -29,7 +31,7 @@ from sigmahat.files import tables
 from sigmahat.files.output import write_json
 from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs.log import Log, LogError
-from sigmahat.logs.readers.tables import CsvLog, dialect
+from sigmahat.logs.readers.tables import CsvLog, ParquetLog
 from sigmahat.logs.sampling import Samples
 
 _ROWS = 1 << 15
@@ -38,18 +40,8 @@ _PREFIX = "estimate."
 _REPEATED = 2  # rows per value, from which on a dictionary is shorter
 _TIME = "t"
 _TIMES = (_TIME, "change_age")
-
-
-@dataclass(frozen=True)
-class EstimatedSignal:
-    """One estimate at every row of the log."""
-
-    name: str
-    """Output of the estimator FMU, or "t"."""
-    unit: str | None
-    """Of the output; a Boolean and an enumeration have none."""
-    values: NDArray[Any]
-    """float64, bool, or of an enumeration the names of its items, [size: rows]."""
+DOUBT = "doubt"
+"""The output that is text."""
 
 
 class EstimateWriter(AbstractContextManager["EstimateWriter"]):
@@ -59,7 +51,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         """units  of the outputs that have one, by name"""
         self._dialect = log.dialect if isinstance(log, CsvLog) else None
         self._path = folder / f"{_STEM}.{'csv' if self._dialect else 'parquet'}"
-        self._units = units
+        self._units = {_TIME: "s", **units}
         self._tick_of_row = samples.tick_of_row
         self._T = samples.T
         names = [name for name, n in log.columns.items() if n == len(samples.tick_of_row)]
@@ -79,14 +71,12 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         usual = np.array_equal(tick_of_row, np.arange(ticks))
         take: slice | NDArray[np.int32] = slice(None) if usual else tick_of_row
         table = self._rows.take(end - self._row)
-        times = self._T * np.arange(self._tick, self._tick + ticks)[take]
-        estimates = [EstimatedSignal(_TIME, "s", times)]
-        estimates += [EstimatedSignal(n, self._units.get(n), v[take]) for n, v in outputs.items()]
-        for each in estimates:
-            values = pa.array(each.values)
-            if self._dialect is None and values.type == pa.float64() and each.name not in _TIMES:
-                values = values.cast(pa.float32())
-            table = table.append_column(tables.title(_PREFIX + each.name, each.unit), values)
+        times = self._T * np.arange(self._tick, self._tick + ticks)
+        for name, values in {_TIME: times, **outputs}.items():
+            column = pa.array(values[take])
+            if self._dialect is None and column.type == pa.float64() and name not in _TIMES:
+                column = column.cast(pa.float32())
+            table = table.append_column(tables.title(_PREFIX + name, self._units.get(name)), column)
         self._row, self._tick = end, self._tick + ticks
         if self._dialect is not None and self._dialect.decimal == ",":
             table = _with_commas(table)
@@ -169,46 +159,59 @@ class _Rows:
         return table.slice(0, rows)
 
 
-def read_estimate(folder: Path) -> dict[str, EstimatedSignal]:
-    """The estimates that `sigmahat estimate` wrote into a folder, by name, "t" first.
+class EstimateTable(Mapping[str, NDArray[np.float64]]):
+    """The numbers that `sigmahat estimate` wrote into a folder, by name; true is 1.
 
-    The columns of the log itself are not read. Raises LogError if there is no such table, or it is
-    damaged.
+    A column is read when it is asked for: all of a long log together do not fit the memory.
     """
-    path = next(folder.glob(f"{_STEM}.parquet"), folder / f"{_STEM}.csv")
-    signals = {}
-    try:
-        titles = [title for title in _titles(path) if title.startswith(_PREFIX)]
+
+    def __init__(self, folder: Path) -> None:
+        """Raises LogError if there is no such table, or it is damaged."""
+        path = next(folder.glob(f"{_STEM}.parquet"), folder / f"{_STEM}.csv")
+        is_csv = path.suffix == ".csv"
+        try:
+            self._log = CsvLog(path) if is_csv else ParquetLog(path)
+        except (LogError, OSError) as error:
+            what = "not readable as CSV" if is_csv else "damaged"
+            raise LogError(f"{path}: {what}; run `sigmahat estimate` again") from error
+        titles = [title for title in self._log.columns if title.startswith(_PREFIX)]
         names = [tables.name_and_unit(title.removeprefix(_PREFIX)) for title in titles]
-        if not {name for name, _ in names} >= {_TIME, "sigma", "valid"}:
+        self.units = dict(names)
+        """Unit of each output, None for flags."""
+        self._titles = dict(zip(self.units, titles, strict=True))
+        if not self.units.keys() >= {_TIME, "sigma", "valid"}:
             raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
-        table = _table(path, titles)
-    except (pa.ArrowException, OSError) as error:
-        what = "not readable as CSV" if path.suffix == ".csv" else "damaged"
-        raise LogError(f"{path}: {what}; run `sigmahat estimate` again") from error
-    for (name, unit), column in zip(names, table.columns, strict=True):
-        if column.type not in (pa.bool_(), pa.string()):
-            column = column.cast(pa.float64())
-        signals[name] = EstimatedSignal(name, unit, column.to_numpy())
-    return signals
+        self._doubt = self._titles.pop(DOUBT, None)
 
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        return self._log.read(self._titles[name])
 
-def _titles(path: Path) -> list[str]:
-    if path.suffix == ".parquet":
-        return list(pa.parquet.read_schema(path).names)
-    try:
-        return list(dialect(path).names)
-    except LogError as error:
-        raise LogError(f"{path}: not readable as CSV; run `sigmahat estimate` again") from error
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._titles)
 
+    def __len__(self) -> int:
+        return len(self._titles)
 
-def _table(path: Path, titles: list[str]) -> pa.Table:
-    if path.suffix == ".parquet":
-        return pa.parquet.read_table(path, columns=titles)
-    found = dialect(path)
-    options = pa.csv.ConvertOptions(include_columns=titles, decimal_point=found.decimal)
-    parse = pa.csv.ParseOptions(delimiter=found.delimiter)
-    return pa.csv.read_csv(path, parse_options=parse, convert_options=options)
+    def without(self, *names: str) -> EstimateTable:
+        """The same table, with fewer numbers."""
+        rest = copy(self)
+        rest._titles = {n: title for n, title in self._titles.items() if n not in names}
+        return rest
+
+    def doubts(self) -> Counter[str]:
+        """Rows in the second half of the log by the output doubt; empty if an older version wrote
+        the table.
+        """
+        found: Counter[str] = Counter()
+        if self._doubt is None:
+            return found
+        left = self._log.samples(self._doubt) // 2  # of the first half
+        for batch in self._log.batches([self._doubt], _ROWS):
+            later = batch.column(0).slice(min(left, len(batch)))
+            left -= len(batch) - len(later)
+            counted = later.value_counts()
+            found.update(dict(zip(*(counted.field(i).to_pylist() for i in (0, 1)), strict=True)))
+        return found
 
 
 @dataclass(frozen=True)
