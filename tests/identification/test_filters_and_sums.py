@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, coherence, sosfiltfilt, welch
 
-from recorded_logs import CONFIGURATION, awas_log, write_log
+from recorded_logs import CONFIGURATION, Array, awas_log, write_log
 from sigmahat.identification import regression
 from sigmahat.identification.coherence import spectra
 from sigmahat.identification.noise import low_pass
@@ -19,7 +19,7 @@ from sigmahat.identification.regression import Form, Signals, equations, fit, le
 
 @pytest.mark.parametrize(("frequency", "h"), [(5.0, 1e-3), (100.0, 1e-3), (1.2, 1e-2)])
 def test_the_low_pass_is_that_of_scipy(frequency: float, h: float) -> None:
-    walk = np.cumsum(np.random.default_rng(1).standard_normal((5000, 2)), axis=0)
+    walk: Array = np.cumsum(np.random.default_rng(1).standard_normal((5000, 2)), axis=0)
     expected = sosfiltfilt(butter(2, 2 * h * frequency, output="sos"), walk, axis=0)
     inner = slice(round(5 / frequency / h), -round(5 / frequency / h))
     found = low_pass(walk, frequency, h)

@@ -205,10 +205,6 @@ def _origin(answer: _Answer | None, folder: Path) -> Iterator[str]:
         yield f"{answer.replayed.log} with {source}; sigmahat {version}, {made:%Y-%m-%d %H:%M %Z}"
 
 
-def _rows(t: NDArray[Any], used: NDArray[np.bool_], answer: _Answer | None) -> str:
-    return f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}"
-
-
 def _skipped(answer: _Answer | None, used: NDArray[np.bool_]) -> str:
     """As `estimate` counts: ticks. A gap in the log has ticks, but no rows."""
     if answer is None:
