@@ -28,7 +28,7 @@ def test_the_low_pass_is_that_of_scipy(frequency: float, h: float) -> None:
 
 
 def test_a_line_passes_up_to_both_ends() -> None:
-    line: Array = 3.0 + 0.5 * np.arange(50)
+    line = np.arange(50, dtype=np.float64)
     assert low_pass(line, 2.0, 1e-3) == pytest.approx(line, abs=1e-9)
 
 
