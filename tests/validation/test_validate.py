@@ -171,7 +171,8 @@ def test_nothing_is_learned_at_a_point(folder: Path) -> None:
     found = frozen(folder, np.concatenate([last, between, last]))
     for name, unit in (("sigma", "N.m/rad"), ("sigma_std", "N.m/rad"), ("phi", "rad")):
         expected = table[f"estimate.{name} [{unit}]"].to_numpy()[-1]
-        assert found[name][0] == found[name][-1] == expected
+        assert found[name][0] == found[name][-1]
+        assert np.float32(found[name][0]) == expected  # the table is in single precision
     assert np.ptp(found["sigma"]) > 0
 
 
