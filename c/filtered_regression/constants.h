@@ -18,9 +18,7 @@
 #define SH_RESTS ((sh_real)0.25)
 
 /* Spacing of the rows over 1/w, and largest number of samples of a row [1]. */
-#ifndef SH_ROW_SPACING
 #define SH_ROW_SPACING ((sh_real)1.8)
-#endif
 #define SH_LONGEST_ROW ((sh_real)8)
 
 /* ---- columns, columns.c ------------------------------------------------------------------ */
@@ -150,12 +148,10 @@
 /* Number of blocks from which a change can be seen [1]. */
 #define SH_SHORTEST_PAST ((sh_real)40)
 
-/* Pause between two refits, over the duration of the blocks that count [1]: in it, the estimate can hardly
- * change.
+/* Pause between two refits, over the duration of the blocks that count [1]: in 2 % more time the estimate
+ * can hardly change. No simple ratio of blocks and rows, so that no rounding error decides.
  */
-#ifndef SH_REFIT_PAUSE
-#define SH_REFIT_PAUSE ((sh_real)0.02)
-#endif
+#define SH_REFIT_PAUSE ((sh_real)0.0201)
 
 /* ---- choice of columns, refit.c ---------------------------------------------------------- */
 

@@ -8,10 +8,6 @@
 #include "regression.h"
 #include "state_variable_filter.h"
 
-/* What a row changes beside the estimate, in steps: see take_step. */
-enum { STEPS = 7 };
-#define REFIT_ROWS ((state->signals.decimation + 1) / 2)
-
 static int check_filtered_regression(const sh_parameters *p, sh_violation *violation)
 {
     const sh_real wT = p->regression.bandwidth * p->samplePeriod;
@@ -232,7 +228,7 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
     sh_information_start(&state->data, state->columns.size, SH_LEAST_INFORMATION);
     sh_blocks_start(state);
     sh_change_start(state);
-    state->row.step = STEPS;
+    state->row.step = SH_ROW_STEPS;
     sh_refit_start(state, p);
     sh_joint_point_at(&at, &state->columns, p, 0, 0, 0, p->setPoint.offset, state->history.play);
     stiffness = evaluate_at(state, p, &at, &point);
@@ -401,7 +397,7 @@ static void take_step(sh_regression_state *state, const sh_parameters *p)
         state->refit.pause += duration;
         break;
     default:
-        for (i = 0; i < REFIT_ROWS; ++i) {
+        for (i = 0; i < (state->signals.decimation + 1) / 2; ++i) {
             sh_refit_advance(state, p);
         }
         break;
@@ -413,9 +409,9 @@ static void take_step(sh_regression_state *state, const sh_parameters *p)
 static void take_steps(sh_regression_state *state, const sh_parameters *p)
 {
     const int ticks = state->signals.decimation > 1 ? state->signals.decimation - 1 : 1;
-    const int last = state->row.step + (STEPS + ticks - 1) / ticks;
+    const int last = state->row.step + (SH_ROW_STEPS + ticks - 1) / ticks;
 
-    while (state->row.step < STEPS && state->row.step < last) {
+    while (state->row.step < SH_ROW_STEPS && state->row.step < last) {
         take_step(state, p);
     }
 }
@@ -442,7 +438,7 @@ static int refuse(sh_regression_state *state, const sh_history *before)
 }
 
 /* Takes a complete row. Returns 0 if its numbers are too large. */
-static int take_row(sh_regression_state *state, const sh_parameters *p)
+static int use_row(sh_regression_state *state, const sh_parameters *p)
 {
     sh_row *row = &state->row;
     const sh_row_noise noise = sh_noise_of_row(state, p);
@@ -485,7 +481,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
         sh_signals_unsettle(&state->signals, &state->history);
         settled = complete = 0;
     }
-    if (complete && !take_row(state, p)) { /* 3. to 5. Weigh it, predict it, and update. */
+    if (complete && !use_row(state, p)) { /* 3. to 5. Weigh it, predict it, and update. */
         return refuse(state, &before);
     }
     if (!complete || state->signals.decimation == 1) {

@@ -99,6 +99,19 @@ static int is_refit(const sh_refit *refit, int size)
     return 1;
 }
 
+/* Where the next row and the last one stand. */
+static int are_rows(const sh_regression_state *state, const sh_parameters *p)
+{
+    const int decimation = sh_regression_decimation(p);
+
+    if (state->signals.decimation != decimation || state->mean.samples < 0 ||
+        state->mean.samples >= decimation || state->row.step < 0 ||
+        state->row.step > SH_ROW_STEPS) {
+        return 0;
+    }
+    return 1;
+}
+
 static int are_flags(const sh_regression_state *state)
 {
     if (state->signals.begun < 0 || state->signals.begun > 1 || state->friction_drifts < 0 ||
@@ -119,7 +132,7 @@ int sh_filtered_regression_check_state(const sh_estimator *estimator, const sh_p
         !is_choice(state, &state->refit.posterior) ||
         !knows_motor(state, &state->refit.posterior) ||
         !is_refit(&state->refit, state->columns.size) ||
-        !are_flags(state)) {
+        !are_rows(state, p) || !are_flags(state)) {
         return 1;
     }
     return 0;

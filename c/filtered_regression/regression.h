@@ -21,6 +21,9 @@ typedef struct {
     sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
 } sh_joint_point;
 
+/* Steps in which a row changes what is behind the estimate. */
+enum { SH_ROW_STEPS = 7 };
+
 /* Variance of a row, whose inverse is its weight. */
 typedef struct {
     sh_real R;       /* [(N.m)2] */
@@ -165,6 +168,9 @@ sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_n
  * the page, and at least 1e-4 / samplePeriod.
  */
 sh_real sh_regression_bandwidth(const sh_parameters *p);
+
+/* Detail 16: number K of samples of a row, regression.decimation or, if that is 0, by the bandwidth. */
+int sh_regression_decimation(const sh_parameters *p);
 
 /* Designs the filters for columns that are known; they start with the next sample. */
 void sh_signals_start(sh_signals *signals, sh_history *history, const sh_parameters *p);

@@ -21,8 +21,8 @@ sh_real sh_regression_bandwidth(const sh_parameters *p)
         (sh_real)1e-4 / p->samplePeriod);
 }
 
-/* Samples of a row (detail 16): as many as the filter, which is as slow as 1/w, makes alike. */
-static int sh_decimation(const sh_parameters *p)
+/* K = 1.8 / (w T), 1..8: rows of more samples would lose what the filter leaves. */
+int sh_regression_decimation(const sh_parameters *p)
 {
     const sh_real wT = sh_regression_bandwidth(p) * p->samplePeriod;
 
@@ -37,7 +37,7 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
     signals->count = sh_encoder_count(p->encoder.theta);
     signals->count_q = sh_encoder_count(p->encoder.q);
     signals->design = sh_state_variable_filter_design(sh_regression_bandwidth(p), p->samplePeriod);
-    signals->decimation = sh_decimation(p);
+    signals->decimation = sh_regression_decimation(p);
     sh_state_variable_filter_noise(&signals->design, signals->decimation, &signals->gain,
                                    &signals->gain_second);
     history->starting = SH_FORGOTTEN / signals->design.w;

@@ -21,6 +21,18 @@ sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T)
     return design;
 }
 
+void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x)
+{
+    filter->input = x;
+    filter->behind[0] = filter->behind[1] = filter->behind[2] = 0;
+}
+
+void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x)
+{
+    filter->input = x;
+    filter->behind[0] = filter->behind[1] = filter->behind[2] = x;
+}
+
 /* Advances by T. In the steady state of a ramp, the output of stage i is i + 1 times lag behind the
  * input. Deviations from that decay as in the filter without input.
  */
@@ -55,6 +67,32 @@ void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
     filter->behind[2] += jump;
     advance(filter, design, 0);
     filter->input = mean;
+}
+
+void sh_state_variable_filter_add(sh_state_variable_filter *sum,
+                                  const sh_state_variable_filter *filter, sh_real share)
+{
+    sum->input += share * filter->input;
+    sum->behind[0] += share * filter->behind[0];
+    sum->behind[1] += share * filter->behind[1];
+    sum->behind[2] += share * filter->behind[2];
+}
+
+sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter)
+{
+    return filter->input - filter->behind[2];
+}
+
+sh_real sh_state_variable_filter_first(const sh_state_variable_filter *filter,
+                                       const sh_filter_design *design)
+{
+    return design->w * (filter->behind[2] - filter->behind[1]);
+}
+
+sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
+                                        const sh_filter_design *design)
+{
+    return design->w * design->w * (2 * filter->behind[1] - filter->behind[0] - filter->behind[2]);
 }
 
 void sh_state_variable_filter_noise(const sh_filter_design *design, int samples, sh_real *gain,

@@ -24,18 +24,10 @@
 sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T);
 
 /* Starts the filter as if the signal had always been x: no transient. */
-static inline void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x)
-{
-    filter->input = x;
-    filter->behind[0] = filter->behind[1] = filter->behind[2] = 0;
-}
+void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x);
 
 /* Starts the filter at rest for a signal that was zero until now and jumps to x. */
-static inline void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x)
-{
-    filter->input = x;
-    filter->behind[0] = filter->behind[1] = filter->behind[2] = x;
-}
+void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x);
 
 /* Advances the filter by T, in which the signal went linearly to x. */
 void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_filter_design *design,
@@ -47,36 +39,18 @@ void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_fi
 void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
                                         const sh_filter_design *design, sh_real mean);
 
-/* sum += share filter: outputs of a mean of states are means of outputs. */
-static inline void sh_state_variable_filter_add(sh_state_variable_filter *sum,
-                                                const sh_state_variable_filter *filter,
-                                                sh_real share)
-{
-    sum->input += share * filter->input;
-    sum->behind[0] += share * filter->behind[0];
-    sum->behind[1] += share * filter->behind[1];
-    sum->behind[2] += share * filter->behind[2];
-}
+/* sum += share filter: the outputs of a mean of states are the means of the outputs. */
+void sh_state_variable_filter_add(sh_state_variable_filter *sum,
+                                  const sh_state_variable_filter *filter, sh_real share);
 
 /* The filtered signal. */
-static inline sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter)
-{
-    return filter->input - filter->behind[2];
-}
+sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter);
 
 /* First and second derivative of the filtered signal, in its unit per s and per s2. */
-static inline sh_real sh_state_variable_filter_first(const sh_state_variable_filter *filter,
-                                                     const sh_filter_design *design)
-{
-    return design->w * (filter->behind[2] - filter->behind[1]);
-}
-
-static inline sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
-                                                      const sh_filter_design *design)
-{
-    return design->w * design->w *
-           (2 * filter->behind[1] - filter->behind[0] - filter->behind[2]);
-}
+sh_real sh_state_variable_filter_first(const sh_state_variable_filter *filter,
+                                       const sh_filter_design *design);
+sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
+                                        const sh_filter_design *design);
 
 /* Variances that white noise of variance 1 has in the mean of samples 1.. behind H: gain [1], and behind
  * s^2 H: gain_second [1/s4].
