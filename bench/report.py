@@ -49,7 +49,6 @@ def _requirements(times: Times) -> Iterator[Row]:
             tick,
             5.0,
         ),
-        ("FMU against that of PythonFMU, both in the loop in C", "FMU", "PythonFMU", 0.02),
         ("Estimator.run, against the bare tick", one, tick, 1.1),
         ("Estimator.run of 30 joints, against one, per joint", f"{one}, 30 joints", one, 1.0),
         ("simulate, against simulate_fmu of FMPy", "simulate of sigmahat", FMPY, 1.0),

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import subprocess
-import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -25,7 +23,6 @@ from sigmahat.runs.scenario import Sine, T
 
 Array = NDArray[np.float64]
 
-HERE = Path(__file__).parent
 SIZES = (3, 6, 18, 40)
 JOINTS = 30
 P_0 = 1e3  # as BENCH_P_0 in subjects.h
@@ -182,24 +179,12 @@ class Steps:
         self._times[:, 0] += self.count * T
 
 
-def pythonfmu(folder: Path) -> Fmu:
-    """The estimator in Python, `paper2011_slave.py`, as an FMU."""
-    script = HERE / "paper2011_slave.py"
-    command = [sys.executable, "-m", "pythonfmu", "build", "-f", str(script), "-d", str(folder)]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    return Fmu(folder / "Paper2011.fmu")
-
-
-def ticks(library: Library, python: Fmu, z: Array) -> Iterator[Subject]:
-    """The tick of the C library, and the same in FMUs."""
+def ticks(library: Library, z: Array) -> Iterator[Subject]:
+    """The tick of the C library, and the same in the FMU."""
     for method in METHODS:
         yield Subject(f"tick {method}", partial(Ticks(library, method).run, z), len(z))
-    few = np.ascontiguousarray(z[: max(len(z) // 100, 1)])
-    for name, fmu, rows in (
-        ("FMU", installed("StiffnessEstimator"), z),
-        ("PythonFMU", python, few),
-    ):
-        yield Subject(name, Steps(fmu, MEASUREMENTS, OUTPUTS, rows).run, len(rows))
+    fmu = installed("StiffnessEstimator")
+    yield Subject("FMU", Steps(fmu, MEASUREMENTS, OUTPUTS, z).run, len(z))
 
 
 # Plant and whole runs

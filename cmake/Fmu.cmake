@@ -45,7 +45,7 @@ function(sigmahat_add_fmu name)
   set_target_properties(${name}_model PROPERTIES C_VISIBILITY_PRESET hidden)
 
   # The files for people: documentation and icons.
-  file(GLOB pages ${source_dir}/modelDescription/documentation/*.html)
+  file(GLOB pages ${source_dir}/modelDescription/documentation/*.html ${source_dir}/modelDescription/icons/${name}.*)
   set(shown ${dir}/shown)
   set(shown_files
       ${shown}/fmi2/model.png ${shown}/fmi2/documentation/icon.svg

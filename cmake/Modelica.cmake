@@ -8,7 +8,7 @@ file(GLOB modelica_variables CONFIGURE_DEPENDS modelDescription/*.xml)
 add_custom_command(
   OUTPUT ${modelica}
   COMMAND ${SIGMAHAT_RUN} sigmahat.export modelica ${modelica} ${PROJECT_SOURCE_DIR}/modelica/Sigmahat
-          ${modelica_sources} --templates ${PROJECT_SOURCE_DIR}/modelDescription
+          ${modelica_sources} --descriptions ${PROJECT_SOURCE_DIR}/modelDescription
           --licence ${PROJECT_SOURCE_DIR}/LICENSE --version ${PROJECT_VERSION}
   DEPENDS ${modelica_package} ${modelica_variables} ${modelica_sources} LICENSE
           harness/sigmahat/export/modelica.py harness/sigmahat/export/templates.py

@@ -13,7 +13,6 @@ add_custom_target(
   COMMAND ${consistent} --group reproduce --excludes requirements/not-for-reproduce.txt
           -o requirements/reproduce.txt
   COMMAND ${consistent} --group release -o requirements/release.txt
-  COMMAND ${consistent} --group bench -o requirements/bench.txt
   COMMAND ${consistent} --group coverage -o requirements/coverage.txt
   COMMAND ${consistent} pyproject.toml --group docs -o requirements/docs.txt
   COMMAND ${consistent} --group rivals -o requirements/rivals.txt

@@ -29,11 +29,11 @@ list(FILTER native_sources INCLUDE REGEX "[.]c$")
 list(TRANSFORM native_sources PREPEND ${PROJECT_SOURCE_DIR}/)
 set(compiled "")
 foreach(source IN LISTS native_sources library_sources)
-  list(APPEND compiled --source ${source})
+  list(APPEND compiled --sources ${source})
 endforeach()
 set(included "")
 foreach(folder IN LISTS SIGMAHAT_NATIVE_INCLUDES)
-  list(APPEND included --include ${folder})
+  list(APPEND included --includes ${folder})
 endforeach()
 file(GLOB_RECURSE package CONFIGURE_DEPENDS harness/sigmahat/* harness/native/*)
 list(FILTER package EXCLUDE REGEX "__pycache__")
@@ -51,7 +51,7 @@ add_custom_command(
 set(bill ${release}/sigmahat.cdx.json)
 add_custom_command(
   OUTPUT ${bill}
-  COMMAND ${SIGMAHAT_RUN} sigmahat.export bill ${release} --version ${PROJECT_VERSION}
+  COMMAND ${SIGMAHAT_RUN} sigmahat.export bill ${bill} ${release} --version ${PROJECT_VERSION}
   DEPENDS ${released_2} ${released_3} ${release}/sigmahat-awas.ssp ${release}/python.stamp
           ${release}/sigmahat-modelica.zip ${packages_release}
           harness/sigmahat/export/bill.py

@@ -11,6 +11,8 @@ import pytest
 
 import gate
 import sigmahat
+from fmi_instance import Instance, Instance3
+from fmi_runs import Fmi
 
 if TYPE_CHECKING:
     from c_library import Library
@@ -55,6 +57,12 @@ def antagonistic_fmu() -> Path:
 def twin(build: Path) -> Callable[[str], Path]:
     """Path of the twin for FMI 3.0 of an FMU, with the binary of this machine."""
     return lambda name: build / "fmi3" / f"{name}_FMI3.fmu"
+
+
+@pytest.fixture(params=["fmi2", "fmi3"])
+def fmi(request: pytest.FixtureRequest, twin: Callable[[str], Path]) -> Fmi:
+    """Each version of FMI in turn."""
+    return Fmi(Instance, sigmahat.fmu) if request.param == "fmi2" else Fmi(Instance3, twin)
 
 
 @pytest.fixture(scope="session")

@@ -52,7 +52,6 @@ class Estimate:
     std: Array  # standard deviation [N.m/rad]; NaN: the method gives none
     confident: NDArray[np.bool_]
     seconds: float  # wall time of the estimation
-    remark: str = ""  # why there is none
 
 
 def encoder_std(counts: int) -> float:
@@ -66,7 +65,7 @@ FilteredRegression is at most."""
 
 
 def with_interval(log: JointLog, stiffness: Array, std: Array, seconds: float) -> Estimate:
-    """The estimate of a method that gives a standard deviation.
+    """The estimate of a rival that gives a standard deviation.
 
     What is known of the gain of the torque is added to it: the stiffness is proportional to it.
 
@@ -76,9 +75,3 @@ def with_interval(log: JointLog, stiffness: Array, std: Array, seconds: float) -
     std = np.hypot(std, log.known.relative_std_gain * stiffness)
     confident = np.isfinite(stiffness) & np.isfinite(std) & (std < CONFIDENT * stiffness)
     return Estimate(stiffness, std, confident, seconds)
-
-
-def none_found(log: JointLog, seconds: float, reason: str) -> Estimate:
-    """The estimate of a method that has none for this log."""
-    nothing = np.full(len(log.theta), np.nan)
-    return Estimate(nothing, nothing, np.zeros(len(log.theta), bool), seconds, reason)

@@ -15,19 +15,22 @@ void sh_change_start(sh_regression_state *state)
     sh_change *change = &state->change;
 
     sh_information_start(&change->changed, state->columns.size, SH_LEAST_INFORMATION);
-    change->opened = state->columns.size;
-    change->adopted = state->columns.size;
     change->level = change->usual_misfit = 1;
     change->blocks = SH_SHORTEST_TEST; /* it begins with the first block that can show a change */
     state->history.change_age = -1;
 }
 
-/* Column i gets its prior back, if it is one of the spring. */
-static void open_column(const sh_columns *columns, sh_information *a, int i)
+/* The columns of the spring, which are the first ones, get their prior back. What the data say about the others
+ * where the spring is not known stays: it is in the rows behind (information.h).
+ */
+static void forget_spring(const sh_columns *columns, sh_information *a, sh_real precision)
 {
-    if (sh_column_is(&columns->column[i], SH_IS_SPRING)) {
-        sh_information_drift_one(a, i, 1);
+    int count = 0;
+
+    while (count < columns->size && sh_column_is(&columns->column[count], SH_IS_SPRING)) {
+        count += 1;
     }
+    sh_information_restart(a, count, precision);
 }
 
 /* Hypothesis 1 begins now. */
@@ -38,12 +41,12 @@ static void begin(sh_regression_state *state)
 
     sh_information_copy(&change->changed,
                         state->friction_drifts ? &blocks->drifting : &blocks->constant);
-    change->opened = 0;
+    forget_spring(&state->columns, &change->changed, SH_LEAST_INFORMATION);
     change->evidence = change->blocks = 0;
 }
 
-/* The blocks are those of hypothesis 1; the data of all samples follow column by column. */
-static void adopt(sh_regression_state *state)
+/* The blocks are those of hypothesis 1; the data of all samples and the next posterior follow. */
+static void adopt(sh_regression_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;
     sh_change *change = &state->change;
@@ -52,7 +55,9 @@ static void adopt(sh_regression_state *state)
     sh_information_copy(&blocks->drifting, &change->changed);
     sh_information_start(&blocks->recent, state->columns.size, 1);
     blocks->recent_count = 0;
-    change->adopted = 0;
+    forget_spring(&state->columns, &state->data, SH_LEAST_INFORMATION);
+    state->rounding = 0;
+    sh_refit_restart(state, p);
     change->following = 1;
     change->usual_misfit *=
         SH_SUDDEN_MISFIT; /* what was learned of the motor may not fit as well */
@@ -66,11 +71,6 @@ static void watch_misfit(sh_change *change, sh_real misfit)
     const sh_real usual = change->usual_misfit;
 
     change->usual_misfit += (sh_fmin(misfit, SH_SUDDEN_MISFIT * usual) - usual) / change->judged;
-}
-
-int sh_change_is_ready(const sh_regression_state *state)
-{
-    return state->change.opened == state->columns.size;
 }
 
 /* g = max(0, g + min(z_0 / l, 25) - 2 min(z_1 / l, 12.5) - 2), where z are squares of errors over their variances
@@ -89,7 +89,7 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
     change->level =
         sh_fmax(level + (sh_fmin(before, SH_LARGEST_LEVEL * level) - level) / change->judged, 1);
     watch_misfit(change, sh_sqrt(sh_fmax(1, state->misfit)));
-    if (!sh_change_is_ready(state) || state->blocks.count < SH_SHORTEST_PAST) {
+    if (state->blocks.count < SH_SHORTEST_PAST) {
         return;
     }
     change->blocks += 1;
@@ -101,26 +101,8 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
                                    2 * sh_fmin(changed / level, SH_LARGEST_EVIDENCE / 2) - 2,
                                0);
     if (change->evidence > SH_HAS_CHANGED * sh_sqrt(level) && change->following == 0) {
-        adopt(state);
+        adopt(state, p);
     }
-}
-
-/* One column a tick, so that no tick takes long. */
-int sh_change_step(sh_regression_state *state)
-{
-    sh_change *change = &state->change;
-    const int size = state->columns.size;
-
-    if (change->opened < size) {
-        open_column(&state->columns, &change->changed, change->opened);
-        change->opened += 1;
-    }
-    if (change->adopted < size) {
-        open_column(&state->columns, &state->data, change->adopted);
-        change->adopted += 1;
-        return change->adopted == size;
-    }
-    return 0;
 }
 
 int sh_change_is_likely(const sh_regression_state *state)

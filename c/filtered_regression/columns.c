@@ -13,7 +13,7 @@
  * column is multiplied by the std deviation of its coefficient: all coefficients beta have the prior
  * N(0, 1). With a prior of 0 there is no such column.
  *
- * To add a kind of column: its row in KINDS, and its line in list_columns.
+ * To add a kind of column: its row in sh_column_kinds, and its line in list_columns.
  */
 #include <stddef.h>
 #include <string.h>
@@ -51,18 +51,12 @@ int sh_has_nominal_curve(const sh_parameters *p)
 /* A std deviation of sh_parameters.prior is given in this unit. */
 enum { ONE, TAU_E, K_0, TAU_C };
 
-#define PRIOR(member) offsetof(sh_parameters, prior.member)
+#define PRIOR(member) (int)offsetof(sh_parameters, prior.member)
 #define CURVE (SH_IS_SPRING | SH_IS_CURVE)
 #define MOTOR (SH_IS_MOTOR | SH_IS_EQUATION)
 
-/* Of a column: its prior, how the filter takes its signal, the quantity that its coefficient is, its
- * group, and what it is. The signal is in signal_of, the entry of the row in set_terms or own_entry.
- */
-static const struct {
-    size_t prior;
-    int unit, taken, quantity, group;
-    unsigned is;
-} KINDS[SH_COLUMN_KINDS] = {
+/* The signal of a column is in signal_of, its entry in the row in entry_of. */
+const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, SH_SIGNAL_LINEAR, SH_OF_CURVE, 0,
                          CURVE | SH_IS_EQUATION},
     [SH_COLUMN_NOMINAL] = {PRIOR(nominal), ONE, SH_SIGNAL_NONE, SH_OF_NOMINAL, 0,
@@ -92,26 +86,6 @@ static const struct {
                            MOTOR | SH_IS_FRICTION | SH_IS_COULOMB},
     [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, SH_SIGNAL_NONE, SH_OF_INERTIA, 0, MOTOR | SH_IS_INERTIA},
 };
-
-int sh_column_is(const sh_column *column, unsigned what)
-{
-    return (KINDS[column->kind].is & what) != 0;
-}
-
-int sh_column_quantity(const sh_column *column)
-{
-    return KINDS[column->kind].quantity;
-}
-
-int sh_column_signal(const sh_column *column)
-{
-    return KINDS[column->kind].taken;
-}
-
-int sh_column_group(const sh_column *column)
-{
-    return KINDS[column->kind].group;
-}
 
 /* Half width of a dead zone or an element of hysteresis over range.phi; 0: of another column [1]. */
 static sh_real half_width(const sh_column *column)
@@ -161,13 +135,13 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
     const sh_real units[] = {1, p->prior.tau_e, p->prior.tau_e / p->range.phi,
                              p->prior.tau_coulomb};
     sh_column column = {kind, i, j, 0, 0};
-    const void *prior = (const char *)p + KINDS[kind].prior;
+    const void *prior = (const char *)p + sh_column_kinds[kind].prior;
 
-    column.prior = *(const sh_real *)prior * units[KINDS[kind].unit];
+    column.prior = *(const sh_real *)prior * units[sh_column_kinds[kind].unit];
     if (!(column.prior > 0)) {
         return;
     }
-    if (KINDS[kind].quantity == SH_OF_CURVE) {
+    if (sh_column_kinds[kind].quantity == SH_OF_CURVE) {
         column.unit = unit_of_power(p, i, j);
     }
     if (list->column != NULL) {
@@ -176,6 +150,7 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
     list->size += 1;
 }
 
+/* Those of the spring are the first ones, see change.c. */
 static void list_columns(const sh_parameters *p, column_list *list)
 {
     const int n = p->rls.n, m = p->rls.m, linear = sh_torque_basis_linear(p->rls.symmetric);
@@ -191,6 +166,21 @@ static void list_columns(const sh_parameters *p, column_list *list)
     if (sh_has_nominal_curve(p)) {
         add(list, p, SH_COLUMN_NOMINAL, 0, 0);
     }
+    /*@ loop unroll 2; */
+    for (i = 0; i < 2 && n + i < SH_MAX_N; ++i) {
+        add(list, p, SH_COLUMN_HIGHER_POWER, n + i, 0);
+    }
+    if (m > 1 && m < SH_MAX_M && linear < n) {
+        add(list, p, SH_COLUMN_SET_POWER, linear, m);
+    }
+    /*@ loop unroll SH_WIDTHS; */
+    for (i = 0; i < SH_WIDTHS; ++i) {
+        add(list, p, SH_COLUMN_DEAD_ZONE, i, 0);
+    }
+    /*@ loop unroll SH_WIDTHS; */
+    for (i = p->rls.symmetric ? SH_WIDTHS - 1 : 0; i < SH_WIDTHS; ++i) {
+        add(list, p, SH_COLUMN_KNEE, i, 0);
+    }
     add(list, p, SH_COLUMN_BIAS, 0, 0);
     add(list, p, SH_COLUMN_DAMPING, 0, 0);
     if (m > 1) {
@@ -204,24 +194,9 @@ static void list_columns(const sh_parameters *p, column_list *list)
     }
     add(list, p, SH_COLUMN_DELAY, 0, 0);
     add(list, p, SH_COLUMN_REVERSAL, 0, 0);
-    /*@ loop unroll 2; */
-    for (i = 0; i < 2 && n + i < SH_MAX_N; ++i) {
-        add(list, p, SH_COLUMN_HIGHER_POWER, n + i, 0);
-    }
-    if (m > 1 && m < SH_MAX_M && linear < n) {
-        add(list, p, SH_COLUMN_SET_POWER, linear, m);
-    }
-    /*@ loop unroll SH_WIDTHS; */
-    for (i = 0; i < SH_WIDTHS; ++i) {
-        add(list, p, SH_COLUMN_DEAD_ZONE, i, 0);
-    }
     /*@ loop unroll SH_WIDTHS; */
     for (i = 0; i < SH_WIDTHS; ++i) {
         add(list, p, SH_COLUMN_HYSTERESIS, i, 0);
-    }
-    /*@ loop unroll SH_WIDTHS; */
-    for (i = p->rls.symmetric ? SH_WIDTHS - 1 : 0; i < SH_WIDTHS; ++i) {
-        add(list, p, SH_COLUMN_KNEE, i, 0);
     }
     add(list, p, SH_COLUMN_SIN_M, 0, 0);
     add(list, p, SH_COLUMN_COS_M, 0, 0);
@@ -401,42 +376,25 @@ static sh_real as_if_smooth(const sh_state_variable_filter *filter, const sh_fil
 }
 
 /* Filtered torque in y: -gamma tau_f, or the measured torque of the spring [N.m]. */
-static sh_real torque_in_y(const sh_regression_state *state, const sh_parameters *p)
+static sh_real torque_in_y(const sh_parameters *p, const sh_filter_design *design,
+                           const sh_state_variable_filter *filter)
 {
-    const sh_state_variable_filter *tau = &state->signals.torque;
+    const sh_state_variable_filter *tau = &filter[SH_FILTER_TORQUE];
 
     return sh_is_measured(p) ? sh_state_variable_filter_output(tau)
-                             : -p->motor.gamma * as_if_smooth(tau, &state->signals.design);
+                             : -p->motor.gamma * as_if_smooth(tau, design);
 }
 
-/* -|gamma tau_f| s_f for a torque -gamma tau_f in y [N.m]. */
-static sh_real drive_friction(const sh_signals *signals, sh_real torque)
+/* y = gamma^2 B theta''_f + gamma^2 D_theta theta'_f - gamma tau_f, or the torque of the spring */
+sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
+                     const sh_state_variable_filter *filter)
 {
-    return -sh_fabs(torque) * as_if_smooth(&signals->sign, &signals->design);
-}
+    const sh_state_variable_filter *theta = &filter[SH_FILTER_THETA];
+    const sh_real motor = p->motor.B * sh_state_variable_filter_second(theta, design) +
+                          p->motor.D_theta * sh_state_variable_filter_first(theta, design);
 
-/* Sets the entries over their priors of all columns without a filter of their own. */
-static void set_terms(const sh_regression_state *state, const sh_parameters *p, sh_real torque,
-                      sh_real *term)
-{
-    const sh_signals *signals = &state->signals;
-    const sh_filter_design *design = &signals->design;
-    const sh_real gamma = p->motor.gamma, gain = sh_is_measured(p) ? 1 : -gamma;
-
-    /* gamma (tau' + delay tau''/2) */
-    term[SH_COLUMN_DELAY] =
-        -gain * (sh_state_variable_filter_first(&signals->torque, design) +
-                 state->delay / 2 * sh_state_variable_filter_second(&signals->torque, design));
-    term[SH_COLUMN_NOMINAL] = sh_state_variable_filter_output(&signals->nominal);
-    /* -gamma^2 D_theta theta'_f, -gamma^2 B theta''_f, -|gamma| s_f, |gamma| s'_f */
-    term[SH_COLUMN_VISCOUS] =
-        -gamma * gamma * p->motor.D_theta * sh_state_variable_filter_first(&signals->theta, design);
-    term[SH_COLUMN_INERTIA] =
-        -gamma * gamma * p->motor.B * sh_state_variable_filter_second(&signals->theta, design);
-    term[SH_COLUMN_COULOMB] = -sh_fabs(gamma) * as_if_smooth(&signals->sign, design);
-    term[SH_COLUMN_REVERSAL] =
-        sh_fabs(gamma) * sh_state_variable_filter_first(&signals->sign, design);
-    term[SH_COLUMN_DRIVE] = drive_friction(signals, torque);
+    return torque_in_y(p, design, filter) +
+           (sh_is_measured(p) ? 0 : p->motor.gamma * p->motor.gamma * motor);
 }
 
 /* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta; 0 while sigma is not
@@ -455,50 +413,63 @@ static sh_real encoder_error(const sh_regression_state *state, const sh_paramete
     return state->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
 }
 
-/* Entry of a column with a filter of its own, which contains the prior. */
-static sh_real own_entry(const sh_regression_state *state, const sh_parameters *p, int kind,
-                         const sh_state_variable_filter *filter)
+/* Entry of column i over its prior, or with it where the column has a filter of its own. */
+static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p,
+                        const sh_state_variable_filter *filter, int i)
 {
-    switch (kind) {
+    const sh_filter_design *design = &state->signals.design;
+    const sh_state_variable_filter *theta = &filter[SH_FILTER_THETA], *tau = &filter[SH_FILTER_TORQUE];
+    const sh_state_variable_filter *sign = &filter[SH_FILTER_SIGN], *own = &filter[SH_FILTER_COLUMN + i];
+    const sh_real gamma = p->motor.gamma, gain = sh_is_measured(p) ? 1 : -gamma;
+
+    switch (state->columns.column[i].kind) {
+    case SH_COLUMN_NOMINAL:
+        return sh_state_variable_filter_output(&filter[SH_FILTER_NOMINAL]);
     case SH_COLUMN_DAMPING: /* phi' l^j */
-        return sh_state_variable_filter_first(filter, &state->signals.design);
+        return sh_state_variable_filter_first(own, design);
     case SH_COLUMN_LOAD: /* -|tau_e| s through the filter */
-        return as_if_smooth(filter, &state->signals.design);
+        return as_if_smooth(own, design);
+    case SH_COLUMN_DRIVE: /* -|gamma tau_f| s_f */
+        return -sh_fabs(torque_in_y(p, design, filter)) * as_if_smooth(sign, design);
+    case SH_COLUMN_DELAY: /* gamma (tau' + delay tau''/2) */
+        return -gain * (sh_state_variable_filter_first(tau, design) +
+                        state->delay / 2 * sh_state_variable_filter_second(tau, design));
+    case SH_COLUMN_REVERSAL: /* |gamma| s'_f */
+        return sh_fabs(gamma) * sh_state_variable_filter_first(sign, design);
     case SH_COLUMN_SIN_M:
     case SH_COLUMN_COS_M:
-        return encoder_error(state, p, filter);
+        return encoder_error(state, p, own);
+    case SH_COLUMN_VISCOUS: /* -gamma^2 D_theta theta'_f */
+        return -gamma * gamma * p->motor.D_theta * sh_state_variable_filter_first(theta, design);
+    case SH_COLUMN_COULOMB: /* -|gamma| s_f */
+        return -sh_fabs(gamma) * as_if_smooth(sign, design);
+    case SH_COLUMN_INERTIA: /* -gamma^2 B theta''_f */
+        return -gamma * gamma * p->motor.B * sh_state_variable_filter_second(theta, design);
     default:
-        return sh_state_variable_filter_output(filter);
+        return sh_state_variable_filter_output(own);
     }
 }
 
-/* y = gamma^2 B theta''_f + gamma^2 D_theta theta'_f - gamma tau_f, or the torque of the spring */
-sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x)
+void sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
+                    const sh_state_variable_filter *filter, sh_real *x)
 {
-    const int size = state->columns.size, is_measured = sh_is_measured(p);
-    const sh_real torque = torque_in_y(state, p);
-    sh_real term[SH_COLUMN_KINDS] = {0}, y = torque;
+    const sh_filter_design *design = &state->signals.design;
+    const int size = state->columns.size;
     int i;
 
-    set_terms(state, p, torque, term);
     for (i = 0; i < size; ++i) {
         const sh_column *column = &state->columns.column[i];
-        const int kind = column->kind;
+        const int has_filter = sh_column_kinds[column->kind].signal != SH_SIGNAL_NONE;
 
-        if (is_measured && sh_column_is(column, SH_IS_MOTOR)) {
-            x[i] = 0;
-        } else if (KINDS[kind].taken == SH_SIGNAL_NONE) {
-            x[i] = column->prior * term[kind];
-        } else {
-            x[i] = own_entry(state, p, kind, &state->signals.column[i]);
-        }
+        x[i] = sh_is_measured(p) && sh_column_is(column, SH_IS_MOTOR)
+                   ? 0
+                   : (has_filter ? 1 : column->prior) * entry_of(state, p, filter, i);
     }
-    if (!is_measured) {
-        y -= term[SH_COLUMN_INERTIA] + term[SH_COLUMN_VISCOUS];
+    x[size + SH_RIGHT_GAIN] = torque_in_y(p, design, filter);
+    x[size + SH_RIGHT_Y] = sh_columns_y(p, design, filter);
+    if (state->columns.has_nominal) {
+        x[size + SH_RIGHT_Y] -= sh_state_variable_filter_output(&filter[SH_FILTER_NOMINAL]);
     }
-    x[size + SH_RIGHT_GAIN] = torque;
-    x[size + SH_RIGHT_Y] = state->columns.has_nominal ? y - term[SH_COLUMN_NOMINAL] : y;
-    return y;
 }
 
 /* The noise nu of the torque is the share lambda of the prediction error of the row without it. The column
@@ -506,33 +477,29 @@ sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
  *
  *     nu = lambda epsilon / (1 - lambda c) .
  */
-static sh_real noise_of_torque(const sh_sample_noise *noise, sh_real c, sh_real epsilon)
+static sh_real noise_of_torque(const sh_row_noise *noise, sh_real c, sh_real epsilon)
 {
     return noise->share * epsilon / (1 - noise->share * clip(c, SH_LARGEST_RETURN));
 }
 
 /* What is left has the variance (1 - lambda) N_tau, and so much in common with the torque in y. */
-sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_parameters *p,
-                                const sh_sample_noise *noise, sh_real epsilon, sh_real *x,
-                                sh_column_noise *left)
+sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
+                                sh_real epsilon, sh_real *x, sh_column_noise *left)
 {
-    const sh_signals *signals = &state->signals;
-    const sh_real torque = torque_in_y(state, p), sign = torque > 0 ? 1 : -1;
-    const sh_real slope = sign * drive_friction(signals, 1);
+    const int size = state->columns.size;
+    const sh_real torque = x[size + SH_RIGHT_GAIN];
     sh_real change = 0;
     int i;
 
     left->information = left->gain = 0;
-    for (i = 0; i < state->columns.size && !sh_is_measured(p); ++i) {
-        const sh_column *column = &state->columns.column[i];
+    for (i = 0; i < size && sh_square(torque) > 0; ++i) {
+        if (sh_column_is(&state->columns.column[i], SH_IS_DRIVE)) {
+            const sh_real slope = x[i] / torque;
+            const sh_real nu = noise_of_torque(noise, slope * state->beta[i], epsilon);
+            const sh_real entry = x[i] * sh_fabs(1 - nu / torque);
 
-        if (sh_column_is(column, SH_IS_DRIVE)) {
-            const sh_real by_torque = column->prior * slope;
-            const sh_real nu = noise_of_torque(noise, by_torque * state->beta[i], epsilon);
-            const sh_real entry = column->prior * drive_friction(signals, torque - nu);
-
-            left->gain = (1 - noise->share) * noise->torque * by_torque;
-            left->information = left->gain * by_torque;
+            left->gain = (1 - noise->share) * noise->torque * slope;
+            left->information = left->gain * slope;
             change = (entry - x[i]) * state->beta[i];
             x[i] = entry;
         }

@@ -17,6 +17,10 @@
 /* Change of phi in a sample, over the finer resolution, below which phi rests [1]. */
 #define SH_RESTS ((sh_real)0.25)
 
+/* Spacing of the rows over 1/w, and largest number of samples of a row [1]. */
+#define SH_ROW_SPACING ((sh_real)1.8)
+#define SH_LONGEST_ROW ((sh_real)8)
+
 /* ---- columns, columns.c ------------------------------------------------------------------ */
 
 /* Half widths of dead zones and of elements of hysteresis, over range.phi [1]: each four times the
@@ -131,7 +135,7 @@
  * changed [1]. Without a change, it stayed below 51 in 206 runs of 20 s with every misfit.
  */
 #define SH_MAY_HAVE_CHANGED ((sh_real)20)
-#define SH_HAS_CHANGED ((sh_real)60)
+#define SH_HAS_CHANGED ((sh_real)100)
 
 /* Largest evidence of one block [1]: one block alone, which may be a blow, is none. */
 #define SH_LARGEST_EVIDENCE ((sh_real)25)
@@ -155,6 +159,11 @@
 
 /* Number of blocks from which a change can be seen [1]. */
 #define SH_SHORTEST_PAST ((sh_real)40)
+
+/* Pause between two refits, over the duration of the blocks that count [1]: in 2 % more time the estimate
+ * can hardly change. No simple ratio of blocks and rows, so that no rounding error decides.
+ */
+#define SH_REFIT_PAUSE ((sh_real)0.0201)
 
 /* ---- choice of columns, refit.c ---------------------------------------------------------- */
 

@@ -1,4 +1,6 @@
 /* Method FilteredRegression: one tick, and what its estimate means. */
+#include <string.h>
+
 #include "constants.h"
 #include "information.h"
 #include "method.h"
@@ -101,7 +103,7 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     for (i = 0; i < state->columns.size; ++i) {
         const sh_column *column = &state->columns.column[i];
         const sh_real value = column->prior * state->beta[i];
-        const int quantity = sh_column_quantity(column);
+        const int quantity = sh_column_kinds[column->kind].quantity;
 
         if (quantity == SH_OF_CURVE) {
             estimate->eta[column->i][column->j] =
@@ -186,7 +188,6 @@ static int report(sh_regression_state *state, const sh_parameters *p, const sh_j
     sh_point point;
     sh_combination stiffness;
 
-    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
     stiffness = evaluate_at(state, p, at, &point);
     if (!isfinite(point.sigma) || !isfinite(point.tau_e) || !isfinite(stiffness.variance) ||
         !isfinite(stiffness.value[SH_RIGHT_GAIN])) {
@@ -199,7 +200,7 @@ static int report(sh_regression_state *state, const sh_parameters *p, const sh_j
     estimate->tau_e_residual = y;
     estimate->phi = at->phi;
     estimate->theta_dot =
-        sh_state_variable_filter_first(&state->signals.theta, &state->signals.design);
+        sh_state_variable_filter_first(&state->signals.filter[SH_FILTER_THETA], &state->signals.design);
     report_coefficients(state, p, at, &stiffness, estimate);
     /* What the next row depends on. */
     state->modality = p->modality;
@@ -227,6 +228,7 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
     sh_information_start(&state->data, state->columns.size, SH_LEAST_INFORMATION);
     sh_blocks_start(state);
     sh_change_start(state);
+    state->row.step = SH_ROW_STEPS;
     sh_refit_start(state, p);
     sh_joint_point_at(&at, &state->columns, p, 0, 0, 0, p->setPoint.offset, state->history.play);
     stiffness = evaluate_at(state, p, &at, &point);
@@ -248,38 +250,63 @@ static sh_real sum_of_squares(const sh_real *x, int size)
     return sum;
 }
 
-/* Whether no result overflows by the signals and the row of a sample; not if one is not a number. */
-static int are_acceptable(const sh_joint_point *at, const sh_real *x, int size)
+/* Whether no result overflows by the signals of a sample; not if one is not a number. */
+static int are_acceptable(const sh_joint_point *at, sh_real y, int size)
 {
     return sum_of_squares(at->F, size) <= SH_LARGE && sum_of_squares(at->dF, size) <= SH_LARGE &&
            sh_fabs(at->tau_nominal) <= SH_LARGE && sh_fabs(at->sigma_nominal) <= SH_LARGE &&
-           sum_of_squares(x, size + SH_RIGHT_SIDES) <= SH_LARGE;
+           sh_square(y) <= SH_LARGE;
 }
 
-/* Whether the estimate may use this sample: the filters have settled, and at the start the motor was at
- * rest (detail 12).
+/* Whether the filters have settled. */
+static int is_settled(sh_history *history, sh_real T)
+{
+    history->settling = sh_fmax(history->settling - T, 0);
+    return !(history->settling > 0);
+}
+
+/* Adds the states of the filters to those of the samples before. Returns 1 if a row is complete: then the mean
+ * of the states makes it (detail 16).
  */
-static int is_settled(sh_regression_state *state, const sh_parameters *p, const sh_real *x)
+static int take_sample(sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_signals *signals = &state->signals;
+    const sh_real share = 1 / (sh_real)signals->decimation;
+    sh_mean *mean = &state->mean;
+    sh_row *row = &state->row;
+    int i;
+
+    sh_noise_watch(&state->history, signals, p);
+    for (i = 0; i < SH_FILTER_COLUMN + state->columns.size; ++i) {
+        sh_state_variable_filter_add(&mean->filter[i], &signals->filter[i], share);
+    }
+    mean->rough += sh_signals_roughness(signals) * share;
+    mean->moved += sh_fabs(signals->theta_before[0] - signals->theta_before[1]) > 0 ? share : 0;
+    mean->samples += 1;
+    if (mean->samples < signals->decimation) {
+        return 0;
+    }
+    sh_columns_row(state, p, mean->filter, row->x);
+    row->rough = mean->rough;
+    row->moved = mean->moved;
+    (void)memset(mean, 0, sizeof *mean);
+    return 1;
+}
+
+/* Whether the row shows that the motor was not at rest at the start (detail 12). */
+static int has_moved_before(sh_regression_state *state, const sh_parameters *p)
 {
     sh_history *history = &state->history;
 
-    history->settling = sh_fmax(history->settling - p->samplePeriod, 0);
-    if (history->settling > 0) {
+    if (sh_is_measured(p) || !(history->starting > 0)) {
         return 0;
     }
-    if (sh_is_measured(p) || !(history->starting > 0)) {
-        return 1;
-    }
-    history->starting -= p->samplePeriod;
-    if (!sh_noise_contradicts_rest(state, p, x)) {
-        return 1;
-    }
-    sh_signals_unsettle(&state->signals, history);
-    return 0;
+    history->starting -= (sh_real)state->signals.decimation * p->samplePeriod;
+    return sh_noise_contradicts_rest(state, p, state->row.x);
 }
 
 /* Weight 1 / R of the row x; 0 if the numbers are too large. */
-static sh_real weight_of(const sh_sample_noise *noise, const sh_real *x, int size)
+static sh_real weight_of(const sh_row_noise *noise, const sh_real *x, int size)
 {
     const sh_real w = 1 / noise->R;
 
@@ -289,8 +316,8 @@ static sh_real weight_of(const sh_sample_noise *noise, const sh_real *x, int siz
 /* epsilon = y - x' beta. Its share that is noise of the torque is removed from the column of the
  * motor's torque, which contains this noise too; then epsilon is computed again (detail 14).
  */
-static sh_real predict(const sh_regression_state *state, const sh_parameters *p,
-                       const sh_sample_noise *noise, sh_real *x, sh_column_noise *left)
+static sh_real predict(const sh_regression_state *state, const sh_row_noise *noise, sh_real *x,
+                       sh_column_noise *left)
 {
     sh_real epsilon = x[state->columns.size + SH_RIGHT_Y];
     int i;
@@ -298,7 +325,7 @@ static sh_real predict(const sh_regression_state *state, const sh_parameters *p,
     for (i = 0; i < state->columns.size; ++i) {
         epsilon -= x[i] * state->beta[i];
     }
-    return epsilon - sh_columns_remove_noise(state, p, noise, epsilon, x, left);
+    return epsilon - sh_columns_remove_noise(state, noise, epsilon, x, left);
 }
 
 /* Updates what is noise in columns: of b (detail 7), of the torque (14), and of the spring (point 5). */
@@ -325,24 +352,68 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
     sh_posterior_remove(now, N * now->weight, p->prior.B);
 }
 
-/* Takes the row x of weight w into estimate, data and blocks. Returns rho, the variance of the
- * prediction over the one of the sample.
- */
-static sh_real update(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
-                      const sh_column_noise *left, sh_real w, sh_real lasting)
+/* Takes the row into the estimate. Sets rho, the variance of the prediction over the one of the row. */
+static void update(sh_regression_state *state, const sh_parameters *p, const sh_column_noise *left)
 {
     const int size = state->columns.size;
-    const sh_real share = sh_posterior_take(&state->posterior, x, size, w); /* 1 / (1 + rho) */
-    sh_real row[SH_MAX_ROW] = {0};
+    sh_row *row = &state->row;
+    const sh_real share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 1 / (1 + rho) */
+
+    row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
+    update_noise(state, p, left, row->w);
+    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, size);
+    row->step = 0;
+}
+
+/* What else a row changes: one triangular matrix a step, so that a tick between two rows takes as long as
+ * another one.
+ */
+static void take_step(sh_regression_state *state, const sh_parameters *p)
+{
+    sh_row *row = &state->row;
+    const sh_real duration = (sh_real)state->signals.decimation * state->signals.design.T;
+    sh_real x[SH_MAX_ROW] = {0};
     int i;
 
-    update_noise(state, p, left, w);
-    for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
-        row[i] = x[i];
+    switch (row->step) {
+    case 0:
+        (void)memcpy(x, row->x, sizeof x);
+        (void)sh_information_take(&state->data, x, row->w);
+        break;
+    case 1:
+        sh_blocks_take(state);
+        sh_blocks_end(state, p, 0);
+        break;
+    case 2:
+    case 3:
+    case 4:
+        sh_blocks_end(state, p, row->step - 1);
+        break;
+    case 5:
+        if (!sh_refit_pauses(state)) {
+            (void)sh_posterior_take(&state->refit.posterior, row->x, state->columns.size, row->w);
+        }
+        state->refit.time += duration;
+        state->refit.pause += duration;
+        break;
+    default:
+        for (i = 0; i < (state->signals.decimation + 1) / 2; ++i) {
+            sh_refit_advance(state, p);
+        }
+        break;
     }
-    (void)sh_information_take(&state->data, row, w);
-    sh_blocks_take(state, p, x, w, lasting);
-    return share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
+    row->step += 1;
+}
+
+/* The steps are spread over the ticks without a new row; all of them follow at once if there is none. */
+static void take_steps(sh_regression_state *state, const sh_parameters *p)
+{
+    const int ticks = state->signals.decimation > 1 ? state->signals.decimation - 1 : 1;
+    const int last = state->row.step + (SH_ROW_STEPS + ticks - 1) / ticks;
+
+    while (state->row.step < SH_ROW_STEPS && state->row.step < last) {
+        take_step(state, p);
+    }
 }
 
 /* After a gap, or a change of the modality, the filters start again. */
@@ -350,7 +421,10 @@ static void resume(sh_regression_state *state)
 {
     state->signals.begun = 0;
     sh_signals_unsettle(&state->signals, &state->history);
-    sh_blocks_interrupt(&state->blocks);
+    (void)memset(&state->mean, 0, sizeof state->mean);
+    if (state->blocks.rows < state->blocks.length) { /* else it will be taken and emptied */
+        sh_blocks_interrupt(&state->blocks);
+    }
 }
 
 /* Forgets what the last row depended on: the next one must not be as large because of it. Returns 0. */
@@ -363,15 +437,32 @@ static int refuse(sh_regression_state *state, const sh_history *before)
     return 0;
 }
 
+/* Takes a complete row. Returns 0 if its numbers are too large. */
+static int use_row(sh_regression_state *state, const sh_parameters *p)
+{
+    sh_row *row = &state->row;
+    const sh_row_noise noise = sh_noise_of_row(state, p);
+    sh_column_noise left;
+
+    row->w = weight_of(&noise, row->x, state->columns.size); /* 3. Weigh it. */
+    row->lasting = noise.lasting;
+    if (!(row->w > 0)) {
+        return 0;
+    }
+    row->epsilon = predict(state, &noise, row->x, &left); /* 4. Predict and compare. */
+    update(state, p, &left);                              /* 5. Update. */
+    return 1;
+}
+
 static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
                                     const sh_measurement *z, sh_real set_point,
                                     sh_estimate *estimate)
 {
     sh_regression_state *state = &estimator->method.regression;
     const sh_history before = state->history;
-    const int size = state->columns.size;
-    sh_real x[SH_MAX_ROW] = {0}, y, w = 0, rho = 0, epsilon = 0;
+    int settled, complete;
     sh_joint_point at;
+    sh_real y;
 
     if (estimator->started && (estimator->skipped > 0 || state->modality != p->modality)) {
         resume(state);
@@ -380,28 +471,31 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
         state->history.change_age += (1 + estimator->skipped) * p->samplePeriod;
     }
     sh_signals_take(state, p, z, set_point, &at); /* 1. Filter the signals. */
-    y = sh_columns_row(state, p, x);              /* 2. Build the row. */
-    if (!are_acceptable(&at, x, size)) {
+    y = sh_columns_y(p, &state->signals.design, state->signals.filter);
+    if (!are_acceptable(&at, y, state->columns.size)) {
         return refuse(state, &before);
     }
-    if (is_settled(state, p, x)) {
-        const sh_sample_noise noise = sh_noise_of_sample(state, p);
-        sh_column_noise left;
-
-        w = weight_of(&noise, x, size); /* 3. Weigh it. */
-        if (!(w > 0)) {
-            return refuse(state, &before);
-        }
-        epsilon = predict(state, p, &noise, x, &left);      /* 4. Predict and compare. */
-        rho = update(state, p, x, &left, w, noise.lasting); /* 5. Update. */
-        sh_refit_step(state, p, x, w);                      /* 6. Choose columns. */
+    settled = is_settled(&state->history, p->samplePeriod);
+    complete = settled && take_sample(state, p); /* 2. Build a row of K samples. */
+    if (complete && has_moved_before(state, p)) {
+        sh_signals_unsettle(&state->signals, &state->history);
+        settled = complete = 0;
     }
-    if (!report(state, p, &at, y, y - epsilon, estimate)) { /* 7. Report. */
+    if (complete && !use_row(state, p)) { /* 3. to 5. Weigh it, predict it, and update. */
         return refuse(state, &before);
     }
-    estimate->a = w > 0 ? 1 : 0;
-    estimate->rho = rho;
-    estimate->epsilon = epsilon;
+    if (!complete || state->signals.decimation == 1) {
+        take_steps(state, p); /* 6. Choose columns. */
+    }
+    if (!settled) {
+        state->row.epsilon = state->row.rho = 0;
+    }
+    if (!report(state, p, &at, y, y - state->row.epsilon, estimate)) { /* 7. Report. */
+        return refuse(state, &before);
+    }
+    estimate->a = settled ? 1 : 0;
+    estimate->rho = state->row.rho;
+    estimate->epsilon = state->row.epsilon;
     return 1;
 }
 

@@ -87,8 +87,7 @@ static int is_refit(const sh_refit *refit, int size)
 {
     int i;
 
-    if (refit->row < 0 || refit->row > size + 3 || refit->waits < 0 || refit->waits > 1 ||
-        refit->trial < 0 || refit->trial >= SH_GROUPS || refit->last_trial < 0 ||
+    if (refit->row < 0 || refit->row > size + 3 || refit->trial < 0 || refit->trial >= SH_GROUPS || refit->last_trial < 0 ||
         refit->last_trial >= SH_GROUPS) {
         return 0;
     }
@@ -100,11 +99,14 @@ static int is_refit(const sh_refit *refit, int size)
     return 1;
 }
 
-/* How far the columns of the spring have their prior back, and whether the estimate follows. */
-static int is_change(const sh_change *change, int size)
+/* Where the next row and the last one stand. */
+static int are_rows(const sh_regression_state *state, const sh_parameters *p)
 {
-    if (change->opened < 0 || change->opened > size || change->adopted < 0 ||
-        change->adopted > size || change->following < 0 || change->following > 1) {
+    const int decimation = sh_regression_decimation(p);
+
+    if (state->signals.decimation != decimation || state->mean.samples < 0 ||
+        state->mean.samples >= decimation || state->row.step < 0 ||
+        state->row.step > SH_ROW_STEPS) {
         return 0;
     }
     return 1;
@@ -113,7 +115,8 @@ static int is_change(const sh_change *change, int size)
 static int are_flags(const sh_regression_state *state)
 {
     if (state->signals.begun < 0 || state->signals.begun > 1 || state->friction_drifts < 0 ||
-        state->friction_drifts > 1 || state->stiffness_known < 0 || state->stiffness_known > 1) {
+        state->friction_drifts > 1 || state->stiffness_known < 0 || state->stiffness_known > 1 || state->change.following < 0 ||
+        state->change.following > 1) {
         return 0;
     }
     return 1;
@@ -129,7 +132,7 @@ int sh_filtered_regression_check_state(const sh_estimator *estimator, const sh_p
         !is_choice(state, &state->refit.posterior) ||
         !knows_motor(state, &state->refit.posterior) ||
         !is_refit(&state->refit, state->columns.size) ||
-        !is_change(&state->change, state->columns.size) || !are_flags(state)) {
+        !are_rows(state, p) || !are_flags(state)) {
         return 1;
     }
     return 0;

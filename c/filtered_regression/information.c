@@ -54,12 +54,17 @@ void sh_information_set_last(sh_information *a, const sh_last_row *last)
 
 void sh_information_start(sh_information *a, int size, sh_real precision)
 {
-    int i;
-
     a->size = size;
     a->squares = 0;
-    (void)memset(a->U, 0, sizeof(sh_real) * (size_t)row_offset(size, size));
-    for (i = 0; i < size; ++i) {
+    sh_information_restart(a, size, precision);
+}
+
+void sh_information_restart(sh_information *a, int count, sh_real precision)
+{
+    int i;
+
+    (void)memset(a->U, 0, sizeof(sh_real) * (size_t)row_offset(a->size, count));
+    for (i = 0; i < count; ++i) {
         a->D[i] = precision;
     }
 }

@@ -26,6 +26,13 @@
  */
 void sh_information_start(sh_information *a, int size, sh_real precision);
 
+/* Starts again with the first parameters: they get the estimate 0 and the precision. What the samples say about
+ * the others, if the first ones are not known, stays.
+ *
+ * count  number of first parameters, 0..size
+ */
+void sh_information_restart(sh_information *a, int count, sh_real precision);
+
 /* to = from, as far as it is used. */
 void sh_information_copy(sh_information *to, const sh_information *from);
 

@@ -8,7 +8,7 @@
 
 /* ---- blocks, detail 8 -------------------------------------------------------------------- */
 
-/* h = 16 x^2 (1 - x)^2 at sample k of a block */
+/* h = 16 x^2 (1 - x)^2 at row k of a block */
 static sh_real window(sh_real k, sh_real length)
 {
     const sh_real x = (k + (sh_real)0.5) / length;
@@ -20,6 +20,7 @@ void sh_blocks_start(sh_regression_state *state)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_filter_design *design = &state->signals.design;
+    const sh_real K = (sh_real)state->signals.decimation;
     sh_state_variable_filter filter;
     sh_real of_window = 0, output = 0, second = 0, samples;
     int k;
@@ -27,13 +28,14 @@ void sh_blocks_start(sh_regression_state *state)
     sh_information_start(&blocks->constant, state->columns.size, SH_LEAST_INFORMATION);
     sh_information_start(&blocks->drifting, state->columns.size, SH_LEAST_INFORMATION);
     sh_information_start(&blocks->recent, state->columns.size, 1);
-    blocks->length = sh_floor(SH_BLOCK / design->T + (sh_real)0.5);
+    blocks->length = sh_floor(SH_BLOCK / (K * design->T) + (sh_real)0.5);
     blocks->length = sh_fmin(sh_fmax(blocks->length, SH_SHORTEST_BLOCK), SH_LONGEST_BLOCK);
-    samples = blocks->length + sh_floor(30 / (design->w * design->T));
+    samples = blocks->length * K + sh_floor(30 / (design->w * design->T));
     /* What H and s^2 H leave of white noise under the window: the energy of the filtered window. */
     sh_state_variable_filter_start(&filter, 0);
     for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < samples; ++k) {
-        const sh_real h = (sh_real)k < blocks->length ? window((sh_real)k, blocks->length) : 0;
+        const sh_real row = sh_floor((sh_real)k / K);
+        const sh_real h = row < blocks->length ? window(row, blocks->length) : 0;
 
         sh_state_variable_filter_step(&filter, design, h);
         of_window += sh_square(h);
@@ -51,22 +53,22 @@ void sh_blocks_interrupt(sh_blocks *blocks)
     for (i = 0; i < SH_MAX_ROW; ++i) {
         blocks->sum[i] = 0;
     }
-    blocks->samples = blocks->weight = blocks->weight_window = 0;
+    blocks->rows = blocks->weight = blocks->weight_window = 0;
     blocks->window = blocks->window_square = blocks->independent = blocks->rounding = 0;
 }
 
-/* Takes the mean row of the block, sum h w x / sum h w. Each information uses its row up. Returns the
- * square of the error of its prediction over the variance of this error.
+/* Takes the mean row of the block, sum h w x / sum h w. Returns the square of the error of its prediction over
+ * the variance of this error.
  */
-static sh_real take_mean(const sh_blocks *blocks, sh_information *a, sh_real weight)
+static sh_real take_mean(const sh_blocks *blocks, sh_information *a, sh_real variance)
 {
-    sh_real mean[SH_MAX_ROW] = {0};
+    sh_real mean[SH_MAX_ROW] = {0}, weight;
     int i;
 
     for (i = 0; i < a->size + SH_RIGHT_SIDES; ++i) {
         mean[i] = blocks->sum[i] / blocks->weight;
     }
-    weight = sh_information_take(a, mean, weight);
+    weight = sh_information_take(a, mean, 1 / variance);
     return sh_limited(weight * sh_square(mean[a->size + SH_RIGHT_Y]), SH_LARGE);
 }
 
@@ -88,57 +90,84 @@ static void forget_blocks(sh_blocks *blocks, sh_real factor)
     blocks->count *= factor;
 }
 
-/* A block is full. Its variance is sum h^2 w / (sum h w)^2 times the share of white noise that H leaves,
- * plus the variance of (gamma^2 B theta'')_f by the rounding of theta.
+/* sum h^2 w / (sum h w)^2 times the share of white noise that H leaves, plus the variance of
+ * (gamma^2 B theta'')_f by the rounding of theta.
  */
-static void end_block(sh_regression_state *state, const sh_parameters *p)
+static sh_real variance_of(const sh_regression_state *state, const sh_parameters *p)
 {
-    sh_blocks *blocks = &state->blocks;
+    const sh_blocks *blocks = &state->blocks;
     const sh_real inertia = sh_is_measured(p) ? 0 : sh_square(p->motor.gamma) * p->motor.B;
-    const sh_real rounding = sh_square(inertia) * blocks->rounding / blocks->samples;
-    const sh_real variance =
-        blocks->weight_window / sh_square(blocks->weight) * blocks->energy +
-        rounding * blocks->energy_second * blocks->window_square / sh_square(blocks->window);
-    const sh_real count = blocks->independent / blocks->window_square;
+    const sh_real rounding = sh_square(inertia) * blocks->rounding / blocks->rows;
 
-    if (is_acceptable(blocks, state->columns.size, variance)) {
-        const sh_real constant = take_mean(blocks, &blocks->constant, 1 / variance);
-        const sh_real drifting = take_mean(blocks, &blocks->drifting, 1 / variance);
-        const sh_real changed =
-            sh_change_is_ready(state) ? take_mean(blocks, &state->change.changed, 1 / variance) : 0;
-
-        (void)take_mean(blocks, &blocks->recent, 1 / variance);
-        blocks->count += count;
-        blocks->recent_count += count;
-        blocks->duration += count * blocks->length * state->signals.design.T;
-        if (blocks->count > SH_MOST_BLOCKS) {
-            forget_blocks(blocks, SH_MOST_BLOCKS / blocks->count);
-        }
-        sh_change_judge(state, p, state->friction_drifts ? drifting : constant, changed);
-    }
-    sh_blocks_interrupt(blocks);
+    return blocks->weight_window / sh_square(blocks->weight) * blocks->energy +
+           rounding * blocks->energy_second * blocks->window_square /
+               (sh_square(blocks->window) * (sh_real)state->signals.decimation);
 }
 
-void sh_blocks_take(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w,
-                    sh_real lasting)
+static void count_block(sh_regression_state *state)
 {
     sh_blocks *blocks = &state->blocks;
-    const sh_real h = window(blocks->samples, blocks->length), wh = w * h;
+    const sh_real count = blocks->independent / blocks->window_square;
+    const sh_real samples = blocks->length * (sh_real)state->signals.decimation;
+
+    blocks->count += count;
+    blocks->recent_count += count;
+    blocks->duration += count * samples * state->signals.design.T;
+    if (blocks->count > SH_MOST_BLOCKS) {
+        forget_blocks(blocks, SH_MOST_BLOCKS / blocks->count);
+    }
+}
+
+void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_real variance = variance_of(state, p);
+    sh_real error;
+
+    if (blocks->rows < blocks->length) {
+        return;
+    }
+    if (!is_acceptable(blocks, state->columns.size, variance)) {
+        sh_blocks_interrupt(blocks);
+        return;
+    }
+    switch (step) {
+    case 0:
+        blocks->error = take_mean(blocks, &blocks->constant, variance);
+        break;
+    case 1:
+        error = take_mean(blocks, &blocks->drifting, variance);
+        blocks->error = state->friction_drifts ? error : blocks->error;
+        break;
+    case 2:
+        (void)take_mean(blocks, &blocks->recent, variance);
+        break;
+    default:
+        error = take_mean(blocks, &state->change.changed, variance);
+        count_block(state);
+        sh_change_judge(state, p, blocks->error, error);
+        sh_blocks_interrupt(blocks);
+        break;
+    }
+}
+
+void sh_blocks_take(sh_regression_state *state)
+{
+    sh_blocks *blocks = &state->blocks;
+    const sh_row *row = &state->row;
+    const sh_real h = window(blocks->rows, blocks->length), wh = row->w * h;
     int i;
 
     for (i = 0; i < state->columns.size + SH_RIGHT_SIDES; ++i) {
-        blocks->sum[i] += wh * x[i];
+        blocks->sum[i] += wh * row->x[i];
     }
     blocks->weight += wh;
     blocks->weight_window += wh * h;
     blocks->window += h;
     blocks->window_square += sh_square(h);
-    blocks->independent += sh_square(h) / lasting; /* samples with the same error count as fewer */
-    blocks->rounding += sh_signals_roughness(&state->signals);
-    blocks->samples += 1;
-    if (blocks->samples >= blocks->length) {
-        end_block(state, p);
-    }
+    blocks->independent += sh_square(h) / row->lasting; /* rows with the same error count as fewer */
+    blocks->rounding += row->rough;
+    blocks->rows += 1;
 }
 
 /* ---- the variance factor, detail 8 ------------------------------------------------------- */
@@ -257,19 +286,18 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
     state->noise.gain *= factor;
 }
 
-/* P += drift time / (v'v + R) v v', where v are the columns of the curve in the row x */
-static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
-                            sh_real R, sh_real time)
+/* P += drift time / (v'v + R) v v', where v are the columns of the curve in the last row and R is its variance */
+static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
     sh_real v[SH_MAX_COLUMNS] = {0}, power = 0;
     int i;
 
     for (i = 0; i < state->columns.size; ++i) {
-        v[i] = sh_column_is(&state->columns.column[i], SH_IS_CURVE) ? x[i] : 0;
+        v[i] = sh_column_is(&state->columns.column[i], SH_IS_CURVE) ? state->row.x[i] : 0;
         power += v[i] * v[i];
     }
     if (power > 0) {
-        const sh_real variance = p->regression.drift * time / (power + R);
+        const sh_real variance = p->regression.drift * time / (power + 1 / state->row.w);
 
         sh_information_drift(&state->data, v, variance);
         sh_information_drift(&state->blocks.constant, v, variance);
@@ -278,8 +306,7 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
 }
 
 /* Time counts as far as blocks do: nothing is forgotten at rest. */
-void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real R,
-               sh_real time)
+void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_real moving = blocks->duration;
@@ -295,6 +322,6 @@ void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real
         forget_data(state, p, moving);
     }
     if (p->regression.drift > 0) {
-        let_curve_drift(state, p, x, R, time);
+        let_curve_drift(state, p, time);
     }
 }

@@ -1,16 +1,8 @@
-/* The variance of a sample, and what of the row is only noise. */
+/* The variance of a row, and what of it is only noise. */
 #include "constants.h"
 #include "posterior.h"
 #include "regression.h"
 #include "state_variable_filter.h"
-
-/* Share of the variance of white noise that H leaves: T integral of h^2 = 3/16 w T, for the impulse
- * response h of H.
- */
-static sh_real white(const sh_signals *signals)
-{
-    return (sh_real)(3.0 / 16) * signals->design.w * signals->design.T;
-}
 
 /* Sum over both encoders [rad2]: the rounding of phi has a twelfth of it as its variance. */
 static sh_real counts_squared(const sh_signals *signals)
@@ -18,13 +10,13 @@ static sh_real counts_squared(const sh_signals *signals)
     return sh_square(signals->count) + sh_square(signals->count_q);
 }
 
-/* N_tau = 3/16 w T (gamma s_tau)^2: noise of the torque in y, after the filter [(N.m)2] */
+/* N_tau = G_0 (gamma s_tau)^2: noise of the torque in the y of a row [(N.m)2] */
 static sh_real torque_noise(const sh_signals *signals, const sh_parameters *p)
 {
-    return white(signals) * sh_square(p->motor.gamma * p->noise.tau);
+    return signals->gain * sh_square(p->motor.gamma * p->noise.tau);
 }
 
-/* (gamma^2 B)^2 G: noise of y after the filter by noise of theta [(N.m/rad)2] */
+/* (gamma^2 B)^2 G: noise in the y of a row by noise of theta [(N.m/rad)2] */
 static sh_real inertial_noise(const sh_signals *signals, const sh_parameters *p)
 {
     return sh_square(sh_square(p->motor.gamma) * p->motor.B) * signals->gain_second;
@@ -34,7 +26,7 @@ static sh_real inertial_noise(const sh_signals *signals, const sh_parameters *p)
 static sh_real friction_variance(const sh_regression_state *state, const sh_parameters *p)
 {
     const sh_posterior *posterior = &state->posterior;
-    const sh_real u_f = sh_state_variable_filter_output(&state->signals.unknown);
+    const sh_real u_f = sh_state_variable_filter_output(&state->signals.filter[SH_FILTER_UNKNOWN]);
     sh_real c[SH_MAX_COLUMNS] = {0}, tau_C;
     int C;
 
@@ -51,7 +43,7 @@ static sh_real friction_variance(const sh_regression_state *state, const sh_para
  * the noise of theta over 0.1 s in place of count^2/12; detail 4. Jitter of the sample times makes X
  * larger.
  */
-static void watch_noise(sh_history *history, const sh_signals *signals, const sh_parameters *p)
+void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p)
 {
     const sh_real T = signals->design.T;
     const sh_real torque = torque_noise(signals, p), inertial = inertial_noise(signals, p);
@@ -77,54 +69,53 @@ static sh_real share_of_torque(const sh_regression_state *state, const sh_parame
     return sum > 0 ? torque / sum : 0;
 }
 
-/* R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
- *     + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
+/* K R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
+ *       + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
  *
- * White noise enters as it is before the filter (point 1). A wrong sign of friction in one sample leaves
- * the filter as its impulse response, in many samples, so its variance is divided by 3/16 w T.
+ * White noise enters as it is before the filter (point 1), as the mean of K samples. A wrong sign of friction
+ * in one sample leaves the filter as its impulse response h, in many samples, so its variance is divided by
+ * T integral of h^2 = 3/16 w T.
  *
  * Errors that do not average out (point 5): with the variance R of what is independent and c of what
  * stays, n samples have the information 1 / (R / n + c), so the n-th one has the variance
  *
  *     R (1 + c n / R)^2 .
  */
-sh_sample_noise sh_noise_of_sample(sh_regression_state *state, const sh_parameters *p)
+sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p)
 {
     const sh_history *history = &state->history;
+    const sh_filter_design *design = &state->signals.design;
     const sh_real rounding = sh_square(state->sigma) * counts_squared(&state->signals) / 12;
     sh_real R = rounding + sh_square(p->noise.tau_e), stays = rounding * history->resting;
-    sh_sample_noise noise = {0, 0, 0, 0};
+    sh_row_noise noise = {0, 0, 0, 0};
 
-    watch_noise(&state->history, &state->signals, p);
     if (!sh_is_measured(p)) {
         const sh_real friction = friction_variance(state, p);
 
         R = (rounding + sh_square(p->motor.gamma * p->noise.tau)) *
                 (1 + SH_EXCESS * (history->excess - 1)) +
-            friction / white(&state->signals);
+            friction / ((sh_real)(3.0 / 16) * design->w * design->T);
         stays += friction * history->unsure;
         noise.torque = torque_noise(&state->signals, p);
         noise.share = share_of_torque(state, p, noise.torque, friction);
     }
     noise.lasting = sh_square(1 + stays / R);
-    noise.R = R * noise.lasting;
+    noise.R = R * noise.lasting / (sh_real)state->signals.decimation;
     return noise;
 }
 
 sh_real sh_noise_of_deformation(const sh_signals *signals)
 {
-    return white(signals) * counts_squared(signals) / 12;
+    return signals->gain * counts_squared(signals) / 12;
 }
 
-/* N R = (gamma^2 B prior.B)^2 G V, where V is the squared fourth difference over 70, and 0.056 count^2/12
- * more in a sample in which the position changes.
+/* N R = (gamma^2 B prior.B)^2 G V, where V is the mean of the squared fourth difference over 70, and of
+ * 0.056 count^2/12 in samples in which the position changes.
  */
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p)
 {
     const sh_signals *signals = &state->signals;
-    const sh_real moved = sh_fabs(signals->theta_before[0] - signals->theta_before[1]) > 0 ? 1 : 0;
-    const sh_real V = sh_signals_roughness(signals) +
-                      SH_ROUNDING_IS_NOT_WHITE * moved * sh_square(signals->count) / 12;
+    const sh_real moved = state->row.moved, V = state->row.rough + SH_ROUNDING_IS_NOT_WHITE * moved * sh_square(signals->count) / 12;
 
     if (sh_is_measured(p) || state->posterior.inertia < 0) {
         return 0;

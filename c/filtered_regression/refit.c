@@ -21,7 +21,7 @@ static int is_distinct(const sh_regression_state *state, const sh_parameters *p,
 /* Whether column i is used, and not one of the trial. */
 static int is_used(const sh_regression_state *state, const sh_parameters *p, int i)
 {
-    const int group = sh_column_group(&state->columns.column[i]);
+    const int group = sh_column_kinds[state->columns.column[i].kind].group;
 
     return group == 0 ||
            (group != state->refit.trial && state->refit.used[group] && is_distinct(state, p, i));
@@ -30,7 +30,7 @@ static int is_used(const sh_regression_state *state, const sh_parameters *p, int
 /* Column i is tried: its group stands behind all columns that are used. */
 static int is_tried(const sh_regression_state *state, const sh_parameters *p, int i)
 {
-    const int group = sh_column_group(&state->columns.column[i]);
+    const int group = sh_column_kinds[state->columns.column[i].kind].group;
 
     return group != 0 && group == state->refit.trial && is_distinct(state, p, i);
 }
@@ -102,7 +102,7 @@ static int next_trial(sh_regression_state *state, const sh_parameters *p)
     for (tries = 1; tries < SH_GROUPS; ++tries) {
         refit->last_trial = refit->last_trial % (SH_GROUPS - 1) + 1;
         for (i = 0; i < state->columns.size; ++i) {
-            if (sh_column_group(&state->columns.column[i]) == refit->last_trial &&
+            if (sh_column_kinds[state->columns.column[i].kind].group == refit->last_trial &&
                 is_distinct(state, p, i)) {
                 return refit->last_trial;
             }
@@ -123,7 +123,7 @@ static sh_real gain_of_evidence(const sh_regression_state *state)
     for (i = 0; i < a->size; ++i) {
         const sh_column *column = &state->columns.column[posterior->column[i]];
 
-        if (sh_column_group(column) == state->refit.trial) {
+        if (sh_column_kinds[column->kind].group == state->refit.trial) {
             gain += (a->D[i] * z[i] * z[i] - sh_log(a->D[i])) / 2;
         }
     }
@@ -171,10 +171,9 @@ static void end_refit(sh_regression_state *state, const sh_parameters *p)
         decide_about_group(state);
     } else {
         sh_posterior_copy(&state->posterior, &refit->posterior);
-        if (state->change.adopted == state->columns.size) {
-            state->change.following = 0;
-        }
+        state->change.following = 0;
         remove_noise(state, p);
+        sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
     }
     sh_misfit_judge(state, p);
     refit->trial = 0;
@@ -192,13 +191,21 @@ static void take_row(sh_regression_state *state)
     (void)sh_posterior_take(&refit->posterior, x, state->columns.size, w);
 }
 
+void sh_refit_restart(sh_regression_state *state, const sh_parameters *p)
+{
+    state->refit.trial = 0;
+    start_refit(state, p);
+}
+
+int sh_refit_pauses(const sh_regression_state *state)
+{
+    return state->refit.row > state->columns.size + 2;
+}
+
 /* What a refit needs beside the rows is spread over ticks, too. */
-static void advance_refit(sh_regression_state *state, const sh_parameters *p, const sh_real *x,
-                          sh_real w)
+void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
-    const sh_real time = refit->samples * state->signals.design.T;
-
     if (refit->row < state->columns.size) {
         take_row(state);
         refit->row += 1;
@@ -210,34 +217,21 @@ static void advance_refit(sh_regression_state *state, const sh_parameters *p, co
         break;
     case 1:
         if (refit->trial == 0) {
-            sh_friction_drift(state, time);
+            sh_friction_drift(state, refit->time);
         }
         break;
     case 2:
         if (refit->trial == 0) {
-            sh_forget(state, p, x, 1 / w, time);
-            refit->samples = 0;
+            sh_forget(state, p, refit->time);
+            refit->time = 0;
         }
+        refit->pause = 0;
         break;
     default:
-        start_refit(state, p);
+        if (refit->pause >= SH_REFIT_PAUSE * state->blocks.count * SH_BLOCK) {
+            start_refit(state, p);
+        }
         return;
     }
     refit->row += 1;
-}
-
-void sh_refit_step(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w)
-{
-    sh_refit *refit = &state->refit;
-
-    refit->samples += 1;
-    (void)sh_posterior_take(&refit->posterior, x, state->columns.size, w);
-    refit->waits = !refit->waits;
-    if (!refit->waits) {
-        advance_refit(state, p, x, w);
-    }
-    if (sh_change_step(state)) { /* the next posterior is to contain the change, at once */
-        refit->trial = 0;
-        start_refit(state, p);
-    }
 }

@@ -21,13 +21,16 @@ typedef struct {
     sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
 } sh_joint_point;
 
-/* Variance of a sample, whose inverse is its weight. */
+/* Steps in which a row changes what is behind the estimate. */
+enum { SH_ROW_STEPS = 7 };
+
+/* Variance of a row, whose inverse is its weight. */
 typedef struct {
     sh_real R;       /* [(N.m)2] */
     sh_real lasting; /* factor in R by errors that last, >= 1 */
-    sh_real torque;  /* variance of y after the filter by noise of the torque [(N.m)2] */
-    sh_real share;   /* over the whole variance of y after the filter, 0..1 */
-} sh_sample_noise;
+    sh_real torque;  /* variance of y by noise of the torque [(N.m)2] */
+    sh_real share;   /* over the whole variance of y, 0..1 */
+} sh_row_noise;
 
 /* ---- columns.c --------------------------------------------------------------------------- */
 
@@ -109,13 +112,23 @@ int sh_columns_count(const sh_parameters *p);
 /* The columns for these parameters; there must not be more than SH_MAX_COLUMNS. */
 void sh_columns_start(sh_columns *columns, const sh_parameters *p);
 
-/* Whether the column is one of SH_IS_*, which may be added up. */
-int sh_column_is(const sh_column *column, unsigned what);
+/* A kind of column. */
+typedef struct {
+    int prior;    /* offset of its std deviation in sh_parameters */
+    int unit;     /* in which that is given, see columns.c */
+    int signal;   /* SH_SIGNAL_* */
+    int quantity; /* SH_OF_*: what its coefficient is */
+    int group;    /* 0: always used */
+    unsigned is;  /* SH_IS_*, added up */
+} sh_column_kind;
 
-/* SH_OF_*, SH_SIGNAL_* and the group of a column. */
-int sh_column_quantity(const sh_column *column);
-int sh_column_signal(const sh_column *column);
-int sh_column_group(const sh_column *column);
+extern const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS];
+
+/* Whether the column is one of SH_IS_*, which may be added up. */
+static inline int sh_column_is(const sh_column *column, unsigned what)
+{
+    return (sh_column_kinds[column->kind].is & what) != 0;
+}
 
 /* Whether the column can be told from the spring after deformations of phi_min..phi_max [rad]. */
 int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_real phi_min,
@@ -132,19 +145,23 @@ void sh_columns_move_plays(sh_real *play, const sh_parameters *p, sh_real change
 /* Torque of the spring for coefficients beta [N.m]. */
 sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta);
 
-/* The row x [size: SH_MAX_ROW] at the present state of the filters: columns, then right-hand sides.
- * Returns y [N.m]; the last entry of x is y less the torque of the nominal curve.
+/* y [N.m] at a state of the filters [size: SH_MAX_FILTERS]. */
+sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
+                     const sh_state_variable_filter *filter);
+
+/* The row x [size: SH_MAX_ROW] at a state of the filters [size: SH_MAX_FILTERS]: columns, then right-hand
+ * sides. The last entry is y less the torque of the nominal curve.
  */
-sh_real sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x);
+void sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
+                    const sh_state_variable_filter *filter, sh_real *x);
 
 /* Detail 14: removes from the column of the motor's torque in x the noise that y contains too, if the
  * prediction error of y is epsilon [N.m]. Sets the noise that is left, times R.
  *
  * Returns by how much the prediction of y grows [N.m].
  */
-sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_parameters *p,
-                                const sh_sample_noise *noise, sh_real epsilon, sh_real *x,
-                                sh_column_noise *left);
+sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
+                                sh_real epsilon, sh_real *x, sh_column_noise *left);
 
 /* ---- signals.c --------------------------------------------------------------------------- */
 
@@ -152,6 +169,9 @@ sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_param
  * the page, and at least 1e-4 / samplePeriod.
  */
 sh_real sh_regression_bandwidth(const sh_parameters *p);
+
+/* Detail 16: number K of samples of a row, regression.decimation or, if that is 0, by the bandwidth. */
+int sh_regression_decimation(const sh_parameters *p);
 
 /* Designs the filters for columns that are known; they start with the next sample. */
 void sh_signals_start(sh_signals *signals, sh_history *history, const sh_parameters *p);
@@ -168,18 +188,21 @@ sh_real sh_signals_roughness(const sh_signals *signals);
 
 /* ---- noise.c ----------------------------------------------------------------------------- */
 
-/* Detail 4: variance of the sample, with the noise of theta as the last samples show it. */
-sh_sample_noise sh_noise_of_sample(sh_regression_state *state, const sh_parameters *p);
+/* Takes the noise of theta in a sample into its means. */
+void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p);
 
-/* Variance of the rounding of phi after the filter [rad2], of which 1/R is information about sigma
+/* Detail 4: variance of a row, with the noise of theta as the last samples show it. */
+sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);
+
+/* Variance of the rounding of phi in a row [rad2], of which 1/R is information about sigma
  * that is only rounding.
  */
 sh_real sh_noise_of_deformation(const sh_signals *signals);
 
-/* Detail 7: R times the information about b in this sample that is only rounding [(N.m)2]. */
+/* Detail 7: R times the information about b in the last row that is only rounding [(N.m)2]. */
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
 
-/* Detail 12: whether the row x shows that the motor was not at rest at the start. */
+/* Detail 12: whether the row x [size: SH_MAX_ROW] shows that the motor was not at rest at the start. */
 int sh_noise_contradicts_rest(const sh_regression_state *state, const sh_parameters *p,
                               const sh_real *x);
 
@@ -187,9 +210,11 @@ int sh_noise_contradicts_rest(const sh_regression_state *state, const sh_paramet
 
 void sh_blocks_start(sh_regression_state *state);
 
-/* Detail 8: takes a row x of weight w [1/(N.m)2] into the present block. */
-void sh_blocks_take(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w,
-                    sh_real lasting);
+/* Detail 8: takes the last row into the present block. */
+void sh_blocks_take(sh_regression_state *state);
+
+/* Step 0..3 of what a block does that is full: one regression a step takes its mean row. */
+void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step);
 
 /* Leaves out the samples of the present block: they are not in sequence with the next one. */
 void sh_blocks_interrupt(sh_blocks *blocks);
@@ -201,26 +226,19 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
 void sh_friction_drift(sh_regression_state *state, sh_real time);
 
 /* Details 9 and 11: forgets data that contradict the model, and lets the curve drift for `time` [s]
- * along the row x of variance R [(N.m)2].
+ * along the last row.
  */
-void sh_forget(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real R,
-               sh_real time);
+void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time);
 
 /* ---- change.c ---------------------------------------------------------------------------- */
 
 void sh_change_start(sh_regression_state *state);
 
-/* Whether the information of the hypothesis that the spring has changed may take a block. */
-int sh_change_is_ready(const sh_regression_state *state);
-
 /* Detail 15: compares the hypotheses by the squares of their errors over the variances in a block, as
- * before the block and, if that one is ready, as changed.
+ * before the block and as changed.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real changed);
-
-/* Goes on with opening columns. Returns 1 when the data of all samples contain a change, else 0. */
-int sh_change_step(sh_regression_state *state);
 
 /* Whether the present estimate is in doubt. */
 int sh_change_is_likely(const sh_regression_state *state);
@@ -230,9 +248,13 @@ int sh_change_is_likely(const sh_regression_state *state);
 /* Starts posterior and refit from the prior. */
 void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 
-/* Detail 6: takes a row x of weight w [1/(N.m)2], and advances the refit in every second call. It starts
- * again once the data contain a change of the spring.
- */
-void sh_refit_step(sh_regression_state *state, const sh_parameters *p, const sh_real *x, sh_real w);
+/* Starts the refit again, not as a trial: the data contain a change of the spring. */
+void sh_refit_restart(sh_regression_state *state, const sh_parameters *p);
+
+/* Whether no refit is under way. */
+int sh_refit_pauses(const sh_regression_state *state);
+
+/* Detail 6: takes a row of the data of all samples, or does the next step at the end of a refit. */
+void sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

@@ -21,12 +21,25 @@ sh_real sh_regression_bandwidth(const sh_parameters *p)
         (sh_real)1e-4 / p->samplePeriod);
 }
 
+/* K = 1.8 / (w T), 1..8: rows of more samples would lose what the filter leaves. */
+int sh_regression_decimation(const sh_parameters *p)
+{
+    const sh_real wT = sh_regression_bandwidth(p) * p->samplePeriod;
+
+    if (p->regression.decimation > 0) {
+        return p->regression.decimation;
+    }
+    return (int)sh_fmin(sh_fmax(SH_ROW_SPACING / wT, 1), SH_LONGEST_ROW);
+}
+
 void sh_signals_start(sh_signals *signals, sh_history *history, const sh_parameters *p)
 {
     signals->count = sh_encoder_count(p->encoder.theta);
     signals->count_q = sh_encoder_count(p->encoder.q);
     signals->design = sh_state_variable_filter_design(sh_regression_bandwidth(p), p->samplePeriod);
-    signals->gain_second = sh_state_variable_filter_noise(&signals->design);
+    signals->decimation = sh_regression_decimation(p);
+    sh_state_variable_filter_noise(&signals->design, signals->decimation, &signals->gain,
+                                   &signals->gain_second);
     history->starting = SH_FORGOTTEN / signals->design.w;
     history->excess = history->excess_mean = 1;
     history->phi_min = SH_LARGE; /* no deformation yet */
@@ -59,18 +72,19 @@ static void take_deformation(sh_history *history, const sh_signals *signals, con
 static void begin_filters(sh_regression_state *state, const sh_joint_point *at, sh_real torque)
 {
     sh_signals *signals = &state->signals;
+    sh_state_variable_filter *filter = signals->filter;
     int i;
 
-    sh_state_variable_filter_start(&signals->theta, at->theta);
-    sh_state_variable_filter_begin(&signals->torque, torque);
-    sh_state_variable_filter_begin(&signals->nominal, at->tau_nominal);
-    sh_state_variable_filter_start(&signals->sign, 0);
-    sh_state_variable_filter_start(&signals->unknown, 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_THETA], at->theta);
+    sh_state_variable_filter_begin(&filter[SH_FILTER_TORQUE], torque);
+    sh_state_variable_filter_begin(&filter[SH_FILTER_NOMINAL], at->tau_nominal);
+    sh_state_variable_filter_start(&filter[SH_FILTER_SIGN], 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_UNKNOWN], 0);
     for (i = 0; i < state->columns.size; ++i) {
-        if (sh_column_signal(&state->columns.column[i]) == SH_SIGNAL_LINEAR) {
-            sh_state_variable_filter_begin(&signals->column[i], at->F[i]);
+        if (sh_column_kinds[state->columns.column[i].kind].signal == SH_SIGNAL_LINEAR) {
+            sh_state_variable_filter_begin(&filter[SH_FILTER_COLUMN + i], at->F[i]);
         } else {
-            sh_state_variable_filter_start(&signals->column[i], at->F[i]);
+            sh_state_variable_filter_start(&filter[SH_FILTER_COLUMN + i], at->F[i]);
         }
     }
     sh_motion_sign_start(&signals->motion, at->theta);
@@ -84,21 +98,22 @@ static void advance_measured(sh_signals *signals, const sh_parameters *p, sh_rea
                              sh_real torque)
 {
     const sh_filter_design *design = &signals->design;
+    sh_state_variable_filter *filter = signals->filter;
     int i;
 
     for (i = 4; i > 0; --i) {
         signals->theta_before[i] = signals->theta_before[i - 1];
     }
     signals->theta_before[0] = theta;
-    sh_state_variable_filter_step(&signals->theta, design, theta);
+    sh_state_variable_filter_step(&filter[SH_FILTER_THETA], design, theta);
     if (p->torque.held && !sh_is_measured(p)) {
-        sh_state_variable_filter_step_mean(&signals->torque, design, signals->torque_before);
+        sh_state_variable_filter_step_mean(&filter[SH_FILTER_TORQUE], design, signals->torque_before);
     } else {
-        sh_state_variable_filter_step(&signals->torque, design, torque);
+        sh_state_variable_filter_step(&filter[SH_FILTER_TORQUE], design, torque);
     }
     sh_motion_sign_step(&signals->motion, theta, signals->count, p->regression.slow * design->T);
-    sh_state_variable_filter_step_mean(&signals->sign, design, signals->motion.sign);
-    sh_state_variable_filter_step_mean(&signals->unknown, design, signals->motion.unknown);
+    sh_state_variable_filter_step_mean(&filter[SH_FILTER_SIGN], design, signals->motion.sign);
+    sh_state_variable_filter_step_mean(&filter[SH_FILTER_UNKNOWN], design, signals->motion.unknown);
 }
 
 /* The friction by load acts against the motion. Before the stiffness is known, the load is taken from
@@ -109,19 +124,20 @@ static void advance_columns(sh_regression_state *state, const sh_joint_point *at
     const sh_columns *columns = &state->columns;
     sh_signals *signals = &state->signals;
     const sh_filter_design *design = &signals->design;
+    sh_state_variable_filter *filter = signals->filter;
     const sh_real load =
         state->stiffness_known ? sh_columns_torque(columns, at, state->beta) : state->y;
     const sh_real friction = -sh_fabs(load) * signals->motion.sign;
     int i;
 
     for (i = 0; i < columns->size; ++i) {
-        const int signal = sh_column_signal(&columns->column[i]);
+        const int signal = sh_column_kinds[columns->column[i].kind].signal;
 
         if (signal == SH_SIGNAL_MEAN) {
-            sh_state_variable_filter_step_mean(&signals->column[i], design,
+            sh_state_variable_filter_step_mean(&filter[SH_FILTER_COLUMN + i], design,
                                                friction * columns->column[i].prior);
         } else if (signal != SH_SIGNAL_NONE) {
-            sh_state_variable_filter_step(&signals->column[i], design, at->F[i]);
+            sh_state_variable_filter_step(&filter[SH_FILTER_COLUMN + i], design, at->F[i]);
         }
     }
 }
@@ -137,7 +153,8 @@ void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const s
     if (signals->begun) {
         advance_measured(signals, p, at->theta, torque);
         if (state->columns.has_nominal) {
-            sh_state_variable_filter_step(&signals->nominal, &signals->design, at->tau_nominal);
+            sh_state_variable_filter_step(&signals->filter[SH_FILTER_NOMINAL], &signals->design,
+                                          at->tau_nominal);
         }
         state->history.unsure = signals->motion.unknown > 0 ? state->history.unsure + 1 : 0;
         advance_columns(state, at);

@@ -24,17 +24,13 @@ sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T)
 void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x)
 {
     filter->input = x;
-    filter->behind[0] = 0;
-    filter->behind[1] = 0;
-    filter->behind[2] = 0;
+    filter->behind[0] = filter->behind[1] = filter->behind[2] = 0;
 }
 
 void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x)
 {
     filter->input = x;
-    filter->behind[0] = x;
-    filter->behind[1] = x;
-    filter->behind[2] = x;
+    filter->behind[0] = filter->behind[1] = filter->behind[2] = x;
 }
 
 /* Advances by T. In the steady state of a ramp, the output of stage i is i + 1 times lag behind the
@@ -73,6 +69,15 @@ void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
     filter->input = mean;
 }
 
+void sh_state_variable_filter_add(sh_state_variable_filter *sum,
+                                  const sh_state_variable_filter *filter, sh_real share)
+{
+    sum->input += share * filter->input;
+    sum->behind[0] += share * filter->behind[0];
+    sum->behind[1] += share * filter->behind[1];
+    sum->behind[2] += share * filter->behind[2];
+}
+
 sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter)
 {
     return filter->input - filter->behind[2];
@@ -90,20 +95,21 @@ sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
     return design->w * design->w * (2 * filter->behind[1] - filter->behind[0] - filter->behind[2]);
 }
 
-sh_real sh_state_variable_filter_noise(const sh_filter_design *design)
+void sh_state_variable_filter_noise(const sh_filter_design *design, int samples, sh_real *gain,
+                                    sh_real *gain_second)
 {
-    /* Sum of squares of the response to one sample, which has decayed after 60 time constants. */
-    const sh_real samples = 3 + sh_floor(60 / (design->w * design->T));
+    /* The mean of the outputs is the output for the mean: the response to a pulse of the height
+     * 1 / samples, which has decayed after 60 time constants.
+     */
+    const sh_real last = (sh_real)samples + 3 + sh_floor(60 / (design->w * design->T));
     sh_state_variable_filter filter;
-    sh_real sum = 0;
     int k;
 
     sh_state_variable_filter_start(&filter, 0);
-    sh_state_variable_filter_step(&filter, design, 1);
-    for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < samples; ++k) {
-        const sh_real response = sh_state_variable_filter_second(&filter, design);
-        sum += response * response;
-        sh_state_variable_filter_step(&filter, design, 0);
+    *gain = *gain_second = 0;
+    for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < last; ++k) {
+        sh_state_variable_filter_step(&filter, design, k < samples ? 1 / (sh_real)samples : 0);
+        *gain += sh_square(sh_state_variable_filter_output(&filter));
+        *gain_second += sh_square(sh_state_variable_filter_second(&filter, design));
     }
-    return sum;
 }

@@ -39,6 +39,10 @@ void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_fi
 void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
                                         const sh_filter_design *design, sh_real mean);
 
+/* sum += share filter: the outputs of a mean of states are the means of the outputs. */
+void sh_state_variable_filter_add(sh_state_variable_filter *sum,
+                                  const sh_state_variable_filter *filter, sh_real share);
+
 /* The filtered signal. */
 sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter);
 
@@ -48,7 +52,10 @@ sh_real sh_state_variable_filter_first(const sh_state_variable_filter *filter,
 sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
                                         const sh_filter_design *design);
 
-/* Variance of s^2 H x for white samples x of variance 1 [1/s4]. */
-sh_real sh_state_variable_filter_noise(const sh_filter_design *design);
+/* Variances that white noise of variance 1 has in the mean of samples 1.. behind H: gain [1], and behind
+ * s^2 H: gain_second [1/s4].
+ */
+void sh_state_variable_filter_noise(const sh_filter_design *design, int samples, sh_real *gain,
+                                    sh_real *gain_second);
 
 #endif

@@ -236,6 +236,8 @@ typedef struct {
                               second [1/s], 0..1e12; 0: it does not change */
         sh_real memory;    /* time constant with which data are forgotten while they contradict
                               the model [s], 0..1e12; 0: the misfit has no effect */
+        int decimation;    /* samples of a row of the regression, 0..64, fixed; 0: as many as the
+                              bandwidth allows */
     } regression;
     sh_range_parameters range; /* fixed */
     sh_prior_parameters prior; /* fixed */

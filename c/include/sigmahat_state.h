@@ -132,17 +132,26 @@ typedef struct {
                    [SH_MAX_M]; /* coefficients of that curve, scaled as the columns [N.m] */
 } sh_columns;
 
+/* What the filters are of. */
+enum {
+    SH_FILTER_THETA,
+    SH_FILTER_TORQUE,
+    SH_FILTER_SIGN,    /* of the velocity */
+    SH_FILTER_UNKNOWN, /* share of the sample in which the sign is unknown */
+    SH_FILTER_NOMINAL, /* torque of the curve rls.eta_0 */
+    SH_FILTER_COLUMN,  /* first one of the columns */
+    SH_MAX_FILTERS = SH_FILTER_COLUMN + SH_MAX_COLUMNS
+};
+
 /* Signals and their filters, which all have the same design. */
 typedef struct {
     int begun;              /* 0: the filters start with the next sample */
     sh_real count, count_q; /* resolution of theta and q [rad] */
     sh_filter_design design;
-    sh_real gain_second; /* variance of s^2 H of white noise of variance 1 [1/s4] */
-    sh_state_variable_filter theta, torque;
-    sh_state_variable_filter sign;    /* of the velocity */
-    sh_state_variable_filter unknown; /* share of the sample in which the sign is unknown */
-    sh_state_variable_filter nominal; /* torque of the curve rls.eta_0 */
-    sh_state_variable_filter column[SH_MAX_COLUMNS];
+    int decimation; /* K: samples of a row */
+    /* Variance that white noise of variance 1 has in a row, behind H [1], and behind s^2 H [1/s4]: */
+    sh_real gain, gain_second;
+    sh_state_variable_filter filter[SH_MAX_FILTERS]; /* SH_FILTER_*, then those of the columns */
     sh_motion_sign motion;
     sh_real torque_before;   /* torque of the last sample [N.m] */
     sh_real theta_before[5]; /* the last positions, for differences [rad] */
@@ -160,6 +169,25 @@ typedef struct {
     sh_real change_age; /* time since the last change of the spring [s], -1 if there was none */
     sh_real excess, excess_mean; /* noise over what rounding explains, now and its mean [1] */
 } sh_history;
+
+/* Sums over the samples of the next row. */
+typedef struct {
+    int samples;   /* taken so far */
+    sh_real rough; /* of the noise of theta [rad2] */
+    sh_real moved; /* of the samples with which theta changed [1] */
+    sh_state_variable_filter filter[SH_MAX_FILTERS]; /* of the states of the filters */
+} sh_mean;
+
+/* The last row. The steps that take it are spread over the ticks until the next one. */
+typedef struct {
+    int step;              /* next step, of filtered_regression.c; behind the last one: none */
+    sh_real x[SH_MAX_ROW]; /* columns, then right-hand sides */
+    sh_real w;             /* weight [1/(N.m)2] */
+    sh_real lasting;       /* factor in 1/w by errors that last, >= 1 */
+    sh_real rough;         /* mean of the noise of theta [rad2] */
+    sh_real moved;         /* share of the samples with which theta changed [1] */
+    sh_real epsilon, rho;  /* error of the prediction [N.m], its variance over 1/w [1] */
+} sh_row;
 
 /* What the noise of the motor's torque in its own column adds to the equation of the coefficient. */
 typedef struct {
@@ -185,23 +213,22 @@ typedef struct {
     sh_information recent;       /* of the last blocks, with the prior */
     sh_real count, recent_count; /* effective number of blocks [1] */
     sh_real duration; /* of the blocks since data were last forgotten, as far as they count [s] */
-    sh_real length;   /* samples of a block */
+    sh_real length;   /* rows of a block */
     sh_real energy, energy_second; /* share of white noise that H, and s^2 H [1/s4], leave in a
                                       block */
     /* The present block: */
-    sh_real samples;
+    sh_real rows;
     sh_real sum[SH_MAX_ROW];       /* of weighted rows */
+    sh_real error;                 /* square of the error of the prediction as before, over its variance */
     sh_real weight, weight_window; /* sums of w h and w h^2, for the window h */
     sh_real window, window_square; /* sums of h and h^2 */
     sh_real independent; /* sum of h^2 over the increase of the variance by errors that last */
-    sh_real rounding;    /* sum of squares of the rounding of theta [rad2] */
+    sh_real rounding;    /* sum of mean squares of the rounding of theta [rad2] */
 } sh_blocks;
 
 /* Whether the spring has changed, change.c. */
 typedef struct {
     sh_information changed; /* of blocks, if the spring has changed since this hypothesis began */
-    int opened;  /* columns that have been looked at to give those of the spring their prior back */
-    int adopted; /* the same in the data of all samples, after a change */
     int following;  /* 1: a change was detected, and the estimate does not contain it yet */
     sh_real blocks; /* since the hypothesis began */
     sh_real level,
@@ -215,11 +242,11 @@ typedef struct {
     sh_information frozen; /* copy of the data at the begin */
     sh_posterior posterior;
     int row;        /* next row of `frozen`; behind the last one: what a refit does at its end */
-    int waits;      /* 1: the refit advances with the next sample */
     int trial;      /* group that the present refit tries; 0: it changes the estimate */
     int last_trial; /* group that was tried last */
     int used[SH_GROUPS]; /* 1: the group is used */
-    sh_real samples;     /* since data were last forgotten */
+    sh_real time;        /* since data were last forgotten [s] */
+    sh_real pause;       /* since the end of the last refit [s] */
 } sh_refit;
 
 /* The method. */
@@ -229,6 +256,8 @@ typedef struct {
     sh_columns columns;
     sh_signals signals;
     sh_history history;
+    sh_mean mean;
+    sh_row row;
     sh_information data;    /* of all samples */
     sh_posterior posterior; /* the estimate */
     sh_refit refit;

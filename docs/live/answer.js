@@ -5,8 +5,7 @@ const COLORS = ["estimate", "second", "third"]; // of the set-points
 
 const answer = {
   open() {
-    this.plots = ["log-stiffness", "curve-stiffness", "curve-torque"]
-      .map((id) => new Plot(document.getElementById(id)));
+    this.plots = ["log-stiffness", "curve-stiffness", "curve-torque"].map((id) => new Plot(id));
   },
 
   hide() {
@@ -30,13 +29,9 @@ const answer = {
     });
     this.showCurve(this.plots[1], curves, ({ sigma: y, std: s }) => [y, s]);
     this.showCurve(this.plots[2], curves, ({ torque: y, torqueStd: s }) => [y, s]);
-    for (const keys of document.querySelectorAll(".keys"))
-      keys.replaceChildren(...(curves.length > 1 ? curves : []).map(({ setPoint }, i) => {
-        const key = document.createElement("span");
-        key.className = `key ${COLORS[i]}`;
-        key.textContent = `set-point ${shortly(setPoint)}`;
-        return key;
-      }));
+    const several = curves.length > 1 ? curves : [];
+    for (const { keys } of this.plots.slice(1))
+      keys.replaceChildren(...several.map(({ setPoint }, i) => key(COLORS[i], `set-point ${shortly(setPoint)}`)));
   },
 
   showCurve(plot, curves, of) {

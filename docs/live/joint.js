@@ -18,7 +18,7 @@ const joint = {
   async open() {
     [this.plant, this.estimator] =
       await Promise.all(["AwasPlant", "StiffnessEstimator"].map(compiled));
-    this.plots = ["stiffness", "torque"].map((id) => new Plot(document.getElementById(id)));
+    this.plots = ["stiffness", "torque"].map((id) => new Plot(id));
     const { items } = this.estimator.variables.method;
     this.form.elements.method.append(
       ...Object.entries(items).reverse().map(([name, value]) => new Option(name, value)));

@@ -1,5 +1,5 @@
 "use strict";
-// Numbers as people read them, all with the minus sign of print.
+// Numbers and doubts as people read them, numbers with the minus sign of print.
 
 /** A number as people read it: never a hundred digits. */
 function shortly(value) {
@@ -25,4 +25,25 @@ function withBand(value, half) {
 
 function printed(text) {
   return text.replaceAll("-", "−").replace("e+", "e");
+}
+
+const DOUBT = FMUS.StiffnessEstimator.variables.doubt.items, NO_DOUBT = DOUBT.None;
+const DOUBTS = {
+  NoClaim: "the method claims no band",
+  NotExcited: "too little motion yet",
+  Misfit: "the data contradict the model",
+  OutOfRange: "deformation beyond range.phi",
+  FrictionOutsidePrior: "friction far from what was given",
+  InertiaOutsidePrior: "inertia far from what was given",
+  NegativeStiffness: "stiffness below 0",
+  Change: "the stiffness changes",
+};
+
+/** In words, of a value of the output doubt. */
+function confidence(doubt) {
+  return doubt === NO_DOUBT ? "confident" : `not confident: ${reason(doubt)}`;
+}
+
+function reason(doubt) {
+  return DOUBTS[Object.keys(DOUBT).find((name) => DOUBT[name] === doubt)];
 }

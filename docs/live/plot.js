@@ -3,12 +3,22 @@
 
 const MARGIN = { left: 56, right: 10, top: 8, bottom: 26 };
 
+const KEYS = { true: "true", estimate: "estimated", band: "95 % band" };
+
 class Plot {
-  constructor(canvas) {
-    this.canvas = canvas;
-    this.pen = canvas.getContext("2d");
+  /** id: of the canvas, which is made in the figure that is for it, below its title and its keys. */
+  constructor(id) {
+    const figure = document.querySelector(`[data-plot="${id}"]`), caption = document.createElement("figcaption");
+    this.canvas = Object.assign(document.createElement("canvas"), { id });
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", figure.getAttribute("aria-label"));
+    this.keys = document.createElement("span"); // of what is drawn at times
+    caption.append(figure.textContent, ...figure.dataset.keys.split(" ").map((name) => key(name, KEYS[name])), this.keys);
+    figure.removeAttribute("aria-label");
+    figure.replaceChildren(caption, this.canvas);
+    this.pen = this.canvas.getContext("2d");
     const again = () => { if (this.content) this.draw(this.content); };
-    new ResizeObserver(again).observe(canvas);
+    new ResizeObserver(again).observe(this.canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.style = null;
       again();
@@ -116,6 +126,11 @@ class Plot {
     }
     return found;
   }
+}
+
+/** What a colour stands for. */
+function key(color, text) {
+  return Object.assign(document.createElement("span"), { className: `key ${color}`, textContent: text });
 }
 
 /** About so many round numbers in a range, with their labels. */

@@ -12,7 +12,7 @@ const watch = {
     for (const section of document.querySelectorAll("main > section"))
       section.hidden = section.id !== "watch";
     say("intro", "The stiffness of the joints of a robot, as sigmahat live estimates it while they move.");
-    this.plots = ["watched-stiffness", "watched-torque"].map((id) => new Plot(document.getElementById(id)));
+    this.plots = ["watched-stiffness", "watched-torque"].map((id) => new Plot(id));
     this.field.addEventListener("change", () => this.choose(this.field.value));
     if (WATCHED) this.connect();
     else say("watch-message", "Expected the address of a WebSocket, as in ?ws=ws://127.0.0.1:8765");

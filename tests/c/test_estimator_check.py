@@ -51,10 +51,11 @@ def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, A
 INTEGERS_OF_FILTERED_REGRESSION = [
     *("modality", "friction_drifts", "stiffness_known", "signals.begun", "data.size"),
     *("columns.size", "columns.has_nominal", "columns.column.kind", "columns.column.i"),
-    *("columns.column.j", "refit.row", "refit.waits", "refit.trial", "refit.last_trial"),
+    *("columns.column.j", "refit.row", "refit.trial", "refit.last_trial"),
     *("refit.used", "refit.frozen.size"),
     *("blocks.constant.size", "blocks.drifting.size", "blocks.recent.size"),
-    *("change.changed.size", "change.opened", "change.adopted", "change.following"),
+    *("change.changed.size", "change.following"),
+    *("signals.decimation", "mean.samples", "row.step"),
     *(
         f"{posterior}.{member}"
         for posterior in ("posterior", "refit.posterior")

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
@@ -12,8 +10,7 @@ import pytest
 
 import oracle
 from c_library import Array, Library, covariance
-from c_sources import FOLDERS, LIBRARY
-from gate import need
+from c_real import compile_library
 from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
 from reference_plant import table1_recording
 
@@ -26,20 +23,8 @@ KINDS = {  # kind: factor and P_0; for ENHANCED those of the paper
 
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Library:
-    """The recursion in the plain C that pair.h has for processors without pairs of doubles."""
-    folder = tmp_path_factory.mktemp("plain")
-    suffix = ".dylib" if sys.platform == "darwin" else ".so"
-    subprocess.run(
-        [
-            *(need("cc"), "-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared"),
-            *("-U__SSE2__", "-U__aarch64__"),
-            *(f"-I{each}" for each in FOLDERS),
-            *(str(LIBRARY / name) for name in ("least_squares.c", "ud_factor.c")),
-            *("-lm", "-o", str(folder / f"libsigmahat_test_driver{suffix}")),
-        ],
-        check=True,
-    )
-    return Library(folder)
+    """The library in the plain C that pair.h has for processors without pairs of doubles."""
+    return compile_library(tmp_path_factory.getbasetemp(), "double", "-U__SSE2__", "-U__aarch64__")
 
 
 class Recursion:
@@ -108,24 +93,6 @@ def test_every_sample_against_the_recursion_as_printed(c: Library, kind: int, si
 
 
 @pytest.mark.slow("the oracle computes in many digits")
-@pytest.mark.parametrize("kind", KINDS)
-def test_table1_against_the_ridge(c: Library, kind: int) -> None:
-    # The recursion over the whole run, and the closed-form minimum of the same sum
-    factor, P_0 = KINDS[kind]
-    F, y = table1_data()
-    recursion = Recursion(c, kind, factor, P_0, np.zeros(18))
-    weight = np.empty(len(y))
-    for k in range(len(y)):
-        assert recursion.update(F[k], y[k])
-        a, rho = recursion.innovation.a, recursion.innovation.rho
-        weight[k] = factor if kind == ENHANCED else a / (1 + rho - a * rho)
-    want = oracle.ridge(
-        oracle.exact(weight), P_0, np.zeros(18), oracle.exact(F), oracle.exact(y)[:, None]
-    )
-    assert recursion.eta == pytest.approx(oracle.rounded(want[:, 0]), rel=1e-9)
-
-
-@pytest.mark.slow("the oracle computes in many digits")
 @pytest.mark.parametrize("kind", [STANDARD, CONSTANT_FACTOR])
 def test_P_stays_positive_definite_with_a_large_P_0(c: Library, kind: int) -> None:
     # GIVEN P_0 = 1e20, with which the recursion as printed fails in doubles WHEN the recursion runs
@@ -146,39 +113,6 @@ def test_P_stays_positive_definite_with_a_large_P_0(c: Library, kind: int) -> No
     information += np.eye(18, dtype=int) / oracle.exact(1e20)
     want = oracle.rounded(oracle.solve(information, oracle.exact(np.eye(18))))
     assert np.diag(P) == pytest.approx(np.diag(want), rel=1e-6)
-
-
-def test_enhanced_factor_is_the_bound_of_26(c: Library) -> None:
-    # (26) with equality: a / (1 + rho - a rho) = c, with a c that is large enough for doubles
-    rng = np.random.default_rng(3)
-    recursion = Recursion(c, ENHANCED, 0.25, 10.0, np.zeros(4))
-    for F, y in zip(rng.normal(size=(50, 4)), rng.normal(size=50), strict=True):
-        recursion.update(F, y)
-        a, rho = recursion.innovation.a, recursion.innovation.rho
-        assert 0.25 <= a < 1
-        assert a / (1 + rho - a * rho) == pytest.approx(0.25, rel=1e-12)
-
-
-def test_start_sets_the_initial_estimate_and_covariance(c: Library) -> None:
-    recursion = Recursion(c, STANDARD, 1.0, 3.0, np.array([1.0, -2.0]))
-    assert recursion.eta.tolist() == [1.0, -2.0]
-    assert recursion.covariance.tolist() == [[3.0, 0.0], [0.0, 3.0]]
-    c.lib.sh_least_squares_start(recursion.state, 3, c.ffi.NULL, 5.0)
-    assert recursion.eta.tolist() == [0.0, 0.0, 0.0]
-    assert recursion.covariance.tolist() == (5.0 * np.eye(3)).tolist()
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_zero_regressor_changes_nothing(c: Library, kind: int) -> None:
-    factor, P_0 = KINDS[kind]
-    recursion = Recursion(c, kind, factor, P_0, np.array([1.0, 2.0, 3.0]))
-    recursion.update(np.array([1.0, 0.5, -1.0]), 4.0)
-    eta, P = recursion.eta, recursion.covariance
-    assert recursion.update(np.zeros(3), 7.0)
-    assert recursion.innovation.rho == 0.0
-    assert recursion.innovation.epsilon == 7.0
-    assert np.all(recursion.eta == eta)
-    assert np.all(recursion.covariance == P)
 
 
 def test_the_variance_along_a_regressor_is_that_of_the_covariance(c: Library) -> None:

@@ -224,9 +224,3 @@ def test_conan_creates_the_package_and_its_program_runs(
     assert float(printed[1]) == pytest.approx(150.0, rel=1e-4)
     assert int(printed[2]) == number
     assert least < int(printed[3]) < most
-
-
-def test_conan_refuses_a_size_that_is_none(conan: Conan) -> None:
-    code, text = conan.create("max_n=0")
-    assert code != 0
-    assert "max_n: expected a whole number from 1 on, received 0" in text

@@ -88,12 +88,19 @@ def test_at_rest_the_state_becomes_zero_and_never_denormal(c: Library) -> None:
     assert list(f.behind) == [0.0] * 3
 
 
+@pytest.mark.parametrize("samples", [1, 5])
 @pytest.mark.parametrize("w", [50.0, 350.0, 1500.0])
-def test_noise_gain_is_the_integral_over_all_frequencies(c: Library, w: float) -> None:
-    second = transfer(w, 2)
-    # scipy's first-order hold is exact for the same signals: linear between samples
-    numerator, denominator, _ = signal.cont2discrete((second.num, second.den), T, method="foh")
+def test_noise_gain_is_the_integral_over_all_frequencies(
+    c: Library, w: float, samples: int
+) -> None:
     frequencies = (np.arange(200_000) + 0.5) * np.pi / 200_000
-    _, response = signal.freqz(numerator.ravel(), denominator, worN=frequencies)
-    want = np.mean(np.abs(response) ** 2)
-    assert c.lib.sh_state_variable_filter_noise(design(c, w)) == pytest.approx(want, rel=1e-6)
+    _, mean = signal.freqz(np.full(samples, 1 / samples), worN=frequencies)
+    found = [c.ffi.new("sh_real *") for _ in range(2)]
+    c.lib.sh_state_variable_filter_noise(design(c, w), samples, *found)
+    for gain, order in zip(found, (0, 2), strict=True):
+        of = transfer(w, order)
+        # scipy's first-order hold is exact for the same signals: linear between samples
+        numerator, denominator, _ = signal.cont2discrete((of.num, of.den), T, method="foh")
+        _, response = signal.freqz(numerator.ravel(), denominator, worN=frequencies)
+        want = np.mean(np.abs(response * mean) ** 2)
+        assert gain[0] == pytest.approx(want, rel=1e-6)

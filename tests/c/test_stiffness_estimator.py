@@ -108,58 +108,7 @@ def test_outputs_before_the_first_tick(c: Library, symmetric: int) -> None:
     assert np.all(np.array([list(row) for row in estimate.eta])[:6, :3] == eta_0[:6, :3])
 
 
-def test_first_tick_starts_the_filters_and_the_residual(c: Library) -> None:
-    # GIVEN a motor far from zero, under torque WHEN the first sample is received
-    # THEN velocity and residual are zero, and the regression is updated with torque zero
-    estimator = Estimator(c, {})
-    assert estimator.tick([18.0, 18.01, 3.0, 0.5, 0.0])
-    estimate = estimator.estimate
-    assert (estimate.theta_dot, estimate.tau_e_residual, estimate.epsilon) == (0.0, 0.0, 0.0)
-    assert estimate.phi == pytest.approx(0.01)
-    assert estimate.setPoint == pytest.approx(100 - 3.0 * 2.5 / (2 * math.pi))
-    assert estimate.rho > 0
-    assert estimate.valid
-
-
-def test_unused_coefficients_are_zero(c: Library) -> None:
-    estimator = Estimator(c, {"rls.n": 2, "rls.m": 4})
-    estimator.run(table1_recording().measurements()[:500])
-    eta = np.array([list(row) for row in estimator.estimate.eta])
-    assert np.all(eta[:2, :4] != 0)
-    assert np.all(eta[2:] == 0)
-    assert np.all(eta[:, 4:] == 0)
-
-
-def test_a_mirrored_motion_has_the_same_stiffness(c: Library) -> None:
-    # (16): if theta, q and the torques are negated, tau_e changes its sign and sigma does not
-    z = table1_recording().measurements()[:2000]
-    one = Estimator(c, {}).run(z)
-    other = Estimator(c, {}).run(z * [-1, -1, 1, -1, -1])
-    assert np.all(other["sigma"] == one["sigma"])
-    assert np.all(other["tau_e"] == -one["tau_e"])
-
-
-def test_a_copied_estimator_continues_like_the_original(c: Library) -> None:
-    z = table1_recording().measurements()
-    original = Estimator(c, {})
-    original.run(z[:1000])
-    copy = Estimator(c, {})
-    copy.state[0] = original.state[0]
-    copy.estimate[0] = original.estimate[0]
-    assert original.run(z[1000:1500]).tobytes() == copy.run(z[1000:1500]).tobytes()
-
-
 # The AwAS as a physical system
-
-
-@pytest.mark.parametrize("modality", MODALITIES)
-def test_stiffness_of_the_AwAS_is_estimated(c: Library, modality: int) -> None:
-    # GIVEN the motion of Table I WHEN one second has passed
-    # THEN the mean square relative error is far below the 0.12 % of the paper
-    recording = table1_recording()
-    estimates = Estimator(c, {"modality": modality}).run(recording.measurements())
-    after = relative(estimates, recording.true_sigma)[1000:]
-    assert 100 * np.mean(after**2) < 0.01
 
 
 def test_modality_can_change_between_ticks(c: Library) -> None:

@@ -35,17 +35,3 @@ def test_against_the_oracle(c: Library, n: int, m: int, symmetric: int) -> None:
         )
         assert pytest.approx(want_F, rel=1e-14, abs=0.0) == F
         assert pytest.approx(want_dF, rel=1e-14, abs=0.0) == dF
-
-
-def test_order_of_the_coefficients(c: Library) -> None:
-    # (22): powers of the deformation run fastest, F[j n + i] = l^j phi^(2i+1)
-    F, dF = basis(c, 1, 3, 2, 10.0, 2.0)
-    assert F.tolist() == [2, 8, 32, 20, 80, 320]
-    assert dF.tolist() == [1, 12, 80, 10, 120, 800]
-
-
-def test_order_of_the_coefficients_of_the_general_basis(c: Library) -> None:
-    # F[j n + i] = l^j phi^i
-    F, dF = basis(c, 0, 4, 2, 10.0, 2.0)
-    assert F.tolist() == [1, 2, 4, 8, 10, 20, 40, 80]
-    assert dF.tolist() == [0, 1, 4, 12, 0, 10, 40, 120]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
@@ -36,37 +34,6 @@ def run(
         )
     assert residual.r_e * GAMMA == estimate[-1]
     return np.array(estimate)
-
-
-def test_step_in_closed_form(c: Library) -> None:
-    # The step response of the trapezoidal rule is 1 - pole^k
-    zero = np.zeros(300)
-    pole = (2 - T * K_I) / (2 + T * K_I)
-    estimate = run(c, zero, zero, np.full(300, 0.2))
-    assert estimate == pytest.approx(-GAMMA * 0.2 * (1 - pole ** np.arange(300)), rel=1e-12)
-
-
-def test_residual_of_a_motor_that_the_flexibility_torque_turns(c: Library) -> None:
-    # GIVEN no motor torque and a constant flexibility torque, which by (3) turns the motor with
-    # theta_dot = tau_e / (gamma^2 D) (1 - exp(-t D / B))
-    # WHEN the residual has settled THEN it is equal to that torque, with its sign
-    tau_e = 1.5
-    t = T * np.arange(2000)
-    steady, lag = tau_e / (GAMMA**2 * D_THETA), B / D_THETA
-    theta_dot = steady * (1 - np.exp(-t / lag))
-    theta = steady * (t - lag * (1 - np.exp(-t / lag)))
-    estimate = run(c, theta, theta_dot, np.zeros(len(t)))
-    assert estimate[-1] == pytest.approx(tau_e, rel=1e-3)
-
-
-def test_residual_is_zero_if_the_torque_is_that_of_friction_and_inertia(c: Library) -> None:
-    # GIVEN a motor without transmission, tau = B gamma theta'' + D gamma theta'
-    # WHEN it oscillates THEN the residual stays near zero, far below the motor torque
-    w = 2 * math.pi * 3
-    t = T * np.arange(5000)
-    tau = -B * GAMMA * w**2 * np.sin(w * t) + D_THETA * GAMMA * w * np.cos(w * t)
-    estimate = run(c, np.sin(w * t), w * np.cos(w * t), tau)
-    assert np.max(np.abs(estimate)) < 1e-4 * GAMMA * np.max(np.abs(tau))
 
 
 def test_after_lost_samples_the_residual_continues_from_its_last_value(c: Library) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -215,24 +214,6 @@ def test_a_torque_that_saturates_is_noted(tmp_path: Path) -> None:
     flat = {**log, "tau": np.clip(log["tau"], -limit, limit)}
     found = checked(flat, parameters(KNEE, 1e-3), tmp_path)
     assert Kind.SATURATION in [each.kind for each in found.findings]
-
-
-def test_a_configuration_that_is_not_in_a_file_is_checked(tmp_path: Path) -> None:
-    path = tmp_path / "log.toml"
-    path.write_text(RIGHT)
-    configuration = read_configuration(path)
-    path.unlink()
-    ports = {**configuration.ports, "tau": replace(configuration.ports["tau"], sign=-1.0)}
-    log = LogInMemory(Path("log"), knee_log())
-    assert not check(log, configuration).is_wrong
-    assert check(log, replace(configuration, ports=ports)).is_wrong
-    assert not check(log, configuration).is_wrong
-
-
-def test_of_a_long_log_a_bounded_part_is_looked_at(tmp_path: Path) -> None:
-    long = {name: np.resize(column, 70_000) for name, column in knee_log().items()}
-    long["t"] = np.linspace(0.0, 69.999, 70_000)
-    assert checked(long, RIGHT, tmp_path).ticks == 60_000
 
 
 @pytest.mark.slow("five commands, identify and estimate among them")

@@ -18,7 +18,6 @@ OUTPUTS = [
     for v in fmpy.read_model_description(str(sigmahat.fmu("StiffnessEstimator"))).modelVariables
     if v.causality == "output" and v.type == "Real"
 ]
-INPUTS = ["theta", "tau", "tau_e_sensor"]
 CONFIDENT, NOT_EXCITED, MISFIT = 1, 3, 4  # items of the enumeration Doubt
 
 
@@ -123,7 +122,6 @@ def test_variables_are_those_of_the_estimator_for_each_motor(
 
 def test_messages_name_the_motor(antagonistic_fmu: Path) -> None:
     with Instance(antagonistic_fmu) as pair:
-        assert pair.setup() == OK
         pair.set_all({"motor_2.gamma": 0.0})
         assert pair.enter() == OK
         assert pair.exit() == ERROR

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import threading
 
 import pytest
 
@@ -27,16 +26,3 @@ def test_an_ignored_interrupt_stays_ignored() -> None:
             signal.raise_signal(signal.SIGINT)
     finally:
         signal.signal(signal.SIGINT, handler)
-
-
-def test_another_thread_may_use_it() -> None:
-    entered = []
-
-    def enter() -> None:
-        with interrupts_wait():
-            entered.append(True)
-
-    thread = threading.Thread(target=enter)
-    thread.start()
-    thread.join()
-    assert entered == [True]

@@ -38,8 +38,7 @@ def limits(variable: Any) -> Iterator[tuple[str, float, float]]:
 
 def initialise(fmu: Instance, name: str, value: float) -> tuple[int, str]:
     """The first status that is not OK when a parameter is set and initialised, and its message."""
-    assert fmu.call("fmi2Reset") == OK
-    assert fmu.setup() == OK
+    assert fmu.call("Reset") == OK
     status = fmu.set(name, value)
     if status == OK:
         assert fmu.enter() == OK

@@ -8,7 +8,6 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
-import fmpy
 import pytest
 from lxml import etree
 
@@ -84,13 +83,6 @@ def test_factors_of_display_units_are_right(
         assert real.get("displayUnit") == display
 
 
-def test_every_unit_is_used_and_every_used_one_defined(fmu: Path) -> None:
-    root = read(fmu)
-    used = {real.get("unit") for real in root.iterfind("ModelVariables/ScalarVariable/Real")}
-    defined = [unit.get("name") for unit in root.iterfind("UnitDefinitions/Unit")]
-    assert sorted(defined) == sorted(used - {None})
-
-
 def test_only_what_has_no_single_unit_has_none(fmu: Path) -> None:
     """Coefficients of different powers, and covariances of quantities with different units."""
     without = {
@@ -101,15 +93,6 @@ def test_only_what_has_no_single_unit_has_none(fmu: Path) -> None:
     sides = {"StiffnessEstimator": ["eta"], "AntagonisticStiffnessEstimator": ["eta_1", "eta_2"]}
     own = sides.get(fmu.stem, [])
     assert without == ({*own, "rls.eta_0", "rls.P_0", "filter.P_0"} if own else set())
-
-
-def test_start_and_nominal_values_are_in_their_ranges(fmu: Path) -> None:
-    reals = read(fmu).xpath("ModelVariables/ScalarVariable/Real")
-    for real in reals:
-        low, high = float(real.get("min", "-inf")), float(real.get("max", "inf"))
-        for key in ("start", "nominal"):
-            assert real.get(key) is None or low <= float(real.get(key)) <= high
-        assert float(real.get("nominal", 1)) > 0
 
 
 def test_everything_has_a_description(fmu: Path) -> None:
@@ -127,13 +110,6 @@ def test_everything_has_a_description(fmu: Path) -> None:
     experiment = root.find("DefaultExperiment")
     assert set(experiment.attrib) == {"startTime", "stopTime", "stepSize"}
     assert float(experiment.get("stepSize")) == 1e-3
-
-
-def test_the_description_has_only_attributes_of_the_standard(fmu: Path) -> None:
-    """`depends`, which only the build uses, is removed."""
-    folder = Path(fmpy.__file__).parent / "schema" / "fmi2"
-    schema = etree.XMLSchema(file=str(folder / "fmi2ModelDescription.xsd"))
-    schema.assertValid(read(fmu))
 
 
 def known_values(fmu: Instance) -> dict[str, list[float]]:
@@ -179,7 +155,6 @@ def observed(path: Path, choices: dict[str, int]) -> dict[str, set[str]]:
     """By output: the inputs and parameters that change its value in initialisation mode."""
     with Instance(path) as fmu:
         outputs = [n for n, v in fmu.variables.items() if v.causality == "output"]
-        assert fmu.setup() == OK
         fmu.set_all(distinct(fmu, choices))
         assert fmu.enter() == OK
         depends: dict[str, set[str]] = {name: set() for name in outputs}

@@ -4,82 +4,58 @@ from __future__ import annotations
 
 import ctypes
 import random
-from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-import sigmahat
-from fmi3_instance import Instance3, driver3
 from fmi_instance import ERROR, OK, Instance
-from fmi_runs import ESTIMATORS, PLANTS, Driver, continue_from, names, random_steps
+from fmi_runs import ESTIMATORS, PLANTS, Driver, Fmi, continue_from, names, random_steps
 
 every_fmu = pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
 STEPS = random_steps(120, seed=1)
 POINTS = random.Random(2).sample(range(len(STEPS)), 50)
 
 
-@dataclass(frozen=True)
-class Version:
-    """How an FMU is run in one version of FMI."""
-
-    path: Callable[[str], Path]
-    instance: Any
-    driver: Any
-    reset: str
-    deserialise: str
-
-
-@pytest.fixture(params=["fmi2", "fmi3"])
-def fmi(request: pytest.FixtureRequest, twin: Callable[[str], Path]) -> Version:
-    if request.param == "fmi2":
-        return Version(sigmahat.fmu, Instance, Driver, "fmi2Reset", "fmi2DeSerializeFMUstate")
-    return Version(twin, Instance3, driver3, "fmi3Reset", "fmi3DeserializeFMUState")
-
-
 @every_fmu
-def test_an_instance_after_a_reset_is_like_a_new_one(name: str, fmi: Version) -> None:
-    with fmi.instance(fmi.path(name)) as fmu:
-        driver = fmi.driver(fmu)
+def test_an_instance_after_a_reset_is_like_a_new_one(name: str, fmi: Fmi) -> None:
+    with fmi(name) as fmu:
+        driver = Driver(fmu)
         fmu.initialise()
         initial, fresh = driver.result(), driver.run(STEPS)
-    with fmi.instance(fmi.path(name)) as fmu:
-        driver = fmi.driver(fmu)
+    with fmi(name) as fmu:
+        driver = Driver(fmu)
         tunable = names(fmu, "parameter", "tunable")[:3]
         other = {n: 1.5 * float(fmu.variables[n].start) for n in tunable}
         for point in POINTS[:25]:
             fmu.initialise(other, start=3.7)  # values that the reset has to replace
             driver.run([(3.7 + t, h) for t, h in STEPS[:point]])
-            assert fmu.call(fmi.reset) == OK
+            assert fmu.call("Reset") == OK
             fmu.initialise()
             assert driver.result() == initial
             assert driver.run(STEPS) == fresh
-            assert fmu.call(fmi.reset) == OK
+            assert fmu.call("Reset") == OK
 
 
-@every_fmu
-def test_after_a_reset_without_setup_the_start_time_is_0(name: str) -> None:
-    with Instance(sigmahat.fmu(name)) as fmu:
+def test_after_a_reset_without_setup_the_start_time_is_0(estimator_fmu: Path) -> None:
+    with Instance(estimator_fmu) as fmu:
         driver = Driver(fmu)
-        fmu.initialise(start=0.0)
+        fmu.initialise()
         fresh = driver.run(STEPS[:20])
-        assert fmu.call("fmi2Reset") == OK
+        assert fmu.call("Reset") == OK
         fmu.initialise(start=3.7)
         assert fmu.step(3.7, 1e-3) == OK
-        assert fmu.call("fmi2Reset") == OK
-        assert fmu.enter() == OK and fmu.exit() == OK
+        assert fmu.call("Reset") == OK
+        assert fmu.call("EnterInitializationMode") == OK and fmu.exit() == OK
         assert driver.run(STEPS[:20]) == fresh
 
 
 @every_fmu
-def test_a_restored_state_continues_bit_for_bit(name: str, fmi: Version) -> None:
+def test_a_restored_state_continues_bit_for_bit(name: str, fmi: Fmi) -> None:
     """In the instance that it is of, and, serialised, in another process."""
-    with fmi.instance(fmi.path(name)) as fmu:
-        driver = fmi.driver(fmu)
+    with fmi(name) as fmu:
+        driver = Driver(fmu)
         fmu.initialise()
         states, serialised, results, whole = {}, {}, {}, []
         for k, step in enumerate(STEPS):
@@ -95,25 +71,24 @@ def test_a_restored_state_continues_bit_for_bit(name: str, fmi: Version) -> None
     with ProcessPoolExecutor(1, get_context("spawn")) as process:
         continued = process.submit(
             continue_from,
+            fmi.kind,
             fmi.path(name),
             [serialised[p] for p in POINTS],
             [STEPS[p:] for p in POINTS],
-            fmi.instance,
-            fmi.driver,
         ).result()
     for point, result in zip(POINTS, continued, strict=True):
         assert result == whole[point:]
 
 
 @pytest.mark.parametrize("at", ["instantiated", "initialisation", "terminated"])
-def test_a_state_contains_the_mode_of_the_instance(at: str, estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_a_state_contains_the_mode_of_the_instance(at: str, fmi: Fmi) -> None:
+    with fmi() as fmu:
         if at != "instantiated":
-            assert fmu.setup() == OK and fmu.enter() == OK
+            assert fmu.enter() == OK
         if at == "terminated":
-            assert fmu.exit() == OK and fmu.call("fmi2Terminate") == OK
+            assert fmu.exit() == OK and fmu.call("Terminate") == OK
         state = fmu.save()
-        assert fmu.call("fmi2Reset") == OK
+        assert fmu.call("Reset") == OK
         fmu.initialise()
         assert fmu.step(0.0, 1e-3) == OK
         assert fmu.restore(state) == OK
@@ -124,10 +99,10 @@ def test_a_state_contains_the_mode_of_the_instance(at: str, estimator_fmu: Path)
 
 
 def test_a_state_of_initialisation_mode_gives_initial_outputs(
-    estimator_fmu: Path,
+    fmi: Fmi,
 ) -> None:
-    with Instance(estimator_fmu) as fmu:
-        assert fmu.setup() == OK and fmu.enter() == OK
+    with fmi() as fmu:
+        assert fmu.enter() == OK
         fmu.set_all({"rls.eta_0[0,0]": 5.0})
         state = fmu.save()
         fmu.set_all({"rls.eta_0[0,0]": 7.0})
@@ -139,8 +114,8 @@ def test_a_state_of_initialisation_mode_gives_initial_outputs(
         fmu.free(state)
 
 
-def test_a_state_with_contradictory_parameters_refuses_a_step(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_a_state_with_contradictory_parameters_refuses_a_step(fmi: Fmi) -> None:
+    with fmi() as fmu:
         fmu.initialise()
         fmu.set_all({"filter.V_min": 20.0})  # above filter.V_max
         state = fmu.save()
@@ -148,23 +123,22 @@ def test_a_state_with_contradictory_parameters_refuses_a_step(estimator_fmu: Pat
         assert fmu.step(0.0, 1e-3) == OK
         assert fmu.restore(state) == OK
         assert fmu.step(0.0, 1e-3) == ERROR
-        assert "filter.V_min = 20" in fmu.messages[-1][2]
+        assert "filter.V_min = 20" in fmu.last_message
         fmu.free(state)
 
 
 @every_fmu
-def test_a_damaged_or_foreign_state_is_refused(name: str, fmi: Version) -> None:
+def test_a_damaged_or_foreign_state_is_refused(name: str, fmi: Fmi) -> None:
     foreign_name = "AwasPlant" if name != "AwasPlant" else "StiffnessEstimator"
-    foreign_path = fmi.path(foreign_name)
-    with fmi.instance(fmi.path(name)) as fmu, fmi.instance(foreign_path) as other:
-        driver = fmi.driver(fmu)
+    with fmi(name) as fmu, fmi(foreign_name) as other:
+        driver = Driver(fmu)
         fmu.initialise()
         driver.run(STEPS[:5])
         state, foreign_state = fmu.save(), other.save()
         good, expected = fmu.serialise(state), driver.run(STEPS[5:10])
         foreign = other.serialise(foreign_state)
         assert fmu.restore(foreign_state) == ERROR
-        assert "another FMU" in fmu.messages[-1][2]
+        assert "another FMU" in fmu.last_message
         other.free(foreign_state)
         refused = [
             (good[:-1], "truncated"),
@@ -185,24 +159,24 @@ def test_a_damaged_or_foreign_state_is_refused(name: str, fmi: Version) -> None:
             assert status == ERROR and made.value is None
             category, message = fmu.messages[-1][1:]
             assert category == "logStatusError"
-            assert message.startswith(fmi.deserialise) and reason in message
+            assert message.startswith(f"{fmu.prefix}De") and reason in message
             assert driver.result() == reached
         assert fmu.restore(state) == OK
         assert driver.run(STEPS[5:10]) == expected
         fmu.free(state)
 
 
-def test_a_buffer_that_is_too_small_for_a_state_is_refused(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_a_buffer_that_is_too_small_for_a_state_is_refused(fmi: Fmi) -> None:
+    with fmi() as fmu:
         fmu.initialise()
         state = fmu.save()
         size = len(fmu.serialise(state))
         buffer = ctypes.create_string_buffer(b"\xa5" * size, size)
-        status = fmu.call("fmi2SerializeFMUstate", state, buffer, ctypes.c_size_t(size - 1))
+        status = fmu.call(f"Serialize{fmu.state}", state, buffer, ctypes.c_size_t(size - 1))
         assert status == ERROR
-        assert f"size = {size - 1} bytes; expected {size}" in fmu.messages[-1][2]
+        assert f"size = {size - 1} bytes; expected {size}" in fmu.last_message
         assert buffer.raw == b"\xa5" * size
-        assert fmu.call("fmi2SerializeFMUstate", state, buffer, ctypes.c_size_t(size)) == OK
+        assert fmu.call(f"Serialize{fmu.state}", state, buffer, ctypes.c_size_t(size)) == OK
         fmu.free(state)
 
 
@@ -214,7 +188,7 @@ def test_freeing_a_state_releases_its_memory(estimator_fmu: Path) -> None:
         state = fmu.save()
         block = state.value
         assert fmu.blocks == without | {block}
-        assert fmu.call("fmi2GetFMUstate", ctypes.byref(state)) == OK  # uses the same memory
+        assert fmu.call("GetFMUstate", ctypes.byref(state)) == OK  # uses the same memory
         assert state.value == block and fmu.blocks == without | {block}
         status, copy = fmu.deserialise(fmu.serialise(state))
         assert status == OK

@@ -11,17 +11,10 @@ from c_programs import VERSIONS, compile_driver, compiler_with
 from fmi_runs import ESTIMATORS, PLANTS
 from gate import need
 
-# The versions of FMI share all code but their functions. One estimator and one plant go through
-# those of FMI 3.0.
+# The versions of FMI share all code but their functions: one estimator and one plant go through
+# those of FMI 3.0, the others through those of FMI 2.0.
 IN_FMI3 = ["StiffnessEstimator", "AwasPlant"]
 every_fmu = pytest.mark.parametrize(
-    ("fmu", "version"),
-    [
-        *((fmu, "fmi2") for fmu in ESTIMATORS + PLANTS),
-        *((fmu, "fmi3") for fmu in IN_FMI3),
-    ],
-)
-every_fmu_in_one_version = pytest.mark.parametrize(
     ("fmu", "version"),
     [(fmu, "fmi3" if fmu in IN_FMI3 else "fmi2") for fmu in ESTIMATORS + PLANTS],
 )
@@ -59,7 +52,7 @@ def test_instances_do_not_influence_each_other_in_turn_and_in_threads(
     run(compile_driver("threads", fmu, version, build, folder, compiler, THREAD))
 
 
-@every_fmu_in_one_version
+@every_fmu
 @pytest.mark.slow("all sources are compiled with sanitizers, and run slower with them")
 def test_sanitizers_find_no_leak_and_no_undefined_behaviour(
     fmu: str, version: str, build: Path, folder: Path

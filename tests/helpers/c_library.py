@@ -23,6 +23,7 @@ _WITHOUT_DECLARATIONS = ("constants.h", "real_math.h", "pair.h", "scalar_product
 """Headers with nothing but macros and inline functions. They include those of the C library, which
 cffi cannot read."""
 
+_FORMATS = {"double": "f8", "float": "f4", "long double": "g", "int": "i4"}
 MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
 
@@ -53,7 +54,7 @@ class Library:
         self.ffi, self.real = cffi.FFI(), real
         own = (header for header in HEADERS if header.name not in _WITHOUT_DECLARATIONS)
         text = declarations(*own, REPOSITORY / "tests" / "drivers" / "run.h")
-        self.ffi.cdef(text.replace("double", real))
+        self.ffi.cdef("typedef long double _Float64x;" + text.replace("double", real))
         suffix = ".dylib" if sys.platform == "darwin" else ".so"
         self.lib: Any = self.ffi.dlopen(str(build / f"libsigmahat_test_driver{suffix}"))
 
@@ -81,7 +82,7 @@ class Library:
                 shape.append(item.length)
                 item = item.item
             names.append(name)
-            formats.append(({"double": "f8", "float": "f4", "int": "i4"}[item.cname], tuple(shape)))
+            formats.append((_FORMATS[item.cname], tuple(shape)))
             offsets.append(field.offset)
         size = self.ffi.sizeof(struct)
         return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})

@@ -1,4 +1,4 @@
-"""The C library in double and in single precision, compiled as a controller would compile it."""
+"""The C library in other precisions, in plain C as a controller compiles it."""
 
 from __future__ import annotations
 
@@ -13,17 +13,20 @@ from c_sources import FOLDERS, SOURCES
 from gate import need
 
 REALS = ("double", "float")
+LONG = "_Float64x"
+"""long double, for which glibc has functions by this name."""
 
 
 @cache
-def compile_library(parent: Path, real: str) -> Library:
-    """The library with `real` as the type of its numbers, compiled in a new folder of `parent`."""
+def compile_library(parent: Path, real: str, *flags: str) -> Library:
+    """The library with `real`, one of REALS or LONG, compiled in a new folder of `parent`."""
     folder = Path(tempfile.mkdtemp(dir=parent))
     suffix = ".dylib" if sys.platform == "darwin" else ".so"
     drivers = REPOSITORY / "tests" / "drivers"
     subprocess.run(
         [
-            *(need("cc"), "-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared"),
+            *(need("cc"), "-std=gnu99", "-O1", "-ffp-contract=off", "-fPIC", "-shared", *flags),
+            *("-D_GNU_SOURCE", f"-DSH_FOR_{LONG}(a,b)=a##f64x", f"-DSH_IS_{LONG}=0"),
             *(f"-DSH_REAL={real}", f"-I{drivers}", *(f"-I{each}" for each in FOLDERS)),
             *map(str, [*SOURCES, drivers / "run.c"]),
             *("-lm", "-o", str(folder / f"libsigmahat_test_driver{suffix}")),

@@ -7,7 +7,9 @@ It shares nothing with the C code except the direction of motion, which has its 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,6 +28,7 @@ from dense_signals import (
     Inputs,
     Parameters,
     bandwidth,
+    decimation,
     resolution,
     through,
 )
@@ -131,7 +134,7 @@ class Posterior:
 
 @dataclass
 class Blocks:
-    """Blocks of 50 ms under a smooth window."""
+    """Blocks of rows, 50 ms, under a smooth window."""
 
     all: Information
     walking: Information
@@ -148,10 +151,9 @@ class Blocks:
         return self.count >= 20
 
 
-def start_blocks(n: int, w: float, T: float) -> Blocks:
-    length = max(math.floor(0.05 / T + 0.5), 4)
-    k = np.arange(length + math.ceil(30 / (w * T)))
-    h = np.where(k < length, window(k, length), 0.0)
+def start_blocks(n: int, w: float, T: float, K: int) -> Blocks:
+    length = max(math.floor(0.05 / (K * T) + 0.5), 4)
+    h = np.append(np.repeat(window(np.arange(length), length), K), np.zeros(math.ceil(30 / (w * T))))
     filtered = [through(np.append(0.0, h), order, w, T) for order in (0, 2)]
     energy, of_second = (float(np.sum(f**2) / np.sum(h**2)) for f in filtered)
     every, walking, recent = (Information(n, precision) for precision in (LEAST, LEAST, 1.0))
@@ -175,7 +177,7 @@ class Oracle:
     ) -> None:
         self.c, self.p, self.z, self.eta_0, self.modality = c, p, z, eta_0, modality
         self.good = np.all(np.isfinite(z), axis=1)
-        self.T, self.w = p["samplePeriod"], bandwidth(p)
+        self.T, self.w, self.K = p["samplePeriod"], bandwidth(p), decimation(p)
         self.runs = self.find_runs()
         self.inputs = Inputs(p, np.nan_to_num(z, posinf=0.0, neginf=0.0), self.runs, eta_0)
         self.columns = self.inputs.columns
@@ -185,11 +187,14 @@ class Oracle:
         self.used = [1, 0, 0, 0, 0, 0, 0]
         self.phi_min, self.phi_max = math.inf, -math.inf
         self.live = self.posterior(0, 1.0)
-        self.blocks = start_blocks(n, self.w, self.T)
+        self.blocks = start_blocks(n, self.w, self.T, self.K)
         self.q = self.factor = 1.0
         self.surplus = self.spread = self.rounding = 0.0
         self.of_drive = np.zeros(2)
-        self.trial = self.last_trial = self.row = self.alternate = self.since = 0
+        self.trial = self.last_trial = self.row = 0
+        self.since = self.pause = self.epsilon = self.rho = 0.0
+        self.samples: list[int] = []  # of the next row
+        self.steps: list[Callable[[], None]] = []  # what the last row still changes
         self.friction_drifts = self.known = False
         self.beta: Long = np.zeros(n, dtype=np.longdouble)
         self.sigma = self.y = self.delay = 0.0
@@ -199,8 +204,9 @@ class Oracle:
         self.switched: list[tuple[int, int, int]] = []  # tick, group, whether it is used
         self.changes = 0  # passes in which the recent data agreed by themselves
         self.out: dict[str, list[Any]] = {}
-        response = through(np.append([0.0, 1.0], np.zeros(20000)), 2, self.w, self.T)
-        self.gain_second = float(np.sum(response**2))
+        pulse = np.concatenate([[0.0], np.full(self.K, 1 / self.K), np.zeros(20000)])
+        response = [through(pulse, order, self.w, self.T) for order in (0, 2)]
+        self.gain, self.gain_second = (float(np.sum(of**2)) for of in response)
         self.start_pass()
 
     def find_runs(self) -> list[slice]:
@@ -260,6 +266,7 @@ class Oracle:
             if self.p["prior.B"] > 0:
                 self.live.remove(0.0, self.p["prior.B"])
             self.live.remove_noise()
+            self.set_beta()
             return
         own = sum(self.group(i) != self.trial for i in self.build.chosen)
         gain = self.evidence(len(self.build.chosen)) - self.evidence(own)
@@ -358,23 +365,21 @@ class Oracle:
                 sums.walk(v, drift * time / (power + self.R))
 
     def advance_pass(self, k: int) -> None:
-        self.since += 1
-        self.alternate = not self.alternate
-        if self.alternate:
-            return
         stage = self.row - self.n
         if stage == 0:
             self.end_pass(k)
             self.plan()
         if stage == 1 and not self.trial:
-            self.watch_friction(self.since * self.T)
+            self.watch_friction(self.since)
+        if stage == 2:
+            self.pause = 0.0
         if stage == 2 and not self.trial:
-            self.forget(self.since * self.T)
-            self.since = 0
-        if stage == 3:
-            self.start_pass()
-        else:
+            self.forget(self.since)
+            self.since = 0.0
+        if stage < 3:
             self.row += 1
+        elif self.pause >= 0.0201 * 0.05 * self.blocks.count:
+            self.start_pass()
 
     # Samples
 
@@ -389,7 +394,7 @@ class Oracle:
 
     def noise(self) -> tuple[float, float]:
         """After the filter: of the torque [(N.m)2], of theta by its variance [(N.m/rad)2]."""
-        torque = 3 / 16 * self.w * self.T * (self.p["motor.gamma"] * self.p["noise.tau"]) ** 2
+        torque = self.gain * (self.p["motor.gamma"] * self.p["noise.tau"]) ** 2
         inertial = (self.p["motor.gamma"] ** 2 * self.p["motor.B"]) ** 2 * self.gain_second
         return torque, inertial
 
@@ -419,13 +424,11 @@ class Oracle:
             R = R * (1 + 0.3 * (self.excess - 1)) + friction * 16 / (3 * self.w * self.T)
             stays += friction * self.unsure
         last = (1 + stays / R) ** 2
-        return R * last, last
+        return R * last / self.K, last
 
-    def take_block(self, row: Long, R: float, last: float, rough: float, measured: bool) -> None:
+    def full_block(self, measured: bool) -> tuple[Long, float, float]:
+        """Mean row, its variance, and as how many independent blocks it counts."""
         blocks = self.blocks
-        blocks.rows.append((row, 1 / R, last, rough))
-        if len(blocks.rows) < blocks.length:
-            return
         h = window(np.arange(blocks.length), blocks.length)
         w = np.array([entry[1] for entry in blocks.rows])
         mean = sum(h[i] * w[i] * entry[0] for i, entry in enumerate(blocks.rows)) / (h @ w)
@@ -433,33 +436,42 @@ class Oracle:
         if not measured:
             V = (self.p["motor.gamma"] ** 2 * self.p["motor.B"]) ** 2
             V *= np.mean([entry[3] for entry in blocks.rows])
-            variance += V * blocks.energy_second * np.sum(h**2) / np.sum(h) ** 2
+            variance += V * blocks.energy_second * np.sum(h**2) / (self.K * np.sum(h) ** 2)
         count = np.sum(h**2 / np.array([entry[2] for entry in blocks.rows])) / np.sum(h**2)
-        for sums in (blocks.all, blocks.walking, blocks.recent):
-            sums.take(mean, 1 / variance)
+        return mean, float(variance), float(count)
+
+    def take_block(self, step: int, measured: bool) -> None:
+        """One regression a step; the last step counts the block."""
+        blocks = self.blocks
+        if len(blocks.rows) < blocks.length:
+            return
+        mean, variance, count = self.full_block(measured)
+        if step < 3:
+            (blocks.all, blocks.walking, blocks.recent)[step].take(mean, 1 / variance)
+            return
         blocks.count += count
         blocks.recent_count += count
-        blocks.gained += count * blocks.length * self.T
+        blocks.gained += count * blocks.length * self.K * self.T
         blocks.rows.clear()
 
-    def learn(self, k: int, filtered: Filtered, row: Long, rough: float) -> tuple[float, float]:
+    def learn(self, k: int, filtered: Filtered, row: Long, rough: Array) -> None:
         at = k - filtered.run.start
-        if not filtered.measured:
-            self.watch(rough)
         R, last = self.variance(filtered, at)
         self.R, self.before = R, row
         counts = [resolution(self.p[key]) for key in ("encoder.theta", "encoder.q")]
-        self.rounding += 3 / 16 * self.w * self.T * float(np.square(counts).sum()) / 12 / R
+        self.rounding += self.gain * float(np.square(counts).sum()) / 12 / R
         epsilon = float(row[-1] - row[:-SIDES] @ self.beta)
         if "DRIVE" in self.kinds and not filtered.measured and row[-SIDES] != 0:
             self.remove_noise(row, self.share_of_torque(filtered.unknown_f[at]), epsilon, R)
-        epsilon = float(row[-1] - row[:-SIDES] @ self.beta)
-        rho = self.live.learn(row, 1 / R)
+        self.epsilon = float(row[-1] - row[:-SIDES] @ self.beta)
+        self.rho = self.live.learn(row, 1 / R)
+        mean_rough = float(np.mean(rough[self.samples]))
         prior_B = self.p["prior.B"]
         if prior_B > 0:
             inertial = 0.0 if filtered.measured else self.p["motor.gamma"] ** 2 * self.p["motor.B"]
-            moved = at > 0 and self.z[k, 0] != self.z[k - 1, 0]
-            V = rough + 0.056 * moved * resolution(self.p["encoder.theta"]) ** 2 / 12
+            theta = self.z[filtered.run, 0]
+            moved = np.mean([i > 0 and theta[i] != theta[i - 1] for i in self.samples])
+            V = mean_rough + 0.056 * moved * resolution(self.p["encoder.theta"]) ** 2 / 12
             N = (inertial * prior_B) ** 2 * self.gain_second * V / R
             Q = 6 * (N / prior_B) ** 2
             self.surplus += N
@@ -468,10 +480,29 @@ class Oracle:
                 posterior.spread += Q * posterior.weight**2
             self.build.surplus += N * self.build.weight
             self.live.remove(N * self.live.weight, prior_B)
-        self.data.take(row, 1 / R)
-        self.take_block(row, R, last, rough, filtered.measured)
-        self.advance_pass(k)
-        return epsilon, rho
+        self.set_beta()
+
+        def step(number: int) -> None:
+            if number == 0:
+                self.data.take(row, 1 / R)
+            if number == 1:
+                self.blocks.rows.append((row, 1 / R, last, mean_rough))
+            if 1 <= number <= 4:
+                self.take_block(number - 1, filtered.measured)
+            if number == 5:
+                self.since += self.K * self.T
+                self.pause += self.K * self.T
+            if number == 6:
+                for _ in range((self.K + 1) // 2):
+                    self.advance_pass(k)
+
+        self.steps = [partial(step, number) for number in range(7)]
+
+    def take_steps(self) -> None:
+        """They are spread over the ticks between two rows."""
+        for _ in range(math.ceil(7 / max(self.K - 1, 1))):
+            if self.steps:
+                self.steps.pop(0)()
 
     def remove_noise(self, row: Long, share: float, epsilon: float, R: float) -> None:
         """Of the torque from its own column, where y contains it, too."""
@@ -483,20 +514,17 @@ class Oracle:
         self.of_drive += of_drive.astype(float)
         self.build.of_drive += of_drive.astype(float) * self.build.weight
 
-    def is_settled(self, filtered: Filtered, at: int, row: Long) -> bool:
-        self.settling = max(self.settling - self.T, 0)
-        if self.settling > 0:
-            return False
+    def was_at_rest(self, filtered: Filtered, at: int, row: Long) -> bool:
         if filtered.measured or self.starting <= 0:
             return True
-        self.starting -= self.T
+        self.starting -= self.K * self.T
         p = self.p
         x = row[self.live.chosen]
         error = row[-1] - x @ self.beta[self.live.chosen]
         # What a joint has beside the equation must not hide a slow motion.
         x = np.where([self.kinds[i] in EQUATION for i in self.live.chosen], x, 0)
         inertial = p["motor.gamma"] ** 2 * p["motor.B"] * resolution(p["encoder.theta"])
-        variance = 3 / 16 * self.w * self.T * (p["motor.gamma"] * p["noise.tau"]) ** 2
+        variance = self.gain * (p["motor.gamma"] * p["noise.tau"]) ** 2
         variance += inertial**2 / 12 * self.gain_second
         variance += self.friction_variance(filtered.unknown_f[at]) + x @ self.live.weighted()[1] @ x
         if error**2 <= 25 * variance:
@@ -512,7 +540,9 @@ class Oracle:
             filtered = Filtered(self.c, self.p, self.inputs, self.z, run, measured)
             if number:
                 self.starting, self.settling = 0.0, 12 / self.w
-                self.blocks.rows.clear()
+                self.samples.clear()
+                if len(self.blocks.rows) < self.blocks.length:
+                    self.blocks.rows.clear()
             self.go(filtered)
         return {name: np.array(values, dtype=np.float64) for name, values in self.out.items()}
 
@@ -527,27 +557,59 @@ class Oracle:
             if kind in ("SIN_M", "COS_M")
         }
         load = Held(self.w, self.T)
+        loads = np.zeros(len(rough))
         for k in range(run.start, run.stop):
             at = k - run.start
             self.deform(k, at)
             if at:
                 self.unsure = self.unsure + 1 if filtered.unknown[at] > 0 else 0
-            row = np.concatenate([filtered.rows[at], filtered.sides[at]]).astype(np.longdouble)
-            for i, (kind, _, prior) in enumerate(self.columns):
-                if kind == "LOAD":
-                    tau_e = self.torque(k) if self.known else self.y
-                    signal = -abs(tau_e) * filtered.sign[at] * prior
-                    value = load.step(signal) if at else 0.0
-                    row[i] = 0.0 if filtered.measured else value
-                if kind == "DELAY":
-                    first, second = derivatives[0][at], derivatives[1][at]
-                    row[i] = -prior * filtered.gain * (first + self.delay / 2 * second)
-                if i in errors and self.known and not filtered.measured:
-                    row[i] = self.sigma * errors[i][0][at] + errors[i][1][at]
-            settled = self.is_settled(filtered, at, row)
-            epsilon, rho = self.learn(k, filtered, row, rough[at]) if settled else (0.0, 0.0)
-            self.report(k, filtered.y[at], epsilon, rho, settled)
-            self.y = float(filtered.y[at]) - epsilon
+                tau_e = self.torque(k) if self.known else self.y
+                loads[at] = load.step(-abs(tau_e) * filtered.sign[at])
+            self.settling = max(self.settling - self.T, 0)
+            settled, complete = self.settling <= 0, False
+            if settled:
+                if not filtered.measured:
+                    self.watch(rough[at])
+                self.samples.append(at)
+                complete = len(self.samples) == self.K
+            if complete:
+                row = self.mean_row(filtered, loads, derivatives, errors)
+                settled = complete = self.was_at_rest(filtered, at, row)
+                if complete:
+                    self.learn(k, filtered, row, rough)
+                self.samples.clear()
+            if not complete or self.K == 1:
+                self.take_steps()
+            if not settled:
+                self.epsilon = self.rho = 0.0
+            self.report(k, filtered.y[at], settled)
+            self.y = float(filtered.y[at]) - self.epsilon
+
+    def mean_row(
+        self,
+        filtered: Filtered,
+        loads: Array,
+        derivatives: tuple[Array, Array],
+        errors: Mapping[int, tuple[Array, Array]],
+    ) -> Long:
+        """Of the samples; what depends on the estimate does so by the present one."""
+
+        def mean(x: Array) -> Any:
+            return np.mean(x[self.samples], axis=0)
+
+        sides = mean(filtered.sides)
+        row = np.concatenate([mean(filtered.rows), sides]).astype(np.longdouble)
+        for i, (kind, _, prior) in enumerate(self.columns):
+            if kind == "LOAD":
+                row[i] = 0.0 if filtered.measured else prior * mean(loads)
+            if kind == "DRIVE":
+                row[i] *= abs(sides[0])
+            if kind == "DELAY":
+                first, second = (mean(of) for of in derivatives)
+                row[i] = -prior * filtered.gain * (first + self.delay / 2 * second)
+            if i in errors and self.known and not filtered.measured:
+                row[i] = self.sigma * mean(errors[i][0]) + mean(errors[i][1])
+        return row
 
     def deform(self, k: int, at: int) -> None:
         phi = self.inputs.phi
@@ -562,12 +624,14 @@ class Oracle:
 
     # Outputs
 
-    def report(self, k: int, y: float, epsilon: float, rho: float, settled: bool) -> None:
+    def set_beta(self) -> None:
+        self.beta = np.zeros(self.n, dtype=np.longdouble)
+        self.beta[self.live.chosen] = self.live.weighted()[0][:, 1]
+
+    def report(self, k: int, y: float, settled: bool) -> None:
         p = self.p
         beta, P = self.live.weighted()
         dF = self.inputs.dF[k, self.live.chosen]
-        self.beta = np.zeros(self.n, dtype=np.longdouble)
-        self.beta[self.live.chosen] = beta[:, 1]
         self.sigma = float(dF @ beta[:, 1] + self.inputs.nominal_slope[k])
         by_gain, variance = float(dF @ beta[:, 0]), float(dF @ P @ dF)
         self.known = math.sqrt(variance) < 0.2 * self.sigma
@@ -595,8 +659,8 @@ class Oracle:
             "sigma_per_gain": by_gain / abs(self.sigma) if self.sigma else 0.0,
             "tau_e": self.torque(k),
             "tau_e_residual": y,
-            "epsilon": epsilon,
-            "rho": rho,
+            "epsilon": self.epsilon,
+            "rho": self.rho,
             "a": float(settled),
             "eta": self.curve(of.get("NOMINAL", 0.0)),
             "D_theta_hat": p["motor.D_theta"] * (1 + of.get("VISCOUS", 0.0)),

@@ -47,6 +47,12 @@ def bandwidth(p: Parameters) -> float:
     return float(min(p["regression.bandwidth"], 1.42 * math.sqrt(p["noise.tau"] / rounding)))
 
 
+def decimation(p: Parameters) -> int:
+    """Samples of a row."""
+    chosen = int(p.get("regression.decimation", 0))
+    return chosen or int(min(max(1.8 / (bandwidth(p) * p["samplePeriod"]), 1), 8))
+
+
 def direction(c: Library, theta: Array, count: float, slow: float) -> tuple[Array, Array]:
     """Mean sign over the sample that ends at each instant, and 0 if it is known, else 1 or more."""
     motion = c.new("sh_motion_sign")
@@ -72,20 +78,21 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
         return float(p[f"prior.{name}"])
 
     found: list[Column] = [("POWER", i, tau_e) for i in range(n * m)]
-    found += [("NOMINAL", 0, of("nominal") if nominal else 0.0), ("BIAS", 0, of("bias") * tau_e)]
+    found += [("NOMINAL", 0, of("nominal") if nominal else 0.0)]
+    found += [("HIGHER_POWER", i, of("power") * tau_e) for i in range(2) if n + i < most_n]
+    linear = 0 if p["rls.symmetric"] else 1
+    if 1 < m < most_m and linear < n:
+        found += [("SET_POWER", 0, of("power") * tau_e)]
+    found += [("DEAD_ZONE", i, of("gap") * tau_e) for i in range(3)]
+    found += [("KNEE", i, of("power") * tau_e) for i in ([2] if p["rls.symmetric"] else range(3))]
+    found += [("BIAS", 0, of("bias") * tau_e)]
     found += [("DAMPING", j, of("damping") * K_0) for j in sorted({0, m - 1})]
     found += [(f"{name}_Q", 0, of("eccentric") * K_0) for name in ("SIN", "COS")]
     dry = of("tau_coulomb") > 0
     found += [("LOAD", 0, of("load_friction")), ("DRIVE", 0, of("load_friction") if dry else 0.0)]
     found += [("DELAY", 0, of("delay"))]
     found += [("REVERSAL", 0, of("reversal") * of("tau_coulomb"))]
-    found += [("HIGHER_POWER", i, of("power") * tau_e) for i in range(2) if n + i < most_n]
-    linear = 0 if p["rls.symmetric"] else 1
-    if 1 < m < most_m and linear < n:
-        found += [("SET_POWER", 0, of("power") * tau_e)]
-    found += [("DEAD_ZONE", i, of("gap") * tau_e) for i in range(3)]
     found += [("HYSTERESIS", i, of("hysteresis") * tau_e) for i in range(3)]
-    found += [("KNEE", i, of("power") * tau_e) for i in ([2] if p["rls.symmetric"] else range(3))]
     found += [(f"{name}_M", 0, of("eccentric_motor")) for name in ("SIN", "COS")]
     found += [("VISCOUS", 0, of("D_theta")), ("COULOMB", 0, of("tau_coulomb"))]
     found += [("INERTIA", 0, of("B"))]
@@ -240,8 +247,8 @@ class Filtered:
                 return zero
             column: Array = -prior * abs(self.gamma) * self.friction()
             return column
-        if kind == "DRIVE":
-            return zero if self.measured else -prior * np.abs(self.sides[:, 0]) * self.friction()
+        if kind == "DRIVE":  # without the torque, which is that of the mean
+            return zero if self.measured else -prior * self.friction()
         return self.filtered(self.F[:, i], 0)
 
     def friction(self) -> Array:

@@ -6,10 +6,11 @@ import ctypes
 import math
 import random
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fmi_instance import OK, Instance
+from fmi_instance import OK, REAL, SIZE, Instance, Instance3
 
 ESTIMATORS = ["StiffnessEstimator", "AntagonisticStiffnessEstimator"]
 PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant", "RealJointPlant"]
@@ -56,53 +57,62 @@ def random_steps(count: int, seed: int) -> list[tuple[float, float]]:
 
 
 class Driver:
-    """Steps an instance with the inputs SIGNALS. In some steps they are linear, in others held."""
+    """Steps an instance with the inputs SIGNALS, and gives all Real outputs as bytes.
 
-    def __init__(self, fmu: Instance) -> None:
-        self.fmu = fmu
+    In FMI 2.0, inputs are linear in some steps and held in the others, or always held.
+    """
+
+    def __init__(self, fmu: Any, held: bool = False) -> None:
+        self.fmu, self.held = fmu, held or isinstance(fmu, Instance3)
         self.inputs = names(fmu, "input")
-        self.outputs = [n for n in names(fmu, "output") if fmu.variables[n].type == "Real"]
-        self._to = fmu.references(self.inputs)
-        self._from = fmu.references(self.outputs)
-        self._orders = (ctypes.c_int * len(self.inputs))(*[1] * len(self.inputs))
+        reals = ("Real", "Float64")
+        self.outputs = [n for n in names(fmu, "output") if fmu.variables[n].type in reals]
+        self._to, self._from = fmu.references(self.inputs), fmu.references(self.outputs)
 
     def step(self, t: float, h: float) -> bytes:
-        """Makes one step. Returns all Real outputs after it, as bytes."""
-        fmu, count = self.fmu, ctypes.c_size_t(len(self.inputs))
-        reals = ctypes.c_double * len(self.inputs)
+        """Makes one step. Returns the outputs after it."""
+        fmu, count = self.fmu, len(self.inputs)
         now = [SIGNALS[name](t) for name in self.inputs]
-        assert fmu.call("fmi2SetReal", self._to, count, reals(*now)) == OK
-        if int(t * 1e4) % 2:
+        assert fmu.access(f"Set{fmu.real}", self._to, (REAL * count)(*now)) == OK
+        if not self.held and int(t * 1e4) % 2:
             slopes = [(SIGNALS[n](t + h) - u) / h for n, u in zip(self.inputs, now, strict=True)]
-            status = fmu.call(
-                "fmi2SetRealInputDerivatives", self._to, count, self._orders, reals(*slopes)
-            )
-            assert status == OK
+            orders = (ctypes.c_int * count)(*[1] * count)
+            values = (REAL * count)(*slopes)
+            assert fmu.call("SetRealInputDerivatives", self._to, SIZE(count), orders, values) == OK
         assert fmu.step(t, h) == OK, fmu.messages
         return self.result()
 
     def result(self) -> bytes:
-        """All Real outputs, as bytes."""
-        values = (ctypes.c_double * len(self.outputs))()
-        count = ctypes.c_size_t(len(self.outputs))
-        assert self.fmu.call("fmi2GetReal", self._from, count, values) == OK
+        """The outputs."""
+        values = (REAL * len(self.outputs))()
+        assert self.fmu.access(f"Get{self.fmu.real}", self._from, values) == OK
         return bytes(values)
 
     def run(self, steps: Iterable[tuple[float, float]]) -> list[bytes]:
         return [self.step(t, h) for t, h in steps]
 
 
+@dataclass(frozen=True)
+class Fmi:
+    """A version of FMI. Called with the name of an FMU, it makes an instance."""
+
+    kind: type[Instance] | type[Instance3]
+    path: Callable[[str], Path]
+
+    def __call__(self, name: str = "StiffnessEstimator", **options: Any) -> Any:
+        return self.kind(self.path(name), **options)
+
+
 def continue_from(
+    kind: type[Any],
     path: Path,
     states: Sequence[bytes],
     rests: Sequence[Sequence[tuple[float, float]]],
-    instance: Callable[[Path], Any] = Instance,
-    driven: Callable[[Any], Any] = Driver,
 ) -> list[list[bytes]]:
     """Continues from serialised states in a new instance. Returns the outputs of each run."""
     results = []
-    with instance(path) as fmu:
-        driver = driven(fmu)
+    with kind(path) as fmu:
+        driver = Driver(fmu)
         for data, rest in zip(states, rests, strict=True):
             status, state = fmu.deserialise(data)
             assert status == OK and fmu.restore(state) == OK, fmu.messages

@@ -162,12 +162,6 @@ class Regression:
     a: Exact  # [size: ticks]
     P: Exact  # [size: parameters x parameters] after the last tick
 
-    @property
-    def weight(self) -> Exact:
-        """a / (1 + rho - a rho), which (26) bounds [size: ticks]."""
-        weight: Exact = self.a / (1 + self.rho - self.a * self.rho)
-        return weight
-
 
 def least_squares(
     kind: int, factor: float, P_0: float, eta_0: Array, F: Exact, y: Exact
@@ -199,18 +193,6 @@ def least_squares(
         rhos.append(rho)
         stability.append(a)
     return Regression(np.array(etas), np.array(epsilons), np.array(rhos), np.array(stability), P)
-
-
-def ridge(weight: Exact, P_0: float, eta_0: Array, F: Exact, y: Exact) -> Exact:
-    """argmin |eta - eta_0|^2 / P_0 + sum_k w(k) (y(k) - F(k)' eta)^2 [size: parameters x columns].
-
-    Shapes as in `least_squares`, weight [size: ticks].
-    """
-    information = np.eye(F.shape[1], dtype=int) / gmpy2.mpfr(P_0) + F.T @ (weight[:, None] * F)
-    offset = y - F @ np.repeat(exact(eta_0)[:, None], y.shape[1], axis=1)
-    change = solve(information, F.T @ (weight[:, None] * offset))
-    solution: Exact = exact(eta_0)[:, None] + change
-    return solution
 
 
 def solve(matrix: Exact, right: Exact) -> Exact:

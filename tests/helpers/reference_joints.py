@@ -22,15 +22,6 @@ Parameters = Mapping[str, float]
 COULOMB_VELOCITY = 0.02  # rad/s, where tanh replaces the step of the sign
 
 _MOTOR = {"B": 2.3e-5, "D_theta": 1e-3, "gamma": 50.0, "tau_coulomb": 0.0}
-SINGLE: Parameters = {
-    "link.M": 0.1,
-    "link.D_q": 0.15,
-    "link.mgl": 0.0,
-    "link.tau_coulomb": 0.0,
-    **{f"motor.{name}": value for name, value in _MOTOR.items()},
-    "spring.k_1": 150.0,
-    "spring.k_3": 0.0,
-}
 PAIR: Parameters = {
     "link.M": 0.02,
     "link.D_q": 0.05,
@@ -42,22 +33,6 @@ PAIR: Parameters = {
     "spring_2.k": 0.0011,
     "spring_2.a": 8.9989,
 }
-
-
-def single(changed: Parameters) -> Derivative:
-    """Equations of a single transmission, but for these parameters as it starts.
-
-    State (q, theta and their velocities), torques (tau, tau_ext).
-    """
-    p = {**SINGLE, **changed}
-
-    def derivative(state: Array, tau: float, tau_ext: float) -> Array:
-        q, theta, q_dot, theta_dot = state
-        tau_e = p["spring.k_1"] * (q - theta) + p["spring.k_3"] * (q - theta) ** 3
-        q_ddot = _link(p, q, q_dot, tau_e, tau_ext)
-        return np.array([q_dot, theta_dot, q_ddot, _motor(p, "motor", theta_dot, tau, tau_e)])
-
-    return derivative
 
 
 def pair(changed: Parameters) -> Derivative:

@@ -9,14 +9,9 @@ import fmpy
 import numpy as np
 from numpy.typing import NDArray
 
-FMUS = [
-    "AntagonisticStiffnessEstimator",
-    "AntagonisticVsaPlant",
-    "AwasPlant",
-    "FlexibleJointPlant",
-    "RealJointPlant",
-    "StiffnessEstimator",
-]
+from fmi_runs import ESTIMATORS, PLANTS
+
+FMUS = sorted(ESTIMATORS + PLANTS)
 TWINS = [f"{name}_FMI3" for name in FMUS]
 STEP, STEPS = 1e-3, 1000
 

@@ -7,7 +7,6 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -110,26 +109,6 @@ def test_many_joints_are_as_many_estimators(z: dict[str, NDArray[np.float64]]) -
     assert tick["sigma"].shape == (len(SETTINGS),) and tick["valid"].dtype == bool
 
 
-def test_pieces_between_which_ctrl_c_works_change_nothing(
-    z: dict[str, NDArray[np.float64]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    whole = sigmahat.Estimator(SETTINGS[:2])
-    several = {name: np.tile(each, (2, 1)) for name, each in z.items()}
-    expected = whole.run(**several)["sigma"]
-    monkeypatch.setattr("sigmahat.library.joints._PIECE", 2)
-    monkeypatch.setattr("sigmahat.library.joints._SHORTEST", 7)
-    found = sigmahat.Estimator(SETTINGS[:2]).run(**several)["sigma"]
-    np.testing.assert_array_equal(found, expected)
-
-
-def test_threads_with_an_estimator_each(z: dict[str, NDArray[np.float64]]) -> None:
-    expected = sigmahat.Estimator({}).run(**z)["sigma"]
-    with ThreadPoolExecutor(4) as pool:
-        found = list(pool.map(lambda _: sigmahat.Estimator({}).run(**z)["sigma"], range(16)))
-    for each in found:
-        np.testing.assert_array_equal(each, expected)
-
-
 def test_reset_forgets_and_keeps_what_was_tuned(z: dict[str, NDArray[np.float64]]) -> None:
     estimator = sigmahat.Estimator({})
     first = estimator.run(**z)["sigma"]
@@ -193,14 +172,6 @@ def test_what_is_misused_is_named_and_changes_nothing(z: dict[str, NDArray[np.fl
     np.testing.assert_array_equal(estimator.run(**z)["sigma"], expected)
 
 
-def test_a_first_call_that_fails_leaves_the_number_of_joints_open() -> None:
-    estimator = sigmahat.Estimator({})
-    for wrong in ((np.zeros(3), np.zeros(2), 0.0), (np.zeros((2, 2)), 0.0, 0.0)):
-        with pytest.raises(ValueError, match="one shape"):
-            estimator.tick(*wrong)
-    assert np.ndim(estimator.tick(0.0, 0.0, 0.0)["sigma"]) == 0
-
-
 def test_masked_samples_are_skipped(z: dict[str, NDArray[np.float64]]) -> None:
     mask = np.arange(N) % 7 == 0
     found = sigmahat.Estimator({}).run(**{**z, "q": np.ma.masked_array(z["q"] + 9.0 * mask, mask)})
@@ -246,11 +217,6 @@ def test_tuned_parameters_have_their_effect_while_it_runs(
     for name, values in recorder.columns().items():
         assert now[name] == values[0]
     assert estimator.parameters[0]["noise.tau"] == 0.1
-
-
-def test_no_samples_are_no_error() -> None:
-    found = sigmahat.Estimator({}).run([], [], [])
-    assert found["sigma"].shape == (0,)
 
 
 def test_without_a_library_the_message_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -24,36 +23,13 @@ def by_pymoca(file: Path) -> None:
     assert pymoca.parser.parse(file.read_text(encoding="utf-8")) is not None
 
 
-def by_antlr(file: Path) -> None:
-    """The parser of modelica-builder, from the grammar of ANTLR."""
-    if sys.version_info >= (3, 14):
-        pytest.skip("modelica-builder is for Python below 3.14")
-    from modelica_builder.modelica_parser import parse
-
-    _, parser = parse(str(file))
-    assert parser.getNumberOfSyntaxErrors() == 0
-
-
-def by_modelica(file: Path) -> None:
-    if sys.version_info < (3, 12):
-        pytest.skip("the package modelica is for Python 3.12 and newer")
-    from modelica.lang import parse
-
-    parse(file.read_text(encoding="utf-8"))
-
-
-each_parser = pytest.mark.parametrize("parse", [by_rumoca, by_pymoca, by_antlr, by_modelica])
+each_parser = pytest.mark.parametrize("parse", [by_rumoca, by_pymoca])
 
 
 @each_parser
 def test_every_file_is_read_without_error(parse: Callable[[Path], None]) -> None:
     for file in FILES:
         parse(file)
-
-
-@pytest.fixture(scope="module")
-def archive(build: Path) -> Path:
-    return build / "release" / "sigmahat-modelica.zip"
 
 
 EXAMPLES = sorted({file.stem for file in (PACKAGE / "Examples").glob("*.mo")} - {"package"})

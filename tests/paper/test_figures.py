@@ -61,21 +61,6 @@ def test_drawn_values_are_those_of_the_recording() -> None:
         assert (drawn.min(), drawn.max()) == (values.min(), values.max())
 
 
-@pytest.mark.parametrize(
-    ("label", "signal", "panel"),
-    [("device", "sigma", 1), ("side 1", "sigma_1", 2), ("side 2", "sigma_2", 3)],
-)
-def test_drawn_values_of_the_antagonistic_pair(label: str, signal: str, panel: int) -> None:
-    recording = one_seed("antagonistic").recording
-    t, drawn = line("antagonistic", label, panel=panel, scenario="antagonistic")
-    estimate = recording.estimators["RESIDUAL"][signal]
-    np.testing.assert_array_equal(drawn, estimate[np.searchsorted(recording.t, t)])
-    t, worst = line("antagonistic", label, panel=8, scenario="antagonistic")
-    error = np.abs(estimate - recording.plant[signal]) / recording.plant[signal] * 100
-    for k, start in enumerate(np.searchsorted(recording.t, t)):
-        assert worst[k] == pytest.approx(error[start : start + 100].max(), rel=1e-9)
-
-
 def test_the_curves_of_a_transmission_are_the_spring_and_its_estimate() -> None:
     """tau_e = 150 phi + 3000 phi^3 N.m is the spring of the scenario."""
     recording = one_seed("single-hardening").recording
@@ -101,13 +86,3 @@ def test_files_open_and_are_small(scenario: str, name: str, tmp_path: Path) -> N
     svg = (tmp_path / f"{name}.svg").read_bytes()
     assert svg.startswith(b"<?xml")
     assert len(svg) < 1_000_000
-
-
-def test_files_are_reproducible(tmp_path: Path) -> None:
-    name = "fig6-stiffness"
-    for stem in ("one", "two"):
-        save(FIGURES[name], one_seed("table1").recording, tmp_path / stem)
-    for suffix in ("png", "svg"):
-        assert (tmp_path / f"one.{suffix}").read_bytes() == (
-            tmp_path / f"two.{suffix}"
-        ).read_bytes()

@@ -69,21 +69,6 @@ def test_mean_and_interval_over_seeds(tmp_path: Path) -> None:
     assert "3 seeds" in conditions(result)
 
 
-def test_printed_table_stands_beside_the_papers() -> None:
-    result = one_seed("table1")
-    head, *rows = (line.split() for line in table(result).splitlines())
-    assert head.count("paper") == 2
-    assert [row[0] for row in rows] == ROWS
-    assert len(rows.pop()) == 4  # without the paper's figures
-    for name, mse, paper_mse, msrep, paper_msrep, settled in rows:
-        indices = result.indices[0][name]
-        assert float(mse) == pytest.approx(indices.mse, abs=0.005)
-        assert float(msrep) == pytest.approx(indices.msrep, abs=0.0005)
-        assert float(settled) == pytest.approx(indices.msrep_settled, rel=0.05)
-        paper = result.scenario.paper[name]
-        assert (float(paper_mse), float(paper_msrep)) == pytest.approx(paper, abs=0.005)
-
-
 def test_index_that_is_not_defined_is_a_dash_and_an_empty_field(tmp_path: Path) -> None:
     """SENSOR is 0 until the joint deforms."""
     result = one_seed("experiment")

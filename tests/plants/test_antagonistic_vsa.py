@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
-from functools import cache
 
 import numpy as np
 import pytest
 
 import reference_joints
-from plant_runs import QUIET, Array, between, relative_error, run_plant, times
-from reference_joints import PAIR
+from plant_runs import QUIET, Array, relative_error, run_plant, times
 from reference_plant import round_to_counts
 
 INPUTS = ("tau_1", "tau_2", "tau_ext")
@@ -38,33 +35,6 @@ def run(
     h: float, torques: Array, start: Mapping[str, float], record: Iterable[str] = STATES
 ) -> dict[str, Array]:
     return run_plant("AntagonisticVsaPlant", INPUTS, h, torques, start, record)
-
-
-def preload(torque: float) -> dict[str, float]:
-    """Motor positions at rest under -torque and torque [N.m], link at 0."""
-    return {
-        f"initial.theta_{i}": math.asinh(50.0 * tau / PAIR[f"spring_{i}.k"]) / PAIR[f"spring_{i}.a"]
-        for i, tau in ((1, -torque), (2, torque))
-    }
-
-
-@cache
-def scenario() -> tuple[Array, Array]:
-    """Torques and states every 10 ms under slow co-contraction while the link moves, 30 s."""
-    t = times(1e-2, 30.0)
-    both = 0.04 + 0.025 * np.sin(2 * np.pi * 0.1 * t)
-    move = 0.012 * np.sin(2 * np.pi * 0.25 * t)
-    torques = np.column_stack([-both + move, both + move, np.zeros_like(t)])
-    initial = np.array([0.0, *preload(0.04).values(), 0.0, 0.0, 0.0])
-    return torques, reference_joints.solve(reference_joints.pair({}), 1e-2, torques, initial)
-
-
-@pytest.mark.parametrize("steps", [1, 10, 100])
-@pytest.mark.slow("a Radau solution with tight tolerances")
-def test_scenario_is_the_solution_of_the_equations(steps: int) -> None:
-    torques, reference = scenario()
-    states = run(1e-2 / steps, between(torques, steps), preload(0.04))
-    assert relative_error(states, reference, steps).max() < 1e-8
 
 
 @pytest.mark.parametrize("h", [1e-3, 1e-2])
@@ -105,17 +75,6 @@ def test_torque_and_stiffness_are_those_of_the_transmissions() -> None:
     np.testing.assert_array_equal(out["sigma"], out["sigma_1"] + out["sigma_2"])
 
 
-@pytest.mark.parametrize("torque", [0.0, 0.02, 0.06])
-def test_co_contraction_stiffens_a_link_at_rest(torque: float) -> None:
-    out = run(1e-2, np.tile([-torque, torque, 0.0], (101, 1)), preload(torque), [*STATES, "sigma"])
-    for name in STATES:
-        np.testing.assert_allclose(out[name], out[name][0], rtol=0, atol=1e-9, err_msg=name)
-    # tau_e = gamma torque on either side, and sigma = a sqrt(k^2 + tau_e^2).
-    sides = ((PAIR[f"spring_{i}.a"], PAIR[f"spring_{i}.k"]) for i in (1, 2))
-    expected = sum(a * math.hypot(k, 50.0 * torque) for a, k in sides)
-    assert out["sigma"][-1] == pytest.approx(expected, rel=1e-7)
-
-
 def test_encoders_and_sensors_are_those_of_their_side() -> None:
     angles, counts = ("q", "theta_1", "theta_2"), (700.0, 300.0, 500.0)
     encoders = {f"encoder.{name}": n for name, n in zip(angles, counts, strict=True)}
@@ -134,12 +93,3 @@ def test_encoders_and_sensors_are_those_of_their_side() -> None:
     for i in (1, 2):
         np.testing.assert_allclose(out[f"tau_measured_{i}"], torques[:, i - 1], rtol=0, atol=1e-15)
         np.testing.assert_array_equal(out[f"tau_e_measured_{i}"], 1.03 * out[f"tau_e_{i}"])
-
-
-def test_every_sensor_has_its_own_noise() -> None:
-    names = ["tau_measured_1", "tau_measured_2", "tau_e_measured_1", "tau_e_measured_2"]
-    out = run(1e-3, np.zeros((4001, 3)), {}, names)  # at rest: noise and nothing else
-    noise = np.array([out[name] for name in names])
-    # Three standard deviations and a bit, for 4000 samples.
-    np.testing.assert_allclose(noise.var(axis=1), [1e-5, 1e-5, 1e-3, 1e-3], rtol=0.08)
-    np.testing.assert_allclose(np.corrcoef(noise), np.eye(4), rtol=0, atol=0.06)

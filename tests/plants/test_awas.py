@@ -4,45 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fmi_instance import ERROR, OK, Instance
-from plant_runs import QUIET, STATES, Array, run_awas, sinusoids, times
-from reference_plant import SCREW, Awas, Torque, paper_tau, paper_tau_c, round_to_counts, solve
+from plant_runs import QUIET, STATES, relative_error, run_awas, sinusoids, times
+from reference_joints import solve as solve_in_steps
+from reference_plant import SCREW, Awas, paper_tau, paper_tau_c, round_to_counts, solve
 
 RETRACTED = 0.030 / SCREW  # theta_c for a lever arm of 70 mm
 AT_REST = np.array([0.0, 0.0, RETRACTED, 0.0, 0.0, 0.0])
-FRICTIONLESS = {"link.D_q": 0.0, "motor.D_theta": 0.0, "motor_c.D": 0.0}
-
-
-def states(run: dict[str, Array]) -> Array:
-    return np.column_stack([run[name] for name in STATES])
-
-
-def relative_error(run: dict[str, Array], reference: Array) -> Array:
-    """Largest error of each state over its range [size: 6]."""
-    error: Array = np.abs(states(run) - reference).max(axis=0) / np.ptp(reference, axis=0)
-    return error
-
-
-def ramp(begin: float, slope: float) -> Torque:
-    return lambda s: begin + slope * s
-
-
-def solve_piecewise(plant: Awas, h: float, torques: Array, initial: Array) -> Array:
-    """States [size: steps + 1 x 6] under torques linear between the rows given every h [s]."""
-    reference = [initial]
-    for begin, end in pairwise(torques):
-        tau, tau_c, tau_ext = (
-            ramp(value, slope) for value, slope in zip(begin, (end - begin) / h, strict=True)
-        )
-        solution = solve(plant, tau, tau_c, reference[-1], h, tau_ext)
-        reference.append(solution(np.array([h]))[:, 0])
-    return np.array(reference)
 
 
 @pytest.mark.parametrize("h", [1e-4, 1e-3])
@@ -57,20 +30,12 @@ def test_table1_is_the_solution_of_the_equations(h: float) -> None:
     assert relative_error(run, solution(t).T).max() < 1e-7
 
 
-@pytest.mark.slow("a Radau solution with tight tolerances for each of 1500 steps")
-def test_table1_in_steps_of_10_ms_is_the_solution_of_the_equations() -> None:
-    h = 1e-2
-    torques = sinusoids(times(h, 15.0), (0.3, 0.1), (8.0, 0.1), (0.0, 0.0))
-    reference = solve_piecewise(Awas(), h, torques, AT_REST)
-    assert relative_error(run_awas(h, torques), reference).max() < 1e-8
-
-
 @pytest.mark.parametrize("h", [1e-3, 1e-2])
 def test_friction_gravity_and_external_torque_enter_as_in_the_equations(h: float) -> None:
     plant = Awas(link_mgl=1.0, link_tau_coulomb=0.05, motor_tau_coulomb=0.02)
     start = {"link.mgl": 1.0, "link.tau_coulomb": 0.05, "motor.tau_coulomb": 0.02}
     torques = sinusoids(times(h, 0.4), (0.3, 2.0), (8.0, 3.0), (5.0, 1.1))
-    reference = solve_piecewise(plant, h, torques, AT_REST)
+    reference = solve_in_steps(plant.derivative, h, torques, AT_REST)
     assert relative_error(run_awas(h, torques, start), reference).max() < 1e-7
 
 
@@ -80,7 +45,7 @@ def test_held_torques_are_held() -> None:
     run = run_awas(h, torques, QUIET, [*STATES, "tau_measured"], held=True)
     reference = [AT_REST]
     for held in torques[:-1]:
-        piece = solve_piecewise(Awas(), h, np.array([held, held]), reference[-1])
+        piece = solve_in_steps(Awas().derivative, h, np.array([held, held]), reference[-1])
         reference.append(piece[1])
     assert relative_error(run, np.array(reference)).max() < 1e-8
     np.testing.assert_array_equal(run["tau_measured"][1:], torques[:-1, 0])
@@ -91,29 +56,6 @@ def test_measured_torque_is_that_at_the_end_of_the_step() -> None:
     run = run_awas(1e-2, torques, QUIET, ["tau_measured", "tau_e_measured", "tau_e"])
     np.testing.assert_allclose(run["tau_measured"], torques[:, 0], rtol=0, atol=1e-15)
     np.testing.assert_array_equal(run["tau_e_measured"], run["tau_e"])
-
-
-def test_energy_is_conserved_without_friction_and_torques() -> None:
-    # Conserved only if tau_e and psi_e are the derivatives of one potential.
-    plant = Awas()
-    start = {
-        **FRICTIONLESS,
-        "link.mgl": 1.0,
-        "initial.q": 0.35,
-        "initial.theta": 0.05,
-        "initial.q_dot": -3.0,
-        "initial.theta_c_dot": 40.0,
-    }
-    run = run_awas(1e-3, np.zeros((3001, 3)), start)
-    q, theta, theta_c, q_dot, theta_dot, theta_c_dot = states(run).T
-    r = plant.lever_arm(theta_c)
-    inertia = plant.motor_B * plant.motor_gamma**2
-    inertia_c = plant.motor_c_B * plant.motor_c_gamma**2
-    spring = plant.spring_k_s * r**2 * np.sin(q - theta) ** 2
-    energy = (plant.link_M * q_dot**2 + inertia * theta_dot**2 + inertia_c * theta_c_dot**2) / 2
-    energy += spring + 1.0 * (1 - np.cos(q))
-    assert np.ptp(spring) > 1.0 and np.ptp(r) > 0.01  # it does go to and fro
-    np.testing.assert_allclose(energy, energy[0], rtol=1e-7)
 
 
 def test_outputs_are_those_of_the_state() -> None:
@@ -138,25 +80,6 @@ def test_encoders_round_to_the_nearest_count(counts: float) -> None:
         expected = round_to_counts(run[name], counts)
         np.testing.assert_allclose(run[f"{name}_measured"], expected, rtol=1e-14, err_msg=name)
         assert len(np.unique(expected)) > 1
-
-
-def test_an_encoder_of_0_counts_does_not_round() -> None:
-    torques = sinusoids(times(1e-3, 0.1), (0.5, 1.0), (8.0, 0.5), (0.0, 0.0))
-    encoders = {"encoder.q": 0.0, "encoder.theta": 0.0, "encoder.theta_c": 0.0}
-    names = ("q", "theta", "theta_c")
-    run = run_awas(1e-3, torques, encoders, [*names, *(f"{name}_measured" for name in names)])
-    for name in names:
-        np.testing.assert_array_equal(run[f"{name}_measured"], run[name])
-
-
-def test_a_parameter_changed_between_steps_takes_effect_at_the_next(plant_fmu: Path) -> None:
-    angle = 0.01
-    with Instance(plant_fmu) as plant:
-        plant.initialise({"initial.q": angle})
-        assert plant.set("spring.k_s", 0.0) == OK
-        assert plant.get("tau_e") != 0.0
-        assert plant.step(0.0, 1e-3) == OK
-        assert plant.get_all(["tau_e", "q"]) == [0.0, angle]
 
 
 @pytest.fixture

@@ -8,29 +8,10 @@ import sys
 from pathlib import Path
 
 import casadi as ca
-import numpy as np
 import pytest
 
 from sigmahat.export import plant_codegen
-from sigmahat.export.plant_codegen import Elimination
 from sigmahat.plants.equations import PlantEquations
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_elimination_solves_sparse_systems(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    size = int(rng.integers(1, 12))
-    values = rng.normal(size=(size, size)) * (rng.random((size, size)) < 0.3)
-    np.fill_diagonal(values, size)
-    sparse = ca.SX.sym("A", ca.sparsify(values).sparsity())
-    b = ca.SX.sym("b", size)
-    elimination = Elimination(sparse)
-    factors = ca.SX.sym("factors", elimination.factors.size1())
-    factorize = ca.Function("factorize", [sparse], [elimination.factors])
-    solve = ca.Function("solve", [factors, b], [elimination.solve(factors, b)])
-    right = rng.normal(size=size)
-    x = np.array(solve(factorize(ca.sparsify(values)), right)).ravel()
-    np.testing.assert_allclose(x, np.linalg.solve(values, right), rtol=1e-12, atol=1e-13)
 
 
 def test_code_is_the_same_in_every_process(tmp_path: Path) -> None:
@@ -57,17 +38,6 @@ def mass() -> PlantEquations:
     plant.derivative(v, force / m)
     plant.output("x", x + plant.noise(ca.SX(4.0)))
     return plant
-
-
-def test_functions_take_variables_in_the_order_asked_for() -> None:
-    by_name = {
-        function.name(): function
-        for function in plant_codegen.functions(mass(), ["initial.v", "mass"], ["force"], ["x"])
-    }
-    p = [7.0, 2.0]
-    assert by_name["sh_plant_start"](p).full().ravel().tolist() == [0.0, 7.0]
-    assert by_name["sh_plant_xdot"]([1.0, 3.0], 8.0, p).full().ravel().tolist() == [3.0, 4.0]
-    assert float(by_name["sh_plant_outputs"]([1.0, 3.0], 8.0, p, 0.5)) == 1.0 + 2 * 0.5
 
 
 def test_a_state_needs_its_derivative() -> None:

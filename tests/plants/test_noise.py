@@ -112,11 +112,6 @@ def test_noise_in_steps_that_do_not_fit_its_period() -> None:
     np.testing.assert_array_equal(found[::3], measured(1e-3, 20.0)[::50])
 
 
-def test_another_period_is_the_same_noise_at_other_times() -> None:
-    found = measured(2e-4, 0.1, {"noise.samplePeriod": 2e-4})
-    np.testing.assert_array_equal(found, normals(1)[:501, 0])
-
-
 def test_noise_does_not_depend_on_a_last_step_of_a_moment() -> None:
     """As OMSimulator makes it, where the sum of its steps misses the stop time by rounding."""
     with Instance(sigmahat.fmu("AwasPlant")) as fmu:
@@ -153,13 +148,6 @@ def test_a_scenario_draws_noise_at_its_own_sampling_times() -> None:
     slower = replace(plant, start={**plant.start, "noise.samplePeriod": 4e-4})
     held = run(replace(short, plant=slower), 1).plant["tau_measured"]
     np.testing.assert_array_equal(held, normals(1)[np.arange(101) // 2, 0])
-
-
-def test_noise_has_the_variance_of_the_parameters() -> None:
-    start = {"noise.tau_variance": 4.0, "noise.tau_e_variance": 0.25}
-    run = run_awas(1e-3, np.zeros((100, 3)), start, ["tau_measured", "tau_e_measured"])
-    np.testing.assert_array_equal(run["tau_measured"], 2 * normals(1)[:100, 0])
-    np.testing.assert_array_equal(run["tau_e_measured"], normals(1)[:100, 1] / 2)
 
 
 def test_noise_is_that_of_the_paper_by_default() -> None:

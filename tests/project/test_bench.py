@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -16,8 +15,6 @@ BENCH = Path(__file__).parents[2] / "bench"
 
 @pytest.mark.slow("the programs of the bench are compiled")
 def test_all_subjects_work_and_compute_the_same(build: Path, tmp_path: Path) -> None:
-    if find_spec("pythonfmu") is None:
-        missing("pythonfmu", "cmake --build build --target packages_bench")
     need("c++")
     if not sys.platform.startswith("linux"):
         pytest.skip("the bench is for Linux")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from gate import missing
-from misra_findings import Finding, addon_findings, dump, findings, version
+from misra_findings import Finding, findings, version
 
 PAGE = Path(__file__).parents[2] / "docs" / "proof" / "misra.md"
 FOLDERS = ("c", "fmu_src")
@@ -74,10 +74,3 @@ def test_the_table_has_the_rules_that_are_not_followed(found: set[Finding]) -> N
         places.setdefault((place.rule, place.file.partition("/")[0]), set()).add(place)
     wrong = {rule: listing(places.get(rule, set())) for rule in table ^ places.keys()}
     assert not wrong, wrong
-
-
-def test_two_rules_broken_in_one_line_are_both_found(tmp_path: Path) -> None:
-    """An octal number, and an `if` without braces."""
-    (tmp_path / "broken.c").write_text("int f(int a) {\n if (a > 0) a = 012; return a; }\n")
-    dump(tmp_path, [Path("broken.c")], [], ["SH_REAL=double"])
-    assert {"7.1", "15.6"} <= {place.rule for place in addon_findings(tmp_path) if place.line == 2}

@@ -29,29 +29,18 @@ MODEL_EXCHANGE = {
 BY_THE_LINKER = {"__mh_dylib_header", "___dso_handle"}  # symbols of a library of macOS
 WHEEL = f"python/sigmahat-{sigmahat.__version__}-py3-none-{{}}.whl"
 ARCHITECTURES = ("x86_64", "aarch64")
-LINUX = [
-    *((f"{name}.fmu", "binaries/linux64/") for name in FMUS),
-    *(
-        (f"{name}.fmu", f"binaries/{arch}-linux/")
-        for name in TWINS
-        for arch in ("x86_64", "aarch64")
-    ),
-    (WHEEL.format("manylinux_2_17_x86_64"), "sigmahat/fmus/sigmahat_native"),
-]
-WINDOWS = [
-    *((f"{name}.fmu", "binaries/win64/") for name in FMUS),
-    *((f"{name}.fmu", "binaries/x86_64-windows/") for name in TWINS),
-    (WHEEL.format("win_amd64"), "sigmahat/fmus/sigmahat_native"),
-]
-MACOS = [
-    *((f"{name}.fmu", "binaries/darwin64/") for name in FMUS),
-    *(
-        (f"{name}.fmu", f"binaries/{arch}-darwin/")
-        for name in TWINS
-        for arch in ("x86_64", "aarch64")
-    ),
-    (WHEEL.format("macosx_11_0_x86_64"), "sigmahat/fmus/sigmahat_native"),
-]
+
+
+def places(system: str, folder: str, tag: str, *architectures: str) -> list[tuple[str, str]]:
+    """Archives with a binary for a system, and the begin of its name."""
+    twins = [(f"{n}.fmu", f"binaries/{a}-{system}/") for n in TWINS for a in architectures]
+    wheel = (WHEEL.format(tag), "sigmahat/fmus/sigmahat_native")
+    return [*((f"{n}.fmu", f"binaries/{folder}/") for n in FMUS), *twins, wheel]
+
+
+LINUX = places("linux", "linux64", "manylinux_2_17_x86_64", *ARCHITECTURES)
+WINDOWS = places("windows", "win64", "win_amd64", "x86_64")
+MACOS = places("darwin", "darwin64", "macosx_11_0_x86_64", *ARCHITECTURES)
 
 
 def functions(archive: str) -> set[str]:

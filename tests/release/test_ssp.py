@@ -16,7 +16,7 @@ from libcosimpy.CosimObserver import CosimObserver
 from lxml import etree
 
 import sigmahat
-from fmi_master import run, torques
+from fmi_master import run
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import simulate
 from sigmahat.paper.scenarios import scenario
@@ -172,11 +172,3 @@ def test_libcosim_takes_the_parameters_and_gives_the_estimate_one_sample_later(s
                 slave_index=slaves[element], variable_references=references
             )
             assert found == pytest.approx(expected, rel=1e-9)
-
-
-def test_a_master_written_by_hand_gives_the_results_of_the_harness() -> None:
-    recording = simulate(TABLE1.plant, {"RESIDUAL": RESIDUAL}, T, STEPS)
-    own = run(torques(recording.t), linear=True, times=recording.t)
-    np.testing.assert_array_equal(recording.plant["sigma"], own["plant.sigma"])
-    np.testing.assert_array_equal(recording.estimators["RESIDUAL"]["sigma"], own["estimator.sigma"])
-    assert own["estimator.sigma"].any()

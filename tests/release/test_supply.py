@@ -18,8 +18,8 @@ from cyclonedx.validation.json import JsonStrictValidator
 
 import sigmahat
 from gate import need
-from released_fmus import FMUS, TWINS
-from sigmahat.export import archive, bill, distribution, modelica
+from released_fmus import FMUS
+from sigmahat.export import bill, distribution, modelica
 
 REPOSITORY = Path(__file__).parents[2]
 OLD = 86400.0  # [s] since 1970
@@ -76,20 +76,6 @@ def test_the_bill_is_the_same_from_another_folder(released: Path, tmp_path: Path
     copy = older(released, tmp_path / "elsewhere")
     bill.write(copy / bill.NAME, copy, sigmahat.__version__)
     assert (copy / bill.NAME).read_bytes() == (released / bill.NAME).read_bytes()
-
-
-@pytest.mark.parametrize("name", [*(f"{n}.fmu" for n in FMUS + TWINS), "sigmahat-awas.ssp"])
-def test_an_archive_packed_again_elsewhere_is_the_same(
-    name: str, released: Path, tmp_path: Path
-) -> None:
-    folder = tmp_path / "unpacked"
-    with ZipFile(released / name) as opened:
-        opened.extractall(folder)
-    files = [f for f in older(folder, tmp_path / "older").rglob("*") if f.is_file()]
-    again = tmp_path / "again.zip"
-    parts = {f.relative_to(tmp_path / "older").as_posix(): f for f in reversed(files)}
-    archive.write(again, parts)
-    assert again.read_bytes() == (released / name).read_bytes()
 
 
 def test_the_modelica_package_made_elsewhere_is_the_same(

@@ -61,9 +61,3 @@ def test_where_the_spring_is_not_engaged_nothing_is_judged() -> None:
 def test_an_estimate_that_is_not_finite_has_no_score() -> None:
     with pytest.raises(ValueError, match="1 instants"):
         score(log(), estimate([110, np.nan, 1, 110], [1.0] * 4, [True] * 4))
-
-
-def test_a_log_that_ends_before_it_is_judged_has_no_score() -> None:
-    short = replace(log(), sample_period=0.1)
-    with pytest.raises(ValueError, match="after 2 s"):
-        score(short, estimate([1.0] * 4, [1.0] * 4, [True] * 4))

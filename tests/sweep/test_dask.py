@@ -84,8 +84,8 @@ def test_one_of_two_workers_killed(address: str, tmp_path: Path) -> None:
     assert (process.returncode, errors) == (0, "")
     assert 6 <= done_before < 24
     # THEN every run is there once, as without a cluster
-    numbers = [json.loads(line)["number"] for line in records(path)]
-    assert sorted(numbers) == list(range(24))
+    seeds = [json.loads(line)["seed"] for line in records(path)]
+    assert sorted(seeds) == list(range(1, 25))
     here = run(*arguments, "--out", "here", cwd=tmp_path)
     assert here.stdout.splitlines()[:-1] == output.splitlines()[:-1]
     for name in ("sweep.parquet", "summary.csv", "distributions.svg"):

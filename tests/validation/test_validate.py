@@ -9,16 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-import sigmahat
-from recorded_logs import CONFIGURATION, Array, awas_log, read_estimate, write_log
+from recorded_logs import CONFIGURATION, Array, awas_log, write_log
 from sigmahat.cli import main
-from sigmahat.fmi.instance import Fmu, Slave
-from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.curve import stiffness_at
-from sigmahat.logs.job import Replay
-from sigmahat.logs.learned import read_learned
-from sigmahat.logs.readers.formats import open_log
-from sigmahat.validation.agreement import TorqueError, agreement
+from sigmahat.validation.agreement import agreement
 
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\nprior.B = 0.2\n'
 DURATION = 10.0
@@ -152,29 +145,6 @@ def test_wrong_arguments(
 # ---- what it is made of -------------------------------------------------------------------------
 
 
-def frozen(folder: Path, points: Array) -> dict[str, Array]:
-    """What the estimator says at points of theta, q and theta_c after the first log."""
-    configuration = read_configuration(folder / "knee.toml")
-    learned = read_learned(folder / "sigmahat-results" / "knee")
-    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "x") as slave:
-        log = open_log(folder / "knee.parquet")
-        replay = Replay(slave, log, configuration, learned)
-        return stiffness_at(slave, ("theta", "q", "theta_c"), points, replay.t, 1e-3)
-
-
-def test_nothing_is_learned_at_a_point(folder: Path) -> None:
-    """The stiffness at the last sample is that of the last tick, however much was asked between."""
-    table = read_estimate(folder / "sigmahat-results" / "knee")
-    last = np.array([[table[name].to_numpy()[-1] for name in ("theta", "q", "theta_c")]])
-    rng = np.random.default_rng(1)
-    between = last * rng.uniform(0.9, 1.1, (500, 1)) + rng.uniform(-0.05, 0.05, (500, 3))
-    found = frozen(folder, np.concatenate([last, between, last]))
-    for name, unit in (("sigma", "N.m/rad"), ("sigma_std", "N.m/rad"), ("phi", "rad")):
-        expected = table[f"estimate.{name} [{unit}]"].to_numpy()[-1]
-        assert found[name][0] == found[name][-1] == expected
-    assert np.ptp(found["sigma"]) > 0
-
-
 def estimates(sigma: float, std: float, per_gain: float = 1.0) -> dict[str, Array]:
     return {
         "sigma": np.full(4, sigma),
@@ -202,20 +172,3 @@ def test_the_gain_of_the_torque_is_one_error_of_both() -> None:
     assert found.alone_in_before == 1.0
     assert found.z == pytest.approx(5 / np.sqrt(2 * 0.5**2 + 0.5**2), rel=1e-6)
     assert found.agree is False
-
-
-def test_an_interval_that_reaches_0_cannot_tell() -> None:
-    for wide in (
-        agreement(estimates(100.0, 60.0), estimates(105.0, 3.0), 0.0),
-        agreement(estimates(100.0, 2.0), estimates(105.0, 60.0), 0.0),
-    ):
-        assert wide.agree is None
-
-
-def test_torque_error_of_samples() -> None:
-    error, torque = np.array([3.0, -3.0, 3.0, -3.0]), np.array([11.0, 9.0, 11.0, 9.0])
-    found = TorqueError.of(error, torque, 8)
-    assert found == TorqueError(rms=3.0, std=1.0, share=0.5)
-    assert found is not None and found.relative == 3.0
-    assert TorqueError.of(error[:0], torque[:0], 8) is None
-    assert np.isnan(TorqueError(1.0, 0.0, 1.0).relative)

@@ -17,6 +17,7 @@ from sigmahat.checks.view import View
 from sigmahat.identification.coherence import TorqueNoise, coherent_range
 from sigmahat.identification.noise import bandwidth, variance
 from sigmahat.identification.regression import (
+    EXTRA,
     MOTOR,
     Equations,
     Fit,
@@ -32,8 +33,6 @@ from sigmahat.logs.log import Array
 
 LINEAR = "eta[0,0]"
 """The column of a linear spring."""
-_DELAY = "delay"
-_GEAR = "gear"
 _HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Coulomb friction
 _SLOWEST = 0.1  # [s] between ticks: slower ones do not show the motion of a joint
 _ORDERS = 3
@@ -113,8 +112,8 @@ def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Delay | None:
     for _ in range(_STEPS):
         moved = [replace(piece, tau=_moved(piece.tau, late / seen.T)) for piece in pieces]
         slopes = [-np.gradient(piece.tau, seen.T) for piece in moved]
-        found = fit(_with_column(seen, moved, form, slopes, _DELAY))
-        step, half_width = found.value[_DELAY], found.half_width[_DELAY]
+        found = fit(_with_column(seen, moved, form, slopes))
+        step, half_width = found.value[EXTRA], found.half_width[EXTRA]
         late += step
         if not math.isfinite(late) or abs(late) > _LONGEST:
             return None
@@ -133,11 +132,11 @@ def gear_error(seen: View, pieces: Sequence[Signals], form: Form) -> GearError |
             replace(each, theta=whole * each.theta, phi=each.phi + (1 - whole) * each.theta)
             for each in pieces
         ]
-        found = fit(_with_column(seen, scaled, form, [each.theta for each in scaled], _GEAR))
+        found = fit(_with_column(seen, scaled, form, [each.theta for each in scaled]))
         spring = found.value[LINEAR] / Spring(form, _equations(seen, scaled, form).units).units[0]
-        if not (spring and math.isfinite(found.half_width[_GEAR])):
+        if not (spring and math.isfinite(found.half_width[EXTRA])):
             return None
-        step, half_width = -found.value[_GEAR] / spring, abs(found.half_width[_GEAR] / spring)
+        step, half_width = -found.value[EXTRA] / spring, abs(found.half_width[EXTRA] / spring)
         whole *= 1 + step
         if not 0.5 < whole < 2:
             return None
@@ -204,14 +203,11 @@ def _equations(seen: View, pieces: Sequence[Signals], form: Form) -> Equations:
 
 
 def _with_column(
-    seen: View, pieces: Sequence[Signals], form: Form, signals: Sequence[Array], name: str
+    seen: View, pieces: Sequence[Signals], form: Form, signals: Sequence[Array]
 ) -> Equations:
-    """The equations with one more column, a signal for each piece; it is filtered as the torque."""
-    system = _equations(seen, pieces, form)
-    as_torques = [replace(piece, tau=own) for piece, own in zip(pieces, signals, strict=True)]
-    column = equations(as_torques, seen.T, seen.gamma, replace(form, n=1, m=1)).y[:, None]
-    X, Z = np.hstack([system.X, column]), np.hstack([system.Z, column])
-    return replace(system, X=X, Z=Z, names=[*system.names, name])
+    """The equations with one more column, a signal for each piece."""
+    own = zip(pieces, signals, strict=True)
+    return _equations(seen, [replace(piece, extra=signal) for piece, signal in own], form)
 
 
 def _moved(tau: Array, ticks: float) -> Array:

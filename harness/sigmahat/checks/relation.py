@@ -146,22 +146,22 @@ def _scale(seen: View, here: Relation, slope: float) -> Relation:
     for name, change in every:
         repaired = [_scaled(piece, name, change.factor) for piece in here.pieces]
         after = fitted(seen, repaired)
-        if best is None:
-            is_next = _is_plausible(here.fitted, after, abs(slope))
-        else:
-            is_next = _is_better(found.fitted, after)
+        is_next = (
+            _is_plausible(here.fitted, after, abs(slope))
+            if best is None
+            else _is_better(found.fitted, after)
+        )
         if is_next:
             best, found = (name, change), Relation((), repaired, after)
     if best is None:
         return here
-    first, factor = best[1], _on_theta(*best)
+    key, factor = best[1].key, _on_theta(*best)
     others = [
         (change.key, change.value)
         for name, change in every
-        if change.key != best[1].key and distance(_on_theta(name, change), factor) < _AS_WELL
+        if change.key != key and distance(_on_theta(name, change), factor) < _AS_WELL
     ]
-    key, proposed = first.key, first.value
-    finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, proposed, others)
+    finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, best[1].value, others)
     return replace(found, findings=[finding])
 
 
@@ -175,24 +175,17 @@ def _sign(seen: View, here: Relation, slope: float) -> Relation:
         is_stiff = before.linear.value[LINEAR] * seen.gamma < 0
         if is_worse(after.fit, before.fit) or (is_stiff and not _is_better(before, after)):
             return here
-    gear = seen.configuration.ports["theta"].gear_ratio
-    if gear < 0:
-        key, others = (
-            "ports.theta.gear_ratio",
-            [("ports.q.sign", -seen.configuration.ports["q"].sign)],
-        )
-        finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, -gear, others, "sign")
-        flipped = [_scaled(piece, "theta", -1.0) for piece in here.pieces]
-        return Relation([*here.findings, finding], flipped, fitted(seen, flipped))
-    # With the sign of theta instead, all that moves the motor has the other sign.
-    motor = _sign_of_motor(after)
-    name = "theta" if motor < 0 else "q"
-    other = "q" if motor < 0 else "theta"
     ports = seen.configuration.ports
-    keys = [(f"ports.{each}.sign", -ports[each].sign) for each in (name, other)]
-    finding = Finding(
-        Kind.SLOPE, Severity.WRONG, keys[0][0], slope, "", 1.0, keys[0][1], keys[1:], "sign"
-    )
+    keys = {f"ports.{name}.sign": -ports[name].sign for name in PORTS}
+    gear, name = ports["theta"].gear_ratio, "theta"
+    if gear < 0:
+        keys = {"ports.theta.gear_ratio": -gear, "ports.q.sign": keys["ports.q.sign"]}
+    elif not _sign_of_motor(after) < 0:
+        # With the sign of theta instead, all that moves the motor has the other sign.
+        name = "q"
+        keys = dict(reversed(keys.items()))
+    (key, proposed), *others = keys.items()
+    finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, proposed, others, "sign")
     if name == "theta":
         flipped = [_scaled(piece, "theta", -1.0) for piece in here.pieces]
         after = fitted(seen, flipped)

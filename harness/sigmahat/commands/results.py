@@ -103,8 +103,8 @@ def _estimated(
 
     opened = open_log(log)
     configuration = read_configuration(config, joint)
-    # Check and figure need them; reading and replaying the log need little of Python.
-    Thread(target=_import, args=["scipy.signal", "matplotlib.figure"]).start()
+    # The figure needs it; reading and replaying the log need little of Python.
+    Thread(target=_import, args=["matplotlib.figure"]).start()
     checked = check(opened, configuration)
     if start_from is not None and start_from.is_dir():
         start_from /= joint

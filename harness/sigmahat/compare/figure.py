@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from sigmahat.compare import labels
-from sigmahat.compare.conditions import METHODS, PAPER2011, REGRESSION, Device
+from sigmahat.compare.conditions import METHODS, PAPER2011, REGRESSION
 from sigmahat.compare.job import Row
 from sigmahat.plotting.style import BLUE, VERMILION
 
@@ -45,7 +45,7 @@ def curves_over_frequency(rows: Sequence[Row]) -> list[list[Row]]:
     """Rows of the AwAS with wrong motor data that differ in nothing but the frequency."""
     curves: dict[tuple[object, ...], list[Row]] = {}
     for row in rows:
-        if row.joint.device is Device.AWAS and row.case.motor_errors:
+        if row.joint.frequency is not None:
             errors = tuple(row.case.motor_errors.items())
             curves.setdefault((row.joint.lever_arm, row.joint.coulomb, errors), []).append(row)
     return list(curves.values())
@@ -55,7 +55,7 @@ def _plot(axes: Axes, curve: Sequence[Row], method: str, marker: str) -> list[Li
     first = curve[0]
     condition = "Coulomb friction" if first.joint.coulomb else labels.lever_arm(first.joint)
     return axes.plot(
-        [row.joint.frequency for row in curve],
+        [row.joint.frequency or 0.0 for row in curve],
         [row.error(method) for row in curve],
         color=_COLORS[method],
         marker=marker,

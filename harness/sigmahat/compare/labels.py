@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from sigmahat.compare.conditions import Case, Device, Joint
+from sigmahat.compare.conditions import Case, Joint
 from sigmahat.compare.job import Row
 
-_DEVICES = {
-    Device.SINGLE: "single transmission",
-    Device.ANTAGONISTIC: "antagonistic pair",
-}
 _SIDES = {"": "device", "_1": "side 1", "_2": "side 2"}
 
 
@@ -16,20 +12,20 @@ def group(row: Row) -> str:
     """The heading that a row stands under."""
     if not row.case.motor_errors:
         return "motor data exact, and known to be"
-    if row.joint.device is not Device.AWAS:
-        return _DEVICES[row.joint.device]
+    if row.joint.lever_arm is None:
+        return "antagonistic pair" if len(row.joint.parts) > 1 else "single transmission"
     friction = f", Coulomb friction {row.joint.coulomb:g} N.m" if row.joint.coulomb else ""
     return f"{lever_arm(row.joint)}{friction}"
 
 
 def lever_arm(joint: Joint) -> str:
     """Of an AwAS."""
-    return f"r(0) = {1e3 * joint.lever_arm:g} mm"
+    return f"r(0) = {1e3 * (joint.lever_arm or 0.0):g} mm"
 
 
 def motion(joint: Joint) -> str:
     """The scenario of the paper, or the frequency."""
-    return joint.scenario.name if joint.paper else f"{joint.frequency:g} Hz"
+    return joint.scenario.name if joint.frequency is None else f"{joint.frequency:g} Hz"
 
 
 def case(case: Case) -> str:

@@ -1,8 +1,10 @@
 """FMU archives that are the same bytes for the same contents."""
 
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+
+from sigmahat.export import description
 
 # Zip has no time zone and starts in 1980; any fixed time would do.
 _TIME = (1980, 1, 1, 0, 0, 0)
@@ -26,3 +28,37 @@ def write(fmu: Path, contents: Mapping[str, Path | bytes]) -> None:
             entry.create_system = 3  # Unix, whose permission bits follow
             entry.external_attr = 0o644 << 16
             archive.writestr(entry, data[name])
+
+
+def pack(
+    fmu: Path,
+    sources: Iterable[Path],
+    fmi: int,
+    described: Path,
+    binary: Path,
+    licence: Path,
+    shown: Path,
+) -> None:
+    """Write an FMU with the binary of this machine, C files and the headers they include.
+
+    fmi        version of FMI, 2 or 3
+    described  folder that ``description.write`` has written; shown: that of ``documentation``
+    """
+    import fmpy
+
+    files = description.with_headers(description.for_version(sources, fmi))
+    contents: dict[str, Path | bytes] = {
+        "documentation/licenses/license.txt": licence,
+        **{f.relative_to(shown).as_posix(): f for f in shown.rglob("*") if f.is_file()},
+        **{f"sources/{f.name}": f for f in files},
+    }
+    platform = fmpy.platform if fmi == 2 else fmpy.platform_tuple
+    contents[f"binaries/{platform}/{binary.name}"] = binary
+    if fmi == 2:
+        contents["modelDescription.xml"] = described / "modelDescription.xml"
+    else:
+        contents["modelDescription.xml"] = described / "fmi3/modelDescription.xml"
+        contents["sources/buildDescription.xml"] = described / "fmi3/buildDescription.xml"
+        icons = "terminalsAndIcons/terminalsAndIcons.xml"
+        contents[icons] = described / "fmi3/terminalsAndIcons.xml"
+    write(fmu, contents)

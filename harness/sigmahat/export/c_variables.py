@@ -172,6 +172,11 @@ def parameter_table(template: Path) -> str:
     )
 
 
+def write_parameters(template: Path, out: Path) -> None:
+    """Write it."""
+    out.write_text(parameter_table(template), encoding="utf-8")
+
+
 def _row(root: Element, variable: Element) -> tuple[str, ...]:
     name, kind = variable.attrib["name"], variable[0]
     start, low, high = kind.attrib["start"], kind.get("min"), kind.get("max")

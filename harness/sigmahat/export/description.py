@@ -7,12 +7,12 @@ that no variable has are left out.
 import copy
 import hashlib
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from sigmahat.export.c_variables import c_table
+from sigmahat.export.c_variables import STORAGE, c_table
 from sigmahat.export.templates import render, variables
 
 
@@ -94,10 +94,13 @@ def write(
     out: Path,
     version: str,
     struct: str,
-    storage: Callable[[Element], dict[str, str]],
+    storage: str,
     sources: Iterable[Path],
 ) -> None:
     """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder.
+
+    struct   C type that holds the variables
+    storage  how, a key of ``c_variables.STORAGE``
 
     Beside them, ``fmi3`` gets the three files that describe the FMU for FMI 3.0. ``sources`` are
     the C files of both; those in a folder ``fmi2`` or ``fmi3`` are for that version only.
@@ -107,7 +110,8 @@ def write(
     sources = list(sources)
     _add_source_files(root, file_names(for_version(sources, 2)))
     guid = complete(root)
-    (out / "variables.h").write_text(c_table(root, struct, storage(root), guid), encoding="utf-8")
+    table = c_table(root, struct, STORAGE[storage](root), guid)
+    (out / "variables.h").write_text(table, encoding="utf-8")
     _write_xml(root, out / "modelDescription.xml")
     names = file_names(for_version(sources, 3))
     described = build_description(template.stem, names)

@@ -1,20 +1,22 @@
 """Documentation and icon of an FMU: ``documentation/index.html``, an SVG and a PNG.
 
 The page is one Jinja2 template for all FMUs, in ``modelDescription/documentation``; its
-variables are those of the template of the model description.
+variables are those of the template of the model description. The icons are drawings, in
+``modelDescription/icons``: a PNG of 256 x 256 pixels, which importers show, and the same as SVG.
 """
 
 from __future__ import annotations
 
 import os
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
 
 import jinja2
 
-from sigmahat.export import icon, templates
+from sigmahat.export import templates
 
 _ICONS = {
     2: ("model.png", "documentation/icon.svg"),
@@ -26,14 +28,15 @@ _ICONS = {
 def write(template: Path, out: Path, version: str) -> None:
     """Write the files into the folders ``fmi2`` and ``fmi3`` of ``out``, by their names in the FMU.
 
-    Raises as `templates.render` does, and ``KeyError`` for an FMU without an icon.
+    Raises as `templates.render` does, and ``FileNotFoundError`` for an FMU without an icon.
     """
     for fmi, names in _ICONS.items():
         folder = out / f"fmi{fmi}"
         png, svg = (folder / name for name in names)
         for file in (png, svg, folder / "documentation" / "index.html"):
             file.parent.mkdir(parents=True, exist_ok=True)
-        icon.write(template.stem, png, svg)
+        for file in (png, svg):
+            shutil.copy(template.parent / "icons" / f"{template.stem}{file.suffix}", file)
         _write_page(template, folder / "documentation", svg, version, fmi)
 
 

@@ -44,10 +44,7 @@ def unit_of(meaning: Meaning, facts: Facts, values: Array) -> str:
     step = float(np.median(steps)) if len(steps) else 1e-3
     if facts.integer and step >= 1:  # a computer counts in units that are finer than its steps
         return "ms" if step < 100 else "us" if step < 50_000 else "ns"
-    for unit in ("s", "ms", "us", "ns"):
-        if _FASTEST <= step * seconds(unit) <= _SLOWEST:
-            return unit
-    return "s"
+    return _plausible(step, _FASTEST, _SLOWEST) or "s"
 
 
 def likely_unit(unit: str, T: float) -> str | None:
@@ -58,11 +55,13 @@ def likely_unit(unit: str, T: float) -> str | None:
     """
     if FASTEST_ROWS <= T <= SLOWEST_ROWS:
         return None
-    steps = T / seconds(unit)
-    likely = ("s", "ms", "us", "ns")
-    return next(
-        (each for each in likely if FASTEST_ROWS <= steps * seconds(each) <= SLOWEST_ROWS), None
-    )
+    return _plausible(T / seconds(unit), FASTEST_ROWS, SLOWEST_ROWS)
+
+
+def _plausible(step: float, least: float, most: float) -> str | None:
+    """The unit in which a step is between two times [s], if there is one."""
+    units = ("s", "ms", "us", "ns")
+    return next((each for each in units if least <= step * seconds(each) <= most), None)
 
 
 def interval(times: Array) -> float:
@@ -149,8 +148,8 @@ class Columns:
     signals: Sequence[Column]
     clocks: Mapping[str, str]
     """Units of the columns of times, by name."""
-    spans: Mapping[str, tuple[float, float]]
-    """Their smallest and largest values, by name."""
+    facts: Mapping[str, Facts]
+    """Of all columns, by name."""
     intervals: Mapping[str | None, float]
     """Usual time between rows [s], by clock; by None where there is none."""
     gaps: Mapping[str | None, float | None]
@@ -189,7 +188,7 @@ def read_columns(log: Log) -> Columns:
             for name in signals
         ],
         units,
-        {name: (facts[name].low, facts[name].high) for name in units},
+        facts,
         intervals,
         gaps,
         T,

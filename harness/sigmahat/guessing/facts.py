@@ -23,19 +23,19 @@ class Facts:
     """A column, by its values."""
 
     samples: int
-    low: float
+    low: float = np.nan
     """Smallest value; nan if there is no number."""
-    high: float
+    high: float = np.nan
     """Largest value; nan if there is no number."""
-    integer: bool
+    integer: bool = False
     """Whether all values are whole numbers, and more than a few of them."""
-    varies: bool
+    varies: bool = False
     """Whether it takes more than a few values."""
-    increasing: float
+    increasing: float = 0.0
     """Share of the steps that go up [1]."""
-    step: float
+    step: float = np.inf
     """Distance between neighbouring values of a quantised column; inf if it is not quantised."""
-    wrap: float | None
+    wrap: float | None = None
     """Period after which it starts again; None if it does not."""
     text: bool = False
     """Whether it holds something other than numbers."""
@@ -46,25 +46,22 @@ def look_at(log: Log, name: str) -> tuple[Facts, Array]:
     try:
         values = log.read(name)
     except LogError:
-        nothing = np.empty(0)
-        return Facts(
-            log.samples(name), np.nan, np.nan, False, False, 0.0, np.inf, None, True
-        ), nothing
+        return Facts(log.samples(name), text=True), np.empty(0)
     finite = values[np.isfinite(values)]
     if not len(finite):
-        return Facts(len(values), np.nan, np.nan, False, False, 0.0, np.inf, None), values
+        return Facts(len(values)), values
     steps = np.diff(finite)
     few = len(np.unique(finite[:_DISTINCT])) < min(_STATES, len(finite))
-    whole = bool(np.all(finite == np.round(finite)))
+    integer = not few and bool(np.all(finite == np.round(finite)))
     wrap = None if few else _wrap(steps, float(np.ptp(finite)))
     facts = Facts(
         samples=len(values),
         low=float(finite.min()),
         high=float(finite.max()),
-        integer=whole and not few,
+        integer=integer,
         varies=not few,
         increasing=float(np.mean(steps > 0)) if len(steps) else 0.0,
-        step=1.0 if whole and not few else _step(finite),
+        step=1.0 if integer else _step(finite),
         wrap=wrap,
     )
     return facts, values if wrap is None else unwrap(values, wrap)[0]

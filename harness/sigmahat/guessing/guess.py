@@ -149,18 +149,15 @@ def _joint(name: str, roles: Roles, columns: Columns, log: Log) -> JointGuess:
     )
     ports = guess_ports(roles, columns, main)
     uses = {port.column: f"ports.{each}" for each, port in ports.items()}
-    times = {main, *(port.time for port in ports.values())}
-    seen = []
+    uses |= dict.fromkeys(
+        (each for each in (main, *(p.time for p in ports.values())) if each), "time"
+    )
     by_name = {each.name: each for each in columns.signals}
+    seen = []
     for column, samples in log.columns.items():
-        if column in by_name:
-            what = uses.get(column) or _what(by_name[column])
-            facts = by_name[column].facts
-            seen.append(Seen(column, samples, facts.low, facts.high, what))
-        else:
-            what = "time" if column in times else "another time"
-            low, high = columns.spans[column]
-            seen.append(Seen(column, samples, low, high, what))
+        facts = columns.facts[column]
+        other = _what(by_name[column]) if column in by_name else "another time"
+        seen.append(Seen(column, samples, facts.low, facts.high, uses.get(column) or other))
     return JointGuess(
         name,
         main,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,32 +32,32 @@ class PortGuess:
     column: str
     why: str
     """Why this column."""
+    low: float
+    high: float
+    """Range of its values."""
     unit: str | None
     """None if there is no way to tell: then `scale` has to be filled in."""
-    sign: int
+    wrap: float | None
+    """Period after which it starts again, in its unit; None if it does not."""
+    time: str | None
+    """The column of its times, if that is not the one of the joint."""
+    notes: Mapping[str, str]
+    """What to know or to check, by key."""
+    sign: int = 1
     """1 or -1."""
-    zero: float
+    zero: float = 0.0
     """In the unit of the column."""
-    gear_ratio: float | None
+    gear_ratio: float | None = 1.0
     """None if it has to be filled in."""
-    moves: float | None
+    moves: float | None = None
     """Of theta: how far it moves over how far the link moves, about; None if that is not known.
 
     Of a motor in counts it is counts per turn of the link.
     """
-    counts_per_turn: float | None
+    counts_per_turn: float | None = None
     """For the unit counts; None if it has to be filled in."""
-    wrap: float | None
-    """Period after which it starts again, in its unit; None if it does not."""
-    steps: int
+    steps: int = 0
     """Steps of its values in a turn, where the unit is not counts; 0 if they have none."""
-    time: str | None
-    """The column of its times, if that is not the one of the joint."""
-    low: float
-    high: float
-    """Range of its values."""
-    notes: Mapping[str, str] = field(default_factory=dict)
-    """What to know or to check, by key."""
 
 
 def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, PortGuess]:
@@ -94,22 +94,7 @@ def _plain(port: str, role: Role, time: str | None) -> PortGuess:
     wrap = facts.wrap if unit not in ("A", "mA", "N.m", "mN.m") else None
     if wrap is not None:
         notes["wrap"] = "CHECK: it jumps by this"
-    return PortGuess(
-        column.name,
-        role.why,
-        unit,
-        1,
-        0.0,
-        1.0,
-        None,
-        None,
-        wrap,
-        0,
-        time,
-        facts.low,
-        facts.high,
-        notes,
-    )
+    return PortGuess(column.name, role.why, facts.low, facts.high, unit, wrap, time, notes)
 
 
 def _angle(column: Column, columns: Columns, is_link: bool) -> tuple[str, str]:

@@ -76,11 +76,17 @@ def _few(columns: list[Column]) -> list[Column]:
 
 def _said(column: Column) -> float:
     """Points of a name for being any port; those without a meaning are between good and bad."""
+    quantity = column.meaning.quantity
+    points = _named(column) + _QUANTITY * (quantity in _OF_PORTS)
+    points += _NO_PORT * (quantity not in (*_OF_PORTS, None))
+    return points + _REFERENCE * column.meaning.reference
+
+
+def _named(column: Column) -> float:
+    """Points of a name that says whose column it is, and not that it was computed."""
     meaning = column.meaning
     points = _SAID * (meaning.side is not None) + _SUGGESTED * (meaning.suggested is not None)
-    points += _QUANTITY * (meaning.quantity in _OF_PORTS)
-    points += _NO_PORT * (meaning.quantity not in (*_OF_PORTS, None))
-    return points + _REFERENCE * meaning.reference + _COMPUTED * meaning.computed
+    return points + _COMPUTED * meaning.computed
 
 
 def chosen_roles(columns: Mapping[str, Column], T: float) -> Roles:
@@ -140,29 +146,24 @@ def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
         port = "theta" if _side(only, "motor") > 0 else "q"
         return {port: Role(only, "by its name" if _side(only, "motor") else "the only position")}
     correlation = np.abs(np.corrcoef([each.window for each in columns]))
-    best: tuple[float, int, int] = (-np.inf, 0, 1)
-    for i, j in permutations(range(len(columns)), 2):
-        points = _points(columns[i], "motor") + _points(columns[j], "link")
-        together = float(correlation[i, j])
-        points += (together > _ALIKE) + (together > _CLOSE)
-        points += _APART if together < _UNLIKE else 0.0
-        points += _COPY if is_copy(columns[i].window, columns[j].window) else 0.0
-        points += 0.5 * _is_larger(columns[i], columns[j])
-        best = max(best, (points, -i, -j))
-    points, theta, q = columns_of(best, columns)
-    if points <= 0:
+
+    def points(places: tuple[int, int]) -> float:
+        """For being motor and link, in this order."""
+        theta, q = (columns[place] for place in places)
+        together = float(correlation[places])
+        found = _points(theta, "motor") + _points(q, "link") + 0.5 * _is_larger(theta, q)
+        found += (together > _ALIKE) + (together > _CLOSE) + _APART * (together < _UNLIKE)
+        return found + _COPY * is_copy(theta.window, q.window)
+
+    best = max(permutations(range(len(columns)), 2), key=points)
+    if points(best) <= 0:
         named = max(columns, key=lambda each: _points(each, "link"))
         return {"q": Role(named, "the only position that stands out")}
-    how = f"moves as the other one does ({correlation[-best[1], -best[2]]:.3g})"
-    return {"theta": Role(theta, _why(theta, how)), "q": Role(q, _why(q, how))}
-
-
-def columns_of(
-    best: tuple[float, int, int], columns: Sequence[Column]
-) -> tuple[float, Column, Column]:
-    """Points and columns of a pair."""
-    points, i, j = best
-    return points, columns[-i], columns[-j]
+    how = f"moves as the other one does ({correlation[best]:.3g})"
+    return {
+        port: Role(columns[place], _why(columns[place], how))
+        for port, place in zip(("theta", "q"), best, strict=True)
+    }
 
 
 def _is_larger(theta: Column, q: Column) -> bool:
@@ -226,10 +227,9 @@ def _is_motor(column: Column) -> bool:
 
 
 def _torque_points(column: Column) -> float:
-    meaning = column.meaning
-    points = _SAID * (meaning.side is not None) + _SUGGESTED * (meaning.suggested is not None)
-    points += _QUANTITY * (meaning.quantity == "torque")  # of a current, a constant is needed too
-    return points + 0.5 * _REFERENCE * meaning.reference + _COMPUTED * meaning.computed
+    # Of a current, a constant is needed too.
+    points = _named(column) + _QUANTITY * (column.meaning.quantity == "torque")
+    return points + 0.5 * _REFERENCE * column.meaning.reference
 
 
 def _silent_torque(

@@ -50,27 +50,19 @@ class Meaning:
     """Words and numbers that are not known, those of joints too."""
 
 
-@dataclass(frozen=True)
-class _Word:
-    """What one entry of the vocabulary says."""
-
-    quantity: str | None = None
-    symbol: bool = False
-    side: str | None = None
-    suggested: str | None = None
-    role: str | None = None
-    joint: bool = False
+_Entry = Mapping[str, str]
+"""What the sections of the vocabulary say of a word, by section."""
 
 
 def meaning(name: str) -> Meaning:
     """What the name of a column says."""
     unit, tokens = _without_unit(name)
-    entries: list[_Word] = []
+    entries: list[_Entry] = []
     rest: list[str] = []
     joints: list[str] = []
     before = ""
     for text, entry in _entries(tokens):
-        if entry is None or entry.joint:
+        if entry is None or "joint" in entry:
             letter = text.isdigit() and bool(rest) and rest[-1] == before and len(before) == 1
             if letter:  # a1, of a1_motor
                 rest[-1] += text
@@ -87,11 +79,11 @@ def meaning(name: str) -> Meaning:
         quantity = unit.foreign
     elif quantity not in ("other", "velocity", "acceleration"):
         quantity = _UNIT_OF.get(unit.name or "", quantity)
-    roles = {entry.role for entry in entries}
+    roles = {entry.get("role") for entry in entries}
     return Meaning(
         quantity=quantity,
         side=_first("side", ("sensor", "setting", "motor", "link"), entries),
-        suggested=_first("suggested", ("motor", "link"), entries),
+        suggested=_first("suggests", ("motor", "link"), entries),
         unit=unit.name,
         speed=unit.speed,
         reference="reference" in roles,
@@ -104,19 +96,17 @@ def meaning(name: str) -> Meaning:
 def _is_time(part: str) -> bool:
     """Whether the last part of a path names a time: the times of a topic, /current.time"""
     entry = _vocabulary().entries.get(_plain(part).lower())
-    return entry is not None and entry.quantity == "time" and not entry.symbol
+    return entry is not None and entry.get("quantity") == "time" and "symbol" not in entry
 
 
-def _quantity(entries: Sequence[_Word]) -> str | None:
+def _quantity(entries: Sequence[_Entry]) -> str | None:
     """The quantity that a word says, else that of a symbol."""
-    words = {entry.quantity for entry in entries if not entry.symbol}
-    symbols = {entry.quantity for entry in entries if entry.symbol}
-    found = words & set(_ORDER) or symbols & set(_ORDER)
-    return next((quantity for quantity in _ORDER if quantity in found), None)
+    words = [entry for entry in entries if "symbol" not in entry]
+    return _first("quantity", _ORDER, words) or _first("quantity", _ORDER, entries)
 
 
-def _first(field: str, order: Sequence[str], entries: Sequence[_Word]) -> str | None:
-    found = {getattr(entry, field) for entry in entries}
+def _first(section: str, order: Sequence[str], entries: Sequence[_Entry]) -> str | None:
+    found = {entry.get(section) for entry in entries}
     return next((each for each in order if each in found), None)
 
 
@@ -175,7 +165,7 @@ def _unit(text: str) -> _Unit:
     return _Unit(vocabulary.units.get(text), vocabulary.foreign.get(text))
 
 
-def _entries(tokens: Sequence[str]) -> Iterator[tuple[str, _Word | None]]:
+def _entries(tokens: Sequence[str]) -> Iterator[tuple[str, _Entry | None]]:
     """Words with what the vocabulary says about them, None for unknown ones."""
     entries = _vocabulary().entries
     words = [token.lower() for token in tokens]
@@ -217,7 +207,7 @@ def _parts(word: str) -> tuple[str, ...]:
 class _Vocabulary:
     """The file vocabulary.toml by words."""
 
-    entries: Mapping[str, _Word]
+    entries: Mapping[str, _Entry]
     units: Mapping[str, str]
     speeds: Mapping[str, str]
     foreign: Mapping[str, str]
@@ -228,28 +218,20 @@ class _Vocabulary:
 def _vocabulary() -> _Vocabulary:
     text = Path(__file__).with_name("vocabulary.toml").read_text(encoding="utf-8")
     table: dict[str, Any] = tomlkit.parse(text).unwrap()
-    fields: dict[str, dict[str, Any]] = {}
-    for section in ("quantity", "side", "suggests", "role"):
-        field = {"suggests": "suggested"}.get(section, section)
+    entries: dict[str, dict[str, str]] = {}
+    for section in ("quantity", "side", "suggests", "role", "symbol", "joint", "neutral"):
         for kind, words in table[section].items():
             for word in words:
-                fields.setdefault(word, {}).setdefault(field, kind)
-    for word in table["symbol"]["words"]:
-        fields.setdefault(word, {})["symbol"] = True
-    for word in table["joint"]["words"]:
-        fields.setdefault(word, {})["joint"] = True
-    for word in table["neutral"]["words"]:
-        fields.setdefault(word, {})
+                entries.setdefault(word, {}).setdefault(section, kind)
+    known = [word for word in entries if len(word) >= _AT_AN_END and " " not in word]
     return _Vocabulary(
-        entries={word: _Word(**values) for word, values in fields.items()},
+        entries=entries,
         units=_by_word(table["unit"]),
         speeds=_by_word(table["speed"]),
         foreign=_by_word(table["foreign"]),
-        longest_first=sorted((w for w in fields if len(w) >= _AT_AN_END and " " not in w), key=len)[
-            ::-1
-        ],
+        longest_first=sorted(known, key=len)[::-1],
     )
 
 
-def _by_word(table: Mapping[str, Sequence[str]]) -> dict[str, str]:
-    return {word: kind for kind, words in table.items() for word in words}
+def _by_word(section: Mapping[str, Sequence[str]]) -> dict[str, str]:
+    return {word: kind for kind, words in section.items() for word in words}

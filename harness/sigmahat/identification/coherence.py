@@ -11,8 +11,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
-from sigmahat.identification.regression import MOTOR, Form, Signals, equations, fit
+from sigmahat.identification.regression import MOTOR, Form, Signals, equations, fit, rows
 from sigmahat.logs.log import Array
 
 _FIRST = 5.0  # [Hz] low pass of the fit that the spectra are computed from
@@ -53,25 +54,22 @@ def coherent_range(piece: Signals, gamma: float, highest: float, noise: TorqueNo
     if highest <= _LOWEST or len(piece.theta) * T < 2 * _SEGMENT:
         return math.inf
     low = Form(min(_FIRST, highest), min(_FIRST, highest))
-    found = fit(equations([piece], T, gamma, low))
-    all_of_it = equations([piece], T, gamma, Form(highest, highest))
-    first_half = slice(0, len(all_of_it.y) // 2)
-    coefficients = np.array([found.value[name] for name in all_of_it.names])
-    parts = all_of_it.X[first_half] * coefficients
-    if not np.all(np.isfinite(parts)):
+    system = equations([piece], T, gamma, low)
+    found = fit(system)
+    p, motor = np.array(list(found.value.values())), slice(len(MOTOR))
+    rest = slice(len(MOTOR), None)
+    torques, springs = [], []
+    for even in rows(piece, T, gamma, Form(highest, highest), system.units):
+        torques.append(even.y[0] - even.X[0][:, motor] @ p[motor])
+        springs.append(even.X[0][:, rest] @ p[rest])
+    torque, spring = np.concatenate(torques), np.concatenate(springs)
+    if not np.all(np.isfinite(torque) & np.isfinite(spring)):
         return math.inf
-    torque = all_of_it.y[first_half] - parts[:, : len(MOTOR)].sum(axis=1)
-    spring = parts[:, len(MOTOR) :].sum(axis=1)
     return _incoherent_above(torque, spring, highest, noise)
 
 
 def _incoherent_above(torque: Array, spring: Array, highest: float, noise: TorqueNoise) -> float:
-    from scipy.signal import coherence, welch  # it takes a second, and is not always needed
-
-    h = 2 * noise.T  # every second sample
-    segment = round(_SEGMENT / h)
-    frequency, shared = coherence(torque, spring, 1 / h, nperseg=segment)
-    power = welch(spring, 1 / h, nperseg=segment)[1]
+    frequency, shared, power = spectra(torque, spring, 2 * noise.T)  # every second sample
     bands = math.ceil(2 * math.log2(highest / _LOWEST))
     limit = math.inf
     edges = np.geomspace(_LOWEST, highest, bands + 1)
@@ -82,3 +80,24 @@ def _incoherent_above(torque: Array, spring: Array, highest: float, noise: Torqu
         if np.mean(power[band]) > _LARGER * np.mean(noise.density(frequency[band])):
             limit = float(low)
     return limit
+
+
+def spectra(x: Array, y: Array, h: float) -> tuple[Array, Array, Array]:
+    """Frequencies [Hz], the coherence of two signals, and the density of y, one-sided.
+
+    Welch's method: segments of two seconds, half overlapping, with Hann windows and without their
+    means. scipy.signal, which has it, takes a second to import.
+
+    x, y  of one size, h [s] apart, at least two seconds
+    """
+    segment = round(_SEGMENT / h)
+    window = np.hanning(segment + 1)[:-1]
+    of_x, of_y = (
+        np.fft.rfft(window * (each - each.mean(axis=1, keepdims=True)))
+        for each in (sliding_window_view(s, segment)[:: segment - segment // 2] for s in (x, y))
+    )
+    xx, yy = (np.mean(np.abs(each) ** 2, axis=0) for each in (of_x, of_y))
+    frequency: Array = np.arange(segment // 2 + 1) / (segment * h)
+    coherence: Array = np.abs(np.mean(of_x.conj() * of_y, axis=0)) ** 2 / (xx * yy)
+    density: Array = 2 * h * yy / np.sum(window**2)
+    return frequency, coherence, density

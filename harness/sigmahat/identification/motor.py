@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -13,7 +12,6 @@ from sigmahat.identification.quantities import Quantity
 from sigmahat.identification.regression import (
     COULOMB_VELOCITY,
     MOTOR,
-    Equations,
     Fit,
     Form,
     Signals,
@@ -22,10 +20,10 @@ from sigmahat.identification.regression import (
     fit,
     is_more,
     is_worse,
+    units,
 )
 from sigmahat.identification.spring import Spring
 
-Item = TypeVar("Item")
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
 _WIDEST = 0.1
 """Of the sampling frequency: highest low pass of the velocity in the Coulomb friction."""
@@ -42,6 +40,8 @@ _OF_COVERED = 0.05
 """Half width of the interval of the zero over the covered deformation, up to which it is known."""
 _STRIBECK = (0.03, 0.1, 0.3)
 """Velocities over which the friction of slow motion decreases [rad/s]."""
+_ENDS = (0.0, -1.96, 1.96)
+"""Of a known inertia, in standard deviations: its value, and the ends of its interval."""
 _N, _M = 4, 4  # highest orders of the polynomial that are tried
 
 
@@ -95,14 +95,13 @@ def fit_motor(
     form = replace(_motor_form(f_0, T), n=_N, m=m_most)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     form, polynomial = _with_spring(without_sensor, T, gamma, form, symmetric)
-    systems = _systems(pieces, T, gamma, form)
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
-    fits = _fits(systems)
+    fits, with_inertia = _variants(pieces, T, gamma, form, inertia)
     quantities = {name: _motor_quantity(name, fits, torque) for name in MOTOR}
-    if inertia is not None and not quantities["B"].determined:
-        fits = _fits(systems, inertia)
+    if with_inertia is not None and not quantities["B"].determined:
+        fits = with_inertia
         quantities |= {name: _motor_quantity(name, fits, torque) for name in MOTOR[1:]}
-    spring = Spring(form, systems.first.units)
+    spring = Spring(form, units(pieces))
     if "gain" not in fits.first.value:
         quantities["zero"] = _zero(spring, fits, pieces, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
@@ -138,17 +137,17 @@ def _with_spring(
 
 
 @dataclass(frozen=True)
-class Variants(Generic[Item]):
-    """The equations or their fits, and others that differ in what nobody knows.
+class Variants:
+    """The fit of the equations, and fits of others that differ in what nobody knows.
 
     Where rounding matters, or friction is not of the form of the equation, the results differ by
     more than chance.
     """
 
-    first: Item
-    others: Sequence[Item]
+    first: Fit
+    others: Sequence[Fit]
     """With other filters, or the ends of the interval of a known inertia."""
-    frictions: Sequence[Item]
+    frictions: Sequence[Fit]
     """With other forms of friction."""
 
 
@@ -172,44 +171,45 @@ def _frictions(form: Form) -> list[Form]:
     ]
 
 
-def _systems(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Variants[Equations]:
+def _variants(
+    pieces: Sequence[Signals], T: float, gamma: float, form: Form, inertia: KnownInertia | None
+) -> tuple[Variants, Variants | None]:
     """With the form of friction of the least errors, if the plain one is significantly worse.
 
     The torque is late in all of them if this explains the log significantly better.
+
+    The second ones are with B as known, if it is.
     """
+
+    def fits_of(each: Form) -> list[Fit]:
+        """With B as unknown, then as known and at both ends of its interval."""
+        system = equations(pieces, T, gamma, each)
+        ends = [] if inertia is None else [inertia.value * (1 + k * inertia.std) for k in _ENDS]
+        return [fit(system), *(fit(system.known("B", B)) for B in ends)]
+
     late = replace(form, delay=True)
-    both = {each: equations(pieces, T, gamma, each) for each in (form, late)}
-    plain = late if is_worse(*map(fit, both.values())) else form
-    every = {plain: both[plain]}
-    every |= {each: equations(pieces, T, gamma, each) for each in _frictions(plain)[1:]}
-    fits = {each: fit(system) for each, system in every.items()}
-    best = min(fits, key=lambda each: float(np.nan_to_num(np.sum(fits[each].squares), nan=np.inf)))
-    chosen = best if is_worse(fits[plain], fits[best]) else plain
-    filters = (
-        replace(chosen, wide=min(2 * form.wide, 2 * _WIDEST / T)),
-        replace(chosen, f_0=0.6 * form.f_0),
+    every = {each: fits_of(each) for each in (form, late)}
+    plain, other = (late, form) if is_worse(every[form][0], every[late][0]) else (form, late)
+    del every[other]
+    every |= {each: fits_of(each) for each in _frictions(plain)[1:]}
+    errors = {each: float(np.sum(fits[0].squares)) for each, fits in every.items()}
+    best = min(errors, key=lambda each: np.nan_to_num(errors[each], nan=np.inf))
+    chosen = best if is_worse(every[plain][0], every[best][0]) else plain
+    filters = [
+        fits_of(replace(chosen, wide=min(2 * form.wide, 2 * _WIDEST / T))),
+        fits_of(replace(chosen, f_0=0.6 * form.f_0)),
+    ]
+    first = every.pop(chosen)
+    free, *known = (
+        Variants(first[i], [each[i] for each in filters], [each[i] for each in every.values()])
+        for i in range(min(2, len(first)))
     )
-    return Variants(
-        every[chosen],
-        [equations(pieces, T, gamma, each) for each in filters],
-        [system for each, system in every.items() if each != chosen],
-    )
+    if not known:
+        return free, None
+    return free, replace(known[0], others=[*known[0].others, *first[2:]])
 
 
-def _fits(systems: Variants[Equations], inertia: KnownInertia | None = None) -> Variants[Fit]:
-    """Fits all equations, with B as known if it is."""
-    if inertia is None:
-        others = [fit(each) for each in systems.others]
-        return Variants(fit(systems.first), others, [fit(each) for each in systems.frictions])
-    B = inertia.value
-    ends = [B * (1 + side * inertia.std) for side in (-1.96, 1.96)]
-    others = [fit(each.known("B", B)) for each in systems.others]
-    others += [fit(systems.first.known("B", end)) for end in ends]
-    frictions = [fit(each.known("B", B)) for each in systems.frictions]
-    return Variants(fit(systems.first.known("B", B)), others, frictions)
-
-
-def _half_width(name: str, fits: Variants[Fit]) -> float:
+def _half_width(name: str, fits: Variants) -> float:
     """Half of the interval of the first fit, and the largest distance of the others.
 
     Another form of friction counts if it explains the log not significantly worse, and by the
@@ -227,7 +227,7 @@ def _half_width(name: str, fits: Variants[Fit]) -> float:
     return first.half_width[name] + (distance if math.isfinite(distance) else math.inf)
 
 
-def _motor_quantity(name: str, fits: Variants[Fit], torque: float) -> Quantity:
+def _motor_quantity(name: str, fits: Variants, torque: float) -> Quantity:
     value = fits.first.value[name]
     negligible = _NEGLIGIBLE * torque if name == "tau_coulomb" else 0.0
     half_width = _half_width(name, fits) + _SAMPLING[name] * abs(value)
@@ -240,7 +240,7 @@ def _quantity(value: float, half_width: float, unit: str, negligible: float) -> 
     return Quantity(value, half_width, unit, bool(determined))
 
 
-def _zero(spring: Spring, fits: Variants[Fit], pieces: Sequence[Signals], gamma: float) -> Quantity:
+def _zero(spring: Spring, fits: Variants, pieces: Sequence[Signals], gamma: float) -> Quantity:
     """The deformation at which spring and constant torque cancel.
 
     It is determined if its interval is short compared with the covered deformation, and if the

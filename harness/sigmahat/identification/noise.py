@@ -12,6 +12,8 @@ from sigmahat.logs.log import Array
 _WINDOWS = 40
 _LOWEST = 5.0  # [Hz]
 _HIGHEST = 0.1  # of the sampling frequency
+SETTLED = 8.0
+"""Periods of the low pass, after which it has forgotten a step to 1e-15."""
 
 
 def variance(values: Array, resolution: float = 0.0) -> float:
@@ -48,12 +50,22 @@ def bandwidth(torque: float, theta: float, inertia: float, T: float) -> float:
 def low_pass(values: Array, frequency: float, h: float) -> Array:
     """Butterworth filter of second order, forward and backward, so without phase.
 
-    values     samples along the first axis, h [s] apart
-    frequency  at which the gain of one pass is 1/sqrt(2) [Hz]
-    """
-    from scipy.signal import butter, sosfiltfilt  # it takes a second, and is not always needed
+    values     samples along the first axis, h [s] apart; beyond both ends they are continued by
+               their point reflection
+    frequency  at which the gain of one pass is 1/sqrt(2) [Hz], less than 1/(2 h)
 
-    filtered: Array = sosfiltfilt(butter(2, frequency * 2 * h, output="sos"), values, axis=0)
+    The gain is that of the bilinear transform, as of scipy.signal, which takes a second to import.
+    """
+    from scipy import fft
+
+    settled = math.ceil(SETTLED / (frequency * h))
+    ends = [(settled, settled), *[(0, 0)] * (values.ndim - 1)]
+    padded = np.pad(values, ends, mode="reflect", reflect_type="odd")
+    size = fft.next_fast_len(len(padded), real=True)
+    spectrum = fft.rfft(padded, size, axis=0)
+    relative = np.tan(np.pi * fft.rfftfreq(size)) / math.tan(math.pi * frequency * h)
+    spectrum /= (1 + relative**4).reshape(-1, *[1] * (values.ndim - 1))
+    filtered: Array = fft.irfft(spectrum, size, axis=0)[settled : settled + len(values)]
     return filtered
 
 

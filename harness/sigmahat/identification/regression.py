@@ -13,19 +13,22 @@ regressor makes its coefficient too small. Therefore even and odd samples are fi
 differentiated separately. Their rounding errors are independent while the joint moves, and the
 regressors of each half are the instruments of the other half: the sums Z'X contain no
 squared noise.
+
+The equations are kept as sums over blocks of time, never row by row: so the memory does not go with
+the number of samples, and each fit takes no time beside the filters.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Value
-from sigmahat.identification.noise import low_pass
+from sigmahat.identification.noise import SETTLED, low_pass
 from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.logs.log import Array
 from sigmahat.logs.resampling import stretches
@@ -37,8 +40,13 @@ COULOMB_VELOCITY = 0.02
 """v_s, the velocity over which the friction changes its sign [rad/s]."""
 CONSTANT = "constant"
 """Name of the column of c."""
+EXTRA = "extra"
+"""Name of the column of Signals.extra."""
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
+_WINDOW = 1 << 14  # rows that are filtered at a time, about
 _EDGE = 0.1  # [s] left out at both ends of a piece, where the filter has not settled
+
+_PARTS = 8  # of a log, of which each is predicted from the others
 
 _LEAST = 40
 """Samples of a stretch: filters need some."""
@@ -54,6 +62,8 @@ class Signals:
     tau: Array
     tau_e: Array | None
     """Torque of the sensor, if the torque constant is to be identified."""
+    extra: Array | None = None
+    """A regressor more, which is filtered as the torque and is its own instrument."""
 
 
 @dataclass(frozen=True)
@@ -99,28 +109,66 @@ class Form:
 
 @dataclass(frozen=True)
 class Equations:
-    """y = X p + error, with instruments Z; both halves of all pieces, one after another."""
+    """y = X p + error, with instruments Z; both halves of all pieces, summed over blocks."""
 
-    y: Array
-    X: Array
-    Z: Array
-    block: NDArray[np.int64]
-    """Stretch of time of each row, [size: rows]."""
+    ZX: Array
+    """Z'X of each block, [size: blocks x columns x columns]."""
+    Zy: Array
+    """Z'y of each block, [size: blocks x columns]."""
+    R: Array
+    """A factor of the squares of each block, R'R = [X y]'[X y], [size: blocks x any x columns + 1].
+    So |y - X p| = |R [-p, 1]| without a difference of large numbers."""
+    rows: NDArray[np.int64]
+    """Number of equations in each block."""
     names: Sequence[str]
     """Names of the columns, see Form.names."""
     units: tuple[float, float]
     """What deformation and set-point are divided by in the polynomial [rad, 1]."""
 
+    @property
+    def scale(self) -> Array:
+        """RMS of each column."""
+        squares: Array = np.sqrt(np.sum(self.R[:, :, :-1] ** 2, axis=(0, 1)) / self.rows.sum())
+        return squares
+
+    def errors(self, p: Array) -> Array:
+        """Sum of the squared errors of each block with the coefficients p."""
+        squares: Array = np.sum((self.R @ np.append(-p, 1.0)) ** 2, axis=1)
+        return squares
+
     def only(self, names: Sequence[str]) -> Equations:
         """The same equations with some of the columns."""
-        kept = [self.names.index(name) for name in names]
-        X, Z = self.X[:, kept], self.Z[:, kept]
-        return replace(self, X=X, Z=Z, names=list(names))
+        kept = np.array([self.names.index(name) for name in names])
+        ZX, Zy = self.ZX[:, kept[:, None], kept], self.Zy[:, kept]
+        return replace(self, ZX=ZX, Zy=Zy, R=self.R[:, :, [*kept, -1]], names=list(names))
 
     def known(self, name: str, value: float) -> Equations:
         """The same equations without a column whose coefficient is known."""
-        rest = self.only([each for each in self.names if each != name])
-        return replace(rest, y=self.y - value * self.X[:, self.names.index(name)])
+        i, R = self.names.index(name), self.R.copy()
+        R[:, :, -1] -= value * R[:, :, i]
+        rest = replace(self, Zy=self.Zy - value * self.ZX[:, :, i], R=R)
+        return rest.only([each for each in self.names if each != name])
+
+    def in_parts(self, parts: int) -> Equations:
+        """The same equations in fewer, longer blocks."""
+        part = np.arange(len(self.rows)) * parts // len(self.rows)
+        of_part = [part == i for i in np.unique(part)]
+        columns = self.R.shape[2]
+        return replace(
+            self,
+            ZX=np.array([self.ZX[each].sum(axis=0) for each in of_part]),
+            Zy=np.array([self.Zy[each].sum(axis=0) for each in of_part]),
+            R=np.array([_factor(self.R[each].reshape(-1, columns)) for each in of_part]),
+            rows=np.array([self.rows[each].sum() for each in of_part]),
+        )
+
+
+def _factor(X: Array) -> Array:
+    """R of X = QR, or of a stack of such, with as many rows as columns."""
+    missing = max(0, X.shape[-1] - X.shape[-2])
+    if missing:
+        X = np.pad(X, [*[(0, 0)] * (X.ndim - 2), (0, missing), (0, 0)])
+    return np.asarray(np.linalg.qr(X, mode="r"))
 
 
 def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Equations:
@@ -129,25 +177,84 @@ def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> 
     T      time between samples [s]
     gamma  gear ratio
     """
-    units = _unit([p.phi for p in pieces]), _unit([p.set_point for p in pieces])
+    of_polynomial = units(pieces)
     parts = []
-    blocks = 0
     for piece in pieces:
-        halves = [_half(piece, s, 2 * T, gamma, form, units) for s in (0, 1)]
-        rows = min(len(y) for y, _ in halves)
-        (y_0, X_0), (y_1, X_1) = ((y[:rows], X[:rows]) for y, X in halves)
-        between_1 = np.vstack([X_1[:1], (X_1[1:] + X_1[:-1]) / 2])  # at the times of half 0
-        between_0 = np.vstack([(X_0[1:] + X_0[:-1]) / 2, X_0[-1:]])
-        edge = round(_EDGE / (2 * T))
-        inner = slice(edge, rows - edge)
-        block = blocks + np.arange(rows)[inner] // round(_BLOCK / (2 * T))
-        blocks = int(block[-1]) + 1
-        parts += [
-            (y_0[inner], X_0[inner], between_1[inner], block),
-            (y_1[inner], X_1[inner], between_0[inner], block),
-        ]
-    y, X, Z, block = (np.concatenate(each) for each in zip(*parts, strict=True))
-    return Equations(y, X, Z, block, form.names(pieces[0].tau_e is not None), units)
+        for each in rows(piece, T, gamma, form, of_polynomial):
+            y, X, Z = (_in_blocks(x, each.place, T) for x in (each.y[..., None], each.X, each.Z))
+            ZX, Zy = Z.swapaxes(1, 2) @ X, (Z.swapaxes(1, 2) @ y)[..., 0]
+            of_block = np.bincount(each.place // _block(T) - each.place[0] // _block(T))
+            parts.append((ZX, Zy, _factor(np.concatenate([X, y], axis=2)), 2 * of_block))
+    names = form.names(pieces[0].tau_e is not None)
+    if pieces[0].extra is not None:
+        names.append(EXTRA)
+    ZX, Zy, R, number = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return Equations(ZX, Zy, R, number, names, of_polynomial)
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Some of the equations of a piece, for even and odd samples."""
+
+    y: Array
+    """[size: 2 x rows]"""
+    X: Array
+    """[size: 2 x rows x columns]"""
+    Z: Array
+    """The same."""
+    place: NDArray[np.intp]
+    """Of the rows in the piece, without a gap."""
+
+
+def rows(
+    piece: Signals, T: float, gamma: float, form: Form, units: tuple[float, float]
+) -> Iterator[Rows]:
+    """The equations of a piece, whole blocks at a time; units as in Equations.
+
+    Around them as much of the piece is filtered as the filters remember.
+    """
+    count, long = len(piece.theta) // 2, _block(T)
+    edge = round(_EDGE / (2 * T))
+    around = math.ceil(SETTLED / (form.f_0 * 2 * T)) + 4
+    step = max(1, _WINDOW // long) * long
+    for begin in range(0, count - edge, step):
+        first, last = max(begin - around, 0), min(begin + step + around, count)
+        part = _part(piece, slice(2 * first, 2 * last))
+        halves = [_half(part, half, 2 * T, gamma, form, units) for half in (0, 1)]
+        y, X = (np.stack(each) for each in zip(*halves, strict=True))
+        Z = np.empty_like(X)
+        Z[0, 1:], Z[0, 0] = (X[1, 1:] + X[1, :-1]) / 2, X[1, 0]  # at the times of half 0
+        Z[1, :-1], Z[1, -1] = (X[0, 1:] + X[0, :-1]) / 2, X[0, -1]
+        if piece.extra is not None:
+            Z[..., -1] = X[..., -1]
+        place = np.arange(max(begin, edge), min(begin + step, count - edge))
+        inner = place - first
+        yield Rows(y[:, inner], X[:, inner], Z[:, inner], place)
+
+
+def _block(T: float) -> int:
+    """Rows of each half in a block."""
+    return round(_BLOCK / (2 * T))
+
+
+def _part(piece: Signals, kept: slice) -> Signals:
+    signals = {each.name: getattr(piece, each.name) for each in fields(piece)}
+    return replace(piece, **{name: x[kept] for name, x in signals.items() if x is not None})
+
+
+def _in_blocks(values: Array, place: NDArray[np.intp], T: float) -> Array:
+    """Rows by blocks, with zeros where a block has fewer.
+
+    values  [size: 2 x rows x columns], at these places in a piece
+
+    Returns an array [size: blocks x rows of a block x columns].
+    """
+    long = _block(T)
+    first, end = place[0] // long, place[-1] // long + 1
+    whole = np.zeros((2, end - first, long, values.shape[2]))
+    whole.reshape(2, -1, values.shape[2])[:, place - first * long] = values
+    blocks: Array = whole.swapaxes(0, 1).reshape(end - first, 2 * long, -1)
+    return blocks
 
 
 def eta(n: int, m: int) -> list[str]:
@@ -212,6 +319,8 @@ def _half(
     else:
         x, y = s.phi[kept] / units[0], s.set_point[kept] / units[1]
         raw += [x**e * y**j for e in powers_of_phi(form.symmetric, form.n) for j in range(form.m)]
+    if s.extra is not None:
+        raw.append(s.extra[kept])
     filtered = low_pass(np.column_stack(raw), form.f_0, h)
     smooth = low_pass(theta, form.f_0, h)
     motion = [gamma * _second(smooth, h), gamma * _first(smooth, h)]
@@ -233,6 +342,11 @@ def _direction(theta: Array, T: float, wide: float, v_s: float) -> Array:
     near = np.concatenate([mean[:1], mean, mean[-1:]])
     wider: Array = (near[:-2] + 2 * mean + near[2:]) / 4  # around a sample, 2 T apart
     return wider
+
+
+def units(pieces: Sequence[Signals]) -> tuple[float, float]:
+    """What deformation and set-point are divided by in the polynomial [rad, 1]."""
+    return _unit([p.phi for p in pieces]), _unit([p.set_point for p in pieces])
 
 
 def _unit(pieces: Sequence[Array]) -> float:
@@ -279,29 +393,25 @@ def fit(e: Equations) -> Fit:
     The covariance is that of the sums of Z times error over blocks of time. So the intervals also
     hold for coloured errors, and where the polynomial does not fit exactly.
     """
-    scale = np.sqrt(np.mean(e.X**2, axis=0))
+    scale = e.scale
     if not np.all(scale > 0):
         return _nothing(e)
-    X, Z = e.X / scale, e.Z / scale
-    A = Z.T @ X
-    if np.linalg.matrix_rank(A, tol=1e-13 * len(X)) < len(scale):
+    blocks, freedom = len(e.rows), len(e.rows) - len(scale)
+    A = e.ZX / np.outer(scale, scale)
+    whole, b = A.sum(axis=0), e.Zy / scale
+    if np.linalg.matrix_rank(whole, tol=1e-13 * e.rows.sum()) < len(scale) or freedom < 5:
         return _nothing(e)
-    p = np.linalg.solve(A, Z.T @ e.y)
-    error = e.y - X @ p
-    blocks = int(e.block[-1]) + 1
-    scores = np.column_stack([np.bincount(e.block, z * error, blocks) for z in Z.T])
-    freedom = blocks - len(p)
-    if freedom < 5:
-        return _nothing(e)
+    p = np.linalg.solve(whole, b.sum(axis=0))
+    scores = b - A @ p
     from scipy.special import stdtrit
 
-    inverse = np.linalg.inv(A)
+    inverse = np.linalg.inv(whole)
     covariance = inverse @ (scores.T @ scores) @ inverse.T * blocks / freedom
     return Fit(
         dict(zip(e.names, (p / scale).tolist(), strict=True)),
         covariance / np.outer(scale, scale),
         float(stdtrit(freedom, 0.975)),
-        np.bincount(e.block, error**2, blocks).astype(np.float64),
+        e.errors(p / scale),
     )
 
 
@@ -319,22 +429,17 @@ def is_more(differences: Array) -> bool:
 def _nothing(e: Equations) -> Fit:
     size = len(e.names)
     unknown = np.full((size, size), np.inf)
-    return Fit(dict.fromkeys(e.names, np.nan), unknown, 1.0, np.full(int(e.block[-1]) + 1, np.nan))
+    return Fit(dict.fromkeys(e.names, np.nan), unknown, 1.0, np.full(len(e.rows), np.nan))
 
 
-def left_out(e: Equations, parts: int = 8) -> Array:
-    """Mean square error on each part of the log after a fit to all others, [size: parts]."""
-    scale = np.sqrt(np.mean(e.X**2, axis=0))
+def left_out(e: Equations) -> Array:
+    """Mean square error of each block after a fit to all others, [size: blocks]."""
+    scale = e.scale
     scale[scale == 0] = 1.0
-    X, Z = e.X / scale, e.Z / scale
-    part = e.block * parts // (int(e.block[-1]) + 1)
-    A = [Z[part == i].T @ X[part == i] for i in range(parts)]
-    b = [Z[part == i].T @ e.y[part == i] for i in range(parts)]
-    errors = []
-    for i in range(parts):
-        p = np.linalg.lstsq(sum(A) - A[i], sum(b) - b[i], rcond=1e-12)[0]
-        errors.append(np.mean((e.y[part == i] - X[part == i] @ p) ** 2))
-    return np.array(errors)
+    A, b = e.ZX / np.outer(scale, scale), e.Zy / scale
+    others = zip(A.sum(axis=0) - A, b.sum(axis=0) - b, strict=True)
+    fits = [np.linalg.lstsq(*each, rcond=1e-12)[0] / scale for each in others]
+    return np.array([e.errors(p)[i] / e.rows[i] for i, p in enumerate(fits)])
 
 
 Orders = tuple[int, int]
@@ -342,12 +447,13 @@ Orders = tuple[int, int]
 
 
 def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, dict[Orders, Array]]:
-    """The orders with the least error on parts that were left out, and the errors of all, see
-    left_out.
+    """The orders with the least error on eighths of the log that were left out, and the errors of
+    all, see left_out.
 
     equations  with all columns up to the orders n_most, m_most
     """
     others = [name for name in equations.names if name not in eta(n_most, m_most)]
+    equations = equations.in_parts(_PARTS)
     errors = {
         (n, m): left_out(equations.only([*others, *eta(n, m)]))
         for n in range(1, n_most + 1)

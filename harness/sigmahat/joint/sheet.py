@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic.dataclasses import dataclass
 
 from sigmahat.files.output import write_json
 from sigmahat.fmi.instance import Value
@@ -20,11 +21,9 @@ from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Rang
 UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "misfit": "1"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Source:
     """A file that the sheet rests on."""
-
-    __pydantic_config__ = NO_OTHER_KEYS
 
     file: Text
     """Its path."""
@@ -32,11 +31,9 @@ class Source:
     """Of its bytes; None if there is no such file."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Stiffness:
     """The stiffness at a point."""
-
-    __pydantic_config__ = NO_OTHER_KEYS
 
     phi: float
     """Deformation [rad]."""
@@ -48,14 +45,12 @@ class Stiffness:
     """Of 95 % [N.m/rad]; None if the method claims none."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Polynomial:
     """Torque of the spring: sum of eta[i][j] set-point^powers_of_set_point[j] phi^powers_of_phi[i].
 
     The stiffness is its slope over phi.
     """
-
-    __pydantic_config__ = NO_OTHER_KEYS
 
     powers_of_phi: list[int]
     powers_of_set_point: list[int]
@@ -86,11 +81,9 @@ class Polynomial:
         return any(any(row[1:]) for row in self.eta)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Parameter:
     """A parameter of the joint."""
-
-    __pydantic_config__ = NO_OTHER_KEYS
 
     value: float
     unit: Text
@@ -100,11 +93,9 @@ class Parameter:
     """Where the interval is from: "identify", "prior"; or why there is none."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
 class RestsOn:
     """What the answer rests on, because no data show it."""
-
-    __pydantic_config__ = NO_OTHER_KEYS
 
     torque_gain: float
     """Relative standard deviation of the gain of the torque [1]; it is part of the intervals."""
@@ -116,11 +107,9 @@ class RestsOn:
     """What is taken as absent."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Check:
     """Outputs of the FMU with the start values, before any sample: to see that they arrived."""
-
-    __pydantic_config__ = NO_OTHER_KEYS
 
     sigma: float
     """[N.m/rad]"""
@@ -128,11 +117,9 @@ class Check:
     """[N.m]"""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Sheet:
     """The contents of the file."""
-
-    __pydantic_config__ = NO_OTHER_KEYS
 
     format: Text
     version: int

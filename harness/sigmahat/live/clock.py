@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from sigmahat.logs.log import EXACT
 
 _LATE = 1.0
@@ -19,7 +21,7 @@ class Clock:
 
     def __init__(self, seconds: float) -> None:
         """seconds  in the unit of the column"""
-        self._seconds = seconds
+        self.seconds = seconds
         self.double = self.late = self.strays = self.lost = 0
         """Samples with the time of the one before, late ones, ones far off; samples missing."""
         self.usual = 0.0
@@ -28,36 +30,33 @@ class Clock:
 
     def restart(self) -> None:
         """The next sample is the first one."""
-        self._first: int | float | None = None
-        self._shift: int = 0
+        self.shift: int | None = None
+        """From which times count: the first one, if it is a whole number that a float64 does not
+        hold, else 0; None before it."""
         self.now = self._floor = 0.0
-        self._stray: float | None = None
+        self._stray = math.nan
         self._in_order = 0
 
     def take(self, stamp: int | float) -> float | None:
-        """The time of the next sample [s]; None if it has to be left out.
-
-        As in a log, whole numbers beyond 2^53 are counted from the first one.
-        """
-        if stamp != stamp or (self._shift and not isinstance(stamp, int)):
+        """The time of the next sample [s]; None if it has to be left out."""
+        if stamp != stamp or (self.shift and not isinstance(stamp, int)):
             self.strays += 1
             return None
-        if self._first is None:
-            self._first = stamp
-            self._shift = stamp if isinstance(stamp, int) and abs(stamp) > EXACT else 0
-            self.now = self._floor = self._time(stamp)
-            return self.now
-        t = self._time(stamp)
-        if self._floor < t <= self.now + LONGEST_PAUSE:
-            self._count(t - self.now)
+        is_first = self.shift is None
+        if self.shift is None:
+            self.shift = stamp if isinstance(stamp, int) and abs(stamp) > EXACT else 0
+        t = float(stamp - self.shift) * self.seconds
+        if is_first or self._floor < t <= self.now + LONGEST_PAUSE:
+            if not is_first:
+                self._count(t - self.now)
             self.now = self._floor = t
-            self._stray, self._in_order = None, 0
+            self._in_order = 0
             return t
         if self.now - _LATE < t <= max(self.now, self._floor):
             self.double += t == self.now
             self.late += t != self.now
         else:
-            follows = self._stray is not None and self._stray < t < self._stray + LONGEST_PAUSE
+            follows = self._stray < t < self._stray + LONGEST_PAUSE
             self._in_order = self._in_order + 1 if follows else 1
             self._stray = t
             self.strays += 1
@@ -68,22 +67,9 @@ class Clock:
         """Whether the last samples are those of a sender that has started again."""
         return self._in_order >= _STARTED
 
-    @property
-    def absolute(self) -> float:
-        """What has to be added to a time so that it counts as the column does [s]."""
-        return self._shift * self._seconds
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether the column holds whole numbers that a float64 does not hold."""
-        return self._shift != 0
-
     def give_up(self, t: float) -> None:
         """Leaves out samples up to this time, if they still come [s]."""
         self._floor = max(self._floor, t)
-
-    def _time(self, stamp: int | float) -> float:
-        return float(stamp - self._shift) * self._seconds
 
     def _count(self, step: float) -> None:
         if self.usual == 0.0:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,9 +15,8 @@ from sigmahat.live.sources import Source
 from sigmahat.logs.readers.formats import open_log
 
 if TYPE_CHECKING:
-    from sigmahat.live.ros2.topics import Ros2
+    from sigmahat.live.ros2 import Ros2
 
-_PORT = re.compile(r"(?:(?P<host>[^:]+):)?(?P<port>\d{1,5})")
 _LOOPBACK, _FOXGLOVE = "127.0.0.1", "8765"
 
 
@@ -35,18 +33,17 @@ class Endpoints:
         lacking = [each for each in wanted if each not in titles] if titles else []
         if lacking:
             raise ValueError(f"--columns lacks {', '.join(lacking)}, which the configuration names")
+        decoder = partial(Decoder, wanted, titles)
+        kind, _, port = name.partition(":")
         if name == "ros2":
             return self._ros2.joint_states(wanted)
         if name == "stdin":
-            return sources.stdin(Decoder(wanted, titles))
-        kind, _, port = name.partition(":")
+            return sources.stdin(decoder)
         if kind not in ("udp", "tcp"):
             raise ValueError(f"--from: expected udp:PORT, tcp:PORT, stdin or ros2, got {name!r}")
-        address = self._host, _address("--from", port)[1]
+        listen = sources.tcp if kind == "tcp" else sources.udp
         try:
-            if kind == "tcp":
-                return sources.tcp(address, wanted, titles)
-            return sources.udp(address, Decoder(wanted, titles))
+            return listen((self._host, _address("--from", port)[1]), decoder)
         except OSError as error:
             raise self._cannot_listen(name, error.strerror or error) from error
 
@@ -76,7 +73,7 @@ class Endpoints:
 
     @cached_property
     def _ros2(self) -> Ros2:
-        from sigmahat.live.ros2.topics import Ros2
+        from sigmahat.live.ros2 import Ros2
 
         return Ros2()
 
@@ -88,7 +85,7 @@ class Endpoints:
 
 
 def _address(option: str, text: str) -> tuple[str, int]:
-    found = _PORT.fullmatch(text)
-    if found is None or not 0 < int(found["port"]) < 1 << 16:
+    host, _, port = text.rpartition(":")
+    if not port.isdecimal() or not 0 < int(port[:9]) < 1 << 16:
         raise ValueError(f"{option}: expected a port from 1 to 65535, got {text!r}")
-    return found["host"] or _LOOPBACK, int(found["port"])
+    return host or _LOOPBACK, int(port)

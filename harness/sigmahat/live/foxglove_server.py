@@ -5,26 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import foxglove
-from foxglove.layouts import (
-    Content,
-    Layout,
-    PlotConfig,
-    PlotPanel,
-    PlotSeries,
-    SplitContainer,
-    SplitItem,
-    StateTransitionsConfig,
-    StateTransitionsPanel,
-    StateTransitionsSeries,
-    TabContainer,
-    TabItem,
-)
 
 from sigmahat.fmi.json_schema import schema
 from sigmahat.live.joint import GIVEN, Estimated, LiveJoint
-from sigmahat.live.sinks import BANDS, Sink, shown
+from sigmahat.live.sinks import BANDED, Sink, shown
 
 LAYOUT = "foxglove-layout.json"
 """Name of the file of the layout."""
@@ -35,8 +22,8 @@ def serve(address: tuple[str, int], joints: Sequence[LiveJoint]) -> Sink:
     foxglove.set_log_level("CRITICAL")  # that a viewer has gone is no news
     foxglove.start_server(name="sigmahat", host=address[0], port=address[1])
     channels = {
-        joint.configuration.joint: foxglove.Channel(
-            _topic(joint), schema=_schema(joint), message_encoding="json"
+        joint.name: foxglove.Channel(
+            f"/{joint.name}/estimate", schema=_schema(joint), message_encoding="json"
         )
         for joint in joints
     }
@@ -49,54 +36,44 @@ def serve(address: tuple[str, int], joints: Sequence[LiveJoint]) -> Sink:
     return send
 
 
-def write_layout(joints: Sequence[LiveJoint], folder: Path) -> None:
-    """Writes a layout for Foxglove: a tab for each joint, with stiffness, torque and doubt."""
-    tabs = [TabItem(title=_name(joint), content=_of_joint(_topic(joint))) for joint in joints]
-    layout = Layout(content=TabContainer(tabs=tabs))
-    (folder / LAYOUT).write_text(layout.to_json(), encoding="utf-8")
-
-
-def _of_joint(topic: str) -> Content:
-    panels: list[Content] = [
-        _plot(topic, "sigma", "Stiffness [N.m/rad]"),
-        _plot(topic, "tau_e", "Flexibility torque [N.m]"),
-        StateTransitionsPanel(
-            title="Why the stiffness is not confident",
-            config=StateTransitionsConfig(
-                paths=[StateTransitionsSeries(value=f"{topic}.doubt", label="doubt")]
-            ),
-        ),
-    ]
-    return SplitContainer(direction="column", items=[SplitItem(content=each) for each in panels])
-
-
-def _plot(topic: str, name: str, title: str) -> PlotPanel:
-    """An output with its 95 % band."""
-    band = [
-        PlotSeries(value=f"{topic}.{name}_{end}", label=label, line_style="dashed", line_size=1)
-        for end, label in (("low", "95 % from"), ("high", "to"))
-    ]
-    paths = [PlotSeries(value=f"{topic}.{name}", label=name, line_size=2), *band]
-    config = PlotConfig(paths=paths, y_axis_label=title, show_legend=True, following_view_width=20)
-    return PlotPanel(title=title, config=config)
-
-
 def _schema(joint: LiveJoint) -> foxglove.Schema:
     described = schema(joint.slave.fmu, GIVEN)
-    for name, of in BANDS.items():
-        unit = joint.slave.fmu.variable(of).unit
-        described["properties"][name] = {
-            "type": "number",
-            "description": f"end of the 95 % interval of {of} [{unit}]",
-        }
+    for of in BANDED:
+        text = f"end of the 95 % interval of {of} [{joint.slave.fmu.variable(of).unit}]"
+        for end in ("low", "high"):
+            described["properties"][f"{of}_{end}"] = {"type": "number", "description": text}
     return foxglove.Schema(
         name="sigmahat.Estimate", encoding="jsonschema", data=json.dumps(described).encode()
     )
 
 
-def _name(joint: LiveJoint) -> str:
-    return joint.configuration.joint or "joint"
+def write_layout(joints: Sequence[LiveJoint], folder: Path) -> None:
+    """Writes a layout for Foxglove: a tab for each joint, with stiffness, torque and doubt."""
+    tabs = []
+    for joint in joints:
+        topic = f"/{joint.name}/estimate"
+        doubt = {"paths": [{"value": f"{topic}.doubt", "label": "doubt"}]}
+        panels = [
+            _plot(topic, "sigma", "Stiffness [N.m/rad]"),
+            _plot(topic, "tau_e", "Flexibility torque [N.m]"),
+            _panel("StateTransitions", "Why the stiffness is not confident", doubt),
+        ]
+        items = [{"proportion": 1, "content": each} for each in panels]
+        content = {"type": "split", "direction": "column", "items": items}
+        tabs.append({"title": joint.name, "content": content})
+    layout = {"version": 1, "content": {"type": "tabs", "selectedTabIndex": 0, "tabs": tabs}}
+    (folder / LAYOUT).write_text(json.dumps(layout), encoding="utf-8")
 
 
-def _topic(joint: LiveJoint) -> str:
-    return f"/{_name(joint)}/estimate"
+def _plot(topic: str, name: str, title: str) -> dict[str, Any]:
+    """An output with its 95 % band."""
+    paths = [{"value": f"{topic}.{name}", "label": name, "lineSize": 2}] + [
+        {"value": f"{topic}.{name}_{end}", "label": label, "lineStyle": "dashed", "lineSize": 1}
+        for end, label in (("low", "95 % from"), ("high", "to"))
+    ]
+    config = {"paths": paths, "yAxisLabel": title, "showLegend": True, "followingViewWidth": 20}
+    return _panel("Plot", title, config)
+
+
+def _panel(kind: str, title: str, config: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "panel", "panelType": kind, "title": title, "version": 1, "config": config}

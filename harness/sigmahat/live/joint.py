@@ -1,4 +1,8 @@
-"""One joint on line: its samples on the ticks, its estimator, and what this has learned from."""
+"""One joint on line: its samples on the ticks, its estimator, and what this has learned from.
+
+Samples come to the ticks as logs/resampling.py brings those of a column, in their units and with
+their counters as in logs/sampling.py.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +21,13 @@ from sigmahat.fmi.sample_loop import Recorder, SampleLoop
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.live.clock import Clock
 from sigmahat.live.messages import Columns
-from sigmahat.live.ticks import PortTicks
-from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.configuration import Configuration, Port
 from sigmahat.logs.learned import Learned, go_on, write_learned
 from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap, parameters
 from sigmahat.logs.resampling import AT_TICK
 from sigmahat.logs.sampling import counter_period, turns_from
+from sigmahat.logs.units import scale, seconds
 
 OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfit", "change_age")
 """Real outputs that are given on."""
@@ -32,8 +36,8 @@ GIVEN = (*OUTPUTS, *_FLAGS, "doubt")
 """All that are given on."""
 _PATIENCE = 0.2
 """How long a tick waits for a port of which nothing arrives while others go on [s]."""
-_WAITING = 1000
-"""Samples before the first one of the column time."""
+_WAITING, _MOST = 1000, 10_000
+"""Samples before the first one of the column time, and those that wait for slower ports."""
 _USUAL_GAP = 3.0
 """Longest gap that is interpolated, in periods, if the configuration has none."""
 
@@ -43,25 +47,83 @@ class Estimated:
     """The outputs of a tick."""
 
     joint: str
+    """LiveJoint.name."""
     t: float
     """Time of the tick, as the sender counts it [s]."""
     outputs: Mapping[str, Any]
     """GIVEN."""
 
-    @property
-    def name(self) -> str:
-        """Of the joint, for people: that of a configuration of one joint has none."""
-        return self.joint or "joint"
+
+class LivePort:
+    """The samples of a port from which its value at the next tick will be computed."""
+
+    def __init__(self, name: str, port: Port, T: float, longest_gap: float) -> None:
+        """T  time between ticks [s]; longest_gap  over which values are interpolated [s]"""
+        self.port, self._T = port, T
+        self._longest = longest_gap * (1 + AT_TICK)
+        self._scale = scale(name, port)
+        self.interpolated = 0
+        """Ticks."""
+        self.restart()
+
+    def restart(self) -> None:
+        """The next sample is the first one."""
+        self._before = -math.inf, math.nan
+        self._next: deque[tuple[float, float]] = deque(maxlen=_MOST)
+        self._last = math.nan
+        self._jumps = 0.0
+
+    def add(self, t: float, value: float) -> None:
+        """The next sample of the column; t is the time since the first tick [s]."""
+        period, port = self.port.wrap, self.port
+        if not math.isfinite(value):
+            return
+        if period is not None:
+            if self._last == self._last:
+                self._jumps -= round((value - self._last) / period)
+            self._last = value
+            value = value + period * self._jumps
+        if self._scale != 1.0 or port.zero != 0.0:
+            value = (value - port.zero) * self._scale
+        self._next.append((t - port.delay if port.delay else t, value))
+
+    def at(self, tick: int) -> float | None:
+        """The value at a tick, nan if there is none; None if a later sample will tell.
+
+        Ticks are asked for in their order.
+        """
+        if self.port.value is not None:
+            return self.port.value
+        while self._next:
+            t, value = self._next[0]
+            position = t / self._T
+            if abs(position - tick) <= AT_TICK:
+                return value
+            if position > tick:
+                before, old = self._before
+                if t - before > self._longest:
+                    return math.nan
+                self.interpolated += 1
+                return float(np.interp(float(tick), (before / self._T, position), (old, value)))
+            self._before = self._next.popleft()
+        return None
 
 
 class LiveJoint:
     """The estimator of one joint, and the samples that wait for its next tick."""
 
-    def __init__(self, configuration: Configuration, learned: Learned | None = None) -> None:
-        """Raises what logs/job.py does for what does not fit."""
+    def __init__(
+        self, configuration: Configuration, clocks: dict[str, Clock], learned: Learned | None
+    ) -> None:
+        """clocks  by time column, "" for the time of arrival; those that are missing are added
+
+        Raises what logs/job.py does for what does not fit.
+        """
         fmu = installed("StiffnessEstimator")
         start = parameters(fmu, configuration)
         self.configuration = configuration
+        self.name = configuration.joint or "joint"
+        """For people and topics: that of a configuration of one joint has none of its own."""
         self.every = fmu.parameters(start)
         """All parameters of the estimator."""
         configuration.need_ports(str(self.every["modality"]))
@@ -69,53 +131,49 @@ class LiveJoint:
         self.longest_gap = configuration.time.longest_gap or _USUAL_GAP * self.T
         """Over which values are interpolated [s]."""
         self.ports = {
-            name: PortTicks(name, port, self.T, self.longest_gap)
+            name: LivePort(name, port, self.T, self.longest_gap)
             for name, port in configuration.ports.items()
         }
         if not any(port.column for port in configuration.ports.values()):
             raise LogError(
                 f"{configuration.path}: no port has a column; name those of the messages"
             )
+        unit = configuration.time.unit if configuration.time.column else "ns"
+        for name in ("", *self.ports):
+            clocks.setdefault(self.time_column(name), Clock(seconds(unit)))
+        self._clocks = clocks
         self.slave = Slave(fmu, configuration.joint or "estimator").__enter__()
         self.slave.initialize(start)
         self._t_0 = 0.0
-        self._logs = [] if learned is None else list(learned.logs)
+        self._logs: list[LearnedLog] = []
         self.skipped_of_all = 0
         """Ticks that were skipped, in all recordings."""
         if learned is not None:
+            self._logs += learned.logs
             self._t_0 = go_on(self.slave, learned, self.every, configuration.path)
-        self._prepare()
-        self._begin()
-
-    def _prepare(self) -> None:
         self._values, self._times = np.zeros((1, len(self.ports))), np.zeros((1, 2))
         self._recorder, self._loop = Recorder(self.slave, ("a", *GIVEN), 1), SampleLoop()
-        inputs = self.slave.fmu.references(self.ports, "input")
-        self._loop.set_real(self.slave, inputs, self._values)
+        self._loop.set_real(self.slave, fmu.references(self.ports, "input"), self._values)
         self._loop.step(self.slave, self._times)
         self._recorder.add_to(self._loop)
+        self._begin()
 
     def _begin(self) -> None:
         self._start: float | None = None
-        self._waiting: deque[tuple[PortTicks, float, float]] = deque(maxlen=_WAITING)
-        self.ticks = self.skipped = 0
-        """Of this recording."""
+        self._waiting: deque[tuple[LivePort, float, float]] = deque(maxlen=_WAITING)
+        self._ticks = self._skipped = 0
         self._used: dict[str, tuple[float, float] | None] = {"phi": None, "setPoint": None}
         self._counter = _Counter(self.configuration)
         for port in self.ports.values():
             port.restart()
 
-    def take(
-        self, columns: Columns, times: Mapping[str, float], clocks: Mapping[str, Clock]
-    ) -> Iterator[Estimated]:
+    def take(self, columns: Columns, times: Mapping[str, float]) -> Iterator[Estimated]:
         """Yields the ticks that a message makes possible.
 
-        times   of the time columns in the message [s]
-        clocks  by time column
+        times  of the time columns in the message [s]
         """
         for name, port in self.ports.items():
-            t = times.get(self.time_column(name))
-            value = columns.get(port.port.column)
+            t, value = times.get(self.time_column(name)), columns.get(port.port.column)
             if t is not None and value is not None:
                 self._waiting.append((port, t, value))
         if self._start is None:
@@ -125,27 +183,24 @@ class LiveJoint:
         while self._waiting:
             port, t, value = self._waiting.popleft()
             port.add(t - self._start, value)
-        yield from self._run(clocks, is_end=False)
+        yield from self._run(self._start, is_end=False)
 
     def time_column(self, port: str) -> str:
         """With the times of a port; "" for the time of arrival."""
         own = self.ports[port].port.time if port else None
         return own or self.configuration.time.column or ""
 
-    def end(self, clocks: Mapping[str, Clock], recording: Path, digest: str) -> Iterator[Estimated]:
+    def end(self, recording: Path, digest: str) -> Iterator[Estimated]:
         """Yields the last ticks of a recording; the next sample will be the first of another one.
 
         recording, digest  the file, and its SHA-256
         """
-        yield from self._run(clocks, is_end=True)
-        used = self._used
-        self._logs.append(
-            LearnedLog(
-                str(recording), digest, self.ticks, self.skipped, used["phi"], used["setPoint"]
-            )
-        )
-        self._t_0 += self.T * self.ticks
-        self.skipped_of_all += self.skipped
+        if self._start is not None:
+            yield from self._run(self._start, is_end=True)
+        counts = self._ticks, self._skipped
+        self._logs.append(LearnedLog(str(recording), digest, *counts, *self._used.values()))
+        self._t_0 += self.T * self._ticks
+        self.skipped_of_all += self._skipped
         self._begin()
 
     def go_on(self) -> None:
@@ -156,49 +211,38 @@ class LiveJoint:
         """Writes what was learned, after the end of a recording."""
         write_learned(self.slave, self.every, self._logs, path)
 
-    def close(self) -> None:
-        """Frees the estimator."""
-        self.slave.__exit__()
-
-    def _run(self, clocks: Mapping[str, Clock], is_end: bool) -> Iterator[Estimated]:
-        if self._start is None:
-            return
-        clock = clocks[self.time_column("")]
-        reached = (clock.now - self._start) / self.T + AT_TICK
-        while self.ticks <= reached:
+    def _run(self, start: float, is_end: bool) -> Iterator[Estimated]:
+        clock = self._clocks[self.time_column("")]
+        newest = max(self._clocks[self.time_column(each)].now for each in self.ports)
+        while self._ticks <= (clock.now - start) / self.T + AT_TICK:
             for place, (name, port) in enumerate(self.ports.items()):
-                value = port.at(self.ticks)
-                if value is None and not is_end and not self._gives_up(name, clocks):
-                    return
-                self._values[0, place] = math.nan if value is None else value
-            yield self._tick(clock)
+                value = port.at(self._ticks)
+                if value is None:
+                    at_tick = start + self._ticks * self.T + port.port.delay
+                    # Others are so far ahead that this port is given up for the tick.
+                    patience = max(_PATIENCE, self.longest_gap * (1 + AT_TICK))
+                    if not is_end and newest <= at_tick + patience:
+                        return
+                    self._clocks[self.time_column(name)].give_up(at_tick + AT_TICK * self.T)
+                    value = math.nan
+                self._values[0, place] = value
+            yield self._tick(start + (clock.shift or 0) * clock.seconds)
 
-    def _gives_up(self, name: str, clocks: Mapping[str, Clock]) -> bool:
-        """Whether a port has no value for the next tick, since others are far ahead of it."""
-        assert self._start is not None
-        newest = max(clocks[self.time_column(each)].now for each in self.ports)
-        at_tick = self._start + self.ticks * self.T + self.ports[name].port.delay
-        if newest <= at_tick + max(_PATIENCE, self.longest_gap * (1 + AT_TICK)):
-            return False
-        clocks[self.time_column(name)].give_up(at_tick + AT_TICK * self.T)
-        return True
-
-    def _tick(self, clock: Clock) -> Estimated:
-        assert self._start is not None
+    def _tick(self, start: float) -> Estimated:
         self._counter.put_right(self._values[0])
-        self._times[0] = self._t_0 + self.T * self.ticks, self.T
+        self._times[0] = self._t_0 + self.T * self._ticks, self.T
         self._loop.run(0, 1)
         outputs = self._recorder.row(0)
-        t = self._start + clock.absolute + self.T * self.ticks
-        self.ticks += 1
+        t = start + self.T * self._ticks
+        self._ticks += 1
         for flag in _FLAGS:
             outputs[flag] = bool(outputs[flag])
-        self.skipped += not outputs["valid"]
+        self._skipped += not outputs["valid"]
         if outputs.pop("a") > 0 and outputs["valid"]:
             for name, used in self._used.items():
                 low, high = used or (math.inf, -math.inf)
                 self._used[name] = min(low, outputs[name]), max(high, outputs[name])
-        return Estimated(self.configuration.joint, t, outputs)
+        return Estimated(self.name, t, outputs)
 
 
 class _Counter:
@@ -210,10 +254,10 @@ class _Counter:
         ports = configuration.ports
         self._names, self._ports = tuple(ports), ports
         self._most = configuration.parameters.get("range.phi")
-        self._both = [self._names.index(n) for n in ("theta", "q") if n in ports]
-        periods = [counter_period(n, ports[n]) for n in ("theta", "q") if n in ports]
+        both = [n for n in ("theta", "q") if n in ports]
+        periods = [counter_period(n, ports[n]) for n in both]
         own = int(np.argmin(periods))
-        self._column, self._other = self._both[own], self._both[own - 1]
+        self._column, self._other = (self._names.index(both[i]) for i in (own, own - 1))
         self._period = periods[own] if len(periods) == 2 else math.inf
         self._last: tuple[float, float] | None = None
         self._was_missing = False

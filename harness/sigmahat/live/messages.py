@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 Columns = Mapping[str, int | float]
@@ -28,54 +29,47 @@ class Decoder:
     def __init__(self, wanted: Sequence[str], columns: Sequence[str] = ()) -> None:
         """wanted are the columns that are used; columns those of CSV, if no line names them."""
         self._wanted = {name.lstrip("/"): name for name in wanted}
-        self._csv = [self._wanted.get(name.strip().lstrip("/")) for name in columns]
+        self._csv = self._named(columns)
 
     def columns(self, message: bytes) -> Columns | None:
         """The columns that are used; None for a line that names columns.
 
         Raises ValueError, which says what was expected and what came.
         """
+        shown = f"{message[:_SHOWN]!r}{'...' if len(message) > _SHOWN else ''}"
         if len(message) > LONGEST:
             raise ValueError(f"expected at most {LONGEST} bytes, got {len(message)}")
-        begin = message.lstrip()[:1]
-        found = self._of_json(message) if begin == b"{" else self._of_csv(message)
-        if found is not None and not found:
-            raise ValueError(f"expected one of {', '.join(self._wanted)}, got {_shown(message)}")
+        if message.lstrip().startswith(b"{"):
+            try:
+                document = json.loads(message)
+            except (ValueError, RecursionError) as error:
+                raise ValueError(f"expected a whole JSON object, got {shown}") from error
+            values = [(self._wanted.get(name), value) for name, value in _flat(document, "", 0)]
+        else:
+            if not message.endswith(b"\n"):
+                raise ValueError(f"expected JSON, or CSV that ends with a line feed, got {shown}")
+            try:
+                cells = message.decode().split(",")
+            except UnicodeDecodeError as error:
+                raise ValueError(f"expected text in UTF-8, got {shown}") from error
+            names = self._named(cells)
+            if any(names):
+                self._csv = names
+                return None
+            if len(cells) != len(self._csv):
+                count = f"{len(self._csv)} cells" if self._csv else ""
+                expected = count or "first a line that names columns"
+                raise ValueError(f"expected {expected}, got {shown}")
+            values = [
+                (name, _parsed(each.strip())) for name, each in zip(self._csv, cells, strict=True)
+            ]
+        found = {name: number(name, value) for name, value in values if name is not None}
+        if not found:
+            raise ValueError(f"expected one of {', '.join(self._wanted)}, got {shown}")
         return found
 
-    def _of_json(self, message: bytes) -> Columns:
-        try:
-            document = json.loads(message)
-        except (ValueError, RecursionError) as error:
-            raise ValueError(f"expected a whole JSON object, got {_shown(message)}") from error
-        found = {}
-        for name, value in _flat(document, "", 0):
-            wanted = self._wanted.get(name)
-            if wanted is not None:
-                found[wanted] = number(name, value)
-        return found
-
-    def _of_csv(self, message: bytes) -> Columns | None:
-        if not message.endswith(b"\n"):
-            raise ValueError(
-                f"expected JSON, or CSV that ends with a line feed, got {_shown(message)}"
-            )
-        try:
-            cells = [cell.strip() for cell in message.decode().split(",")]
-        except UnicodeDecodeError as error:
-            raise ValueError(f"expected text in UTF-8, got {_shown(message)}") from error
-        names = [self._wanted.get(cell.strip('"').lstrip("/")) for cell in cells]
-        if any(names):
-            self._csv = names
-            return None
-        if len(cells) != len(self._csv):
-            expected = f"{len(self._csv)} cells" if self._csv else "first a line that names columns"
-            raise ValueError(f"expected {expected}, got {_shown(message)}")
-        return {
-            name: number(name, _parsed(cell))
-            for name, cell in zip(self._csv, cells, strict=True)
-            if name is not None
-        }
+    def _named(self, cells: Sequence[str]) -> list[str | None]:
+        return [self._wanted.get(cell.strip().strip('"').lstrip("/")) for cell in cells]
 
 
 def _flat(value: Any, above: str, depth: int) -> Iterator[tuple[str, Any]]:
@@ -94,10 +88,8 @@ def _flat(value: Any, above: str, depth: int) -> Iterator[tuple[str, Any]]:
 
 def _parsed(cell: str) -> int | float | str | None:
     for kind in (int, float):
-        try:
+        with suppress(ValueError):
             return kind(cell)
-        except ValueError:
-            pass
     return cell or None
 
 
@@ -105,15 +97,10 @@ def number(name: str, value: Any) -> int | float:
     """A value of a column; nan for one that is not finite. Raises ValueError for no number."""
     if value is None:
         return math.nan
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise ValueError(f"{name}: expected a number, got {str(value)[:_SHOWN]!r}")
     if isinstance(value, float) and not math.isfinite(value):
         return math.nan
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not is_number or abs(value) >= _LARGEST:
+    if abs(value) >= _LARGEST:
         raise ValueError(f"{name}: expected a number, got {str(value)[:_SHOWN]!r}")
-    found: int | float = value
-    return found
-
-
-def _shown(message: bytes) -> str:
-    more = "..." if len(message) > _SHOWN else ""
-    return f"{message[:_SHOWN]!r}{more}"
+    return value

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -23,32 +24,23 @@ pa.array(np.empty(0))
 class Recording:
     """A row for each message; a column that a message lacks is empty there."""
 
-    def __init__(self, path: Path, columns: Sequence[str], whole: Collection[str]) -> None:
+    def __init__(self, path: Path, columns: Mapping[str, bool]) -> None:
         """Makes the file, which is complete after close(). Raises OSError if it cannot be written.
 
-        whole  columns of whole numbers that a float64 does not hold
+        columns  whether each is one of whole numbers that a float64 does not hold
         """
         self.path = path
-        self._numbers = [name for name in columns if name not in whole]
-        self._whole = [name for name in columns if name in whole]
-        kinds = [
-            *[(n, pa.float64()) for n in self._numbers],
-            *[(n, pa.int64()) for n in self._whole],
-        ]
+        self._missing = {n: _MISSING if whole else math.nan for n, whole in columns.items()}
+        self._kinds = np.dtype([(n, "i8" if whole else "f8") for n, whole in columns.items()])
+        kinds = [(n, pa.int64() if whole else pa.float64()) for n, whole in columns.items()]
         self._writer = pq.ParquetWriter(path, pa.schema(kinds))
         self._thread = ThreadPoolExecutor(1)  # so that no sample waits for the disk
         self._written: Future[None] | None = None
-        self._begin()
-
-    def _begin(self) -> None:
-        self._rows = 0
-        self._of_numbers = np.empty((_ROWS, len(self._numbers)))
-        self._of_whole = np.empty((_ROWS, len(self._whole)), np.int64)
+        self._rows, self._table = 0, np.empty(_ROWS, self._kinds)
 
     def add(self, row: Mapping[str, int | float]) -> None:
         """The columns of the next message. Raises OSError if an earlier one was not written."""
-        self._of_numbers[self._rows] = [row.get(name, math.nan) for name in self._numbers]
-        self._of_whole[self._rows] = [row.get(name, _MISSING) for name in self._whole]
+        self._table[self._rows] = tuple(row.get(n, none) for n, none in self._missing.items())
         self._rows += 1
         if self._rows == _ROWS:
             self._flush()
@@ -62,17 +54,14 @@ class Recording:
 
     def _flush(self) -> None:
         self._wait()
-        rows = self._rows
-        self._written = self._thread.submit(
-            self._write, self._of_numbers[:rows], self._of_whole[:rows]
-        )
-        self._begin()
+        self._written = self._thread.submit(self._write, self._table[: self._rows])
+        self._rows, self._table = 0, np.empty(_ROWS, self._kinds)
 
     def _wait(self) -> None:
         if self._written is not None:
             self._written.result()
 
-    def _write(self, numbers: NDArray[np.float64], whole: NDArray[np.int64]) -> None:
-        arrays = [pa.array(np.ascontiguousarray(column)) for column in numbers.T]
-        arrays += [pa.array(column, mask=column == _MISSING) for column in whole.T]
+    def _write(self, table: NDArray[Any]) -> None:
+        columns = {n: np.ascontiguousarray(table[n]) for n in self._missing}
+        arrays = [pa.array(each, mask=each == self._missing[n]) for n, each in columns.items()]
         self._writer.write_table(pa.Table.from_arrays(arrays, schema=self._writer.schema))

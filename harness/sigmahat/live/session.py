@@ -7,7 +7,6 @@ another one, with which the estimators go on: as `sigmahat estimate --start-from
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
 from datetime import datetime, timezone
 from pathlib import Path
 
@@ -21,7 +20,6 @@ from sigmahat.live.recording import Recording
 from sigmahat.logs import joints as of_file
 from sigmahat.logs.configuration import joints_of, read_configuration, read_document
 from sigmahat.logs.learned import LEARNED, Learned, read_learned
-from sigmahat.logs.units import seconds
 
 ARRIVAL = "arrival"
 """Column of a recording for messages without a stamp: time of arrival [ns] since 1970."""
@@ -36,21 +34,14 @@ class Session:
         Raises LogError for what does not fit, FmuError if the FMU refuses a value.
         """
         self._document, self._out = read_document(config), out
-        names = joints_of(self._document, config)
+        self.clocks: dict[str, Clock] = {}
+        """Of each time column; "" for the time of arrival."""
         self.joints = [
-            LiveJoint(read_configuration(config, name), _learned(start_from, name))
-            for name in names
+            LiveJoint(read_configuration(config, name), self.clocks, _learned(start_from, name))
+            for name in joints_of(self._document, config)
         ]
-        self._units = {
-            joint.time_column(port): _unit(joint)
-            for joint in self.joints
-            for port in ("", *joint.ports)
-        }
-        self.clocks = {name: Clock(seconds(unit)) for name, unit in self._units.items()}
-        """Of each time column."""
         ports = [port.port.column for joint in self.joints for port in joint.ports.values()]
-        used = dict.fromkeys([*self.clocks, *filter(None, ports)])
-        self.columns = [name for name in used if name]
+        self.columns = [name for name in dict.fromkeys([*self.clocks, *ports]) if name]
         """Columns of the messages that are used."""
         self.recordings: list[Path] = []
         """Files that are complete."""
@@ -62,67 +53,51 @@ class Session:
         columns  those of `columns` that are in the message
         arrival  of the message [ns] since 1970
         """
-        stamped = {**columns, "": arrival} if "" in self.clocks else columns
+        stamped, kept = {**columns, "": arrival}, dict(columns)
         times: dict[str, float] = {}
-        kept = dict(columns)
         for name, clock in self.clocks.items():
             if name not in stamped:
                 continue
             t = clock.take(stamped[name])
-            if t is None and clock.has_restarted:
-                ended = self.end_recording()
+            if t is not None:
+                times[name] = t
+            elif clock.has_restarted:
+                ended = self._end_recording()
                 for joint in self.joints:
                     joint.go_on()
                 return ended + self.take(columns, arrival)
-            if t is None:
-                kept.pop(name, None)
             else:
-                times[name] = t
+                kept.pop(name, None)
         if not times:
             return []
-        self._record(kept, times, arrival)
-        found = (joint.take(columns, times, self.clocks) for joint in self.joints)
+        if self._recording is None:
+            self._recording = self._begin_recording()
+        self._recording.add({**kept, ARRIVAL: arrival} if "" in times else kept)
+        found = (joint.take(columns, times) for joint in self.joints)
         return [each for of_joint in found for each in of_joint]
 
-    def columns_of_times(self) -> dict[str, tuple[float, list[str]]]:
-        """Of each time column the seconds of its unit, and the columns whose times it has.
+    def _begin_recording(self) -> Recording:
+        now = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H-%M-%S-%f")
+        kinds = {name or ARRIVAL: bool(clock.shift) for name, clock in self.clocks.items()}
+        kinds |= {name: False for name in self.columns if name not in kinds}
+        return Recording(self._out / f"{now}.parquet", kinds)
 
-        Without a time column, messages are a period of the estimator apart.
-        """
-        found: dict[str, tuple[float, list[str]]] = {}
-        for joint in self.joints:
-            for name, port in joint.ports.items():
-                column = joint.time_column(name)
-                step = seconds(self._units[column]) if column else joint.T
-                found.setdefault(column, (step, []))[1].extend(filter(None, [port.port.column]))
-        return found
-
-    def _record(self, columns: Columns, times: Mapping[str, float], arrival: int) -> None:
-        if self._recording is None:
-            now = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H-%M-%S-%f")
-            names = [name or ARRIVAL for name in [*self.clocks, *self.columns]]
-            whole = [name or ARRIVAL for name, clock in self.clocks.items() if clock.is_whole]
-            path = self._out / f"{now}.parquet"
-            self._recording = Recording(path, list(dict.fromkeys(names)), whole)
-        if "" in times:
-            columns = {**columns, ARRIVAL: arrival}
-        self._recording.add(columns)
-
-    def end_recording(self) -> list[Estimated]:
+    def _end_recording(self) -> list[Estimated]:
         """Completes the recording, and writes what was learned: the ticks that had to wait.
 
         Raises OSError if it cannot be written.
         """
         if self._recording is None:
             return []
-        recording, self._recording = self._recording, None
-        recording.close()
-        write_whole(tomlkit.dumps(self._configuration()), recording.path.with_suffix(".toml"))
-        self.recordings.append(recording.path)
-        digest = sha256(recording.path)
-        found = []
+        path = self._recording.path
+        self._recording.close()
+        self._recording = None
+        write_whole(tomlkit.dumps(self._configuration()), path.with_suffix(".toml"))
+        self.recordings.append(path)
+        digest = sha256(path)
+        found: list[Estimated] = []
         for joint in self.joints:
-            found += list(joint.end(self.clocks, recording.path, digest))
+            found += joint.end(path, digest)
             folder = self._out / joint.configuration.joint
             folder.mkdir(exist_ok=True)
             joint.write(folder / LEARNED.file)
@@ -132,9 +107,9 @@ class Session:
 
     def close(self) -> list[Estimated]:
         """Ends the recording and frees the estimators."""
-        found = self.end_recording()
+        found = self._end_recording()
         for joint in self.joints:
-            joint.close()
+            joint.slave.__exit__()
         return found
 
     def _configuration(self) -> tomlkit.TOMLDocument:
@@ -148,10 +123,6 @@ class Session:
             for key, value in time.items():
                 of_file.set_item(section, ("time", key), tomlkit.item(value))
         return document
-
-
-def _unit(joint: LiveJoint) -> str:
-    return joint.configuration.time.unit if joint.configuration.time.column else "ns"
 
 
 def _learned(start_from: Path | None, joint: str) -> Learned | None:

@@ -15,16 +15,14 @@ from sigmahat.live.joint import Estimated
 
 Sink = Callable[[Sequence[Estimated]], None]
 """Sends the ticks of one message on."""
-
-
-BANDS = {"sigma_low": "sigma", "sigma_high": "sigma", "tau_e_low": "tau_e", "tau_e_high": "tau_e"}
-"""Ends of 95 % intervals that are sent besides the outputs."""
+BANDED = ("sigma", "tau_e")
+"""Outputs whose 95 % intervals are sent, too: sigma_low and sigma_high, ..."""
 
 
 def shown(outputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Outputs and BANDS for JSON, which has no nan and no infinity."""
+    """Outputs and intervals for JSON, which has no nan and no infinity."""
     values = dict(outputs)
-    for name in ("sigma", "tau_e"):
+    for name in BANDED:
         half = NORMAL_95 * values[f"{name}_std"]
         values[f"{name}_low"], values[f"{name}_high"] = values[name] - half, values[name] + half
     found: dict[str, Any] = finite(values)
@@ -34,14 +32,14 @@ def shown(outputs: Mapping[str, Any]) -> dict[str, Any]:
 def udp(address: tuple[str, int]) -> Sink:
     """A datagram for each tick, as PlotJuggler reads it: {"timestamp": t, "elbow": {...}}.
 
-    The joint of a configuration of one joint has the name "joint". That nobody listens is no error.
+    That nobody listens is no error.
     """
     sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sender.setblocking(False)
 
     def send(ticks: Sequence[Estimated]) -> None:
         for t, at_once in groupby(ticks, key=lambda each: each.t):
-            message = {"timestamp": t} | {e.name: shown(e.outputs) for e in at_once}
+            message = {"timestamp": t} | {e.joint: shown(e.outputs) for e in at_once}
             with suppress(OSError):
                 sender.sendto(json.dumps(message).encode(), address)
 

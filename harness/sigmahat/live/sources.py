@@ -9,10 +9,9 @@ import heapq
 import socket
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator
 from functools import partial
-from queue import Empty, Full, Queue
+from queue import Full, Queue
 from threading import Thread
 from typing import BinaryIO
 
@@ -27,50 +26,33 @@ _MOST = 20_000
 _BUFFER = 1 << 22
 """Bytes that the system is asked to keep of what has not been read."""
 
-
-@dataclass(frozen=True)
-class Received:
-    """What a sender sent."""
-
-    arrival: int
-    """[ns] since 1970."""
-    read: Callable[[], Columns | None]
-    """Its columns; None if it has none. Raises ValueError for what is no message."""
+Reader = Callable[[], Columns | None]
+"""Gives the columns of a message; None if it has none. Raises ValueError for what is no message,
+and EOFError where no more will come."""
 
 
-class Inbox:
-    """Messages that wait, and how the sources are."""
+class Inbox(Queue[tuple[int, Reader]]):
+    """Messages that wait, each with its time of arrival [ns] since 1970."""
 
     def __init__(self) -> None:
-        self._queue: Queue[Received | None] = Queue(_MOST)
+        super().__init__(_MOST)
         self.dropped = 0
         """Messages that found it full."""
-        self.is_at_end = False
-        """Whether no more will come."""
 
-    def put(
-        self, read: Callable[[], Columns | None], can_wait: bool = True, arrival: int | None = None
-    ) -> None:
+    def add(self, read: Reader, can_wait: bool = True, arrival: int | None = None) -> None:
         """can_wait  whether the sender waits for a place, or the message is lost"""
         try:
-            self._queue.put(
-                Received(time.time_ns() if arrival is None else arrival, read), can_wait
-            )
+            self.put((time.time_ns() if arrival is None else arrival, read), can_wait)
         except Full:
             self.dropped += 1
 
     def end(self) -> None:
         """No more messages will come."""
-        self._queue.put(None)
+        self.add(_no_more)
 
-    def next(self, seconds: float) -> Received | None:
-        """The next message; None if none comes in this time, or at the end."""
-        try:
-            found = self._queue.get(timeout=seconds)
-        except Empty:
-            return None
-        self.is_at_end |= found is None
-        return found
+
+def _no_more() -> None:
+    raise EOFError
 
 
 Source = Callable[[Inbox], None]
@@ -82,20 +64,21 @@ def start(source: Source, inbox: Inbox) -> None:
     Thread(target=source, args=[inbox], daemon=True).start()
 
 
-def udp(address: tuple[str, int], decoder: Decoder) -> Source:
+def udp(address: tuple[str, int], decoder: Callable[[], Decoder]) -> Source:
     """A datagram is a message. Raises OSError if the address cannot be had."""
     bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     bound.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
     bound.bind(address)
+    columns = decoder().columns
 
     def read(inbox: Inbox) -> None:
         while True:
-            inbox.put(_reads(decoder, bound.recv(LONGEST + 1)), can_wait=False)
+            inbox.add(partial(columns, bound.recv(LONGEST + 1)), can_wait=False)
 
     return read
 
 
-def tcp(address: tuple[str, int], wanted: Sequence[str], columns: Sequence[str]) -> Source:
+def tcp(address: tuple[str, int], decoder: Callable[[], Decoder]) -> Source:
     """A line is a message; any number of senders connect. Raises as udp."""
     server = socket.create_server(address)
 
@@ -106,56 +89,57 @@ def tcp(address: tuple[str, int], wanted: Sequence[str], columns: Sequence[str])
 
     def one(inbox: Inbox, connection: socket.socket) -> None:
         with connection, connection.makefile("rb") as file:
-            lines(file, inbox, Decoder(wanted, columns))
+            _lines(file, inbox, decoder())
 
     return read
 
 
-def stdin(decoder: Decoder) -> Source:
+def stdin(decoder: Callable[[], Decoder]) -> Source:
     """A line is a message."""
 
     def read(inbox: Inbox) -> None:
-        lines(sys.stdin.buffer, inbox, decoder)
+        _lines(sys.stdin.buffer, inbox, decoder())
         inbox.end()
 
     return read
 
 
-def lines(file: BinaryIO, inbox: Inbox, decoder: Decoder) -> None:
+def _lines(file: BinaryIO, inbox: Inbox, decoder: Decoder) -> None:
     """Puts each line of a file into the inbox; of one that is too long, the begin."""
     try:
         while line := file.readline(LONGEST + 1):
-            inbox.put(_reads(decoder, line))
+            inbox.add(partial(decoder.columns, line))
             while len(line) > LONGEST and not line.endswith(b"\n"):
                 line = file.readline(LONGEST + 1)
     except OSError:  # the sender has died
         return
 
 
-def _reads(decoder: Decoder, message: bytes) -> Callable[[], Columns | None]:
-    return lambda: decoder.columns(message)
-
-
 def replay(log: Log, session: Session) -> Source:
     """The columns of a log that are used, at its own pace. Raises LogError if it lacks one."""
-    groups = [
-        _rows(log, name, seconds, columns)
-        for name, (seconds, columns) in session.columns_of_times().items()
-    ]
+    used: dict[str, tuple[float, list[str]]] = {}
+    for joint in session.joints:
+        for name, port in joint.ports.items():
+            time_column = joint.time_column(name)
+            # Rows without a time are a period of the estimator apart.
+            step = session.clocks[time_column].seconds if time_column else joint.T
+            columns = [port.port.column] if port.port.column else []
+            used.setdefault(time_column, (step, []))[1].extend(columns)
+    groups = [_rows(log, name, *each) for name, each in used.items()]
 
     def read(inbox: Inbox) -> None:
         begin, first = time.monotonic(), None
         for t, columns in heapq.merge(*groups, key=lambda each: each[0]):
             first = t if first is None else first
             time.sleep(max(begin + t - first - time.monotonic(), 0.0))
-            inbox.put(partial(dict, columns), arrival=round(1e9 * t))
+            inbox.add(partial(dict, columns), arrival=round(1e9 * t))
         inbox.end()
 
     return read
 
 
 def _rows(
-    log: Log, time_column: str, period: float, columns: Sequence[str]
+    log: Log, time_column: str, period: float, columns: Collection[str]
 ) -> Iterator[tuple[float, Columns]]:
     """Times [s] and columns of the rows of a log that have a time.
 

@@ -8,12 +8,12 @@ import time
 from collections.abc import Iterator, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass
+from queue import Empty
 from types import FrameType
 
-from sigmahat.live.messages import Columns
 from sigmahat.live.session import Session
 from sigmahat.live.sinks import Sink
-from sigmahat.live.sources import Inbox, Received
+from sigmahat.live.sources import Inbox
 
 _log = logging.getLogger("sigmahat")
 _IDLE = 0.1  # [s] until a signal is seen
@@ -37,43 +37,40 @@ def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> Counted:
     The first message that cannot be read is named in a warning; all of them are counted.
     """
     counted, seen = Counted(), set[str]()
-    waits_since: float | None = time.monotonic()
+    silent_at = time.monotonic() + _SILENT
     with _stopped_by_signal() as stopped:
-        while not stopped and not inbox.is_at_end:
-            received = inbox.next(_IDLE)
-            if received is None:
-                if waits_since is not None and time.monotonic() - waits_since > _SILENT:
+        while not stopped:
+            try:
+                arrival, read = inbox.get(timeout=_IDLE)
+            except Empty:
+                if time.monotonic() > silent_at:
                     _log.warning("nothing has arrived in %g s; does the sender run?", _SILENT)
-                    waits_since = None
+                    silent_at = float("inf")
                 continue
-            waits_since = None
-            columns = _read(received, counted)
+            silent_at = float("inf")
+            try:
+                columns = read()
+            except EOFError:
+                break
+            except ValueError as error:
+                counted.wrong += 1
+                if counted.wrong == 1:
+                    _log.warning("a message that cannot be read: %s; more are counted", error)
+                continue
+            counted.messages += 1
             if columns is None:
                 continue
             if counted.messages <= _FIRST:
                 seen.update(columns)
             if counted.messages == _FIRST:
                 _look(session, seen)
-            ticks = session.take(columns, received.arrival)
-            if ticks:
+            if ticks := session.take(columns, arrival):
                 for send in sinks:
                     send(ticks)
         last = session.close()
         for send in sinks:
             send(last)
     return counted
-
-
-def _read(received: Received, counted: Counted) -> Columns | None:
-    try:
-        columns = received.read()
-    except ValueError as error:
-        counted.wrong += 1
-        if counted.wrong == 1:
-            _log.warning("a message that cannot be read: %s; more are counted", error)
-        return None
-    counted.messages += 1
-    return columns
 
 
 def _look(session: Session, seen: Set[str]) -> None:
@@ -95,13 +92,11 @@ def _look(session: Session, seen: Set[str]) -> None:
 def _stopped_by_signal() -> Iterator[list[int]]:
     """The signals that were received: a second one does not spoil what is being written."""
     stopped: list[int] = []
-    before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
 
     def stop(number: int, _frame: FrameType | None) -> None:
         stopped.append(number)
 
-    for each in before:
-        signal.signal(each, stop)
+    before = {each: signal.signal(each, stop) for each in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield stopped
     finally:

@@ -100,7 +100,11 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
     if pa.types.is_integer(kind) and not fits_float64(column):
         first = next(x.as_py() for x in column if x.is_valid)
         column = pa.compute.subtract(column.cast(pa.int64()), first)
-    values: Array = np.array(column.cast(pa.float64(), safe=False).to_numpy())
+    values, row = np.empty(len(column)), 0
+    for chunk in column.chunks:  # to_numpy() of a column imports pandas, which takes long
+        batch = pa.record_batch([chunk.cast(pa.float64(), safe=False)], [name])
+        values[row : row + len(chunk)] = batch.to_tensor(null_to_nan=True).to_numpy()[:, 0]
+        row += len(chunk)
     return values
 
 

@@ -3,13 +3,18 @@
 A CSV log gives `estimate.csv`, every other log `estimate.parquet`: the log with the estimates. The
 titles of the estimates are "estimate.sigma [N.m/rad]" and so on; "estimate.t [s]" is the time of
 the tick since the start of the log. `estimate.json` has what no other file of the folder has.
+
+In Parquet the estimates are float32: seven digits, of numbers that are known to three or four. The
+columns of the log stay as they are, and so do times, whose digits count over hours.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager
+from copy import copy
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import TracebackType
@@ -26,25 +31,17 @@ from sigmahat.files import tables
 from sigmahat.files.output import write_json
 from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs.log import Log, LogError
-from sigmahat.logs.readers.tables import CsvLog, dialect
+from sigmahat.logs.readers.tables import CsvLog, ParquetLog
 from sigmahat.logs.sampling import Samples
 
 _ROWS = 1 << 15
 _STEM = "estimate"
 _PREFIX = "estimate."
+_REPEATED = 2  # rows per value, from which on a dictionary is shorter
 _TIME = "t"
-
-
-@dataclass(frozen=True)
-class EstimatedSignal:
-    """One estimate at every row of the log."""
-
-    name: str
-    """Output of the estimator FMU, or "t"."""
-    unit: str | None
-    """Of the output; a Boolean and an enumeration have none."""
-    values: NDArray[Any]
-    """float64, bool, or of an enumeration the names of its items, [size: rows]."""
+_TIMES = (_TIME, "change_age")
+DOUBT = "doubt"
+"""The output that is text."""
 
 
 class EstimateWriter(AbstractContextManager["EstimateWriter"]):
@@ -54,7 +51,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         """units  of the outputs that have one, by name"""
         self._dialect = log.dialect if isinstance(log, CsvLog) else None
         self._path = folder / f"{_STEM}.{'csv' if self._dialect else 'parquet'}"
-        self._units = units
+        self._units = {_TIME: "s", **units}
         self._tick_of_row = samples.tick_of_row
         self._T = samples.T
         names = [name for name, n in log.columns.items() if n == len(samples.tick_of_row)]
@@ -67,24 +64,25 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
         """Writes the rows of the next ticks, whose outputs these are."""
         ticks = len(next(iter(outputs.values())))
-        end = int(np.searchsorted(self._tick_of_row, self._tick + ticks))
+        # Of the same type as the array, which would be converted as a whole.
+        end = int(np.searchsorted(self._tick_of_row, np.int32(self._tick + ticks)))
         tick_of_row = self._tick_of_row[self._row : end] - self._tick
         # A row for each tick, as usual: nothing has to be copied.
         usual = np.array_equal(tick_of_row, np.arange(ticks))
         take: slice | NDArray[np.int32] = slice(None) if usual else tick_of_row
         table = self._rows.take(end - self._row)
-        times = self._T * np.arange(self._tick, self._tick + ticks)[take]
-        estimates = [EstimatedSignal(_TIME, "s", times)]
-        estimates += [EstimatedSignal(n, self._units.get(n), v[take]) for n, v in outputs.items()]
-        for each in estimates:
-            title = tables.title(_PREFIX + each.name, each.unit)
-            table = table.append_column(title, pa.array(each.values))
+        times = self._T * np.arange(self._tick, self._tick + ticks)
+        for name, values in {_TIME: times, **outputs}.items():
+            column = pa.array(values[take])
+            if self._dialect is None and column.type == pa.float64() and name not in _TIMES:
+                column = column.cast(pa.float32())
+            table = table.append_column(tables.title(_PREFIX + name, self._units.get(name)), column)
         self._row, self._tick = end, self._tick + ticks
         if self._dialect is not None and self._dialect.decimal == ",":
             table = _with_commas(table)
         if self._writer is None:
             writer = pa.csv.CSVWriter if self._dialect else pa.parquet.ParquetWriter
-            self._writer = writer(self._path, table.schema, **self._options())
+            self._writer = writer(self._path, table.schema, **self._options(table))
         self._finish()
         self._written = self._thread.submit(self._writer.write_table, table)
 
@@ -94,11 +92,17 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
             self._written.result()
             self._written = None
 
-    def _options(self) -> dict[str, Any]:
+    def _options(self, first: pa.Table) -> dict[str, Any]:
         if self._dialect is not None:
             options = pa.csv.WriteOptions(quoting_style="needed", delimiter=self._dialect.delimiter)
             return {"write_options": options}
-        return {"use_dictionary": False}  # measured numbers hardly repeat
+        split = [name for name in first.column_names if _is_smooth(first[name])]
+        others = [name for name in first.column_names if name not in split]
+        return {
+            "compression": "zstd",
+            "use_byte_stream_split": split,
+            "use_dictionary": others,
+        }
 
     def __exit__(
         self,
@@ -113,6 +117,19 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
             self._thread.shutdown()
             if self._writer is not None:
                 self._writer.close()
+
+
+def _is_smooth(column: pa.ChunkedArray) -> bool:
+    """Whether these are numbers whose first bytes change slowly from row to row.
+
+    Measured numbers that were written in decimals and read again have all their bytes at random,
+    but few values.
+    """
+    if pa.types.is_integer(column.type):
+        return True
+    if not pa.types.is_floating(column.type):
+        return False
+    return bool(_REPEATED * pa.compute.count_distinct(column).as_py() > len(column))
 
 
 def _with_commas(table: pa.Table) -> pa.Table:
@@ -142,46 +159,59 @@ class _Rows:
         return table.slice(0, rows)
 
 
-def read_estimate(folder: Path) -> dict[str, EstimatedSignal]:
-    """The estimates that `sigmahat estimate` wrote into a folder, by name, "t" first.
+class EstimateTable(Mapping[str, NDArray[np.float64]]):
+    """The numbers that `sigmahat estimate` wrote into a folder, by name; true is 1.
 
-    The columns of the log itself are not read. Raises LogError if there is no such table, or it is
-    damaged.
+    A column is read when it is asked for: all of a long log together do not fit the memory.
     """
-    path = next(folder.glob(f"{_STEM}.parquet"), folder / f"{_STEM}.csv")
-    signals = {}
-    try:
-        titles = [title for title in _titles(path) if title.startswith(_PREFIX)]
+
+    def __init__(self, folder: Path) -> None:
+        """Raises LogError if there is no such table, or it is damaged."""
+        path = next(folder.glob(f"{_STEM}.parquet"), folder / f"{_STEM}.csv")
+        is_csv = path.suffix == ".csv"
+        try:
+            self._log = CsvLog(path) if is_csv else ParquetLog(path)
+        except (LogError, OSError) as error:
+            what = "not readable as CSV" if is_csv else "damaged"
+            raise LogError(f"{path}: {what}; run `sigmahat estimate` again") from error
+        titles = [title for title in self._log.columns if title.startswith(_PREFIX)]
         names = [tables.name_and_unit(title.removeprefix(_PREFIX)) for title in titles]
-        if not {name for name, _ in names} >= {_TIME, "sigma", "valid"}:
+        self.units = dict(names)
+        """Unit of each output, None for flags."""
+        self._titles = dict(zip(self.units, titles, strict=True))
+        if not self.units.keys() >= {_TIME, "sigma", "valid"}:
             raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
-        table = _table(path, titles)
-    except (pa.ArrowException, OSError) as error:
-        what = "not readable as CSV" if path.suffix == ".csv" else "damaged"
-        raise LogError(f"{path}: {what}; run `sigmahat estimate` again") from error
-    for (name, unit), column in zip(names, table.columns, strict=True):
-        if column.type not in (pa.bool_(), pa.string()):
-            column = column.cast(pa.float64())
-        signals[name] = EstimatedSignal(name, unit, column.to_numpy())
-    return signals
+        self._doubt = self._titles.pop(DOUBT, None)
 
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        return self._log.read(self._titles[name])
 
-def _titles(path: Path) -> list[str]:
-    if path.suffix == ".parquet":
-        return list(pa.parquet.read_schema(path).names)
-    try:
-        return list(dialect(path).names)
-    except LogError as error:
-        raise LogError(f"{path}: not readable as CSV; run `sigmahat estimate` again") from error
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._titles)
 
+    def __len__(self) -> int:
+        return len(self._titles)
 
-def _table(path: Path, titles: list[str]) -> pa.Table:
-    if path.suffix == ".parquet":
-        return pa.parquet.read_table(path, columns=titles)
-    found = dialect(path)
-    options = pa.csv.ConvertOptions(include_columns=titles, decimal_point=found.decimal)
-    parse = pa.csv.ParseOptions(delimiter=found.delimiter)
-    return pa.csv.read_csv(path, parse_options=parse, convert_options=options)
+    def without(self, *names: str) -> EstimateTable:
+        """The same table, with fewer numbers."""
+        rest = copy(self)
+        rest._titles = {n: title for n, title in self._titles.items() if n not in names}
+        return rest
+
+    def doubts(self) -> Counter[str]:
+        """Rows in the second half of the log by the output doubt; empty if an older version wrote
+        the table.
+        """
+        found: Counter[str] = Counter()
+        if self._doubt is None:
+            return found
+        left = self._log.samples(self._doubt) // 2  # of the first half
+        for batch in self._log.batches([self._doubt], _ROWS):
+            later = batch.column(0).slice(min(left, len(batch)))
+            left -= len(batch) - len(later)
+            counted = later.value_counts()
+            found.update(dict(zip(*(counted.field(i).to_pylist() for i in (0, 1)), strict=True)))
+        return found
 
 
 @dataclass(frozen=True)

@@ -94,6 +94,8 @@ def _needed(where: str, port: Port, key: str, unit: str) -> float:
 
 
 def _is(unit: str, kind: str) -> bool:
+    if unit == kind:  # as usual; pint takes long to import
+        return True
     if not _harmless(unit):
         return False
     try:

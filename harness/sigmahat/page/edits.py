@@ -105,14 +105,9 @@ def set_value(document: tomlkit.TOMLDocument, key: str, value: Value) -> None:
 
 def remove_value(document: tomlkit.TOMLDocument, key: str) -> None:
     """Removes a key, if it is there."""
-    if value_of(document, key) is None:
-        return
-    table, name = _place(document, key)
-    if name in table:
+    if value_of(document, key) is not None:
+        table, name = _holder(document, key)
         del table[name]
-    else:
-        group, _, last = name.partition(".")
-        del table[group][last]
 
 
 def set_port(document: tomlkit.TOMLDocument, port: str, table: Table | None) -> None:
@@ -161,13 +156,18 @@ def _place(document: tomlkit.TOMLDocument, key: str) -> tuple[MutableMapping[str
     return table, name
 
 
+def _holder(document: tomlkit.TOMLDocument, key: str) -> tuple[MutableMapping[str, Any], str]:
+    """The innermost table that has a key which is there, and its name in it."""
+    table, name = _place(document, key)
+    if name in table:
+        return table, name
+    group, _, last = name.partition(".")
+    return table[group], last
+
+
 def _item(document: tomlkit.TOMLDocument, key: str) -> Any:
     """The item of a key with its comment; None if it is not there."""
     if value_of(document, key) is None:
         return None
-    table, name = _place(document, key)
-    if name not in table:
-        group, _, last = name.partition(".")
-        table, name = table[group], last
-    item = table[name]
-    return item if hasattr(item, "trivia") else None
+    table, name = _holder(document, key)
+    return table[name] if hasattr(table[name], "trivia") else None

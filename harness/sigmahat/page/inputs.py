@@ -1,4 +1,4 @@
-"""Inputs of the page, each bound to a key of the configuration."""
+"""Parts of the page: texts, buttons, and inputs that are bound to keys of the configuration."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from bokeh.models import InlineStyleSheet, Row, Select, TextInput, UIElement
+from bokeh.models import Button, Div, InlineStyleSheet, Row, Select, TextInput, UIElement
 
 from sigmahat.page.edits import GAMMA, NumberField
 from sigmahat.page.setup import Setup
@@ -33,6 +33,20 @@ _OPEN = "open"
 def style() -> InlineStyleSheet:
     """The style of a widget."""
     return InlineStyleSheet(css=STYLE)
+
+
+def words(html: str = "", name: str | None = None, **styles: str | None) -> Div:
+    """A text in HTML; styles are those of CSS, with "_" for "-"."""
+    css: dict[str, str | None] = {"color": "var(--ink)", "overflow-wrap": "anywhere"}
+    css |= {key.replace("_", "-"): value for key, value in styles.items()}
+    return Div(text=html, name=name, sizing_mode="stretch_width", styles=css, stylesheets=[style()])
+
+
+def button(name: str, clicked: Callable[[], object], label: str = "", **more: Any) -> Button:
+    """A button, and what a click does; more is given to Bokeh."""
+    made = Button(label=label, name=name, stylesheets=[style()], **more)
+    made.on_click(lambda: clicked())
+    return made
 
 
 def in_grid(children: Sequence[UIElement], least: str, name: str | None = None) -> Row:
@@ -91,20 +105,27 @@ class Choice:
 
     def __init__(
         self,
+        setup: Setup,
         title: str,
-        name: str,
+        key: str,
         options: Sequence[tuple[str, str]],
-        current: Callable[[], str],
-        chosen: Callable[[str], object],
+        default: str = "",
+        current: Callable[[], str] | None = None,
+        chosen: Callable[[str], object] | None = None,
     ) -> None:
-        """current gives the item that is shown, chosen is called with another one.
+        """An item is the value of a key of the configuration; "" stands for none.
 
-        options  values and their texts; others are added when they are shown
+        options          values and their texts; others are added when they are shown
+        default          what is shown where the key is not there
+        current, chosen  give the item that is shown, and are called with another one, in place of
+                         the key
         """
-        self._options, self._current, self._chosen = list(options), current, chosen
+        self._options = list(options)
+        self._current = current or (lambda: str(setup.get(key) or default))
+        self._chosen = chosen or (lambda item: setup.set(key, item or None))
         self.widget = Select(
             title=title,
-            name=name,
+            name=key,
             options=self._options,
             sizing_mode="stretch_width",
             stylesheets=[style()],

@@ -121,8 +121,6 @@ class Jobs:
             self._later(partial(self._refused, None, f"a fault of sigmahat: {error!r}"))
 
     def _look(self) -> None:
-        from sigmahat.page.jobs import guessed
-
         setup = self._setup
         looks = {name: look(setup.log, name) for name in setup.log.columns}
         self._later(partial(self._show, None, looks=looks, busy="Guessing ..."))
@@ -132,7 +130,6 @@ class Jobs:
     def _check(self, version: int, text: str) -> None:
         from sigmahat.checks.check import check
         from sigmahat.logs.configuration import checked_configuration
-        from sigmahat.page.jobs import replayed
 
         log, path = self._setup.log, self._setup.path
         done = 0

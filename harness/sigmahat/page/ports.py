@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
 from html import escape
 
-from bokeh.models import Column, Div
+from bokeh.models import Column
 
 from sigmahat.logs.configuration import FILL_IN
 from sigmahat.page import edits
 from sigmahat.page.edits import BY_SCALE, CHOICES, OF_PORT, PARAMETERS, UNITS
-from sigmahat.page.inputs import Choice, Number, in_grid, style
+from sigmahat.page.inputs import Choice, Number, in_grid, words
 from sigmahat.page.setup import Setup
 
 _NONE = ""
@@ -21,49 +22,33 @@ class PortPanel:
 
     def __init__(self, setup: Setup, port: str) -> None:
         self._setup, self._port, self._where = setup, port, f"ports.{port}"
-        columns = [(_NONE, "not used"), *((name, name) for name in setup.log.columns)]
+        names = [(name, name) for name in setup.log.columns]
         units = [*((unit, unit) for unit in UNITS[port]), (BY_SCALE, "a factor")]
-        self._column = Choice("column", f"{self._where}.column", columns, self._name, self._named)
-        self._unit = Choice(
-            "unit",
-            f"{self._where}.unit",
-            units,
-            self._unit_now,
-            lambda unit: setup.set(f"{self._where}.unit", unit),
+        sign = f"{self._where}.sign"
+        self._column = Choice(
+            setup,
+            "column",
+            f"{self._where}.column",
+            [(_NONE, "not used"), *names],
+            current=self._name,
+            chosen=lambda name: setup.set_column(port, name or None),
         )
+        self._unit = Choice(setup, "unit", f"{self._where}.unit", units, current=self._unit_now)
         self._sign = Choice(
+            setup,
             "sign",
-            f"{self._where}.sign",
+            sign,
             _SIGNS,
-            lambda: f"{setup.get(f'{self._where}.sign') or 1:g}",
-            lambda sign: setup.set(f"{self._where}.sign", int(sign)),
+            current=lambda: f"{setup.get(sign) or 1:g}",
+            chosen=lambda item: setup.set(sign, int(item)),
         )
-        self._time = Choice(
-            "its times",
-            f"{self._where}.time",
-            [(_NONE, "those of all"), *columns[1:]],
-            lambda: setup.get(f"{self._where}.time") or _NONE,
-            lambda name: setup.set(f"{self._where}.time", name or None),
-        )
+        times = [(_NONE, "those of all"), *names]
+        self._time = Choice(setup, "its times", f"{self._where}.time", times)
         self._numbers = [Number(setup, f"{self._where}.{f.key}", f) for f in OF_PORT]
-        self._notes = Div(
-            sizing_mode="stretch_width",
-            styles={"color": "var(--soft)"},
-            stylesheets=[style()],
-        )
-        self._details = Column(
-            in_grid(
-                [
-                    self._unit.widget,
-                    self._sign.widget,
-                    *(each.widget for each in self._numbers),
-                    self._time.widget,
-                ],
-                "8rem",
-            ),
-            self._notes,
-            sizing_mode="stretch_width",
-        )
+        self._notes = words(color="var(--soft)")
+        numbers = [each.widget for each in self._numbers]
+        grid = in_grid([self._unit.widget, self._sign.widget, *numbers, self._time.widget], "8rem")
+        self._details = Column(grid, self._notes, sizing_mode="stretch_width")
         self.root = Column(
             self._column.widget, self._details, name=self._where, sizing_mode="stretch_width"
         )
@@ -73,9 +58,8 @@ class PortPanel:
         setup = self._setup
         self._column.widget.disabled = not setup.is_ready
         self._column.show()
-        is_used = self._name() != _NONE
-        self._details.visible = is_used
-        if not is_used:
+        self._details.visible = self._name() != _NONE
+        if not self._details.visible:
             return
         for each in (self._unit, self._sign, self._time):
             each.show()
@@ -96,9 +80,6 @@ class PortPanel:
         name = self._setup.get(f"{self._where}.column")
         return _NONE if name in (None, FILL_IN) else str(name)
 
-    def _named(self, name: str) -> None:
-        self._setup.set_column(self._port, name or None)
-
     def _unit_now(self) -> str:
         if self._setup.get(f"{self._where}.scale") is not None:
             return BY_SCALE
@@ -106,12 +87,11 @@ class PortPanel:
 
     def _comments(self) -> str:
         """What the guess is not sure of."""
+        comment = partial(edits.comment_of, self._setup.document)
         keys = ("unit", "sign", *(field.key for field in OF_PORT))
-        found = (
-            (key, edits.comment_of(self._setup.document, f"{self._where}.{key}")) for key in keys
-        )
-        said = ((key, comment.removeprefix(f"{FILL_IN}: ")) for key, comment in found if comment)
-        return "".join(f"<small>{escape(key)}: {escape(words)}</small><br>" for key, words in said)
+        found = ((key, comment(f"{self._where}.{key}")) for key in keys)
+        said = ((key, text.removeprefix(f"{FILL_IN}: ")) for key, text in found if text)
+        return "".join(f"<small>{escape(key)}: {escape(text)}</small><br>" for key, text in said)
 
 
 class ParameterPanel:
@@ -121,47 +101,19 @@ class ParameterPanel:
         self._setup = setup
         columns = [(_NONE, "none: sample period"), *((name, name) for name in setup.log.columns)]
         units = [(unit, unit) for unit in ("s", "ms", "us", "ns", "min")]
-        self._choices = [
-            Choice(
-                "time",
-                "time.column",
-                columns,
-                lambda: setup.get("time.column") or _NONE,
-                lambda name: setup.set("time.column", name or None),
-            ),
-            Choice(
-                "unit of time",
-                "time.unit",
-                units,
-                lambda: setup.get("time.unit") or "s",
-                lambda unit: setup.set("time.unit", unit),
-            ),
-            *(self._parameter(name) for name in CHOICES),
+        self._inputs: list[Choice | Number] = [
+            Choice(setup, "time", "time.column", columns),
+            Choice(setup, "unit of time", "time.unit", units, "s"),
         ]
-        self._numbers = [Number(setup, field.key, field) for field in PARAMETERS]
-        self._widgets = [
-            *(each.widget for each in self._choices),
-            *(each.widget for each in self._numbers),
-        ]
-        self.root = in_grid(self._widgets, "8rem", name="parameters")
-
-    def _parameter(self, name: str) -> Choice:
-        options = [(item, item) for item in CHOICES[name]]
-        choice = Choice(
-            name,
-            name,
-            options,
-            lambda: str(self._setup.get(name) or CHOICES[name][0]),
-            lambda item: self._setup.set(name, item),
-        )
-        choice.widget.styles = {"grid-column": "1 / -1"}  # FilteredRegression needs the width
-        return choice
+        for name, items in CHOICES.items():
+            choice = Choice(setup, name, name, [(each, each) for each in items], items[0])
+            choice.widget.styles = {"grid-column": "1 / -1"}  # FilteredRegression needs the width
+            self._inputs.append(choice)
+        self._inputs += [Number(setup, field.key, field) for field in PARAMETERS]
+        self.root = in_grid([each.widget for each in self._inputs], "8rem", name="parameters")
 
     def show(self) -> None:
         """Shows the configuration as it is."""
-        for widget in self._widgets:
-            widget.disabled = not self._setup.is_ready
-        for choice in self._choices:
-            choice.show()
-        for number in self._numbers:
-            number.show()
+        for each in self._inputs:
+            each.widget.disabled = not self._setup.is_ready
+            each.show()

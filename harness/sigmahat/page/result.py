@@ -7,9 +7,9 @@ from functools import partial
 from html import escape
 from typing import TYPE_CHECKING
 
-from bokeh.models import Button, Column, Div, Row, UIElement
+from bokeh.models import Column, Row, UIElement
 
-from sigmahat.page.inputs import in_grid, style
+from sigmahat.page.inputs import button, in_grid, words
 from sigmahat.page.setup import Setup
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ class ResultPanel:
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
         self._shown: object = self
-        self._busy = Div(name="busy", styles={"color": "var(--soft)"}, stylesheets=[style()])
+        self._busy = words(name="busy", color="var(--soft)")
         self._plots = Column(name="plots", sizing_mode="stretch_width")
         self.root = Column(self._busy, self._plots, name="curve", sizing_mode="stretch_width")
 
@@ -45,15 +45,14 @@ class ResultPanel:
         assert self._setup.answer is not None
         curve, points = self._setup.answer.curve, self._setup.answer.points
         if not curve.branches:
-            nothing = "No curve: the estimator learned nothing from the log."
-            return [_words(nothing)]
+            return [words("No curve: the estimator learned nothing from the log.")]
         made = plots(list(curve_panels(curve, points)), None)
         # Before identify has chosen its order, the polynomial has more powers than the spring.
         text = "\n".join(curve_text(curve, self._setup.get("rls.n") is not None))
         return [
-            _words(_legend(made)),
+            words(_legend(made), overflow_x="auto"),
             in_grid([plot.figure for plot in made], "30rem"),
-            _words(f"<pre>{escape(text)}</pre>"),
+            words(f"<pre>{escape(text)}</pre>", overflow_x="auto"),
         ]
 
 
@@ -64,11 +63,6 @@ def _legend(made: Sequence[Plot]) -> str:
         for curve in made[0].panel.curves
     )
     return f"{labels}<small>{escape(made[0].panel.caption)}</small>"
-
-
-def _words(html: str) -> Div:
-    styles: dict[str, str | None] = {"color": "var(--ink)", "overflow-x": "auto"}
-    return Div(text=html, sizing_mode="stretch_width", styles=styles, stylesheets=[style()])
 
 
 class FindingsPanel:
@@ -104,41 +98,25 @@ class FindingsPanel:
         for severity, title in TITLES.items():
             found = checked.of(severity)
             if found:
-                kind = "wrong" if severity.value == "wrong" else ""
-                rows.append(_line(title, f"title {kind}"))
+                kind = "wrong" if severity.value == "wrong" else "ink"
+                rows.append(_line(title, kind, weight="600"))
                 rows += [self._finding(each, sentence(each)) for each in found]
         return rows
 
     def _finding(self, finding: Finding, text: str) -> UIElement:
         """A sentence, and a button for each value that is proposed."""
-        proposals = [(finding.key, finding.proposed), *finding.others]
         buttons = []
-        for key, value in proposals:
-            if value is None:
-                continue
-            shown = f"{value:.6g}" if isinstance(value, float) else value
-            button = Button(
-                label=f"Set {key} = {shown}", name=f"accept {key}", stylesheets=[style()]
-            )
-            button.on_click(partial(self._setup.set, key, value))
-            buttons.append(button)
+        for key, value in [(finding.key, finding.proposed), *finding.others]:
+            if value is not None:
+                shown = f"{value:.6g}" if isinstance(value, float) else value
+                accept = partial(self._setup.set, key, value)
+                buttons.append(button(f"accept {key}", accept, f"Set {key} = {shown}"))
         if not buttons:
             return _line(text)
-        flow: dict[str, str | None] = {"flex-wrap": "wrap"}
-        return Column(
-            _line(text),
-            Row(*buttons, sizing_mode="stretch_width", styles=flow),
-            sizing_mode="stretch_width",
-        )
+        row = Row(*buttons, sizing_mode="stretch_width", styles={"flex-wrap": "wrap"})
+        return Column(_line(text), row, sizing_mode="stretch_width")
 
 
-def _line(text: str, kind: str = "") -> Div:
-    """A paragraph."""
-    styles: dict[str, str | None] = {"color": "var(--ink)", "overflow-wrap": "anywhere"}
-    if "title" in kind:
-        styles["font-weight"] = "600"
-    if "wrong" in kind:
-        styles["color"] = "var(--wrong)"
-    if "fine" in kind:
-        styles["color"] = "var(--fine)"
-    return Div(text=escape(text), sizing_mode="stretch_width", styles=styles, stylesheets=[style()])
+def _line(text: str, kind: str = "ink", weight: str | None = None) -> UIElement:
+    """A paragraph; kind is a colour of the page."""
+    return words(escape(text), color=f"var(--{kind})", font_weight=weight)

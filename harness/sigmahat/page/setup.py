@@ -41,8 +41,6 @@ class Setup:
         self.path = path
         """The file to write."""
         self.document: tomlkit.TOMLDocument = tomlkit.document()
-        self.is_new = True
-        """Whether there was no file to start from."""
         self.is_edited = False
         """Whether somebody has changed something that is not written yet."""
         self.looks: Mapping[str, Look] = {}
@@ -65,7 +63,8 @@ class Setup:
         self._then: Callable[[], object] | None = None
         self._shown: set[Callable[[], object]] = set()
         self._chosen: Chosen = lambda names: {}
-        self._joints: dict[str, tomlkit.TOMLDocument] = {}
+        self.joints: dict[str, tomlkit.TOMLDocument] = {}
+        """The configurations of the joints by name; empty until they are known."""
 
     # Windows
 
@@ -90,14 +89,9 @@ class Setup:
         return tomlkit.dumps(self.document)
 
     @property
-    def joints(self) -> list[str]:
-        """Names of the joints; empty until they are known."""
-        return list(self._joints)
-
-    @property
     def text_of_file(self) -> str:
         """The configuration of all joints, as it would be written."""
-        return tomlkit.dumps(together(self._joints)) if len(self._joints) > 1 else self.text
+        return tomlkit.dumps(together(self.joints)) if len(self.joints) > 1 else self.text
 
     @property
     def is_ready(self) -> bool:
@@ -106,11 +100,10 @@ class Setup:
 
     def start_from(self, document: tomlkit.TOMLDocument) -> None:
         """Takes the contents of the file. Raises LogError for a joint that has no possible name."""
-        self.is_new = False
         self._start({name: of_joint(document, name) for name in joints_of(document, self.path)})
 
     def _start(self, joints: dict[str, tomlkit.TOMLDocument]) -> None:
-        self._joints = joints
+        self.joints = joints
         self.set_joint(next(iter(joints)))
 
     def get(self, key: str) -> Any:
@@ -176,12 +169,12 @@ class Setup:
     def guessed(self, templates: Mapping[str, str], chosen: Chosen) -> None:
         """Takes what was guessed: the configuration of each joint as `init` writes it."""
         self._chosen = chosen
-        if self.is_new:
+        if not self.joints:
             self._start({name: tomlkit.parse(text) for name, text in templates.items()})
 
     def set_joint(self, name: str) -> None:
         """Shows another joint of the log."""
-        self.joint, self.document = name, self._joints[name]
+        self.joint, self.document = name, self.joints[name]
         # All that was found and asked is of the joint before.
         self.message, self.problem, self.asks_to_overwrite = "", "", False
         self.checked = self.answer = None
@@ -215,23 +208,25 @@ class Setup:
         if self.asks_to_overwrite:
             self._asked = monotonic()
             self.message = f"{self.path} exists, and is other than what is shown here."
-        else:
-            try:
-                write_whole(self.text_of_file, self.path)
-            except OSError as error:
-                self.message = f"Cannot write {self.path}: {error.strerror}."
-            else:
-                self.message = f"Written: {self.path.resolve()}. {self._next()}"
-                self.is_edited = False
-                if self._then is not None:
-                    self._then()
+        elif self._is_written():
+            log, default = self.log.path, Path(f"{self.log.path.stem}.toml")
+            option = "" if self.path == default else f" --config {self.path}"
+            self.message += f" Next: sigmahat identify {log}{option}, then sigmahat estimate {log}"
+            self.message += option
+            if self._then is not None:
+                self._then()
         self.show()
 
-    def _next(self) -> str:
-        """What to do with a file that is written."""
-        log, default = self.log.path, Path(f"{self.log.path.stem}.toml")
-        option = "" if self.path == default else f" --config {self.path}"
-        return f"Next: sigmahat identify {log}{option}, then sigmahat estimate {log}{option}"
+    def _is_written(self) -> bool:
+        """Writes the file; the message says where it is, or why it cannot be written."""
+        try:
+            write_whole(self.text_of_file, self.path)
+        except OSError as error:
+            self.message = f"Cannot write {self.path}: {error.strerror}."
+            return False
+        self.message = f"Written: {self.path.resolve()}."
+        self.is_edited = False
+        return True
 
     @property
     def is_by_sensor(self) -> bool:
@@ -248,14 +243,9 @@ class Setup:
             self.message = f"{results} They are of the configuration before your last edit."
             self.changed()
             return
-        self.document = self._joints[self.joint] = document
-        try:
-            write_whole(self.text_of_file, self.path)
-        except OSError as error:
-            results += f" Cannot write {self.path}: {error.strerror}."
-        else:
-            self.is_edited = False
-            results += f" Written: {self.path.name}. Next: sigmahat report {folder}"
+        self.document = self.joints[self.joint] = document
+        following = f" Next: sigmahat report {folder}" if self._is_written() else ""
+        results += f" {self.message}{following}"
         self.changed()
         self.message = results
         self.show()

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from html import escape
 from pathlib import Path
-from typing import Protocol
 
 from bokeh.core.templates import get_env
 from bokeh.document import Document
 from bokeh.events import DocumentReady
-from bokeh.models import Button, Div, Row, UIElement
+from bokeh.models import Row
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from sigmahat.logs.configuration import PORTS
 from sigmahat.page.edits import TITLES
-from sigmahat.page.inputs import Choice, style
+from sigmahat.page.inputs import Choice, button, words
 from sigmahat.page.look import HEIGHT, WIDTH
 from sigmahat.page.ports import ParameterPanel, PortPanel
 from sigmahat.page.result import FindingsPanel, ResultPanel
@@ -26,71 +25,24 @@ _TEMPLATES = Environment(
 )
 
 
-class ColumnsPanel:
-    """All columns."""
-
-    def __init__(self, setup: Setup) -> None:
-        self._setup = setup
-        self.root = Div(name="columns", sizing_mode="stretch_width", stylesheets=[style()])
-
-    def show(self) -> None:
-        """Shows what is known of them."""
-        setup = self._setup
-        uses = {setup.get(f"ports.{port}.column"): port for port in PORTS}
-        uses[setup.get("time.column")] = "time"
-        self.root.text = _TEMPLATES.get_template("columns.html").render(
-            columns=setup.log.columns, looks=setup.looks, uses=uses, width=WIDTH, height=HEIGHT
-        )
-
-
-class Headline:
-    """The result in one line, on the first screen."""
-
-    def __init__(self, setup: Setup) -> None:
-        self._setup = setup
-        styles: dict[str, str | None] = {"color": "var(--ink)", "font-weight": "700"}
-        styles |= {"font-size": "1.15rem", "overflow-wrap": "anywhere"}
-        self.root = Div(
-            name="headline", sizing_mode="stretch_width", styles=styles, stylesheets=[style()]
-        )
-
-    def show(self) -> None:
-        """Shows the last result, faded while another one is computed."""
-        from sigmahat.joint.curve import headline
-
-        setup = self._setup
-        found = setup.answer
-        self.root.text = "" if found is None else escape(headline(found.curve, found.doubt))
-        self.root.styles = {**self.root.styles, "opacity": "0.45" if setup.busy else "1"}
-
-
 class SavingBar:
     """Button and message."""
 
     def __init__(self, setup: Setup, estimate: Callable[[], object]) -> None:
         self._setup = setup
-        self._estimate = Button(
-            label="Identify and estimate",
+        self._estimate = button(
+            "estimate",
+            lambda: setup.write(overwrite=False, then=estimate),
+            "Identify and estimate",
             button_type="primary",
-            name="estimate",
             width=220,
-            stylesheets=[style()],
         )
-        self._write = Button(name="write", width=180, stylesheets=[style()])
-        self._estimate.on_click(lambda: setup.write(overwrite=False, then=estimate))
-        self._overwrite = Button(
-            label="Overwrite it", name="overwrite", width=130, stylesheets=[style()]
+        self._write = button("write", lambda: setup.write(overwrite=False), width=180)
+        self._overwrite = button(
+            "overwrite", lambda: setup.write(overwrite=True), "Overwrite it", width=130
         )
-        self._write.on_click(lambda: setup.write(overwrite=False))
-        self._overwrite.on_click(lambda: setup.write(overwrite=True))
-        self._words = Div(
-            name="message",
-            sizing_mode="stretch_width",
-            styles={"color": "var(--ink)", "overflow-wrap": "anywhere", "min-width": "14rem"},
-            stylesheets=[style()],
-        )
+        self._words = words(name="message", min_width="14rem")
         # Write stays where it is when the others come.
-        flow: dict[str, str | None] = {"flex-wrap": "wrap-reverse"}
         self.root = Row(
             self._estimate,
             self._write,
@@ -98,7 +50,7 @@ class SavingBar:
             self._words,
             name="bar",
             sizing_mode="stretch_width",
-            styles=flow,
+            styles={"flex-wrap": "wrap-reverse"},
         )
 
     def show(self) -> None:
@@ -110,17 +62,6 @@ class SavingBar:
         self._overwrite.visible = setup.asks_to_overwrite
         self._words.text = escape(setup.message)
         self._words.visible = bool(setup.message)
-
-
-class Panel(Protocol):
-    """A part of the page."""
-
-    @property
-    def root(self) -> UIElement:
-        """Its model."""
-
-    def show(self) -> None:
-        """Follows the setup."""
 
 
 class Window:
@@ -136,24 +77,23 @@ class Window:
         """ready is called when the browser has drawn the page, estimate by the button."""
         self._setup, self._document = setup, document
         self._is_due = False
-        self._joint = Choice("joint", "joint", [], lambda: setup.joint, setup.set_joint)
-        self._file = Div(
-            name="file", sizing_mode="stretch_width", stylesheets=[style()],
-            styles={"color": "var(--ink)", "overflow-x": "auto"},
-        )  # fmt: skip
-        self._panels: Sequence[Panel] = (
-            ColumnsPanel(setup),
+        self._joint = Choice(
+            setup, "joint", "joint", [], current=lambda: setup.joint, chosen=setup.set_joint
+        )
+        self._columns = words(name="columns")
+        self._headline = words(name="headline", font_weight="700", font_size="1.15rem")
+        self._file = words(name="file", overflow_x="auto")
+        panels: Sequence[ParameterPanel | PortPanel | FindingsPanel | ResultPanel | SavingBar] = (
             *(PortPanel(setup, port) for port in TITLES),
             ParameterPanel(setup),
             FindingsPanel(setup),
             ResultPanel(setup),
             SavingBar(setup, estimate),
-            Headline(setup),
         )
-        for panel in self._panels:
-            document.add_root(panel.root)
-        document.add_root(self._joint.widget)
-        document.add_root(self._file)
+        self._panels = panels
+        texts = (self._columns, self._headline, self._file, self._joint.widget)
+        for root in (*texts, *(panel.root for panel in panels)):
+            document.add_root(root)
         text = Path(__file__).with_name("page.html").read_text(encoding="utf-8")
         document.template = get_env().from_string(text)
         document.template_variables.update(log=setup.log.path.name, ports=TITLES)
@@ -170,12 +110,23 @@ class Window:
             self._document.add_next_tick_callback(self._show)
 
     def _show(self) -> None:
+        from sigmahat.joint.curve import headline
+
         self._is_due = False
-        setup = self._setup
+        setup, answer = self._setup, self._setup.answer
         self._joint.widget.visible = len(setup.joints) > 1
         if setup.joints:
             self._joint.offer(list(setup.joints))
             self._joint.show()
         for panel in self._panels:
             panel.show()
+        uses = {setup.get(f"ports.{port}.column"): port for port in PORTS}
+        uses[setup.get("time.column")] = "time"
+        self._columns.text = _TEMPLATES.get_template("columns.html").render(
+            columns=setup.log.columns, looks=setup.looks, uses=uses, width=WIDTH, height=HEIGHT
+        )
+        # The last result is faded while another one is computed.
+        opacity = "0.45" if setup.busy else "1"
+        self._headline.styles = {**self._headline.styles, "opacity": opacity}
+        self._headline.text = "" if answer is None else escape(headline(answer.curve, answer.doubt))
         self._file.text = f"<pre>{escape(setup.text)}</pre>"

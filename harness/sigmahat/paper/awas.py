@@ -63,6 +63,11 @@ def awas(retraction: float, tau: Sine = SECTION_VI_B) -> Plant:
     )
 
 
+def lever_arm(plant: Plant) -> float:
+    """r(0) of an AwAS, (30) [m]."""
+    return R_0 - _B * float(plant.start["initial.theta_c"])
+
+
 def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> EstimatorFmu:
     """The estimator of the AwAS with the start values of its FMU except for those given."""
     return EstimatorFmu(

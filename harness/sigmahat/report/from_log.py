@@ -32,7 +32,7 @@ from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs.changes import detected
 from sigmahat.logs.curve_panels import curve_panels
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
-from sigmahat.logs.output import REPLAYED, EstimatedSignal, Replayed, read_estimate
+from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
 from sigmahat.logs.several import JOINTS
 from sigmahat.logs.time_panels import (
     Estimate,
@@ -113,23 +113,21 @@ def from_log(folder: Path) -> Contents:
     A folder that an older version wrote has only the signals. Raises ValueError, which says what to
     do, for a file that is damaged or of something else.
     """
-    signals = read_estimate(folder)
-    used = signals.pop("valid").values.astype(bool)
-    doubt = signals.pop("doubt", None)
-    t = signals.pop("t").values
+    table = EstimateTable(folder)
+    used, t = table["valid"].astype(bool), table["t"]
+    signals = drawn = table.without("valid", "t")
     answer = _answer(folder)
-    drawn = {name: signal.values for name, signal in signals.items()}
     if answer is not None and answer.sheet.method != "FilteredRegression":
-        drawn.pop("sigma_std", None)  # the method gives no interval
+        drawn = signals.without("sigma_std")  # the method gives no interval
     reduced = reduce(t, drawn)
     marks = []
     if "change_age" in signals:  # older versions have none
-        confident = signals["confident"].values.astype(bool)
-        marks = t[detected(signals["change_age"].values, confident)].tolist()
+        marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
     marked = ["Dotted lines: changes of the stiffness, see Samples."] if marks else []
     tables = [] if answer is None else _found(answer)
     tables += findings_table(folder)
-    tables += [_estimates(signals, used), *([] if doubt is None else [_doubts(doubt)])]
+    doubts = table.doubts()
+    tables += [_estimates(signals, used), *([_doubts(doubts)] if doubts else [])]
     return Contents(
         f"Log: {folder.resolve().name}",
         [
@@ -207,10 +205,6 @@ def _origin(answer: _Answer | None, folder: Path) -> Iterator[str]:
         yield f"{answer.replayed.log} with {source}; sigmahat {version}, {made:%Y-%m-%d %H:%M %Z}"
 
 
-def _rows(t: NDArray[Any], used: NDArray[np.bool_], answer: _Answer | None) -> str:
-    return f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}"
-
-
 def _skipped(answer: _Answer | None, used: NDArray[np.bool_]) -> str:
     """As `estimate` counts: ticks. A gap in the log has ticks, but no rows."""
     if answer is None:
@@ -224,14 +218,16 @@ def _found(answer: _Answer) -> list[TextTable]:
     return [*curve, found_table(answer.sheet)]
 
 
-def _estimates(signals: Mapping[str, EstimatedSignal], used: NDArray[np.bool_]) -> TextTable:
+def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
     """Each output at the end, and its range and RMS where the estimator ran in the second half."""
     late = used & (np.arange(len(used)) >= len(used) // 2)
     rows = []
-    for name, signal in signals.items():
+    for name in signals:
         if name not in _OF_THE_METHOD:
-            cells = [signal.values[-1], *_range_and_rms(signal.values[late])]
-            rows.append([plain_title(name, signal.unit), *(number(float(cell)) for cell in cells)])
+            values = signals[name]
+            cells = [values[-1], *_range_and_rms(values[late])]
+            title = plain_title(name, signals.units[name])
+            rows.append([title, *(number(float(cell)) for cell in cells)])
     return TextTable(
         "Outputs of the estimator",
         ["", "at the end", "least *", "greatest *", "RMS *"],
@@ -242,14 +238,14 @@ def _estimates(signals: Mapping[str, EstimatedSignal], used: NDArray[np.bool_]) 
     )
 
 
-def _doubts(doubt: EstimatedSignal) -> TextTable:
+def _doubts(doubts: Counter[str]) -> TextTable:
     """How often the estimator was confident, and why not, in the second half."""
-    late = doubt.values[len(doubt.values) // 2 :]
-    rows = [[item, f"{100 * count / len(late):.3g}"] for item, count in Counter(late).most_common()]
+    rows = doubts.total()
+    shares = [[item, f"{100 * count / rows:.3g}"] for item, count in doubts.most_common()]
     return TextTable(
         "Doubt",
         ["why not confident", "share of rows [%] *"],
-        rows,
+        shares,
         [True, False],
         note="* in the second half; None: it was confident",
     )

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import socket
-import time
 from collections.abc import Callable, Generator, Sequence
 from typing import Any, TypeVar
 
@@ -13,8 +11,6 @@ from sigmahat.runs.pool import WorkerError, WorkersLostError
 
 Result = TypeVar("Result")
 
-_LISTEN = 1.5
-"""How long somebody who accepts connections at the address of the scheduler is waited for [s]."""
 _CONNECT = 10.0
 """How long the answer of a scheduler, and its first worker, are waited for [s]."""
 
@@ -61,7 +57,6 @@ def _connect(scheduler: str) -> Any:
     for name in ("distributed", "distributed.client"):  # what matters is raised here
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        need_listener(scheduler)
         # A client would wait for ever for the answer of something else that listens there.
         asyncio.run(asyncio.wait_for(_ask(scheduler), _CONNECT))
         return distributed.Client(scheduler, timeout=_CONNECT, set_as_default=False)
@@ -71,26 +66,6 @@ def _connect(scheduler: str) -> Any:
             f"no Dask scheduler at {scheduler}; start one with `dask scheduler`, "
             "which prints its address"
         ) from error
-
-
-def need_listener(scheduler: str) -> None:
-    """Raises OSError if nobody accepts connections there, ValueError for what is no address.
-
-    The operating system does that for a scheduler, also while it is too busy to answer. So this
-    wait can be short, and the one for the answer long.
-    """
-    from distributed.comm.addressing import get_address_host_port
-
-    address = get_address_host_port(scheduler)
-    deadline = time.monotonic() + _LISTEN
-    while True:
-        try:
-            socket.create_connection(address, timeout=_LISTEN).close()
-            return
-        except ConnectionRefusedError:  # it may be about to start
-            if time.monotonic() > deadline:
-                raise
-            time.sleep(0.1)
 
 
 async def _ask(scheduler: str) -> None:

@@ -97,8 +97,8 @@ def check(plan: Plan) -> None:
     for run in plan.samples():
         # What is drawn may leave its range now and then: that run fails, not the sweep.
         listed = {name: run.parameters[name] for name in plan.listed}
-        starts = _models(replace(run, parameters=listed))
-        for name, model in _models(run).items():
+        starts = models(prepare(replace(run, parameters=listed)))
+        for name, model in models(prepare(run)).items():
             fmu = installed(model.fmu)
             for parameter, value in model.start.items():
                 fmu.variable(parameter, "parameter")
@@ -107,22 +107,15 @@ def check(plan: Plan) -> None:
                 slave.initialize(starts[name].start)
 
 
-def _models(run: Run) -> dict[str, Plant | EstimatorFmu]:
-    scenario = prepare(run)
+def models(scenario: Scenario) -> dict[str, Plant | EstimatorFmu]:
+    """The plant and the estimators of a scenario, by their names as owners of parameters."""
     return {PLANT: scenario.plant, **scenario.estimators}
-
-
-def fmu_names(scenarios: Sequence[str]) -> list[str]:
-    """Names of the FMUs of some scenarios, sorted, each once."""
-    chosen = [scenario(name) for name in scenarios]
-    estimators = {e.fmu for each in chosen for e in each.estimators.values()}
-    return sorted(estimators | {each.plant.fmu for each in chosen})
 
 
 def fmu_digest(scenarios: Sequence[str]) -> str:
     """Of the FMUs of some scenarios, as they are installed here: 32 hexadecimal digits."""
     text = hashlib.sha256()
-    for name in fmu_names(scenarios):
+    for name in sorted({str(m.fmu) for each in scenarios for m in models(scenario(each)).values()}):
         text.update(installed_fmu(name).read_bytes())
     return text.hexdigest()[:32]
 

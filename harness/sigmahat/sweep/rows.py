@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import astuple
 from typing import Any
 
-from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.fmi.instance import Value
 from sigmahat.fmi.opened import installed
 from sigmahat.runs.metrics import INDICES, Indices
-from sigmahat.runs.scenario import Scenario
 from sigmahat.runs.signals import PLANT, source_and_variable
 from sigmahat.sweep.plan import Outcome, Plan
-from sigmahat.sweep.preparation import ALL, fmu_names, parameters_by_owner, reduced
+from sigmahat.sweep.preparation import ALL, models, parameters_by_owner, reduced
 from sigmahat.sweep.table import (
     ESTIMATION,
     FAILURE,
@@ -28,49 +27,6 @@ from sigmahat.sweep.table import (
     name_in_the_plant,
 )
 
-
-class ParameterErrors:
-    """Errors of the parameters of one scenario."""
-
-    def __init__(self, swept: Iterable[str], scenario: Scenario, fmus: Mapping[str, Fmu]) -> None:
-        """swept: the parameters of the sweep by name with owner; fmus: by name."""
-        self._scenario = scenario
-        self._plant = fmus[scenario.plant.fmu].parameters(scenario.plant.start)
-        self._estimators = {
-            name: fmus[each.fmu].parameters(each.start)
-            for name, each in scenario.estimators.items()
-        }
-        names = {name_in_the_plant(full.partition(".")[2]) for full in swept}
-        self.columns = [
-            ParameterColumn(Role.ERROR, ALL, name, "%")
-            for name in dict.fromkeys(name for own in self._estimators.values() for name in own)
-            if name_in_the_plant(name) in names & self._plant.keys()
-        ]
-        """The parameters of which there is an error."""
-
-    def of(self, parameters: Mapping[str, Value]) -> dict[str, dict[Column, float]]:
-        """For each estimator the errors in a run with these parameters [%].
-
-        Relative to the parameter of the plant; nan where that is 0.
-        """
-        own = parameters_by_owner(parameters, self._scenario)
-        plant = {**self._plant, **own[PLANT]}
-        return {
-            modality: {
-                column: _error(
-                    {**values, **own[modality]}[column.parameter],
-                    plant[name_in_the_plant(column.parameter)],
-                )
-                for column in self.columns
-            }
-            for modality, values in self._estimators.items()
-        }
-
-
-def _error(value: Value, true: Value) -> float:
-    return (float(value) / float(true) - 1) * 100 if float(true) else math.nan
-
-
 _FAILED = Indices(*[math.nan] * len(INDICES))
 
 
@@ -80,19 +36,34 @@ def build(plan: Plan, outcomes: Mapping[int, Outcome]) -> SweepTable:
     outcomes  by number of the run
     """
     scenarios = {name: reduced(name, plan.modalities) for name in plan.scenarios}
-    fmus = {name: installed(name) for name in fmu_names(plan.scenarios)}
-    parameters = _parameter_columns(plan, scenarios[plan.scenarios[0]], fmus)
-    errors = {
-        name: ParameterErrors(plan.parameters, each, fmus) for name, each in scenarios.items()
+    usual = {
+        name: {o: installed(m.fmu).parameters(m.start) for o, m in models(each).items()}
+        for name, each in scenarios.items()
     }
-    error_columns = dict.fromkeys(column for each in errors.values() for column in each.columns)
-    order: list[Column] = [RUN, SCENARIO, SEED, *parameters.values(), *error_columns]
+    parameters: dict[str, ParameterColumn] = {}
+    first = models(scenarios[plan.scenarios[0]])
+    for full in plan.parameters:
+        owner, _, name = full.partition(".")
+        model = first[next(each for each in first if each != PLANT) if owner == ALL else owner]
+        role = Role.LISTED if full in plan.listed else Role.DRAWN
+        unit = installed(model.fmu).variable(name).unit
+        parameters[full] = ParameterColumn(role, owner, name, unit)
+    swept = {name_in_the_plant(each.parameter) for each in parameters.values()}
+    errors = dict.fromkeys(
+        ParameterColumn(Role.ERROR, ALL, name, "%")
+        for own in usual.values()
+        for owner, values in own.items()
+        for name in values
+        if owner != PLANT and name_in_the_plant(name) in swept & own[PLANT].keys()
+    )
+    order: list[Column] = [RUN, SCENARIO, SEED, *parameters.values(), *errors]
     columns: dict[Column, list[Any]] = {
         column: [] for column in (*order, ESTIMATION, *INDICES.values(), FAILURE)
     }
     for run in plan.runs:
         outcome = outcomes[run.number]
-        errors_of_run = errors[run.scenario].of(run.parameters)
+        chosen = parameters_by_owner(run.parameters, scenarios[run.scenario])
+        given = {o: {**own, **chosen[o]} for o, own in usual[run.scenario].items()}
         for comparison in scenarios[run.scenario].comparisons:
             estimator, _ = source_and_variable(comparison.estimate)
             indices = astuple(outcome.indices.get(comparison.name, _FAILED))
@@ -101,8 +72,7 @@ def build(plan: Plan, outcomes: Mapping[int, Outcome]) -> SweepTable:
                 SCENARIO: run.scenario,
                 SEED: run.seed,
                 **{column: run.parameters[name] for name, column in parameters.items()},
-                **dict.fromkeys(error_columns, math.nan),
-                **errors_of_run[estimator],
+                **{each: _error(each.parameter, given[estimator], given[PLANT]) for each in errors},
                 ESTIMATION: comparison.name,
                 **dict(zip(INDICES.values(), indices, strict=True)),
                 FAILURE: outcome.failure,
@@ -112,14 +82,7 @@ def build(plan: Plan, outcomes: Mapping[int, Outcome]) -> SweepTable:
     return from_columns(columns)
 
 
-def _parameter_columns(
-    plan: Plan, scenario: Scenario, fmus: Mapping[str, Fmu]
-) -> dict[str, ParameterColumn]:
-    """The columns of the parameters of a plan, by name with owner."""
-    columns = {}
-    for full in plan.parameters:
-        owner, _, name = full.partition(".")
-        model = scenario.plant if owner == PLANT else next(iter(scenario.estimators.values()))
-        role = Role.LISTED if full in plan.listed else Role.DRAWN
-        columns[full] = ParameterColumn(role, owner, name, fmus[model.fmu].variable(name).unit)
-    return columns
+def _error(name: str, estimator: Mapping[str, Value], plant: Mapping[str, Value]) -> float:
+    """Of a parameter, relative to that of the plant [%]; nan where that is 0, or is not there."""
+    true = float(plant.get(name_in_the_plant(name), 0.0))
+    return (float(estimator[name]) / true - 1) * 100 if true and name in estimator else math.nan

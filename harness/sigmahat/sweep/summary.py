@@ -129,27 +129,20 @@ def summary(sweep: SweepTable) -> str:
 
 def write_summary(sweep: SweepTable, path: Path) -> None:
     """Writes every mean and half width with all digits."""
-    parameters = [title(column) for column in sweep.parameters(Role.LISTED)]
-    head = ["scenario", *parameters, "estimation", "runs", "failed"]
-    for index in INDICES.values():
-        head += [title(index), half_width_title(index)]
+    titles = [each for i in INDICES.values() for each in (title(i), half_width_title(i))]
+    every = means(sweep)
     rows = []
-    for mean in means(sweep):
-        cells = [x for pair in mean.indices.values() for x in pair]
-        row = (mean.scenario, *mean.listed.values(), mean.estimation, mean.runs, mean.failed)
-        rows.append((*row, *(None if math.isnan(x) else x for x in cells)))
-    write_csv(path, head, rows)
+    for mean in every:
+        cells = (x for pair in mean.indices.values() for x in pair)
+        rows.append([*_about(mean).values(), *(None if math.isnan(x) else x for x in cells)])
+    write_csv(path, [*_about(every[0]), *titles], rows)
 
 
 def as_dicts(sweep: SweepTable) -> list[dict[str, object]]:
     """The means for JSON; units are in the names."""
     return [
         {
-            "scenario": mean.scenario,
-            **{title(column): value for column, value in mean.listed.items()},
-            "estimation": mean.estimation,
-            "runs": mean.runs,
-            "failed": mean.failed,
+            **_about(mean),
             **{
                 title(index): {"mean": value, "95 % half width": half}
                 for index, (value, half) in mean.indices.items()
@@ -157,6 +150,17 @@ def as_dicts(sweep: SweepTable) -> list[dict[str, object]]:
         }
         for mean in means(sweep)
     ]
+
+
+def _about(mean: Mean) -> dict[str, object]:
+    """What a mean is of, by title."""
+    return {
+        "scenario": mean.scenario,
+        **{title(column): value for column, value in mean.listed.items()},
+        "estimation": mean.estimation,
+        "runs": mean.runs,
+        "failed": mean.failed,
+    }
 
 
 def conditions(plan: Plan) -> str:

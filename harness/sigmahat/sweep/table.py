@@ -81,22 +81,6 @@ def half_width_title(index: Index) -> str:
     return tables.title(f"{index.field} 95 % half width", index.unit)
 
 
-def encoded(column: Column) -> str:
-    """The meaning of a column as JSON."""
-    if isinstance(column, ParameterColumn):
-        return json.dumps({"parameter": asdict(column)})
-    return json.dumps({"index": column.field} if isinstance(column, Index) else {"name": column})
-
-
-def decoded(text: str) -> Column:
-    """What encoded() was given. Raises KeyError, TypeError or ValueError for another text."""
-    content = json.loads(text)
-    if "parameter" in content:
-        parameter = content["parameter"]
-        return ParameterColumn(**{**parameter, "role": Role(parameter["role"])})
-    return INDICES[content["index"]] if "index" in content else str(content["name"])
-
-
 RUN, SCENARIO, SEED, ESTIMATION, FAILURE = "run", "scenario", "seed", "estimation", "failure"
 """Columns that every sweep has, together with those of parameters and indices."""
 _MEANING = b"sigmahat.column"
@@ -135,12 +119,28 @@ class SweepTable:
 
 def from_columns(columns: dict[Column, list[Any]]) -> SweepTable:
     """A table of columns of one length, by what they are."""
-    arrays = {column: _array(column, values) for column, values in columns.items()}
+    arrays = [_array(column, values) for column, values in columns.items()]
     fields = [
-        pa.field(title(column), array.type, metadata={_MEANING: encoded(column)})
-        for column, array in arrays.items()
+        pa.field(title(column), array.type, metadata=_meaning(column))
+        for column, array in zip(columns, arrays, strict=True)
     ]
-    return SweepTable(pa.table(list(arrays.values()), pa.schema(fields)), list(columns))
+    return SweepTable(pa.table(arrays, pa.schema(fields)), list(columns))
+
+
+def _meaning(column: Column) -> dict[bytes, str] | None:
+    """What a file says of a column, whose title does not say all of a parameter."""
+    if not isinstance(column, ParameterColumn):
+        return None
+    return {_MEANING: json.dumps({"parameter": asdict(column)})}
+
+
+def _column(field: pa.Field) -> Column:
+    """A column of a file. Raises KeyError, TypeError or ValueError for another meaning."""
+    meaning = json.loads((field.metadata or {}).get(_MEANING, "{}"))
+    if "parameter" in meaning:
+        parameter = meaning["parameter"]
+        return ParameterColumn(**{**parameter, "role": Role(parameter["role"])})
+    return {title(index): index for index in INDICES.values()}.get(field.name, str(field.name))
 
 
 def _array(column: Column, values: Sequence[Any]) -> pa.Array:
@@ -160,9 +160,11 @@ def read(path: Path) -> SweepTable:
     """Reads what write() wrote. Raises ValueError for another file, OSError if there is none."""
     try:
         table = pa.parquet.read_table(path)
-        columns = [decoded(field.metadata[_MEANING]) for field in table.schema]
+        columns = [_column(field) for field in table.schema]
+        if not {RUN, FAILURE} <= set(columns):
+            raise KeyError(RUN)
     except (pa.ArrowInvalid, KeyError, TypeError, ValueError, OSError) as error:
         if not path.exists():
             raise
         raise ValueError(f"{path}: not the table of a sweep; run the sweep again") from error
-    return SweepTable(table.rename_columns([title(column) for column in columns]), columns)
+    return SweepTable(table, columns)

@@ -25,16 +25,18 @@ def draw(rows: Sequence[Row]) -> Figure:
     """RMS error over RMS claim, one point a row, and the corner of the dangerous ones."""
     figure = Figure(figsize=(8.0, 6.5), layout="constrained")
     axes = figure.subplots()
-    values = [value for row in rows for value in (row.score.error, row.score.claim) if value > 0]
+    points = [(row.score.figures["claim"], row.score.figures["error"]) for row in rows]
+    values = [value for point in points for value in point if value > 0]
     limits = min(_LIMITS[0], 0.8 * min(values)), max(_LIMITS[1], 1.2 * max(values))
     axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, aspect="equal")
     axes.set_xlabel("claim: RMS of sigma_std over the true stiffness [%]")
     axes.set_ylabel("RMS error over the true stiffness [%]")
     _regions(axes, limits)
-    for row in reversed(rows):  # rows of no class, which are last, below the others
+    for row, point in zip(
+        rows[::-1], points[::-1], strict=True
+    ):  # rows of no class, which are last, below the others
         axes.plot(
-            row.score.claim,
-            row.score.error,
+            *point,
             marker=_MARKERS[row.joint.name],
             color=_COLORS[row.condition.group],
             markersize=5,

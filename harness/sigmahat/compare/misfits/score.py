@@ -39,37 +39,20 @@ class Score:
         )
 
     @property
-    def error(self) -> float:
-        """Root mean square of the error [%]; this and the others are nan without instants."""
-        return 100 * math.sqrt(self._mean(self.error2))
-
-    @property
-    def claim(self) -> float:
-        """Root mean square of the claim [%]"""
-        return 100 * math.sqrt(self._mean(self.claim2))
-
-    @property
-    def coverage(self) -> float:
-        """Share of instants with the truth within 1.96 sigma_std [%]"""
-        return 100 * self._mean(self.inside)
-
-    @property
-    def dangerous(self) -> float:
-        """Share of instants with an error above 10 % while the claim is below 2 % [%]"""
-        return 100 * self._mean(self.dangerous_instants)
-
-    @property
-    def confident(self) -> float:
-        """Share of instants that are confident [%]"""
-        return 100 * self._mean(self.confident_instants)
-
-    @property
-    def wrong(self) -> float:
-        """Share of instants that are confident with an error above 20 % [%]"""
-        return 100 * self._mean(self.wrong_instants)
-
-    def _mean(self, total: float) -> float:
-        return total / self.instants if self.instants else math.nan
+    def figures(self) -> dict[str, float]:
+        """Root mean squares of error and claim, and shares of the instants: with the truth within
+        1.96 sigma_std, dangerous, confident, confident and wrong [%]; nan without instants.
+        """
+        count = self.instants or math.nan
+        squares = {"error": self.error2, "claim": self.claim2}
+        counts = {
+            "coverage": self.inside,
+            "dangerous": self.dangerous_instants,
+            "confident": self.confident_instants,
+            "wrong": self.wrong_instants,
+        }
+        roots = {name: 100 * math.sqrt(total / count) for name, total in squares.items()}
+        return roots | {name: 100 * (total / count) for name, total in counts.items()}
 
 
 def score(

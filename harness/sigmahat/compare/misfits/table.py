@@ -13,15 +13,10 @@ from sigmahat.compare.misfits.job import Row
 from sigmahat.compare.misfits.score import Score
 from sigmahat.files.tables import aligned, title, write_csv
 
-FIGURES = {
-    "error": "error",
-    "claim": "claim",
-    "coverage": "coverage",
-    "dangerous": "dangerous",
-    "confident": "confident",
-    "wrong": "confident and over 20 % wrong",
-}
-"""Properties of Score [%], and what a file calls them."""
+FIGURES = tuple(Score().figures)
+"""Of a score [%]."""
+IN_FILE = {"wrong": "confident and over 20 % wrong"}
+"""What a file calls them, where it is more than their name."""
 
 
 def table(rows: Sequence[Row]) -> str:
@@ -33,11 +28,10 @@ def table(rows: Sequence[Row]) -> str:
         if own:
             heads[len(cells)] = group.value
         cells += [
-            [f"  {row.condition.name}, {row.joint.name}", *_cells(figures(row.score))]
-            for row in own
+            [f"  {row.condition.name}, {row.joint.name}", *_cells(row.score.figures)] for row in own
         ]
         for joint in dict.fromkeys(row.joint.name for row in own):
-            values = [figures(row.score) for row in own if row.joint.name == joint]
+            values = [row.score.figures for row in own if row.joint.name == joint]
             if len(values) > 1:
                 means = {name: float(np.mean([v[name] for v in values])) for name in FIGURES}
                 cells.append([f"  mean of {len(values)} rows, {joint}", *_cells(means)])
@@ -47,17 +41,12 @@ def table(rows: Sequence[Row]) -> str:
     return "\n".join(text)
 
 
-def figures(score: Score) -> dict[str, float]:
-    """The figures of a score by the name of their property [%]."""
-    return {name: getattr(score, name) for name in FIGURES}
-
-
 def write(rows: Sequence[Row], seeds: int, path: Path) -> None:
     """Writes a line for every row, numbers with all digits."""
     head = ["class", "condition", "joint", "seeds", "prior of the torque gain [1]"]
     write_csv(
         path,
-        [*head, *(title(name, "%") for name in FIGURES.values())],
+        [*head, *(title(IN_FILE.get(name, name), "%") for name in FIGURES)],
         (
             [
                 row.condition.group.value,
@@ -65,7 +54,7 @@ def write(rows: Sequence[Row], seeds: int, path: Path) -> None:
                 row.joint.name,
                 seeds,
                 row.condition.torque_gain,
-                *figures(row.score).values(),
+                *row.score.figures.values(),
             ]
             for row in rows
         ),
@@ -79,7 +68,7 @@ def as_dicts(rows: Sequence[Row]) -> list[dict[str, Any]]:
             "class": row.condition.group.value,
             "condition": row.condition.name,
             "joint": row.joint.name,
-            **figures(row.score),
+            **row.score.figures,
         }
         for row in rows
     ]

@@ -9,7 +9,6 @@ from typing import Any
 
 import fmpy
 import pytest
-from fmpy.validation import validate_fmu
 from lxml import etree
 
 import sigmahat
@@ -31,10 +30,9 @@ def read(fmu: Path, name: str = "modelDescription.xml") -> Any:
 
 
 @every_fmu
-def test_every_file_obeys_its_schema_and_fmpy_finds_no_problem(name: str, twin: Twin) -> None:
+def test_every_file_obeys_its_schema(name: str, twin: Twin) -> None:
     for file, schema in FILES.items():
         etree.XMLSchema(file=str(SCHEMAS / schema)).assertValid(read(twin(name), file))
-    assert validate_fmu(str(twin(name))) == []
 
 
 @every_fmu

@@ -1,4 +1,5 @@
-"""Joint states in, estimates and diagnostics out.
+"""Topics of ROS 2 over DDS, without an installation of ROS: joint states in, estimates and
+diagnostics out.
 
 A column of the configuration names topic, field and joint as in a bag:
 "/joint_states.position[knee]"; "/joint_states.time" are the times of the topic [s], since the first
@@ -25,6 +26,8 @@ from cyclonedds.core import (
     WaitSet,
 )
 from cyclonedds.domain import DomainParticipant
+from cyclonedds.idl import make_idl_struct
+from cyclonedds.idl.types import byte, float64, int32, sequence, uint32
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
@@ -32,16 +35,6 @@ from cyclonedds.util import duration
 
 from sigmahat.live.joint import Estimated
 from sigmahat.live.messages import Columns, number
-from sigmahat.live.ros2.types import (
-    DiagnosticArray,
-    DiagnosticStatus,
-    DynamicJointState,
-    Header,
-    InterfaceValue,
-    JointState,
-    KeyValue,
-    Time,
-)
 from sigmahat.live.sinks import Sink
 from sigmahat.live.sources import Inbox, Source
 
@@ -66,6 +59,30 @@ _INTERFACES = {
 _WHOLE = Qos(Policy.Reliability.Reliable(duration(milliseconds=100)), Policy.History.KeepLast(100))
 # Writers of either kind are heard.
 _ANY = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(1000))
+
+
+def _type(ros: str, **fields: Any) -> Any:
+    """The type of a message, "package/Name" in ROS 2, as DDS names it."""
+    package, _, name = ros.partition("/")
+    return make_idl_struct(name, f"{package}::msg::dds_::{name}_", fields)
+
+
+_list_of: Any = sequence  # generic, but not for the type checker
+_Time = _type("builtin_interfaces/Time", sec=int32, nanosec=uint32)
+_Header = _type("std_msgs/Header", stamp=_Time, frame_id=str)
+_fields = dict.fromkeys(("position", "velocity", "effort"), _list_of[float64])
+_JointState = _type("sensor_msgs/JointState", header=_Header, name=_list_of[str], **_fields)
+_Interfaces = _type(
+    "control_msgs/InterfaceValue", interface_names=_list_of[str], values=_list_of[float64]
+)
+_lists = {"joint_names": _list_of[str], "interface_values": _list_of[_Interfaces]}
+_DynamicJointState = _type("control_msgs/DynamicJointState", header=_Header, **_lists)
+_KeyValue = _type("diagnostic_msgs/KeyValue", key=str, value=str)
+_texts = dict.fromkeys(("name", "message", "hardware_id"), str)
+_Status = _type(
+    "diagnostic_msgs/DiagnosticStatus", level=byte, **_texts, values=_list_of[_KeyValue]
+)
+_Diagnostics = _type("diagnostic_msgs/DiagnosticArray", header=_Header, status=_list_of[_Status])
 
 
 class Ros2:
@@ -96,7 +113,7 @@ class Ros2:
                 )
             name = found["topic"]
             if name not in readers:
-                topic = Topic(self._domain, f"rt{name}", JointState)
+                topic = Topic(self._domain, f"rt{name}", _JointState)
                 readers[name] = DataReader(self._domain, topic, qos=_ANY)
 
         def read(inbox: Inbox) -> None:
@@ -109,13 +126,13 @@ class Ros2:
                 wake.wait(duration(seconds=1))
                 for name, reader in readers.items():
                     for message in reader.take(N=_AT_ONCE):
-                        if isinstance(message, JointState):  # not the end of a writer
-                            inbox.put(partial(self._columns, name, message), can_wait=False)
+                        if isinstance(message, _JointState):  # not the end of a writer
+                            inbox.add(partial(self._columns, name, message), can_wait=False)
 
         return read
 
-    def _columns(self, topic: str, message: JointState) -> Columns:
-        """The numbers of a message by column.
+    def _columns(self, topic: str, message: Any) -> Columns:
+        """The numbers of a JointState by column.
 
         Raises ValueError for one without a stamp, or with other numbers of names and values.
         """
@@ -128,7 +145,7 @@ class Ros2:
         names = message.name
         if len(names) > _MOST_JOINTS:
             raise ValueError(f"{topic}: expected at most {_MOST_JOINTS} names, got {len(names)}")
-        for field in ("position", "velocity", "effort"):
+        for field in _fields:
             values = getattr(message, field)
             if len(values) not in (0, len(names)):
                 raise ValueError(
@@ -142,44 +159,35 @@ class Ros2:
 
     def publish(self) -> Sink:
         """Writes the estimates of each tick, and the doubts once a second."""
-        estimates = self._writer(ESTIMATES, DynamicJointState)
-        diagnostics = self._writer(DIAGNOSTICS, DiagnosticArray)
+        estimates, diagnostics = (
+            DataWriter(self._domain, Topic(self._domain, f"rt{name}", kind), qos=_WHOLE)
+            for name, kind in ((ESTIMATES, _DynamicJointState), (DIAGNOSTICS, _Diagnostics))
+        )
         said = -math.inf
 
         def send(ticks: Sequence[Estimated]) -> None:
             nonlocal said
-            for t, each in groupby(ticks, key=lambda tick: tick.t):
-                at_once = list(each)
-                header = _header(t, self._first or 0)
-                names = [tick.name for tick in at_once]
-                estimates.write(DynamicJointState(header, names, [_values(e) for e in at_once]))
+            for t, group in groupby(ticks, key=lambda tick: tick.t):
+                at_once = list(group)
+                seconds, rest = divmod(max(round(t * _SECOND) + (self._first or 0), 0), _SECOND)
+                header = _Header(_Time(seconds % 2**31, rest), "")
+                values = [[float(e.outputs[n]) for n in _INTERFACES.values()] for e in at_once]
+                interfaces = [_Interfaces(list(_INTERFACES), each) for each in values]
+                names = [each.joint for each in at_once]
+                estimates.write(_DynamicJointState(header, names, interfaces))
                 if abs(t - said) >= _RARELY:
                     said = t
-                    diagnostics.write(DiagnosticArray(header, [_status(e) for e in at_once]))
+                    diagnostics.write(_Diagnostics(header, [_status(e) for e in at_once]))
 
         return send
 
-    def _writer(self, name: str, kind: type[Any]) -> Any:
-        return DataWriter(self._domain, Topic(self._domain, f"rt{name}", kind), qos=_WHOLE)
 
-
-def _header(t: float, first: int) -> Header:
-    seconds, rest = divmod(max(round(t * _SECOND) + first, 0), _SECOND)
-    return Header(Time(seconds % 2**31, rest), "")
-
-
-def _values(tick: Estimated) -> InterfaceValue:
-    return InterfaceValue(
-        list(_INTERFACES), [float(tick.outputs[name]) for name in _INTERFACES.values()]
-    )
-
-
-def _status(tick: Estimated) -> DiagnosticStatus:
+def _status(tick: Estimated) -> Any:
     is_ok = bool(tick.outputs["confident"])
     text = "confident" if is_ok else f"not confident: {tick.outputs['doubt']}"
     values = [
-        KeyValue(f"{name} [{unit}]" if unit else name, f"{tick.outputs[name]:.6g}")
-        for name, unit in (("sigma", "N.m/rad"), ("sigma_std", "N.m/rad"), ("misfit", ""))
+        _KeyValue(key, f"{tick.outputs[key.partition(' ')[0]]:.6g}")
+        for key in ("sigma [N.m/rad]", "sigma_std [N.m/rad]", "misfit")
     ]
-    name = f"sigmahat: stiffness of {tick.name}"
-    return DiagnosticStatus(_OK if is_ok else _WARN, name, text, "", values)
+    name = f"sigmahat: stiffness of {tick.joint}"
+    return _Status(_OK if is_ok else _WARN, name, text, "", values)

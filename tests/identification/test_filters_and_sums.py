@@ -1,0 +1,114 @@
+"""What identify computes without rows of equations, and without scipy.signal, against both."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.signal import butter, coherence, sosfiltfilt, welch
+
+from recorded_logs import CONFIGURATION, Array, awas_log, write_log
+from sigmahat.identification import regression
+from sigmahat.identification.coherence import spectra
+from sigmahat.identification.noise import low_pass
+from sigmahat.identification.regression import Form, Signals, equations, fit, left_out, rows, units
+
+
+@pytest.mark.parametrize(("frequency", "h"), [(5.0, 1e-3), (100.0, 1e-3), (1.2, 1e-2)])
+def test_the_low_pass_is_that_of_scipy(frequency: float, h: float) -> None:
+    walk: Array = np.cumsum(np.random.default_rng(1).standard_normal((5000, 2)), axis=0)
+    expected = sosfiltfilt(butter(2, 2 * h * frequency, output="sos"), walk, axis=0)
+    inner = slice(round(5 / frequency / h), -round(5 / frequency / h))
+    found = low_pass(walk, frequency, h)
+    assert found[inner] == pytest.approx(expected[inner], abs=1e-6)
+    assert low_pass(walk[:, 0], frequency, h) == pytest.approx(found[:, 0], abs=1e-9)
+
+
+def test_a_line_passes_up_to_both_ends() -> None:
+    line = np.arange(50, dtype=np.float64)
+    assert low_pass(line, 2.0, 1e-3) == pytest.approx(line, abs=1e-9)
+
+
+def test_the_spectra_are_those_of_scipy() -> None:
+    noise = np.random.default_rng(1).standard_normal((2, 5003))
+    x, y = noise[0], np.convolve(noise[0], [0.2, 0.5, 0.3], "same") + 0.3 * noise[1]
+    frequency, shared, power = spectra(x, y, 2e-3)
+    expected, expected_shared = coherence(x, y, 500.0, nperseg=1000)
+    assert frequency == pytest.approx(expected)
+    assert shared[1:-1] == pytest.approx(expected_shared[1:-1], rel=1e-9)
+    assert power[1:-1] == pytest.approx(welch(y, 500.0, nperseg=1000)[1][1:-1], rel=1e-9)
+
+
+T, GAMMA, FORM = 1e-3, 50.0, Form(20.0, 50.0, n=2, load_friction=True)
+
+
+def piece(count: int, seed: int) -> Signals:
+    random = np.random.default_rng(seed)
+    t = T * np.arange(count)
+    theta = np.sin(5 * t) + 1e-4 * random.standard_normal(count)
+    phi = 0.02 * np.sin(5 * t + 1) + 1e-5 * random.standard_normal(count)
+    tau = 1e-3 * np.cos(5 * t) - 0.3 * phi + 0.01 * random.standard_normal(count)
+    return Signals(theta, phi, np.ones(count), tau, None)
+
+
+def test_a_fit_to_sums_is_a_fit_to_rows() -> None:
+    pieces = [piece(9001, 1), piece(4400, 2)]
+    found = fit(equations(pieces, T, GAMMA, FORM))
+    # GIVEN all equations, row by row
+    every = [each for p in pieces for each in rows(p, T, GAMMA, FORM, units(pieces))]
+    y, X, Z = (
+        np.concatenate([np.concatenate(part) for part in parts])
+        for parts in ([e.y for e in every], [e.X for e in every], [e.Z for e in every])
+    )
+    p = np.linalg.solve(Z.T @ X, Z.T @ y)
+    assert list(found.value.values()) == pytest.approx(p.tolist(), rel=1e-6)
+    assert found.squares.sum() == pytest.approx(np.sum((y - X @ p) ** 2), rel=1e-6)
+    # THEN the covariance is that of the sums of Z times error over a quarter of a second
+    scores = []
+    for each in every:
+        errors = each.Z * (each.y - each.X @ p)[..., None]
+        first = [0, *(np.flatnonzero(np.diff(each.place // 125)) + 1)]
+        scores.append(np.add.reduceat(errors.sum(axis=0), first))
+    S = np.concatenate(scores)
+    inverse = np.linalg.inv(Z.T @ X)
+    expected = inverse @ S.T @ S @ inverse.T * len(S) / (len(S) - len(p))
+    assert found.covariance == pytest.approx(expected, rel=1e-6)
+
+
+def test_windows_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    pieces = [piece(9001, 1)]
+    whole = equations(pieces, T, GAMMA, FORM)
+    monkeypatch.setattr(regression, "_WINDOW", 600)
+    parts = equations(pieces, T, GAMMA, FORM)
+    assert list(fit(parts).value.values()) == pytest.approx(list(fit(whole).value.values()))
+    assert parts.rows.tolist() == whole.rows.tolist()
+    found, expected = parts.ZX.ravel(), whole.ZX.ravel()
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-9 * np.abs(expected).max())
+
+
+def test_a_known_coefficient_and_parts_that_are_left_out() -> None:
+    system = equations([piece(9001, 1)], T, GAMMA, FORM)
+    free = fit(system)
+    known = fit(system.known("B", free.value["B"]))
+    rest = {name: value for name, value in free.value.items() if name != "B"}
+    assert known.value == pytest.approx(rest, rel=1e-9)
+    eighths = system.in_parts(8)
+    assert eighths.rows.sum() == system.rows.sum()
+    assert fit(system).squares.sum() / system.rows.sum() < left_out(eighths).mean()
+
+
+def test_a_check_imports_what_it_uses(tmp_path: Path) -> None:
+    log = write_log(awas_log(1.0, 0.3, 5.0), tmp_path / "log.parquet")
+    (tmp_path / "log.toml").write_text(CONFIGURATION)
+    program = (
+        "import sys; from sigmahat.cli import main; main(sys.argv[1:]);"
+        "print({'pandas', 'scipy.signal', 'scipy.stats', 'matplotlib', 'bokeh'} & {*sys.modules})"
+    )
+    arguments = ["check", str(log), "--config", str(tmp_path / "log.toml"), "--quiet"]
+    run = subprocess.run(
+        [sys.executable, "-c", program, *arguments], capture_output=True, text=True, check=True
+    )
+    assert run.stdout == "set()\n"
