@@ -15,7 +15,7 @@ void sh_change_start(sh_regression_state *state)
     sh_change *change = &state->change;
 
     sh_information_start(&change->changed, state->columns.size, SH_LEAST_INFORMATION);
-    change->level = 1;
+    change->level = change->usual_misfit = 1;
     change->blocks = SH_SHORTEST_TEST; /* it begins with the first block that can show a change */
     state->history.change_age = -1;
 }
@@ -59,8 +59,18 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     state->rounding = 0;
     sh_refit_restart(state, p);
     change->following = 1;
+    change->usual_misfit *=
+        SH_SUDDEN_MISFIT; /* what was learned of the motor may not fit as well */
     state->history.change_age = 0;
     begin(state);
+}
+
+/* The usual misfit is a mean as the usual size of errors is, of 1.7 times itself at most. */
+static void watch_misfit(sh_change *change, sh_real misfit)
+{
+    const sh_real usual = change->usual_misfit;
+
+    change->usual_misfit += (sh_fmin(misfit, SH_SUDDEN_MISFIT * usual) - usual) / change->judged;
 }
 
 /* g = max(0, g + min(z_0 / l, 25) - 2 min(z_1 / l, 12.5) - 2), where z are squares of errors over their variances
@@ -78,6 +88,7 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
     change->judged = sh_fmin(change->judged + 1, SH_LEVEL_BLOCKS);
     change->level =
         sh_fmax(level + (sh_fmin(before, SH_LARGEST_LEVEL * level) - level) / change->judged, 1);
+    watch_misfit(change, sh_sqrt(sh_fmax(1, state->misfit)));
     if (state->blocks.count < SH_SHORTEST_PAST) {
         return;
     }
@@ -96,5 +107,10 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
 
 int sh_change_is_likely(const sh_regression_state *state)
 {
-    return state->change.following || state->change.evidence > SH_MAY_HAVE_CHANGED;
+    const sh_change *change = &state->change;
+    const sh_real misfit = sh_sqrt(sh_fmax(1, state->misfit));
+    const int is_sudden =
+        change->judged >= SH_USUAL_BLOCKS && misfit > SH_SUDDEN_MISFIT * change->usual_misfit;
+
+    return change->following || change->evidence > SH_MAY_HAVE_CHANGED || is_sudden;
 }

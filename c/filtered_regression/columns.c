@@ -25,6 +25,7 @@
 
 static const sh_real DEAD_ZONES[SH_WIDTHS] = SH_DEAD_ZONES;
 static const sh_real HYSTERESES[SH_WIDTHS] = SH_HYSTERESES;
+static const sh_real KNEES[SH_WIDTHS] = SH_KNEES;
 
 int sh_is_measured(const sh_parameters *p)
 {
@@ -74,6 +75,7 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_CURVE, 2, CURVE},
     [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 3, SH_IS_SPRING},
     [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, SH_SIGNAL_LINEAR, SH_OF_HYSTERESIS, 4, 0},
+    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 6, CURVE},
     [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, SH_OF_NOTHING, 5,
                          SH_IS_MOTOR},
     [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, SH_OF_NOTHING, 5,
@@ -175,6 +177,10 @@ static void list_columns(const sh_parameters *p, column_list *list)
     for (i = 0; i < SH_WIDTHS; ++i) {
         add(list, p, SH_COLUMN_DEAD_ZONE, i, 0);
     }
+    /*@ loop unroll SH_WIDTHS; */
+    for (i = p->rls.symmetric ? SH_WIDTHS - 1 : 0; i < SH_WIDTHS; ++i) {
+        add(list, p, SH_COLUMN_KNEE, i, 0);
+    }
     add(list, p, SH_COLUMN_BIAS, 0, 0);
     add(list, p, SH_COLUMN_DAMPING, 0, 0);
     if (m > 1) {
@@ -229,11 +235,24 @@ static sh_real clip(sh_real x, sh_real limit)
     return sh_fmin(sh_fmax(x, -limit), limit);
 }
 
+/* max(x - k, 0) for a knee k >= 0, min(x - k, 0) for k < 0. If the torque is symmetric, what is beyond -k
+ * is so, too. Sets the slope over x.
+ */
+static sh_real beyond_knee(sh_real x, sh_real k, int symmetric, sh_real *slope)
+{
+    const sh_real nearest = symmetric && x < 0 ? -k : k;
+    const int is_beyond = nearest < 0 ? x < nearest : x > nearest;
+
+    *slope = is_beyond ? 1 : 0;
+    return is_beyond ? x - nearest : 0;
+}
+
 /* Signal of a column before its filter. Sets its slope over phi if it has one. */
 static sh_real signal_of(const sh_column *column, const sh_parameters *p, const sh_joint_point *at,
                          sh_real *slope)
 {
     const int i = column->i, j = column->j;
+    sh_real beyond;
 
     switch (column->kind) {
     case SH_COLUMN_POWER:
@@ -256,6 +275,10 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
         return clip(at->phi / p->range.phi, half_width(column)) / half_width(column);
     case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- clip(z + dphi, h) */
         return at->play[i % SH_WIDTHS] / (half_width(column) * p->range.phi);
+    case SH_COLUMN_KNEE:
+        beyond = beyond_knee(at->phi / p->range.phi, KNEES[i % SH_WIDTHS], p->rls.symmetric, slope);
+        *slope /= p->range.phi;
+        return beyond;
     case SH_COLUMN_SIN_M:
         return sh_sin(p->motor.gamma * at->theta);
     case SH_COLUMN_COS_M:

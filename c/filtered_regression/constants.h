@@ -29,6 +29,11 @@
 #define SH_DEAD_ZONES {(sh_real)0.01, (sh_real)0.04, (sh_real)0.16}
 #define SH_HYSTERESES {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08}
 
+/* Knees of the curve, over range.phi [1]. Others than 0.35 (0.25 or 0.45, or two on each side) give the
+ * same errors. If the torque is symmetric, there is only the last one, on both sides.
+ */
+#define SH_KNEES {(sh_real)0, -(sh_real)0.35, (sh_real)0.35}
+
 /* Share of the covered range from which such an element looks like the spring [1]. */
 #define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
 
@@ -140,6 +145,13 @@
  */
 #define SH_LEVEL_BLOCKS ((sh_real)400)
 #define SH_LARGEST_LEVEL ((sh_real)9)
+
+/* Misfit over its usual value above which the estimate is in doubt, and number of blocks after which the
+ * usual value is known [1]: 15 s. With 1.5, logs without a change are in doubt for 4 % of the time, with
+ * 2 twice as many changes are not noticed for over 1 s.
+ */
+#define SH_SUDDEN_MISFIT ((sh_real)1.7)
+#define SH_USUAL_BLOCKS ((sh_real)300)
 
 /* Number of blocks after which a hypothesis ends that has no evidence, and any one [1]: 1 s and 4 s. */
 #define SH_SHORTEST_TEST ((sh_real)10)

@@ -102,8 +102,8 @@ enum {
     SH_RIGHT_Y = 1,     /* y */
     SH_MAX_ROW = SH_MAX_COLUMNS + SH_RIGHT_SIDES, /* entries of a row: columns, right-hand sides */
     SH_MAX_TRIANGLE = SH_MAX_COLUMNS * (SH_MAX_COLUMNS - 1) / 2 + SH_RIGHT_SIDES * SH_MAX_COLUMNS,
-    SH_WIDTHS = 3, /* half widths of dead zones, and of elements of hysteresis */
-    SH_GROUPS = 6  /* groups of columns: 0 is always used, the others if the data ask for them */
+    SH_WIDTHS = 3, /* half widths of dead zones, and of elements of hysteresis; knees */
+    SH_GROUPS = 7  /* groups of columns: 0 is always used, the others if the data ask for them */
 };
 
 /* Information of samples: sum of w x x' = U' D U, see information.h. */
@@ -232,8 +232,9 @@ typedef struct {
     int following;  /* 1: a change was detected, and the estimate does not contain it yet */
     sh_real blocks; /* since the hypothesis began */
     sh_real level,
-        judged;       /* mean square of a block's error over its variance, and of how many blocks */
-    sh_real evidence; /* of the change [1] */
+        judged; /* mean square of a block's error over its variance, and of how many blocks */
+    sh_real usual_misfit; /* of the estimate, the mean over as many blocks [1] */
+    sh_real evidence;     /* of the change [1] */
 } sh_change;
 
 /* The next posterior while it is computed from all data, refit.c. */

@@ -81,6 +81,21 @@ def test_without_memory_no_change_is_looked_for(c: Library) -> None:
     assert not np.any(found["doubt"] == CHANGE)
 
 
+def test_a_misfit_that_begins_is_in_doubt_until_it_is_usual(c: Library) -> None:
+    """GIVEN cogging from 20 s on, THEN the estimate is in doubt for a while."""
+    joint = Joint(duration=60.0, tau_coulomb=0.02)
+    z = joint.measurements()
+    begun = joint.t >= 20.0
+    z[begun, 3] += 0.02 * np.sin(6 * 50.0 * joint.motion[0][begun])
+    found = Estimator(c, REGRESSION).run(z)
+    in_doubt = found["doubt"] == CHANGE
+    before = (joint.t >= 2.0) & ~begun
+    assert not np.any(in_doubt[before]) and np.all(found["confident"][before])
+    assert np.any(in_doubt[begun & (joint.t < 22.0)])
+    assert not np.any(in_doubt[joint.t > 55.0])
+    assert np.all(found["change_age"] == -1)
+
+
 def test_the_paper_looks_for_no_change(c: Library) -> None:
     found = Estimator(c, {"method": 1}).run(Joint(duration=1.0).measurements())
     assert np.all(found["change_age"] == -1)

@@ -27,7 +27,7 @@ WIDE = Joint(duration=4.0, tau_coulomb=0.02, deformation=0.05)
 FAST = Joint(duration=3.0, frequency=8.0, amplitude=0.05, tau_coulomb=0.02)
 CREEPS = Joint(duration=4.0, frequency=0.2, amplitude=0.5, tau_coulomb=0.02)
 ONE = {"rls.n": 1, "rls.m": 1}
-POWERS, SET_POWER, GAP, HYSTERESIS, MOTOR_ENCODER = range(1, 6)
+POWERS, SET_POWER, GAP, HYSTERESIS, MOTOR_ENCODER, KNEE = range(1, 7)
 
 
 def compare(found: NDArray[np.void], expected: Mapping[str, Array]) -> None:
@@ -148,6 +148,15 @@ def ripple_of_the_motor(joint: Joint, z: Array) -> Array:
     return size * (GAMMA**2 * (1e-3 * first + 2.3e-5 * second) + 140.0 * np.sin(angle))
 
 
+def knees(joint: Joint, z: Array) -> Array:
+    phi = joint.motion[3]
+    return 100.0 * np.sign(phi) * np.maximum(np.abs(phi) - 0.021, 0.0)
+
+
+def kink(joint: Joint, z: Array) -> Array:
+    return 60.0 * np.abs(joint.motion[3])
+
+
 def stribeck(joint: Joint, z: Array) -> Array:
     return -GAMMA * 0.08 * np.exp(-np.abs(joint.motion[1]) / 1.0) * np.sign(joint.motion[1])
 
@@ -175,6 +184,8 @@ MISFITS: Mapping[str, tuple[Callable[[Joint, Array], Array], Mapping[str, float]
         POWERS,
     ),
     "powers of the set-point": (set_powers, {"prior.gap": 0.0, "rls.m": 2}, SET_POWER),
+    "knees": (knees, {"prior.gap": 0.0, "prior.hysteresis": 0.0, "range.phi": 0.06}, KNEE),
+    "kink": (kink, {"prior.gap": 0.0, "rls.symmetric": 0}, KNEE),
     "encoder of the motor": (ripple_of_the_motor, {}, MOTOR_ENCODER),
     "Stribeck friction": (stribeck, {"regression.memory": 2.0}, 0),
     "cogging": (cogging, {"regression.memory": 2.0}, 0),

@@ -184,7 +184,7 @@ class Oracle:
         self.n = n = len(self.columns)
         self.kinds = [kind for kind, _, _ in self.columns]
         self.data = Information(n, LEAST)
-        self.used = [1, 0, 0, 0, 0, 0]
+        self.used = [1, 0, 0, 0, 0, 0, 0]
         self.phi_min, self.phi_max = math.inf, -math.inf
         self.live = self.posterior(0, 1.0)
         self.blocks = start_blocks(n, self.w, self.T, self.K)
@@ -315,8 +315,9 @@ class Oracle:
         self.trial = 0
         if was_trial or not self.blocks.judged():
             return
-        for _ in range(5):
-            self.last_trial = self.last_trial % 5 + 1
+        groups = len(self.used) - 1
+        for _ in range(groups):
+            self.last_trial = self.last_trial % groups + 1
             if any(self.is_distinct(i) for i in self.of_group(self.last_trial)):
                 self.trial = self.last_trial
                 return

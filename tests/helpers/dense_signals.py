@@ -17,6 +17,7 @@ from c_library import Array, Library
 Parameters = Mapping[str, Any]
 GAPS = (0.01, 0.04, 0.16)
 PLAYS = (0.005, 0.02, 0.08)
+KNEES = (0.0, -0.35, 0.35)
 SENSOR = 2
 
 
@@ -83,6 +84,7 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
     if 1 < m < most_m and linear < n:
         found += [("SET_POWER", 0, of("power") * tau_e)]
     found += [("DEAD_ZONE", i, of("gap") * tau_e) for i in range(3)]
+    found += [("KNEE", i, of("power") * tau_e) for i in ([2] if p["rls.symmetric"] else range(3))]
     found += [("BIAS", 0, of("bias") * tau_e)]
     found += [("DAMPING", j, of("damping") * K_0) for j in sorted({0, m - 1})]
     found += [(f"{name}_Q", 0, of("eccentric") * K_0) for name in ("SIN", "COS")]
@@ -104,9 +106,10 @@ GROUPS = {
     "HYSTERESIS": 4,
     "SIN_M": 5,
     "COS_M": 5,
+    "KNEE": 6,
 }
-TORQUE = ("POWER", "NOMINAL", "HIGHER_POWER", "SET_POWER", "DEAD_ZONE")
-CURVE = ("POWER", "NOMINAL", "HIGHER_POWER", "SET_POWER")
+CURVE = ("POWER", "NOMINAL", "HIGHER_POWER", "SET_POWER", "KNEE")
+TORQUE = (*CURVE, "DEAD_ZONE")
 
 
 def plays(phi: Array, runs: list[slice], range_phi: float) -> Array:
@@ -164,6 +167,11 @@ class Inputs:
             return self.x * self.l**m, self.l**m / self.p["range.phi"]
         if kind == "NOMINAL":
             return self.nominal, self.nominal_slope
+        if kind == "KNEE":
+            knee, x = KNEES[index], self.x
+            sides = np.sign(x) if self.p["rls.symmetric"] else -1.0 if knee < 0 else 1.0
+            beyond = np.maximum(sides * x - abs(knee), 0.0)
+            return sides * beyond, (beyond > 0) / self.p["range.phi"]
         gamma = self.p["motor.gamma"]
         flat: dict[str, Callable[[], Array]] = {
             "BIAS": lambda: zero + 1,

@@ -197,7 +197,8 @@ def test_what_is_not_determined_is_never_exact(
     write(found[1.0], path)
     read = read_configuration(path).parameters
     inertia = found[1.0].quantities["B"]
-    assert read["prior.B"] == pytest.approx(inertia.half_width / inertia.value, rel=1e-5)
+    assert inertia.half_width / inertia.value < 0.15
+    assert read["prior.B"] == 0.15  # the interval contains only chance
     assert read["prior.tau_coulomb"] == pytest.approx(TRUE["tau_coulomb"], rel=0.05)
     if "{" not in parameters:  # there is no place for a comment inside of braces
         assert read.get("prior.D_theta") == kept.get("prior.D_theta")

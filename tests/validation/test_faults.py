@@ -78,12 +78,22 @@ def test_a_counter_that_begins_in_another_turn(
     assert "range.phi" in found["fault"] and "ports.theta.zero" in found["fault"]
 
 
+def test_a_wrong_zero_is_no_fault_where_the_stiffness_is_right(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The powers of the deformation hold a linear spring with any zero."""
+    status, found = validate(folder, unwrapped("encoder zero 0"), monkeypatch, capsys)
+    assert status == 0 and found["agree"] is True
+    for log in ("learned", "of this log"):
+        value, half = found[f"stiffness {log} [N.m/rad]"]
+        assert abs(value - KNEE["spring.k_1"]) < half < 50
+
+
 @pytest.mark.parametrize(
     ("fault", "words"),
     [
         ("torque sign", "is negative"),
         ("link sign", "does not predict the torque"),
-        ("encoder zero 0", "does not predict the torque"),
         ("counts per turn x 4", "does not predict the torque"),
     ],
 )

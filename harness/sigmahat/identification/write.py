@@ -32,6 +32,9 @@ _ABOVE = 1.4
 """regression.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
 _ROOM = 1.2
 """Ranges over the largest values of the log: another motion may go further."""
+_ERROR_OF_B = 0.15
+"""Least relative prior of B: RMS of its error on joints whose friction or spring the regression has
+no columns for. There the error is up to five times the interval, which contains only chance."""
 _MIDDLE = "not known: the middle of what identify holds possible"
 _NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE, CHOSEN)
 """Comments of values that the next log may tell."""
@@ -78,7 +81,7 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
             else:
                 values[f"motor.{name}"] = q.value
             if name == "B":  # but not for D_theta, which changes with the temperature
-                values["prior.B"] = q.half_width / q.value
+                values["prior.B"] = max(q.half_width / q.value, _ERROR_OF_B)
     values = {name: _short(value) for name, value in values.items() if value is False or value != 0}
     parameters = own.setdefault("parameters", tomlkit.table())
     unknown = {name: each for name, each in _unknown(found).items() if name not in given}

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -177,18 +177,67 @@ def powers_of_phi(symmetric: bool, n: int) -> list[int]:
     return [2 * i + 1 if symmetric else i for i in range(n)]
 
 
+_UNITS_OF_POWERS = {0: "N.m", 1: "N.m/rad"}
+
+
 def polynomial(
     start: Mapping[str, Value], phi: Range | None, set_point: Range | None
 ) -> Polynomial:
     """The curve of start values; phi and set_point are the ranges of the data."""
     n, m = int(start["rls.n"]), int(start["rls.m"])
     powers = powers_of_phi(bool(start["rls.symmetric"]), n)
-    units = {0: "N.m", 1: "N.m/rad"}
     return Polynomial(
         powers_of_phi=powers,
         powers_of_set_point=list(range(m)),
         eta=[[float(start[f"rls.eta_0[{i},{j}]"]) for j in range(m)] for i in range(n)],
-        units=[[units.get(p, f"N.m/rad{p}")] * m for p in powers],
+        units=[[_UNITS_OF_POWERS.get(p, f"N.m/rad{p}")] * m for p in powers],
         phi=phi,
         set_point=set_point,
     )
+
+
+_MOST_POWERS = 8
+"""Largest rls.n of the FMU."""
+_SAME = 1e-6
+"""Relative difference of two stiffnesses by rounding."""
+
+
+def with_knees(
+    curve: Polynomial,
+    phi: NDArray[np.float64],
+    set_point: NDArray[np.float64],
+    sigma: NDArray[np.float64],
+) -> Polynomial:
+    """The polynomial that is nearest to the stiffness of an estimator, whose curve may have knees.
+
+    They are no part of its coefficients. Without knees it is the polynomial as it is.
+
+    phi, set_point, sigma   what the estimator says [rad, 1, N.m/rad], of one size
+    """
+    of_set_point = np.power.outer(set_point, curve.powers_of_set_point) @ np.transpose(curve.eta)
+    beyond = sigma - sum(
+        e * phi ** max(e - 1, 0) * of_set_point[:, i] for i, e in enumerate(curve.powers_of_phi)
+    )
+    if not np.any(np.abs(beyond) > _SAME * np.max(np.abs(sigma), initial=0.0)):
+        return curve
+    powers = powers_of_phi(0 not in curve.powers_of_phi, _MOST_POWERS)
+    largest = float(np.max(np.abs(phi)))
+    slopes = [e * (phi / largest) ** max(e - 1, 0) for e in powers]
+    found = np.linalg.lstsq(np.transpose(slopes), beyond, rcond=None)[0]
+    eta = [[0.0] * len(curve.powers_of_set_point) for _ in powers]
+    for i, e in enumerate(powers):
+        if i < len(curve.eta):
+            eta[i] = list(curve.eta[i])
+        eta[i][0] += float(found[i]) / largest ** max(e - 1, 0)
+    units = [[_UNITS_OF_POWERS.get(e, f"N.m/rad{e}")] * len(eta[0]) for e in powers]
+    return replace(curve, powers_of_phi=powers, eta=eta, units=units)
+
+
+def start_of(curve: Polynomial) -> dict[str, Value]:
+    """The start values of an FMU that are the curve."""
+    start: dict[str, Value] = {
+        f"rls.eta_0[{i},{j}]": value
+        for i, row in enumerate(curve.eta)
+        for j, value in enumerate(row)
+    }
+    return {**start, "rls.n": len(curve.eta), "rls.m": len(curve.eta[0])}

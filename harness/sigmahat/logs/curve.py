@@ -19,7 +19,7 @@ from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Array
 from sigmahat.logs.measured import MeasuredPoints
 
-_OUTPUTS = ("tau_e_std", "sigma", "sigma_std", "sigma_per_gain", "phi", "setPoint")
+_OUTPUTS = ("tau_e", "tau_e_std", "sigma", "sigma_std", "sigma_per_gain", "phi", "setPoint")
 
 
 def stiffness_at(
@@ -155,14 +155,25 @@ def curve(
     polynomial = sheet.polynomial(start_values(slave, every), *covered)
     reach = reaches(points, logs[:-1], not polynomial.is_of_set_point)
     grids = [_grid(each, polynomial) for each in reach]
-    stds: list[tuple[Array | None, Array | None]] = [(None, None)] * len(grids)
     if every["method"] == "FilteredRegression" and grids:
-        stds = list(_standard_deviations(slave, every, reach, grids))
+        found = _evaluated(slave, every, reach, grids)
+        polynomial = sheet.with_knees(polynomial, found["phi"], found["setPoint"], found["sigma"])
+        return Curve(polynomial, list(_branches(reach, grids, found)))
     branches = []
-    for each, phi, (tau_e_std, sigma_std) in zip(reach, grids, stds, strict=True):
+    for each, phi in zip(reach, grids, strict=True):
         tau_e, sigma = polynomial.at(phi, each.set_point)
-        branches.append(Branch(each.set_point, each.phi, phi, tau_e, tau_e_std, sigma, sigma_std))
+        branches.append(Branch(each.set_point, each.phi, phi, tau_e, None, sigma, None))
     return Curve(polynomial, branches)
+
+
+def _branches(
+    reach: Sequence[Reach], grids: Sequence[Array], found: Mapping[str, Array]
+) -> Iterator[Branch]:
+    ends = np.cumsum([len(grid) for grid in grids])[:-1]
+    names = ("tau_e", "tau_e_std", "sigma", "sigma_std")
+    rows = zip(*(np.split(found[name], ends) for name in names), strict=True)
+    for each, phi, values in zip(reach, grids, rows, strict=True):
+        yield Branch(each.set_point, each.phi, phi, *values)
 
 
 def _union(ranges: Sequence[Range | None]) -> Range | None:
@@ -188,10 +199,10 @@ def _grid(reach: Reach, polynomial: Polynomial) -> Array:
     )
 
 
-def _standard_deviations(
+def _evaluated(
     slave: Slave, every: Mapping[str, Value], reach: Sequence[Reach], grids: Sequence[Array]
-) -> Iterator[tuple[Array, Array]]:
-    """Of torque and stiffness at each point of each grid, as a copy of the estimator gives them."""
+) -> dict[str, Array]:
+    """The outputs _OUTPUTS at each point of each grid, as a copy of the estimator gives them."""
     scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
     points = [
         (0.0, phi, (each.set_point - offset) / scale if scale else 0.0)
@@ -201,10 +212,7 @@ def _standard_deviations(
     with Slave(slave.fmu, "curve") as other:
         other.initialize(every)
         t_0, T = restore(other, save(slave)), float(every["samplePeriod"])
-        found = stiffness_at(other, ("theta", "q", "theta_c"), np.array(points), t_0, T)
-    ends = np.cumsum([len(grid) for grid in grids])[:-1]
-    names = ("tau_e_std", "sigma_std")
-    yield from zip(*(np.split(found[name], ends) for name in names), strict=True)
+        return stiffness_at(other, ("theta", "q", "theta_c"), np.array(points), t_0, T)
 
 
 @dataclass(frozen=True)

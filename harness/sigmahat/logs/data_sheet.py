@@ -72,7 +72,7 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
     """The sheet of what an estimator has learned at the end of a replay, and its curve."""
     slave, every, configuration = replay.slave, replay.every, replay.configuration.path
     last, doubt = replay.statistics.last, replay.statistics.last_doubt
-    start = start_values(slave, every)
+    start = {**start_values(slave, every), **sheet.start_of(curve.polynomial)}
     claims = replay.method == "FilteredRegression"
     return sheet.Sheet(
         format=sheet.FORMAT.name,

@@ -12,6 +12,7 @@ import numpy as np
 from sigmahat.files.output import sha256
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
+from sigmahat.joint import sheet
 from sigmahat.joint.start_values import as_fixed_curve, start_values
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import Configuration
@@ -144,6 +145,8 @@ def validate(log: Log, configuration: Configuration, start_from: str | Path) -> 
         points = _points(log, samples)
         start = start_values(slave, every)
         before = stiffness_at(slave, samples.names, points, replay.t, samples.T)
+        at = (before[name] for name in ("phi", "setPoint", "sigma"))
+        start |= sheet.start_of(sheet.with_knees(sheet.polynomial(start, None, None), *at))
     with Slave(fmu, "alone") as slave:
         replay = Replay(slave, log, configuration)
         replay.run()
