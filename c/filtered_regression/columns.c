@@ -418,8 +418,10 @@ static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p
                         const sh_state_variable_filter *filter, int i)
 {
     const sh_filter_design *design = &state->signals.design;
-    const sh_state_variable_filter *theta = &filter[SH_FILTER_THETA], *tau = &filter[SH_FILTER_TORQUE];
-    const sh_state_variable_filter *sign = &filter[SH_FILTER_SIGN], *own = &filter[SH_FILTER_COLUMN + i];
+    const sh_state_variable_filter *theta = &filter[SH_FILTER_THETA],
+                                   *tau = &filter[SH_FILTER_TORQUE];
+    const sh_state_variable_filter *sign = &filter[SH_FILTER_SIGN],
+                                   *own = &filter[SH_FILTER_COLUMN + i];
     const sh_real gamma = p->motor.gamma, gain = sh_is_measured(p) ? 1 : -gamma;
 
     switch (state->columns.column[i].kind) {

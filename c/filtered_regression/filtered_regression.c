@@ -199,8 +199,8 @@ static int report(sh_regression_state *state, const sh_parameters *p, const sh_j
     estimate->tau_e_std = point.tau_e_std;
     estimate->tau_e_residual = y;
     estimate->phi = at->phi;
-    estimate->theta_dot =
-        sh_state_variable_filter_first(&state->signals.filter[SH_FILTER_THETA], &state->signals.design);
+    estimate->theta_dot = sh_state_variable_filter_first(&state->signals.filter[SH_FILTER_THETA],
+                                                         &state->signals.design);
     report_coefficients(state, p, at, &stiffness, estimate);
     /* What the next row depends on. */
     state->modality = p->modality;
@@ -357,7 +357,8 @@ static void update(sh_regression_state *state, const sh_parameters *p, const sh_
 {
     const int size = state->columns.size;
     sh_row *row = &state->row;
-    const sh_real share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 1 / (1 + rho) */
+    const sh_real share =
+        sh_posterior_take(&state->posterior, row->x, size, row->w); /* 1 / (1 + rho) */
 
     row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     update_noise(state, p, left, row->w);
@@ -373,7 +374,6 @@ static void take_step(sh_regression_state *state, const sh_parameters *p)
     sh_row *row = &state->row;
     const sh_real duration = (sh_real)state->signals.decimation * state->signals.design.T;
     sh_real x[SH_MAX_ROW] = {0};
-    int i;
 
     switch (row->step) {
     case 0:
@@ -397,9 +397,7 @@ static void take_step(sh_regression_state *state, const sh_parameters *p)
         state->refit.pause += duration;
         break;
     default:
-        for (i = 0; i < (state->signals.decimation + 1) / 2; ++i) {
-            sh_refit_advance(state, p);
-        }
+        sh_refit_advance(state, p);
         break;
     }
     row->step += 1;

@@ -87,8 +87,8 @@ static int is_refit(const sh_refit *refit, int size)
 {
     int i;
 
-    if (refit->row < 0 || refit->row > size + 3 || refit->trial < 0 || refit->trial >= SH_GROUPS || refit->last_trial < 0 ||
-        refit->last_trial >= SH_GROUPS) {
+    if (refit->row < 0 || refit->row > size + 3 || refit->trial < 0 || refit->trial >= SH_GROUPS ||
+        refit->last_trial < 0 || refit->last_trial >= SH_GROUPS) {
         return 0;
     }
     for (i = 0; i < SH_GROUPS; ++i) {
@@ -115,8 +115,8 @@ static int are_rows(const sh_regression_state *state, const sh_parameters *p)
 static int are_flags(const sh_regression_state *state)
 {
     if (state->signals.begun < 0 || state->signals.begun > 1 || state->friction_drifts < 0 ||
-        state->friction_drifts > 1 || state->stiffness_known < 0 || state->stiffness_known > 1 || state->change.following < 0 ||
-        state->change.following > 1) {
+        state->friction_drifts > 1 || state->stiffness_known < 0 || state->stiffness_known > 1 ||
+        state->change.following < 0 || state->change.following > 1) {
         return 0;
     }
     return 1;
@@ -131,8 +131,7 @@ int sh_filtered_regression_check_state(const sh_estimator *estimator, const sh_p
         !is_choice(state, &state->posterior) || !knows_motor(state, &state->posterior) ||
         !is_choice(state, &state->refit.posterior) ||
         !knows_motor(state, &state->refit.posterior) ||
-        !is_refit(&state->refit, state->columns.size) ||
-        !are_rows(state, p) || !are_flags(state)) {
+        !is_refit(&state->refit, state->columns.size) || !are_rows(state, p) || !are_flags(state)) {
         return 1;
     }
     return 0;

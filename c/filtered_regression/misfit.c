@@ -165,7 +165,8 @@ void sh_blocks_take(sh_regression_state *state)
     blocks->weight_window += wh * h;
     blocks->window += h;
     blocks->window_square += sh_square(h);
-    blocks->independent += sh_square(h) / row->lasting; /* rows with the same error count as fewer */
+    blocks->independent +=
+        sh_square(h) / row->lasting; /* rows with the same error count as fewer */
     blocks->rounding += row->rough;
     blocks->rows += 1;
 }

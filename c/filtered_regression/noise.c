@@ -115,7 +115,9 @@ sh_real sh_noise_of_deformation(const sh_signals *signals)
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p)
 {
     const sh_signals *signals = &state->signals;
-    const sh_real moved = state->row.moved, V = state->row.rough + SH_ROUNDING_IS_NOT_WHITE * moved * sh_square(signals->count) / 12;
+    const sh_real moved = state->row.moved,
+                  V = state->row.rough +
+                      SH_ROUNDING_IS_NOT_WHITE * moved * sh_square(signals->count) / 12;
 
     if (sh_is_measured(p) || state->posterior.inertia < 0) {
         return 0;

@@ -207,8 +207,11 @@ void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
     if (refit->row < state->columns.size) {
-        take_row(state);
-        refit->row += 1;
+        const int last = refit->row + (state->signals.decimation + 1) / 2;
+
+        for (; refit->row < last && refit->row < state->columns.size; ++refit->row) {
+            take_row(state);
+        }
         return;
     }
     switch (refit->row - state->columns.size) {

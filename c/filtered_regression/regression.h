@@ -254,7 +254,7 @@ void sh_refit_restart(sh_regression_state *state, const sh_parameters *p);
 /* Whether no refit is under way. */
 int sh_refit_pauses(const sh_regression_state *state);
 
-/* Detail 6: takes a row of the data of all samples, or does the next step at the end of a refit. */
+/* Detail 6: takes (K + 1) / 2 rows of the data of all samples, or does the next step at the end of a refit. */
 void sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

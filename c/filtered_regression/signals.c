@@ -107,7 +107,8 @@ static void advance_measured(sh_signals *signals, const sh_parameters *p, sh_rea
     signals->theta_before[0] = theta;
     sh_state_variable_filter_step(&filter[SH_FILTER_THETA], design, theta);
     if (p->torque.held && !sh_is_measured(p)) {
-        sh_state_variable_filter_step_mean(&filter[SH_FILTER_TORQUE], design, signals->torque_before);
+        sh_state_variable_filter_step_mean(&filter[SH_FILTER_TORQUE], design,
+                                           signals->torque_before);
     } else {
         sh_state_variable_filter_step(&filter[SH_FILTER_TORQUE], design, torque);
     }

@@ -218,8 +218,8 @@ typedef struct {
                                       block */
     /* The present block: */
     sh_real rows;
-    sh_real sum[SH_MAX_ROW];       /* of weighted rows */
-    sh_real error;                 /* square of the error of the prediction as before, over its variance */
+    sh_real sum[SH_MAX_ROW]; /* of weighted rows */
+    sh_real error; /* square of the error of the prediction as before, over its variance */
     sh_real weight, weight_window; /* sums of w h and w h^2, for the window h */
     sh_real window, window_square; /* sums of h and h^2 */
     sh_real independent; /* sum of h^2 over the increase of the variance by errors that last */
@@ -229,8 +229,8 @@ typedef struct {
 /* Whether the spring has changed, change.c. */
 typedef struct {
     sh_information changed; /* of blocks, if the spring has changed since this hypothesis began */
-    int following;  /* 1: a change was detected, and the estimate does not contain it yet */
-    sh_real blocks; /* since the hypothesis began */
+    int following;          /* 1: a change was detected, and the estimate does not contain it yet */
+    sh_real blocks;         /* since the hypothesis began */
     sh_real level,
         judged; /* mean square of a block's error over its variance, and of how many blocks */
     sh_real usual_misfit; /* of the estimate, the mean over as many blocks [1] */

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -127,8 +128,11 @@ def test_the_estimate_follows_a_spring_that_ages_and_does_not_change_at_rest(c: 
     z = joint.measurements()
     found = estimator.run(z)
     assert error(found, joint, 20.0) < 0.05
-    # without drift the change is noticed instead, detail 15; without memory it is not
-    assert error(Estimator(c, REGRESSION).run(z), joint, 20.0) < 0.1
+    # without drift the change is noticed instead, detail 15, which depends on the noise
+    joints = [replace(joint, seed=seed) for seed in range(1, 5)]
+    noticed = [error(Estimator(c, REGRESSION).run(j.measurements()), j, 20.0) for j in joints]
+    assert np.sqrt(np.mean(np.square(noticed))) < 0.1
+    # without memory it is not
     fixed = {**REGRESSION, "regression.memory": 0.0}
     assert error(Estimator(c, fixed).run(z), joint, 20.0) > 0.2
 

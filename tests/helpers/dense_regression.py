@@ -153,7 +153,9 @@ class Blocks:
 
 def start_blocks(n: int, w: float, T: float, K: int) -> Blocks:
     length = max(math.floor(0.05 / (K * T) + 0.5), 4)
-    h = np.append(np.repeat(window(np.arange(length), length), K), np.zeros(math.ceil(30 / (w * T))))
+    h = np.append(
+        np.repeat(window(np.arange(length), length), K), np.zeros(math.ceil(30 / (w * T)))
+    )
     filtered = [through(np.append(0.0, h), order, w, T) for order in (0, 2)]
     energy, of_second = (float(np.sum(f**2) / np.sum(h**2)) for f in filtered)
     every, walking, recent = (Information(n, precision) for precision in (LEAST, LEAST, 1.0))
@@ -365,6 +367,9 @@ class Oracle:
                 sums.walk(v, drift * time / (power + self.R))
 
     def advance_pass(self, k: int) -> None:
+        if self.row < self.n:
+            self.row = min(self.row + (self.K + 1) // 2, self.n)
+            return
         stage = self.row - self.n
         if stage == 0:
             self.end_pass(k)
@@ -493,8 +498,7 @@ class Oracle:
                 self.since += self.K * self.T
                 self.pause += self.K * self.T
             if number == 6:
-                for _ in range((self.K + 1) // 2):
-                    self.advance_pass(k)
+                self.advance_pass(k)
 
         self.steps = [partial(step, number) for number in range(7)]
 
