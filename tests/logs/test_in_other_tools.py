@@ -55,11 +55,15 @@ def test_without_a_folder_the_result_is_that_of_the_files(knee: Path) -> None:
     assert result.series is not None
     table = read_estimate(knee)
     frame = result.series.to_dataframe()
-    np.testing.assert_array_equal(np.float32(frame["sigma"]), table["estimate.sigma [N.m/rad]"])
+    np.testing.assert_array_equal(
+        frame["sigma"].to_numpy().astype(np.float32), table["estimate.sigma [N.m/rad]"]
+    )
     np.testing.assert_array_equal(frame.index, table["estimate.t [s]"])
     assert frame.attrs["unit"]["tau_e"] == "N.m"
     sigma = result.series.to_xarray()["sigma"]
-    np.testing.assert_array_equal(np.float32(sigma), table["estimate.sigma [N.m/rad]"])
+    np.testing.assert_array_equal(
+        sigma.to_numpy().astype(np.float32), table["estimate.sigma [N.m/rad]"]
+    )
     assert sigma.attrs["unit"] == "N.m/rad"
     assert sigma.attrs["description"].startswith("Stiffness estimate")
     assert sigma.t.attrs["unit"] == "s"
