@@ -209,8 +209,8 @@ def conan(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Conan:
 @pytest.mark.parametrize(
     ("options", "number", "least", "most"),
     [
-        ((), 8, 100_000, 150_000),
-        (("real=float", "max_n=2", "max_m=1", "max_columns=1"), 4, 500, 1200),
+        ((), 8, 100_000, 160_000),
+        (("real=float", "max_n=2", "max_m=1", "max_columns=1"), 4, 500, 1300),
     ],
     ids=["double", "float, small"],
 )
