@@ -65,5 +65,5 @@ def test_noise_is_not_friction(c: Library, frequency: float, coulomb: float, noi
     assert np.mean(inside[late]) >= 0.9
     last = np.arange(len(run["sigma"]) - 10000, len(run["sigma"]), 100)
     ratio = np.mean(found["sigma_std"][last] / bound(c, p, run, last))
-    assert 1 <= ratio <= (6 if noise < 2 else 2)
+    assert 1 <= ratio <= (9 if noise < 2 else 3.5)  # as docs/filtered-regression.md says
     assert abs(found["load_friction_hat"][-1]) <= 0.1
