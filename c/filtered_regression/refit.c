@@ -206,6 +206,7 @@ int sh_refit_pauses(const sh_regression_state *state)
 void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
+
     if (refit->row < state->columns.size) {
         const int last = refit->row + (state->signals.decimation + 1) / 2;
 
