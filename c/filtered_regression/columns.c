@@ -240,11 +240,14 @@ static sh_real clip(sh_real x, sh_real limit)
  */
 static sh_real beyond_knee(sh_real x, sh_real k, int symmetric, sh_real *slope)
 {
-    const sh_real nearest = symmetric && x < 0 ? -k : k;
-    const int is_beyond = nearest < 0 ? x < nearest : x > nearest;
+    const int is_left = symmetric ? x < 0 : k < 0;
+    sh_real beyond = sh_fmax(x - k, 0);
 
-    *slope = is_beyond ? 1 : 0;
-    return is_beyond ? x - nearest : 0;
+    if (is_left) {
+        beyond = sh_fmin(x + sh_fabs(k), 0);
+    }
+    *slope = sh_fabs(beyond) > 0 ? 1 : 0;
+    return beyond;
 }
 
 /* Signal of a column before its filter. Sets its slope over phi if it has one. */

@@ -19,7 +19,7 @@
 
 /* Spacing of the rows over 1/w, and largest number of samples of a row [1]. */
 #define SH_ROW_SPACING ((sh_real)1.8)
-#define SH_LONGEST_ROW ((sh_real)8)
+#define SH_LONGEST_ROW 8
 
 /* ---- columns, columns.c ------------------------------------------------------------------ */
 

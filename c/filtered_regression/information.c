@@ -61,10 +61,11 @@ void sh_information_start(sh_information *a, int size, sh_real precision)
 
 void sh_information_restart(sh_information *a, int count, sh_real precision)
 {
+    const int rows = count < a->size ? count : a->size;
     int i;
 
-    (void)memset(a->U, 0, sizeof(sh_real) * (size_t)row_offset(a->size, count));
-    for (i = 0; i < count; ++i) {
+    (void)memset(a->U, 0, sizeof(sh_real) * (size_t)row_offset(a->size, rows));
+    for (i = 0; i < rows; ++i) {
         a->D[i] = precision;
     }
 }

@@ -29,7 +29,7 @@ void sh_information_start(sh_information *a, int size, sh_real precision);
 /* Starts again with the first parameters: they get the estimate 0 and the precision. What the samples say about
  * the others, if the first ones are not known, stays.
  *
- * count  number of first parameters, 0..size
+ * count  number of first parameters, >= 0; all of them if it is larger than size
  */
 void sh_information_restart(sh_information *a, int count, sh_real precision);
 

@@ -25,11 +25,15 @@ sh_real sh_regression_bandwidth(const sh_parameters *p)
 int sh_regression_decimation(const sh_parameters *p)
 {
     const sh_real wT = sh_regression_bandwidth(p) * p->samplePeriod;
+    int K = 1;
 
     if (p->regression.decimation > 0) {
         return p->regression.decimation;
     }
-    return (int)sh_fmin(sh_fmax(SH_ROW_SPACING / wT, 1), SH_LONGEST_ROW);
+    while (K < SH_LONGEST_ROW && (sh_real)(K + 1) * wT <= SH_ROW_SPACING) {
+        K += 1;
+    }
+    return K;
 }
 
 void sh_signals_start(sh_signals *signals, sh_history *history, const sh_parameters *p)

@@ -78,7 +78,7 @@ def test_bag(storage: StoragePlugin, tmp_path: Path, monkeypatch: pytest.MonkeyP
     Path("bag.toml").write_text(CONFIGURATION)
     assert main(["estimate", "bag"]) == 0
     phi = read_estimate(Path("sigmahat-results/bag"))["estimate.phi [rad]"].to_numpy()
-    assert np.array_equal(phi, values["q"] - values["theta"])
+    assert np.array_equal(phi, (values["q"] - values["theta"]).astype(np.float32))
 
 
 def test_one_mcap_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -28,7 +28,8 @@ MACROS = {"PROOF_METHOD": 2, "PROOF_CURVE": 1, "SH_REAL": "double"}
 UNROLLED = ("-eva-min-loop-unroll", str(MAX_COLUMNS + 6))
 
 TRIANGLES = (
-    *("sh_information_take", "sh_information_start", "sh_information_copy"),
+    *("sh_information_take", "sh_information_start", "sh_information_restart"),
+    "sh_information_copy",
     *("sh_information_sample", "sh_information_right_side", "sh_information_last"),
     *("sh_information_set_last", "sh_information_solve", "sh_information_combine"),
     *(

@@ -33,6 +33,7 @@ static void any_parameters(sh_parameters *p)
     p->rls.n = Frama_C_interval(1, SH_MAX_N);
     p->rls.m = Frama_C_interval(1, SH_MAX_M);
     p->torque.held = Frama_C_interval(0, 1);
+    p->regression.decimation = Frama_C_interval(0, 64);
     p->prior.tau_e = PROOF_CURVE ? (sh_real)Frama_C_float_interval(1e-45f, 1e12f) : 0;
     if (!PROOF_CURVE) {
         p->prior.nominal = (sh_real)Frama_C_float_interval(1e-45f, 1e12f);

@@ -42,6 +42,7 @@ void refused(void)
     ONLY(rls.n, 1, SH_MAX_N);
     ONLY(rls.m, 1, SH_MAX_M);
     ONLY(torque.held, 0, 1);
+    ONLY(regression.decimation, 0, 64);
     REFUSED(prior.nominal, (sh_real)Frama_C_float_interval(-3e38f, -1e-45f));
     REFUSED(prior.tau_e, (sh_real)Frama_C_float_interval(-3e38f, -1e-45f));
     //@ assert reached: \true;

@@ -31,6 +31,12 @@ sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 */
 void sh_information_start(sh_information *a, int size, sh_real precision);
 
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    requires 0 <= count <= SH_MAX_COLUMNS;
+    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1] \from *a, count, precision;
+*/
+void sh_information_restart(sh_information *a, int count, sh_real precision);
+
 /*@ requires 1 <= from->size <= SH_MAX_COLUMNS;
     assigns to->D[0 .. SH_MAX_COLUMNS - 1], to->U[0 .. SH_MAX_TRIANGLE - 1], to->squares \from *from;
     assigns to->size \from from->size;

@@ -58,6 +58,7 @@ void rows(void)
         a.size = size;
         for (i = 0; i < SH_MAX_COLUMNS; ++i) {
             sh_information_sample(&a, i, x);
+            sh_information_restart(&a, i + 1, any_real());
         }
     }
     //@ assert guards: !\initialized(&a.guard_D[0]) && !\initialized(&a.guard_U[0]);
