@@ -25,13 +25,13 @@ sh_real sh_regression_bandwidth(const sh_parameters *p)
 int sh_regression_decimation(const sh_parameters *p)
 {
     const sh_real wT = sh_regression_bandwidth(p) * p->samplePeriod;
-    int K = 1;
+    int K = SH_LONGEST_ROW;
 
     if (p->regression.decimation > 0) {
         return p->regression.decimation;
     }
-    while (K < SH_LONGEST_ROW && (sh_real)(K + 1) * wT <= SH_ROW_SPACING) {
-        K += 1;
+    while (K > 1 && (sh_real)K * wT > SH_ROW_SPACING) {
+        K -= 1;
     }
     return K;
 }
