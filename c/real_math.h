@@ -32,7 +32,7 @@ static inline sh_real sh_square(sh_real x)
 
 #define SH_PI 3.14159265358979323846
 
-/* A number whose square, and whose product with any number of practical size, is far from overflow.
+/* A number whose product with any number of practical size is far from overflow; in double its square, too.
  */
 #define SH_LARGE SH_FOR(SH_REAL, 1e150, 1e30f)
 

@@ -2,7 +2,7 @@
  * follows the one that does so better.
  *
  *     0  the joint is as before: the information of all blocks
- *     1  the spring has changed since t: the same at t, but the columns of the spring have their prior back
+ *     1  the spring has changed since t: the same at t, but nothing is known about the columns of the spring
  *
  * Both know motor and friction equally well, so a change of the spring is no reason to learn them again.
  */
@@ -20,17 +20,17 @@ void sh_change_start(sh_regression_state *state)
     state->history.change_age = -1;
 }
 
-/* The columns of the spring, which are the first ones, get their prior back. What the data say about the others
- * where the spring is not known stays: it is in the rows behind (information.h).
+/* Nothing is known any more about the columns of the spring, which are the first ones. What the data say about
+ * the others if the spring is not known stays: it is in the rows behind (information.h).
  */
-static void forget_spring(const sh_columns *columns, sh_information *a, sh_real precision)
+static void forget_spring(const sh_columns *columns, sh_information *a)
 {
     int count = 0;
 
     while (count < columns->size && sh_column_is(&columns->column[count], SH_IS_SPRING)) {
         count += 1;
     }
-    sh_information_restart(a, count, precision);
+    sh_information_restart(a, count, SH_LEAST_INFORMATION);
 }
 
 /* Hypothesis 1 begins now. */
@@ -41,7 +41,7 @@ static void begin(sh_regression_state *state)
 
     sh_information_copy(&change->changed,
                         state->friction_drifts ? &blocks->drifting : &blocks->constant);
-    forget_spring(&state->columns, &change->changed, SH_LEAST_INFORMATION);
+    forget_spring(&state->columns, &change->changed);
     change->evidence = change->blocks = 0;
 }
 
@@ -55,7 +55,7 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     sh_information_copy(&blocks->drifting, &change->changed);
     sh_information_start(&blocks->recent, state->columns.size, 1);
     blocks->recent_count = 0;
-    forget_spring(&state->columns, &state->data, SH_LEAST_INFORMATION);
+    forget_spring(&state->columns, &state->data);
     state->rounding = 0;
     sh_refit_restart(state, p);
     change->following = 1;

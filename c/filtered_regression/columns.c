@@ -1,8 +1,12 @@
 /* The columns of the regression, and the row of a sample.
  *
- * Take the motor (3) with Coulomb friction, and let its data B and D_theta have the relative errors
- * b and d. With all signals through the filter H (index f), and tau_e = F' eta of (21), it is the
- * regression
+ * The equation of motion is that of the motor (3) with Coulomb friction, where the motor data B and D_theta
+ * have the relative errors b and d, and tau_e > 0 for phi > 0:
+ *
+ *     gamma^2 B (1 + b) theta'' + gamma^2 D_theta (1 + d) theta' + |gamma| sign(theta') tau_C
+ *         = gamma tau + tau_e(q - theta) .
+ *
+ * With all signals through the filter H (index f), and tau_e = F' eta of (21), it is the regression
  *
  *     y = gamma (B gamma theta''_f + D_theta gamma theta'_f - tau_f)
  *       = F_f' eta - gamma^2 D_theta theta'_f d - gamma^2 B theta''_f b
@@ -277,7 +281,7 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
     case SH_COLUMN_DEAD_ZONE: /* clip(x, h) / h without a slope: it does not count in sigma */
         return clip(at->phi / p->range.phi, half_width(column)) / half_width(column);
     case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- clip(z + dphi, h) */
-        return at->play[i % SH_WIDTHS] / (half_width(column) * p->range.phi);
+        return at->stop[i % SH_WIDTHS] / (half_width(column) * p->range.phi);
     case SH_COLUMN_KNEE:
         beyond = beyond_knee(at->phi / p->range.phi, KNEES[i % SH_WIDTHS], p->rls.symmetric, slope);
         *slope /= p->range.phi;
@@ -286,7 +290,7 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
         return sh_sin(p->motor.gamma * at->theta);
     case SH_COLUMN_COS_M:
         return sh_cos(p->motor.gamma * at->theta);
-    default: /* it has no filter, or sh_signals_step knows its signal */
+    default: /* it has no filter, or signals.c gives its signal */
         return 0;
     }
 }
@@ -328,7 +332,7 @@ static void set_nominal(sh_joint_point *point, const sh_columns *columns, const 
 
 void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p,
                        sh_real theta, sh_real q, sh_real phi, sh_real set_point,
-                       const sh_real *play)
+                       const sh_real *stop)
 {
     int i;
 
@@ -336,7 +340,7 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
     point->theta = theta;
     point->q = q;
     point->phi = phi;
-    point->play = play;
+    point->stop = stop;
     set_powers(point, p, set_point);
     set_nominal(point, columns, p);
     for (i = 0; i < columns->size; ++i) {
@@ -347,12 +351,12 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
     }
 }
 
-void sh_columns_move_plays(sh_real *play, const sh_parameters *p, sh_real change)
+void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change)
 {
     int i;
 
     for (i = 0; i < SH_WIDTHS; ++i) {
-        play[i] = clip(play[i] + change, HYSTERESES[i] * p->range.phi);
+        stop[i] = clip(stop[i] + change, HYSTERESES[i] * p->range.phi);
     }
 }
 
@@ -477,8 +481,8 @@ void sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
     }
 }
 
-/* The noise nu of the torque is the share lambda of the prediction error of the row without it. The column
- * of the motor's torque returns c = d(x beta)/d(-nu) of it, so that
+/* The noise nu of the torque is the share lambda of the prediction error of the row without it. If nu is taken
+ * out of the column of the motor's torque, the prediction x beta falls by c nu, so that
  *
  *     nu = lambda epsilon / (1 - lambda c) .
  */

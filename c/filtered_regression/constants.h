@@ -21,6 +21,9 @@
 #define SH_ROW_SPACING ((sh_real)1.8)
 #define SH_LONGEST_ROW 8
 
+/* End of the range of regression.decimation [1]. */
+#define SH_LARGEST_DECIMATION 64
+
 /* ---- columns, columns.c ------------------------------------------------------------------ */
 
 /* Half widths of dead zones and of elements of hysteresis, over range.phi [1]: each four times the
@@ -95,7 +98,7 @@
 /* Duration of a block [s]: several times 1/w, and short beside a motion. */
 #define SH_BLOCK ((sh_real)0.05)
 
-/* Least and largest number of samples of a block [1]; the start has as many steps. */
+/* Least and largest number of rows of a block [1]; sh_blocks_start makes K steps for each. */
 #define SH_SHORTEST_BLOCK ((sh_real)4)
 #define SH_LONGEST_BLOCK ((sh_real)100000)
 
@@ -110,7 +113,7 @@
 /* Std deviations beyond which a sum of squares is no chance [1]. */
 #define SH_CHANCE ((sh_real)3)
 
-/* Number of blocks that are as good as one, because a misfit repeats with the motion [1]. */
+/* Number of blocks up to which a misfit averages out; beyond it repeats with the motion [1]. */
 #define SH_REPEATS ((sh_real)5)
 
 /* Variance factor above which data are forgotten, and the doubt is a misfit [1]. */
@@ -126,8 +129,8 @@
 #define SH_FRICTION_DRIFT ((sh_real)1e-3)
 
 /* Residual of drifting over that of constant friction, below and above which friction drifts [1]. */
-#define SH_DRIFTS ((sh_real)0.8)
-#define SH_IS_CONSTANT ((sh_real)0.95)
+#define SH_DRIFT_BEGINS ((sh_real)0.8)
+#define SH_DRIFT_ENDS ((sh_real)0.95)
 
 /* ---- change of the spring, change.c ------------------------------------------------------ */
 
@@ -137,7 +140,7 @@
 #define SH_MAY_HAVE_CHANGED ((sh_real)20)
 #define SH_HAS_CHANGED ((sh_real)100)
 
-/* Largest evidence of one block [1]: one block alone, which may be a blow, is none. */
+/* Largest evidence of one block [1]: one block alone, which may be a blow, is no change. */
 #define SH_LARGEST_EVIDENCE ((sh_real)25)
 
 /* Number of blocks over which the usual error is a mean, and most that one of them counts, in usual
@@ -153,7 +156,7 @@
 #define SH_SUDDEN_MISFIT ((sh_real)1.7)
 #define SH_USUAL_BLOCKS ((sh_real)300)
 
-/* Number of blocks after which a hypothesis ends that has no evidence, and any one [1]: 1 s and 4 s. */
+/* Number of blocks after which a hypothesis ends that has no evidence, and any one [1]: 0.5 s and 4 s. */
 #define SH_SHORTEST_TEST ((sh_real)10)
 #define SH_LONGEST_TEST ((sh_real)80)
 
@@ -176,8 +179,8 @@
 
 /* ---- what is reported, filtered_regression.c --------------------------------------------- */
 
-/* Where the highest power of the curve is as many times as large as at range.phi, the estimate is
- * not confident; but up to as many times range.phi it may be [1].
+/* The estimate is not confident where (|phi| / range.phi)^e > SH_LARGEST_POWER for the highest power e, but
+ * nowhere within SH_LEAST_LIMIT range.phi [1].
  */
 #define SH_LARGEST_POWER ((sh_real)32)
 #define SH_LEAST_LIMIT ((sh_real)2)

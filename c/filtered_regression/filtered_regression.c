@@ -120,9 +120,7 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     }
 }
 
-/* Why the estimate is not confident. Misfit and priors make sigma_std right, so there is no limit of
- * the misfit itself.
- */
+/* Why the estimate is not confident. The misfit already widens sigma_std, so it has no limit of its own. */
 static int doubt_of(const sh_regression_state *state, const sh_parameters *p, const sh_real *sum,
                     const sh_estimate *estimate)
 {
@@ -230,7 +228,7 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
     sh_change_start(state);
     state->row.step = SH_ROW_STEPS;
     sh_refit_start(state, p);
-    sh_joint_point_at(&at, &state->columns, p, 0, 0, 0, p->setPoint.offset, state->history.play);
+    sh_joint_point_at(&at, &state->columns, p, 0, 0, 0, p->setPoint.offset, state->history.stop);
     stiffness = evaluate_at(state, p, &at, &point);
     estimate->sigma_std = point.sigma_std;
     estimate->tau_e_std = point.tau_e_std;
@@ -250,7 +248,7 @@ static sh_real sum_of_squares(const sh_real *x, int size)
     return sum;
 }
 
-/* Whether no result overflows by the signals of a sample; not if one is not a number. */
+/* 1 if the signals of a sample are so small that nothing overflows; 0 also if one is not a number. */
 static int are_acceptable(const sh_joint_point *at, sh_real y, int size)
 {
     return sum_of_squares(at->F, size) <= SH_LARGE && sum_of_squares(at->dF, size) <= SH_LARGE &&
@@ -366,8 +364,8 @@ static void update(sh_regression_state *state, const sh_parameters *p, const sh_
     row->step = 0;
 }
 
-/* What else a row changes: one triangular matrix a step, so that a tick between two rows takes as long as
- * another one.
+/* What else a row changes. The steps are of similar length, so that they can be spread evenly: one triangular
+ * matrix each, but for the last one, which takes (K + 1) / 2 rows of the data.
  */
 static void take_step(sh_regression_state *state, const sh_parameters *p)
 {
@@ -376,25 +374,25 @@ static void take_step(sh_regression_state *state, const sh_parameters *p)
     sh_real x[SH_MAX_ROW] = {0};
 
     switch (row->step) {
-    case 0:
-        (void)memcpy(x, row->x, sizeof x);
-        (void)sh_information_take(&state->data, x, row->w);
-        break;
-    case 1:
-        sh_blocks_take(state);
-        sh_blocks_end(state, p, 0);
-        break;
-    case 2:
-    case 3:
-    case 4:
-        sh_blocks_end(state, p, row->step - 1);
-        break;
-    case 5:
+    case 0: /* before the data: a refit that starts with a step below has this row from them */
         if (!sh_refit_pauses(state)) {
             (void)sh_posterior_take(&state->refit.posterior, row->x, state->columns.size, row->w);
         }
         state->refit.time += duration;
         state->refit.pause += duration;
+        break;
+    case 1:
+        (void)memcpy(x, row->x, sizeof x);
+        (void)sh_information_take(&state->data, x, row->w);
+        break;
+    case 2:
+        sh_blocks_take(state);
+        sh_blocks_end(state, p, 0);
+        break;
+    case 3:
+    case 4:
+    case 5:
+        sh_blocks_end(state, p, row->step - 2);
         break;
     default:
         sh_refit_advance(state, p);
@@ -414,15 +412,21 @@ static void take_steps(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
+/* Waits until the filters have settled. The present block would have rows of before and after it. */
+static void wait_until_settled(sh_regression_state *state)
+{
+    sh_signals_unsettle(&state->signals, &state->history);
+    if (state->blocks.rows < state->blocks.length) { /* else it will be taken and emptied */
+        sh_blocks_interrupt(&state->blocks);
+    }
+}
+
 /* After a gap, or a change of the modality, the filters start again. */
 static void resume(sh_regression_state *state)
 {
     state->signals.begun = 0;
-    sh_signals_unsettle(&state->signals, &state->history);
     (void)memset(&state->mean, 0, sizeof state->mean);
-    if (state->blocks.rows < state->blocks.length) { /* else it will be taken and emptied */
-        sh_blocks_interrupt(&state->blocks);
-    }
+    wait_until_settled(state);
 }
 
 /* Forgets what the last row depended on: the next one must not be as large because of it. Returns 0. */
@@ -476,14 +480,14 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     settled = is_settled(&state->history, p->samplePeriod);
     complete = settled && take_sample(state, p); /* 2. Build a row of K samples. */
     if (complete && has_moved_before(state, p)) {
-        sh_signals_unsettle(&state->signals, &state->history);
+        wait_until_settled(state);
         settled = complete = 0;
     }
     if (complete && !use_row(state, p)) { /* 3. to 5. Weigh it, predict it, and update. */
         return refuse(state, &before);
     }
     if (!complete || state->signals.decimation == 1) {
-        take_steps(state, p); /* 6. Choose columns. */
+        take_steps(state, p); /* 6. Data, misfit, forgetting, choice of columns. */
     }
     if (!settled) {
         state->row.epsilon = state->row.rho = 0;

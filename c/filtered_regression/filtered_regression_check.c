@@ -3,6 +3,7 @@
  */
 #include <string.h>
 
+#include "constants.h"
 #include "method.h"
 #include "regression.h"
 
@@ -100,13 +101,11 @@ static int is_refit(const sh_refit *refit, int size)
 }
 
 /* Where the next row and the last one stand. */
-static int are_rows(const sh_regression_state *state, const sh_parameters *p)
+static int are_rows(const sh_regression_state *state)
 {
-    const int decimation = sh_regression_decimation(p);
-
-    if (state->signals.decimation != decimation || state->mean.samples < 0 ||
-        state->mean.samples >= decimation || state->row.step < 0 ||
-        state->row.step > SH_ROW_STEPS) {
+    if (state->signals.decimation < 1 || state->signals.decimation > SH_LARGEST_DECIMATION ||
+        state->mean.samples < 0 || state->mean.samples >= state->signals.decimation ||
+        state->row.step < 0 || state->row.step > SH_ROW_STEPS) {
         return 0;
     }
     return 1;
@@ -131,7 +130,7 @@ int sh_filtered_regression_check_state(const sh_estimator *estimator, const sh_p
         !is_choice(state, &state->posterior) || !knows_motor(state, &state->posterior) ||
         !is_choice(state, &state->refit.posterior) ||
         !knows_motor(state, &state->refit.posterior) ||
-        !is_refit(&state->refit, state->columns.size) || !are_rows(state, p) || !are_flags(state)) {
+        !is_refit(&state->refit, state->columns.size) || !are_rows(state) || !are_flags(state)) {
         return 1;
     }
     return 0;

@@ -232,7 +232,7 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least)
 /* In terms of the information A = U' D U, the step is A -= A v v' A c / (1 + c v' A v): a sample of
  * negative weight with the regressor v' A.
  */
-void sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
+sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
 {
     const int size = a->size;
     const sh_real *of_U = a->U;
@@ -252,16 +252,9 @@ void sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
         of_U += count + SH_RIGHT_SIDES;
     }
     if (!(vAv > 0) || !isfinite(vAv)) { /* nothing is known along v; or an overflow */
-        return;
+        return 1;
     }
     c = sh_fmin(c, SH_LARGEST_GROWTH / vAv);
     (void)sh_information_take(a, row, -c / (1 + c * vAv));
-}
-
-void sh_information_drift_one(sh_information *a, int i, sh_real c)
-{
-    sh_real v[SH_MAX_COLUMNS] = {0};
-
-    v[i] = 1;
-    sh_information_drift(a, v, c);
+    return 1 / (1 + c * vAv);
 }

@@ -11,7 +11,7 @@
  * are exact. So to leave out the last parameters is to leave out the last columns. To scale the
  * weights of all samples is to scale D.
  *
- * No entry of D must begin with 0. If other columns make up a column exactly, its entry of D would
+ * Every entry of D must start above 0. If other columns make up a column exactly, its entry of D would
  * consist of rounding errors only, and the division by it would destroy U.
  */
 #ifndef SH_INFORMATION_H
@@ -38,7 +38,7 @@ void sh_information_copy(sh_information *to, const sh_information *from);
 
 /* Takes a sample.
  *
- * x  [size: size + SH_RIGHT_SIDES] regressor, then the right-hand sides; used as memory. Afterwards the
+ * x  [size: size + SH_RIGHT_SIDES] regressor, then the right-hand sides. It is overwritten: afterwards the
  *    last entry is the prediction error of y before the sample
  * w  weight. If it is negative, a sample of this weight is removed; U' D U must stay positive
  *    definite
@@ -95,10 +95,9 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least);
  *
  * v  [size: size]
  * c  >= 0
+ *
+ * Returns the share of the information along v that is left, 0..1.
  */
-void sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
-
-/* The same for parameter i alone. */
-void sh_information_drift_one(sh_information *a, int i, sh_real c);
+sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
 #endif

@@ -121,12 +121,12 @@ static void count_block(sh_regression_state *state)
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
 {
     sh_blocks *blocks = &state->blocks;
-    const sh_real variance = variance_of(state, p);
-    sh_real error;
+    sh_real variance, error;
 
     if (blocks->rows < blocks->length) {
         return;
     }
+    variance = variance_of(state, p);
     if (!is_acceptable(blocks, state->columns.size, variance)) {
         sh_blocks_interrupt(blocks);
         return;
@@ -199,11 +199,20 @@ static sh_real recent_misfit(const sh_regression_state *state, const sh_paramete
     return squares > chance(N) ? squares / N : 0;
 }
 
+/* Whether there are enough blocks to tell a misfit from chance. */
+static int can_judge(const sh_regression_state *state)
+{
+    const sh_real N = state->blocks.count;
+
+    return N >= SH_FIRST_BLOCKS && N > (sh_real)state->posterior.information.size;
+}
+
 /* q = (sum of the squares of the errors of N blocks over their variances) / (N - p / 2), p parameters,
  *
- *     kappa^2 = max(q, 1 + (q - t) max(1, N / 5))  if q > t, else max(1, q) .
+ *     kappa^2 = max(q, q_recent, 1 + (q - t) max(1, N / 5))  if q > t, else max(1, q, q_recent) .
  *
- * A misfit is a function of the state: it repeats with the motion, so that five blocks are as one.
+ * A misfit is a function of the state and repeats with the motion, so its part q - t does not average
+ * out over N blocks. With too few blocks, the last judgement stays.
  */
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 {
@@ -211,8 +220,7 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
     const sh_real N = blocks->count, parameters = (sh_real)state->posterior.information.size;
     sh_real q, t;
 
-    state->misfit = state->variance_factor = 1;
-    if (N < SH_FIRST_BLOCKS || N <= parameters) {
+    if (!can_judge(state)) {
         return;
     }
     q = sh_information_squares(state->friction_drifts ? &blocks->drifting : &blocks->constant,
@@ -220,6 +228,7 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
         (N - parameters / 2);
     t = chance(N) / N;
     state->misfit = sh_fmax(q, recent_misfit(state, p));
+    state->variance_factor = 1;
     if (!(p->regression.memory > 0)) { /* switched off */
         return;
     }
@@ -239,7 +248,10 @@ static void let_friction_drift(const sh_columns *columns, sh_information *a, sh_
 
     for (i = 0; i < columns->size; ++i) {
         if (sh_column_is(&columns->column[i], SH_IS_FRICTION)) {
-            sh_information_drift_one(a, i, variance);
+            sh_real v[SH_MAX_COLUMNS] = {0};
+
+            v[i] = 1;
+            (void)sh_information_drift(a, v, variance);
         }
     }
 }
@@ -254,9 +266,9 @@ void sh_friction_drift(sh_regression_state *state, sh_real time)
     if (N > 2 * parameters) {
         const sh_real constant = blocks->constant.squares, drifting = blocks->drifting.squares;
 
-        if (drifting < SH_DRIFTS * constant && constant > (N - parameters) * chance(N) / N) {
+        if (drifting < SH_DRIFT_BEGINS * constant && constant > (N - parameters) * chance(N) / N) {
             state->friction_drifts = 1;
-        } else if (drifting > SH_IS_CONSTANT * constant) {
+        } else if (drifting > SH_DRIFT_ENDS * constant) {
             state->friction_drifts = 0;
         }
     }
@@ -287,7 +299,9 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
     state->noise.gain *= factor;
 }
 
-/* P += drift time / (v'v + R) v v', where v are the columns of the curve in the last row and R is its variance */
+/* P += drift time / (v'v + R) v v', where v are the columns of the curve in the last row and R is its
+ * variance. The rounding of phi is a part of the information along v, and is lost as the rest of it.
+ */
 static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
     sh_real v[SH_MAX_COLUMNS] = {0}, power = 0;
@@ -300,13 +314,15 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
     if (power > 0) {
         const sh_real variance = p->regression.drift * time / (power + 1 / state->row.w);
 
-        sh_information_drift(&state->data, v, variance);
-        sh_information_drift(&state->blocks.constant, v, variance);
-        sh_information_drift(&state->blocks.drifting, v, variance);
+        state->rounding *= sh_information_drift(&state->data, v, variance);
+        (void)sh_information_drift(&state->blocks.constant, v, variance);
+        (void)sh_information_drift(&state->blocks.drifting, v, variance);
     }
 }
 
-/* Time counts as far as blocks do: nothing is forgotten at rest. */
+/* Time counts as far as blocks do: nothing is forgotten at rest. With a short memory, blocks that are too few
+ * to judge must become more first.
+ */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
     sh_blocks *blocks = &state->blocks;
@@ -319,7 +335,7 @@ void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
         sh_information_forget(&blocks->recent, factor, 1);
         blocks->recent_count *= factor;
     }
-    if (state->variance_factor > SH_CONTRADICTION) {
+    if (state->variance_factor > SH_CONTRADICTION && can_judge(state)) {
         forget_data(state, p, moving);
     }
     if (p->regression.drift > 0) {

@@ -1,7 +1,7 @@
 /* What is known of the parameters: their prior, and the data weighted by the misfit.
  *
  * A posterior uses a choice of the columns of the data. The column of the inertia error b is its last
- * one, so the last entry of D is the information about b, and can be changed in O(1). This is used for
+ * one, except in a trial, so the last entry of D is the information about b, and can be changed in O(1). This is used for
  * the rounding of theta (point 4, detail 7):
  *
  * The column of b contains rounding noise of variance V, and y contains the same noise times 1 + b. So
@@ -43,7 +43,7 @@ sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, s
  */
 void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B);
 
-/* Removes the noise in column i of the data (detail 14), as far as its coefficient does not become less
+/* Removes the noise in a column (detail 14), as far as its coefficient does not become less
  * certain than its prior.
  *
  * i      place of the column among those of the posterior

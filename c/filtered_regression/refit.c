@@ -1,9 +1,9 @@
 /* Refits: how the misfit, and the choice of columns, act on past samples in bounded time; detail 6.
  *
  * The data of all samples are a triangular matrix of n rows. A row with its weight is a sample for
- * another triangle. So a new posterior is computed beside the present one: every second tick it takes
- * one row of a copy of the data, weighted by the misfit, and every tick the new sample. After n rows it
- * replaces the present one. No tick takes more than O(n^2).
+ * another triangle. So a new posterior is computed beside the present one: with each new row of K samples
+ * it takes that row, and (K + 1) / 2 rows of a copy of the data, weighted by the misfit. After n rows it
+ * replaces the present one. No tick takes more than O(K n^2).
  *
  * Every second refit is a trial of a group of columns, and its estimate is not used.
  */
@@ -219,7 +219,7 @@ void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
     case 0:
         end_refit(state, p);
         break;
-    case 1:
+    case 1: /* end_refit has set the trial of the next refit: data are forgotten before one without */
         if (refit->trial == 0) {
             sh_friction_drift(state, refit->time);
         }

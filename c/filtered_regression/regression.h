@@ -1,6 +1,6 @@
 /* The steps of a tick of the method FilteredRegression, in their order: signals.c filters the
- * signals, columns.c builds the row, noise.c weighs it, posterior.c updates the estimate, misfit.c and
- * refit.c see what no column explains. "Detail" and its number are those of
+ * signals, columns.c builds the row, noise.c weighs it, posterior.c updates the estimate, misfit.c,
+ * change.c and refit.c see what no column explains. "Point" and "detail" with a number are those of
  * docs/filtered-regression.md.
  */
 #ifndef SH_REGRESSION_H
@@ -16,7 +16,7 @@ typedef struct {
     sh_real l[SH_MAX_M];        /* (set-point / range.setPoint)^j [1] */
     sh_real tau_nominal;        /* torque of the curve rls.eta_0 [N.m] */
     sh_real sigma_nominal;      /* and its stiffness [N.m/rad] */
-    const sh_real *play;        /* [size: SH_WIDTHS] states of the elements of hysteresis [rad] */
+    const sh_real *stop;        /* [size: SH_WIDTHS] states of the stop operators of hysteresis [rad] */
     sh_real F[SH_MAX_COLUMNS];  /* signals */
     sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
 } sh_joint_point;
@@ -63,7 +63,7 @@ enum {
     SH_IS_SPRING = 1, /* a part of the torque of the spring */
     SH_IS_CURVE = 2,  /* a part of its smooth curve, which has a slope */
     SH_IS_EQUATION =
-        4,           /* in the equation of the motor, and for nothing that a joint has beside it */
+        4,           /* a term of the equation of motion (columns.c), not an additional effect */
     SH_IS_MOTOR = 8, /* 0 where the torque of the spring is measured or modelled */
     SH_IS_FRICTION = 16, /* friction of the motor that may drift */
     SH_IS_COULOMB = 32,  /* tau_C */
@@ -137,10 +137,10 @@ int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_re
 /* Sets the point of positions [rad], set-point [1] and hysteresis [size: SH_WIDTHS], which is kept. */
 void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p,
                        sh_real theta, sh_real q, sh_real phi, sh_real set_point,
-                       const sh_real *play);
+                       const sh_real *stop);
 
-/* Moves the elements of hysteresis [size: SH_WIDTHS] by a change of the deformation [rad]. */
-void sh_columns_move_plays(sh_real *play, const sh_parameters *p, sh_real change);
+/* Moves the stop operators of hysteresis [size: SH_WIDTHS] by a change of the deformation [rad]. */
+void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change);
 
 /* Torque of the spring for coefficients beta [N.m]. */
 sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta);
@@ -165,8 +165,8 @@ sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_n
 
 /* ---- signals.c --------------------------------------------------------------------------- */
 
-/* Corner frequency of the filters [rad/s]: regression.bandwidth, but at most 1.42 W_c of point 1 of
- * the page, and at least 1e-4 / samplePeriod.
+/* Corner frequency of the filters [rad/s]: regression.bandwidth, but at most 1.42 W_c of point 1, and at
+ * least 1e-4 / samplePeriod.
  */
 sh_real sh_regression_bandwidth(const sh_parameters *p);
 
@@ -194,8 +194,8 @@ void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_par
 /* Detail 4: variance of a row, with the noise of theta as the last samples show it. */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);
 
-/* Variance of the rounding of phi in a row [rad2], of which 1/R is information about sigma
- * that is only rounding.
+/* Variance of the rounding of phi in a row [rad2]. Divided by R it is information about sigma that is only
+ * rounding.
  */
 sh_real sh_noise_of_deformation(const sh_signals *signals);
 

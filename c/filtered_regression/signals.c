@@ -63,7 +63,7 @@ static void take_deformation(sh_history *history, const sh_signals *signals, con
     const sh_real change = signals->begun ? phi - history->phi : 0;
     const sh_real least = SH_RESTS * sh_fmin(signals->count, signals->count_q);
 
-    sh_columns_move_plays(history->play, p, change);
+    sh_columns_move_stops(history->stop, p, change);
     history->phi_min = sh_fmin(history->phi_min, phi);
     history->phi_max = sh_fmax(history->phi_max, phi);
     history->resting = sh_fabs(change) > least ? 0 : history->resting + 1;
@@ -154,7 +154,7 @@ void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const s
     const sh_real phi = z->q - z->theta, torque = sh_regression_torque(p, z, z->tau);
 
     take_deformation(&state->history, signals, p, phi);
-    sh_joint_point_at(at, &state->columns, p, z->theta, z->q, phi, set_point, state->history.play);
+    sh_joint_point_at(at, &state->columns, p, z->theta, z->q, phi, set_point, state->history.stop);
     if (signals->begun) {
         advance_measured(signals, p, at->theta, torque);
         if (state->columns.has_nominal) {

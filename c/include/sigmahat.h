@@ -40,7 +40,7 @@ typedef SH_REAL sh_real;
  *
  * Paper2011      the paper: Kalman filter (9)-(11), residual (6)-(8), least squares (25)-(27)
  * FilteredRegression  one regression for the torque and the errors of the motor data, from signals
- *                that all passed the same filter: columns.h
+ *                that all passed the same filter: c/filtered_regression/columns.c
  */
 #define SH_METHODS(METHOD)                                                                         \
     METHOD(SH_METHOD_PAPER2011, 1, "Paper2011", sh_paper2011)                                      \
@@ -254,15 +254,15 @@ typedef struct {
     sh_real tau_e_sensor;      /* flexibility torque from a sensor, SH_MODALITY_SENSOR [N.m] */
 } sh_measurement;
 
-/* The outputs of a tick. Where one would overflow it is at most 1e300 in magnitude, or 1e38 in single
- * precision; but sigma_std is infinite then.
+/* The outputs of a tick. An output that would overflow is limited to 1e300 in magnitude, or 1e38 in single
+ * precision; only sigma_std is infinite in this case.
  */
 typedef struct {
     sh_real sigma;                   /* stiffness, (23): slope of the torque where the spring is
                                         engaged, without hysteresis [N.m/rad] */
     sh_real tau_e;                   /* flexibility torque of the fitted model, (21) [N.m] */
     sh_real tau_e_residual;          /* flexibility torque from the motor data: gamma r_e, (8), or
-                                        y of columns.h [N.m] */
+                                        y of columns.c [N.m] */
     sh_real theta_dot;               /* motor velocity used by the residual [rad/s] */
     sh_real phi;                     /* deformation used by the regression [rad] */
     sh_real setPoint;                /* set-point [1] */
@@ -350,7 +350,8 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  * last value, and with SH_MODALITY_RESIDUAL the regression learns nothing, a = 0, until that value
  * is forgotten, ten time constants 1 / K_I later.
  *
- * SH_METHOD_FILTERED_REGRESSION starts its filters again and learns nothing for 12 / regression.bandwidth.
+ * SH_METHOD_FILTERED_REGRESSION starts its filters again and learns nothing for
+ * 12 / w, where w is the corner frequency of its filters, at most regression.bandwidth.
  * It does the same after a change of the modality.
  */
 int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,

@@ -149,7 +149,7 @@ typedef struct {
     sh_real count, count_q; /* resolution of theta and q [rad] */
     sh_filter_design design;
     int decimation; /* K: samples of a row */
-    /* Variance that white noise of variance 1 has in a row, behind H [1], and behind s^2 H [1/s4]: */
+    /* Variance of the mean of K samples if white noise of variance 1 is filtered by H [1], by s^2 H [1/s4]: */
     sh_real gain, gain_second;
     sh_state_variable_filter filter[SH_MAX_FILTERS]; /* SH_FILTER_*, then those of the columns */
     sh_motion_sign motion;
@@ -159,7 +159,7 @@ typedef struct {
 
 /* What a gap in the samples does not end. A refused sample leaves it as it was. */
 typedef struct {
-    sh_real play[SH_WIDTHS];       /* states of the elements of hysteresis [rad] */
+    sh_real stop[SH_WIDTHS];       /* states of the stop operators of hysteresis [rad] */
     sh_real phi, phi_min, phi_max; /* deformation: last, least and largest [rad] */
     sh_real resting;               /* samples since phi changed */
     sh_real unsure;                /* samples for which the sign of the velocity has been unknown */
@@ -189,7 +189,9 @@ typedef struct {
     sh_real epsilon, rho;  /* error of the prediction [N.m], its variance over 1/w [1] */
 } sh_row;
 
-/* What the noise of the motor's torque in its own column adds to the equation of the coefficient. */
+/* The noise of the motor's torque is also in the column that it makes. This is what it adds to the equation of
+ * that column's coefficient.
+ */
 typedef struct {
     sh_real information; /* [1] */
     sh_real gain;        /* to the right-hand side SH_RIGHT_GAIN [N.m] */

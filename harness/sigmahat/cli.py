@@ -43,7 +43,7 @@ for command in (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit status; an error is one line on stderr."""
     with warnings.catch_warnings():
-        # What numpy says of values that are not finite: the commands say it in their words.
+        # numpy warns of values that are not finite; the commands report such values themselves.
         warnings.simplefilter("ignore", RuntimeWarning)
         return _main(arguments)
 
@@ -71,7 +71,7 @@ def _main(arguments: Sequence[str] | None) -> int:
         click.echo(f"sigmahat: error: {text}", err=True)
         return _ERROR
     except OSError as error:  # from stdout: a command reports errors of its files itself
-        sys.stdout = None  # or Python would try to write the rest when it ends
+        sys.stdout = None  # or Python would try to write the remaining output at exit
         click.echo(f"sigmahat: error: cannot write the output: {error.strerror}", err=True)
         return _ERROR
     except (click.Abort, KeyboardInterrupt):

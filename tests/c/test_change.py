@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from c_library import Array, Estimator, Library, load
+from c_library import Array, Estimator, Library
 from regression_joint import Joint, T
 
 REGRESSION = {"method": 2, "rls.n": 3}
 CHANGE = 9
 AT = 15.0  # [s]
-
-
-@pytest.fixture(scope="module")
-def c(build: Path) -> Library:
-    return load(build)
 
 
 def step(factor: float) -> Callable[[Array], Array]:

@@ -31,8 +31,8 @@ def passes(e: Estimator) -> bool:
 @pytest.mark.parametrize("method", [PAPER2011, FILTERED_REGRESSION])
 @pytest.mark.parametrize("joint", JOINTS)
 def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, Any]) -> None:
-    """GIVEN a run with gaps, refused samples and changes of the modality, THEN each of its 1500
-    states passes."""
+    """GIVEN a run with gaps, refused samples, and changes of the modality and of the noise, on
+    which the spacing of the rows depends at the start, THEN each of its 1500 states passes."""
     rng = np.random.default_rng(1)
     e = Estimator(c, {"method": method, **joint})
     assert passes(e)
@@ -44,6 +44,8 @@ def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, A
             row[0] = 1e12
         elif chance < 0.008:
             e.parameters.modality = int(rng.integers(1, 4))
+        elif chance < 0.01:
+            e.parameters.noise.tau = 10.0 ** rng.uniform(-5, -2)
         e.tick(row)
         assert passes(e)
 

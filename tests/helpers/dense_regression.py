@@ -298,11 +298,14 @@ class Oracle:
         squares = self.blocks.recent.squares(self.beta) - float(self.beta @ self.beta)
         return squares / N if squares > threshold(N) else 0.0
 
+    def can_judge(self) -> bool:
+        return self.blocks.judged() and len(self.live.chosen) < self.blocks.count
+
     def judge(self) -> None:
         N = self.blocks.count
-        self.q = self.factor = 1.0
-        if not self.blocks.judged() or len(self.live.chosen) >= N:
+        if not self.can_judge():
             return
+        self.factor = 1.0
         whole = self.whole_misfit()
         self.q = max(whole, self.recent_misfit())
         if self.p["regression.memory"] > 0:
@@ -348,7 +351,7 @@ class Oracle:
         blocks.recent.fade(keep)
         blocks.recent_count *= keep
         both = (self.data, blocks.all, blocks.walking)
-        if self.factor > 1.5:
+        if self.factor > 1.5 and self.can_judge():
             N = blocks.recent_count
             has_changed = N > 20 and blocks.recent.rest < threshold(N)
             self.changes += has_changed
@@ -363,8 +366,10 @@ class Oracle:
         v = np.where([kind in CURVE for kind in self.kinds], self.before[: self.n], 0)
         power = v @ v
         if drift > 0 and power > 0:
+            variance = drift * time / (power + self.R)
+            self.rounding /= 1 + variance * float(v @ self.data.matrix[: self.n, : self.n] @ v)
             for sums in both:
-                sums.walk(v, drift * time / (power + self.R))
+                sums.walk(v, variance)
 
     def advance_pass(self, k: int) -> None:
         if self.row < self.n:
@@ -489,14 +494,14 @@ class Oracle:
 
         def step(number: int) -> None:
             if number == 0:
-                self.data.take(row, 1 / R)
-            if number == 1:
-                self.blocks.rows.append((row, 1 / R, last, mean_rough))
-            if 1 <= number <= 4:
-                self.take_block(number - 1, filtered.measured)
-            if number == 5:
                 self.since += self.K * self.T
                 self.pause += self.K * self.T
+            if number == 1:
+                self.data.take(row, 1 / R)
+            if number == 2:
+                self.blocks.rows.append((row, 1 / R, last, mean_rough))
+            if 2 <= number <= 5:
+                self.take_block(number - 2, filtered.measured)
             if number == 6:
                 self.advance_pass(k)
 

@@ -113,7 +113,7 @@ TORQUE = (*CURVE, "DEAD_ZONE")
 
 
 def plays(phi: Array, runs: list[slice], range_phi: float) -> Array:
-    """States of the play operators [size: ticks x 3]. They do not move over a gap."""
+    """States of the stop operators [size: ticks x 3]. They do not move over a gap."""
     widths = range_phi * np.array(PLAYS)
     state, states = np.zeros(3), np.zeros((len(phi), 3))
     for run in runs:

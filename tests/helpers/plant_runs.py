@@ -78,19 +78,12 @@ def sinusoids(
     return np.column_stack([A * np.sin(2 * np.pi * f * t) for A, f in (tau, tau_c, tau_ext)])
 
 
-def between(torques: Array, steps: int) -> Array:
-    """Torques at `steps` times as many times, on the straight lines between the rows."""
-    rows = np.arange(len(torques))
-    finer = np.arange((len(torques) - 1) * steps + 1) / steps
-    return np.column_stack([np.interp(finer, rows, column) for column in torques.T])
-
-
-def relative_error(run: Mapping[str, Array], reference: Array, steps: int = 1) -> Array:
-    """Largest error of each state over its range, at every steps-th sample of a run.
+def relative_error(run: Mapping[str, Array], reference: Array) -> Array:
+    """Largest error of each state over its range.
 
     The run has the states of the reference [size: p x states] first, in the same order.
     """
-    states = np.column_stack(list(run.values())[: reference.shape[1]])[::steps]
+    states = np.column_stack(list(run.values())[: reference.shape[1]])
     error: Array = np.abs(states - reference).max(axis=0) / np.ptp(reference, axis=0)
     return error
 

@@ -107,7 +107,7 @@ def test_nothing_is_lost_when_the_log_vanishes_and_at_the_end(tmp_path: Path) ->
             hand.sees("Not checked: modality Residual needs [ports.theta]")
             log.unlink()  # the page has it open
             hand.chooses("modality", "Model")
-            hand.sees("no log can show; the answer rests on it")
+            hand.sees("assumptions that no log can verify")
             hand.types("motor.B", "2e-4")
             hand.presses("write")
             hand.sees("exists, and is other than what is shown here")

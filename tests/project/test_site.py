@@ -12,13 +12,11 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-import fmpy
 import pytest
 from lxml import html
 from selenium.webdriver.support.expected_conditions import text_to_be_present_in_element
 from selenium.webdriver.support.ui import WebDriverWait
 
-import sigmahat
 from browser import opened
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -69,25 +67,6 @@ def test_the_site_loads_nothing_from_the_network(site: Path) -> None:
     for style in site.rglob("*.css"):
         text = style.read_text(encoding="utf-8")
         assert not re.search(r"""(?:@import\s+|url\()["']?(?:https?:)?//""", text), style.name
-
-
-@pytest.mark.parametrize("name", FMUS)
-def test_every_variable_of_an_fmu_has_its_row(name: str, site: Path) -> None:
-    """As the FMU that was built has it; elements of an array share one."""
-    model = fmpy.read_model_description(str(sigmahat.fmu(name)))
-    wanted = {v.name.split("[")[0]: v for v in reversed(model.modelVariables)}
-    rows = {}
-    for row in read(site / "parameters.html").xpath(
-        "//table[contains(@class, 'fmu-variables')]//tr"
-    ):
-        cells = [" ".join(cell.text_content().split()) for cell in row.xpath("td")]
-        if cells and row.xpath(".//p/@id")[0].startswith(f"{name.lower()}-"):
-            rows[cells[0]] = cells[1:]
-    assert set(rows) == set(wanted)
-    for key, (unit, _, _, description) in rows.items():
-        variable = wanted[key]
-        assert unit == (variable.unit or "")
-        assert variable.description in description
 
 
 @pytest.mark.slow("eight pages in a browser, each loaded and drawn")

@@ -124,7 +124,7 @@ def test_the_scheduler_is_lost(
     assert (process.returncode, output) == (2, "")
     (line,) = errors.splitlines()
     assert line == (
-        f"sigmahat: error: the scheduler at {address} was lost; "
+        f"sigmahat: error: lost the connection to the scheduler at {address}; "
         "the same command goes on from what is done"
     )
     assert 3 <= len(records(path)) < 200

@@ -1,1 +1,1 @@
-"""What in a configuration is likely wrong, by what the log itself shows."""
+"""Checks that compare a configuration with its log, and find likely errors."""

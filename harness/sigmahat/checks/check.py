@@ -25,9 +25,9 @@ _INERTIA = (Kind.INERTIA, Kind.TORQUE_SCALE)
 
 
 def check(log: Log, configuration: Configuration) -> Checked:
-    """What in the configuration is likely wrong, by what the log shows.
+    """Finds likely errors of the configuration by a comparison with the log.
 
-    At most 60000 ticks are looked at, those in which the joint moves most. The configuration need
+    The check uses at most 60000 ticks, those in which the joint moves most. The configuration need
     not be in a file.
 
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
@@ -39,7 +39,7 @@ def check(log: Log, configuration: Configuration) -> Checked:
     with Slave(fmu, "check") as slave:
         outputs = play(slave, seen)
     if not any(each.severity is Severity.WRONG for each in findings):
-        # Else these are its symptoms.
+        # After a wrong value, the findings of the replay are only consequences of this value.
         findings += replayed(seen, outputs)
     findings += rests_on(
         configuration, every, fmu.parameters({}), _per_gain(outputs, every["method"])
@@ -52,7 +52,7 @@ def check(log: Log, configuration: Configuration) -> Checked:
 def check_identified(log: Log, before: Configuration, after: Configuration) -> Checked:
     """Checks a configuration that identify has completed.
 
-    The inertia is compared with the one that was there before, if that came from elsewhere.
+    The inertia is compared with the inertia in `before`, if the user had given that inertia.
 
     Raises LogError, FmuError as `check`.
     """
@@ -65,7 +65,7 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
 
 
 def _is_given(configuration: Configuration) -> bool:
-    """Whether somebody has said what the inertia is."""
+    """Whether the configuration gives the inertia, and not with a wide prior."""
     prior = float(_every(configuration)["prior.B"])
     return "motor.B" in configuration.parameters and prior < WIDE
 
@@ -80,12 +80,12 @@ def _view(log: Log, configuration: Configuration) -> View:
     return view(log, configuration, _every(configuration))
 
 
-_UNLIKE = 5.0  # slope of q on theta: a soft spring does not make it so large
+_UNLIKE = 5.0  # slope of q on theta: a soft spring does not make this slope so large
 _ALIKE = 1.5
 
 
 def _swapped(seen: View) -> list[Finding]:
-    """The columns of theta and q, if motor and link move alike with each in place of the other."""
+    """A finding if the columns of theta and q seem swapped: after a swap, q moves like theta."""
     ports = seen.configuration.ports
     if not {"theta", "q"} <= ports.keys():
         return []
@@ -113,7 +113,7 @@ def _swapped(seen: View) -> list[Finding]:
 
 
 def _tried(seen: View, finding: Finding) -> Finding:
-    """A finding without the value that it proposes, if that does not mend it."""
+    """The finding; without its proposed value if this value does not remove the finding."""
     if finding.severity is not Severity.WRONG or finding.proposed is None:
         return finding
     try:
@@ -138,12 +138,12 @@ def changed(configuration: Configuration, key: str, value: Any) -> Configuration
 
 
 def _per_gain(outputs: Outputs, method: object) -> float:
-    """Relative change of the stiffness with a relative change of the gain of the torque."""
+    """Relative change of the stiffness per relative change of the gain of the torque."""
     return float(outputs["sigma_per_gain"][-1]) if method == "FilteredRegression" else 1.0
 
 
 def _contradictions(seen: View) -> Iterator[Finding]:
-    """What the log contradicts. What would only be a consequence of another is left out."""
+    """What the log contradicts, without findings that only follow from another finding."""
     still = list(at_rest(seen))
     if still:
         yield from still
@@ -156,7 +156,7 @@ def _contradictions(seen: View) -> Iterator[Finding]:
     yield from here.findings
     keys = {each.key for each in here.findings}
     if "ports.theta.gear_ratio" in keys:
-        return  # the torque behind the gear is as wrong
+        return  # with a wrong gear ratio, the torque at the gear output is wrong too
     for each in recorded:
         if not any(key.startswith(f"ports.{each.about}.") for key in keys):
             yield each
@@ -167,11 +167,11 @@ def _contradictions(seen: View) -> Iterator[Finding]:
 
 _AWAS = ("motor.B", "motor.D_theta", "motor.gamma")
 _SAME = 0.01
-"""Two gear ratios are the same up to this."""
+"""Two gear ratios count as equal up to this relative difference."""
 
 
 def gears(configuration: Configuration, every: Mapping[str, Value]) -> Iterator[Finding]:
-    """motor.gamma beside the gear of the encoder and of the torque."""
+    """Compares motor.gamma with the gear ratios of the ports theta and tau."""
     gamma = abs(float(every["motor.gamma"]))
     for name in ("theta", "tau"):
         port = configuration.ports.get(name)
@@ -193,10 +193,10 @@ def rests_on(
     start: Mapping[str, Value],
     per_gain: float,
 ) -> Iterator[Finding]:
-    """What no log shows.
+    """Assumptions that no log can verify.
 
     start     start values of the FMU
-    per_gain  relative change of the stiffness with a relative change of the gain of the torque
+    per_gain  relative change of the stiffness per relative change of the gain of the torque
     """
     tau = configuration.ports.get("tau")
     is_current = tau is not None and tau.torque_constant is not None

@@ -1,4 +1,4 @@
-"""What the columns show as they were recorded: steps, jumps, a torque that saturates."""
+"""Checks of the recorded columns: steps of an encoder, jumps, a torque that saturates."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from sigmahat.logs.log import Array
 from sigmahat.logs.units import factor
 
 _LOOKED_AT = 20_000
-"""Values among which the step of an encoder is looked for."""
-_FINER = 1.5  # a configured step is wrong by more than this factor
-_FLAT = 3  # samples in a row at an end of the range
-_OFTEN = 0.01  # of all samples
-_FEW = 50  # values: the torque is a series of steps
+"""About how many values are searched for the step of an encoder."""
+_FINER = 1.5  # a configured step that differs by more than this factor is wrong
+_FLAT = 3  # consecutive samples at an end of the range
+_OFTEN = 0.01  # fraction of all samples
+_FEW = 50  # with fewer distinct values, the torque is a series of steps
 _PERIODS = (360.0, 2 * math.pi, *(2.0**k for k in range(8, 33)))
 
 
 def columns(seen: View) -> Iterator[Finding]:
-    """All of it, for every port."""
+    """All checks of the recorded columns, for every port."""
     for name, port in seen.configuration.ports.items():
         if port.value is not None:
             continue
         values = seen.log.read(port.column)
         finite = np.isfinite(values)
-        values = values if finite.all() else values[finite]  # a long log needs much memory
+        values = values if finite.all() else values[finite]  # no copy: a log can be long
         if name in ("theta", "q"):
             yield from _jumps(name, port, values)
             yield from _step(seen, name, port, values)
@@ -38,7 +38,7 @@ def columns(seen: View) -> Iterator[Finding]:
 
 
 def at_rest(seen: View) -> Iterator[Finding]:
-    """Positions that do not change: nothing of the joint shows then."""
+    """Positions that do not change: such a log has no information on the joint."""
     ports = [name for name in ("theta", "q") if name in seen.samples.names]
     still = [name for name in ports if _is_still(seen, name)]
     if still and seen.every["modality"] != "Sensor":
@@ -49,7 +49,7 @@ def at_rest(seen: View) -> Iterator[Finding]:
 
 
 def _is_still(seen: View, name: str) -> bool:
-    """Whether a position is one value throughout, and nobody has said that it is."""
+    """Whether a position is constant, although the configuration gives no constant."""
     values = seen.samples.values[:, list(seen.samples.names).index(name)]
     known = values[np.isfinite(values)]
     is_known = seen.configuration.ports[name].value is not None or not len(known)
@@ -57,7 +57,7 @@ def _is_still(seen: View, name: str) -> bool:
 
 
 def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
-    """A counter that starts again, without a wrap."""
+    """A counter that jumps back by its whole range, although the port has no wrap."""
     if port.wrap is not None or len(values) < 2:
         return
     steps, span = np.diff(values), float(np.ptp(values))
@@ -71,7 +71,7 @@ def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
 
 
 def _step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]:
-    """The step of the values beside the one of the configured encoder."""
+    """Compares the step of the values with the step of the configured encoder."""
     given = float(seen.every[f"encoder.{name}"])
     step = smallest_step(values[:: max(1, len(values) // _LOOKED_AT)])
     if not given or step is None:
@@ -88,7 +88,7 @@ def _step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]
 
 
 def smallest_step(values: Array) -> float | None:
-    """Step of which all differences are multiples; None if there is none."""
+    """The step if nearly all differences of the values are multiples of one step, else None."""
     distinct = np.unique(values)
     if len(distinct) < 2:
         return None
@@ -98,13 +98,13 @@ def smallest_step(values: Array) -> float | None:
         return None
     step = float(np.median(steps[steps < 1.5 * steps.min()]))
     ratio = steps / step
-    ratio = ratio[ratio < 10]  # of larger ones the rounding of text hides the rest
+    ratio = ratio[ratio < 10]  # rounding of text hides the remainder of a larger ratio
     is_multiple = np.abs(ratio - np.round(ratio)) < 0.05
     return step if np.mean(is_multiple) > 0.95 else None
 
 
 def _saturation(values: Array) -> Iterator[Finding]:
-    """Flat tops: the drive gave less than what was asked for, or the sensor did not show more."""
+    """Flat tops: the drive limited the torque, or the sensor was at the end of its range."""
     if len(np.unique(values[:_LOOKED_AT])) < _FEW:
         return
     tolerance = 1e-6 * float(np.ptp(values))

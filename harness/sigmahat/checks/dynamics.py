@@ -28,22 +28,22 @@ from sigmahat.logs.units import factor
 
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _STD = 3.0
-"""Standard deviations of a prior, beyond which it contradicts the log."""
+"""A prior contradicts the log beyond this number of standard deviations."""
 
 
 def dynamics(seen: View, here: Relation) -> Iterator[Finding]:
-    """All of it; nothing where the motion does not show it."""
+    """All checks by the motor equation, as far as the motion allows these checks."""
     found = here.fitted
     if found is None or not 0 < found.linear.half_width.get(LINEAR, math.inf) < math.inf:
-        return  # there is no stiffness in it, or no torque
+        return  # the log determines no stiffness
     sign = _sign(seen, found)
     if sign is not None:
         yield sign
-        return  # with a wrong sign the rest means nothing
+        return  # with a wrong sign, further results mean nothing
     gear = None if here.findings else _gear(seen, found, here.pieces)
     if gear is not None:
         yield gear
-        return  # the deformation is wrong, and all that follows from it
+        return  # the deformation is wrong, so all further results are wrong
     zero = _zero(seen, found, here.pieces)
     if zero is not None:
         yield zero
@@ -56,7 +56,7 @@ def dynamics(seen: View, here: Relation) -> Iterator[Finding]:
 
 
 def _sign(seen: View, found: Fitted) -> Finding | None:
-    """The torque, if it has the wrong sign; the deformation, if only the stiffness is negative."""
+    """A torque of wrong sign, or a wrong deformation if only the stiffness is negative."""
     value, half = found.linear.value, found.linear.half_width
     score = {name: value[name] / half[name] for name in value if half[name] > 0}
     stiffness = -np.sign(seen.gamma) * score[LINEAR]
@@ -76,19 +76,19 @@ def _sign(seen: View, found: Fitted) -> Finding | None:
 
 
 _LEAST_GEAR = 2e-3
-"""Relative error of a gear ratio: encoders and gears have smaller ones."""
+"""Least relative error of a gear ratio that counts: encoders and gears have smaller errors."""
 _MUCH = 0.3
-"""Squared errors over those before, if a gear ratio explains the log."""
+"""Largest ratio of the squared errors, after to before, if a gear ratio explains the log."""
 
 
 def _gear(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | None:
-    """A gear ratio that is wrong by a little, if it explains much of the torque."""
+    """A slightly wrong gear ratio, if its correction explains much of the torque."""
     if "theta" not in seen.configuration.ports:
         return None
     error = gear_error(seen, pieces, found.form)
     if error is None or not abs(error.value - 1) > error.half_width + _LEAST_GEAR:
         return None
-    # A spring that is not symmetric, or whose zero is wrong, is no gear.
+    # An asymmetric spring, or a wrong zero, must not explain the torque as well.
     others = min(found.error, float(np.sum(with_all_powers(seen, pieces, found.form).squares)))
     if not float(np.sum(error.fit.squares)) < _MUCH * others:
         return None
@@ -98,7 +98,7 @@ def _gear(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | Non
 
 
 def _zero(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | None:
-    """The zero of the deformation, where it matters: for an odd polynomial."""
+    """A wrong zero of the deformation. The zero matters only for an odd polynomial."""
     if not found.form.symmetric:
         return None
     zero = found.spring.zero(found.fit, pieces)
@@ -112,7 +112,7 @@ def _zero(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | Non
     keys = [("ports.q.zero", _moved(ports["q"], "q", zero))]
     if "theta" in ports:
         keys.append(("ports.theta.zero", _moved(ports["theta"], "theta", -zero)))
-    # One within the deformations of the log is left to identify, which sets it.
+    # A zero within the deformations of the log is only a note, because identify sets this zero.
     is_wrong = abs(zero) > covered / 2 and _is_more_than_bias(seen, found, zero)
     severity = Severity.WRONG if is_wrong else Severity.NOTE
     (key, proposed), *others = keys
@@ -143,7 +143,7 @@ def _moved(port: Port, name: str, angle: float) -> float:
 
 
 def _late(seen: View, here: Relation, found: Fitted) -> Iterator[Finding]:
-    """The torque against the motion."""
+    """Delay of the torque with respect to the motion."""
     late = delay(seen, here.pieces, found.form)
     if late is None:
         return
@@ -153,13 +153,13 @@ def _late(seen: View, here: Relation, found: Fitted) -> Iterator[Finding]:
     is_expected = least < _STD * float(seen.every["prior.delay"])
     severity = Severity.NOTE if is_expected else Severity.WRONG
     port = seen.configuration.ports["tau"]
-    # Expected ones are left to the estimator: damping of the spring looks like an early torque.
+    # The estimator handles expected delays: damping of the spring looks like an early torque.
     proposed = None if is_expected else float(f"{port.delay + late.value:.3g}")
     yield Finding(Kind.TORQUE_LAG, severity, "ports.tau.delay", late.value, "s", 0.0, proposed)
 
 
 def _encoder_lag(seen: View, found: Fitted) -> Iterator[Finding]:
-    """A friction below 0: encoders that are read at different times look like it."""
+    """A friction below 0, as encoders that are read at different times cause."""
     value, half = found.linear.value, found.linear.half_width
     if not value["D_theta"] + half["D_theta"] < 0:
         return
@@ -175,15 +175,15 @@ def _encoder_lag(seen: View, found: Fitted) -> Iterator[Finding]:
     yield Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others)
 
 
-_AWAS = 2.3e-5  # [kg.m2] of motor.B, the start value
+_AWAS = 2.3e-5  # start value of motor.B [kg.m2]
 _LARGE = 5.0
-"""Friction and delays of other forms than those of the equation change B by less than this."""
-_DIFFERENT = 2.0  # and a torque constant is not wrong by more than this
-_LIKE = 3.0  # a ratio of inertias is that of the gear up to this factor
+"""Friction and delays that the equation does not model change B by less than this factor."""
+_DIFFERENT = 2.0  # a torque constant is wrong by less than this factor
+_LIKE = 3.0  # up to this factor, a ratio of inertias counts as the gear ratio
 
 
 def inertia(seen: View, pieces: Sequence[Signals], found: Fitted) -> Iterator[Finding]:
-    """The inertia, or what the torque is multiplied by, where the log shows it clearly."""
+    """A wrong inertia, or a wrong scale of the torque, if the log shows the error clearly."""
     given = float(seen.every["motor.B"])
     B = _nearest(seen, pieces, found, given) if given > 0 else None
     if B is None or not _differs(B, given, _DIFFERENT):
@@ -193,7 +193,7 @@ def inertia(seen: View, pieces: Sequence[Signals], found: Fitted) -> Iterator[Fi
     B = found.linear.value["B"]
     unit, rounded = "kg.m2", float(f"{B:.3g}")
     if float(seen.every["prior.B"]) >= WIDE:
-        return  # nobody has said that B is right, and identify will find it
+        return  # the prior of B is wide, so identify will determine B
     gamma = abs(seen.gamma)
     geared = [each for each in (gamma, 1 / gamma) if not _differs(B, each * given, _LIKE)]
     is_given = "motor.B" in seen.configuration.parameters
@@ -211,8 +211,8 @@ def inertia(seen: View, pieces: Sequence[Signals], found: Fitted) -> Iterator[Fi
 
 
 def _nearest(seen: View, pieces: Sequence[Signals], found: Fitted, given: float) -> float | None:
-    """Of the inertias with other forms of friction, and the ends of the interval, the one that
-    differs least from the configured one; None if one of them is not above 0."""
+    """The inertia that differs least from `given`, among fits with other forms of friction and the
+    ends of the interval. None if the difference is not clear, or an inertia is not above 0."""
     B, half = found.linear.value["B"], found.linear.half_width["B"]
     if not 0 < B - half < math.inf or not _differs(B, given, _DIFFERENT):
         return None

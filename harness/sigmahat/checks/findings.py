@@ -17,7 +17,7 @@ class Severity(Enum):
     WRONG = "wrong"
     """The configuration contradicts the log."""
     RESTS_ON = "rests on"
-    """The answer rests on it: no log can show whether it is right."""
+    """The result depends on an assumption, and no log can show whether this assumption is right."""
     NOTE = "note"
     """Worth knowing; the configuration may be right."""
 
@@ -57,25 +57,25 @@ class Finding:
     kind: Kind
     """What was checked."""
     severity: Severity
-    """How much it matters."""
+    """How much the finding matters."""
     key: str
     """The key of the configuration to look at first, as "ports.tau.sign" or "motor.gamma"."""
     measured: float
     """What the log shows, in `unit`."""
     unit: str
-    """Unit of `measured` and `expected`; "" for a number without one."""
+    """Unit of `measured` and `expected`; "" for a number without a unit."""
     expected: float | None = None
-    """What the configuration says or what is usual, in `unit`; None if there is no such value."""
+    """The configured or the usual value, in `unit`; None if no such value exists."""
     proposed: Proposal | None = None
-    """A value of the key that agrees with the log; None if the log does not show one."""
+    """A value of the key that agrees with the log; None if the log shows no such value."""
     others: Sequence[tuple[str, Proposal | None]] = ()
-    """Other keys that would explain the same, each with the value that it would need."""
+    """Other keys that would explain the finding, each key with the value required."""
     about: str = ""
-    """What the kind leaves open: a port, a parameter of the FMU, or an item of its output doubt."""
+    """Detail of the kind: a port, a parameter of the FMU, or an item of the FMU's output doubt."""
 
     @property
     def keys(self) -> Sequence[str]:
-        """All keys that explain the finding, the most likely one first."""
+        """All keys that explain the finding, the most likely key first."""
         return (self.key, *(key for key, _ in self.others))
 
 
@@ -84,9 +84,9 @@ class Checked:
     """The result of all checks."""
 
     findings: Sequence[Finding]
-    """What is wrong first, then what the answer rests on, then notes."""
+    """Errors first, then assumptions that no log can verify, then notes."""
     ticks: int
-    """Number of ticks of the estimator that were looked at."""
+    """Number of ticks of the estimator that were checked."""
     T: float
     """Time between ticks [s]."""
 

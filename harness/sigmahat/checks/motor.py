@@ -1,7 +1,7 @@
 """The motor equation of a log, fitted quickly: signs, zero, delay and errors for the checks.
 
-It is the equation of `identify` with one form of friction and one filter, so its intervals are
-narrower than those of `identify`. A torque that is late by delta is the column of its slope:
+The equation is the equation of `identify` with one form of friction and one filter. So intervals
+are narrower than in `identify`. The slope of the torque is the column of a delay delta:
 tau(t - delta) = tau(t) - delta tau'(t).
 """
 
@@ -34,13 +34,13 @@ from sigmahat.logs.log import Array
 LINEAR = "eta[0,0]"
 """The column of a linear spring."""
 _HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Coulomb friction
-_SLOWEST = 0.1  # [s] between ticks: slower ones do not show the motion of a joint
+_SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a joint
 _ORDERS = 3
 _STEPS = 4  # of Newton's method for the delay
-_LONGEST = 0.1  # [s] of a delay
+_LONGEST = 0.1  # largest delay [s]
 _BETTER = 0.7
-"""Squared errors over those before, if something explains the log: friction of another form than
-that of the equation makes nearly everything significant."""
+"""Largest ratio of the squared errors, after to before, if a change explains the log. Significance
+alone is not enough: with unmodelled friction, nearly every change is significant."""
 
 
 @dataclass(frozen=True)
@@ -50,9 +50,9 @@ class Fitted:
     form: Form
     """Orders and filters."""
     fit: Fit
-    """With a polynomial of these orders."""
+    """Fit with a polynomial of these orders."""
     linear: Fit
-    """With a linear spring."""
+    """Fit with a linear spring."""
     spring: Spring
     """The polynomial."""
 
@@ -65,7 +65,7 @@ class Fitted:
 def fitted(seen: View, pieces: Sequence[Signals]) -> Fitted | None:
     """Fits the motor equation, or with a torque sensor the spring alone.
 
-    None without data, or if they are too slow for motor and spring.
+    None without data, or if the sample period is too long for the motion of a joint.
     """
     if not pieces or seen.T > _SLOWEST:
         return None
@@ -87,26 +87,26 @@ class Delay:
     half_width: float
     """Half of the 95 % interval [s]."""
     fit: Fit
-    """The motor equation with the torque moved."""
+    """Fit of the motor equation with the torque shifted by the delay."""
 
 
 @dataclass(frozen=True)
 class GearError:
-    """The gear ratio of the motor's encoder beside the one that the motion shows."""
+    """The configured gear ratio of the motor's encoder, compared with the motion."""
 
     value: float
-    """Configured gear ratio over the right one [1]."""
+    """Configured gear ratio divided by the right gear ratio [1]."""
     half_width: float
     """Half of the 95 % interval [1]."""
     fit: Fit
-    """The motor equation with theta corrected."""
+    """Fit of the motor equation with a corrected theta."""
 
 
 def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Delay | None:
     """How late the torque is; None if no value is found.
 
-    Newton's method: the torque is moved by what was found, until the column of its slope has no
-    share left. So neither the noise of the slope nor the curvature of the torque bias the result.
+    Newton's method: each step shifts the torque by the delay found, so the coefficient of the slope
+    tends to 0. So neither noise of the slope nor curvature of the torque biases the result.
     """
     late = 0.0
     for _ in range(_STEPS):
@@ -121,10 +121,10 @@ def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Delay | None:
 
 
 def gear_error(seen: View, pieces: Sequence[Signals], form: Form) -> GearError | None:
-    """By how much the motor moves too far for its gear ratio; None if the motion does not show it.
+    """Error of the gear ratio of theta; None if the motion does not determine this error.
 
-    With theta (1 + delta) for theta, the spring takes phi - delta theta: its torque has a share of
-    theta, which is a column here. Newton's method: theta is corrected until there is no share left.
+    With theta (1 + delta) for theta, phi becomes phi - delta theta. So the torque has a term in
+    theta, which is a column here. Newton's method corrects theta until this term vanishes.
     """
     whole = 1.0
     for _ in range(_STEPS):
@@ -144,7 +144,7 @@ def gear_error(seen: View, pieces: Sequence[Signals], form: Form) -> GearError |
 
 
 def variants(form: Form) -> list[Form]:
-    """Forms that differ in what nobody knows: the low pass, and the form of friction."""
+    """Forms that differ in uncertain choices: the low pass, and the form of friction."""
     return [
         replace(form, f_0=0.6 * form.f_0),
         replace(form, load_friction=True),
@@ -163,7 +163,7 @@ def with_inertia(seen: View, pieces: Sequence[Signals], form: Form, B: float) ->
 
 
 def explains(before: Fit, after: Fit) -> bool:
-    """Whether a change explains much of what was not explained before."""
+    """Whether a change explains much of the errors before the change."""
     less = float(np.sum(after.squares)) < _BETTER * float(np.sum(before.squares))
     return less and is_worse(before, after)
 
@@ -211,7 +211,7 @@ def _with_column(
 
 
 def _moved(tau: Array, ticks: float) -> Array:
-    """A torque, earlier by a number of ticks."""
+    """A torque, shifted to earlier times by a number of ticks."""
     at = np.arange(len(tau), dtype=np.float64)
     moved: Array = np.interp(at + ticks, at, tau)
     return moved

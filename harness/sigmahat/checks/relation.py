@@ -1,8 +1,8 @@
 """How q follows theta: their slope is 1, unless a sign, a unit, a gear or an encoder is wrong.
 
-In slow motion the link follows its motor. Near the resonance it does not, and a link that is held
-does not either. So a slope alone is no proof: with the scale that it proposes, the motor
-equation must fit the torque as well as before, or better.
+In slow motion the link follows its motor. Near the resonance the link does not, nor if the link is
+held. So a slope alone is no proof: with the scale that the slope proposes, the motor equation must
+fit the torque as well as before, or better.
 """
 
 from __future__ import annotations
@@ -24,24 +24,24 @@ from sigmahat.logs.units import factor
 
 _ANGLES = ("rad", "deg", "turn")
 _COUNTS = tuple(2.0**k for i in (2, 1, 3, 4, 5, 6) for k in (i, -i))
-"""Other numbers of counts: the evaluation of lines is two- or four-fold, and wraps are no turns."""
+"""Likely factors of wrong counts: two or four counts per line, and wraps mistaken for turns."""
 _LIKE = math.log(2.0)
-"""A spring deforms, so q and theta do not move alike: a factor is recognised up to this."""
+"""Tolerance of the logarithm of a factor: a spring deforms, so q and theta do not move alike."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """Another value of a key, and by what it multiplies the values of the port."""
+    """Another value of a key, and the factor by which the values of the port change."""
 
     key: str
     value: Proposal
     factor: float
     fits_any: bool = False
-    """Whether it is made for the slope of the log, whatever that is."""
+    """Whether the value was computed from the slope of the log, so that any slope fits."""
 
 
 def changes(name: str, port: Port, gamma: float) -> Iterator[Change]:
-    """Changes of the scale of an angle, the likely ones first.
+    """Changes of the scale of an angle, likely changes first.
 
     name   theta or q
     gamma  gear ratio of the motor
@@ -72,7 +72,7 @@ def gear_of(theta: Port, slope: float) -> Change:
 
 
 def _unlikely(name: str, change: Change, slope: float) -> float:
-    """Small for a change that comes first."""
+    """Sort key of a change: the change with the smallest key is tried first."""
     return _ANY if change.fits_any else round(distance(_on_theta(name, change), slope), 1)
 
 
@@ -87,22 +87,22 @@ def distance(one: float, other: float) -> float:
 
 
 _WHOLE = 0.02
-"""Gear ratios are whole numbers more often than not: up to this, the nearest one is proposed."""
+"""Most gear ratios are integers: up to this relative error, the nearest integer is proposed."""
 _ANY = 0.05
-"""Distance of a gear ratio that is made for the slope: what agrees by itself comes first."""
+"""Sort key of a gear ratio that was computed from the slope: other changes that agree are first."""
 _SLOW = 1.0  # [Hz]
-_ENOUGH = 0.1  # of the motion must be slow, else all of it is taken
+_ENOUGH = 0.1  # least fraction of slow motion, else the whole motion is used
 _CORRELATED = 0.9
-_FAR = 5.0  # a spring may make the motion of the link so much larger, below its resonance
-_DIFFERENT = 1.5  # a slope so near to 1 is that of a soft spring
-_BETTER = 0.8  # squared errors over those before
-_AS_WELL = 0.25  # of the logarithm of a factor: another one explains the same
+_FAR = 5.0  # below resonance, a spring may enlarge the motion of the link by this factor
+_DIFFERENT = 1.5  # up to this factor, a soft spring may be the cause of the slope
+_BETTER = 0.8  # largest ratio of the squared errors, after to before
+_AS_WELL = 0.25  # tolerance of the logarithm: another factor explains the same slope
 PORTS = ("theta", "q")
 
 
 @dataclass(frozen=True)
 class Relation:
-    """The motion of q and theta after what was found wrong is put right."""
+    """The motion of q and theta after the errors found are corrected."""
 
     findings: Sequence[Finding]
     pieces: Sequence[Signals]
@@ -112,7 +112,7 @@ class Relation:
 
 
 def relation(seen: View) -> Relation:
-    """Compares the motion of q with that of theta, and puts scale and sign right."""
+    """Compares the motions of q and theta, and corrects scale and sign."""
     here = Relation((), seen.pieces, fitted(seen, seen.pieces))
     if not {"theta", "q"} <= set(seen.samples.names) or _is_from_torque(seen.configuration.ports):
         return here
@@ -124,7 +124,7 @@ def relation(seen: View) -> Relation:
 
 
 def _is_from_torque(ports: Mapping[str, Port]) -> bool:
-    """Whether theta is the compliance of a test bench, from the torque: it drives no link."""
+    """Whether theta is the compliance of a test bench, from the torque: theta drives no link."""
     return "tau_e_sensor" in ports and ports["theta"].column == ports["tau_e_sensor"].column
 
 
@@ -181,7 +181,7 @@ def _sign(seen: View, here: Relation, slope: float) -> Relation:
     if gear < 0:
         keys = {"ports.theta.gear_ratio": -gear, "ports.q.sign": keys["ports.q.sign"]}
     elif not _sign_of_motor(after) < 0:
-        # With the sign of theta instead, all that moves the motor has the other sign.
+        # A change of the sign of theta instead would change the signs of inertia and friction.
         name = "q"
         keys = dict(reversed(keys.items()))
     (key, proposed), *others = keys.items()
@@ -193,7 +193,7 @@ def _sign(seen: View, here: Relation, slope: float) -> Relation:
 
 
 def _sign_of_motor(found: Fitted | None) -> float:
-    """Sign of inertia and friction together; 0 if they do not show it."""
+    """Common sign of inertia and friction; 0 if the fit does not determine this sign."""
     if found is None:
         return 0.0
     scores = [
@@ -205,7 +205,7 @@ def _sign_of_motor(found: Fitted | None) -> float:
 
 
 def _on_theta(name: str, change: Change) -> float:
-    """What theta would have to be multiplied by, instead of the port."""
+    """The factor of theta that has the same effect on the slope as a change of port `name`."""
     return change.factor if name == "theta" else 1 / change.factor
 
 
@@ -230,14 +230,14 @@ def _is_better(before: Fitted | None, after: Fitted | None) -> bool:
 
 
 def slope_of(pieces: Sequence[Signals], T: float) -> float | None:
-    """Slope of q on theta by total least squares, in slow motion if there is any."""
+    """Slope of q on theta by total least squares, of the slow motion if the log has any."""
     if not pieces:
         return None
     both = np.concatenate([_slow(np.column_stack([p.theta, p.theta + p.phi]), T) for p in pieces])
     variances = np.var(both, axis=0)
     if not np.all(variances > 0):
         return None
-    # Scaled to one variance: their axis is then the diagonal, whatever the units are.
+    # If both are scaled to variance 1, the axis is the diagonal, whatever the units are.
     if abs(np.corrcoef(both.T)[0, 1]) < _CORRELATED:
         return None
     sign = np.sign(np.corrcoef(both.T)[0, 1])
@@ -245,7 +245,7 @@ def slope_of(pieces: Sequence[Signals], T: float) -> float | None:
 
 
 def _slow(motion: Array, T: float) -> Array:
-    """Without its mean; only what is slow, if that is enough of the motion."""
+    """The motion without its mean; only the slow part, if this part is large enough."""
     motion = motion - motion.mean(axis=0)
     slow = low_pass(motion, min(_SLOW, 0.1 / T), T)
     return slow if np.all(np.std(slow, axis=0) > _ENOUGH * np.std(motion, axis=0)) else motion

@@ -13,13 +13,13 @@ from sigmahat.fmi.instance import Slave
 from sigmahat.identification.noise import variance
 from sigmahat.logs.replay import parameters, replay
 
-_MISFIT = 3.0  # of the model; what real joints have besides it gives up to about 2
-_NOISE = 3.0  # standard deviation over the configured one
+_MISFIT = 3.0  # of the model; unmodelled effects of real joints cause up to about 2
+_NOISE = 3.0  # ratio of standard deviations, measured to configured
 _LEARNED = 0.5
-_DOUBTED = 0.5  # share of the second half
-_ROOM = 1.2  # of a range over the largest value
-_WIDE = 5.0  # a range over the largest value
-_TORQUE = 3.0  # torque over the configured one
+_DOUBTED = 0.5  # fraction of the second half
+_ROOM = 1.2  # ratio of a proposed range to the largest value
+_WIDE = 5.0  # a range is too wide from this ratio to the largest value
+_TORQUE = 3.0  # ratio of torques, measured to configured
 
 Outputs = Mapping[str, np.ndarray[Any, Any]]
 _KEYS = {
@@ -36,13 +36,13 @@ _KEYS = {
 def play(slave: Slave, seen: View) -> Outputs:
     """Outputs of the estimator at the ticks of the view. Raises FmuError if the FMU refuses."""
     start = parameters(slave.fmu, seen.configuration)
-    with slave.only_errors():  # its warnings are findings here
+    with slave.only_errors():  # the FMU's warnings are findings here
         (outputs,) = replay(slave, seen.samples, start, len(seen.samples.values))
     return outputs
 
 
 def replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
-    """All of it."""
+    """All findings of the replay."""
     yield from _range(seen, outputs)
     yield from _noise(seen)
     valid = outputs["valid"]
@@ -57,7 +57,7 @@ def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:
     every, known = seen.every, seen.configuration.parameters
     is_regression = every["method"] == "FilteredRegression"
     phi, given = float(np.max(np.abs(outputs["phi"]))), float(every["range.phi"])
-    # What identify will set is no finding before it.
+    # A value that identify will set is no finding before identify has run.
     if is_regression and "range.phi" in known and not given / _WIDE < phi < given:
         severity = Severity.WRONG if phi > _ROOM * given else Severity.NOTE
         proposed = float(f"{_ROOM * phi:.3g}")
@@ -71,7 +71,7 @@ def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:
 
 
 def _noise(seen: View) -> Iterator[Finding]:
-    """Noise of the torque, which the prediction error cannot be below."""
+    """Noise of the torque: the lower limit of the prediction error."""
     key = "noise.tau_e" if seen.has_sensor else "noise.tau"
     if not seen.pieces or (seen.every["modality"] == "Model"):
         return
@@ -84,7 +84,7 @@ def _noise(seen: View) -> Iterator[Finding]:
 
 
 def _claims(outputs: Outputs) -> Iterator[Finding]:
-    """How certain the estimator is."""
+    """Misfit of the model, and doubts that the estimator reports often."""
     misfit = float(outputs["misfit"][-1])
     if misfit > _MISFIT:
         yield Finding(Kind.MISFIT, Severity.NOTE, "rls.n", misfit, "", 1.0)

@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
 
 IN_LOG = (Severity.WRONG, Severity.NOTE)
-"""What the log shows. The commands that estimate say themselves what their answer rests on."""
+"""Findings that the log shows. The commands that estimate print their own assumptions."""
 TITLES = {
     Severity.WRONG: "checked, likely wrong in the configuration:",
     Severity.NOTE: "worth a look:",
-    Severity.RESTS_ON: "no log can show; the answer rests on it:",
+    Severity.RESTS_ON: "assumptions that no log can verify:",
 }
 _DOUBTS = {
     "NotExcited": "the motion was too small or too short",
@@ -79,7 +79,7 @@ def _number(value: float | None, unit: str) -> str:
 
 
 def _what(f: Finding) -> str:
-    """The sentence of its kind, filled in."""
+    """The sentence for the kind of the finding, with its values."""
     template = _SENTENCES.get(f.kind, "")
     if f.kind is Kind.SLOPE and f.about == "sign":
         template = "q moves against theta"

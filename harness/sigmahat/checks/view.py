@@ -1,4 +1,4 @@
-"""The part of a log that is looked at: a bounded number of ticks, at the units of the ports."""
+"""The part of a log that the checks use: a bounded number of ticks, in units of the estimator."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sigmahat.logs.log import Log
 from sigmahat.logs.sampling import Samples, sample
 
 _MOST = 60_000
-"""Ticks that are looked at: of a longer log, those in which the joint moves most."""
+"""Largest number of ticks: from a longer log, the checks use the part with the most motion."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class View:
     """A log under a configuration, as the checks see it."""
 
     log: Log
-    """The log, for what conversion and sampling would hide."""
+    """The log, for checks of effects that conversion and sampling would hide."""
     configuration: Configuration
     """The configuration, as it is given."""
     every: Mapping[str, Value]
@@ -31,7 +31,7 @@ class View:
     """At most 60000 ticks."""
     pieces: Sequence[Signals]
     """Stretches without a gap in which theta, q and the torque of the modality are known. tau is
-    that of the motor, or the one of the sensor over the gear ratio, with the sign of tau."""
+    the motor's torque, or the sensor's torque divided by the gear ratio, with the sign of tau."""
 
     @property
     def T(self) -> float:
@@ -45,7 +45,7 @@ class View:
 
     @property
     def has_sensor(self) -> bool:
-        """Whether the torque is that of a sensor."""
+        """Whether a sensor measures the torque."""
         return self.every["modality"] == "Sensor"
 
 

@@ -1,7 +1,7 @@
 """What several commands share: options, the folder they write to, progress, errors in one line.
 
-A command with `@json_option` and `@quiet_option` ends with `answer(text, values)`, and has
-nothing else to do for them.
+A command with `@json_option` and `@quiet_option` ends with `answer(text, values)`, and needs
+nothing else for these options.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _Command = TypeVar("_Command", bound=Callable[..., object])
 _Result = TypeVar("_Result")
 _CALL = re.compile(r"^\w+: (?:fmi\w+: )?[Pp]arameter")
-"""Instance and function of an FMU's message about a parameter, which users do not call."""
+"""Instance and function in an FMU's message about a parameter: users do not know either."""
 _JSON, _QUIET = "sigmahat.json", "sigmahat.quiet"
 
 
@@ -44,7 +44,7 @@ def log_argument(command: _Command) -> _Command:
 
 
 def config_option(what: str) -> Callable[[_Command], _Command]:
-    """Gives a command the option --config; what says what the file is for."""
+    """Gives a command the option --config; `what` describes the purpose of the file."""
     return click.option(
         "--config",
         type=click.Path(path_type=Path, dir_okay=False),
@@ -54,12 +54,12 @@ def config_option(what: str) -> Callable[[_Command], _Command]:
 
 def joint_option(command: _Command) -> _Command:
     """Gives a command the option --joint."""
-    text = "Only this one of the joints of the configuration.  [default: each of them]"
+    text = "Only this joint of the configuration.  [default: every joint]"
     return click.option("--joint", metavar="NAME", default="", help=text)(command)
 
 
 def joints_of(log: Path, config: Path, joint: str) -> list[str]:
-    """The joint that was asked for, else all of a configuration; [""] if it names none.
+    """The requested joint, else all joints of the configuration; [""] if the file names no joint.
 
     Raises LogError if the log or the configuration cannot be read.
     """
@@ -67,12 +67,12 @@ def joints_of(log: Path, config: Path, joint: str) -> list[str]:
     from sigmahat.logs.configuration import read_document
     from sigmahat.logs.readers.formats import open_log
 
-    open_log(log)  # a log that is missing is said before a configuration that is
+    open_log(log)  # a missing log is reported before a missing configuration
     return [joint] if joint else every(read_document(config), config)
 
 
 def for_each(joints: Sequence[str], job: Callable[[str], _Result]) -> dict[str, _Result]:
-    """Does a job for each joint, by its name; the jobs of several joints in other processes."""
+    """Runs a job for each name of a joint; with several joints, in other processes."""
     if len(joints) == 1:
         return {joints[0]: job(joints[0])}
     from sigmahat.runs.pool import spread
@@ -96,7 +96,7 @@ def _with_name(job: Callable[[str], _Result], joint: str) -> _Result:
 
 
 def answer_of_joints(texts: Mapping[str, str], values: Mapping[str, object]) -> None:
-    """Prints what was found about each joint; that of a configuration of one joint has no head."""
+    """Prints the result of each joint; the result of a single joint without a name has no title."""
     if list(texts) == [""]:
         answer(texts[""], values[""])
     else:
@@ -133,7 +133,7 @@ def is_quiet() -> bool:
 
 
 def printable(text: str) -> str:
-    """A text without what a terminal takes for a command, such as in the name of a column."""
+    """A text without characters that a terminal would execute, such as in the name of a column."""
     kept = "\n\t"
     return "".join(c if c.isprintable() or c in kept else repr(c)[1:-1] for c in text)
 
@@ -141,7 +141,7 @@ def printable(text: str) -> str:
 def folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | None:
     """Callback of an option: a folder to write into.
 
-    An empty name is refused: a shell makes it of a variable that is not set.
+    An empty name is refused: a shell passes an empty name if a variable is not set.
     """
     if name == "":
         raise click.BadParameter("expected a folder, got an empty name.")
@@ -151,8 +151,8 @@ def folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | No
 
 
 def progress(label: str, length: int) -> Any:
-    """A progress bar on stderr, hidden where nobody sees it or wants it."""
-    context = click.get_current_context(silent=True)  # none in the process of one of several joints
+    """A progress bar on stderr, hidden after --quiet or if stderr is no terminal."""
+    context = click.get_current_context(silent=True)  # None in the processes of `for_each`
     hidden = context is None or context.meta.get(_QUIET) or not sys.stderr.isatty()
     return click.progressbar(length=length, label=label, file=sys.stderr, hidden=hidden)
 
@@ -171,7 +171,7 @@ def need_fmu(name: str) -> None:
 
 
 def ready_scenario(name: str) -> Scenario:
-    """The scenario of a name, whose FMUs are there.
+    """The scenario with this name, whose FMUs are built.
 
     Raises UsageError for a name that does not exist, ClickException for an FMU that is not built.
     """
@@ -193,10 +193,10 @@ def need_fmus(scenario: Scenario) -> None:
 
 @contextmanager
 def errors_in_one_line(out: Path, option: str = "--out") -> Iterator[None]:
-    """Context of a command that writes to out, which an option names: its errors become one line.
+    """Context of a command that writes to `out`, given by `option`: errors become one line.
 
-    Raises ClickException for an FMU's refusal, a value that does not fit, workers that are lost,
-    and a file or folder that cannot be written.
+    Raises ClickException if an FMU refuses a value, a value does not fit, workers are lost, or a
+    file or folder cannot be written.
     """
     from sigmahat.fmi.instance import FmuError
     from sigmahat.runs.pool import WorkerError

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 @click.option(
     "--joint",
     metavar="NAME",
-    help="Only this one of the joints of LOG, as its columns name it.  [default: each of them]",
+    help="Only this joint of LOG, with its name in the columns.  [default: every joint]",
 )
 @click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
 @common.quiet_option
@@ -33,7 +33,7 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. Ports, units, signs and gear are guessed
     from names and values of the columns. What cannot be guessed is marked with FILL IN.
 
-    For a log of several joints the file has a section for each of them, and what they share once.
+    For a log of several joints, the file has a section for each joint, and common values once.
 
     \b
     Example: sigmahat init knee.csv
@@ -62,7 +62,7 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
 
 
 def _text(log: Path, joints: Mapping[str, JointGuess], path: Path) -> str:
-    """What was guessed, and what is next."""
+    """The guessed values, and the next command."""
     lines = [line for joint in joints.values() for line in _guessed(joint)]
     text = path.read_text(encoding="utf-8")
     asked = sum("FILL IN" in line for line in text.splitlines() if not line.startswith("#"))
@@ -105,8 +105,8 @@ def _guessed(joint: JointGuess) -> Iterator[str]:
 def open_page(log: Path, config: Path | None, port: int) -> None:
     """Set up LOG in the browser: columns, units and signs, with checks and the curve below.
 
-    The page is served on this computer alone, at an address with a token, until Ctrl-C. It writes
-    the same file as `sigmahat init` and an editor do.
+    The page is served on this computer alone, at an address with a token, until Ctrl-C. The page
+    writes the same file as `sigmahat init`.
 
     \b
     Example: sigmahat open knee.csv
@@ -133,9 +133,9 @@ def open_page(log: Path, config: Path | None, port: int) -> None:
 @common.json_option
 @common.quiet_option
 def check(log: Path, config: Path | None, joint: str) -> int:
-    """Say what in the configuration of LOG is likely wrong, and which key to look at.
+    """Find likely errors in the configuration of LOG, and name the keys to look at.
 
-    Signs, units, gear ratios, zeros and delays show in the log; what no log can show is listed.
+    The log shows signs, units, gear ratios, zeros and delays. Unverifiable assumptions are listed.
     Exit status: 0 if nothing contradicts the log, 1 if something does.
 
     \b
@@ -164,7 +164,7 @@ def _checked(log: Path, config: Path, joint: str) -> Checked:
 
 @click.command()
 @common.log_argument
-@common.config_option("It is read, then updated.")
+@common.config_option("File to read and to update.")
 @common.joint_option
 @click.option(
     "--torque-constant",
@@ -179,7 +179,7 @@ def identify(
 ) -> None:
     """Identify B, D_theta and Coulomb friction from LOG; write them into the configuration.
 
-    A value that the motion does not determine is not written: "cannot tell". Comments are kept.
+    A value that the motion does not determine is not written, but reported. Comments are kept.
 
     \b
     Example: sigmahat identify knee.csv --config knee.toml
@@ -220,7 +220,7 @@ def identify(
 def _identified(
     log: Path, config: Path, torque_constant: bool, dry_run: bool, joint: str
 ) -> tuple[Identified, Checked]:
-    """What is identified of a joint, and the checks with it; no file is written."""
+    """The identified values of a joint, and the checks with these values; no file is written."""
     from sigmahat.checks.check import check_identified
     from sigmahat.identification.identify import identify
     from sigmahat.identification.write import update

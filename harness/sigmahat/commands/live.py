@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     default="udp:9870",
     show_default=True,
     metavar="SOURCE",
-    help="udp:PORT, a datagram is a message; tcp:PORT or stdin, a line is one; each is JSON or "
+    help="udp:PORT, one message per datagram; tcp:PORT or stdin, one message per line, as JSON or "
     "CSV. ros2: joint states, from the topics that the columns name.",
 )
 @click.option(
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     "--host",
     default="127.0.0.1",
     show_default=True,
-    help="Address of this computer that others may reach; 0.0.0.0 is each one.",
+    help="Address of this computer to which others may connect; 0.0.0.0 means every address.",
 )
 @click.option(
     "--out",
@@ -70,8 +70,8 @@ def live(
 ) -> None:
     """Estimate on line: messages of a robot in, estimates out, until Ctrl-C.
 
-    CONFIG is that of a log of the robot; its columns are those of the messages. What was received
-    is recorded as a log, from which `sigmahat estimate` gets the same estimates.
+    CONFIG is the configuration of a log of the robot, with the columns of the messages. Messages
+    are recorded as a log, from which `sigmahat estimate` computes the same estimates.
 
     \b
     Example: sigmahat live knee.toml --from udp:9870 --to udp:9871
@@ -114,7 +114,7 @@ def live(
 
 
 def _greeting(session: Session, source: str, targets: Sequence[str], host: str) -> str:
-    """What it waits for, what it opens, and what it takes as given."""
+    """Lines about the source of messages, the open ports, and the assumed settings."""
     lines = [f"Messages from {source}; columns {', '.join(session.columns)}; Ctrl-C ends it"]
     opened = [
         each

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class _Number(click.FloatRange):
-    """A number in a range; nan is in none, though no comparison says so."""
+    """A number in a range. nan is refused separately, because no comparison excludes nan."""
 
     def convert(
         self, value: Any, param: click.Parameter | None, context: click.Context | None
@@ -36,9 +36,9 @@ def _limit(name: str, text: str) -> click.Option:
 
 @click.command(
     params=[
-        _limit("angle", "Most to either side of the start [rad]."),
+        _limit("angle", "Largest distance from the start position [rad]."),
         _limit("velocity", "Largest velocity [rad/s]."),
-        _limit("torque", "Largest torque of the motor behind its gear [N.m]."),
+        _limit("torque", "Largest torque of the motor at the gear output [N.m]."),
         _limit("deformation", "Largest deformation of the transmission [rad]."),
     ]
 )
@@ -48,14 +48,14 @@ def _limit(name: str, text: str) -> click.Option:
     type=_Number(5, 600),
     default=30.0,
     show_default=True,
-    help="Its duration.",
+    help="Duration of the motion.",
 )
 @click.option(
     "--start",
     type=_Number(-1e6, 1e6),
     default=0.0,
     show_default=True,
-    help="Position of the motor behind its gear at the start [rad].",
+    help="Start position of the motor at the gear output [rad].",
 )
 @click.option(
     "--after",
@@ -84,10 +84,10 @@ def motion(
 ) -> None:
     """Propose a motion of the motor that will show the stiffness of a joint.
 
-    The motion is a sum of sines that keeps the limits, all behind the gear, for each joint of a
-    set: those that may have such limits or, with --after, those that the log may be of. It stays
-    below their resonance, begins and ends at rest, and is written as CSV, as a trajectory for ROS,
-    and as C. From CONFIG it takes gear ratio, encoders and noise.
+    The motion is a sum of sines that keeps the limits at the gear output for every joint of a set.
+    The set has joints that fit the limits or, with --after, joints that fit the log. The motion
+    stays below resonance, begins and ends at rest, and is written as CSV, as a trajectory for ROS,
+    and as C. CONFIG gives gear ratio, encoders and noise.
 
     \b
     Example: sigmahat motion --angle 1 --velocity 2 --torque 100 --deformation 0.02

@@ -51,10 +51,10 @@ def estimate(
     """Replay LOG through the estimator, and add the stiffness to its table.
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag; `sigmahat init LOG` writes the
-    configuration. Writes a table (CSV for CSV, else Parquet), the stiffness over the deformation
+    configuration. Writes a table (CSV for CSV, else Parquet), the stiffness against deformation
     (estimate.curve.csv), a figure, a data sheet of the joint
     (joint.json) for `sigmahat export`, and what was learned (state.json) for --start-from.
-    Each of several joints has a folder of its own there, and a row in joints.csv.
+    With several joints, each joint has its own folder, and a row in joints.csv.
 
     \b
     Example: sigmahat estimate knee.parquet --config knee.toml --out knee
@@ -68,7 +68,7 @@ def estimate(
 
     common.need_fmu("StiffnessEstimator")
     if to is not None:
-        import_module("mcap")  # a package that is missing is said before the work
+        import_module("mcap")  # report a missing package before the work
     out = out or Path("sigmahat-results", log.stem)
     config = config or common.configuration_of(log)
     with common.errors_in_one_line(out):
@@ -94,7 +94,7 @@ def estimate(
 def _estimated(
     log: Path, config: Path, out: Path, start_from: Path | None, to: str | None, joint: str
 ) -> tuple[Estimate, Checked]:
-    """The estimate of a joint, whose files are written, and what the checks say."""
+    """Writes the files of a joint. Returns its estimate and the result of the checks."""
     from sigmahat.checks.check import check
     from sigmahat.checks.text import rows
     from sigmahat.logs.configuration import read_configuration
@@ -103,7 +103,7 @@ def _estimated(
 
     opened = open_log(log)
     configuration = read_configuration(config, joint)
-    # The figure needs it; reading and replaying the log need little of Python.
+    # The figure needs this import, which can run meanwhile: the replay is mostly C code.
     Thread(target=_import, args=["matplotlib.figure"]).start()
     checked = check(opened, configuration)
     if start_from is not None and start_from.is_dir():
@@ -122,7 +122,7 @@ def _estimated(
 
 
 def _import(*modules: str) -> None:
-    """Imports modules before they are needed; a failure shows then."""
+    """Imports modules in advance; a failure is raised again when a module is needed."""
     with suppress(ImportError):
         for module in modules:
             import_module(module)
@@ -148,8 +148,8 @@ def _import(*modules: str) -> None:
 def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> int:
     """Check with LOG what was learned from another log of the same joint.
 
-    LOG is replayed with the stiffness that was learned, and alone. Exit status: 0 if the logs
-    agree, 1 if they do not or cannot tell.
+    LOG is replayed with the learned stiffness, and without. Exit status: 0 if the logs agree, 1 if
+    the logs disagree or decide nothing.
 
     \b
     Example: sigmahat validate second.csv --with knee.toml
@@ -188,7 +188,7 @@ _SUFFIXES = {**_START_VALUES, **_MODELS}
     required=True,
     type=click.Choice(list(_SUFFIXES)),
     help="Start values: ssv, a parameter set for SSP; matlab, a function; modelica, a record. "
-    "Joint for a simulator: mjcf (MuJoCo), sdf (Gazebo), urdf, drake (SDF with its elements).",
+    "Joint for a simulator: mjcf (MuJoCo), sdf (Gazebo), urdf, drake (SDF for Drake).",
 )
 @click.option(
     "--out",
@@ -201,8 +201,8 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     """Write the data sheet of a joint as start values of the FMU, or as a joint for a simulator.
 
     SHEET is the joint.json that `sigmahat estimate` wrote, or its folder. An FMU with these start
-    values begins with the stiffness that was learned. The joint is two hinges, motor and
-    flexibility, with the intervals of their numbers.
+    values begins with the stiffness that was learned. The joint has two hinges, motor and
+    flexibility, with the intervals of all parameters.
 
     \b
     Example: sigmahat export sigmahat-results/knee --to mjcf

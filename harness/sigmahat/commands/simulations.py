@@ -53,7 +53,7 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
 
     chosen = common.ready_scenario(name)
     if seeds > 1:
-        import_module("scipy")  # intervals need it; if it is not there, say so before the runs
+        import_module("scipy")  # intervals need scipy: report a missing package before the runs
     out = out or Path("sigmahat-results", name)
     numbers = range(1, seeds + 1)
     with common.errors_in_one_line(out), output_folder(out) as folder:
@@ -104,7 +104,7 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
 @common.json_option
 @common.quiet_option
 def compare(misfits: bool, seeds: int, jobs: int | None, out: Path) -> None:
-    """Compare the estimation methods where motor data are wrong.
+    """Compare the estimation methods on joints with wrong motor data.
 
     \b
     Example: sigmahat compare --seeds 20 --out compare
@@ -113,7 +113,7 @@ def compare(misfits: bool, seeds: int, jobs: int | None, out: Path) -> None:
 
 
 def _methods(seeds: int, jobs: int | None, out: Path) -> None:
-    """Both methods, where motor data are wrong."""
+    """Compares both methods on joints with wrong motor data."""
     from sigmahat.compare.conditions import JOINTS, TRUE
     from sigmahat.compare.job import compare
     from sigmahat.compare.performance import CALIBRATED
@@ -135,8 +135,8 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
 
     common.answer(
         f"MSREP [%] of both methods, and of FilteredRegression: sigma_std relative to the true "
-        f"stiffness and share of instants\nwithin 1.96 sigma_std, from {CALIBRATED:g} s on; motor "
-        f"data found at the end, true {TRUE['D_theta']:g} N.m.s/rad, {TRUE['B']:g} kg.m2.\n"
+        f"stiffness and fraction of instants\nwithin 1.96 sigma_std, from {CALIBRATED:g} s on; "
+        f"motor data found at the end, true {TRUE['D_theta']:g} N.m.s/rad, {TRUE['B']:g} kg.m2.\n"
         f"Mean over {_counted(seeds)}. {MSREP_IN_WORDS}.\n\n"
         f"{table(rows)}\n\n"
         f"Figure (PNG, SVG) and CSV file are in {out.resolve()}",
@@ -168,7 +168,7 @@ def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
 
     common.answer(
         f"FilteredRegression on a catalogue of joints and misfits. Error, claim (sigma_std): RMS, "
-        f"relative to the true\nstiffness. Coverage: share of instants with the truth within "
+        f"relative to the true\nstiffness. Coverage: fraction of instants with the truth within "
         f"1.96 sigma_std. Dangerous: over 10 % off while\nclaiming under 2 %. Wrong: "
         f"confident and over 20 % off. Instants after {SETTLED:g} s, outside of a dead zone, of\n"
         f"{_counted(seeds)}.\n\n"
@@ -241,8 +241,8 @@ def sweep(
     """Run scenarios over seeds and parameters, in parallel; Monte Carlo.
 
     PLAN is a TOML file with the keys scenario, seeds, modality and a table [parameters]; options
-    replace them. After an interruption the same command does the runs that are missing; with more
-    seeds, those of the new seeds.
+    replace these keys. After an interruption, the same command does the missing runs; with more
+    seeds, only the runs of the new seeds.
 
     \b
     Example: sigmahat sweep --seeds 100 --modality RESIDUAL \\

@@ -1,1 +1,1 @@
-"""Both methods of the estimator, side by side, where motor data are wrong."""
+"""Both methods of the estimator, side by side, on joints with wrong motor data."""

@@ -1,7 +1,7 @@
 """The conditions of `sigmahat compare`: joints in motion, and motor data that are wrong.
 
-A joint is one co-simulation. In it both methods estimate the stiffness once for each case. A case
-is how the motor data that the estimators are given differ from those of the joint.
+A joint is one co-simulation, in which both methods estimate the stiffness once for each case. A
+case is the difference between the motor data of the estimators and the motor data of the joint.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ TRUE = {"D_theta": 1e-3, "B": 2.3e-5}
 
 @dataclass(frozen=True)
 class Case:
-    """The data that the estimators are given, compared with those of the joint."""
+    """The data given to the estimators, relative to the data of the joint."""
 
     motor_errors: Mapping[str, float] = field(default_factory=dict)
-    """Relative errors of motor data [1], by the name of the parameter; empty: none, and
-    FilteredRegression takes them as exact."""
+    """Relative errors of motor data [1], by the name of the parameter; empty: no errors, and
+    FilteredRegression takes the motor data as exact."""
     nominal_error: float | None = None
-    """Relative error of a nominal stiffness [1]; None: the estimators are given none."""
+    """Relative error of a nominal stiffness [1]; None: no nominal stiffness is given."""
     regression: Mapping[str, Value] = field(default_factory=dict)
-    """Further start values of FilteredRegression: what it is given of uncertainties."""
+    """Further start values of FilteredRegression: standard deviations of its priors, and others."""
 
 
 @dataclass(frozen=True)
@@ -38,24 +38,24 @@ class Joint:
     """A joint in motion, estimated by both methods in every case."""
 
     scenario: Scenario
-    """Plant, estimators, and as its only table the indices by which they are judged. The
-    comparisons have the names that `comparison_name` gives."""
+    """Plant, estimators, and a single table: the indices that judge the estimators. Function
+    `comparison_name` gives the names of the comparisons."""
     cases: Sequence[Case]
 
     @property
     def parts(self) -> Sequence[str]:
-        """Stiffnesses that are judged, by what their FMU variables end with: "", "_1", "_2"."""
+        """Suffixes of the FMU variables of all stiffnesses that are judged: "", "_1", "_2"."""
         return parts_of(self.scenario)
 
     @property
     def lever_arm(self) -> float | None:
-        """r(0) [m]; None where there is none."""
+        """Lever arm r(0) [m]; None for a joint without a lever arm."""
         plant = self.scenario.plant
         return lever_arm(plant) if plant.fmu == "AwasPlant" else None
 
     @property
     def frequency(self) -> float | None:
-        """Of the motor torque [Hz]; None in a scenario of the paper, which has its name."""
+        """Frequency of the motor torque [Hz]; None in a scenario of the paper, which has a name."""
         tau = self.scenario.plant.inputs.get("tau")
         is_of_paper = self.scenario.name in SCENARIOS
         return tau.frequency if isinstance(tau, Sine) and not is_of_paper else None
@@ -67,7 +67,7 @@ class Joint:
 
 
 def parts_of(scenario: Scenario) -> Sequence[str]:
-    """Those of the device and of each of several sides."""
+    """Suffixes of the stiffnesses: of the device and, with two sides, of each side."""
     return ("", "_1", "_2") if scenario.plant.fmu == "AntagonisticVsaPlant" else ("",)
 
 
@@ -91,7 +91,7 @@ _WHOLE, _SETTLED = "msrep", "msrep_settled"
 
 
 def _methods(base: EstimatorFmu, case: Case, parts: Sequence[str]) -> dict[str, EstimatorFmu]:
-    """The estimator with each method, from one with the settings that they share."""
+    """Estimators with both methods, from an estimator with the common settings."""
     # Motors belong to the sides of a pair, not to the whole.
     sides = parts if len(parts) == 1 else parts[1:]
     given: dict[str, Value] = {
@@ -110,7 +110,7 @@ def _methods(base: EstimatorFmu, case: Case, parts: Sequence[str]) -> dict[str, 
         "method": REGRESSION,
         "rls.n": 3,
         "prior.tau_coulomb": 0.0,
-        "prior.torque_gain": 0.0,  # that of the joints is exact
+        "prior.torque_gain": 0.0,  # the torque gain of the joints is exact
         **case.regression,
     }
     return {PAPER2011: paper, REGRESSION: replace(paper, start={**paper.start, **regression})}
@@ -139,7 +139,7 @@ def _joint(scenario: Scenario, cases: Sequence[Case], *judged: str) -> Joint:
 
 
 def _awas_joints() -> Iterator[Joint]:
-    """The AwAS at six frequencies: three joints, and which motor data are wrong."""
+    """The AwAS in three versions, each at six frequencies and with wrong motor data."""
     high, low = Case({"D_theta": 0.1}), Case({"D_theta": -0.1})
     friction: Mapping[str, Value] = {"prior.tau_coulomb": _COULOMB}
     with_friction = [

@@ -1,4 +1,4 @@
-"""The figure of `sigmahat compare`: error over the frequency of the motion."""
+"""The figure of `sigmahat compare`: error against the frequency of the motion."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MARKERS = "ovsD^"
 
 
 def draw(rows: Sequence[Row]) -> Figure:
-    """MSREP of both methods over the frequency of the motion, for the AwAS with wrong motor data.
+    """MSREP of both methods against frequency of the motion, for the AwAS with wrong motor data.
 
     Right: with Coulomb friction, too.
     """

@@ -20,10 +20,10 @@ class Row:
     joint: Joint
     case: Case
     part: str
-    """Of Joint.parts."""
+    """An element of Joint.parts."""
     index: Index
     performance: Mapping[str, Performance]
-    """By method; means over the seeds."""
+    """Mean performance over the seeds, by method."""
 
     @property
     def judged_from(self) -> float:
@@ -48,7 +48,7 @@ def compare(
     Raises what simulate() raises, and WorkerError if a process was ended from outside.
     """
     runs = [(i, seed) for i in range(len(joints)) for seed in seeds]
-    # The longest first, so that no process waits for another at the end.
+    # Longest runs first, so that no process waits for another process at the end.
     runs.sort(key=lambda run: -_effort(joints[run[0]].scenario))
     jobs = [partial(measured, joints[i].scenario, seed, performances) for i, seed in runs]
     results = dict(zip(runs, run_all(jobs, processes, progress), strict=True))

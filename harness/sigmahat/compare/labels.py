@@ -19,7 +19,7 @@ def group(row: Row) -> str:
 
 
 def lever_arm(joint: Joint) -> str:
-    """Of an AwAS."""
+    """The lever arm of an AwAS, as text."""
     return f"r(0) = {1e3 * (joint.lever_arm or 0.0):g} mm"
 
 
@@ -29,7 +29,7 @@ def motion(joint: Joint) -> str:
 
 
 def case(case: Case) -> str:
-    """What is wrong with the data that the estimators are given."""
+    """The errors of the data given to the estimators."""
     errors = [f"{name} {100 * error:+.0f} %" for name, error in case.motor_errors.items()]
     if case.nominal_error is not None:
         errors.append(f"nominal curve {100 * case.nominal_error:+.0f} %")
@@ -37,6 +37,6 @@ def case(case: Case) -> str:
 
 
 def case_and_part(row: Row) -> str:
-    """The case, and of a device with several stiffnesses which one."""
+    """The case and, for a device with several stiffnesses, the stiffness."""
     several = len(row.joint.parts) > 1
     return f"{case(row.case)}, {_SIDES[row.part]}" if several else case(row.case)

@@ -1,4 +1,4 @@
-"""What a method achieves in a run: its error, the uncertainty it claims, and its motor data."""
+"""Performance of a method in a run: its error, its standard deviation, and its motor data."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _UNKNOWN = np.array([np.nan])
 
 @dataclass(frozen=True)
 class Performance:
-    """Of one method, in one run or as the mean over runs."""
+    """Performance of one method, in one run or as the mean over runs."""
 
     indices: Indices
     sigma_std: float
-    """Root mean square of sigma_std over the true stiffness, from CALIBRATED on [%]"""
+    """Root mean square of sigma_std relative to the true stiffness, from CALIBRATED on [%]"""
     inside: float
-    """Share of instants from CALIBRATED on with an error of at most 1.96 sigma_std [%]"""
+    """Percentage of instants from CALIBRATED on with an error of at most 1.96 sigma_std [%]"""
     D_theta: float
     """D_theta_hat at the end [N.m.s/rad]; nan for a device of several motors"""
     B: float
@@ -38,8 +38,8 @@ class Performance:
 def performances(scenario: Scenario, recording: Recording) -> dict[str, Performance]:
     """The performance of each comparison of the scenario, by its name.
 
-    Every estimate is a stiffness sigma, sigma_1 or sigma_2 of an estimator, of which the standard
-    deviation is recorded too.
+    Every estimate is a stiffness sigma, sigma_1 or sigma_2 of an estimator. Its standard deviation
+    is recorded too.
     """
     indices = indices_by_comparison(scenario, recording)
     return {
@@ -71,7 +71,7 @@ def _performance(comparison: Comparison, indices: Indices, recording: Recording)
 
 
 def mean_performance(runs: Sequence[Performance]) -> Performance:
-    """The mean of each figure over runs."""
+    """The mean of each number over runs."""
     indices = np.mean([astuple(each.indices) for each in runs], axis=0).tolist()
     others = np.mean([list(vars(each).values())[1:] for each in runs], axis=0).tolist()
     return Performance(Indices(*indices), *others)

@@ -17,8 +17,8 @@ from sigmahat.files.tables import aligned, write_csv
 def table(rows: Sequence[Row]) -> str:
     """Both methods side by side, as text, a part for each group of joints; "-": not defined.
 
-    Of FilteredRegression alone: the standard deviation that it claims, how often the error stays
-    within that, and its motor data at the end.
+    For FilteredRegression alone: sigma_std, the percentage of instants with an error of at most
+    1.96 sigma_std, and the motor data at the end.
     """
     cells = [
         [

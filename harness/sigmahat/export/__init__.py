@@ -1,1 +1,1 @@
-"""What the build makes of the sources: FMUs, their documentation, the amalgamation."""
+"""Products of the build: FMUs, their documentation, the amalgamation."""

@@ -19,9 +19,9 @@ _STEPS = {
     "parameters": "c_variables.write_parameters template out",
     "modelica": "modelica.write out library sources... --descriptions --licence --version",
 }
-"""The function of each step, and its arguments; of one with "..." there may be several."""
+"""The function of each step, and its arguments; an argument with "..." may be repeated."""
 _KINDS: dict[str, Any] = {"--version": str, "--struct": str, "--storage": str, "--fmi": int}
-"""Of the options that are no paths."""
+"""Types of the options that are no paths."""
 
 
 def _step(name: str, spec: str) -> click.Command:

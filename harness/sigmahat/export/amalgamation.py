@@ -10,13 +10,13 @@ _OWN_INCLUDE = re.compile(r'^#include "(.+)"\n', re.MULTILINE)
 def write(out: Path, sources: Iterable[Path], interface: Path, licence: Path, version: str) -> None:
     """Write ``sigmahat.h`` and ``sigmahat.c`` into the folder ``out``.
 
-    sources    C files of the library. As they become one file, they share one namespace: two of
-               them must not use the same name for something ``static``, or the compiler refuses it
+    sources    C files of the library. They become one file with one namespace: if two files use
+               the same name for something ``static``, the compiler reports an error
     interface  header whose contents, with all that it includes, make ``sigmahat.h``
     licence    text that has to go with the code
 
-    Headers are looked for in the folders of these files. Raises ``FileNotFoundError`` for a file,
-    or a header included by one, that is missing.
+    Headers are searched in the folders of these files. Raises ``FileNotFoundError`` if a file, or a
+    header that a file includes, is missing.
     """
     files = list(sources)
     folders = sorted({file.parent for file in [*files, interface]})
@@ -44,7 +44,7 @@ def _inlined(file: Path, folders: list[Path], done: set[Path]) -> str:
 
 
 def _found(name: str, folders: list[Path]) -> Path:
-    """The header of this name. Raises ``FileNotFoundError`` if there is none."""
+    """The header of this name. Raises ``FileNotFoundError`` if no folder has this header."""
     for folder in folders:
         if (folder / name).is_file():
             return folder / name

@@ -1,4 +1,4 @@
-"""FMU archives that are the same bytes for the same contents."""
+"""FMU archives whose bytes depend on the contents alone."""
 
 import zipfile
 from collections.abc import Iterable, Mapping
@@ -42,7 +42,7 @@ def pack(
     """Write an FMU with the binary of this machine, C files and the headers they include.
 
     fmi        version of FMI, 2 or 3
-    described  folder that ``description.write`` has written; shown: that of ``documentation``
+    described  folder that ``description.write`` wrote; shown: folder that ``documentation`` wrote
     """
     import fmpy
 

@@ -1,7 +1,7 @@
-"""The bill of materials of a release, in CycloneDX: what is in its files, and what made them.
+"""The bill of materials of a release, in CycloneDX: contents of the files, and build tools.
 
-It is made of the files of the release alone, so that the same release gives the same bytes: there
-is no time in it, and its serial number is made from its contents.
+The bill depends on the files of the release alone, so the same release gives the same bytes. The
+bill has no time, and its serial number is computed from the files.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _BSD_2 = "BSD-2-Clause"
 def write(out: Path, release: Path, version: str) -> None:
     """Writes the bill of all files in the folder of a release.
 
-    Raises FileNotFoundError if there is no wheel among them.
+    Raises FileNotFoundError if the folder has no wheel.
     """
     files = sorted(each for each in release.rglob("*") if each.suffix in _ARCHIVES)
     product = _component("sigmahat", version, ComponentType.FRAMEWORK, _BSD_2, "pkg:pypi/sigmahat")
@@ -103,7 +103,7 @@ def _file(file: Path, release: Path) -> Component:
 
 
 def _packages(files: Iterable[Path]) -> Iterable[Component]:
-    """What pip installs with a wheel; extras are optional. Which versions, pip decides there."""
+    """Packages that pip installs with a wheel; extras are optional. pip decides on the versions."""
     wheel = next((file for file in files if file.suffix == ".whl"), None)
     if wheel is None:
         raise FileNotFoundError("the release has no wheel; make it before its bill of materials")
@@ -130,7 +130,7 @@ def _contents(
     equations: Component,
     packages: list[Component],
 ) -> list[Component]:
-    """What a file contains, and what a wheel asks for."""
+    """What a file contains, and the packages that a wheel requires."""
     if file.suffix == ".zip":
         return [own]
     if file.suffix == ".fmu":

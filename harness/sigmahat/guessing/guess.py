@@ -69,7 +69,7 @@ def _joint_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
 
 @dataclass(frozen=True)
 class Seen:
-    """A column of the log, and what it looks like."""
+    """A column of the log, and the kind of signal that it seems to contain."""
 
     name: str
     samples: int

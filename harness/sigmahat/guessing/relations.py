@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import savgol_filter
+from numpy.lib.stride_tricks import sliding_window_view
 
 from sigmahat.logs.log import Array
 
 _SMOOTH = 15  # samples of the polynomial with which columns are differentiated
+_INNER = slice(_SMOOTH // 2, -(_SMOOTH // 2))  # samples that have a polynomial around them
 _DERIVATIVE = 0.97  # correlation from which on a column is the derivative of another one
 _COPY = 1e-4  # rest of a fit over the column, up to which it is a copy in another unit
 _BLOCKS = 8
@@ -49,17 +52,38 @@ def is_copy(x: Array, y: Array) -> bool:
     return line(x, y).rest < _COPY
 
 
-def derivative(x: Array, T: float, order: int = 1) -> Array:
-    """Smoothed derivative of samples T apart."""
-    values: Array = savgol_filter(x, _SMOOTH, 3, deriv=order, delta=T)
-    return values
+def smooth(x: Array, T: float = 1.0, order: int = 0) -> Array:
+    """Derivative of samples T apart, along the last axis, at the samples _INNER.
+
+    It is the derivative of the cubic polynomial that fits the samples around (Savitzky and Golay,
+    Analytical Chemistry 36:1627-1639, 1964). The import of scipy.signal would take two seconds.
+    """
+    places = np.arange(_SMOOTH) - _SMOOTH // 2
+    factors = np.linalg.pinv(np.vander(places, 4, increasing=True))[order]
+    values: Array = sliding_window_view(x, _SMOOTH, axis=-1) @ factors
+    return values * (math.factorial(order) / T**order)
+
+
+def derivatives(columns: Sequence[Array], T: float) -> Sequence[bool]:
+    """Whether each column is the derivative of another one; samples T apart."""
+    if not columns or len(columns[0]) < 4 * _SMOOTH:
+        return [False] * len(columns)
+    x = np.array(columns)
+    both = [smooth(x, T, order) for order in (1, 0)]
+    for each in both:
+        each -= each.mean(axis=1, keepdims=True)
+        each /= np.linalg.norm(each, axis=1, keepdims=True) + 1e-300
+    correlation = both[1] @ both[0].T
+    np.fill_diagonal(correlation, 0.0)
+    found: list[bool] = (np.abs(correlation) > _DERIVATIVE).any(axis=1).tolist()
+    return found
 
 
 def scale_of_derivative(x: Array, v: Array, T: float) -> float | None:
     """v over the derivative of x; None if v is not the derivative of x."""
     if len(x) < 4 * _SMOOTH:
         return None
-    fitted = line(derivative(x, T), savgol_filter(v, _SMOOTH, 3))
+    fitted = line(smooth(x, T, 1), smooth(v))
     return fitted.slope if fitted.correlation**2 > _DERIVATIVE**2 else None
 
 
@@ -85,20 +109,20 @@ def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     if len(x) < 8 * _SMOOTH or not np.ptp(x) or not np.ptp(tau):
         return Drive(0.0, 0)
     fitted = line(x, y)
-    behind = x - (y - fitted.offset) / fitted.slope if fitted.slope else np.zeros_like(x)
-    velocity = derivative(x, T)
+    behind = smooth(x - (y - fitted.offset) / fitted.slope) if fitted.slope else 0 * x[_INNER]
+    velocity = smooth(x, T, 1)
     parts = np.column_stack(
         [
-            derivative(x, T, 2),
+            smooth(x, T, 2),
             velocity,
             np.tanh(velocity / (0.05 * np.abs(velocity).max() + 1e-300)),
-            x - x.mean(),
-            savgol_filter(behind, _SMOOTH, 3),
-            np.ones_like(x),
+            x[_INNER] - x.mean(),
+            behind,
+            np.ones_like(velocity),
         ]
     )
     parts /= np.linalg.norm(parts, axis=0) + 1e-300
-    torque = savgol_filter(tau, _SMOOTH, 3)
+    torque = smooth(tau)
     factors = np.linalg.lstsq(parts, torque, rcond=1e-10)[0]
     spread = float(np.var(torque))
     explained = 1 - float(np.var(torque - parts @ factors)) / spread if spread else 0.0

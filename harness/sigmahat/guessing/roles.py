@@ -9,7 +9,14 @@ from itertools import permutations
 import numpy as np
 
 from sigmahat.guessing.columns import Column
-from sigmahat.guessing.relations import Drive, drive, is_copy, line, scale_of_derivative
+from sigmahat.guessing.relations import (
+    Drive,
+    derivatives,
+    drive,
+    is_copy,
+    line,
+    scale_of_derivative,
+)
 
 # Points of a column for being the one that a port needs.
 _SAID, _SUGGESTED, _QUANTITY = 4.0, 2.0, 1.0
@@ -123,18 +130,14 @@ def _drive(ports: Mapping[str, Role], T: float) -> Drive:
 def _positions(columns: Sequence[Column], T: float) -> list[Column]:
     """Columns that may be positions of motor or link."""
     named = [each for each in columns if each.meaning.quantity == "position"]
-    silent = [each for each in columns if each.meaning.quantity is None]
+    derived = derivatives([each.window for each in columns], T)
     silent = [
         each
-        for each in silent
-        if not any(_is_derivative(each, other, T) for other in columns if other is not each)
+        for each, is_derivative in zip(columns, derived, strict=True)
+        if each.meaning.quantity is None and not is_derivative
     ]
     every = [each for each in (*named, *silent) if each.meaning.unit != "mm"]
     return [each for each in every if each.meaning.side not in ("setting", "sensor")]
-
-
-def _is_derivative(one: Column, other: Column, T: float) -> bool:
-    return scale_of_derivative(other.window, one.window, T) is not None
 
 
 def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
@@ -242,7 +245,10 @@ def _silent_torque(
         for each in columns
         if each.meaning.quantity is None
         and abs(line(theta, each.window).correlation) < _SAME
-        and not any(_is_derivative(each, ports[port].column, T) for port in ("theta", "q"))
+        and all(
+            scale_of_derivative(ports[port].column.window, each.window, T) is None
+            for port in ("theta", "q")
+        )
     }
     best = max(explained, key=lambda name: explained[name], default=None)
     if best is None or explained[best] < _EXPLAINED:

@@ -118,7 +118,7 @@ def summary(identified: Identified) -> str:
     lines += [
         "",
         f"powers          rls.n = {identified.n}, rls.m = {identified.m} (cross-validation), "
-        f"{'odd ones of phi alone' if identified.symmetric else 'odd and even ones of phi'}",
+        f"{'odd powers of phi alone' if identified.symmetric else 'odd and even powers of phi'}",
         f"noise           torque {math.sqrt(identified.tau_variance):.2g} N.m, "
         f"motor position {math.sqrt(identified.theta_variance):.2g} rad (standard deviations)",
         f"filter          V_a = {identified.V_a:.2g} rad2/s4; "

@@ -125,7 +125,7 @@ def _matlab(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     lines += [f"%   {line}" for line in _head(sheet)]
     lines += [
         "%   rls.eta_0 is a matrix, whose indices begin with 1: rls.eta_0(i + 1, j + 1) is",
-        "%   rls.eta_0[i,j] of the FMU. An enumeration is the number of its item.",
+        "%   rls.eta_0[i,j] of the FMU. An enumeration is written as the number of its item.",
     ]
     for s in starts:
         if not s.name.startswith(_CURVE):
@@ -146,7 +146,7 @@ def _modelica(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     lines = [f'record {name} "{title}"', *(f"  // {line}" for line in _head(sheet))]
     lines += [
         "  // rls.eta_0[i + 1, j + 1] is rls.eta_0[i,j] of the FMU, whose indices begin with 0.",
-        "  // An enumeration is the number of its item.",
+        "  // An enumeration is written as the number of its item.",
     ]
     for group, members in groups.items():
         members = [s for s in members if not s.name.startswith(_CURVE)]

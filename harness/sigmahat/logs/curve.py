@@ -69,7 +69,7 @@ class Reach:
     set_point: float
     """[1]"""
     phi: Range
-    """Deformation of the data there [rad]."""
+    """Range of the deformation that was measured at this set-point [rad]."""
 
 
 def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: bool) -> list[Reach]:

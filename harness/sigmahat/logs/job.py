@@ -26,7 +26,7 @@ DRAWN = ("sigma", "sigma_std", "tau_e", "tau_e_residual", "phi", "setPoint")
 
 
 class ReplayStatistics:
-    """Minimum and maximum of each output in up to 4000 intervals, and figures of the second half.
+    """Extrema of each output in up to 4000 intervals, and statistics of the second half.
 
     The minima and maxima give the same picture as all values, and their number does not grow with
     the log.

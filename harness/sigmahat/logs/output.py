@@ -199,8 +199,9 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         return rest
 
     def doubts(self) -> Counter[str]:
-        """Rows in the second half of the log by the output doubt; empty if an older version wrote
-        the table.
+        """Number of rows in the second half of the log for each value of the output `doubt`.
+
+        It is empty if an older version wrote the table.
         """
         found: Counter[str] = Counter()
         if self._doubt is None:

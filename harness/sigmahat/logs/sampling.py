@@ -198,9 +198,13 @@ def _notes(name: str, resampled: Resampled, T: float) -> Iterator[str]:
         yield f"{name}: {resampled.missing} samples missing or not finite"
 
 
+_LARGEST = 1e12
+"""SH_LARGEST_MEASUREMENT of sigmahat.h."""
+
+
 def _skipped(values: Array, T: float) -> Iterator[str]:
-    """Ticks at which the estimator has no value of some port."""
-    skipped = np.isnan(values).any(axis=1)
+    """Ticks at which the estimator has no value of some port, or one that it refuses."""
+    skipped = ~(np.abs(values) <= _LARGEST).all(axis=1)
     if not skipped.any():
         return
     first, last = stretches(skipped)

@@ -91,7 +91,7 @@ _TIME = plain_axis("t")
 _WIDE = 3.5  # of the truth, so that an estimate on top of it still shows it
 SIDES = ("", "_1", "_2")
 """What variables end with: of the joint, or of the sides of an antagonistic pair."""
-_OUTER = 1.0  # percent of a stiffness at either end that do not set the scale
+_OUTER = 1.0  # percent of the values that the axis of a stiffness may leave out at each end
 
 
 @dataclass(frozen=True)

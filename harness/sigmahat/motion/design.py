@@ -97,7 +97,7 @@ def _why_none(joints: Sequence[Joint], limits: Limits, duration: float) -> str:
 
 
 def _frequencies(resonance: float, share: float) -> list[float]:
-    """Of the sines, the highest at a share of the lowest resonance [Hz]."""
+    """Frequencies of the sines [Hz]; the highest one is `share` times the lowest resonance."""
     highest = min(share * resonance, _HIGHEST)
     return [highest * ratio / _RATIOS[-1] for ratio in _RATIOS]
 

@@ -47,8 +47,7 @@ def replayed(
     """
     with Slave(installed("StiffnessEstimator"), "estimator") as slave:
         replay = Replay(slave, log, configuration)
-        with slave.only_errors():
-            replay.run(progress=progress)
+        replay.run(progress=progress)
         return replay.answer()
 
 

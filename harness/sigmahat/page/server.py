@@ -77,7 +77,7 @@ def serve(
         server.start()
         if document is not None:
             setup.start_from(document)
-        say(f"{log.path} is open until Ctrl-C, at\n{address}")
+        say(f"{log.path} is open until you press Ctrl-C. Address:\n{address}")
         threading.Thread(target=partial(_open, address, say), daemon=True).start()
         server.io_loop.start()
     server.stop()

@@ -38,7 +38,7 @@ def spread_on_cluster(
             yield places[future.key], future.result()
             future.release()
     except (distributed.CancelledError, CommClosedError) as error:
-        raise WorkersLostError(f"the scheduler at {scheduler} was lost") from error
+        raise WorkersLostError(f"lost the connection to the scheduler at {scheduler}") from error
     except KilledWorker as error:
         raise WorkersLostError("several workers died in the same run") from error
     except ImportError as error:

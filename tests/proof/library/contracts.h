@@ -86,10 +86,10 @@ sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \initialized(v + (0 .. a->size - 1));
-    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->squares
+    assigns \result, a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->squares
             \from *a, v[0 .. SH_MAX_COLUMNS - 1], c;
 */
-void sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
+sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
 /*@ requires 1 <= size <= SH_MAX_PARAMETERS;
     assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work \from P_0;

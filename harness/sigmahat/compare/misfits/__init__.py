@@ -1,1 +1,1 @@
-"""FilteredRegression on a catalogue of misfits: joints that have what real joints have."""
+"""FilteredRegression on a catalogue of misfits: effects of real joints that no model has."""

@@ -1,4 +1,4 @@
-"""The conditions of the catalogue, as data: what each adds to an experiment without misfits."""
+"""The conditions of the catalogue, as data: misfits added to an experiment without misfits."""
 
 from __future__ import annotations
 
@@ -13,9 +13,6 @@ from sigmahat.compare.misfits.experiment import Control, Drive, Experiment
 from sigmahat.compare.misfits.joints import AWAS, JOINTS, SEA_1K, SEA_5K, Joint
 from sigmahat.compare.misfits.motion import peak_deformation
 from sigmahat.runs.scenario import Sine, Sines
-
-LAST_LOOK = range(1001, 1101)
-"""Seeds for the last look only: 100 joints of each kind."""
 
 
 def other_joint(experiment: Experiment) -> Experiment:
@@ -73,7 +70,7 @@ def all_misfits(experiment: Experiment) -> Experiment:
 
 
 class Group(Enum):
-    """What is asked of the estimate in a condition."""
+    """Class of a condition, which decides on the requirements for the estimate."""
 
     CLEAN = "clean"
     CLASS_1 = "class 1"
@@ -96,7 +93,7 @@ class Condition:
     change: Change
     """Adds the misfit to an experiment."""
     joints: Sequence[Joint] = JOINTS
-    """Joints that can have it."""
+    """Joints that can have the misfit."""
     torque_gain: float = 0.0
     """Prior standard deviation of the gain of the torque that the estimator is given [1]."""
 
@@ -108,7 +105,7 @@ def _plant(**start: float) -> Change:
 
 
 def _share_of_torque(name: str, share: float, **others: float) -> Change:
-    """A start value that is a share of the peak of the torque command."""
+    """A start value that is a fraction of the peak of the torque command."""
 
     def change(experiment: Experiment) -> Experiment:
         values = {name: share * experiment.joint.torque}
@@ -118,7 +115,7 @@ def _share_of_torque(name: str, share: float, **others: float) -> Change:
 
 
 def _run(**changed: float | Drive | Mapping[str, float]) -> Change:
-    """Fields of the experiment."""
+    """Changes fields of the experiment."""
     return lambda experiment: replace(experiment, **changed)  # type: ignore[arg-type]
 
 
@@ -137,7 +134,7 @@ def _contact(experiment: Experiment) -> Experiment:
 
 
 def _dahl(share: float) -> Change:
-    """Hysteresis of a share of the peak torque; its deformation is 3 % of the peak."""
+    """Hysteresis of a fraction of the peak torque, with 3 % of the peak deformation."""
 
     def change(experiment: Experiment) -> Experiment:
         peak = peak_deformation(experiment)
@@ -158,7 +155,7 @@ def _hardening(n: int) -> Change:
 
 
 def _control(link_velocity: bool, gravity: bool = False) -> Change:
-    """PD control of the motor position, slow motion being larger than fast motion."""
+    """PD control of the motor position, with smaller amplitudes at higher frequencies."""
 
     def change(experiment: Experiment) -> Experiment:
         joint, share = experiment.joint, 0.6 if gravity else 1.0
@@ -310,7 +307,7 @@ CONDITIONS: Sequence[Condition] = (
     Condition("encoders of 1048576 counts", Group.NONE, _counts(1048576.0)),
     Condition("q read 2 ms after theta", Group.NONE, _plant(encoder__q_delay=2e-3)),
     Condition("hardening spring, n = 3", Group.NONE, _hardening(3), _SEA),
-    Condition("rest for 30 s, then 10 s", Group.NONE, _run(rest=30.0, duration=40.0)),
+    Condition("rest for 30 s, then motion for 10 s", Group.NONE, _run(rest=30.0, duration=40.0)),
     *(
         Condition(f"B exact: {name}", Group.NONE, _exact_inertia(change))
         for name, change in (

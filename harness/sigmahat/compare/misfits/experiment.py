@@ -23,11 +23,11 @@ class Drive(Enum):
     """The torque between two samples, and the torque that is measured at a sample."""
 
     LINEAR = 1
-    """Linear between the samples; measured: that at the sample."""
+    """Linear between the samples; measured: the torque at the sample."""
     HELD = 2
-    """Held; measured: that of the period that begins."""
+    """Held; measured: the torque of the period that begins."""
     HELD_MEAN = 3
-    """Held; measured: the mean of the period that ends and of that which begins."""
+    """Held; measured: the mean torque of the period that ends and the period that begins."""
 
 
 @dataclass(frozen=True)
@@ -37,28 +37,28 @@ class Control:
     reference: Sines
     """Wanted position [rad]."""
     kp: float
-    """Per position error, on the motor axis [N.m/rad]."""
+    """Motor torque per position error at the gear output [N.m/rad]."""
     kd: float
-    """Per motor velocity, behind the gear [N.m.s/rad]."""
+    """Motor torque per motor velocity at the gear output [N.m.s/rad]."""
     kq: float = 0.0
-    """Per link velocity [N.m.s/rad]."""
+    """Motor torque per link velocity [N.m.s/rad]."""
 
 
 @dataclass(frozen=True)
 class Experiment:
-    """What a run consists of. A draw has no misfits; conditions add them."""
+    """All settings of a run. Function `draw` adds no misfits; conditions add misfits."""
 
     joint: Joint
     seed: int
-    """Of noise, and of what else is random in the run."""
+    """Seed of the noise and of other random effects in the run."""
     plant: Mapping[str, float]
-    """Start values of RealJointPlant that differ from its own."""
+    """Start values of RealJointPlant that differ from the default values."""
     torque: Sines
     """Torque command, on the motor axis [N.m]; not used under control."""
     lever_arm: Sines | None
-    """[m]; None for a joint without one."""
+    """Lever arm [m]; None for a joint without a lever arm."""
     errors: Mapping[str, float]
-    """Relative errors of B and D_theta as the estimator is given them [1]."""
+    """Relative errors of the values of B and D_theta that the estimator is given [1]."""
     estimator: Mapping[str, Value] = field(default_factory=dict)
     """Start values of the estimator that differ from `settings`."""
     T: float = 1e-3
@@ -69,11 +69,11 @@ class Experiment:
     """Time before which there is no torque [s]."""
     drive: Drive = Drive.LINEAR
     control: Control | None = None
-    """None: the torque is the command. Else the drive holds its torque."""
+    """None: the torque is the command. Else the drive holds the torque of this control."""
     late: float = 0.0
     """Delay of the measured torque [s], below 0: it is early; with Drive.LINEAR only."""
     jitter: float = 0.0
-    """Standard deviation of the sample times, over T [1]."""
+    """Standard deviation of the sample times, divided by T [1]."""
     load: float = 0.0
     """Constant external torque on the link [N.m]."""
     drift: Mapping[str, float] = field(default_factory=dict)
@@ -81,20 +81,20 @@ class Experiment:
 
     @property
     def stiffness(self) -> float:
-        """Of the undeformed spring, at the mean lever arm [N.m/rad]."""
+        """Stiffness of the undeformed spring, at the mean lever arm [N.m/rad]."""
         arm = self.joint.lever_arm or 0.0
         return self.plant["spring.k_1"] + 2 * self.plant.get("spring.k_s", 0.0) * arm**2
 
     def with_plant(self, changed: Mapping[str, float]) -> Experiment:
-        """The same with other start values of the plant."""
+        """The experiment with other start values of the plant."""
         return replace(self, plant={**self.plant, **changed})
 
     def with_estimator(self, changed: Mapping[str, Value]) -> Experiment:
-        """The same with other start values of the estimator."""
+        """The experiment with other start values of the estimator."""
         return replace(self, estimator={**self.estimator, **changed})
 
     def scaled(self, factors: Mapping[str, float]) -> Experiment:
-        """The same with start values of the plant multiplied by factors [1]."""
+        """The experiment with start values of the plant multiplied by factors [1]."""
         return self.with_plant({name: f * self.plant[name] for name, f in factors.items()})
 
 
@@ -119,7 +119,7 @@ def draw(joint: Joint, seed: int) -> Experiment:
 def _multisine(
     rng: np.random.Generator, band: tuple[float, float], peak: float, count: tuple[int, int]
 ) -> Sines:
-    """Sines at random frequencies, one in each of equal parts of the band [Hz] on a log axis.
+    """Sines at random frequencies: one sine in each of equal parts of the band [Hz] on a log axis.
 
     The amplitudes add up to the peak. The number of sines is between the two counts.
     """

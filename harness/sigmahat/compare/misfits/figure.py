@@ -1,4 +1,4 @@
-"""The figure of misfits: the error of each row over what it claims."""
+"""The figure of misfits: the error of each row against its uncertainty sigma_std."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ _LIMITS = 0.01, 1000.0  # of both axes, wider if a row needs it [%]
 
 
 def draw(rows: Sequence[Row]) -> Figure:
-    """RMS error over RMS claim, one point a row, and the corner of the dangerous ones."""
+    """RMS error against RMS claim, with a point for each row, and the corner of dangerous rows."""
     figure = Figure(figsize=(8.0, 6.5), layout="constrained")
     axes = figure.subplots()
     points = [(row.score.figures["claim"], row.score.figures["error"]) for row in rows]
     values = [value for point in points for value in point if value > 0]
     limits = min(_LIMITS[0], 0.8 * min(values)), max(_LIMITS[1], 1.2 * max(values))
     axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, aspect="equal")
-    axes.set_xlabel("claim: RMS of sigma_std over the true stiffness [%]")
-    axes.set_ylabel("RMS error over the true stiffness [%]")
+    axes.set_xlabel("claim: RMS of sigma_std relative to the true stiffness [%]")
+    axes.set_ylabel("RMS error relative to the true stiffness [%]")
     _regions(axes, limits)
     for row, point in zip(
         rows[::-1], points[::-1], strict=True

@@ -42,7 +42,7 @@ def settings(experiment: Experiment, torque_gain: float) -> dict[str, Value]:
         "prior.tau_e": 45.0,
         "prior.D_theta": 0.2,
         "prior.B": 0.1,
-        # What is known of the kind of joint, not of this one, whose friction may be another.
+        # The nominal friction of this kind of joint; the joint itself may have other friction.
         "prior.tau_coulomb": joint.plant["motor.tau_coulomb"],
         "prior.torque_gain": torque_gain,
         "regression.bandwidth": 350.0,
@@ -60,7 +60,7 @@ class Row:
     condition: Condition
     joint: Joint
     score: Score
-    """Over all instants of all seeds."""
+    """Score over all instants of all seeds."""
 
 
 def compare(
@@ -70,7 +70,7 @@ def compare(
     processes: int | None = None,
     progress: Progress = lambda done: None,
 ) -> list[Row]:
-    """Runs each condition, one of CONDITIONS, on those of the joints that can have it.
+    """Runs each condition, an element of CONDITIONS, on the joints that can have its misfit.
 
     processes, progress   as for sigmahat.runs.engine.run_all(); one run is one job
 
@@ -79,7 +79,7 @@ def compare(
     """
     rows = pairs(conditions, joints)
     jobs = [
-        # Numbers, as other processes cannot receive the functions in a condition.
+        # Indices, because other processes cannot receive the functions in a condition.
         partial(run_once, CONDITIONS.index(condition), JOINTS.index(joint), seed)
         for condition, joint in rows
         for seed in seeds
@@ -91,12 +91,12 @@ def compare(
 def pairs(
     conditions: Sequence[Condition], joints: Sequence[Joint]
 ) -> list[tuple[Condition, Joint]]:
-    """The rows of a table: each condition with those of the joints that can have it."""
+    """The rows of a table: each condition with the joints that can have its misfit."""
     return [(each, joint) for each in conditions for joint in joints if joint in each.joints]
 
 
 def run_once(condition: int, joint: int, seed: int) -> Score:
-    """The score of one run, of places in CONDITIONS and JOINTS."""
+    """The score of one run, given by indices in CONDITIONS and JOINTS."""
     row = CONDITIONS[condition]
     experiment = row.change(draw(JOINTS[joint], seed))
     return estimate(experiment, run(experiment), row.torque_gain)

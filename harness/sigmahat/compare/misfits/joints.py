@@ -1,4 +1,4 @@
-"""The joints of the catalogue, as data: plants, their usual motion, and the estimator's view."""
+"""The joints of the catalogue, as data: plants, their usual motion, settings of the estimator."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ class Joint:
 
     name: str
     plant: Mapping[str, float]
-    """Start values of RealJointPlant that differ from its own."""
+    """Start values of RealJointPlant that differ from the default values."""
     lever_arm: float | None
-    """Mean lever arm [m]; None for a joint without one."""
+    """Mean lever arm [m]; None for a joint without a lever arm."""
     torque: float
     """Peak of the torque command [N.m]."""
     deformation: float
@@ -24,13 +24,13 @@ class Joint:
     range_phi: float
     """range.phi of the estimator [rad]."""
     load: float
-    """Constant torque on the link where a condition asks for one [N.m]."""
+    """Constant torque on the link, for conditions with a load [N.m]."""
     contact: Mapping[str, float]
-    """Start values of RealJointPlant where a condition asks for a contact."""
+    """Start values of RealJointPlant, for conditions with a contact."""
     kp: float
-    """Of a control of the motor position, on the motor axis [N.m/rad]."""
+    """Gain of a control of the motor position, on the motor axis [N.m/rad]."""
     kd: float
-    """Of the same [N.m.s/rad]."""
+    """Velocity gain of this control [N.m.s/rad]."""
 
 
 def _elastic(name: str, k: float, counts: float, deformation: float) -> Joint:

@@ -1,4 +1,4 @@
-"""Runs the plant of an experiment, as its drive and its control do: measurements and the truth."""
+"""Runs the plant of an experiment with drive and control; gives measured and true values."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _COUNT = 2 * math.pi / 1024  # of the encoder of theta_c [rad]
 _LOW_PASS = 200.0  # of the velocities of a control [rad/s]
 _LARGEST_JITTER = 0.49  # of a period
 _SHORTEST = 1.0 - 2 * _LARGEST_JITTER  # time between two samples, in periods
-_MARGIN = 0.1  # a measured torque may be late or early by so much [s]
+_MARGIN = 0.1  # a measured torque may be late or early by at most this time [s]
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Motion:
 
 
 def run(experiment: Experiment) -> Motion:
-    """Runs the plant. Raises FileNotFoundError or FmuError as the FMU does."""
+    """Runs the plant. Raises FileNotFoundError without its FMU, FmuError if the FMU refuses."""
     held = experiment.control is not None or experiment.drive is not Drive.LINEAR
     ticks = _ticks(experiment, 0, round(experiment.duration / experiment.T))
     t = _sample_times(experiment, ticks)
@@ -117,7 +117,7 @@ def _start(experiment: Experiment) -> dict[str, float | int]:
         "initial.theta": theta,
         "initial.q": theta + (experiment.load - weight) / experiment.stiffness,
         "noise.seed": experiment.seed,
-        # With jitter two samples may fall into one period; each has noise of its own.
+        # With jitter, two samples may fall into one period; each sample has its own noise.
         "noise.samplePeriod": experiment.T * (_SHORTEST if experiment.jitter else 1.0),
     }
 
@@ -132,8 +132,8 @@ def _step(
 ) -> dict[str, Array]:
     """Steps the plant to all times t [s] under the inputs of the table, torque first.
 
-    They are linear from row to row; the torque is held where `held`. A control writes it into the
-    table. Returns the recorded columns.
+    The inputs are linear from row to row, but the torque is held if `held`. A control writes its
+    torque into the table. Returns the recorded columns.
     """
     inputs = plant.fmu.references(names, "input")
     h = np.diff(t)
@@ -188,7 +188,7 @@ def _controller(
 def _read(experiment: Experiment, t: Array, tau: Array) -> Array:
     """The torque that the drive reports at the times t [N.m]: without gain, bias and noise.
 
-    tau  torque at the samples, or where it is held from each sample on
+    tau  torque at the samples; a held torque acts from each sample on
     """
     if experiment.drive is Drive.LINEAR:
         return _torque(experiment, t - experiment.late)

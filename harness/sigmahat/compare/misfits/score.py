@@ -1,4 +1,4 @@
-"""How right an estimate is, and how right what it says of itself."""
+"""Accuracy of an estimate, and of its standard deviation sigma_std, here called the claim."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 SETTLED = 2.0
-"""An estimate is judged from this time on after the torque begins [s]."""
+"""Time after the start of the torque from which an estimate is judged [s]."""
 DANGEROUS_ERROR, DANGEROUS_CLAIM = 0.1, 0.02
-"""An instant is dangerous with an error above the one while the claim is below the other [1]."""
+"""An instant is dangerous if the error is above the first value and the claim below the second."""
 WRONG = 0.2
 """Error above which a confident estimate is wrong [1]."""
-_LARGEST = 10.0  # a larger relative error or claim counts as this
+_LARGEST = 10.0  # a larger relative error or claim counts as this value
 
 
 @dataclass(frozen=True)
 class Score:
-    """Sums over instants. The error is relative to the true stiffness, and so is the claim."""
+    """Sums over instants. Error and claim are relative to the true stiffness."""
 
     instants: int = 0
     error2: float = 0.0
     """Squares of the error [1]."""
     claim2: float = 0.0
-    """Squares of sigma_std over the true stiffness [1]."""
+    """Squares of sigma_std divided by the true stiffness [1]."""
     inside: int = 0
     """Instants with an error of at most 1.96 sigma_std."""
     dangerous_instants: int = 0
@@ -40,8 +40,8 @@ class Score:
 
     @property
     def figures(self) -> dict[str, float]:
-        """Root mean squares of error and claim, and shares of the instants: with the truth within
-        1.96 sigma_std, dangerous, confident, confident and wrong [%]; nan without instants.
+        """Root mean squares of error and claim; percentages of instants that have the truth within
+        1.96 sigma_std, are dangerous, confident, confident and wrong [%]; nan without instants.
         """
         count = self.instants or math.nan
         squares = {"error": self.error2, "claim": self.claim2}

@@ -14,13 +14,13 @@ from sigmahat.compare.misfits.score import Score
 from sigmahat.files.tables import aligned, title, write_csv
 
 FIGURES = tuple(Score().figures)
-"""Of a score [%]."""
+"""Names of the numbers of a score [%]."""
 IN_FILE = {"wrong": "confident and over 20 % wrong"}
-"""What a file calls them, where it is more than their name."""
+"""Titles in a file, if a title is longer than the name."""
 
 
 def table(rows: Sequence[Row]) -> str:
-    """The rows as text, a part for each group; below it the means over its rows by joint."""
+    """The rows as text, with a part for each group; each part ends with the means by joint."""
     cells = [["", *(title(name, "%") for name in FIGURES)]]
     heads: dict[int, str] = {}
     for group in Group:

@@ -180,7 +180,7 @@ class CsvLog(Log):
                 self._write(file, {})
             except pa.ArrowInvalid as error:
                 raise LogError(
-                    f"{self.path}: {error}; a file cut in the middle ends like this"
+                    f"{self.path}: {error}; the end of the file may be missing"
                 ) from error
             texts = pa.parquet.ParquetFile(file, pre_buffer=False)
             self._write(file, {name: self._parsed(texts, name).type for name in self._names})
