@@ -6,7 +6,7 @@
 #include "estimator_fmu.h"
 
 typedef struct {
-    sh_estimator_fmu side[2]; /* side[0] holds what both have in common */
+    sh_estimator_fmu side[2]; /* side[0] holds the common data of both sides */
     double sigma;             /* stiffness of the device [N.m/rad] */
     double sigma_std;         /* its standard deviation, as if the errors of the sides were
                                  independent [N.m/rad] */
@@ -28,7 +28,7 @@ static sh_parameters parameters_of(const AntagonisticStiffnessEstimator *fmu, in
     return p;
 }
 
-/* Why the sum is not confident. That one side alone is not certain enough is no reason. */
+/* Why the sum is not confident. One side alone may be too uncertain, if the sum is not. */
 static int doubt_of_sum(const AntagonisticStiffnessEstimator *fmu)
 {
     int worst = SH_DOUBT_NONE, i;
@@ -75,7 +75,7 @@ static void initialize(void *model, double t)
     AntagonisticStiffnessEstimator *fmu = model;
     int i;
 
-    (void)t; /* it counts ticks */
+    (void)t; /* the estimator counts ticks */
     fmu->side[1].parameters = parameters_of(fmu, 1);
     for (i = 0; i < 2; ++i) {
         sh_estimator_fmu_initialize(&fmu->side[i]);

@@ -13,7 +13,7 @@ static sh_status check(const void *model, sh_instance *log)
 
 static void initialize(void *model, double t)
 {
-    (void)t; /* it counts ticks */
+    (void)t; /* the estimator counts ticks */
     sh_estimator_fmu_initialize(model);
 }
 

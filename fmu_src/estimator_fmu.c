@@ -23,12 +23,12 @@ void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu)
 
 int sh_estimator_fmu_is_state(const sh_estimator_fmu *fmu, const sh_parameters *parameters)
 {
-    /* From far behind, or from a place that is no number, a step would not come to its end. */
+    /* If `ahead` is far below 0, or not a number, a step would not end. */
     return fmu->ahead >= -1.0 && fmu->ahead <= 1.0 &&
            sh_estimator_check(&fmu->estimator, parameters) == 0;
 }
 
-/* Most ticks in one step. More would take minutes, and are the mistake of a wrong unit. */
+/* Largest number of ticks in a step. More ticks would take minutes, and show a wrong unit. */
 static const double MAX_TICKS = 1e9;
 
 /* Inputs at a time after the begin of the step. */
@@ -45,7 +45,7 @@ static sh_measurement extrapolate(const sh_estimator_fmu *fmu, double after)
     return z;
 }
 
-/* Logs why a tick was skipped: the first input that is out of range, or all together too large. */
+/* Logs why a tick was skipped: an input is out of range, or all inputs together are too large. */
 static void log_skipped(const sh_measurement *z, double t, const char *who, sh_instance *log)
 {
     static const char *const NAMES[] = {"theta", "q", "theta_c", "tau", "tau_e_sensor"};
@@ -98,14 +98,14 @@ static sh_status tick(sh_estimator_fmu *fmu, double t, double after, const char 
     return status;
 }
 
-/* Ticks are counted in periods and not in the importer's time, whose rounding errors add up: a step of
- * length T is one tick, for any number of steps.
+/* Ticks are counted in periods and not in the importer's time, because its rounding errors add up.
+ * So a step of length T is one tick, for any number of steps.
  */
 sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
                                 sh_instance *log)
 {
     const double T = fmu->parameters.samplePeriod, periods = h / T;
-    /* A tick this close to the end of the step belongs to the next one. A step of any length counts. */
+    /* A tick this close to the end of a step belongs to the next step. Any step may have ticks. */
     const double tolerance = periods < 2e-6 ? periods / 2.0 : 1e-6;
     sh_status status = SH_OK;
 
@@ -117,7 +117,7 @@ sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const
         return SH_ERROR;
     }
     while (fmu->ahead < periods - tolerance) {
-        /* It may be negative by the tolerance. */
+        /* `ahead` may be negative by the tolerance. */
         if (tick(fmu, t, fmu->ahead > 0.0 ? fmu->ahead * T : 0.0, who, log) != SH_OK) {
             status = SH_WARNING;
         }

@@ -15,17 +15,17 @@ typedef struct {
     int strained; /* 1: the warning of a too large deformation was logged */
 } sh_estimator_fmu;
 
-/* From an input to its time derivative. */
+/* Offset from an input to its time derivative. */
 enum {
     SH_ESTIMATOR_DERIVATIVE_OFFSET =
         (offsetof(sh_estimator_fmu, input_derivative) - offsetof(sh_estimator_fmu, input))
 };
 
-/* As in sh_model; with the parameters that the estimator uses. */
+/* As is_state of sh_model; with the parameters that the estimator uses. */
 int sh_estimator_fmu_is_state(const sh_estimator_fmu *fmu, const sh_parameters *parameters);
 
-/* As in sh_model. Ticks are at start + k T: a step from t to t + h runs those with t <= t_k < t + h.
- * Messages begin with `who`: "", or which of several estimators it is.
+/* As in sh_model. Ticks are at t_k = start + k T: a step from t to t + h runs all ticks with
+ * t <= t_k < t + h. Messages begin with `who`: "", or the name of one of several estimators.
  */
 sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
                                  sh_instance *log);

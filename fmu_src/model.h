@@ -1,8 +1,8 @@
 /* What a model provides for the FMI shell (shell/, fmi2/, fmi3/): one constant of type sh_model.
  *
  * A model is one plain struct without pointers that holds parameters, inputs,
- * outputs and state. The shell allocates it, reaches its variables through the
- * table generated from the model description, and copies it as a whole to save
+ * outputs and state. The shell allocates this struct, accesses its variables through
+ * the table generated from the model description, and copies the whole struct to save
  * and restore the state of the FMU.
  */
 #ifndef SH_MODEL_H
@@ -29,14 +29,14 @@ typedef enum {
     SH_ROLE_TUNABLE /* parameter, also settable between steps */
 } sh_role;
 
-/* One variable. Its value reference is its place in the table. */
+/* One variable. Its value reference is its index in the table. */
 typedef struct {
     const char *name;
     size_t offset; /* in the model's struct, of a double (Real) or an int */
     sh_type type;
     sh_role role;
     double start;
-    double min, max; /* allowed values, both limits among them; infinite where there is none */
+    double min, max; /* allowed values, including both limits; infinite without a limit */
 } sh_variable;
 
 /* Sends a message to the user through the logger of the importer; format as in printf. */
@@ -51,14 +51,14 @@ typedef struct {
     size_t count;
     /* The time derivative of the input at offset o is at o + derivative_offset. */
     size_t derivative_offset;
-    /* Checks constraints between parameters, after the range of each one. Returns SH_OK, or
-     * SH_ERROR after a message. May be NULL.
+    /* Checks constraints between parameters, after the range of each parameter was checked. Returns
+     * SH_OK, or SH_ERROR after a message. May be NULL.
      */
     sh_status (*check)(const void *model, sh_instance *log);
     /* Sets state and outputs at time t [s] from parameters and inputs. May be called again. */
     void (*initialize)(void *model, double t);
-    /* Whether this can be the state of a model that has been initialised, so that it can advance: asked
-     * of one that comes from outside. Its parameters are each in its range.
+    /* Whether this can be the state of an initialised model, so that the model can advance. The
+     * shell asks this for a state from outside, in which each parameter is in its range.
      */
     int (*is_state)(const void *model);
     /* Advances the model from t to t + h, h > 0. Inputs are u + du/dt (s - t) for s in

@@ -1,5 +1,5 @@
 /* White Gaussian noise without a state: sample k of a channel depends only on the seed, on k and on
- * the channel. It is the same on every platform.
+ * the channel. The noise is the same on every platform.
  */
 #ifndef SH_NOISE_H
 #define SH_NOISE_H

@@ -9,7 +9,7 @@
 #include "radau.h"
 #include "variables.h"
 
-/* Most periods of the noise in one step: a number of samples that is exact. */
+/* Largest number of noise periods in a step: a double holds this number exactly. */
 static const double MAX_PERIODS = 1e15;
 
 /* Outputs of the state x under the inputs u. */
@@ -26,9 +26,9 @@ static void set_outputs(sh_plant *plant, const double *u)
     (void)sh_plant_outputs(arguments, results, NULL, NULL, 0);
 }
 
-/* Goes on to the noise sample at the end of a step: the last one whose time, a multiple of the
- * period, is reached. As in estimator_fmu.c it counts in periods, and a time that is missed by 1e-6
- * of a period counts as reached.
+/* Advances to the noise sample at the end of a step: the last sample whose time, a multiple of the
+ * period, has passed. As in estimator_fmu.c, time is counted in periods, and a time that is missed
+ * by 1e-6 of a period counts as passed.
  */
 static void advance_noise(sh_plant *plant, double periods)
 {
@@ -53,8 +53,8 @@ static void initialize(void *model, double t)
     set_outputs(plant, plant->u);
 }
 
-/* A step that is not above 0 would have no end, and the time since the last sample of the noise is
- * below a period.
+/* A step length that is not above 0 would have no end. The time since the last sample of the noise
+ * must be below a period.
  */
 static int is_state(const void *model)
 {

@@ -18,8 +18,8 @@ typedef struct {
     double x[SH_PLANT_STATES];
     double h;            /* internal step that is short enough for the motion [s] */
     double samplePeriod; /* of the noise [s]; 0 for a plant without noise */
-    double since;        /* time of the noise sample in y, in periods before now */
-    uint64_t sample;     /* its number */
+    double since;        /* age of the noise sample in y, in periods */
+    uint64_t sample;     /* number of the noise sample in y */
     int seed;            /* of the noise */
 } sh_plant;
 

@@ -9,7 +9,7 @@ enum { STATES = SH_PLANT_STATES, INPUTS = SH_PLANT_INPUTS, STAGES = 3 };
 enum { MAX_NEWTON_ITERATIONS = 10, MAX_FOLLOWERS = 8 };
 
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
-enum { MAX_ATTEMPTS = 1000 }; /* a fuzzer finds steps that need all of them */
+enum { MAX_ATTEMPTS = 1000 }; /* a fuzzer finds steps that need all attempts */
 #else
 enum { MAX_ATTEMPTS = 1000000 };
 #endif
@@ -17,8 +17,8 @@ static const double FOR_A_TRANSIENT = 10000, PER_SECOND = 1e6;
 
 static const double SCALE[STATES] = SH_PLANT_SCALES;
 static const double ERROR_TOLERANCE = 1e-8;
-/* Errors that Newton's iteration leaves add up over the steps. The last iteration is usually
- * smaller than this by orders of magnitude.
+/* Errors of Newton's iteration add up over the steps. The change in the last iteration is usually
+ * smaller than this tolerance by orders of magnitude.
  */
 static const double NEWTON_TOLERANCE = 1e-12;
 
@@ -150,10 +150,10 @@ static void evaluate_stages(const double *x, const double *u, const double *du, 
 
 /* Finds Z with Z_i = h sum_k a_ik f(x + Z_k) by Newton's iteration from Z = 0, with the Jacobian at
  * x for all stages. In the variables W = T^-1 Z it separates into a real and a complex system.
- * Returns 0 if it does not converge.
+ * Returns 0 if the iteration does not converge.
  *
  * f       at x, under the inputs u
- * weight  of the states in the size of a change
+ * weight  of the states in the norm of a change
  */
 static int solve_stages(const double *x, const double *u, const double *du, const double *p,
                         double h, const double *f, const double *weight, const double *factors,
@@ -169,7 +169,7 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
         const double previous = change;
 
         if (iteration == 0 && held) {
-            repeat(f, F); /* all stages are at x still */
+            repeat(f, F); /* all stages are still at x */
         } else {
             evaluate_stages(x, u, du, p, h, Z, F);
         }
@@ -192,9 +192,9 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
         if (change <= NEWTON_TOLERANCE) {
             return 1;
         }
-        /* The changes shrink by a constant factor; the error is the sum of those to come. Where f
-         * jumps by more than its size, the change grows once, however short the step is. That is
-         * allowed as long as the change is below the allowed error of the step.
+        /* The changes shrink by a constant factor; the error is the sum of the changes to come.
+         * Where f jumps by more than its size, the change grows once, even in a very short step.
+         * This is allowed as long as the change is below the allowed error of the step.
          */
         if (iteration > 0) {
             const double rate = change / previous;
@@ -209,10 +209,10 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     return 0;
 }
 
-/* Estimated error of a step with the stages x + Z, as a multiple of what is allowed: the part of it
- * that is left after `followers` more steps of this length.
+/* Estimated error of a step with the stages x + Z, as a multiple of the allowed error: the part of
+ * this error that remains after `followers` more steps of this length.
  *
- * A motion that has decayed by then need not be resolved. A step multiplies a mode by R(z), where
+ * A motion that decays in these steps need not be resolved. A step multiplies a mode by R(z), where
  * the exact solution has exp(z). On the whole negative axis R(z) is below 1 / (1 - z / REAL), and
  * the factors give this bound for all modes at once.
  *
@@ -230,7 +230,7 @@ static double estimate_error(double (*Z)[STATES], const double *f, const double 
     }
     solve_real(factors, error);
     size = norm(error, weight) / ERROR_TOLERANCE;
-    /* This counts fast modes fully. But the step itself damps them too, not its followers alone. */
+    /* `size` counts fast modes fully. But the step itself damps these modes, too. */
     for (; followers >= 0 && size > 1.0; --followers) {
         for (j = 0; j < STATES; ++j) {
             error[j] *= REAL / h;
@@ -241,8 +241,8 @@ static double estimate_error(double (*Z)[STATES], const double *f, const double 
     return size;
 }
 
-/* One step as sh_radau_step, with factors for its length. The error is the part of it that is left
- * after `followers` more steps of this length.
+/* One step as sh_radau_step, with factors for its length. Returns the part of the error that is
+ * left after `followers` more steps of this length.
  */
 static double take(const double *x, const double *u, const double *du, const double *p, double h,
                    int followers, const double *factors, double *x_new)
@@ -288,7 +288,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
     for (attempt = 0; attempt < allowed; ++attempt) {
         const double left = duration - elapsed;
         const double wanted = left > *h ? ceil(left / *h) : 1.0;
-        /* A plan is carried out to its end. Only one of more steps than are counted may change. */
+        /* All steps of a plan are made. Only a plan of at least MAX_FOLLOWERS steps may change. */
         const double pieces = owed > 0 && owed < MAX_FOLLOWERS ? owed : fmax(wanted, owed);
         const double step = left / pieces;
         const int followers = (int)fmin(pieces - 1.0, MAX_FOLLOWERS);
@@ -303,7 +303,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
             factorized = step;
         }
         error = take(x, u_now, du, p, step, followers, factors, x_new);
-        /* The estimate falls with the fourth power of the step. */
+        /* The error estimate falls with the fourth power of the step. */
         *h = step * fmin(8.0, fmax(0.2, 0.9 / sqrt(sqrt(error))));
         if (error <= 1.0) {
             for (j = 0; j < STATES; ++j) {

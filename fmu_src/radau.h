@@ -2,7 +2,7 @@
  * stages, order 5, L-stable; Hairer, Wanner, "Solving Ordinary Differential Equations II", section
  * IV.8.
  *
- * Inputs are linear in time: u + du s, with s the time since the begin. Arrays: x [size: states],
+ * Inputs are linear in time: u + du s, with s the time since the start. Arrays: x [size: states],
  * u and du [size: inputs], p [size: parameters].
  */
 #ifndef SH_RADAU_H
@@ -10,27 +10,27 @@
 
 /* One step of length h > 0 from x to x_new, without error control.
  *
- * Returns the estimated error as a multiple of what is allowed, the largest over
- * the states; infinite or not a number if there is no solution. Allowed is
+ * Returns the estimated error as a multiple of the allowed error, the largest over the
+ * states; infinite or not a number without a solution. The allowed error is
  * 1e-8 (scale + |x|), with the scale of the plant for each state.
  */
 double sh_radau_step(const double *x, const double *u, const double *du, const double *p, double h,
                      double *x_new);
 
-/* Advances x by duration > 0 in steps, with the allowed error at the end of the duration: a motion
- * that decays before then is resolved only as far as it matters at the end.
+/* Advances x by duration > 0 in steps, with the allowed error at the end of the duration. A motion
+ * that decays before the end is resolved only as far as this motion changes x at the end.
  *
  * *h in: the step to try first, infinite if unknown; out: the step to try first after this
  * duration.
  *
  * Returns the number of steps. Returns 0 if the error of even a negligible step is too large, or
- * after sh_radau_attempts(duration); x is then the state reached.
+ * after sh_radau_attempts(duration) attempts; x is then the state after the last good step.
  */
 int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
                        double duration, double *h);
 
-/* Most attempts to make a step in a duration: 10000 for a transient, and one for each microsecond of
- * the duration, but a million in all. A joint that needs more moves absurdly fast.
+/* Largest number of attempted steps in a duration: 10000 for a transient, and one for each
+ * microsecond of the duration, but a million in all. Only an absurdly fast joint needs more.
  */
 int sh_radau_attempts(double duration);
 

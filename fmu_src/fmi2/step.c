@@ -21,8 +21,8 @@ fmi2Status fmi2CancelStep(fmi2Component c)
     return fmi2Error;
 }
 
-/* Status information exists for asynchronous and for discarded steps. Here there are none, and only
- * the time reached is known.
+/* Status information exists for asynchronous and for discarded steps. This FMU has no such steps,
+ * and knows only the time of the last step.
  */
 static fmi2Status no_status(fmi2Component c, const char *function)
 {

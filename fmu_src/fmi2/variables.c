@@ -15,7 +15,7 @@ const char *sh_type_name(sh_type type)
     }
 }
 
-/* The call of an importer that hands over one value for each reference. */
+/* A call of an importer with one value for each reference. */
 static sh_access call(fmi2Component c, const char *function, unsigned types, sh_values values,
                       const fmi2ValueReference vr[], size_t nvr)
 {

@@ -1,5 +1,5 @@
-/* FMI 3.0: the functions for what these FMUs do not have. The standard demands that each one exists;
- * here it fails with a message that says what is missing.
+/* FMI 3.0: the functions for features that these FMUs do not have. The standard demands that each
+ * function exists; here each function fails with a message that names the missing feature.
  */
 #include "fmi3Functions.h"
 #include "simulation.h"

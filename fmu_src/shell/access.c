@@ -4,7 +4,7 @@
 
 #include "value.h"
 
-/* Time, the independent variable of FMI 3.0: it has the reference after those of the table. */
+/* Time, the independent variable of FMI 3.0: its reference follows the references of the table. */
 static int is_time(const sh_access *access, uint32_t reference)
 {
     return access->fmi3 && reference == sh_fmu_model.count;
@@ -62,7 +62,7 @@ static int may_be_set(sh_instance *instance, const sh_variable *variable, const 
     return 0;
 }
 
-/* The value at a place of the importer's array: a double holds all of ours. */
+/* The value at an index of the importer's array: a double holds every value of a variable. */
 static double load(const sh_access *access, const void *values, size_t i)
 {
     if (access->values == SH_DOUBLES) {

@@ -11,14 +11,14 @@ typedef enum {
     SH_DOUBLES,
     SH_INTS,
     SH_INT64S,
-    SH_BYTES /* Booleans: a bool that is neither true nor false must not be read as one */
+    SH_BYTES /* Booleans: other values than true and false must not be read as a bool */
 } sh_values;
 
 /* One call of the importer that reads or writes variables. */
 typedef struct {
-    void *handle;         /* the importer's; it may be NULL */
-    const char *function; /* its name for messages */
-    unsigned types;       /* SH_TYPE_* that it is for; 0: any reference is an error */
+    void *handle;         /* from the importer; may be NULL */
+    const char *function; /* its name, for messages */
+    unsigned types;       /* allowed SH_TYPE_*; 0: any reference is an error */
     sh_values values;
     int fmi3; /* 1: time is a variable, and start values can be read before the initialisation */
     const uint32_t *references;
@@ -26,7 +26,7 @@ typedef struct {
     size_t length; /* of the importer's array of values */
 } sh_access;
 
-/* Reads the variables of a call. Initial outputs follow what was set so far. */
+/* Reads the variables of a call. Initial outputs are computed from the values set so far. */
 sh_status sh_get(const sh_access *access, void *values);
 
 /* Writes the variables of a call, all or none. */

@@ -25,8 +25,8 @@ static void clear_input_derivatives(sh_instance *instance)
 }
 
 /* Whether a step ends after the stop time by rounding only. Some importers make a last step of
- * 1e-13 s, so the tolerance is of the step before, too; some add up their time, whose error grows
- * with the number of steps.
+ * 1e-13 s, so the tolerance also depends on the step before. Some importers add up their time, so
+ * its error grows with the number of steps.
  */
 static int is_rounding(const sh_instance *instance, double t, double h)
 {
@@ -51,9 +51,9 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
                   h);
         return SH_ERROR;
     }
-    /* An importer that adds up its time makes rounding errors. They have no effect, as ticks are
-     * counted by h. A larger difference that is still small comes from an importer whose h does not
-     * quite fit its times: then this step also covers the difference, so that it ends at t + h.
+    /* An importer that adds up its time makes rounding errors. These errors have no effect, as
+     * ticks are counted by h. A larger, but still small, difference comes from an importer whose h
+     * does not quite fit its times. Then this step also covers the difference, to end at t + h.
      */
     length = h;
     late = t - instance->time;
@@ -66,7 +66,7 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
                       function, t, instance->time);
             return SH_ERROR;
         }
-        /* Below 0, h is shorter than the rounding. */
+        /* If `whole` is below 0, h is shorter than the rounding. */
         if (fabs(late) > rounding && whole > 0.0 && isfinite(whole)) {
             begin = instance->time;
             length = whole;

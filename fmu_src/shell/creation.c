@@ -61,7 +61,7 @@ void sh_release(const sh_importer *importer, void *memory)
     }
 }
 
-/* For messages while there is no instance. */
+/* An instance for messages, while there is no other instance. */
 static sh_instance nobody(const sh_importer *importer)
 {
     static char nameless[] = "(no name)";

@@ -95,8 +95,8 @@ sh_status sh_begin_initialization(void *handle, const char *function)
     return SH_OK;
 }
 
-/* After an error of a parameter the instance stays in initialisation mode, where it can be
- * corrected.
+/* After an error of a parameter the instance stays in initialisation mode, so that the importer can
+ * correct the parameter.
  */
 sh_status sh_end_initialization(void *handle, const char *function)
 {

@@ -4,8 +4,8 @@
 
 #include "model.h"
 
-/* Where the instance stands in the state machine of FMI. Bits, so that each function can name the
- * set of states it is allowed in.
+/* State of the instance in the state machine of FMI. The values are bits, so that each function can
+ * name the set of its allowed states.
  */
 typedef enum {
     SH_INSTANTIATED = 1,
@@ -18,7 +18,7 @@ typedef enum {
 /* What the importer gave to the instance. Any of it may be NULL. */
 typedef struct {
     void *environment;
-    void (*logger)(void); /* its function for messages; sh_deliver knows the type */
+    void (*logger)(void); /* function for messages; sh_deliver knows the type */
     void *(*allocate)(size_t count, size_t size);
     void (*release)(void *memory);
 } sh_importer;
@@ -29,11 +29,11 @@ struct sh_instance {
     unsigned categories; /* SH_LOG_* that are passed on */
     sh_state state;
     double time;              /* communication point reached */
-    double stop_time;         /* no step may end after it; infinite if there is none */
+    double stop_time;         /* no step may end after this time; infinite: no stop time */
     double steps;             /* communication steps made */
-    double previous_step;     /* length of the last one [s]; 0: there is none */
-    int outputs_stale;        /* in initialisation: outputs are older than what was set */
-    int parameters_unchecked; /* a parameter was set since they were checked */
+    double previous_step;     /* length of the last step [s]; 0: no step yet */
+    int outputs_stale;        /* in initialisation: outputs are older than the values set */
+    int parameters_unchecked; /* a parameter was set since the last check */
     int slopes_set;           /* derivatives of inputs may differ from 0 */
     void *model;              /* of sh_fmu_model.size bytes */
 };

@@ -13,7 +13,7 @@ static const struct {
              {"logStatusError", SH_LOG_ERROR},
              {"logAll", SH_LOG_ALL}};
 
-/* KNOWN has the category of each status at the place of its number. */
+/* Index in KNOWN of the category of a status. */
 static size_t place_of(sh_status status)
 {
     return status < SH_ERROR ? (size_t)status : (size_t)SH_ERROR;
@@ -33,7 +33,7 @@ static size_t utf8_length(const unsigned char *s)
     }
     length = s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
     if (s[0] == 0xe0) {
-        low = 0xa0; /* the rest has a shorter form */
+        low = 0xa0; /* other characters have a shorter form */
     } else if (s[0] == 0xed) {
         high = 0x9f; /* no halves of surrogate pairs */
     } else if (s[0] == 0xf0) {

@@ -18,8 +18,8 @@ enum {
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
                 const char *text);
 
-/* Writes the SH_LOG_* of some categories to *found, SH_LOG_ALL if count is 0. Unknown ones are ignored,
- * with a warning.
+/* Writes the SH_LOG_* of some categories to *found, SH_LOG_ALL if count is 0. Unknown categories
+ * are ignored, with a warning.
  */
 sh_status sh_find_categories(sh_instance *instance, size_t count, const char *const categories[],
                              unsigned *found, const char *function);
@@ -27,7 +27,7 @@ sh_status sh_find_categories(sh_instance *instance, size_t count, const char *co
 /* Copies text, with every `special` character twice; at most size - 1 characters. */
 void sh_double(char *copy, size_t size, const char *text, char special);
 
-/* Replaces every byte that is not part of UTF-8 by '?'; returns 1 if there was one. */
+/* Replaces every byte that is not part of UTF-8 by '?'; returns 1 if there was such a byte. */
 int sh_make_utf8(char *text);
 
 #endif

@@ -13,7 +13,7 @@ sh_status sh_save_state(void *handle, void **state, const char *function)
     if (instance == NULL || !sh_has(instance, state, function, "FMUState")) {
         return SH_ERROR;
     }
-    /* A state from an earlier call may be handed in, to be overwritten. */
+    /* The importer may pass a state from an earlier call, to be overwritten. */
     block = *state != NULL ? *state : sh_allocate(&instance->importer, sh_block_size());
     if (block == NULL) {
         sh_report(instance, SH_ERROR, "%s: out of memory.", function);

@@ -1,14 +1,14 @@
 /* Saving, restoring and serialising the state of the FMU.
  *
  * `handle` is what the importer gave, and may be NULL; `function` is the name of its function, for
- * messages. Every function returns SH_ERROR after a message, and then changes nothing.
+ * messages. A function that fails returns SH_ERROR after a message, and changes nothing.
  */
 #ifndef SH_SAVED_STATE_H
 #define SH_SAVED_STATE_H
 
 #include "simulation.h"
 
-/* Writes the state to *state, or to new memory if that is NULL. */
+/* Writes the state to *state, or to new memory if *state is NULL. */
 sh_status sh_save_state(void *handle, void **state, const char *function);
 sh_status sh_restore_state(void *handle, void *state, const char *function);
 sh_status sh_free_state(void *handle, void **state, const char *function);

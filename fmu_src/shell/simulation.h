@@ -1,7 +1,7 @@
 /* What can be done with an instance, the same in every version of FMI.
  *
- * The functions of an importer (fmi2/, fmi3/) translate arguments and status; the rest is here. Each
- * function here that takes the name of the importer's function begins its messages with it.
+ * The functions of FMI (fmi2/, fmi3/) only translate arguments and status. Each function here that
+ * takes the name of a function of FMI begins its messages with this name.
  */
 #ifndef SH_SIMULATION_H
 #define SH_SIMULATION_H
@@ -11,7 +11,7 @@
 /* A new instance that passes on some categories of messages, or NULL after a message. */
 sh_instance *sh_create(const sh_importer *importer, const char *name, const char *guid,
                        unsigned categories, const char *function);
-/* NULL, after a message that the FMU is not for what is wanted. */
+/* NULL, after a message that the FMU is not for the wanted kind of simulation. */
 void *sh_refuse_instance(const sh_importer *importer, const char *function, const char *wanted);
 void sh_destroy(sh_instance *instance);
 
@@ -21,8 +21,8 @@ void sh_reset(sh_instance *instance);
 /* NULL, after a message that the function is not allowed in this state. */
 sh_instance *sh_refuse_call(sh_instance *instance, const char *function);
 
-/* The instance behind the importer's handle if it is in one of the allowed states; else NULL, after a
- * message. Without a handle there is no logger for one.
+/* The instance of the importer's handle if the instance is in an allowed state; else NULL, after a
+ * message. Without a handle there is no logger for a message.
  */
 static inline sh_instance *sh_enter(void *handle, unsigned allowed_states, const char *function)
 {
@@ -43,7 +43,7 @@ static inline int sh_has(sh_instance *instance, const void *pointer, const char 
     return pointer != NULL || sh_refuse_null(instance, function, argument);
 }
 
-/* Memory from the functions of the importer, or from the C library if it has none. Zero. */
+/* Memory, set to 0, from the functions of the importer, or else from the C library. */
 void *sh_allocate(const sh_importer *importer, size_t size);
 void sh_release(const sh_importer *importer, void *memory);
 
@@ -56,16 +56,16 @@ typedef struct {
     double stop_time;
 } sh_experiment;
 
-/* Refuses what is not finite or in the wrong order. Nothing has a tolerance to be set. */
+/* Refuses values that are not finite or in the wrong order. The tolerance has no effect. */
 sh_status sh_set_up(sh_instance *instance, const sh_experiment *experiment, const char *function);
 
-/* The course of a simulation. `handle` is what the importer gave; it may be NULL. */
+/* The course of a simulation. `handle` is from the importer, and may be NULL. */
 sh_status sh_begin_initialization(void *handle, const char *function);
 sh_status sh_end_initialization(void *handle, const char *function);
 sh_status sh_communication_step(void *handle, double t, double h, const char *function);
 sh_status sh_terminate(void *handle, const char *function);
 
-/* Checks what the parameters require of each other, if one was set since the last check. */
+/* Checks constraints between parameters, if a parameter was set since the last check. */
 sh_status sh_check_parameters(sh_instance *instance);
 
 /* Checks the parameters and computes the initial outputs, if anything was set since the last time.

@@ -84,7 +84,7 @@ const char *sh_block_defect(const void *block)
     return NULL;
 }
 
-/* Takes the course of the simulation. */
+/* Copies the state of the simulation, without the model, from the header. */
 static void read_header(sh_instance *instance, const void *block)
 {
     const state_header header = header_of(block);
@@ -95,8 +95,8 @@ static void read_header(sh_instance *instance, const void *block)
     instance->steps = header.steps;
     instance->previous_step = header.previous_step;
     instance->outputs_stale = header.outputs_stale != 0;
-    instance->parameters_unchecked = 1; /* the next step checks them */
-    instance->slopes_set = 1;           /* the state may have some */
+    instance->parameters_unchecked = 1; /* the next step checks the parameters */
+    instance->slopes_set = 1;           /* the state may have slopes */
 }
 
 void sh_block_read(sh_instance *instance, const void *block)
@@ -139,7 +139,7 @@ static int is_state(sh_state state)
            state == SH_TERMINATED;
 }
 
-/* Whether the next step can come without the model being initialised before. */
+/* Whether the next step is possible without an initialisation of the model before. */
 static int is_initialized(const sh_instance *shown)
 {
     return shown->state == SH_STEP || (shown->state == SH_INITIALIZATION && !shown->outputs_stale);

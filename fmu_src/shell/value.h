@@ -37,7 +37,7 @@ static inline void sh_write(sh_instance *instance, const sh_variable *variable, 
     if (variable->type == SH_TYPE_REAL) {
         *(double *)place = value;
     } else {
-        /* In its range, unless the importer has changed it since the check. */
+        /* The value is in its range, unless the importer changed it after the check. */
         *(int *)place = value >= INT_MAX ? INT_MAX : value > INT_MIN ? (int)value : INT_MIN;
     }
 }

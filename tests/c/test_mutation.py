@@ -22,7 +22,7 @@ def test_every_exemption_is_of_code_that_exists(file: str, code: str) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="the mutants are tested in forks")
-@pytest.mark.slow("a dozen mutants of the library are compiled and tested")
+@pytest.mark.slow("six mutants of the library are compiled and tested")
 def test_nearly_every_wrong_token_is_noticed() -> None:
     need("gcc")
     command = [sys.executable, str(REPOSITORY / "tests" / "studies" / "mutation.py")]

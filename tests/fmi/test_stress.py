@@ -18,7 +18,7 @@ every_fmu = pytest.mark.parametrize(
     ("fmu", "version"),
     [(fmu, "fmi3" if fmu in IN_FMI3 else "fmi2") for fmu in ESTIMATORS + PLANTS],
 )
-# Memory comes from the shell alone, which all FMUs share: a model is one struct without pointers.
+# Memory and locks are of the shell alone, which all FMUs share; a model is a struct without pointers.
 one_of_each_kind = pytest.mark.parametrize(
     ("fmu", "version"), [("StiffnessEstimator", "fmi2"), ("AwasPlant", "fmi3")]
 )
@@ -43,7 +43,7 @@ def run(*command: str | Path) -> str:
     return done.stdout
 
 
-@every_fmu
+@one_of_each_kind
 @pytest.mark.slow("many instances run side by side")
 def test_instances_do_not_influence_each_other_in_turn_and_in_threads(
     fmu: str, version: str, build: Path, folder: Path

@@ -131,5 +131,5 @@ def test_a_sheet_without_motion_is_refused(results: Path, tmp_path: Path, capsys
     sheet["polynomial"]["phi"] = None
     (tmp_path / "joint.json").write_text(json.dumps(sheet))
     line = refused(capsys, "export", str(tmp_path), "--to", "mjcf")
-    assert "expected that of a joint that moved" in line
+    assert "expected the sheet of a joint that moved" in line
     assert not (tmp_path / "joint.xml").exists()

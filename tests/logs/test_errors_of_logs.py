@@ -132,7 +132,7 @@ def test_values_that_do_not_fit(
         ("motor.gamma = 50", "motor.gamma = ", "not TOML"),
         ('column = "q"', 'colum = "q"', "did you mean 'column'"),
         ('column = "q"', 'column = "q"\nunit = "degg"', "unknown unit 'degg'; did you mean 'deg'"),
-        ('column = "q"', 'column = "q"\nunit = "A"', "unit 'A' is no unit of what is expected"),
+        ('column = "q"', 'column = "q"\nunit = "A"', "unit 'A' cannot be converted to rad"),
         ('column = "q"', 'column = "q"\nunit = "counts"', "counts_per_turn"),
         ('column = "q"', 'column = "q"\nsign = 2', "expected 1 or -1"),
         ('column = "q"', 'column = "q"\nscale = "x"', "expected a number"),

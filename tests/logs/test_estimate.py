@@ -247,7 +247,7 @@ def test_paper2011_makes_no_claim(
     path = write_log(log, tmp_path / "log.csv")
     assert estimate(path, tmp_path) == 0
     text = capsys.readouterr().out
-    assert "of which the method claims no uncertainty" in text
+    assert "for which the method gives no standard deviation" in text
     assert "standard deviation" not in text and "confident" not in text
     assert set(read_estimate(tmp_path / "out")["estimate.doubt"].to_pylist()) == {"NoClaim"}
     band = "95 % band"

@@ -67,8 +67,8 @@ def test_from_the_log_to_one_report(capsys: pytest.CaptureFixture[str]) -> None:
         assert found[name]["answer"].endswith("confident")
     assert main(["report", "sigmahat-results/leg"]) == 0
     page = Path("sigmahat-results/leg/report.html").read_text(encoding="utf-8")
-    assert "hip: Stiffness over the deformation" in page
-    assert "knee: Stiffness over the deformation" in page
+    assert "hip: Stiffness against deformation" in page
+    assert "knee: Stiffness against deformation" in page
     # The motor is in one column each: the first log confirms itself for every joint, or for none.
     assert main(["validate", "leg.csv", "--with", "leg.toml"]) == 1
     assert capsys.readouterr().out.count("learned before from leg.csv") == 2

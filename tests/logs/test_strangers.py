@@ -35,7 +35,7 @@ def confined() -> Iterator[Confined]:
 
 @pytest.mark.slow("hundreds of commands, each in a process of its own")
 @settings(
-    max_examples=200,
+    max_examples=80,
     deadline=None,
     derandomize=True,
     database=None,

@@ -25,9 +25,10 @@ METHODS = {"tick of Paper2011": "1", "tick of FilteredRegression": "2"}
 def counted(program: Path, subject: str) -> float:
     totals = []
     for rounds in (FEW, MANY):
-        command = [need("valgrind"), "--tool=lackey", "--basic-counts=yes", str(program), subject]
-        done = subprocess.run([*command, str(rounds)], capture_output=True, text=True, check=True)
-        (total,) = re.findall(r"guest instrs: +([\d,]+)", done.stderr)
+        valgrind = [need("valgrind"), "--tool=cachegrind", "--cache-sim=no"]
+        command = [*valgrind, "--cachegrind-out-file=/dev/null", str(program), subject, str(rounds)]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        (total,) = re.findall(r"I +refs: +([\d,]+)", done.stderr)
         totals.append(int(total.replace(",", "")))
     return (totals[1] - totals[0]) / (MANY - FEW)
 

@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 from sigmahat.export.templates import items, render, variables
 
 SEED, SAMPLE_PERIOD = "noise.seed", "noise.samplePeriod"
-"""Parameters of a plant with noise besides those of its equations."""
+"""Parameters that a plant with noise has in addition to the parameters of its equations."""
 
 _OWN_FIELDS = {SEED: "seed", SAMPLE_PERIOD: "samplePeriod"}  # of sh_plant
 _SIGNAL = re.compile(r"signal\.(\w+)\.(amplitude|frequency)")
@@ -35,7 +35,7 @@ def storage_in_struct(root: Element) -> dict[str, str]:
 
 
 def storage_in_sides(root: Element) -> dict[str, str]:
-    """Place of every variable in a struct with two such structs, ``side[0]`` and ``side[1]``.
+    """Place of every variable in a struct with a struct per side, ``side[0]`` and ``side[1]``.
 
     ``motor_2.B`` is ``side[1].parameters.motor.B``. Inputs and parameters common to both are
     in ``side[0]``, outputs common to both are fields of their own.
@@ -57,7 +57,7 @@ def storage_in_sides(root: Element) -> dict[str, str]:
 def storage_in_arrays(root: Element) -> dict[str, str]:
     """Place of every variable of a plant: arrays p, u and y in the order of the template.
 
-    What `is_of_every_plant` names is in fields of its own.
+    Parameters for which `is_of_every_plant` is true have their own fields.
     """
     array = {"input": "u", "output": "y", "parameter": "p"}
     count = dict.fromkeys(array.values(), 0)
@@ -147,7 +147,7 @@ _LARGEST = {"rls.n": "SH_MAX_N", "rls.m": "SH_MAX_M"}
 def parameter_table(template: Path) -> str:
     """The text of the file for the template of an estimator with one motor.
 
-    The coefficients ``rls.eta_0`` are not in it: they start at 0, and any finite one is allowed.
+    The coefficients ``rls.eta_0`` are not in the table: they start at 0, and have no limits.
     """
     rows: dict[str, list[str]] = {"REAL": [], "INTEGER": []}
     root = render(template, "")
@@ -173,7 +173,7 @@ def parameter_table(template: Path) -> str:
 
 
 def write_parameters(template: Path, out: Path) -> None:
-    """Write it."""
+    """Write the parameter table."""
     out.write_text(parameter_table(template), encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-"""Binaries of an FMU for every platform, compiled on any one of them."""
+"""Binaries of an FMU for every platform, compiled on any of these platforms."""
 
 import os
 import shutil
@@ -27,10 +27,10 @@ PLATFORMS_3 = {
     "aarch64-linux": ("aarch64-linux-gnu.2.17", ".so"),
     "aarch64-darwin": ("aarch64-macos.11.0", ".dylib"),
 }
-"""Those of FMI 3.0, which also has names for processors of the ARM family."""
+"""Platforms of FMI 3.0, which also has names for processors of the ARM family."""
 
-# No contraction to fused operations: the same numbers on every machine. No symbols and no
-# debug information (-s): they would hold paths.
+# Without contraction to fused operations, every machine computes the same numbers. Symbols and
+# debug information would contain paths (-s removes both).
 CODE = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-s")
 FLAGS = (*CODE, "-fPIC", "-shared")
 
@@ -43,7 +43,7 @@ def compile_files(target: str, arguments: Iterable[str | Path], cache: Path, cwd
     """Call the compiler for a target in a folder.
 
     ``cache`` is a folder for compiled parts that can be used again. Raises
-    ``subprocess.CalledProcessError`` where the compiler refuses; it says why on stderr.
+    ``subprocess.CalledProcessError`` if the compiler fails; the compiler prints why on stderr.
     """
     folder = str(cache.resolve())
     subprocess.run(
@@ -96,7 +96,7 @@ def compile_shared(
                 *FLAGS,
                 *(f"-I{folder.resolve()}" for folder in (*includes, HEADERS)),
                 *(source.resolve() for source in sources),
-                # Without a folder: a dynamic library of macOS holds the name it was made with.
+                # Without a folder: a library of macOS stores the name given to the linker.
                 *("-lm", "-o", library.name),
             ],
             cache,
@@ -108,7 +108,7 @@ def compile_shared(
 
 
 def release(fmu: Path, out: Path, cache: Path) -> None:
-    """Write a copy of an FMU with the binaries of every platform instead of its own.
+    """Write a copy of an FMU with binaries for every platform instead of its own binaries.
 
     All are compiled from the sources in the FMU; ``cache`` and errors as ``compile_files``.
     """

@@ -1,7 +1,7 @@
-"""Model description of an FMU from its template: what follows from the variables is added here.
+"""Model description of an FMU from its template and from what follows from the variables.
 
-These are value references, display units, the model structure, source files, and the GUID. Units
-that no variable has are left out.
+This module adds value references, display units, the model structure, source files, and the GUID.
+It removes units that no variable has.
 """
 
 import copy
@@ -17,7 +17,7 @@ from sigmahat.export.templates import render, variables
 
 
 def _add_model_structure(root: Element) -> None:
-    """Outputs, and what their initial values depend on.
+    """Outputs, and the variables on which their initial values depend.
 
     At a communication point no output depends on an input: both estimators and plants compute
     outputs in fmi2DoStep alone.
@@ -42,7 +42,7 @@ def _add_model_structure(root: Element) -> None:
 
 
 def _add_display_units(root: Element) -> None:
-    """Reals whose unit has a display unit are shown in it."""
+    """Sets the display unit of every Real whose unit has a display unit."""
     displayed = {
         unit.attrib["name"]: display.attrib["name"]
         for unit in root.findall("UnitDefinitions/Unit")
@@ -65,7 +65,7 @@ def complete(root: Element) -> str:
     """Turn a rendered template into a model description; returns its GUID.
 
     The GUID is a hash of everything in the description, so that another description never
-    has the same one.
+    has the same GUID.
     """
     for reference, variable in enumerate(variables(root)):
         variable.set("valueReference", str(reference))
@@ -100,10 +100,10 @@ def write(
     """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder.
 
     struct   C type that holds the variables
-    storage  how, a key of ``c_variables.STORAGE``
+    storage  how the type holds them, a key of ``c_variables.STORAGE``
 
-    Beside them, ``fmi3`` gets the three files that describe the FMU for FMI 3.0. ``sources`` are
-    the C files of both; those in a folder ``fmi2`` or ``fmi3`` are for that version only.
+    The folder ``fmi3`` gets the three files that describe the FMU for FMI 3.0. ``sources`` are the
+    C files of both versions; files in a folder ``fmi2`` or ``fmi3`` are for that version only.
     """
     out.mkdir(parents=True, exist_ok=True)
     root = render(template, version)
@@ -127,20 +127,20 @@ def _write_xml(root: Element, file: Path) -> None:
 
 
 def for_version(files: Iterable[Path], fmi: int) -> list[Path]:
-    """The files of an FMU of FMI 2.0 or 3.0: not those in the folder of the other version."""
+    """The files of an FMU of FMI 2.0 or 3.0, without files in the folder of the other version."""
     return [file for file in files if file.parent.name != {2: "fmi3", 3: "fmi2"}[fmi]]
 
 
 def file_names(files: Iterable[Path]) -> list[str]:
-    """The names of the C files among some files, which are those to compile."""
+    """The names of the C files among some files: only C files are compiled."""
     return [file.name for file in files if file.suffix == ".c"]
 
 
 def with_headers(files: Iterable[Path]) -> list[Path]:
     """The files given, and the headers they include from each other's folders, in any depth.
 
-    A header in none of these folders is the importer's (FMI) or the compiler's. Raises
-    ``ValueError`` for two files of one name: in the FMU all are in one folder.
+    Other headers come with the importer (FMI) or the compiler. Raises ``ValueError`` for two files
+    of one name: the FMU has all files in one folder.
     """
     waiting = list(files)
     folders = sorted({file.parent for file in waiting})
@@ -160,7 +160,7 @@ _TYPES = {"Real": "Float64", "Integer": "Int32", "Boolean": "Boolean", "Enumerat
 
 
 def for_fmi3(root: Element) -> Element:
-    """Model description of FMI 3.0 for the complete one of FMI 2.0, which is left as it is."""
+    """Model description of FMI 3.0 from the complete description of FMI 2.0, which is unchanged."""
     made = Element("fmiModelDescription", {**root.attrib, "fmiVersion": "3.0"})
     made.set("instantiationToken", made.attrib.pop("guid"))
     (identifier,) = (e.attrib["modelIdentifier"] for e in root.findall("CoSimulation"))
@@ -194,7 +194,7 @@ def _convert_types(definitions: Element) -> None:
 
 
 def _add_second(units: Element) -> None:
-    """The unit of time, for FMUs that use it for nothing else."""
+    """Adds the unit of time, for FMUs whose variables do not use this unit."""
     if units.find("Unit[@name='s']") is None:
         ElementTree.SubElement(ElementTree.SubElement(units, "Unit", name="s"), "BaseUnit", s="1")
 
@@ -250,9 +250,9 @@ def build_description(identifier: str, sources: Sequence[str]) -> Element:
 def terminals_and_icons(root: Element) -> Element:
     """``terminalsAndIcons/terminalsAndIcons.xml``: the icon, and the measurements as a bus.
 
-    A plant has the terminal ``measurements`` with what its sensors give, an estimator one of the
-    same name with its inputs. Members of one name belong together, so that a tool which knows
-    terminals connects both in one go.
+    The terminal ``measurements`` of a plant has the outputs of the sensors, the same terminal of an
+    estimator its inputs. Members with equal names belong together, so that a tool which knows
+    terminals connects plant and estimator in one step.
     """
     made = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     shown = ElementTree.SubElement(made, "GraphicalRepresentation")
@@ -283,7 +283,7 @@ def terminals_and_icons(root: Element) -> Element:
 
 
 def _measurements(root: Element) -> list[tuple[str, str]]:
-    """Variables of the terminal and their names in it."""
+    """Variables of the terminal and their member names."""
     names = [(v.attrib["causality"], v.attrib["name"]) for v in variables(root)]
     measured = [name for kind, name in names if kind == "output" and "_measured" in name]
     if measured:

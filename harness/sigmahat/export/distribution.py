@@ -1,4 +1,4 @@
-"""What pip installs: a wheel for each platform, and the source distribution."""
+"""Files for pip: a wheel for each platform, and the source distribution."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ TAGS = {
     "win64": "win_amd64",
     "darwin64": "macosx_11_0_x86_64",
 }
-"""Platforms of pip, of the same versions of the systems as the targets of the cross compiler."""
+"""Platform tags of pip, with the system versions of the targets of the cross compiler."""
 
-# The FMUs and the library come from elsewhere, so CMake is not run.
+# The FMUs and the library are already built, so CMake is not run.
 _HOOK = (
     "import sys; from scikit_build_core import build; "
     "getattr(build, sys.argv[1])(sys.argv[2], {'wheel.cmake': 'false'})"
@@ -35,14 +35,14 @@ def write(
     includes: Iterable[Path],
     cache: Path,
 ) -> None:
-    """Write all of them into a folder, which is emptied before.
+    """Write all wheels and the source distribution into a folder, which is emptied before.
 
     project    folder of pyproject.toml
     contents   released FMUs and systems
     sources    C files of the library of the package; includes: folders of their headers
     cache      as for ``compile_shared``
 
-    Raises ``subprocess.CalledProcessError`` if a tool fails; it says why on stderr.
+    Raises ``subprocess.CalledProcessError`` if a tool fails; the tool prints why on stderr.
     """
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)

@@ -1,8 +1,8 @@
 """Documentation and icon of an FMU: ``documentation/index.html``, an SVG and a PNG.
 
-The page is one Jinja2 template for all FMUs, in ``modelDescription/documentation``; its
-variables are those of the template of the model description. The icons are drawings, in
-``modelDescription/icons``: a PNG of 256 x 256 pixels, which importers show, and the same as SVG.
+One Jinja2 template in ``modelDescription/documentation`` gives the page of every FMU, with the
+variables of the template of the model description. The icons are drawings in
+``modelDescription/icons``: a PNG of 256 x 256 pixels, which importers show, and an equal SVG.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def _write_page(template: Path, folder: Path, svg: Path, version: str, fmi: int)
 
 
 def table(root: Element, causality: str) -> dict[str, Any]:
-    """Rows of the variables of one causality; those of an array by the array's name."""
+    """Rows of the variables of one causality; elements of an array by the name of the array."""
     single: list[dict[str, Any]] = []
     arrays: dict[str, list[dict[str, Any]]] = {}
     for variable in templates.variables(root):
@@ -85,7 +85,7 @@ def _row(root: Element, variable: Element) -> dict[str, Any]:
     elif kind.tag == "Enumeration":
         choices = templates.items(root, kind)
         names = {item["value"]: item["name"] for item in choices}
-        start = names[start] if start else ""  # an output has none
+        start = names[start] if start else ""  # an output has no start value
         limits = "see items"
     elif kind.tag == "Boolean":
         limits = "false, true"

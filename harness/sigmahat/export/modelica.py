@@ -1,7 +1,7 @@
 """The Modelica package as an archive, in the form in which Modelica tools load it.
 
-A file ``*.jinja`` of the package is a template. It takes the variables from the model descriptions
-of the FMUs, so that names, units, start values, ranges and descriptions stand there alone.
+A file ``*.jinja`` of the package is a template. The template takes names, units, start values,
+ranges and descriptions of the variables from the model descriptions of the FMUs.
 """
 
 import re
@@ -17,7 +17,7 @@ import jinja2
 from sigmahat.export import archive, templates
 
 KEYWORDS = {"initial": "init", "model": "nominal"}
-"""Groups of parameters whose names in the FMUs are keywords of Modelica: their names there."""
+"""Modelica names of groups of parameters whose names in the FMUs are keywords of Modelica."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Variable:
     in_c: str
     """Name in the FMU, and place in the structs of the library."""
     group: str
-    """Record that contains it; "" for none."""
+    """Record that contains the variable; "" for no record."""
     name: str
     """Name in its record."""
     kind: str
@@ -37,7 +37,7 @@ class Variable:
     size: str
     """ "[8, 5]" for an array, else ""."""
     start: str
-    """Start value, "" for none."""
+    """Start value, "" without a start value."""
     limits: tuple[str, ...]
     """Modifiers such as "min=0"."""
     nominal: str
@@ -51,17 +51,17 @@ class Variable:
 
     @property
     def component(self) -> str:
-        """What a block has of it: its record, or itself."""
+        """Component of a block that contains the variable: the record, or the variable itself."""
         return self.group or self.name
 
     @property
     def as_integer(self) -> str:
-        """Expression for its value as C has it."""
+        """Expression for the value of the variable in C."""
         forms = {"Enumeration": "Integer({})", "Boolean": "if {} then 1 else 0"}
         return forms.get(self.kind, "{}").format(self.full_name)
 
     def declared(self, *modifiers: str, name: str = "", value: str = "") -> str:
-        """Type, name, modifiers and description, those of the range included."""
+        """Type, name, modifiers (also for the range) and description."""
         every = ", ".join([*modifiers, *self.limits])
         text = f"{self.type} {name or self.name}{self.size}{f'({every})' if every else ''}"
         return f'{text}{f" = {value}" if value else ""} "{self.description}"'
@@ -112,7 +112,7 @@ def contents(library: Path, descriptions: Path, version: str) -> dict[str, bytes
 
 
 def _variable(root: Element, variable: Element, types: dict[str, str]) -> Variable | None:
-    """None for an element of an array but the first, and for a source: sources are connected."""
+    """The variable; None for a signal source, and for all but the first element of an array."""
     kind, given = variable[0], variable.attrib
     name, _, index = given["name"].partition("[")
     if name.startswith("signal.") or (index and "array" not in given):

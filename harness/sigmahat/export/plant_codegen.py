@@ -19,7 +19,7 @@ from sigmahat.plants.equations import PlantEquations
 
 
 class Elimination:
-    """Factors of a square sparse matrix, and the solution of systems with it.
+    """Factors of a square sparse matrix, and the solution of systems with this matrix.
 
     Pivots are diagonal entries, in the order of the least possible fill-in (Markowitz), whatever
     their values: this suits the matrices s I - J of an implicit integration, where s is large.
@@ -45,7 +45,7 @@ class Elimination:
         return (in_row - 1) * (in_column - 1)
 
     def _eliminate(self, pivot: int, rest: set[int]) -> None:
-        """Keeps 1/pivot on the diagonal, and the multipliers below it."""
+        """Keeps 1/pivot on the diagonal, and the multipliers below the diagonal."""
         row = self._rows[pivot]
         row[pivot] = 1 / row[pivot]
         for i in sorted(rest):
@@ -90,7 +90,7 @@ _QUIET = """\
 def find(name: str) -> PlantEquations:
     """The plant of this name among the files of ``sigmahat.plants``.
 
-    Raises LookupError if there is none.
+    Raises LookupError if no file has this plant.
     """
     names = []
     for module in iter_modules(plants.__path__, "sigmahat.plants."):
@@ -108,7 +108,7 @@ def functions(
     """The functions that ``fmu_src/plant.c`` and ``fmu_src/radau.c`` call.
 
     Vectors p, u and y are in the order given, which must name each variable of the plant once.
-    Raises ValueError if it does not, or if the equations of the plant are not complete.
+    Raises ValueError if names are missing or unknown, or the equations of the plant not complete.
     """
     _compare(plant, "parameter", plant.parameters, parameters)
     _compare(plant, "input", plant.inputs, inputs)
@@ -122,8 +122,8 @@ def functions(
     xdot = ca.vertcat(*(plant.derivatives[name] for name in plant.states))
     y = ca.vertcat(*(plant.outputs[name] for name in outputs))
 
-    # Newton's iteration of Radau IIA: (REAL/h - J) and ((RE + i IM)/h - J), the latter as a real
-    # system of twice the size.
+    # Matrices of Newton's iteration of Radau IIA: (REAL/h - J) and ((RE + i IM)/h - J). The second
+    # matrix is written as a real system of twice the size.
     size = x.size1()
     J = ca.jacobian(xdot, x)
     one = ca.SX.eye(size)

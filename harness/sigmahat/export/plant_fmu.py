@@ -1,7 +1,7 @@
 """An FMU of a plant of your own, from its equations in CasADi: no template, no CMake.
 
-What does not depend on the equations is taken from ``AwasPlant.fmu``, which contains its sources.
-So this works wherever sigmahat is installed with its extra ``plants`` and there is a C compiler.
+All parts that do not depend on the equations are taken from ``AwasPlant.fmu`` and its sources.
+So only sigmahat with its extra ``plants`` and a C compiler are needed.
 """
 
 from __future__ import annotations
@@ -31,28 +31,28 @@ from sigmahat.plants.equations import PlantEquations
 
 @dataclass(frozen=True)
 class PlantVariable:
-    """What the model description says of an input, output or parameter."""
+    """Entry of the model description for an input, output or parameter."""
 
     unit: str
     """One of the units of the FMUs that come with sigmahat: 1, s, rad, m, kg.m2, N.m, ..."""
     description: str
     """One line."""
     start: float = 0.0
-    """Start value of an input or parameter in its unit. An output has none."""
+    """Start value of an input or parameter in its unit. An output has no start value."""
 
 
 def describe(
     plant: PlantEquations, variables: Mapping[str, PlantVariable], description: Element
 ) -> None:
-    """Turns the model description of another plant into that of this one.
+    """Changes the model description of another plant into the description of this plant.
 
-    The result is what a template in ``modelDescription/`` renders to: ``description.complete`` adds
-    what follows from the rest.
+    The result is like a rendered template of ``modelDescription/``: ``description.complete`` adds
+    the parts that follow from these data.
 
-    Raises ValueError for a plant name that is none in C, and as `write_plant_fmu` for variables.
+    Raises ValueError for a plant name that is no name in C, and as `write_plant_fmu` for variables.
     """
     if not (plant.name.isidentifier() and plant.name.isascii()):
-        raise ValueError(f"plant {plant.name!r}: expected a name that is also one in C")
+        raise ValueError(f"plant {plant.name!r}: expected a name that is an identifier in C")
     (defined,) = description.findall("UnitDefinitions")
     defined[:] = ElementTree.parse(templates.UNITS).getroot()
     _check(plant, variables, [unit.attrib["name"] for unit in defined])
@@ -127,7 +127,7 @@ def _list_variables(
 
 
 def _depends(plant: PlantEquations) -> dict[str, list[str]]:
-    """Names of the variables that the initial value of each output depends on."""
+    """Names of the variables on which the initial value of each output depends."""
     x = ca.vertcat(*(state.symbol for state in plant.states.values()))
     start = ca.vertcat(*(state.start for state in plant.states.values()))
     noise = {normal.name() for normal in plant.normals}
@@ -139,13 +139,13 @@ def _depends(plant: PlantEquations) -> dict[str, list[str]]:
 
 
 def _needed_at_the_start(plant: PlantEquations) -> set[str]:
-    """Names of the parameters that start values of states depend on."""
+    """Names of the parameters on which start values of states depend."""
     start = ca.vertcat(*(state.start for state in plant.states.values()))
     return {symbol.name() for symbol in ca.symvar(start)}
 
 
 def _has_steps(expression: ca.SX) -> bool:
-    """Whether there is rounding in it, as of an encoder."""
+    """Whether the expression contains rounding, for example of an encoder."""
     function = ca.Function("output", ca.symvar(expression), [expression])
     return ca.OP_FLOOR in map(function.instruction_id, range(function.n_instructions()))
 
@@ -153,8 +153,8 @@ def _has_steps(expression: ca.SX) -> bool:
 def compile_folder(sources: Path, binary: Path) -> None:
     """Compiles every C file of a folder into a shared library.
 
-    Raises RuntimeError if there is no compiler (gcc or clang, or the one that CC names), or if it
-    refuses.
+    Raises RuntimeError if no compiler is found (gcc or clang, or the compiler in CC), or if the
+    compiler fails.
     """
     compiler = os.environ.get("CC") or next(filter(shutil.which, ("cc", "gcc", "clang")), None)
     if compiler is None:
@@ -182,13 +182,13 @@ def write_plant_fmu(
     `variables` has each input, output and parameter of the plant by its name, `fmu` is the file to
     write; its folder is made.
 
-    It is for FMI 2.0 Co-Simulation and behaves as the plants that come with sigmahat: inputs are
-    held or linear over a step, and a plant with noise has the parameters ``noise.seed`` and
-    ``noise.samplePeriod``. Parameters are tunable, but for those that start values of states
-    depend on.
+    The FMU is for FMI 2.0 Co-Simulation and behaves as the plants of sigmahat: inputs are held or
+    linear during a step, and a plant with noise has the parameters ``noise.seed`` and
+    ``noise.samplePeriod``. Parameters are tunable, except parameters on which start values of
+    states depend.
 
     Raises ValueError for a variable that is missing, not in the equations or in an unknown unit,
-    RuntimeError if there is no compiler (gcc or clang, or what CC names) or it refuses.
+    RuntimeError if no compiler is found (gcc or clang, or the compiler in CC), or it fails.
     """
     with TemporaryDirectory() as scratch:
         folder = Path(scratch, "fmu")
@@ -211,7 +211,7 @@ def write_plant_fmu(
 def _write_description(
     plant: PlantEquations, variables: Mapping[str, PlantVariable], xml: Path, sources: Path
 ) -> None:
-    """The model description, in place of that of the AwAS, and its table of variables in C."""
+    """Replaces the model description of the AwAS, and writes the table of variables in C."""
     root = ElementTree.parse(xml).getroot()
     describe(plant, variables, root)
     guid = description.complete(root)

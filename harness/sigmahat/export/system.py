@@ -1,6 +1,6 @@
-"""``sigmahat-awas.ssp``: plant and estimator as a system after SSP 1.0, to be opened at once.
+"""``sigmahat-awas.ssp``: plant and estimator as a complete system in the format SSP 1.0.
 
-What is connected, and with which parameters, is the scenario ``table1``, estimator RESIDUAL.
+The scenario ``table1`` with the estimator RESIDUAL gives the connections and parameters.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from sigmahat.runs.scenario import Scenario, Sine
 def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str) -> None:
     """Write the SSP of this version from the two FMUs and the folder of its Jinja2 templates.
 
-    Equal FMUs and templates give equal bytes. Raises ValueError if the scenario sets an
-    enumeration to something else than the FMU does, or has an input that is no sine.
+    Equal FMUs and templates give equal bytes. Raises ValueError if the scenario changes an
+    enumeration from the FMU's start value, or has an input that is no sine.
     """
     table1 = scenario("table1")
     residual = table1.estimators["RESIDUAL"]
@@ -67,7 +67,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
 def _torques(table1: Scenario) -> dict[str, Value]:
     """The torques of the scenario as the sines that the plant adds to its inputs.
 
-    So the system moves as it is. Raises ValueError for a signal that is no sine.
+    So the system moves without other inputs. Raises ValueError for a signal that is no sine.
     """
     start: dict[str, Value] = {}
     for name, signal in table1.plant.inputs.items():
@@ -95,8 +95,8 @@ def _element(
 def _parameters(fmu: Fmu, start: Mapping[str, Value]) -> list[dict[str, Any]]:
     """All parameters except enumerations, and initial estimates, which are zero.
 
-    Importers disagree on the form of an enumeration: the standard asks for the name of the item,
-    FMPy for its number. So enumerations keep the start values of the FMU.
+    Importers disagree on the form of an enumeration: the standard requires the name of the item,
+    FMPy requires its number. So enumerations keep the start values of the FMU.
     """
     own, listed = fmu.parameters({}), []
     for name, value in fmu.parameters(start).items():
@@ -104,7 +104,7 @@ def _parameters(fmu: Fmu, start: Mapping[str, Value]) -> list[dict[str, Any]]:
         if variable.type == "Enumeration":
             if value != own[name]:
                 raise ValueError(
-                    f"{fmu.name}.{name}: the SSP leaves it at {own[name]}, the scenario has {value}"
+                    f"{fmu.name}.{name}: the SSP keeps {own[name]}, but the scenario has {value}"
                 )
         elif not name.startswith("rls.eta_0"):
             boolean = variable.type == "Boolean"

@@ -1,9 +1,9 @@
 """Templates of model descriptions, in ``modelDescription/``.
 
-A template is Jinja2 that renders to FMI 2.0 XML without what follows from the rest, which
-``description`` adds. Two attributes are not in FMI: ``depends`` of an output names the variables
-that its initial value depends on, for the model structure; ``array`` of a first element describes
-its array, for Modelica.
+A template is Jinja2 that renders to FMI 2.0 XML. ``description`` adds parts that follow from these
+data. Two attributes are not in FMI: ``depends`` of an output names the variables on which its
+initial value depends, for the model structure; ``array`` of a first element describes its array,
+for Modelica.
 """
 
 import math

@@ -1,8 +1,8 @@
 """The page of ``docs/live``: the FMUs as WebAssembly, their variables, and the page, in one folder.
 
-The binaries are compiled from the sources in the FMUs. They call nothing of the browser but the
-logger of the page, and they are part of a script, because a page that was opened as a file may not
-read others.
+The binaries are compiled from the sources in the FMUs. The binaries call nothing of the browser but
+the logger of the page. They are part of a script, because a page that was opened as a file must not
+read other files.
 """
 
 from __future__ import annotations
@@ -39,25 +39,25 @@ FUNCTIONS = (
     "malloc",
     "free",
 )
-"""What the page calls."""
+"""Functions that the page calls."""
 _TARGET, _KIND = "wasm32-wasi", "-mexec-model=reactor"
 _UNKNOWN = {
     "prior.B": ANOTHER_ROBOT,
     "prior.D_theta": ANOTHER_ROBOT,
     "prior.tau_coulomb": ANY_COULOMB,
 }
-"""Parameters of a log whose motor nobody knows, as `sigmahat init` writes them."""
+"""Parameters that `sigmahat init` writes for a log whose motor is not known."""
 _SHOWN = ("type", "unit", "start", "description")
 
 
 def write(out: Path, page: Path, fmus: list[Path], cache: Path) -> None:
-    """Writes the page into a folder, whose files of before are removed.
+    """Writes the page into a folder, whose old files are removed.
 
     page   folder with the page itself and callbacks.c
     fmus   to compile
     cache  for compiled parts that can be used again
 
-    Raises ``subprocess.CalledProcessError`` where the compiler refuses; it says why on stderr.
+    Raises ``subprocess.CalledProcessError`` if the compiler fails, which prints why on stderr.
     """
     types = {fmu.stem: _described(fmu, page / "callbacks.c", cache) for fmu in fmus}
     shutil.rmtree(out, ignore_errors=True)
@@ -72,7 +72,7 @@ def write(out: Path, page: Path, fmus: list[Path], cache: Path) -> None:
 
 
 def _described(fmu: Path, callbacks: Path, cache: Path) -> dict[str, Any]:
-    """What the page has to know of an FMU, with its binary."""
+    """Data of an FMU that the page needs, with the binary."""
     with Fmu(fmu) as opened:
         wasm = compile_wasm(Path(opened.folder), callbacks, cache)
         return {
@@ -128,7 +128,7 @@ def _scenario(fmus: Mapping[str, Path]) -> dict[str, Any]:
 
 
 def _numbers(fmu: Path, start: Mapping[str, Value]) -> dict[str, float | int]:
-    """Start values as FMI takes them."""
+    """Start values as numbers for FMI."""
     with Fmu(fmu) as opened:
         return {name: opened.number(name, value) for name, value in start.items()}
 

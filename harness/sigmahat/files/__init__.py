@@ -1,1 +1,1 @@
-"""How results are written: the folder that they appear in, tables, and titles of columns."""
+"""Writing of results: the folder of the results, tables, and titles of columns."""

@@ -1,4 +1,4 @@
-"""What a command writes: folders and files that are complete or not there, and their SHA-256."""
+"""Output of a command: folders and files that are complete or do not exist, and their SHA-256."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from typing import Any
 
 @contextmanager
 def created_folder(path: Path, ignored: str = "") -> Iterator[None]:
-    """Creates a folder if there is none; at the end it is removed again if nothing is in it.
+    """Creates a folder if it does not exist. At the end, a new folder without files is removed.
 
-    ignored  name of a file that does not count as something, and is removed with the folder
+    ignored  name of a file that does not count as a file, and is removed with the folder
 
     Raises OSError if the folder cannot be created.
     """
@@ -28,15 +28,15 @@ def created_folder(path: Path, ignored: str = "") -> Iterator[None]:
         if missing and [p.name for p in path.glob("*")] == [ignored]:
             (path / ignored).unlink()
         for p in missing:
-            with suppress(OSError):  # something is in it
+            with suppress(OSError):  # the folder is not empty
                 p.rmdir()
 
 
 @contextmanager
 def output_folder(path: Path) -> Iterator[Path]:
-    """Yields a folder to write into; its files appear in path together, once all is well.
+    """Yields a folder to write into. At the end, its files are moved to path together.
 
-    Creates path, and leaves nothing behind after an exception. Raises OSError if path cannot be
+    Creates path. After an exception, no file remains. Raises OSError if path cannot be
     written to.
     """
     with created_folder(path), TemporaryDirectory(prefix=".unfinished-", dir=path) as unfinished:
@@ -46,9 +46,9 @@ def output_folder(path: Path) -> Iterator[Path]:
 
 
 def write_whole(text: str, path: Path) -> None:
-    """Writes a file in UTF-8. If it is interrupted, the file is as it was before.
+    """Writes a file in UTF-8. After an interruption, the file is unchanged.
 
-    A link stays a link to the file. Raises OSError if it cannot be written.
+    A link stays a link to the file. Raises OSError if the file cannot be written.
     """
     if path.exists() and not path.is_file():  # such as /dev/stdout; a folder is refused
         path.write_text(text, encoding="utf-8")
@@ -59,7 +59,7 @@ def write_whole(text: str, path: Path) -> None:
             whole = Path(folder, file.name)
             whole.write_text(text, encoding="utf-8")
             whole.replace(file)
-    except OSError as error:  # it names what nobody has heard of
+    except OSError as error:  # it names a temporary file
         raise OSError(error.errno, error.strerror, str(path)) from error
 
 
@@ -67,7 +67,7 @@ _CHUNK = 1 << 20
 
 
 def write_json(values: object, path: Path) -> None:
-    """Writes JSON, numbers with all digits; one that is not finite becomes null."""
+    """Writes JSON, numbers with all digits; a number that is not finite becomes null."""
     text = json.dumps(finite(values), indent=1, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8")
 
@@ -82,7 +82,7 @@ def finite(values: Any) -> Any:
 
 
 def sha256(path: Path) -> str:
-    """Of a file its bytes; of a folder, such as a ROS 2 bag, the list of its files.
+    """Hash of the bytes of a file, or of the list of files in a folder such as a ROS 2 bag.
 
     The list has a line "HASH  NAME" for each file, sorted by name, which `sha256sum` would write.
 

@@ -21,7 +21,7 @@ def title(name: str, unit: str | None) -> str:
 
 
 def name_and_unit(title: str) -> tuple[str, str | None]:
-    """What title() was made of."""
+    """Name and unit from which title() made the title."""
     name, bracket, unit = title.rpartition(" [")
     return (name, unit.removesuffix("]")) if bracket else (title, None)
 
@@ -40,7 +40,7 @@ class NumericColumn:
 
     unit: str | None
     values: NDArray[Any]
-    """One for each row."""
+    """One value for each row."""
 
 
 def numeric_columns(table: pa.Table) -> dict[str, NumericColumn]:
@@ -58,7 +58,7 @@ def numeric_columns(table: pa.Table) -> dict[str, NumericColumn]:
 
 
 def read_csv(path: Path) -> pa.Table:
-    """A table of text. Raises ValueError if the file is not CSV, OSError if there is none."""
+    """The table of a CSV file. Raises ValueError if the file is not CSV, OSError without a file."""
     from pyarrow import ArrowInvalid, ArrowKeyError, csv
 
     try:
@@ -71,7 +71,7 @@ def aligned(rows: Sequence[Sequence[str]], left: Container[int] = (0,)) -> list[
     """Rows as lines, every column as wide as its longest cell.
 
     rows  cells, all rows of the same length; the head is a row, too
-    left  columns whose cells stand at the left; those of the others stand at the right
+    left  columns with cells aligned to the left; cells of other columns are aligned to the right
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [

@@ -25,10 +25,10 @@ _DEEPEST = 6
 def read(path: Path) -> tomlkit.TOMLDocument:
     """The document, with its comments; its method unwrap() gives plain dictionaries.
 
-    Raises OSError if the file cannot be read, ValueError, which says where, if it is not TOML, or
-    if it is far larger than what people write.
+    Raises OSError if the file cannot be read. Raises ValueError if the file is not TOML (with the
+    place), or far larger than a file written by hand.
     """
-    if path.exists() and not path.is_file():  # a pipe would be waited for
+    if path.exists() and not path.is_file():  # reading a pipe would wait
         raise OSError(errno.EINVAL, "expected a file, got a folder, a pipe or a device")
     with path.open("rb") as file:
         content = file.read(_LONGEST + 1)
@@ -46,7 +46,7 @@ def read(path: Path) -> tomlkit.TOMLDocument:
 
 
 def _keys(value: Any, depth: int) -> int:
-    """Keys and tables in a value, at any depth. Raises ValueError for too deep ones."""
+    """Number of keys and tables in a value, at any depth. Raises ValueError if nested too deep."""
     if not isinstance(value, (dict, list)):
         return 0
     if depth > _DEEPEST:
@@ -72,7 +72,7 @@ def set_dotted(table: MutableMapping[str, Any], name: str, item: Item) -> None:
         table[name] = item
     elif group in table:
         if isinstance(table[group], InlineTable):
-            item.trivia.comment = ""  # it would end the line inside of the braces
+            item.trivia.comment = ""  # a comment would end the line inside of the braces
         table[group][last] = item
     else:
         table.append(tomlkit.key([group, last]), item)  # type: ignore[attr-defined]

@@ -1,1 +1,1 @@
-"""FMUs in Python: where the installed ones are, one instance, and the co-simulation master."""
+"""FMUs in Python: the installed FMUs, one instance, and the co-simulation master."""

@@ -1,4 +1,4 @@
-"""What is installed of this package: its FMUs, its version, and packages that it may lack."""
+"""Installed parts of this package: its FMUs, its version, and optional packages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 def folder() -> Path:
-    """Where the FMUs of this installation are, and the library in C."""
+    """Folder of the FMUs of this installation, and of the library in C."""
     in_wheel = Path(__file__).parents[1] / "fmus"
     if in_wheel.is_dir():
         return in_wheel
@@ -22,7 +22,7 @@ def folder() -> Path:
 def fmu(name: str) -> Path:
     """Path of an FMU of this installation, for example ``fmu("StiffnessEstimator")``.
 
-    Raises ``FileNotFoundError`` if it was not built or there is no FMU of this name.
+    Raises ``FileNotFoundError`` if the FMU is not built or no FMU has this name.
     """
     path = folder() / f"{name}.fmu"
     if not path.is_file():
@@ -37,13 +37,13 @@ def version() -> str:
 
 
 _DISTRIBUTIONS = {"foxglove": "foxglove-sdk"}
-"""Where a package is in a distribution of another name."""
+"""Distributions whose name differs from the name of their package."""
 
 
 def how_to_install(package: str | None) -> str | None:
-    """One line for a package that sigmahat requires, itself or with an extra, and that is missing.
+    """One line for a missing package that sigmahat or one of its extras requires.
 
-    None for any other package. pip finds sigmahat itself installed, and adds only what is missing.
+    None for any other package. pip finds sigmahat installed, and adds only the missing packages.
     """
     for requirement in metadata.requires("sigmahat") or ():
         match = re.match(r"""([\w.-]+)[^;]*(?:;\s*extra\s*==\s*["'](.+)["'])?""", requirement)

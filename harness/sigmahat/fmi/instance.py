@@ -24,23 +24,23 @@ from numpy.typing import NDArray
 from sigmahat.fmi.interrupts import interrupts_wait
 from sigmahat.fmi.unknown_name import unknown
 
-try:  # FMPy ships it for some platforms only; without it messages arrive unformatted
+try:  # some platforms only; without the proxy, messages are not formatted
     from fmpy.logging import addLoggerProxy
 except (ImportError, OSError):
     addLoggerProxy = None
 
-with interrupts_wait():  # FMPy imports it later; while it starts, in C, a Ctrl-C would be lost
+with interrupts_wait():  # FMPy needs lxml; a Ctrl-C during this import would be lost
     _etree = import_module("lxml.etree")
 
-# With the first schema libxml2 sets up its types, without a lock. Two threads that read the first
-# two FMUs at the same time could fail, or end the process.
+# With the first schema, libxml2 initialises its types without a lock. Two threads that read the
+# first two FMUs at the same time could fail, or end the process.
 _etree.XMLSchema(_etree.XML('<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"/>'))
 
 Value = float | int | bool | str
 """Value of a variable. An enumeration takes the name of its item."""
 
 _TOO_LARGE = 2**31
-"""First whole number that an Integer of FMI cannot hold."""
+"""Smallest positive integer that does not fit an Integer of FMI."""
 
 _log = logging.getLogger("sigmahat")
 
@@ -52,8 +52,8 @@ class FmuError(RuntimeError):
 class Fmu:
     """An unpacked FMU and the variables of its model description, for any number of slaves.
 
-    The unpacked files are removed at the end of the process, or of the block if it is used as a
-    context manager.
+    The unpacked files are removed at the end of the process, or at the end of the block if the
+    object is used as a context manager.
     """
 
     def __init__(self, path: Path) -> None:
@@ -74,7 +74,7 @@ class Fmu:
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.folder = mkdtemp(prefix="sigmahat-")
         self._library: list[fmi2.FMU2Slave] = []
-        # Also at the end of a process of multiprocessing, but not of one that was forked from this.
+        # Also called at the end of a process of multiprocessing, but not in a fork of this process.
         self._close = Finalize(self, _close, (self._library, self.folder), exitpriority=1)
         fmpy.extract(path, self.folder)
 
@@ -98,7 +98,7 @@ class Fmu:
         return another
 
     def variable(self, name: str, causality: str | None = None) -> Any:
-        """Returns FMPy's description of a variable. Raises ValueError if there is none."""
+        """Returns FMPy's description of a variable. Raises ValueError for an unknown variable."""
         variable = self.variables.get(name)
         if variable is None or causality not in (None, variable.causality):
             known = [n for n, v in self.variables.items() if causality in (None, v.causality)]
@@ -115,7 +115,7 @@ class Fmu:
         return value_references(variables)
 
     def number(self, name: str, value: Value) -> float | int:
-        """Returns the value as FMI takes it. Raises ValueError if it does not fit the variable."""
+        """Returns the value as a number for FMI. Raises ValueError if the value does not fit."""
         variable = self.variable(name)
         if variable.type == "Enumeration" and isinstance(value, str):
             items = {item: number for number, item in self.items(name).items()}
@@ -152,7 +152,7 @@ class Fmu:
         return names
 
     def parameters(self, start: Mapping[str, Value]) -> dict[str, Value]:
-        """Returns the parameters of a slave with these start values: given ones, else the FMU's."""
+        """Returns all parameters of a slave: start values where given, else values of the FMU."""
         values: dict[str, Value] = {}
         for name, variable in self.variables.items():
             if variable.causality != "parameter" or variable.type == "String":
@@ -169,7 +169,7 @@ class Fmu:
 def _shown(value: object) -> str:
     try:
         return repr(value)[:100]
-    except ValueError:  # Python writes whole numbers with some thousand digits, not with more
+    except ValueError:  # Python limits the number of digits of an integer as text
         return "a number with too many digits"
 
 
@@ -213,7 +213,7 @@ class Slave:
             raise self.failure(function.__name__)
 
     def failure(self, function: str) -> FmuError:
-        """What to raise where an FMI function that was not called through call() failed."""
+        """The error to raise if an FMI function failed that was not called through call()."""
         return FmuError(self._explain(f"{function} failed"))
 
     def initialize(self, start: Mapping[str, Value]) -> None:
@@ -238,14 +238,14 @@ class Slave:
 
     @contextmanager
     def only_errors(self) -> Iterator[None]:
-        """Inside, the FMU reports errors alone: what it would warn of is no news to the user."""
+        """Inside the block, the FMU reports errors alone: the user knows about its warnings."""
         category = (fmi2.fmi2String * 1)(b"logStatusError")
         self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, category)
         yield
         self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2False, 0, None)
 
     def take_message(self, status: int, text: str) -> None:
-        """Logs a warning, and keeps the text of an error for what will be raised."""
+        """Logs a warning, and keeps the text of an error for the exception."""
         if status == fmi2.fmi2Warning:
             _log.warning("%s: %s", self.name, text)
         elif status > fmi2.fmi2Warning:
@@ -256,15 +256,15 @@ class Slave:
 
 
 def _close(library: list[fmi2.FMU2Slave], folder: str) -> None:
-    # At the end of the process a thread may still be in the library. But Windows removes no file of
-    # a library that is loaded.
+    # At the end of the process, a thread may still use the library, so the library stays loaded.
+    # But Windows cannot remove the file of a loaded library.
     for each in library if sys.platform == "win32" or not is_exiting() else ():
         each.freeLibrary()
     rmtree(folder, ignore_errors=True)
 
 
 _slaves: WeakValueDictionary[int, Slave] = WeakValueDictionary()
-"""Who lives, by what an FMU says of itself in a message."""
+"""Existing slaves, by the environment pointer that the FMU gives with a message."""
 
 
 def _on_message(
@@ -278,8 +278,8 @@ def _on_message(
         slave.take_message(status, message.decode("utf-8", "replace"))
 
 
-# One for all slaves, that lives as long as the process: FMPy's proxy keeps the last one that it was
-# given, and calls it for every FMU.
+# One logger for all slaves, for the whole process: FMPy's proxy stores only the last logger, and
+# calls this logger for every FMU.
 _LOGGER = fmi2.fmi2CallbackLoggerTYPE(_on_message)
 
 

@@ -1,4 +1,4 @@
-"""Ctrl-C at moments at which it would be lost, or would leave something half done."""
+"""Delays Ctrl-C where a signal would be lost, or would leave work half done."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from contextlib import contextmanager
 def interrupts_wait() -> Iterator[None]:
     """Ctrl-C inside the block has its effect at the end of the block.
 
-    Without effect in other threads than the main one, in which Python does not handle signals.
+    The function has no effect outside of the main thread: Python handles signals there alone.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -11,7 +11,7 @@ _KINDS = {"Real": "number", "Boolean": "boolean", "Enumeration": "string"}
 
 
 def schema(fmu: Fmu, names: Iterable[str]) -> dict[str, Any]:
-    """Of a message with these outputs; of an enumeration the names of the items."""
+    """Schema of a message with these outputs; an enumeration is the name of its item."""
     properties = {}
     for name in names:
         variable = fmu.variable(name, "output")

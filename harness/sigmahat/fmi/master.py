@@ -23,7 +23,7 @@ from sigmahat.fmi.series import Series
 Signal = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Values of an input at the times given [s]."""
 
-_PIECE = 0.05  # [s] about, between two moments at which Ctrl-C has its effect
+_PIECE = 0.05  # [s] about, between two moments at which Ctrl-C can end the loop
 _MOST = 1024  # steps in a piece
 
 
@@ -50,7 +50,7 @@ class EstimatorFmu:
     start: Mapping[str, Value]
     """Start values by FMU name, in the unit of the variable; enumerations by item name."""
     connections: Mapping[str, str]
-    """Which output of the plant feeds each input."""
+    """Output of the plant that feeds each input."""
     record: Sequence[str]
     """Variables to record."""
 
@@ -62,9 +62,9 @@ class Recording:
     t: NDArray[np.float64]
     """Time [s], shape (N + 1,)."""
     plant: Series
-    """What was recorded of the plant."""
+    """Recorded variables of the plant."""
     estimators: Mapping[str, Series]
-    """What was recorded of each estimator, by its name."""
+    """Recorded variables of each estimator, by its name."""
 
 
 def simulate(
@@ -76,9 +76,9 @@ def simulate(
 ) -> Recording:
     """Steps plant and estimators over N = steps periods of T [s].
 
-    The estimators tick at t_0 to t_N, N + 1 times; the plant makes N steps. Any FMUs for FMI 2.0
-    Co-Simulation can take the two places. Inputs of a plant that cannot interpolate (see
-    canInterpolateInputs in its model description) are held over a step, those of others are linear.
+    The estimators tick at t_0 to t_N, N + 1 times; the plant makes N steps. Plant and estimators
+    can be any FMUs for FMI 2.0 Co-Simulation. Inputs are linear during a step, but held if the
+    plant cannot interpolate (see canInterpolateInputs in its model description).
     The noise of a plant of this package has a period of its own, the parameter noise.samplePeriod.
     From time to time progress is called with the number of steps made since the last call.
 
@@ -127,7 +127,7 @@ def simulate(
 
 
 def _run_in_pieces(loop: SampleLoop, steps: int, progress: Callable[[int], object]) -> None:
-    """Runs the loop; how long a step takes is the FMUs' affair, so the pieces are fitted to it."""
+    """Runs the loop in pieces, whose size adapts to the time that the FMUs need for a step."""
     first, size = 0, 1
     while first < steps:
         end, begin = min(first + size, steps), time.perf_counter()

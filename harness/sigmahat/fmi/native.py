@@ -1,6 +1,6 @@
 """The library in C that comes with the package: the loop over samples, estimators over arrays.
 
-It is called with ctypes, which lets other threads of Python run meanwhile.
+Python calls the library with ctypes, so that other threads of Python can run meanwhile.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ _log = logging.getLogger("sigmahat")
 
 @lru_cache
 def library() -> ctypes.CDLL | None:
-    """The library of this installation; None if it has none for this platform.
+    """The library of this installation; None without a library for this platform.
 
-    If there is one that does not work, a warning says so.
+    A warning reports a library that does not work.
     """
     path = folder() / f"sigmahat_native{fmpy.sharedLibraryExtension}"
     if not path.is_file():

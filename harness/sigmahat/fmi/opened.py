@@ -1,4 +1,4 @@
-"""FMUs that this process has unpacked and read: a process that makes many runs does it once."""
+"""FMUs that this process has unpacked and read: all runs of a process share an unpacked FMU."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from sigmahat.fmi.instance import Fmu
 
 
 def installed(name: str) -> Fmu:
-    """An FMU of this installation. Raises FileNotFoundError if it has none of this name."""
+    """An FMU of this installation. Raises FileNotFoundError if no FMU has this name."""
     return opened(installed_fmu(name))
 
 
 def named(fmu: str) -> Fmu:
-    """An FMU of this installation by its name, or the one of a path that ends in .fmu.
+    """An FMU of this installation by its name, or the FMU at a path that ends in .fmu.
 
     Raises what `installed` and `opened` do.
     """
@@ -27,8 +27,8 @@ def named(fmu: str) -> Fmu:
 def opened(path: Path) -> Fmu:
     """An FMU, unpacked until the process ends. Raises what Fmu does.
 
-    It is unpacked again if the file has changed since the last call, or if the FMU allows one
-    instance in a process only: such an FMU may need its library loaded anew.
+    The FMU is unpacked again if the file has changed since the last call, or if the FMU allows one
+    instance per process only: such an FMU may need its library loaded again.
     """
     status = path.stat()
     fmu = _opened(path.resolve(), status.st_mtime_ns, status.st_size)
@@ -41,5 +41,5 @@ def _opened(path: Path, _changed: int, _size: int) -> Fmu:
     return Fmu(path)
 
 
-if hasattr(os, "register_at_fork"):  # the folders are those of the other process
+if hasattr(os, "register_at_fork"):  # the folders belong to the parent process
     os.register_at_fork(after_in_child=_opened.cache_clear)

@@ -44,7 +44,7 @@ class _Call:
     table: NDArray[Any]
 
     def native(self) -> _NativeCall:
-        """The call for the loop in C. It points to the arrays of this one."""
+        """The call for the loop in C, with pointers to the arrays of this object."""
         return _NativeCall(
             self.kind,
             self.slave.component,
@@ -58,11 +58,11 @@ class _Call:
 
 
 class SampleLoop:
-    """A list of calls of FMI functions; for each sample all are made, in the order of the list.
+    """A list of calls of FMI functions; for each sample all calls are made, in this order.
 
     A table has a row for each sample, [size: samples x values]. An array [size: values] is the
-    same row for every sample: with it, a value goes from the get of one FMU to the set of another.
-    Tables are C-contiguous, and are read and written in place.
+    same row for every sample: such an array passes values from the get of one FMU to the set of
+    another FMU. Tables are C-contiguous, and are read and written in place.
     """
 
     def __init__(self) -> None:
@@ -82,7 +82,7 @@ class SampleLoop:
             self._add(_SET_SLOPES, slave, function, references, orders, table)
 
     def step(self, slave: Slave, times: NDArray[np.float64]) -> None:
-        """Makes a step; the rows are those of step_times()."""
+        """Makes a step; step_times() gives the table."""
         self._add(_DO_STEP, slave, slave.functions.fmi2DoStep, None, None, times)
 
     def get_real(self, slave: Slave, references: Any, table: NDArray[np.float64]) -> None:
@@ -121,7 +121,7 @@ class SampleLoop:
             raise call.slave.failure(call.function.__name__)
 
     def _run(self, first: int, end: int) -> int:
-        """Returns the place of the call that failed, or how many there are."""
+        """Returns the index of the call that failed, or the number of calls."""
         library = native.library()
         if library is None:
             return _run_in_python(self._calls, first, end)
@@ -143,12 +143,12 @@ class SampleLoop:
 
 
 def step_times(t: NDArray[np.float64], h: float | NDArray[np.float64]) -> NDArray[np.float64]:
-    """The table for SampleLoop.step(): communication points t and steps h [s], one or each."""
+    """The table for SampleLoop.step(): communication points t and step or steps h [s]."""
     return np.column_stack(np.broadcast_arrays(t, h))
 
 
 def _run_in_python(calls: list[_Call], first: int, end: int) -> int:
-    """The same in Python: what the loop in C has to do, and for installations without it."""
+    """The loop in Python: it defines the loop in C, and replaces a missing C library."""
     tables = [c.table if c.table.flags.writeable else c.table.copy() for c in calls]
     rows: list[Any] = [np.ctypeslib.as_ctypes(table) for table in tables]
     for k in range(first, end):
@@ -176,7 +176,7 @@ _KINDS = {"Real": "real", "Integer": "integer", "Enumeration": "integer", "Boole
 
 
 class Recorder:
-    """Values of some variables of a slave, one row per sample, written there by the FMU itself."""
+    """Values of some variables of a slave, one row per sample; the FMU itself writes the rows."""
 
     def __init__(self, slave: Slave, names: Iterable[str], samples: int) -> None:
         """Raises ValueError for an unknown name, and for a String."""
@@ -221,7 +221,7 @@ class Recorder:
         return values
 
     def columns(self) -> dict[str, NDArray[Any]]:
-        """Returns the recorded values by name, each of shape (samples,); of an enumeration the
+        """Returns the recorded values by name, each of shape (samples,); an enumeration has the
         names of its items.
         """
         fmu = self.slave.fmu

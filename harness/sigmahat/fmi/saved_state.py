@@ -13,7 +13,7 @@ from sigmahat.fmi.instance import Slave
 
 
 def save(slave: Slave) -> bytes:
-    """The state of a slave. Raises FmuError if the FMU cannot give it."""
+    """The state of a slave. Raises FmuError if the FMU cannot give its state."""
     fmi = slave.functions
     with _freed(slave) as state:
         slave.call(fmi.fmi2GetFMUstate, byref(state))
@@ -25,7 +25,7 @@ def save(slave: Slave) -> bytes:
 
 
 def restore(slave: Slave, saved: bytes) -> float:
-    """Gives a slave a state that was saved. Returns the time that it has reached [s].
+    """Gives a slave a state that was saved. Returns the time of this state [s].
 
     Raises FmuError, whose message says what is wrong, for bytes that are no state of this FMU.
     """
@@ -41,7 +41,7 @@ def restore(slave: Slave, saved: bytes) -> float:
 
 @contextmanager
 def _freed(slave: Slave) -> Iterator[Any]:
-    """A pointer for a state, whose memory is given back."""
+    """A pointer to a state, whose memory is freed at the end of the block."""
     state = fmi2.fmi2FMUstate()
     try:
         yield state

@@ -1,4 +1,4 @@
-"""Variables of an FMU over time, and the same as tables of other libraries."""
+"""Time series of the variables of an FMU, also as tables of other libraries."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Series:
-    """What was recorded of one FMU, or of an estimator for several joints."""
+    """Recorded variables of one FMU, or of an estimator for several joints."""
 
     values: Mapping[str, NDArray[Any]]
     """Recorded variables by name, of shape (N,) or (joints, N), in the unit of the variable."""
     units: Mapping[str, str]
     """Unit of each recorded Real, as in the model description."""
     parameters: Mapping[str, Value]
-    """All parameters of the FMU as they were at the start; those of the first joint."""
+    """All parameters of the FMU at the start; with several joints, those of the first joint."""
     t: NDArray[np.float64]
     """Time of each sample since the first one [s], shape (N,)."""
     descriptions: Mapping[str, str]
-    """Of each recorded variable, as in the model description."""
+    """Description of each recorded variable, as in the model description."""
 
     @staticmethod
     def of(
@@ -38,7 +38,7 @@ class Series:
         parameters: Mapping[str, Value],
         t: NDArray[np.float64],
     ) -> Series:
-        """Variables of an FMU, with what it says about them."""
+        """Variables of an FMU, with units and descriptions from its model description."""
         variables = {name: fmu.variable(name) for name in values}
         units = {name: v.unit for name, v in variables.items() if v.unit is not None}
         descriptions = {name: v.description or "" for name, v in variables.items()}
@@ -50,7 +50,7 @@ class Series:
     def to_dataframe(self) -> pandas.DataFrame:
         """A column for each variable; the index is "t" [s], or "joint" and "t" for several joints.
 
-        `attrs["unit"]` and `attrs["description"]` have those of the columns. Needs pandas.
+        `attrs["unit"]` and `attrs["description"]` describe the columns. Needs pandas.
         """
         import pandas
 
@@ -65,7 +65,7 @@ class Series:
         return frame
 
     def to_xarray(self) -> xarray.Dataset:
-        """A variable for each, with the attributes "unit" and "description", over "t" [s].
+        """A dataset of all variables against "t" [s], with attributes "unit" and "description".
 
         Several joints are the dimension "joint". Needs xarray: `pip install sigmahat[xarray]`.
         """

@@ -18,9 +18,9 @@ _RENAMED = {
 
 
 def unknown(kind: str, name: str, existing: Iterable[str]) -> str:
-    """One line with the unknown name, similar names, and the existing ones; or with its new name.
+    """One line with the unknown name, similar names and existing names; or with the new name.
 
-    A list of more than 20 existing names is left out if a similar one was found.
+    A list of more than 20 existing names is left out if a similar name was found.
 
     kind  what the name stands for, as in "unknown scenario 'tabel1'"
     """

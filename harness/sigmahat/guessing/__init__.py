@@ -1,1 +1,1 @@
-"""What the columns of a log are, guessed: the configuration that `sigmahat init` writes."""
+"""Guesses the meaning of the columns of a log, for the configuration by `sigmahat init`."""

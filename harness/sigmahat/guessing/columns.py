@@ -1,4 +1,4 @@
-"""The columns of a log as the guess sees them: names, values, times and the time between rows."""
+"""The columns of a log for the guess: names, values, times and the time between rows."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from sigmahat.logs.limits import check_together
 from sigmahat.logs.log import Array, Log
 from sigmahat.logs.units import seconds
 
-_MOSTLY = 0.99  # share of the steps of a clock that go up
-_EVEN = 0.05  # largest distance of a step from the usual one, relative
-_MISSING = 1.8  # usual steps: a longer one holds rows that are lost
-_GAP = 3.0  # usual steps: a longer one is a gap
+_MOSTLY = 0.99  # least fraction of the steps of a clock that increase
+_EVEN = 0.05  # largest relative difference of a step from the usual step
+_MISSING = 1.8  # in usual steps: in a longer step, rows are lost
+_GAP = 3.0  # in usual steps: a longer step is a gap
 _EPOCH = {"ns": 1e17, "us": 1e14, "ms": 1e11, "s": 1e8}  # from about 1973 on
 _FASTEST, _SLOWEST = 2e-5, 0.2  # usual time between rows of a log [s]
 FASTEST_ROWS, SLOWEST_ROWS = 2e-5, 0.05
-"""Time between rows outside of which a stiffness can hardly be estimated [s]."""
+"""Limits of the time between rows; outside, a stiffness can hardly be estimated [s]."""
 
 
 def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:
-    """Whether a column holds times, by its name, or because it goes up by even steps."""
+    """Whether a column contains times, by its name, or because the values increase evenly."""
     if facts.text or not facts.varies or facts.increasing < _MOSTLY or facts.wrap is not None:
         return False
     if meaning.quantity is not None:
@@ -34,7 +34,7 @@ def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:
 
 
 def unit_of(meaning: Meaning, facts: Facts, values: Array) -> str:
-    """Unit of a column of times: as its name says, else by its size and its steps."""
+    """Unit of a column of times: from its name, else from the size and the steps of its values."""
     if meaning.unit in _EPOCH:
         return str(meaning.unit)
     for unit, least in _EPOCH.items():
@@ -48,10 +48,10 @@ def unit_of(meaning: Meaning, facts: Facts, values: Array) -> str:
 
 
 def likely_unit(unit: str, T: float) -> str | None:
-    """The unit that the times have more likely, if rows are implausibly far apart; else None.
+    """A more likely unit of the times, if the time between rows is implausible; else None.
 
-    unit  that they are taken in
-    T     usual time between rows in that unit [s]
+    unit  assumed unit of the times
+    T     usual time between rows with that unit [s]
     """
     if FASTEST_ROWS <= T <= SLOWEST_ROWS:
         return None
@@ -59,7 +59,7 @@ def likely_unit(unit: str, T: float) -> str | None:
 
 
 def _plausible(step: float, least: float, most: float) -> str | None:
-    """The unit in which a step is between two times [s], if there is one."""
+    """The unit in which a step is between two times [s]; None without such a unit."""
     units = ("s", "ms", "us", "ns")
     return next((each for each in units if least <= step * seconds(each) <= most), None)
 
@@ -67,7 +67,7 @@ def _plausible(step: float, least: float, most: float) -> str | None:
 def interval(times: Array) -> float:
     """Usual time between rows [s], from times in s: without gaps, rounding of the times and jitter.
 
-    1e-3 if there are no two times.
+    1e-3 without two different times.
     """
     steps = np.diff(times[np.isfinite(times)])
     steps = steps[steps > 0]
@@ -85,9 +85,9 @@ def interval(times: Array) -> float:
 
 
 def _is_coarse(steps: Array, usual: float) -> bool:
-    """Whether the times are those of an even clock, rounded: 1, 2, 1, 2 ms for 1.5 ms.
+    """Whether the times are rounded times of an even clock: 1, 2, 1, 2 ms for 1.5 ms.
 
-    Then they never are off by more than their resolution, while every row that is lost adds up.
+    Then the error of each time is below the resolution, while the errors of lost rows add up.
     """
     gaps = np.flatnonzero(steps >= _GAP * usual)
     edges = np.r_[-1, gaps, len(steps)]
@@ -101,7 +101,7 @@ def _is_coarse(steps: Array, usual: float) -> bool:
 
 
 def _round(T: float) -> float:
-    """The round number that a clock with jitter was set to, if there is one within 1 %."""
+    """The likely setting of a clock with jitter: a round number within 1 % of T, else T."""
     short = float(f"{T:.2g}")
     rate = 1 / float(f"{1 / T:.2g}")
     best = min((short, rate), key=lambda each: abs(each / T - 1))
@@ -119,14 +119,14 @@ class Column:
     meaning: Meaning
     facts: Facts
     clock: str | None
-    """The column of its times."""
+    """The column with the times of this column; None without times."""
     window: Array
-    """Its values, unwrapped, where the log moves most: the same times for all columns [size: n];
-    empty if it holds no numbers."""
+    """Unwrapped values in the part with most motion, at the same times for all columns [size: n];
+    empty if the column has no numbers."""
 
 
-_LOST = 1e-3  # of the rows; fewer gaps leave stretches that are long enough
-_LONGEST_GAP = 10  # rows that a motion of a joint allows to interpolate over
+_LOST = 1e-3  # fraction of the rows: with fewer gaps, the parts between gaps are long enough
+_LONGEST_GAP = 10  # rows: the motion of a joint can be interpolated over such a gap
 
 
 def lost_rows(times: Array, T: float) -> float | None:
@@ -149,9 +149,9 @@ class Columns:
     clocks: Mapping[str, str]
     """Units of the columns of times, by name."""
     facts: Mapping[str, Facts]
-    """Of all columns, by name."""
+    """Facts of all columns, by name."""
     intervals: Mapping[str | None, float]
-    """Usual time between rows [s], by clock; by None where there is none."""
+    """Usual time between rows [s], by clock; by None for columns without a clock."""
     gaps: Mapping[str | None, float | None]
     """As `lost_rows`, by clock."""
     window_T: float
@@ -196,19 +196,19 @@ def read_columns(log: Log) -> Columns:
 
 
 def _named(units: dict[str, str], meanings: Mapping[str, Meaning]) -> dict[str, str]:
-    """Without the clocks that only their values suggest, if others have a name."""
+    """Only the clocks whose name says so, if any; else all clocks."""
     named = {name: unit for name, unit in units.items() if meanings[name].quantity == "time"}
     return named or units
 
 
 def _clock_of(column: str, log: Log, clocks: Sequence[str]) -> str | None:
-    """The times of a column: those of its group or topic, else any of the same length."""
+    """The clock of a column: from the same group or topic, else any clock of equal length."""
     same = [name for name in clocks if log.columns[name] == log.columns[column]]
     return max(same, key=lambda name: _common(name, column), default=None)
 
 
 def _common(one: str, other: str) -> int:
-    """Letters with which both names begin, up to the last that ends a part of them."""
+    """Number of first letters that both names share, up to the last separator."""
     n = 0
     for i, (a, b) in enumerate(zip(one, other, strict=False)):
         if a != b:
@@ -225,10 +225,10 @@ def _windows(
     times: Mapping[str, Array],
     T: float,
 ) -> dict[str, Array]:
-    """Where the log moves most, the values of columns at the same times, T apart."""
+    """Values of the columns at common times, T apart, in the part with most motion."""
 
     def samples(name: str) -> tuple[Array, Array]:
-        """Made again each time: those of all columns would fill the memory."""
+        """Computed at each call, because samples of all columns would fill the memory."""
         column = clocks[name]
         t = times[column] if column else np.arange(len(values[name]), dtype=np.float64) * T
         x = values[name]
@@ -255,10 +255,10 @@ def _windows(
 def _liveliest(
     samples: Callable[[], Iterable[tuple[Array, Array]]], start: float, end: float, length: float
 ) -> float:
-    """Begin of the stretch of a length in which the columns together vary most."""
+    """Start of the part of this length in which the columns together vary most."""
     if end - start < 2 * length:
         return start
-    # Only stretches with samples: a clock that was set during the log jumps by years.
+    # Only parts with samples: a clock that was set during the log jumps by years.
     occupied = [
         np.unique((t[(t >= start) & (t < end)] - start) // length).astype(np.int64)
         for t, _ in samples()

@@ -1,4 +1,4 @@
-"""What the values of one column say: range, counts, steps, and where a counter starts again."""
+"""Facts from the values of one column: range, counts, steps, and the period of a counter."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from sigmahat.logs.units import unwrap
 
 TURN = {"rad": 2 * np.pi, "mrad": 2000 * np.pi, "deg": 360.0, "turn": 1.0}
 """A turn in units of angle."""
-_DISTINCT = 20000  # values among which the step of an encoder is looked for
+_DISTINCT = 20000  # number of values that are searched for the step of an encoder
 _STATES = 8  # a column with fewer whole numbers is a state or a flag
 _FEWEST_COUNTS = 100  # of an encoder in a turn
 _JUMP = 0.5  # of the range: a larger step may be a counter that starts again
-_SEEN = 0.02  # largest distance of a jump from the period it is taken for, relative
+_SEEN = 0.02  # largest relative difference between a jump and a known period
 
 
 @dataclass(frozen=True)
 class Facts:
-    """A column, by its values."""
+    """Facts of a column, from its values."""
 
     samples: int
     low: float = np.nan
@@ -28,21 +28,21 @@ class Facts:
     high: float = np.nan
     """Largest value; nan if there is no number."""
     integer: bool = False
-    """Whether all values are whole numbers, and more than a few of them."""
+    """Whether all values are whole numbers, with more than a few distinct values."""
     varies: bool = False
-    """Whether it takes more than a few values."""
+    """Whether the column has more than a few distinct values."""
     increasing: float = 0.0
-    """Share of the steps that go up [1]."""
+    """Fraction of the steps that increase [1]."""
     step: float = np.inf
     """Distance between neighbouring values of a quantised column; inf if it is not quantised."""
     wrap: float | None = None
-    """Period after which it starts again; None if it does not."""
+    """Period after which a counter starts again; None if the column is no such counter."""
     text: bool = False
-    """Whether it holds something other than numbers."""
+    """Whether the column contains something other than numbers."""
 
 
 def look_at(log: Log, name: str) -> tuple[Facts, Array]:
-    """Facts of a column and its values, unwrapped; no value if it holds no numbers."""
+    """Facts of a column and its values, unwrapped; no values if the column contains text."""
     try:
         values = log.read(name)
     except LogError:
@@ -68,7 +68,7 @@ def look_at(log: Log, name: str) -> tuple[Facts, Array]:
 
 
 def counts_per_turn(facts: Facts, unit: str) -> int:
-    """Of the encoder, by the steps of a column; 0 if it has none, or too few for an encoder."""
+    """Counts per turn of the encoder, from the steps of a column; 0 if no encoder has so few."""
     counts = TURN[unit] / facts.step if unit in TURN else 0.0
     return round(counts) if counts >= _FEWEST_COUNTS else 0
 
@@ -85,7 +85,7 @@ def unit_of_steps(facts: Facts) -> str | None:
 
 
 def _step(finite: Array) -> float:
-    """Step of a quantised column; inf if it has none."""
+    """Step of a quantised column; inf if the column is not quantised."""
     distinct = np.unique(finite[:_DISTINCT])
     steps = np.diff(distinct)
     steps = steps[steps > 1e-9 * max(np.ptp(distinct), 1e-300)] if len(steps) else steps
@@ -114,7 +114,7 @@ def _wrap(steps: Array, span: float) -> float | None:
     inner = jumps[(jumps > 0) & (jumps < len(size) - 1)]
     if not len(inner):
         return None
-    # A counter goes on as it did: the jump and the step that was to come make up a period.
+    # The motion continues during a jump: the jump and the expected step add up to a period.
     coming = 0.5 * (steps[inner - 1] + steps[inner + 1])
     coming[np.abs(coming) > 0.2 * span] = 0.0
     period = float(np.median(np.abs(steps[inner] - coming)))
@@ -122,7 +122,7 @@ def _wrap(steps: Array, span: float) -> float | None:
     best = min(exact, key=lambda each: abs(each / period - 1))
     if abs(best / period - 1) < _SEEN:
         return best
-    # Any other period only if the column moves on over each of the jumps.
+    # Another period is accepted only if the motion continues during each jump.
     noise = float(np.median(np.abs(np.diff(steps))))
     on = -np.sign(steps[inner]) * coming > 3 * noise
     return float(f"{period:.3g}") if len(inner) > 1 and on.all() else None

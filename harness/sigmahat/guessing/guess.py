@@ -1,4 +1,4 @@
-"""What a log is about: its joints, and for each of them the column of every port.
+"""Guesses the joints of a log, and for each joint the column of every port.
 
     joints = guess(open_log(path))
     joints["knee"].ports["theta"].column
@@ -23,7 +23,7 @@ _OF_A_JOINT = ("position", "torque", "current", None)
 
 
 def joints_of_log(columns: Sequence[Column], T: float) -> dict[str, Roles]:
-    """The joints of a log by their names; one without a name if the log has only one.
+    """The joints of a log by name; a single joint is "" if no column names a joint.
 
     T  time between the samples of the windows of the columns [s]
     """
@@ -35,7 +35,7 @@ def joints_of_log(columns: Sequence[Column], T: float) -> dict[str, Roles]:
             return whole
         if len(whole) == 1:
             (name,) = whole
-            # What bears no name of a joint is of the only one.
+            # Columns without the name of a joint belong to the only joint.
             return {name: assign([*groups[name], *groups.get("", [])], T)}
     if len(groups.keys() - {""}) > 1:
         return {name: roles for name, roles in found.items() if name and roles.ports}
@@ -45,7 +45,7 @@ def joints_of_log(columns: Sequence[Column], T: float) -> dict[str, Roles]:
 def _groups(
     columns: Sequence[Column], words: Mapping[str, Sequence[str]]
 ) -> dict[str, list[Column]]:
-    """Columns by what is left of their names."""
+    """Columns by these words of their names."""
     groups: dict[str, list[Column]] = {}
     for column in columns:
         groups.setdefault("_".join(words[column.name]), []).append(column)
@@ -53,7 +53,7 @@ def _groups(
 
 
 def _all_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
-    """Words and numbers that do not stand in every name, and names of joints."""
+    """For each name: its words and numbers that are not in every name, and names of joints."""
     common = set.intersection(*(set(each.meaning.rest) for each in columns)) if columns else set()
     return {
         each.name: [
@@ -74,28 +74,28 @@ class Seen:
     name: str
     samples: int
     low: float
-    """Smallest value; nan if it holds no number."""
+    """Smallest value; nan if the column has no numbers."""
     high: float
-    """Largest value; nan if it holds no number."""
+    """Largest value; nan if the column has no numbers."""
     what: str
-    """In a few words: the port, or why it is none."""
+    """In a few words: the port, or why the column has no port."""
 
 
 @dataclass(frozen=True)
 class JointGuess:
-    """All that was guessed of one joint of a log."""
+    """All guesses for one joint of a log."""
 
     name: str
-    """As the columns name it; empty if the log has only one."""
+    """Name of the joint in the columns; empty if no column names a joint."""
     time: str | None
-    """The time column of the ports that name no other; None if rows are T apart."""
+    """The time column of ports without their own time column; None if rows are T apart."""
     time_unit: str
     T: float
     """Usual time between rows [s]."""
     longest_gap: float | None
-    """Where single rows are lost, the longest gap that this leaves [s]."""
+    """Longest gap because of single lost rows [s]; None if no rows are lost."""
     ports: Mapping[str, PortGuess]
-    """By port, in the order of PORTS; only those that have a column."""
+    """Guesses of the ports that have a column, in the order of PORTS."""
     columns: Sequence[Seen]
     """All columns of the log, also those of other joints."""
 
@@ -103,19 +103,19 @@ class JointGuess:
 def guess(log: Log) -> dict[str, JointGuess]:
     """The joints of a log by their names, in the order of the columns; at least one.
 
-    A joint may lack ports: then nothing in the log looks like them.
+    A joint lacks a port if no column of the log looks like this port.
     """
     return guess_of(read_columns(log), log)
 
 
 def guess_of(columns: Columns, log: Log) -> dict[str, JointGuess]:
-    """The same for the columns of a log that were looked at before."""
+    """As `guess`, from columns of a log that were already read."""
     found = joints_of_log(columns.signals, columns.window_T)
     return {name: _joint(name, roles, columns, log) for name, roles in found.items()}
 
 
 def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGuess:
-    """The joint of a name. Raises LogError, which names the joints of the log, if it has none."""
+    """The joint of a name. Raises LogError, which lists all joints, if no joint has this name."""
     short = re.sub(r"^(joint|axis|j)_?(?=\d)", "", name.lower())
     for each, joint in joints.items():
         if each.lower() in (name.lower(), short):
@@ -127,9 +127,9 @@ def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGue
 
 
 def guess_chosen(columns: Columns, names: Mapping[str, str | None]) -> dict[str, PortGuess]:
-    """Units, signs, zeros and gear of ports whose columns somebody has chosen.
+    """Units, signs, zeros and gear of ports whose columns the user has chosen.
 
-    names  of columns, by port; those that do not move are left out
+    names  of columns, by port; columns that do not move are left out
     """
     by_name = {each.name: each for each in columns.signals}
     chosen = {
@@ -170,7 +170,7 @@ def _joint(name: str, roles: Roles, columns: Columns, log: Log) -> JointGuess:
 
 
 def _what(column: Column) -> str:
-    """What a column without a port looks like."""
+    """The likely meaning of a column without a port."""
     meaning, facts = column.meaning, column.facts
     if facts.text:
         return "text"

@@ -14,15 +14,15 @@ from sigmahat.guessing.relations import line, scale_of_derivative
 from sigmahat.guessing.roles import Role, Roles
 from sigmahat.logs.log import Array
 
-_AFTER_GEAR = 1.4  # motor over link, in the same unit: below, the motor is measured after its gear
-_AS_FAR = 0.15  # two positions behind the gear move as far as each other, relative
-_WHOLE = 0.002  # a gear ratio this near to a whole number is taken for it, relative
-_STIFF = 0.005  # deformation over motion: above, the motion of the link is no measure of the gear
-_APART = 4.0  # deformations, in their standard deviation: a larger one is a zero
+_AFTER_GEAR = 1.4  # ratio of motor to link: below, the motor is measured after its gear
+_AS_FAR = 0.15  # largest relative difference between the motions of motor and link after the gear
+_WHOLE = 0.002  # relative difference up to which a gear ratio is rounded to an integer
+_STIFF = 0.005  # ratio of deformation to motion: above, the motion does not determine the gear
+_APART = 4.0  # standard deviations of the deformation: if its mean is larger, the zeros differ
 _RADIANS = 6.6  # a joint that turns by more is in degrees
 _MILLI = 100.0  # amperes: a larger current is in mA
 _SINGLE_TURN = (2.0**10, 2.0**15)  # wraps of absolute encoders; 16 and 32 bits are counters
-_SURE = 0.8  # correlation of a torque sensor with the deformation, from which on its sign is sure
+_SURE = 0.8  # from this correlation with the deformation, the sign of a torque sensor is sure
 
 
 @dataclass(frozen=True)
@@ -36,28 +36,28 @@ class PortGuess:
     high: float
     """Range of its values."""
     unit: str | None
-    """None if there is no way to tell: then `scale` has to be filled in."""
+    """None if the unit cannot be guessed: then the user has to fill in `scale`."""
     wrap: float | None
-    """Period after which it starts again, in its unit; None if it does not."""
+    """Period of a counter that starts again, in the unit of the column; None without a period."""
     time: str | None
-    """The column of its times, if that is not the one of the joint."""
+    """The time column of the port, if it differs from the time column of the joint."""
     notes: Mapping[str, str]
     """What to know or to check, by key."""
     sign: int = 1
     """1 or -1."""
     zero: float = 0.0
-    """In the unit of the column."""
+    """Zero of the port, in the unit of the column."""
     gear_ratio: float | None = 1.0
-    """None if it has to be filled in."""
+    """None if the user has to fill in the gear ratio."""
     moves: float | None = None
-    """Of theta: how far it moves over how far the link moves, about; None if that is not known.
+    """For theta: approximate ratio of its motion to the motion of the link; None if not known.
 
-    Of a motor in counts it is counts per turn of the link.
+    For a motor in counts, the number of counts per turn of the link.
     """
     counts_per_turn: float | None = None
-    """For the unit counts; None if it has to be filled in."""
+    """For the unit counts; None if the user has to fill in the number."""
     steps: int = 0
-    """Steps of its values in a turn, where the unit is not counts; 0 if they have none."""
+    """Steps of the values per turn, if the unit is not counts; 0 if the values have no steps."""
 
 
 def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, PortGuess]:
@@ -84,21 +84,21 @@ def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, P
 
 
 def _plain(port: str, role: Role, time: str | None) -> PortGuess:
-    """A port before its unit is known better than by its name."""
+    """A port whose unit is known only from the name of its column."""
     column = role.column
     facts, unit = column.facts, column.meaning.unit
     notes: dict[str, str] = {}
     if port == "theta_c" and unit is None:
         unit = "counts" if facts.integer else "rad"
-        notes["unit"] = "CHECK: its name says none"
+        notes["unit"] = "CHECK: no unit in the name"
     wrap = facts.wrap if unit not in ("A", "mA", "N.m", "mN.m") else None
     if wrap is not None:
-        notes["wrap"] = "CHECK: it jumps by this"
+        notes["wrap"] = "CHECK: the column jumps by this value"
     return PortGuess(column.name, role.why, facts.low, facts.high, unit, wrap, time, notes)
 
 
 def _angle(column: Column, columns: Columns, is_link: bool) -> tuple[str, str]:
-    """Unit of a position, and how it was found; "" if its name says so or its values do not."""
+    """Unit of a position, and how the unit was found; "" if the name of the column has a unit."""
     if column.meaning.unit is not None:
         return column.meaning.unit, ""
     if column.facts.integer:
@@ -115,11 +115,11 @@ def _angle(column: Column, columns: Columns, is_link: bool) -> tuple[str, str]:
             return unit, "by its wrap"
     if is_link and farthest > _RADIANS:
         return "deg", "CHECK: too far for rad"
-    return "rad", "CHECK: its name says none"
+    return "rad", "CHECK: no unit in the name"
 
 
 def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> str | None:
-    """Unit of a position whose derivative is in the log, in a unit that its name says."""
+    """Unit of a position, from a column with its derivative whose name has a unit."""
     for other in signals:
         speed = other.meaning.speed
         unit, _, minute = (speed or "").partition("/")
@@ -143,7 +143,7 @@ def _with_unit(port: PortGuess, column: Column, found: tuple[str, str], name: st
         least, most = _SINGLE_TURN
         if least <= facts.wrap <= most:
             turn = facts.wrap
-            notes["counts_per_turn"] = "CHECK: it starts again after as many"
+            notes["counts_per_turn"] = "CHECK: the counter starts again after this number"
     return replace(
         port,
         unit=unit,
@@ -154,7 +154,7 @@ def _with_unit(port: PortGuess, column: Column, found: tuple[str, str], name: st
 
 
 def _together(ports: Mapping[str, PortGuess], motor: Column, link: Column) -> dict[str, PortGuess]:
-    """Gear, sign and zeros of both positions, by how the link follows the motor."""
+    """Gear, sign and zeros of both positions, from the motion of the link with the motor."""
     theta, q = ports["theta"], ports["q"]
     fitted = line(motor.window, link.window)
     if fitted.slope == 0:
@@ -177,14 +177,14 @@ def _together(ports: Mapping[str, PortGuess], motor: Column, link: Column) -> di
 
 
 def _is_vague(port: PortGuess) -> bool:
-    """Whether only a guess told its unit."""
+    """Whether the unit of a port is only a guess."""
     return port.notes.get("unit", "").startswith("CHECK")
 
 
 def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess:
-    """The unit of a vague position by the other one, with which it moves.
+    """The unit of a vague position, from the other position, which moves with it.
 
-    slope  its values over those of the other one
+    slope  ratio of the values of the vague position to the values of the other position
     """
     if other.unit not in TURN:
         return port
@@ -195,10 +195,10 @@ def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess
 
 
 def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGuess:
-    """The gear ratio where both units are known and the joint is stiff; else about what it is.
+    """The gear ratio if both units are known and the joint is stiff; else a note with a hint.
 
-    slope  values of theta over those of q
-    rest   standard deviation of what this slope does not explain, over that of q
+    slope  ratio of the values of theta to the values of q
+    rest   standard deviation of the residual of this slope, relative to q
     """
     if theta.unit in TURN and q.unit in TURN:
         gear = slope * TURN[q.unit] / TURN[theta.unit]
@@ -211,28 +211,28 @@ def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGues
         notes = {**theta.notes, "gear_ratio": f"{'CHECK' if sure else 'FILL IN'}: {moves}"}
         return replace(theta, gear_ratio=float(whole) if sure else None, moves=gear, notes=notes)
     product = None
-    note = "FILL IN: 1 if it is measured after the gear"
+    note = "FILL IN: 1 if theta is measured after the gear"
     if q.unit in TURN:
         product = slope * TURN[q.unit]
     elif theta.unit == "counts" and q.unit == "counts" and q.counts_per_turn:
         product = slope * q.counts_per_turn
     if product is not None:
-        note = f"FILL IN: times counts_per_turn it is about {product:.4g}"
+        note = f"FILL IN: gear_ratio times counts_per_turn is about {product:.4g}"
     notes = {**theta.notes, "gear_ratio": note}
     return replace(theta, gear_ratio=None, moves=product, notes=notes)
 
 
 def _ratio(theta: PortGuess, q: PortGuess) -> float | None:
-    """Values of q over those of theta if there were no deformation; None if not known."""
+    """Ratio of the values of q to theta without deformation; None if not known."""
     if theta.unit not in TURN or q.unit not in TURN or not theta.gear_ratio:
         return None
     return TURN[q.unit] / TURN[theta.unit] / theta.gear_ratio
 
 
 def _zeros(theta: Array, q: Array, slope: float, spread: float) -> tuple[float, float] | None:
-    """Means of both columns, if their zeros do not agree; None if they do.
+    """Means of both columns, if their zeros do not agree; None if the zeros agree.
 
-    spread  standard deviation of what the motion of the motor does not explain of q
+    spread  standard deviation of the part of q that the motion of the motor does not explain
     """
     deformation = q - slope * theta
     if abs(float(np.mean(deformation))) <= _APART * max(spread, float(np.std(deformation))):
@@ -251,33 +251,33 @@ def _torque(port: PortGuess, roles: Roles) -> PortGuess:
     farthest = max(abs(facts.low), abs(facts.high))
     if unit is None and meaning.quantity == "current":
         unit = "mA" if facts.integer or farthest > _MILLI else "A"
-        notes["unit"] = "CHECK: its name says none"
+        notes["unit"] = "CHECK: no unit in the name"
     elif unit is None and not facts.integer:
         unit = "N.m"
         said = meaning.quantity == "torque"
-        notes["unit"] = f"CHECK: its name says none{'' if said else '; or is it a current, in A?'}"
+        notes["unit"] = f"CHECK: no unit in the name{'' if said else '; or is it a current, in A?'}"
     if roles.drive.sign < 0:
         notes["sign"] = "CHECK: else the motor would gain power from friction"
     elif roles.drive.sign == 0:
         notes["sign"] = "CHECK: the log does not show it; 1 if a torque above 0 turns theta upwards"
     sign = -1 if roles.drive.sign < 0 else 1
-    notes["gear_ratio"] = "CHECK: that of the gear if the torque is measured after it"
+    notes["gear_ratio"] = "CHECK: ratio of the gear if the torque is measured after the gear"
     return replace(port, unit=unit, sign=sign, wrap=None, notes=notes)
 
 
 def _sensor(ports: Mapping[str, PortGuess], roles: Roles) -> PortGuess:
-    """The torque sensor: its unit, and its sign by the deformation."""
+    """The torque sensor: its unit, and its sign from the deformation."""
     port, column = ports["tau_e_sensor"], roles.ports["tau_e_sensor"].column
     notes = dict(port.notes)
     unit = port.unit if port.unit not in ("counts", "A", "mA") else None
     if unit is None and not column.facts.integer:
-        unit, notes["unit"] = "N.m", "CHECK: its name says none"
+        unit, notes["unit"] = "N.m", "CHECK: no unit in the name"
     port = replace(port, unit=unit, wrap=None, notes=notes)
     deformation = _deformation(ports, roles)
     together = 0.0 if deformation is None else line(deformation, column.window).correlation
     if together > -_SURE:
         return port
-    return replace(port, sign=-1, notes={**notes, "sign": "it grows against the deformation"})
+    return replace(port, sign=-1, notes={**notes, "sign": "opposite to the deformation"})
 
 
 def _deformation(ports: Mapping[str, PortGuess], roles: Roles) -> Array | None:

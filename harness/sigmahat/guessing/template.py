@@ -38,7 +38,7 @@ _TORQUES = {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3, "N.cm": 1e-2}
 _RANGE = (1.0, 100.0)  # of the set-point
 _GAIN = 0.02  # relative, the start value of the FMU
 _ALIKE = 1.2
-"""Of what a log says about gear ratios: soft joints move further than their motors."""
+"""Largest ratio of similar gear ratios as seen in a log: a soft joint may exceed its motor."""
 _MOST_LISTED, _LONGEST_LIST = 200, 40_000  # columns, and bytes of their lines together
 _HEAD = """\
 Configuration for {log}{joint}, guessed from names and values of its columns.
@@ -48,21 +48,21 @@ Then: sigmahat identify (B, D_theta, friction, ranges), sigmahat estimate (stiff
 Columns of the log:
 {columns}
 
-A port is sign (x - zero) in its unit, over gear_ratio. Keys of a port, all but column
+A port is sign (x - zero) / gear_ratio, in its unit. Keys of a port, all but column
 optional: unit (rad, deg, turn, counts; N.m, mN.m, A; mm for theta_c), sign, zero,
 gear_ratio (encoder or torque on the other side of the gear), counts_per_turn,
 torque_constant [N.m/A], mm_per_turn (of the motor, for theta_c in mm), scale (instead
 of a unit), wrap (period of a counter that starts again), time (a column of its own)."""
 _OF_SEVERAL = """
 
-What all joints share stands once, below. Each joint has sections [joints.NAME...], whose
-keys come before the shared ones: move a key there if a joint differs."""
+Common keys of all joints are written once, below. Each joint has sections [joints.NAME...],
+whose keys replace common keys: move a key there if a joint differs."""
 
 
 def write(log: Log, joints: Mapping[str, JointGuess], fmu_defaults: Mapping[str, float]) -> str:
-    """The text of a configuration. Where nothing in the log looks like a port, it asks for it.
+    """The text of a configuration. If no column looks like a port, the text asks for a column.
 
-    joints        of the log, by name; what several have in common stands once
+    joints        of the log, by name; values that are common to all joints are written once
     fmu_defaults  start values of motor.B and motor.D_theta of the estimator
     """
     columns = "\n".join(_listed(joints))
@@ -78,7 +78,7 @@ def write(log: Log, joints: Mapping[str, JointGuess], fmu_defaults: Mapping[str,
 
 
 def _with_one_gear(joints: Mapping[str, JointGuess]) -> Mapping[str, JointGuess]:
-    """Joints whose gear ratios must be filled in and look alike, with one comment for all."""
+    """The joints with one comment for all gear ratios, if all are unknown and look alike."""
     motors = {name: each.ports["theta"] for name, each in joints.items() if "theta" in each.ports}
     moves = [each.moves or 0.0 for each in motors.values() if each.gear_ratio is None]
     if len(moves) < len(joints) or min(moves) <= 0 or max(moves) > _ALIKE * min(moves):
@@ -121,7 +121,7 @@ def _document(
 
 
 def _listed(joints: Mapping[str, JointGuess]) -> Iterator[str]:
-    """A line for each column, no more of them than fit a configuration."""
+    """A line for each column, but not more lines than fit a configuration."""
     rows = zip(*(each.columns for each in joints.values()), strict=True)
     lines = [f"  {_seen(_used(dict(zip(joints, row, strict=True))))}" for row in rows]
     ends = accumulate(len(line.encode()) for line in lines)
@@ -132,7 +132,7 @@ def _listed(joints: Mapping[str, JointGuess]) -> Iterator[str]:
 
 
 def _used(column: Mapping[str, Seen]) -> Seen:
-    """A column as the joint sees it that uses it; for the first joint if none does."""
+    """A column in the view of the joint that uses this column, else of the first joint."""
     for name, seen in column.items():
         if seen.what.startswith("ports."):
             return replace(seen, what=f"{name} {seen.what}".strip())
@@ -167,7 +167,7 @@ def _time(guess: JointGuess) -> Table:
 
 
 def port_table(name: str, port: PortGuess) -> Table:
-    """The section of a port that has a column, with what to check and to fill in as comments."""
+    """The section of a port that has a column; comments say what to check and to fill in."""
     table = tomlkit.table()
     _comment(table, f"{_MEANING[name]}, {PORTS[name]}")
     span = "no number" if math.isnan(port.low) else f"{port.low:.6g} to {port.high:.6g}"
@@ -183,7 +183,7 @@ def port_table(name: str, port: PortGuess) -> Table:
         comment = port.notes.get("counts_per_turn", fill_in)
         _add(table, "counts_per_turn", port.counts_per_turn or 0, comment)
     if name == "theta":
-        check = "CHECK: that of the gear if the encoder sits on the motor's shaft"
+        check = "CHECK: ratio of the gear if the encoder is on the motor's shaft"
         _add(table, "gear_ratio", port.gear_ratio or 0, port.notes.get("gear_ratio", check))
     if name == "tau":
         table.add(tomlkit.comment(f"gear_ratio = 1   # {port.notes['gear_ratio']}"))
@@ -195,7 +195,7 @@ def port_table(name: str, port: PortGuess) -> Table:
     if port.wrap is not None:
         _add(table, "wrap", port.wrap, port.notes.get("wrap", ""))
     _add(table, "sign", port.sign, port.notes.get("sign", ""))
-    _add(table, "zero", port.zero, port.notes.get("zero", "what the column shows at the zero"))
+    _add(table, "zero", port.zero, port.notes.get("zero", "value of the column at the zero"))
     table.add(tomlkit.nl())
     return table
 
@@ -203,7 +203,7 @@ def port_table(name: str, port: PortGuess) -> Table:
 def _empty_port(name: str) -> Table:
     table = tomlkit.table()
     _comment(table, f"{_MEANING[name]}, {PORTS[name]}")
-    _add(table, "column", FILL_IN, "no column looks like it: name one of the list above")
+    _add(table, "column", FILL_IN, "no column looks like this port: choose from the list above")
     _add(table, "unit", PORTS[name])
     if name == "q":
         locked = "value = 0   # in place of the column, if the link is locked on purpose"
@@ -227,7 +227,7 @@ def period_of(guess: JointGuess) -> str:
 def _parameters(guess: JointGuess, defaults: Mapping[str, float]) -> Table:
     table, ports = tomlkit.table(), guess.ports
     _comment(table, "of StiffnessEstimator.fmu, by their names; others keep their start values")
-    period = "[s] FILL IN: no column says it" if guess.time is None else period_of(guess)
+    period = "[s] FILL IN: the log has no times" if guess.time is None else period_of(guess)
     _add(table, "samplePeriod", guess.T, period)
     _add(table, "method", "FilteredRegression", "or Paper2011, which needs exact motor data")
     sensor = _is_sensor(guess)
@@ -245,7 +245,7 @@ def _parameters(guess: JointGuess, defaults: Mapping[str, float]) -> Table:
 
 
 def _add_motor(table: Table, theta: PortGuess | None, defaults: Mapping[str, float]) -> None:
-    """The gear ratio where theta does not say it, motor data that nobody knows yet, and priors."""
+    """The gear ratio unless theta gives it, motor data that are not known yet, and priors."""
     if theta is None or theta.gear_ratio == 1:
         _add(table, "motor.gamma", 0, "FILL IN: gear ratio, between motor and flexibility")
     else:
@@ -261,7 +261,7 @@ def _add_motor(table: Table, theta: PortGuess | None, defaults: Mapping[str, flo
 
 
 def _add_ranges(table: Table, guess: JointGuess) -> None:
-    """What `identify` writes where there is a motor: it finds nothing to do without one."""
+    """Ranges for a joint with a sensor; with a motor, `identify` writes these ranges."""
     q, sensor = guess.ports.get("q"), guess.ports["tau_e_sensor"]
     if q is not None and q.unit in TURN and "theta" not in guess.ports:
         in_rad = 2 * math.pi / TURN[q.unit]
@@ -308,7 +308,7 @@ def _set_point(port: PortGuess | None) -> Iterator[tuple[str, float, str]]:
 
 
 def _add(table: Table, name: str, value: str | float, comment: str = "") -> None:
-    """Adds a key, motor.B with its dot; a whole number is written as one."""
+    """Adds a key, motor.B with its dot; a whole number is written as an integer."""
     whole = isinstance(value, float) and value.is_integer() and abs(value) < 2**53
     item = tomlkit.item(int(value) if whole else value)
     if comment:

@@ -1,4 +1,4 @@
-"""What the name of a column says: quantity, side of the joint, unit, and whose joint it is."""
+"""Meaning of the name of a column: quantity, side of the joint, unit, and name of the joint."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from typing import Any
 import tomlkit
 
 _ORDER = (*("other", "acceleration", "velocity", "position", "current", "torque", "time", "index"),)
-"""Quantities; of several in a name the first one counts: "current position", "torque current"."""
+"""Quantities; in a name with several, the first in this order counts: "current position"."""
 _UNIT_OF = {
     **dict.fromkeys(("rad", "mrad", "deg", "turn"), "position"),
     **dict.fromkeys(("N.m", "mN.m", "kN.m", "N.cm"), "torque"),
     **dict.fromkeys(("A", "mA"), "current"),
     **dict.fromkeys(("s", "ms", "us", "ns"), "time"),
 }
-_INSIDE, _AT_AN_END, _PART = 5, 4, 3  # letters of a word that is found inside of a longer one
+_INSIDE, _AT_AN_END, _PART = 5, 4, 3  # letters of a word that is found inside of a longer word
 _LETTERS = str.maketrans({"ß": "ss", "°": "deg", "µ": "u", "μ": "u", "θ": "theta", "τ": "tau"})
 _BRACKET = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]\s*$")
 _TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
@@ -28,34 +28,34 @@ _TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 
 @dataclass(frozen=True)
 class Meaning:
-    """What a name says. None where it says nothing."""
+    """Meaning of a name. A field is None if the name has no such word."""
 
     quantity: str | None
     """time, index, position, velocity, acceleration, torque, current, or other."""
     side: str | None
     """motor, link, setting (what sets the stiffness), or sensor (of the torque)."""
     suggested: str | None
-    """motor or link, from a word that only suggests it."""
+    """motor or link, from a word that only suggests this side."""
     unit: str | None
-    """As configurations write it."""
+    """Unit, as in configurations."""
     speed: str | None
-    """Of a velocity: rad for rad/s, or turn/min."""
+    """Unit of a velocity: rad for rad/s, or turn/min."""
     reference: bool
-    """Whether it was asked for, not measured."""
+    """Whether the signal is a reference, not a measurement."""
     computed: bool
-    """Whether it is an estimate, or the truth of a simulation."""
+    """Whether the signal is an estimate, or the truth of a simulation."""
     joints: tuple[str, ...]
     """Words that are names of joints."""
     rest: tuple[str, ...]
-    """Words and numbers that are not known, those of joints too."""
+    """Unknown words and numbers, and words that are names of joints."""
 
 
 _Entry = Mapping[str, str]
-"""What the sections of the vocabulary say of a word, by section."""
+"""Meanings of a word in the vocabulary, by section."""
 
 
 def meaning(name: str) -> Meaning:
-    """What the name of a column says."""
+    """The meaning of the name of a column."""
     unit, tokens = _without_unit(name)
     entries: list[_Entry] = []
     rest: list[str] = []
@@ -100,7 +100,7 @@ def _is_time(part: str) -> bool:
 
 
 def _quantity(entries: Sequence[_Entry]) -> str | None:
-    """The quantity that a word says, else that of a symbol."""
+    """The quantity from a word, else from a symbol."""
     words = [entry for entry in entries if "symbol" not in entry]
     return _first("quantity", _ORDER, words) or _first("quantity", _ORDER, entries)
 
@@ -111,17 +111,17 @@ def _first(section: str, order: Sequence[str], entries: Sequence[_Entry]) -> str
 
 
 def _plain(text: str) -> str:
-    """Without accents, and with letters for symbols; upper case stays."""
+    """The text without accents, and with letters for symbols; upper case stays."""
     decomposed = unicodedata.normalize("NFKD", text.translate(_LETTERS))
     return "".join(each for each in decomposed if not unicodedata.combining(each))
 
 
 @dataclass(frozen=True)
 class _Unit:
-    """The unit in a name; None and None if it has none."""
+    """The unit in a name; all fields are None for a name without a unit."""
 
     name: str | None = None
-    """One of a port."""
+    """A unit of a port."""
     foreign: str | None = None
     """The quantity, for a unit that no port has."""
     speed: str | None = None
@@ -149,7 +149,7 @@ def _without_unit(name: str) -> tuple[_Unit, list[str]]:
 
 
 def _is_unit(tokens: Sequence[str], count: int, unit: _Unit) -> bool:
-    """Whether the last words are a unit: a single letter is one where it fits the rest."""
+    """Whether the last words are a unit: a single letter must fit the other words."""
     if count > 1 or len(tokens[-1]) > 1:
         return len(tokens) > count or len(tokens[-1]) > 2
     before = _quantity([entry for _, entry in _entries(tokens[:-1]) if entry is not None])
@@ -166,7 +166,7 @@ def _unit(text: str) -> _Unit:
 
 
 def _entries(tokens: Sequence[str]) -> Iterator[tuple[str, _Entry | None]]:
-    """Words with what the vocabulary says about them, None for unknown ones."""
+    """Words with their meanings in the vocabulary, None for unknown words."""
     entries = _vocabulary().entries
     words = [token.lower() for token in tokens]
     i = 0
@@ -185,7 +185,7 @@ def _entries(tokens: Sequence[str]) -> Iterator[tuple[str, _Entry | None]]:
 
 @cache
 def _parts(word: str) -> tuple[str, ...]:
-    """Known words that a longer one is made of, and what is left of it."""
+    """Known words inside of a longer word, and the remaining parts."""
     entries = _vocabulary().entries
     if word in entries or word.isdigit():
         return (word,)

@@ -26,6 +26,7 @@ from sigmahat.logs.resampling import stretches
 from sigmahat.logs.sampling import Samples, sample
 
 _LONGEST = 600.0  # [s] of a log that are used
+_FEWEST = 1000  # samples of the longest stretch that are left if the motor moves slowly
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _V_A_TICKS = 10000
@@ -78,8 +79,15 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     if not torque_constant:
         noise = TorqueNoise(tau_variance, theta_variance, B * abs(gamma), T)
         coherent = coherent_range(longest, gamma, f_0, noise)
+    apart = _apart(pieces, _step(every["encoder.theta"]))
+    low_pass = min(bandwidth(tau_variance, theta_variance, B * abs(gamma), apart * T), coherent)
     motor = fit_motor(
-        pieces, T, gamma, symmetric, min(f_0, coherent), _known_inertia(every, configuration)
+        [each.every(apart) for each in pieces],
+        apart * T,
+        gamma,
+        symmetric,
+        low_pass,
+        _known_inertia(every, configuration),
     )
     V_a = _best_V_a(fmu, samples, start, longest, f_0)
     quantities = dict(motor.quantities)
@@ -113,6 +121,17 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
 def _largest(pieces: Sequence[Signals], name: str) -> float:
     """Largest magnitude of a signal."""
     return max(float(np.max(np.abs(getattr(piece, name)))) for piece in pieces)
+
+
+def _apart(pieces: Sequence[Signals], count: float) -> int:
+    """Number of samples in which the motor moves by a count [rad] on the average, at least 1.
+
+    The fit takes samples so far apart: those between them would repeat the same error of rounding,
+    which must be independent from one sample to the next.
+    """
+    moved = math.sqrt(np.mean(np.concatenate([np.diff(each.theta) for each in pieces]) ** 2))
+    longest = max(len(each.theta) for each in pieces)
+    return max(1, min(math.ceil(count / moved), longest // _FEWEST)) if moved > 0 else 1
 
 
 def _step(counts: Value) -> float:

@@ -65,6 +65,10 @@ class Signals:
     extra: Array | None = None
     """A regressor more, which is filtered as the torque and is its own instrument."""
 
+    def every(self, number: int) -> Signals:
+        """Every so many samples alone."""
+        return _part(self, slice(None, None, number))
+
 
 @dataclass(frozen=True)
 class Form:

@@ -1,1 +1,1 @@
-"""What logs show about a joint: its data sheet, and the files made of it for other tools."""
+"""The data sheet of a joint, as logs show the joint, and files for other tools."""

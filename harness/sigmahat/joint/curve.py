@@ -1,4 +1,4 @@
-"""The curve of a joint: torque and stiffness over the deformation, with intervals.
+"""The curve of a joint: torque and stiffness against the deformation, with intervals.
 
 `logs/curve.py` computes it. `estimate.curve.csv` is its table, which this module writes and reads.
 """
@@ -20,9 +20,9 @@ from sigmahat.joint.stored import Range
 Array = NDArray[np.float64]
 
 NORMAL_95 = 1.96
-"""Half the width of an interval of 95 % over the standard deviation."""
+"""Half the width of a 95 % interval divided by the standard deviation."""
 _NEAR = 0.25
-"""Of the distance to the next set-point: so near are the points that belong to one."""
+"""Points belong to a set-point up to this fraction of the distance to the next set-point."""
 
 
 @dataclass(frozen=True)
@@ -32,21 +32,21 @@ class Branch:
     set_point: float
     """[1]"""
     reach: Range
-    """Deformation of the data at this set-point [rad]: beyond it, the curve is a guess."""
+    """Range of the measured deformation at this set-point [rad]; outside, the curve is a guess."""
     phi: Array
-    """Deformation [rad], from below the reach to above it."""
+    """Deformation [rad], from below this range to above this range."""
     tau_e: Array
     """Flexibility torque [N.m]"""
     tau_e_std: Array | None
-    """Its standard deviation, as the estimator reports it [N.m]; None if the method claims none."""
+    """Standard deviation of tau_e [N.m], from the estimator; None if the method has none."""
     sigma: Array
     """Stiffness [N.m/rad]"""
     sigma_std: Array | None
-    """The same of the stiffness [N.m/rad]."""
+    """Standard deviation of the stiffness [N.m/rad], or None like tau_e_std."""
 
     @property
     def within(self) -> NDArray[np.bool_]:
-        """Whether each point is in the reach of the data."""
+        """Whether each point is in the range of the data."""
         return (self.phi >= self.reach[0]) & (self.phi <= self.reach[1])
 
     def torque_interval(self) -> tuple[Array, Array] | None:
@@ -60,16 +60,16 @@ class Branch:
 
 @dataclass(frozen=True)
 class Curve:
-    """The answer of an estimator that has seen a log."""
+    """The torque and stiffness that an estimator has learned from a log."""
 
     polynomial: Polynomial
-    """Of the torque."""
+    """Polynomial of the torque."""
     branches: Sequence[Branch]
-    """One for each set-point, which increases; a single one for a fixed spring. None: no data."""
+    """A branch per set-point, in increasing order; one for a fixed spring; empty: no data."""
 
     @property
     def claims(self) -> bool:
-        """Whether there are intervals."""
+        """Whether the curve has intervals."""
         return any(branch.sigma_std is not None for branch in self.branches)
 
 
@@ -82,7 +82,7 @@ def _interval(value: Array, std: Array | None) -> tuple[Array, Array] | None:
 def characteristic(reach: Range) -> tuple[float, float, float]:
     """Deformations at which the stiffness is printed [rad]: the middle, and half way to either end.
 
-    The middle is 0, where the reach contains it.
+    The middle is 0 if the range contains 0.
     """
     low, high = reach
     middle = 0.0 if low <= 0 <= high else (low + high) / 2
@@ -90,7 +90,7 @@ def characteristic(reach: Range) -> tuple[float, float, float]:
 
 
 def nearest(settings: Sequence[float], set_points: Array) -> NDArray[np.intp]:
-    """Which of several set-points each point belongs to; -1 if it is far from all of them.
+    """Index of the set-point to which each point belongs; -1 if a point is far from all of them.
 
     settings  increasing
     """
@@ -122,7 +122,7 @@ _UNITS = {
 
 
 def write_curve(curve: Curve, path: Path) -> None:
-    """Writes a row for each point, numbers with all digits; without intervals, they are empty."""
+    """Writes a row for each point, numbers with all digits; missing intervals are empty fields."""
     rows = (row for branch in curve.branches for row in _rows(branch))
     write_csv(path, [title(name, unit) for name, unit in _UNITS.items()], rows)
 
@@ -149,7 +149,7 @@ def _or_empty(columns: Sequence[Array | None], count: int) -> Iterator[Sequence[
 
 
 def read_curve(path: Path, polynomial: Polynomial) -> Curve:
-    """Reads it back; the polynomial is in the data sheet beside it.
+    """Reads the table of a curve; the polynomial is in the data sheet, not in the table.
 
     Raises ValueError, which says what to do, for anything else.
     """
@@ -196,7 +196,7 @@ FAMILY_HEAD = (
 
 
 _MOST_SETTINGS = 4
-"""Of the stiffness, that a headline names."""
+"""Largest number of set-points in a headline."""
 
 
 def headline(curve: Curve, doubt: str) -> str:
@@ -234,7 +234,7 @@ def stiffness_in_the_middle(branch: Branch) -> tuple[float, float, Range | None]
 
 
 def _in_one_line(branch: Branch) -> str:
-    """The stiffness in the middle; and its range where it varies by more than its interval."""
+    """The stiffness in the middle, and its range if the range is wider than the interval."""
     phi, sigma, interval = stiffness_in_the_middle(branch)
     half = 0.0 if interval is None else (interval[1] - interval[0]) / 2
     text = f"{_plus_minus(branch)} N.m/rad at {phi:.3g} rad"
@@ -246,13 +246,13 @@ def _in_one_line(branch: Branch) -> str:
 
 
 _CURVED = 0.01
-"""A smaller relative change of the stiffness is not named."""
+"""A smaller relative change of the stiffness is not printed."""
 
 
 def curve_text(curve: Curve, polynomial: bool = True) -> list[str]:
     """Lines for a terminal, at most 3 or 4 of many set-points; none without data.
 
-    polynomial  whether it is shown
+    polynomial  whether the polynomial is shown
     """
     if not curve.branches:
         return []
@@ -268,7 +268,7 @@ def curve_text(curve: Curve, polynomial: bool = True) -> list[str]:
 
 
 def reach_in_words(curve: Curve) -> str:
-    """Over which range it holds."""
+    """The range in which the curve holds, in words."""
     low = min(branch.reach[0] for branch in curve.branches)
     high = max(branch.reach[1] for branch in curve.branches)
     text = f"for phi from {low:.4g} to {high:.4g} rad"
@@ -311,7 +311,7 @@ def stiffness_rows(curve: Curve) -> Iterator[tuple[str, ...]]:
 
 
 def family_rows(curve: Curve) -> Iterator[tuple[str, ...]]:
-    """Cells of FAMILY_HEAD: the same for each set-point, in one row."""
+    """Cells of FAMILY_HEAD: a row of stiffnesses for each set-point."""
     for branch in curve.branches:
         cells = [_stiffness(branch, phi) for phi in characteristic(branch.reach)]
         reach = (f"{end:.4g}" for end in branch.reach)
@@ -320,7 +320,7 @@ def family_rows(curve: Curve) -> Iterator[tuple[str, ...]]:
 
 
 def stiffness_points(curve: Curve) -> list[dict[str, object]]:
-    """The same as numbers, for JSON."""
+    """The stiffnesses of both tables as numbers, for JSON."""
     return [
         {
             "setPoint": branch.set_point,

@@ -28,7 +28,7 @@ _SSC, _SSV = (f"{{{namespace}}}" for namespace in _NAMESPACES.values())
 
 @dataclass(frozen=True)
 class _Start:
-    """A start value and what the FMU says about its variable."""
+    """A start value, and data of its variable from the FMU."""
 
     name: str
     type: str
@@ -36,12 +36,12 @@ class _Start:
     value: float | int
     """An enumeration as the number of its item."""
     item: str
-    """Of an enumeration; else empty."""
+    """Item of an enumeration; else empty."""
     unit: str
-    """Empty where there is none."""
+    """Empty without a unit."""
     description: str
     own: bool
-    """Whether the FMU has this value itself."""
+    """Whether this value is the default of the FMU."""
 
     @property
     def text(self) -> str:
@@ -53,7 +53,7 @@ def write(sheet: Sheet, fmu: Fmu, kind: str, path: Path) -> None:
     """Writes the start values of a sheet for this FMU; kind is a key of KINDS.
 
     Raises ValueError for a start value that does not fit the FMU, and for a file name that cannot
-    be the name of what is in it.
+    be the name of the contents.
     """
     write_whole(KINDS[kind](sheet, fmu, list(_starts(sheet, fmu)), path.stem), path)
 
@@ -76,16 +76,16 @@ def _starts(sheet: Sheet, fmu: Fmu) -> Iterator[_Start]:
 
 
 def _head(sheet: Sheet) -> Iterator[str]:
-    """What the file is and where its values are from, a line each."""
-    yield f"Start values of {sheet.fmu.name}.fmu, with which it begins with what was learned."
+    """Lines about the purpose of the file and the origin of its values."""
+    yield f"Start values of {sheet.fmu.name}.fmu, with which it starts from what was learned."
     yield from origin(sheet)
 
 
 def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     """A parameter set after SSP 1.0, which SSP 2.0 reads as well.
 
-    Importers disagree on the form of Booleans and enumerations: they are written only where the FMU
-    has another value itself.
+    Importers disagree on the form of Booleans and enumerations: they are written only if the
+    default of the FMU differs.
     """
     listed = [s for s in starts if s.type in ("Real", "Integer") or not s.own]
     units = {s.unit for s in listed if s.unit}
@@ -93,8 +93,8 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
         root = etree.Element(_SSV + "ParameterSet", name=name, version="1.0", nsmap=_NAMESPACES)
     except ValueError as error:
         raise ValueError(
-            f"the name of the file, {name!r}, names what is in it: expected characters that XML "
-            "has; choose another with --out"
+            f"the file name {name!r} is also the name of the contents: expected characters that "
+            "XML allows; choose another name with --out"
         ) from error
     for line in _head(sheet):
         root.addprevious(etree.Comment(f" {line} "))
@@ -187,7 +187,7 @@ def _curve(starts: list[_Start]) -> list[list[float]]:
 
 
 def _matrix(rows: list[list[float]]) -> str:
-    """As MATLAB and Modelica write it."""
+    """A matrix as in MATLAB and Modelica."""
     return f"[{'; '.join(', '.join(map(repr, row)) for row in rows)}]"
 
 
@@ -204,11 +204,11 @@ _RESERVED = frozenset(_WORDS.split())
 
 
 def _identifier(name: str) -> None:
-    """Raises ValueError for what cannot be the name of a function or of a record."""
+    """Raises ValueError for a name that no function and no record can have."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name in _RESERVED:
         raise ValueError(
-            f"the name of the file, {name!r}, names what is in it: expected letters, digits and _, "
-            "a letter first, and no keyword; choose another with --out"
+            f"the file name {name!r} is also the name of the contents: expected letters, digits "
+            "and _, a letter first, and no keyword; choose another name with --out"
         )
 
 
@@ -217,4 +217,4 @@ KINDS: Mapping[str, Callable[[Sheet, Fmu, list[_Start], str], str]] = {
     "matlab": _matlab,
     "modelica": _modelica,
 }
-"""What makes the text of a file, by kind."""
+"""Functions that make the text of a file, by kind."""

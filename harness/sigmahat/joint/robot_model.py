@@ -1,7 +1,7 @@
 """A joint as a model for simulators of robots: MJCF, SDF, URDF, and SDF with Drake's elements.
 
-Each number has all of its digits. Its 95 % interval stands beside it in a comment and, where the
-format has a place for it, as a range for domain randomization.
+Each number has all of its digits. A comment has the 95 % interval of the number. If the format
+allows, the interval is also a range for domain randomization.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from sigmahat.joint.two_hinges import Quantity, TwoHinges, two_hinges
 _DRAKE = "http://drake.mit.edu"
 _PLACEHOLDER = " A placeholder: put your own link here. "
 _ROTOR = 1e-6  # inertia of a rotor whose inertia is written elsewhere [kg.m2]
-_EXACT = 1e-3  # error of a polynomial over its largest torque: a smaller one is not named
+_EXACT = 1e-3  # error of a polynomial, relative to its largest torque, that is worth a comment
 _MISSING = {
     "mjcf": "",
-    "sdf": "SDF has no inertia of a rotor: it is that of the link rotor, behind the gear.",
-    "urdf": "URDF has no spring: the element gazebo has it, for Gazebo alone. It has no inertia of "
-    "a rotor: it is that of the link rotor, behind the gear.",
+    "sdf": "SDF has no rotor inertia: the link rotor has this inertia, at the gear output.",
+    "urdf": "URDF has no spring: the element gazebo has the spring, for Gazebo alone. URDF has no "
+    "rotor inertia: the link rotor has this inertia, at the gear output.",
     "drake": "Drake has no Coulomb friction in a joint: it does not use the element friction.",
 }
 
@@ -45,8 +45,8 @@ def write_model(sheet: Sheet, kind: str, path: Path) -> None:
 
 
 def _head(hinges: TwoHinges, name: str) -> Iterator[str]:
-    """What the numbers are, a line each."""
-    yield f"{name}_motor: the motor behind its gear; {name}_flexibility: the deformation."
+    """Lines about the meaning of the numbers."""
+    yield f"{name}_motor: the motor at its gear output; {name}_flexibility: the deformation."
     for title, each in hinges.quantities(name):
         claim = f"no interval ({each.interval_from})"
         if each.interval is not None:
@@ -54,9 +54,9 @@ def _head(hinges: TwoHinges, name: str) -> Iterator[str]:
             claim += f" ({each.interval_from})"
         yield f"{title} = {each.value:.6g} {each.unit}, {claim}"
     spring, (low, high) = hinges.spring, hinges.reach
-    yield f"The data reach from {low:.4g} to {high:.4g} rad of the deformation: beyond is a guess."
+    yield f"The data have deformations from {low:.4g} to {high:.4g} rad; outside is a guess."
     if spring.error > _EXACT:
-        yield f"This spring differs from the estimate by up to {100 * spring.error:.2g} % there."
+        yield f"This spring differs from the data by up to {100 * spring.error:.2g} %."
     if hinges.absent:
         yield f"Not in this model: {', '.join(hinges.absent)}."
 
@@ -106,7 +106,7 @@ def _drake(hinges: TwoHinges, name: str) -> Any:
     motor, flexibility = root.iter("joint")
     _add(motor, f"{{{_DRAKE}}}rotor_inertia").text = repr(hinges.rotor_inertia)
     _add(motor, f"{{{_DRAKE}}}gear_ratio").text = repr(hinges.gear_ratio)
-    # Without an effort it has no actuator.
+    # With effort 0, the joint has no actuator.
     _add(_add(flexibility.find("axis"), "limit"), "effort").text = "0"
     return root
 
@@ -195,4 +195,4 @@ MODELS: Mapping[str, Callable[[TwoHinges, str], Any]] = {
     "urdf": _urdf,
     "drake": _drake,
 }
-"""What makes the XML of a file, by kind."""
+"""Functions that make the XML of a file, by kind."""

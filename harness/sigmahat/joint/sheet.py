@@ -1,6 +1,6 @@
-"""The data sheet of a joint, `joint.json`: what logs show, for people, scripts and other tools.
+"""The data sheet of a joint, `joint.json`: results of logs for people, scripts and other tools.
 
-Numbers are written with all of their digits, so that what is read is what was estimated.
+Numbers are written with all of their digits, so that a reader gets exactly the estimates.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "mi
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Source:
-    """A file that the sheet rests on."""
+    """A file from which the sheet was made."""
 
     file: Text
-    """Its path."""
+    """Path of the file."""
     sha256: Text | None
-    """Of its bytes; None if there is no such file."""
+    """SHA-256 of the bytes; None if the file does not exist."""
 
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
@@ -40,16 +40,16 @@ class Stiffness:
     set_point: float
     """Set-point [1]."""
     sigma: float
-    """Stiffness there [N.m/rad]."""
+    """Stiffness at this point [N.m/rad]."""
     interval: Range | None
-    """Of 95 % [N.m/rad]; None if the method claims none."""
+    """95 % interval [N.m/rad]; None if the method gives no interval."""
 
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Polynomial:
     """Torque of the spring: sum of eta[i][j] set-point^powers_of_set_point[j] phi^powers_of_phi[i].
 
-    The stiffness is its slope over phi.
+    The stiffness is the derivative of the torque with respect to phi.
     """
 
     powers_of_phi: list[int]
@@ -57,11 +57,11 @@ class Polynomial:
     eta: list[list[float]]
     """[size: powers of phi x powers of the set-point]"""
     units: list[list[Text]]
-    """Of eta; phi is in rad, the set-point has none."""
+    """Units of eta; phi is in rad, the set-point has no unit."""
     phi: Range | None
-    """Deformation of the data: outside, the polynomial is a guess [rad]."""
+    """Range of the measured deformation [rad]; outside, the polynomial is a guess."""
     set_point: Range | None
-    """Set-point of the data [1]."""
+    """Range of the set-point in the data [1]."""
 
     def at(
         self, phi: NDArray[np.float64], set_point: float
@@ -88,28 +88,28 @@ class Parameter:
     value: float
     unit: Text
     interval: Range | None
-    """Of 95 %; None if the value is taken as exact, or nothing is claimed."""
+    """95 % interval; None if the value is taken as exact, or the method gives no interval."""
     interval_from: Text
-    """Where the interval is from: "identify", "prior"; or why there is none."""
+    """Origin of the interval: "identify", "prior"; or why no interval is given."""
 
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
 class RestsOn:
-    """What the answer rests on, because no data show it."""
+    """Assumptions of the result that no data can verify."""
 
     torque_gain: float
-    """Relative standard deviation of the gain of the torque [1]; it is part of the intervals."""
+    """Relative standard deviation of the gain of the torque [1]; the intervals include it."""
     sigma_per_gain: float
-    """Relative change of the stiffness with a relative change of that gain [1]."""
+    """Relative change of the stiffness per relative change of that gain [1]."""
     exact: list[Text]
     """Parameters that are taken as exact."""
     absent: list[Text]
-    """What is taken as absent."""
+    """Effects that are taken as absent."""
 
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Check:
-    """Outputs of the FMU with the start values, before any sample: to see that they arrived."""
+    """Outputs of the FMU with the start values, before any sample, to verify these values."""
 
     sigma: float
     """[N.m/rad]"""
@@ -124,35 +124,35 @@ class Sheet:
     format: Text
     version: int
     sigmahat: Text
-    """Version of the package that wrote it."""
+    """Version of the package that wrote the file."""
     units: dict[str, Text]
-    """Of the numbers with these keys, everywhere in the file; an interval has that of its value."""
+    """Units of the numbers with these keys in the file; an interval has the unit of its value."""
     fmu: FmuId
     logs: list[LearnedLog]
-    """What was learned from, in this order."""
+    """Logs from which the estimator has learned, in this order."""
     configuration: Source
     method: Text
     modality: Text
     at_the_end: Stiffness
     """The last estimate."""
     confident: bool
-    """Whether the estimator was confident then."""
+    """Whether the estimator was confident at the end."""
     doubt: Text
-    """Why not."""
+    """Why the estimator was not confident."""
     misfit: float
-    """Of the model; 1 where it holds [1]."""
+    """Misfit of the model; 1 if the model holds [1]."""
     polynomial: Polynomial
     curve: list[Stiffness] | None
-    """The stiffness over the range of the data; None if the method claims no interval."""
+    """The stiffness in the range of the data; None if the method gives no interval."""
     parameters: dict[str, Parameter]
     rests_on: RestsOn
     start_values: dict[str, bool | int | float | str]
-    """Of the FMU, by its names, so that it begins with what was learned."""
+    """Start values of the FMU by name, with which the FMU starts from what was learned."""
     check: Check
 
 
 FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)
-"""Of the file."""
+"""Format of the file."""
 
 
 def write(sheet: Sheet, path: Path) -> None:
@@ -161,14 +161,14 @@ def write(sheet: Sheet, path: Path) -> None:
 
 
 def origin(sheet: Sheet) -> Iterator[str]:
-    """Where its values are from, a line each, for comments in other files."""
+    """The origin of the values, a line for each source, for comments in other files."""
     for log in sheet.logs:
         yield f"learned from {one_line(log.file)}, SHA-256 {log.sha256}"
     yield f"written by sigmahat {one_line(sheet.sigmahat)}"
 
 
 def one_line(text: str) -> str:
-    """Without what could end a line, a comment or a string of other formats."""
+    """The text without characters that could end a line, a comment or a string of other formats."""
     return re.sub(r"-(?=-)", "- ", re.sub(r"[^\w .,:/\\+()@=-]", "_", text, flags=re.ASCII))
 
 
@@ -210,9 +210,9 @@ def with_knees(
 ) -> Polynomial:
     """The polynomial that is nearest to the stiffness of an estimator, whose curve may have knees.
 
-    They are no part of its coefficients. Without knees it is the polynomial as it is.
+    The knees are not part of the given coefficients. Without knees, the curve is unchanged.
 
-    phi, set_point, sigma   what the estimator says [rad, 1, N.m/rad], of one size
+    phi, set_point, sigma   outputs of the estimator [rad, 1, N.m/rad], of one size
     """
     of_set_point = np.power.outer(set_point, curve.powers_of_set_point) @ np.transpose(curve.eta)
     beyond = sigma - sum(
@@ -234,7 +234,7 @@ def with_knees(
 
 
 def start_of(curve: Polynomial) -> dict[str, Value]:
-    """The start values of an FMU that are the curve."""
+    """The start values of an FMU for the curve."""
     start: dict[str, Value] = {
         f"rls.eta_0[{i},{j}]": value
         for i, row in enumerate(curve.eta)

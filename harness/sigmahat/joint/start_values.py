@@ -1,4 +1,4 @@
-"""Start values of the estimator FMU, so that it begins with what another one has learned."""
+"""Start values of the estimator FMU, with the curve that another estimator has learned."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ _NOT_IN_A_RUN = (
     *("B", "load_friction", "eccentric", "eccentric_motor", "delay", "reversal", "power", "gap"),
     "hysteresis",
 )
-"""Priors of what does not differ from run to run."""
+"""Priors of effects that do not differ from run to run."""
 _NONE = 1e-6
-"""Of the uncertainty of a curve: so little that it stays as it is."""
+"""Uncertainty of a curve: so small that the curve does not change."""
 _LARGEST = 1e12
-"""Prior that the FMU accepts."""
+"""Largest prior that the FMU accepts."""
 
 
 def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
-    """Start values of an FMU whose curve and motor data are those that a slave has now.
+    """Start values of an FMU with the present curve and motor data of a slave.
 
-    The curve is a polynomial of the orders that it needs: FilteredRegression may use higher powers
-    than rls.n and rls.m have. Priors stay as they are: the new FMU begins with the curve as the
-    mean of its prior, and does not know how certain it is.
+    The polynomial has all powers of the curve: FilteredRegression may use higher powers than rls.n
+    and rls.m have. Priors do not change: the new FMU takes the curve as the mean of its prior, but
+    the uncertainty of the curve is lost.
 
     every  parameters of the slave
     """
@@ -39,7 +39,7 @@ def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
     start = {name: value for name, value in every.items() if not name.startswith(_CURVE)}
     start |= {"rls.n": n, "rls.m": m}
     for name, value in (("motor.B", found["B_hat"]), ("motor.D_theta", found["D_theta_hat"])):
-        if value > 0:  # else the FMU would refuse it, and `doubt` says that it is wrong
+        if value > 0:  # the FMU refuses other values, and `doubt` reports such values
             start[name] = value
     for name, (i, j) in at.items():
         if i < n and j < m:
@@ -51,10 +51,10 @@ def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
 def as_fixed_curve(start: Mapping[str, Value]) -> dict[str, Value]:
     """Start values with which the curve and the inertia do not change.
 
-    Only what differs from run to run is estimated, by a fit to all samples: bias of the torque or
-    zero of the deformation, friction, and the time between the encoders, which is a damping. What
-    else FilteredRegression can estimate would hide a stiffness that is wrong: in a motion of one
-    frequency, for example, a delay of the torque looks like it.
+    Only effects that differ from run to run are estimated, by a fit to all samples: bias of the
+    torque or zero of the deformation, friction, and the time between the encoders, which acts as a
+    damping. Other effects would hide a wrong stiffness: in a motion of one frequency, for example,
+    a delay of the torque looks like a wrong stiffness.
 
     start  from start_values, of the method FilteredRegression
     """
@@ -63,7 +63,7 @@ def as_fixed_curve(start: Mapping[str, Value]) -> dict[str, Value]:
     tau_e = float(start["prior.tau_e"])
     if not tau_e:
         return {**fixed, "prior.nominal": _NONE}
-    # What is given as a share of prior.tau_e stays as large as it is.
+    # Priors that are relative to prior.tau_e keep their absolute value.
     shares = ("bias", "damping")
     wider = {f"prior.{n}": min(float(start[f"prior.{n}"]) / _NONE, _LARGEST) for n in shares}
     return {**fixed, **wider, "prior.nominal": 0.0, "prior.tau_e": tau_e * _NONE}

@@ -19,27 +19,27 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True)
 class LearnedLog:
-    """A log that was learned from."""
+    """A log from which the estimator has learned."""
 
     __pydantic_config__ = NO_OTHER_KEYS
 
     file: Text
-    """Its path, as it was given."""
+    """Path of the log, as given by the user."""
     sha256: Text
-    """Of the file; of a folder see files/output.py."""
+    """SHA-256 of the file; for a folder see files/output.py."""
     ticks: int
-    """Of the estimator over the log."""
+    """Number of ticks of the estimator in the log."""
     skipped: int
     """Ticks that were skipped."""
     phi: Range | None
-    """Deformation at the samples that the regression used [rad]; None if it used none."""
+    """Deformation at the samples that the regression used [rad]; None without such samples."""
     set_point: Range | None
-    """The same of the set-point [1]."""
+    """Set-point at these samples [1]; None without such samples."""
 
 
 @dataclass(frozen=True)
 class FmuId:
-    """Which FMU something belongs to."""
+    """Identity of an FMU."""
 
     __pydantic_config__ = NO_OTHER_KEYS
 
@@ -49,7 +49,7 @@ class FmuId:
 
     @staticmethod
     def of(fmu: Fmu) -> FmuId:
-        """That of an FMU."""
+        """The identity of an FMU."""
         return FmuId(fmu.name, fmu.description.version or "", fmu.description.guid)
 
 
@@ -62,20 +62,20 @@ class Format(Generic[_Contents]):
     """A kind of file that `sigmahat estimate` writes into its folder."""
 
     file: str
-    """Its name there."""
+    """Name of the file in the folder."""
     name: str
-    """What its key "format" says."""
+    """Value of the key "format" in the file."""
     version: int
-    """Of the format."""
+    """Version of the format."""
     contents: type[_Contents]
     """A dataclass with the fields format and version, and all others of the file."""
 
     def path(self, given: Path) -> Path:
-        """The file itself: given is the file, or the folder that it is in."""
+        """The path of the file: `given` is the file, or the folder of the file."""
         return given / self.file if given.is_dir() else given
 
     def read(self, given: Path) -> _Contents:
-        """Reads a file. Raises ValueError, which says what was expected and what came instead."""
+        """Reads a file. Raises ValueError, which says what was expected and what was received."""
         path = self.path(given)
         try:
             text = path.read_text(encoding="utf-8")

@@ -1,7 +1,7 @@
-"""The joint of a data sheet as a simulator has it: two hinges with one axis.
+"""The joint of a data sheet for a simulator: two hinges with one axis.
 
-The first hinge is the motor behind its gear. The second one is the flexibility: its angle is the
-deformation phi, and the torque of its spring is -tau_e.
+The first hinge is the motor at its gear output. The second hinge is the flexibility, with the
+deformation phi as its angle, and -tau_e as the torque of its spring.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from sigmahat.joint.stored import Range
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of a hinge, behind the gear."""
+    """A number of a hinge, at the gear output."""
 
     value: float
     interval: Range | None
-    """Of 95 %; None if it is taken as exact or nothing is claimed."""
+    """95 % interval; None if the value is taken as exact, or the method gives no interval."""
     unit: str
     interval_from: str
-    """"identify", "prior" or "estimate", or why there is none."""
+    """"identify", "prior" or "estimate", or why no interval is given."""
 
 
 @dataclass(frozen=True)
@@ -37,33 +37,33 @@ class Spring:
     stiffness: tuple[float, ...]
     """[N.m/rad], [N.m/rad2] and so on."""
     error: float
-    """Largest error of this torque over the largest torque, in the range of the data [1]."""
+    """Largest error of this torque relative to the largest torque, in the range of the data [1]."""
 
 
 @dataclass(frozen=True)
 class TwoHinges:
-    """What a simulator needs of a joint."""
+    """Data of a joint for a simulator."""
 
     gear_ratio: float
     rotor_inertia: float
-    """Of the motor on its own axis [kg.m2]."""
+    """Inertia of the motor on its own axis [kg.m2]."""
     armature: Quantity
-    """Inertia of the motor behind the gear."""
+    """Inertia of the motor at the gear output."""
     damping: Quantity
-    """Viscous friction of the motor behind the gear."""
+    """Viscous friction of the motor at the gear output."""
     frictionloss: Quantity
-    """Coulomb friction of the motor behind the gear."""
+    """Coulomb friction of the motor at the gear output."""
     spring: Spring
     spring_damping: Quantity
     reach: Range
-    """Deformation of the data [rad]."""
+    """Range of the measured deformation [rad]."""
     factor: Quantity
-    """By which all of the stiffness may be multiplied: 1, with the interval of the estimate."""
+    """Factor of the whole stiffness: 1, with the relative interval of the estimate."""
     absent: tuple[str, ...]
-    """What the joint has and two hinges have not, in words."""
+    """Effects of the joint that two hinges do not have, in words."""
 
     def quantities(self, name: str) -> Iterator[tuple[str, Quantity]]:
-        """What has an interval or could have one, by the name of its hinge and what it is."""
+        """Quantities that may have an interval, by the name of hinge and quantity."""
         yield f"{name}_motor.armature", self.armature
         yield f"{name}_motor.damping", self.damping
         yield f"{name}_motor.frictionloss", self.frictionloss
@@ -74,13 +74,13 @@ class TwoHinges:
 def two_hinges(sheet: Sheet, degree: int) -> TwoHinges:
     """The hinges of a joint, whose spring is a polynomial of at most this degree.
 
-    A spring with a set-point is that at the last set-point of the log.
+    The curve at the last set-point of the log is the spring.
 
     Raises ValueError for a sheet without data or without a stiffness above 0.
     """
     p, reach = sheet.parameters, sheet.polynomial.phi
     if reach is None:
-        raise ValueError("no deformation in the data sheet: expected that of a joint that moved")
+        raise ValueError("no deformation in the sheet: expected the sheet of a joint that moved")
     gamma = p["gamma"].value
     return TwoHinges(
         gear_ratio=gamma,
@@ -97,10 +97,10 @@ def two_hinges(sheet: Sheet, degree: int) -> TwoHinges:
 
 
 def _scaled(parameter: Parameter | None, factor: float, unit: str) -> Quantity:
-    """A parameter of the motor behind the gear; nothing of it is below 0.
+    """A parameter of the motor at the gear output; value and interval are not below 0.
 
-    The value is that of the estimator, the interval may be that of `identify`: it is made wider
-    where it does not contain the value.
+    The value is from the estimator, the interval may be from `identify`: an interval that does not
+    contain the value is made wider.
     """
     if parameter is None:
         return Quantity(0.0, None, unit, "absent")
@@ -112,7 +112,7 @@ def _scaled(parameter: Parameter | None, factor: float, unit: str) -> Quantity:
 
 
 def _factor(sheet: Sheet) -> Quantity:
-    """Half of the interval of the stiffness over the stiffness, in the mean over the deformation.
+    """Factor 1 with half the mean interval of the stiffness divided by the mean stiffness.
 
     The torque, which is the integral of the stiffness, has at most this error.
     """
@@ -130,7 +130,7 @@ _POINTS = 201
 
 
 def _spring(sheet: Sheet, reach: Range, degree: int) -> Spring:
-    """The polynomial of the sheet, or the nearest one of this degree in the range of the data."""
+    """The polynomial of this degree that is nearest to the curve of the sheet in its range."""
     source = sheet.polynomial
     phi = np.linspace(*reach, _POINTS)
     torque, _ = source.at(phi, sheet.at_the_end.set_point)
@@ -149,14 +149,14 @@ def _spring(sheet: Sheet, reach: Range, degree: int) -> Spring:
     if not stiffness[0] > 0:
         raise ValueError(
             f"the stiffness is {stiffness[0]:.4g} N.m/rad where the spring has no torque: expected "
-            "one above 0; see `sigmahat check`"
+            "a value above 0; see `sigmahat check`"
         )
     error = float(np.max(np.abs(fitted(phi) - torque)) / max(np.max(np.abs(torque)), 1e-300))
     return Spring(reference, tuple(stiffness), error)
 
 
 def _zero(torque: Polynomial, phi: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
-    """Deformation without torque, the one nearest to the middle of the data [rad]."""
+    """The deformation without torque that is nearest to the middle of the data [rad]."""
     if not torque.coef[0]:
         return 0.0
     roots = torque.roots()
@@ -167,11 +167,11 @@ def _zero(torque: Polynomial, phi: np.ndarray[tuple[int], np.dtype[np.float64]])
 
 
 _SHOWN = 0.01
-"""Of the largest torque: what is smaller is not named."""
+"""Fraction of the largest torque: a smaller effect is not listed."""
 
 
 def _absent(sheet: Sheet, reach: Range) -> Iterator[str]:
-    """What was found in the joint, and has no place in the model."""
+    """Effects that were found in the joint, but that the model does not have."""
     p, setting = sheet.parameters, sheet.at_the_end.set_point
     torque = float(np.max(np.abs(sheet.polynomial.at(np.array(reach), setting)[0])))
     shown = {"hysteresis": _SHOWN * torque, "load_friction": _SHOWN, "delay": 0.0}

@@ -16,13 +16,13 @@ from sigmahat.library.joints import INPUTS, Joints
 Array = NDArray[np.float64]
 
 RECORD = ("sigma", "sigma_std", "tau_e", "phi", "misfit", "confident", "valid")
-"""Outputs that are recorded if no others are asked for."""
+"""Outputs that are recorded by default."""
 
 POINT = ("tau_e", "tau_e_std", "sigma", "sigma_std")
-"""What evaluate() gives, in the order of the library."""
+"""Results of evaluate(), in the order of the library."""
 
 _LONG = 1.0  # [s] a motion that is compared with range.phi
-_FAR, _WIDE = 1.2, 8.0  # largest deformation over range.phi, and the inverse
+_FAR, _WIDE = 1.2, 8.0  # ratio of the largest deformation to range.phi, and inverse ratio
 _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("theta", "q", "tau_e_sensor")}
 """Inputs without which a modality has no torque. Model needs no more than theta and q."""
 
@@ -30,10 +30,10 @@ _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("theta", "q", "tau_e_se
 class Estimator:
     """The estimator of StiffnessEstimator.fmu, without an FMU between, for one joint or many.
 
-    The results are those of the FMU, to the last bit. There are no messages of the FMU, but the
-    outputs valid and doubt say the same; `run` logs a warning if range.phi is far from the motion.
-    What it has learned stays from call to call, until reset(). A copy, by `copy.copy`, goes on by
-    itself. While it computes, other threads of Python run; an object may be used by one thread at a
+    The results equal the results of the FMU, to the last bit. Messages of the FMU are missing, but
+    the outputs valid and doubt report the same. `run` logs a warning if range.phi does not fit.
+    The learned curve stays from call to call, until reset(). A copy, by `copy.copy`, is
+    independent. Other threads of Python run during a call. An object may be used by one thread at a
     time, and cannot be pickled. Memory: 151 kB a joint.
 
     >>> import numpy as np, sigmahat
@@ -50,10 +50,10 @@ class Estimator:
     ) -> None:
         """Starts the estimator.
 
-        The parameters have their names in the FMU, enumerations take an item name; those that are
-        not given have the start values of the FMU. A sequence has those of each joint. One mapping
-        is of all joints, and the first samples say how many there are. `record` names the outputs
-        that run() and tick() return.
+        The parameters have their names in the FMU, enumerations take an item name; parameters that
+        are not given have the start values of the FMU. A sequence has a mapping for each joint. A
+        single mapping is for all joints, and the first samples give the number of joints. `record`
+        names the outputs that run() and tick() return.
 
         Raises ValueError for a name that the FMU does not have, and for a value that does not fit
         or is out of its range; RuntimeError if this installation has no library for this platform.
@@ -70,7 +70,7 @@ class Estimator:
         for name in self._record:
             self._joints.fmu.variable(name, "output")
         self.parameters = [self._joints.fmu.parameters(each) for each in given]
-        """All parameters of each joint as they are now, given ones and the FMU's."""
+        """All present parameters of each joint: given values, else values of the FMU."""
         self._needed = self._inputs_needed()
         self._tick: Callable[[Sequence[ArrayLike | None]], dict[str, Any]] | None = None
         self._is_warned = False
@@ -86,15 +86,15 @@ class Estimator:
         """A tick for each sample, samplePeriod apart; sample k gives output k.
 
         All arrays have the shape (N,) for one joint, or (joints, N). A sample that is not finite,
-        or masked, is skipped: the estimate is kept, and "valid" is False there.
+        or masked, is skipped: the estimate is kept, and "valid" is False at this sample.
 
-        `theta` and `q` are the positions of the motor behind its gear and of the link [rad], `tau`
+        `theta` and `q` are the positions of motor (at the gear output) and link [rad], `tau`
         is the torque of the motor on its axis [N.m], which the modality Residual needs, `theta_c`
         the position of the motor that adjusts the stiffness [rad], and `tau_e_sensor` the
         flexibility torque of a sensor [N.m], which the modality Sensor needs. None stands for 0.
 
-        Returns the recorded outputs, by name, in arrays of the same shape: Booleans as such, of an
-        enumeration the names of its items; and the parameters of the first joint. Raises ValueError
+        Returns the recorded outputs, by name, in arrays of the same shape: Booleans as such,
+        enumerations as names of items; and the parameters of the first joint. Raises ValueError
         for other shapes or if an array is missing.
         """
         given = dict(zip(INPUTS, (theta, q, theta_c, tau, tau_e_sensor), strict=True))
@@ -126,7 +126,7 @@ class Estimator:
     ) -> dict[str, Any]:
         """One tick, for a loop; arguments and results as those of run(), without the axis of time.
 
-        Numbers for one joint, arrays of shape (joints,) for many; a number then is that of every
+        Numbers for one joint, arrays of shape (joints,) for many; a number then is for every
         joint. Raises ValueError for another number of joints, or if an input is missing.
         """
         values = (theta, q, theta_c, tau, tau_e_sensor)
@@ -159,7 +159,7 @@ class Estimator:
         return dict(zip(POINT, values, strict=True))
 
     def output(self, name: str) -> Any:
-        """An output as it is now, recorded or not: a number, or an array of shape (joints,)."""
+        """The present value of any output: a number, or an array of shape (joints,)."""
         self._joints.fmu.variable(name, "output")
         values = self._joints.value(name)
         return values if self._shape else values[0]
@@ -245,7 +245,7 @@ class Estimator:
                 raise ValueError(f"modality {modality} needs {name}, got None")
 
     def _take_shape(self, shape: tuple[int, ...]) -> None:
-        """Shape of the samples without time: the first of it says how many joints there are."""
+        """Checks the shape of samples without time; the first shape gives the number of joints."""
         if 0 in shape:
             raise ValueError("expected samples of one joint or more, got none")
         if self._shape is None:
@@ -293,7 +293,7 @@ class Estimator:
 
 
 def _samples(values: ArrayLike) -> Array:
-    """Samples as C has them; nan where they are masked."""
+    """Samples as an array for C; masked samples are nan."""
     if isinstance(values, np.ma.MaskedArray):
         values = np.ma.filled(values.astype(np.float64), np.nan)
     return np.asarray(values, np.float64, order="C")

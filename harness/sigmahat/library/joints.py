@@ -15,11 +15,11 @@ from sigmahat.fmi.instance import Value
 from sigmahat.fmi.opened import installed
 
 INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
-"""In the order in which the library takes them."""
+"""Inputs in the order of the library."""
 
 _CACHE_LINE = 64  # [bytes]
 _LARGEST_INTEGER = 2**31 - 1
-_PIECE = 1 << 16  # ticks between two moments at which Ctrl-C has its effect
+_PIECE = 1 << 16  # ticks between two moments at which Ctrl-C can end the run
 _SHORTEST = 1 << 10  # ticks of a joint at a time: its state stays in the cache of the processor
 
 
@@ -36,11 +36,11 @@ class Output(ctypes.Structure):
 
 
 class Joints:
-    """One estimator a joint, in the order of their parameters."""
+    """One estimator per joint, in the order of the parameters."""
 
     def __init__(self, parameters: Sequence[Mapping[str, Value]]) -> None:
-        """Starts them. Raises ValueError for a name or value that does not fit, RuntimeError if
-        this installation has no library.
+        """Starts the estimators. Raises ValueError for a name or value that does not fit,
+        RuntimeError if this installation has no library.
         """
         self.fmu, self._library = installed("StiffnessEstimator"), _library()
         size = int(self._library.sh_joint_size())
@@ -52,7 +52,7 @@ class Joints:
         self.start()
 
     def repeated(self, joints: int) -> None:
-        """Makes of one estimator many that are like it."""
+        """Copies a single estimator to this number of joints."""
         self.memory = np.repeat(self.memory, joints, axis=0)
 
     def start(self) -> None:
@@ -108,14 +108,14 @@ class Joints:
         return self.named(name, values)
 
     def named(self, name: str, values: NDArray[Any]) -> NDArray[Any]:
-        """Values as the library gives them, as Python has them: of an enumeration the names."""
+        """Values of the library as values of Python: an enumeration as the names of its items."""
         kind = self.fmu.variable(name).type
         if kind == "Enumeration":
             return self.fmu.item_names(name, values)
         return values.astype(bool) if kind == "Boolean" else values
 
     def names(self, name: str) -> Mapping[int, Any] | None:
-        """What the numbers of a Boolean or an Enumeration are in Python; None for a Real."""
+        """Values of Python by the numbers of a Boolean or an Enumeration; None for a Real."""
         kind = self.fmu.variable(name).type
         if kind == "Boolean":
             return {0: False, 1: True}
@@ -148,10 +148,10 @@ class Joints:
         outputs: Mapping[str, NDArray[Any]],
         joint: int = 0,
     ) -> Callable[[int, int], None]:
-        """A function that runs the ticks of some samples: from the first up to, without, the end.
+        """A function that runs the ticks of samples first to end - 1.
 
-        The arrays, as for run(), are of as many joints as they have rows, from one joint on. They
-        have to live as long as it is called.
+        The arrays, as for run(), have a row for each joint, from `joint` on. The arrays have to
+        exist as long as the function is called.
         """
         joints, samples = next(each.shape for each in inputs if each is not None)
         places = (Output * len(outputs))(

@@ -1,4 +1,4 @@
-"""The stamps of a sender: which samples are in order, and whether the sender has started again."""
+"""The time stamps of a sender: order of the samples, and restarts of the sender."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ import math
 from sigmahat.logs.log import EXACT
 
 _LATE = 1.0
-"""A sample that is later than another by less was overtaken on its way [s]."""
+"""A sample that is late by less than this time was overtaken by other samples [s]."""
 LONGEST_PAUSE = 1.0
-"""A sample after a longer pause is off, or that of a sender that has started again [s]."""
+"""After a longer pause, a sample has a wrong time, or the sender has started again [s]."""
 _STARTED = 20
-"""So many in order, far from the others, are those of a sender that has started again."""
+"""After this number of samples in order, far from the others, the sender has started again."""
 _ADAPT = 0.01
 _SHORTEST = 1e-6  # [s] between two samples
 
 
 class Clock:
-    """The times of one column, in seconds since its first one."""
+    """The times of one column, in seconds since `shift`."""
 
     def __init__(self, seconds: float) -> None:
         """seconds  in the unit of the column"""
         self.seconds = seconds
         self.double = self.late = self.strays = self.lost = 0
-        """Samples with the time of the one before, late ones, ones far off; samples missing."""
+        """Numbers of samples: with the previous time, late, far off in time, and missing."""
         self.usual = 0.0
         """Usual time between two samples [s]."""
         self.restart()
@@ -31,14 +31,14 @@ class Clock:
     def restart(self) -> None:
         """The next sample is the first one."""
         self.shift: int | None = None
-        """From which times count: the first one, if it is a whole number that a float64 does not
-        hold, else 0; None before it."""
+        """Zero of the times: the first time, if it is an integer that a float64 does not hold,
+        else 0; None before the first time."""
         self.now = self._floor = 0.0
         self._stray = math.nan
         self._in_order = 0
 
     def take(self, stamp: int | float) -> float | None:
-        """The time of the next sample [s]; None if it has to be left out."""
+        """The time of the next sample [s]; None if the sample has to be left out."""
         if stamp != stamp or (self.shift and not isinstance(stamp, int)):
             self.strays += 1
             return None
@@ -64,11 +64,11 @@ class Clock:
 
     @property
     def has_restarted(self) -> bool:
-        """Whether the last samples are those of a sender that has started again."""
+        """Whether the last samples show that the sender has started again."""
         return self._in_order >= _STARTED
 
     def give_up(self, t: float) -> None:
-        """Leaves out samples up to this time, if they still come [s]."""
+        """Leaves out later samples whose time is not after t [s]."""
         self._floor = max(self._floor, t)
 
     def _count(self, step: float) -> None:

@@ -1,4 +1,4 @@
-"""Sources and sinks by the names that users give them."""
+"""Sources and sinks by their names on the command line."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _LOOPBACK, _FOXGLOVE = "127.0.0.1", "8765"
 
 
 class Endpoints:
-    """Of a session. Its methods raise ValueError, which says what was expected."""
+    """Sources and sinks of a session. Methods raise ValueError, which says what was expected."""
 
     def __init__(self, session: Session, host: str, out: Path) -> None:
         """host  address of this computer to listen at; out  folder for the layout of Foxglove"""
@@ -48,11 +48,11 @@ class Endpoints:
             raise self._cannot_listen(name, error.strerror or error) from error
 
     def replay(self, log: Path) -> Source:
-        """Of a recorded log."""
+        """The source for a recorded log."""
         return sources.replay(open_log(log), self._session)
 
     def sink(self, name: str) -> Sink:
-        """For Foxglove it writes the layout, too."""
+        """The sink of this name; for Foxglove, the layout is also written."""
         kind, _, rest = name.partition(":")
         if name == "ros2":
             return self._ros2.publish()

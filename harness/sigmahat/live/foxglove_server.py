@@ -18,8 +18,8 @@ LAYOUT = "foxglove-layout.json"
 
 
 def serve(address: tuple[str, int], joints: Sequence[LiveJoint]) -> Sink:
-    """Raises RuntimeError if the address cannot be had."""
-    foxglove.set_log_level("CRITICAL")  # that a viewer has gone is no news
+    """Starts the server. Raises RuntimeError if the address is not available."""
+    foxglove.set_log_level("CRITICAL")  # no messages about viewers that disconnect
     foxglove.start_server(name="sigmahat", host=address[0], port=address[1])
     channels = {
         joint.name: foxglove.Channel(

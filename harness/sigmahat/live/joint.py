@@ -1,7 +1,7 @@
-"""One joint on line: its samples on the ticks, its estimator, and what this has learned from.
+"""One joint on line: its samples at the ticks, its estimator, and the logs of this estimator.
 
-Samples come to the ticks as logs/resampling.py brings those of a column, in their units and with
-their counters as in logs/sampling.py.
+Samples are moved to the ticks as in logs/resampling.py. Units and counters are converted as in
+logs/sampling.py.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ from sigmahat.logs.sampling import counter_period, turns_from
 from sigmahat.logs.units import scale, seconds
 
 OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfit", "change_age")
-"""Real outputs that are given on."""
+"""Real outputs that are sent to the sinks."""
 _FLAGS = ("confident", "valid")
 GIVEN = (*OUTPUTS, *_FLAGS, "doubt")
-"""All that are given on."""
+"""All outputs that are sent to the sinks."""
 _PATIENCE = 0.2
-"""How long a tick waits for a port of which nothing arrives while others go on [s]."""
+"""Time that a tick waits for a port without samples while samples of other ports arrive [s]."""
 _WAITING, _MOST = 1000, 10_000
-"""Samples before the first one of the column time, and those that wait for slower ports."""
+"""Most samples that wait for the first time of the time column, and for slower ports."""
 _USUAL_GAP = 3.0
-"""Longest gap that is interpolated, in periods, if the configuration has none."""
+"""Longest gap that is interpolated, in periods, if the configuration gives no such gap."""
 
 
 @dataclass(frozen=True)
@@ -51,19 +51,19 @@ class Estimated:
     t: float
     """Time of the tick, as the sender counts it [s]."""
     outputs: Mapping[str, Any]
-    """GIVEN."""
+    """Values of the outputs GIVEN."""
 
 
 class LivePort:
     """The samples of a port from which its value at the next tick will be computed."""
 
     def __init__(self, name: str, port: Port, T: float, longest_gap: float) -> None:
-        """T  time between ticks [s]; longest_gap  over which values are interpolated [s]"""
+        """T  time between ticks [s]; longest_gap  longest gap that is interpolated [s]"""
         self.port, self._T = port, T
         self._longest = longest_gap * (1 + AT_TICK)
         self._scale = scale(name, port)
         self.interpolated = 0
-        """Ticks."""
+        """Number of interpolated ticks."""
         self.restart()
 
     def restart(self) -> None:
@@ -88,9 +88,9 @@ class LivePort:
         self._next.append((t - port.delay if port.delay else t, value))
 
     def at(self, tick: int) -> float | None:
-        """The value at a tick, nan if there is none; None if a later sample will tell.
+        """The value at a tick, nan without a value; None if the value depends on a later sample.
 
-        Ticks are asked for in their order.
+        Calls must have increasing ticks.
         """
         if self.port.value is not None:
             return self.port.value
@@ -115,28 +115,28 @@ class LiveJoint:
     def __init__(
         self, configuration: Configuration, clocks: dict[str, Clock], learned: Learned | None
     ) -> None:
-        """clocks  by time column, "" for the time of arrival; those that are missing are added
+        """clocks  by time column, "" for the time of arrival; missing clocks are added
 
-        Raises what logs/job.py does for what does not fit.
+        Raises the errors of logs/job.py for a configuration or a state that does not fit.
         """
         fmu = installed("StiffnessEstimator")
         start = parameters(fmu, configuration)
         self.configuration = configuration
         self.name = configuration.joint or "joint"
-        """For people and topics: that of a configuration of one joint has none of its own."""
+        """Name for people and topics; "joint" if the configuration names no joint."""
         self.every = fmu.parameters(start)
         """All parameters of the estimator."""
         configuration.need_ports(str(self.every["modality"]))
         self.T = float(self.every["samplePeriod"])
         self.longest_gap = configuration.time.longest_gap or _USUAL_GAP * self.T
-        """Over which values are interpolated [s]."""
+        """Longest gap over which values are interpolated [s]."""
         self.ports = {
             name: LivePort(name, port, self.T, self.longest_gap)
             for name, port in configuration.ports.items()
         }
         if not any(port.column for port in configuration.ports.values()):
             raise LogError(
-                f"{configuration.path}: no port has a column; name those of the messages"
+                f"{configuration.path}: no port has a column; name columns of the messages"
             )
         unit = configuration.time.unit if configuration.time.column else "ns"
         for name in ("", *self.ports):
@@ -170,7 +170,7 @@ class LiveJoint:
     def take(self, columns: Columns, times: Mapping[str, float]) -> Iterator[Estimated]:
         """Yields the ticks that a message makes possible.
 
-        times  of the time columns in the message [s]
+        times  values of the time columns in the message [s]
         """
         for name, port in self.ports.items():
             t, value = times.get(self.time_column(name)), columns.get(port.port.column)
@@ -186,12 +186,12 @@ class LiveJoint:
         yield from self._run(self._start, is_end=False)
 
     def time_column(self, port: str) -> str:
-        """With the times of a port; "" for the time of arrival."""
+        """Column with the times of a port; "" for the time of arrival."""
         own = self.ports[port].port.time if port else None
         return own or self.configuration.time.column or ""
 
     def end(self, recording: Path, digest: str) -> Iterator[Estimated]:
-        """Yields the last ticks of a recording; the next sample will be the first of another one.
+        """Yields the last ticks of a recording; the next sample begins another recording.
 
         recording, digest  the file, and its SHA-256
         """
@@ -219,7 +219,7 @@ class LiveJoint:
                 value = port.at(self._ticks)
                 if value is None:
                     at_tick = start + self._ticks * self.T + port.port.delay
-                    # Others are so far ahead that this port is given up for the tick.
+                    # Other ports are so far ahead that this tick no longer waits for the port.
                     patience = max(_PATIENCE, self.longest_gap * (1 + AT_TICK))
                     if not is_end and newest <= at_tick + patience:
                         return
@@ -246,8 +246,8 @@ class LiveJoint:
 
 
 class _Counter:
-    """What logs/sampling.py puts right on the ticks of a log: whole periods of a counter after
-    gaps, and at the start.
+    """Corrects a counter by whole periods after gaps and at the start, as logs/sampling.py does
+    for a log.
     """
 
     def __init__(self, configuration: Configuration) -> None:
@@ -264,7 +264,7 @@ class _Counter:
         self._total = self._at_start = 0
 
     def put_right(self, values: Any) -> None:
-        """values  of the ports at a tick, nan where there is none; they are changed"""
+        """values  of the ports at a tick, nan for a missing value; this array is changed"""
         if not math.isfinite(self._period):
             return
         own, other = float(values[self._column]), float(values[self._other])

@@ -1,8 +1,8 @@
-"""A message in JSON or CSV as columns of numbers. Nothing in it is trusted.
+"""A message in JSON or CSV as columns of numbers. All contents of a message are checked.
 
 JSON is an object, as PlotJuggler reads it: {"elbow": {"motor": [1.5, 2]}} are the columns
 "elbow/motor[0]" and "elbow/motor[1]". CSV is one line that ends with a line feed, since a number
-that is cut off is still a number. Its columns are named by a first line, or beforehand.
+that is cut off is still a number. A first line, or an option, names the columns of CSV.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ class Decoder:
     """Reads the messages of one sender."""
 
     def __init__(self, wanted: Sequence[str], columns: Sequence[str] = ()) -> None:
-        """wanted are the columns that are used; columns those of CSV, if no line names them."""
+        """wanted  columns that are used; columns  columns of CSV, if no line names the columns"""
         self._wanted = {name.lstrip("/"): name for name in wanted}
         self._csv = self._named(columns)
 
     def columns(self, message: bytes) -> Columns | None:
         """The columns that are used; None for a line that names columns.
 
-        Raises ValueError, which says what was expected and what came.
+        Raises ValueError, which says what was expected and what was received.
         """
         shown = f"{message[:_SHOWN]!r}{'...' if len(message) > _SHOWN else ''}"
         if len(message) > LONGEST:
@@ -94,7 +94,7 @@ def _parsed(cell: str) -> int | float | str | None:
 
 
 def number(name: str, value: Any) -> int | float:
-    """A value of a column; nan for one that is not finite. Raises ValueError for no number."""
+    """A value of a column; nan if it is not finite. Raises ValueError if it is no number."""
     if value is None:
         return math.nan
     if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -1,4 +1,4 @@
-"""What was received as a log: a Parquet file, which `sigmahat estimate` reads."""
+"""The received messages as a log: a Parquet file, which `sigmahat estimate` reads."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 _ROWS = 1 << 13
-"""Of a row group: seconds, so that writing it takes milliseconds."""
+"""Rows of a row group: seconds of a log, which are written in milliseconds."""
 _MISSING = -(2**63)
 
-# With the first array pyarrow imports pandas, where there is one. No sample should wait for that.
+# With the first array, pyarrow imports an installed pandas. No sample should wait for this import.
 pa.array(np.empty(0))
 
 
 class Recording:
-    """A row for each message; a column that a message lacks is empty there."""
+    """A row for each message; a column that a message lacks is empty in this row."""
 
     def __init__(self, path: Path, columns: Mapping[str, bool]) -> None:
         """Makes the file, which is complete after close(). Raises OSError if it cannot be written.
 
-        columns  whether each is one of whole numbers that a float64 does not hold
+        columns  for each column, whether it has integers that a float64 does not hold
         """
         self.path = path
         self._missing = {n: _MISSING if whole else math.nan for n, whole in columns.items()}
@@ -39,14 +39,14 @@ class Recording:
         self._rows, self._table = 0, np.empty(_ROWS, self._kinds)
 
     def add(self, row: Mapping[str, int | float]) -> None:
-        """The columns of the next message. Raises OSError if an earlier one was not written."""
+        """Adds the next message. Raises OSError if an earlier message could not be written."""
         self._table[self._rows] = tuple(row.get(n, none) for n, none in self._missing.items())
         self._rows += 1
         if self._rows == _ROWS:
             self._flush()
 
     def close(self) -> None:
-        """Writes what is left. Raises OSError if it cannot be written."""
+        """Writes the remaining rows. Raises OSError if the file cannot be written."""
         self._flush()
         self._thread.shutdown()
         self._wait()

@@ -57,12 +57,12 @@ _INTERFACES = {
     "confident": "confident",
 }
 _WHOLE = Qos(Policy.Reliability.Reliable(duration(milliseconds=100)), Policy.History.KeepLast(100))
-# Writers of either kind are heard.
+# Readers accept messages of reliable and of best-effort writers.
 _ANY = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(1000))
 
 
 def _type(ros: str, **fields: Any) -> Any:
-    """The type of a message, "package/Name" in ROS 2, as DDS names it."""
+    """The type of a message for DDS, from its name "package/Name" in ROS 2."""
     package, _, name = ros.partition("/")
     return make_idl_struct(name, f"{package}::msg::dds_::{name}_", fields)
 
@@ -89,7 +89,7 @@ class Ros2:
     """Topics in one domain."""
 
     def __init__(self) -> None:
-        """In the domain of ROS_DOMAIN_ID. Raises ValueError if that is no number."""
+        """Joins the domain of ROS_DOMAIN_ID. Raises ValueError if this variable is no number."""
         text = os.environ.get("ROS_DOMAIN_ID") or "0"
         if not text.isdecimal() or int(text) > _LARGEST_DOMAIN:
             raise ValueError(
@@ -98,10 +98,10 @@ class Ros2:
         self._domain = DomainParticipant(int(text))
         self._wanted: frozenset[str] = frozenset()
         self._first: int | None = None
-        """Time of the first message [ns], from which the columns count."""
+        """Time of the first message [ns], the zero of the time columns."""
 
     def joint_states(self, columns: Sequence[str]) -> Source:
-        """Reads the topics of columns. Raises ValueError for a column that names none."""
+        """Reads the topics of columns. Raises ValueError for a column that names no topic."""
         self._wanted = frozenset(columns)
         readers: dict[str, Any] = {}
         for column in columns:
@@ -134,7 +134,7 @@ class Ros2:
     def _columns(self, topic: str, message: Any) -> Columns:
         """The numbers of a JointState by column.
 
-        Raises ValueError for one without a stamp, or with other numbers of names and values.
+        Raises ValueError for a message without a stamp, or unequal numbers of names and values.
         """
         stamp = message.header.stamp.sec * _SECOND + message.header.stamp.nanosec
         if not stamp:

@@ -1,7 +1,7 @@
-"""All joints on line: messages in, estimates out, and a recording of what was received.
+"""All joints on line: messages in, estimates out, and a recording of the messages.
 
-A sender that starts again, or a pause of more than a second, ends the recording and begins
-another one, with which the estimators go on: as `sigmahat estimate --start-from` does.
+A sender that starts again, or a pause of more than a second, ends the recording. The estimators
+continue with another recording, as `sigmahat estimate --start-from` does.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ ARRIVAL = "arrival"
 
 
 class Session:
-    """From a configuration to the estimates of its joints."""
+    """The joints of a configuration, with their estimators and their recording."""
 
     def __init__(self, config: Path, out: Path, start_from: Path | None = None) -> None:
         """out  folder to write into, which exists
 
-        Raises LogError for what does not fit, FmuError if the FMU refuses a value.
+        Raises LogError for settings that do not fit, FmuError if the FMU refuses a value.
         """
         self._document, self._out = read_document(config), out
         self.clocks: dict[str, Clock] = {}
-        """Of each time column; "" for the time of arrival."""
+        """Clocks by time column; "" for the time of arrival."""
         self.joints = [
             LiveJoint(read_configuration(config, name), self.clocks, _learned(start_from, name))
             for name in joints_of(self._document, config)
@@ -44,14 +44,14 @@ class Session:
         self.columns = [name for name in dict.fromkeys([*self.clocks, *ports]) if name]
         """Columns of the messages that are used."""
         self.recordings: list[Path] = []
-        """Files that are complete."""
+        """Complete files of recordings."""
         self._recording: Recording | None = None
 
     def take(self, columns: Columns, arrival: int) -> list[Estimated]:
         """The ticks that a message makes possible, in the order of the joints.
 
-        columns  those of `columns` that are in the message
-        arrival  of the message [ns] since 1970
+        columns  values of the message, by the names in self.columns
+        arrival  time of arrival of the message [ns] since 1970
         """
         stamped, kept = {**columns, "": arrival}, dict(columns)
         times: dict[str, float] = {}
@@ -83,9 +83,9 @@ class Session:
         return Recording(self._out / f"{now}.parquet", kinds)
 
     def _end_recording(self) -> list[Estimated]:
-        """Completes the recording, and writes what was learned: the ticks that had to wait.
+        """Completes the recording, and writes what was learned. Returns the ticks that had to wait.
 
-        Raises OSError if it cannot be written.
+        Raises OSError if a file cannot be written.
         """
         if self._recording is None:
             return []
@@ -113,7 +113,7 @@ class Session:
         return found
 
     def _configuration(self) -> tomlkit.TOMLDocument:
-        """With which `estimate` does the same with the recording."""
+        """The configuration with which `estimate` repeats the estimates from the recording."""
         document = copy.deepcopy(self._document)
         for joint in self.joints:
             section = of_file.section(document, joint.configuration.joint)

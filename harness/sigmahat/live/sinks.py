@@ -1,4 +1,4 @@
-"""Where estimates go: datagrams of JSON."""
+"""Sinks of estimates: datagrams of JSON."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def shown(outputs: Mapping[str, Any]) -> dict[str, Any]:
 def udp(address: tuple[str, int]) -> Sink:
     """A datagram for each tick, as PlotJuggler reads it: {"timestamp": t, "elbow": {...}}.
 
-    That nobody listens is no error.
+    A missing receiver is no error.
     """
     sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sender.setblocking(False)

@@ -1,6 +1,6 @@
-"""Where messages come from: UDP, TCP, standard input, or a log at its own pace.
+"""Sources of messages: UDP, TCP, standard input, or a log in real time.
 
-A source reads in threads of its own, and puts what it reads into an inbox.
+A source reads in threads of its own, and puts the messages into an inbox.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from sigmahat.live.session import Session
 from sigmahat.logs.log import Log
 
 _MOST = 20_000
-"""Messages that wait."""
+"""Largest number of messages that wait."""
 _BUFFER = 1 << 22
-"""Bytes that the system is asked to keep of what has not been read."""
+"""Size of the receive buffer [bytes]."""
 
 Reader = Callable[[], Columns | None]
-"""Gives the columns of a message; None if it has none. Raises ValueError for what is no message,
-and EOFError where no more will come."""
+"""Gives the columns of a message; None for a message without columns. Raises ValueError if the
+message is not readable, and EOFError after the last message."""
 
 
 class Inbox(Queue[tuple[int, Reader]]):
@@ -37,17 +37,17 @@ class Inbox(Queue[tuple[int, Reader]]):
     def __init__(self) -> None:
         super().__init__(_MOST)
         self.dropped = 0
-        """Messages that found it full."""
+        """Number of messages that were lost because the inbox was full."""
 
     def add(self, read: Reader, can_wait: bool = True, arrival: int | None = None) -> None:
-        """can_wait  whether the sender waits for a place, or the message is lost"""
+        """can_wait  whether the sender waits for a place; else the message may be lost"""
         try:
             self.put((time.time_ns() if arrival is None else arrival, read), can_wait)
         except Full:
             self.dropped += 1
 
     def end(self) -> None:
-        """No more messages will come."""
+        """Marks the end of the messages."""
         self.add(_no_more)
 
 
@@ -56,7 +56,7 @@ def _no_more() -> None:
 
 
 Source = Callable[[Inbox], None]
-"""Reads until the process ends, or to the end of what there is."""
+"""Reads until the process ends, or until the end of the data."""
 
 
 def start(source: Source, inbox: Inbox) -> None:
@@ -65,7 +65,7 @@ def start(source: Source, inbox: Inbox) -> None:
 
 
 def udp(address: tuple[str, int], decoder: Callable[[], Decoder]) -> Source:
-    """A datagram is a message. Raises OSError if the address cannot be had."""
+    """A datagram is a message. Raises OSError if the address is not available."""
     bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     bound.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
     bound.bind(address)
@@ -105,18 +105,18 @@ def stdin(decoder: Callable[[], Decoder]) -> Source:
 
 
 def _lines(file: BinaryIO, inbox: Inbox, decoder: Decoder) -> None:
-    """Puts each line of a file into the inbox; of one that is too long, the begin."""
+    """Puts each line of a file into the inbox; a line that is too long is cut off."""
     try:
         while line := file.readline(LONGEST + 1):
             inbox.add(partial(decoder.columns, line))
             while len(line) > LONGEST and not line.endswith(b"\n"):
                 line = file.readline(LONGEST + 1)
-    except OSError:  # the sender has died
+    except OSError:  # the connection is broken
         return
 
 
 def replay(log: Log, session: Session) -> Source:
-    """The columns of a log that are used, at its own pace. Raises LogError if it lacks one."""
+    """The used columns of a log, in real time. Raises LogError if the log lacks a column."""
     used: dict[str, tuple[float, list[str]]] = {}
     for joint in session.joints:
         for name, port in joint.ports.items():
@@ -143,7 +143,7 @@ def _rows(
 ) -> Iterator[tuple[float, Columns]]:
     """Times [s] and columns of the rows of a log that have a time.
 
-    period  of the rows, if they have no time column; else seconds in its unit
+    period  time between rows without a time column; else unit of the time column [s]
     """
     values = {name: log.read(name) for name in columns}
     if time_column:

@@ -14,9 +14,9 @@ from sigmahat.joint.curve import NORMAL_95
 from sigmahat.live.joint import Estimated
 
 _EVERY = 0.5
-"""Seconds between two pictures in a terminal,"""
+"""Seconds between two updates in a terminal."""
 _RARELY = 10.0
-"""and elsewhere."""
+"""Seconds between two updates in other outputs."""
 
 
 class Terminal:
@@ -28,7 +28,7 @@ class Terminal:
         self._shown_at, self._lines = time.monotonic(), 0
 
     def __call__(self, ticks: Sequence[Estimated]) -> None:
-        """Keeps the ticks, and shows the last one of each joint now and then."""
+        """Keeps the ticks, and shows the last tick of each joint now and then."""
         for each in ticks:
             self._last[each.joint] = each
         now = time.monotonic()

@@ -17,24 +17,24 @@ from sigmahat.live.sources import Inbox
 
 _log = logging.getLogger("sigmahat")
 _IDLE = 0.1  # [s] until a signal is seen
-_SILENT = 5.0  # [s] after which it is said that nothing comes
-_FIRST = 100  # messages after which it is said what is wrong with them
+_SILENT = 5.0  # [s] without a message until a warning
+_FIRST = 100  # number of messages until warnings about these messages
 
 
 @dataclass
 class Counted:
-    """What was received."""
+    """Numbers of received messages."""
 
     messages: int = 0
-    """That were read."""
+    """Messages that were read."""
     wrong: int = 0
-    """That could not be read."""
+    """Messages that could not be read."""
 
 
 def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> Counted:
     """Estimates until the messages end, or until Ctrl-C or SIGTERM.
 
-    The first message that cannot be read is named in a warning; all of them are counted.
+    A warning shows the first message that cannot be read; all such messages are counted.
     """
     counted, seen = Counted(), set[str]()
     silent_at = time.monotonic() + _SILENT
@@ -74,7 +74,7 @@ def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> Counted:
 
 
 def _look(session: Session, seen: Set[str]) -> None:
-    """Warns of columns that never come, and of samples that are too far apart."""
+    """Warns of columns that no message has, and of samples that are too far apart."""
     for name in session.columns:
         if name not in seen:
             _log.warning("none of %d messages has %r, which the configuration names", _FIRST, name)
@@ -90,7 +90,7 @@ def _look(session: Session, seen: Set[str]) -> None:
 
 @contextmanager
 def _stopped_by_signal() -> Iterator[list[int]]:
-    """The signals that were received: a second one does not spoil what is being written."""
+    """The signals that were received: a second signal does not interrupt the writing of files."""
     stopped: list[int] = []
 
     def stop(number: int, _frame: FrameType | None) -> None:

@@ -21,8 +21,8 @@ class StiffnessChange:
     t: float
     """Time since the start of the log [s]."""
     relative: float | None
-    """From the last confident estimate before it to the last one before the next change, over the
-    former [1]; None without one of them."""
+    """Relative difference between the last confident estimates before this change and before the
+    next change [1]; None without both estimates."""
 
     @property
     def in_words(self) -> str:
@@ -41,10 +41,10 @@ def detected(
     """Indices at which a change was detected: where the output change_age starts again.
 
     The estimator may start again several times before it follows a change. So a further change
-    needs a confident estimate since the last one.
+    counts only after a confident estimate since the last change.
 
     before    value of change_age before the first index [s]
-    followed  whether there was no change before, or a confident estimate since it
+    followed  whether no change was before, or an estimate was confident since the last change
     """
     last = np.concatenate([[before], age[:-1]])
     starts = np.flatnonzero((age >= 0) & ((age < last) | (last < 0)))
@@ -65,12 +65,12 @@ class Changes:
         self._T, self._ticks, self._age, self._followed = T, 0, -1.0, True
         self._eta: NDArray[np.float64] | None = None  # of the last confident tick since a change
         self._at = 0.0, 0.0  # deformation and set-point of the last change
-        self._before: float | None = None  # the stiffness there
+        self._before: float | None = None  # the stiffness at this point
         self._found: list[StiffnessChange] = []
 
     @property
     def found(self) -> Sequence[StiffnessChange]:
-        """All until now."""
+        """All changes until now."""
         return self._found
 
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
@@ -94,7 +94,7 @@ class Changes:
         self._ticks, self._age = self._ticks + len(age), float(age[-1])
 
     def _stiffness(self, eta: NDArray[np.float64]) -> float:
-        """The slope of (21) over the deformation, where the last change was detected [N.m/rad]."""
+        """The stiffness by (21) at the point of the last detected change [N.m/rad]."""
         (phi, set_point), p = self._at, self._powers
         slopes = p * np.power(phi, np.maximum(p - 1, 0))
         return float(eta @ (slopes * np.power(set_point, self._powers_of_set_point)))

@@ -11,7 +11,7 @@
     counts_per_turn = 40000
     sign = -1
 
-    [parameters]            # of the FMU, by their names there
+    [parameters]            # of the FMU, by their names in the FMU
     motor.B = 2.3e-5
 
 joints.py says how one file configures several joints.
@@ -40,20 +40,20 @@ PORTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sens
 """Inputs of StiffnessEstimator and their units."""
 
 FILL_IN = "FILL IN"
-"""Instead of a column that nobody has named; and so begin comments on what is missing."""
+"""Text in place of an unknown column; also the first words of comments on missing values."""
 NOT_YOURS = "not known: of another robot, until identify finds it or you set it"
-"""Comment of a motor parameter that nobody has set."""
+"""Comment of a motor parameter that the user has not set."""
 CHOSEN = "chosen by identify; without this comment, it is your choice"
-"""Comment of rls.symmetric where nobody asked for it."""
+"""Comment of rls.symmetric if identify chose its value."""
 WIDE_PRIOR = "wide, because it is not known; make it smaller if you know better"
 """Comment of a prior of such a parameter."""
 ANOTHER_ROBOT = 1000.0
-"""Its value: small motors and large ones differ by so much. It costs hardly any accuracy."""
+"""Value of this prior: small and large motors differ by this factor. Accuracy hardly suffers."""
 ANY_COULOMB = 1.0
-"""prior.tau_coulomb where nothing is known of friction [N.m]: too large costs little as well."""
+"""prior.tau_coulomb for unknown friction [N.m]: a large value hardly reduces accuracy either."""
 
 _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("q", "tau_e_sensor"), "Model": ("q",)}
-"""Ports that a modality cannot do without."""
+"""Ports that a modality needs."""
 
 
 def _not_zero(value: float) -> float:
@@ -68,7 +68,7 @@ def _one(value: float) -> float:
     return value
 
 
-# What a file may say; pydantic checks it, and leaves what Python code constructs alone.
+# Types of the values in a file; pydantic checks files, but not objects made by Python code.
 Number = Annotated[float, Strict(), AllowInfNan(False)]
 NotZero = Annotated[Number, AfterValidator(_not_zero)]
 Sign = Annotated[Number, AfterValidator(_one)]
@@ -82,19 +82,19 @@ class Port:
     __pydantic_config__ = _NO_OTHER_KEYS
 
     column: str = ""
-    """Its name in the log."""
+    """Name of the column in the log."""
     value: Number | None = None
-    """Instead of a column: what the port is throughout, in its unit, as for a locked link."""
+    """Constant value of the port in its unit, instead of a column, as for a locked link."""
     time: str | None = None
-    """Column with the times of this one, where it has its own; in the unit of [time]."""
+    """Column with the times of this port, if they differ from [time]; in the unit of [time]."""
     unit: str | None = None
-    """Unit of the column; that of the port if not given."""
+    """Unit of the column; by default, the unit of the port."""
     sign: Sign = 1.0
     """1 or -1."""
     zero: Number = 0.0
-    """What the column shows at the zero of the port, in the unit of the column."""
+    """Value of the column at the zero of the port, in the unit of the column."""
     gear_ratio: NotZero = 1.0
-    """For an encoder on the motor's shaft, or a torque measured behind the gear."""
+    """For an encoder on the motor's shaft, or a torque measured after the gear."""
     counts_per_turn: NotZero | None = None
     """For the unit counts."""
     torque_constant: NotZero | None = None
@@ -102,11 +102,11 @@ class Port:
     mm_per_turn: NotZero | None = None
     """For a length: travel per turn of the motor. If not given, the port takes the number of mm."""
     scale: NotZero | None = None
-    """Instead of a unit: what 1 in the column is at the port, in its unit."""
+    """Instead of a unit: value of the port, in its unit, per 1 in the column."""
     wrap: NotZero | None = None
-    """Period after which the column starts again, in its unit."""
+    """Period after which the values start again, in the unit of the column."""
     delay: Number = 0.0
-    """How much later than the others the column is recorded [s]: it is moved back by this."""
+    """Delay of the column relative to other columns [s]: samples are moved back by this time."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ class Time:
     __pydantic_config__ = _NO_OTHER_KEYS
 
     column: str | None = None
-    """Its name in the log; if not given, rows are samplePeriod apart."""
+    """Name of the column in the log; if not given, rows are samplePeriod apart."""
     unit: str = "s"
     """Unit of the column."""
     longest_gap: NotZero | None = None
@@ -132,13 +132,13 @@ class Configuration:
     time: Time
     """When the samples were taken."""
     ports: Mapping[str, Port]
-    """By input of `StiffnessEstimator`."""
+    """Ports by input of `StiffnessEstimator`."""
     parameters: Mapping[str, Value]
     """Start values of `StiffnessEstimator`, by its names."""
     symmetric_chosen: bool = False
     """Whether identify chose rls.symmetric: the next run may choose again."""
     joint: str = ""
-    """Of a file of several joints, the one that this is."""
+    """Name of the joint in a file of several joints."""
 
     def need_ports(self, modality: str) -> None:
         """Raises LogError if a port is missing that the modality needs."""
@@ -166,13 +166,13 @@ class _File:
     time: Time = field(default_factory=Time)
     parameters: dict[str, Any] = field(default_factory=dict)
     identified: Any = None
-    """What identify writes for people to read."""
+    """Results of identify, for people to read."""
 
 
 def read_configuration(path: str | Path, joint: str = "") -> Configuration:
-    """Reads and checks a file; of a file of several joints, the configuration of one of them.
+    """Reads and checks a file; from a file of several joints, the configuration of one joint.
 
-    Raises LogError, which says where it is wrong.
+    Raises LogError, which says where the file is wrong.
     """
     path = Path(path)
     return checked_configuration(read_document(path), path, joint)
@@ -181,9 +181,9 @@ def read_configuration(path: str | Path, joint: str = "") -> Configuration:
 def checked_configuration(
     document: tomlkit.TOMLDocument, path: Path, joint: str = ""
 ) -> Configuration:
-    """The configuration that a document is, which need not be in its file yet.
+    """The configuration in a document, which need not be written to the file yet.
 
-    Raises LogError, which says where it is wrong.
+    Raises LogError, which says where the document is wrong.
     """
     known = joints_of(document, path)
     if joint not in known:
@@ -196,7 +196,7 @@ def checked_configuration(
     try:
         file = TypeAdapter(_File).validate_python(own.unwrap())
     except ValidationError as error:
-        # A misspelt key is the reason why another one is missing.
+        # A misspelt key is the reason why another key is missing.
         errors = sorted(error.errors(), key=lambda each: each["type"] != _MISSPELT)
         raise LogError(f"{path}: {_explain(errors[0])}") from error
     if not file.ports:
@@ -214,7 +214,7 @@ def checked_configuration(
 
 
 def joints_of(document: tomlkit.TOMLDocument, path: Path) -> list[str]:
-    """The joints of a file, [""] if it is of one. Raises LogError for an impossible name."""
+    """The joints of a file, [""] for a single joint. Raises LogError for an impossible name."""
     try:
         return joints.names(document)
     except ValueError as error:
@@ -238,7 +238,7 @@ _KINDS = {"string_type": "text", "float_type": "a number", "finite_number": "a f
 
 
 def _explain(error: ErrorDetails) -> str:
-    """Where a file is wrong, and what was expected there; in words of TOML."""
+    """The place of an error in a file, and the expected value, in words of TOML."""
     what, where = error["type"], ".".join(map(str, error["loc"]))
     section, _, key = where.rpartition(".")
     if what == _MISSPELT:

@@ -1,4 +1,4 @@
-"""Computes the curve from an estimator: the ranges of the data, then torque and stiffness there."""
+"""Computes the curve from an estimator: ranges of the data, torque and stiffness in the ranges."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ def stiffness_at(
     """The outputs _OUTPUTS at each point, by name, [size: points].
 
     Before each point a sample is missing. After such a gap FilteredRegression learns nothing until
-    its filters have settled, and they never do: its answers are those of what it has learned
-    before. The slave cannot be used for anything else afterwards.
+    its filters have settled. Here the filters never settle, so the outputs depend only on what was
+    learned before. The slave cannot be used for anything else afterwards.
 
-    slave   of the method FilteredRegression, that has reached the time t_0 [s]
-    names   of inputs, theta and q among them
+    slave   with the method FilteredRegression, at the time t_0 [s]
+    names   of inputs, theta and q included
     points  values of these inputs, finite [size: points x names]
     T       samplePeriod [s]
     """
@@ -57,14 +57,14 @@ _FAMILY = 5
 _MOST_LEVELS = 7
 """Set-points of a curve whose set-point takes a few values."""
 _GAP = 0.05
-"""Of the range of the set-point: values further apart are of different levels."""
+"""Fraction of the range of the set-point: values further apart belong to different levels."""
 _OUTER = 0.1
-"""Percent of the points at either end: single wrong samples do not set the reach."""
+"""Percent of the points left out at either end: single wrong samples do not set the range."""
 
 
 @dataclass(frozen=True)
 class Reach:
-    """The data at a set-point."""
+    """The range of the data at a set-point."""
 
     set_point: float
     """[1]"""
@@ -73,12 +73,12 @@ class Reach:
 
 
 def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: bool) -> list[Reach]:
-    """Where the points of a log reach, and the logs that were learned from before it.
+    """Ranges of the data, from the points of a log and from logs that were learned before.
 
-    Of those only the ranges are known, and not over which deformations at which set-point. So where
-    their set-point moved they count only at set-points in their range that this log has not.
+    Only total ranges of the logs before are known, not the deformations at each set-point. So if
+    the set-point of such a log moved, its range counts only at set-points without own points.
 
-    one_curve  whether it is the same at all set-points
+    one_curve  whether the curve is equal at all set-points
     """
     values = _inner(points.set_point)
     low = min([values.min(initial=np.inf), *(b.set_point[0] for b in before if b.set_point)])
@@ -106,7 +106,7 @@ def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: boo
 
 
 def _inner(values: Array) -> Array:
-    """Values without the outermost."""
+    """Values without the outermost values."""
     if not len(values):
         return values
     low, high = _range(values)
@@ -120,7 +120,7 @@ def _range(values: Array) -> Range:
 
 
 def _settings(values: Array, low: float, high: float, one_curve: bool) -> list[float]:
-    """Set-points: levels of the data, else evenly over the range."""
+    """Set-points: levels of the data, else values evenly in the range."""
     if one_curve or not high - low > 1e-9 * max(abs(low), abs(high)):
         return [(low + high) / 2]
     ordered = np.unique(values)
@@ -134,21 +134,21 @@ def _settings(values: Array, low: float, high: float, one_curve: bool) -> list[f
 
 
 _WITHIN = 41
-"""Points of a branch in the reach of the data."""
+"""Number of points of a branch in the range of the data."""
 _BEYOND, _BEYOND_POINTS = 0.2, 8
-"""What is shown beyond either end, over the reach, and its points."""
+"""Part shown outside of either end, relative to the range, and the number of its points."""
 
 
 def curve(
     slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], points: MeasuredPoints
 ) -> Curve:
-    """Torque and stiffness over the deformation, at each set-point that the data reach.
+    """Torque and stiffness against the deformation, at each set-point with data.
 
-    The slave does not change. With the method FilteredRegression it gives the standard deviations
-    at each point, tau_e_std and sigma_std.
+    The slave does not change. With the method FilteredRegression, the curve has the standard
+    deviations tau_e_std and sigma_std at each point.
 
     every   parameters of the slave
-    logs    that it has learned from, the last of them now
+    logs    from which the slave has learned; the last is the present log
     points  of the last log
     """
     covered = _union([log.phi for log in logs]), _union([log.set_point for log in logs])
@@ -182,7 +182,7 @@ def _union(ranges: Sequence[Range | None]) -> Range | None:
 
 
 def _grid(reach: Reach, polynomial: Polynomial) -> Array:
-    """Deformations of a branch: in the reach, beyond it, and those at which something is told."""
+    """Deformations of a branch: inside and outside of the range, and at printed points."""
     low, high = reach.phi
     further = _BEYOND * (high - low)
     odd = 0 not in polynomial.powers_of_phi
@@ -202,7 +202,7 @@ def _grid(reach: Reach, polynomial: Polynomial) -> Array:
 def _evaluated(
     slave: Slave, every: Mapping[str, Value], reach: Sequence[Reach], grids: Sequence[Array]
 ) -> dict[str, Array]:
-    """The outputs _OUTPUTS at each point of each grid, as a copy of the estimator gives them."""
+    """The outputs _OUTPUTS at each point of each grid, from a copy of the estimator."""
     scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
     points = [
         (0.0, phi, (each.set_point - offset) / scale if scale else 0.0)
@@ -217,11 +217,11 @@ def _evaluated(
 
 @dataclass(frozen=True)
 class Answer:
-    """What a replay found."""
+    """The result of a replay."""
 
     curve: Curve
-    """Torque and stiffness over the deformation."""
+    """Torque and stiffness against the deformation."""
     points: MeasuredPoints
-    """That stand behind it."""
+    """Measured points of the curve."""
     doubt: str
     """Item of the output doubt at the end."""

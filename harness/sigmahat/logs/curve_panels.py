@@ -1,4 +1,4 @@
-"""The panels of a curve: torque and stiffness over the deformation."""
+"""The panels of a curve: torque and stiffness against the deformation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sigmahat.plotting.style import QUANTITIES, around, limits, plain_axis
 
 
 def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
-    """The torque with the measured points behind it, and the stiffness; none without data."""
+    """The torque with the measured points, and the stiffness; no panels without data."""
     if not curve.branches:
         return
     settings = [branch.set_point for branch in curve.branches]
@@ -32,7 +32,7 @@ def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
     for name, curves in (("tau_e", torques), ("sigma", stiffnesses)):
         words = QUANTITIES[name].words.capitalize()
         yield Panel(
-            f"{words} over the deformation",
+            f"{words} against deformation",
             plain_axis("phi"),
             plain_axis(name),
             curves,
@@ -45,11 +45,11 @@ def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
 def _caption(name: str, curve: joint.Curve) -> str:
     parts = ["points: measured"] if name == "tau_e" else []
     parts += ["band: 95 %"] if curve.claims else []
-    return "; ".join([*parts, "faded: beyond the data"])
+    return "; ".join([*parts, "faded: outside of the data"])
 
 
 def _scale(curves: list[Curve]) -> tuple[float, float] | None:
-    """Where the data reach; single points that are far off do not count."""
+    """Range of the axis: the range of the data, without single points that are far off."""
     shown = []
     for each in curves:
         shown += [values[each.within] for values in (each.y, *(each.band or ()))]

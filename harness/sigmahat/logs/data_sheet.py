@@ -27,7 +27,7 @@ UNITS = {
     "delay": "s",
     "hysteresis": "N.m",
 }
-"""Of what FilteredRegression estimates beside motor data: output bias_hat, parameter prior.bias."""
+"""Units of other estimates of FilteredRegression: output bias_hat, parameter prior.bias."""
 MOTOR = {"B": "kg.m2", "D_theta": "N.m.s/rad"}
 """Units of the motor data: parameter motor.B, output B_hat."""
 
@@ -38,7 +38,7 @@ def priors(p: Mapping[str, Value]) -> dict[str, float]:
     p  all parameters
     """
     tau_e, phi = float(p["prior.tau_e"]), float(p["range.phi"])
-    # Friction by load is the sum of two: by the torque of the spring, and by that of the motor.
+    # Friction by load has two parts: by the torque of the spring, and by the torque of the motor.
     by_load = math.sqrt(2) if p["prior.tau_coulomb"] else 1.0
     per_unit = {
         "bias": tau_e,
@@ -57,7 +57,7 @@ def exact(p: Mapping[str, Value]) -> Sequence[str]:
 
 
 def absent(p: Mapping[str, Value]) -> Sequence[str]:
-    """What is taken as absent: tau_coulomb, and names of UNITS."""
+    """Effects that are taken as absent: tau_coulomb, and names of UNITS."""
     names = [name for name, std in priors(p).items() if not std]
     if p["modality"] == "Residual" and not p["prior.tau_coulomb"]:
         names.insert(0, "tau_coulomb")
@@ -65,7 +65,7 @@ def absent(p: Mapping[str, Value]) -> Sequence[str]:
 
 
 _AMPLITUDE_95 = 2.4477
-"""95 % of the distances of two such coordinates from 0 are smaller (Rayleigh)."""
+"""95 % quantile of the amplitude of two normal coordinates with std 1 (Rayleigh)."""
 
 
 def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
@@ -113,7 +113,7 @@ def _point(outputs: Mapping[str, float], claims: bool) -> sheet.Stiffness:
 
 
 def _points(curve: Curve) -> list[sheet.Stiffness]:
-    """The stiffness with its interval where the data reach."""
+    """The stiffness with its interval in the range of the data."""
     found = []
     for branch in curve.branches:
         low, high = branch.stiffness_interval() or (branch.sigma, branch.sigma)
@@ -127,7 +127,7 @@ def _points(curve: Curve) -> list[sheet.Stiffness]:
 
 
 def _check(fmu: Fmu, start: Mapping[str, Value]) -> sheet.Check:
-    """What the FMU says with the start values, before any sample."""
+    """Outputs of the FMU with the start values, before any sample."""
     with Slave(fmu, "check") as other:
         other.initialize(start)
         outputs = Recorder(other, ["sigma", "tau_e"], 1)
@@ -138,9 +138,9 @@ def _check(fmu: Fmu, start: Mapping[str, Value]) -> sheet.Check:
 def _parameters(
     every: Mapping[str, Value], last: Mapping[str, float], configuration: Path
 ) -> dict[str, sheet.Parameter]:
-    """Motor data, and what else FilteredRegression estimated.
+    """Motor data, and other estimates of FilteredRegression.
 
-    The FMU gives no interval of them. `identify` has written some; else it is that of the prior.
+    The FMU gives no intervals. An interval is from `identify`, if known, else from the prior.
     """
     found = {"gamma": sheet.Parameter(float(every["motor.gamma"]), "1", None, "exact")}
     claims = every["method"] == "FilteredRegression"
@@ -160,7 +160,7 @@ def _parameters(
         unit = UNITS.get(name, "N.m") or "1"
         found[name] = _with_interval(last[f"{name}_hat"], unit, 0.0, std, identified.get(name))
     std, amplitude = stds["eccentric"], found["eccentric"]
-    if std:  # of sine and cosine each: the amplitude is not normal, and never below 0
+    if std:  # std of sine and cosine: the amplitude is not normal, and never below 0
         found["eccentric"] = replace(amplitude, interval=(0.0, _AMPLITUDE_95 * std))
     return found
 

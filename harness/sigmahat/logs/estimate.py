@@ -51,17 +51,17 @@ class Estimate:
     T: float
     """Time between ticks [s]."""
     parameters: dict[str, Value]
-    """Parameters of the estimator, by its names; those of rls.eta_0 are left out."""
+    """Parameters of the estimator by name, without rls.eta_0."""
     sigma: float
     """Stiffness at the end [N.m/rad]."""
     sigma_std: float
-    """Its standard deviation as the method gives it [N.m/rad]."""
+    """Standard deviation of sigma, from the method [N.m/rad]."""
     confident: float
-    """Share of the ticks in the second half at which the estimator was confident."""
+    """Fraction of the ticks in the second half at which the estimator was confident."""
     doubt: Mapping[str, float]
-    """Share of the ticks in the second half at which it was not, by reason: items of `doubt`."""
+    """Fraction of the ticks in the second half without confidence, by reason: items of `doubt`."""
     misfit: float
-    """Misfit of the model at the end [1]; 1 where it holds."""
+    """Misfit of the model at the end [1]; 1 if the model holds."""
     sigma_range: tuple[float, float]
     """Minimum and maximum in the second half [N.m/rad]."""
     tau_e_range: tuple[float, float]
@@ -75,19 +75,19 @@ class Estimate:
     motor: dict[str, float]
     """Motor data that the method FilteredRegression estimated, at the end, by output of the FMU."""
     joint: dict[str, float]
-    """What else it estimated, at the end, by output of the FMU: bias_hat, damping_hat and so on."""
+    """Other estimates at the end, by output of the FMU: bias_hat, damping_hat and so on."""
     sigma_per_gain: float
-    """Relative change of the stiffness with a relative change of the gain of the torque [1]."""
+    """Relative change of the stiffness per relative change of the gain of the torque [1]."""
     doubt_at_end: str
-    """Why it was not confident at the last tick: item of `doubt`; "None" if it was."""
+    """Reason for doubt at the last tick: item of `doubt`; "None" if the estimator was confident."""
     curve: Curve
-    """Torque and stiffness over the deformation."""
+    """Torque and stiffness against the deformation."""
     changes: Sequence[StiffnessChange]
-    """That were detected."""
+    """Changes that were detected."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""
     learned_from: Sequence[str] = ()
-    """Logs that were learned from before this one."""
+    """Logs from which the estimator has learned before this log."""
     series: Series | None = None
     """The outputs at each tick; None if they were written into a folder."""
 
@@ -135,13 +135,13 @@ def estimate(
 ) -> Estimate:
     """Replays the log. Without a folder the outputs at all ticks are in the result, as `series`.
 
-    With a folder, which exists, it writes there: the table (estimate.csv or .parquet), the curve
-    (estimate.curve.csv) and the measured points behind it (estimate.points.csv), the figure
+    With a folder, which exists, it writes into it: the table (estimate.csv or .parquet), the curve
+    (estimate.curve.csv) and its measured points (estimate.points.csv), the figure
     (estimate.png and .svg), the data sheet of the joint (joint.json), what was learned
     (state.json), and notes for the report (estimate.json); with mcap also estimate.mcap.
 
     Now and then progress is called with the thousandths of the log done since the last call.
-    With start_from, a folder of results or its state.json, the estimator goes on from there.
+    With start_from, a folder of results or its state.json, the estimator starts from this state.
 
     Raises LogError for a log and configuration that do not fit, and for a start_from that does not
     fit the configuration; FmuError if the FMU refuses; ModuleNotFoundError without the package
@@ -232,7 +232,7 @@ def _save_figure(replay: Replay, answered: Answer, folder: Path) -> None:
 
 
 _NEGLIGIBLE = 0.1
-"""Of the standard deviation of its prior: what is estimated to be smaller is not shown."""
+"""Fraction of the standard deviation of a prior: smaller estimates are not shown."""
 _WORDS = {
     "tau_coulomb": "Coulomb friction",
     "load_friction": "load friction",
@@ -241,7 +241,7 @@ _WORDS = {
 
 
 def summary(result: Estimate) -> str:
-    """One screen."""
+    """The result as a text of one screen."""
     p = result.parameters
     lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
     lines += [
@@ -257,7 +257,7 @@ def summary(result: Estimate) -> str:
     ]
     lines += curve_text(result.curve)
     if p["method"] == "FilteredRegression":
-        lines += [*_found(result), "this answer rests on:"]
+        lines += [*_found(result), "assumptions of this result:"]
         lines += [f"  {each}" for each in _rests_on(result)]
     return "\n".join(lines)
 
@@ -281,7 +281,7 @@ def _second_half(result: Estimate) -> Iterator[str]:
 def _uncertainty(result: Estimate) -> str:
     if result.parameters["method"] == "FilteredRegression":
         return f"standard deviation {result.sigma_std:.2g} N.m/rad"
-    return "of which the method claims no uncertainty"
+    return "for which the method gives no standard deviation"
 
 
 def _found(result: Estimate) -> Iterator[str]:
@@ -302,7 +302,7 @@ def _found(result: Estimate) -> Iterator[str]:
 
 
 def _rests_on(result: Estimate) -> Iterator[str]:
-    """What no data show, or what the parameters say is exact."""
+    """Assumptions that no data can verify, and values that are taken as exact."""
     p = result.parameters
     gain = float(p["prior.torque_gain"])
     known = f"known to {100 * gain:.3g} %" if gain else "exact"

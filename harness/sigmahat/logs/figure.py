@@ -21,7 +21,7 @@ from sigmahat.plotting.panels import Panel
 
 
 def draw(replay: Replay, answer: Answer) -> Figure:
-    """The curve, and below it panels over the time since the start of the log."""
+    """The curve, and below the curve panels against the time since the start of the log."""
     panels = _over_time(replay)
     figure = Figure(figsize=(8.4, 4.2 + 2.2 * len(panels)), layout="constrained")
     parts: Any = figure.subfigures(2, height_ratios=[4.0, 2.2 * len(panels) + 0.2])

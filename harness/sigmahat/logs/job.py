@@ -34,7 +34,7 @@ class ReplayStatistics:
 
     def __init__(self, ticks: int) -> None:
         self.bucket = -(-ticks // _BUCKETS)
-        """Ticks in an interval; each chunk but the last must be a multiple of it."""
+        """Ticks in an interval; each chunk but the last must be a multiple of this number."""
         self._parts: dict[str, list[Array]] = {name: [] for name in DRAWN}
         self._half = ticks // 2
         self.ticks = self._later = self.skipped = 0
@@ -100,7 +100,7 @@ class ReplayStatistics:
 
     @property
     def doubts(self) -> dict[str, float]:
-        """Share of the ticks in the second half by item of the output doubt, the largest first."""
+        """Fraction of the ticks in the second half by item of the output doubt, largest first."""
         ticks = self._doubts.total()
         return {item: count / ticks for item, count in self._doubts.most_common()}
 
@@ -114,7 +114,7 @@ _CHUNK = 1 << 14  # ticks that are replayed at a time, about
 
 
 class Replay:
-    """Every row of the log goes through the estimator once."""
+    """Replays every row of a log once through an estimator."""
 
     def __init__(
         self,
@@ -123,9 +123,9 @@ class Replay:
         configuration: Configuration,
         learned: Learned | None = None,
     ) -> None:
-        """Initialises the slave, lets it go on from what was learned, and samples the log.
+        """Initialises the slave, gives it the learned state, and samples the log.
 
-        Raises LogError for what does not fit the configuration, FmuError if the FMU refuses.
+        Raises LogError if log or state do not fit the configuration, FmuError if the FMU refuses.
         """
         start = parameters(slave.fmu, configuration)
         self.slave, self.log, self.configuration = slave, log, configuration
@@ -133,19 +133,19 @@ class Replay:
         """All parameters of the estimator."""
         configuration.need_ports(str(self.every["modality"]))
         slave.initialize(start)
-        # Before the log is read: it may not fit.
+        # Before the log is read, because the learned state may not fit.
         self.t = 0.0 if learned is None else go_on(slave, learned, self.every, configuration.path)
-        """Time that the estimator has reached [s]."""
+        """Present time of the estimator [s]."""
         self.samples = sample(log, configuration, float(self.every["samplePeriod"]))
         self.statistics = ReplayStatistics(len(self.samples.values))
         self.changes = Changes(self.every, self.samples.T)
-        """Of the stiffness, as far as the log is replayed."""
+        """Changes of the stiffness in the replayed part of the log."""
         self.logs = [] if learned is None else list(learned.logs)
-        """What the estimator has learned from; at the end this log, too."""
+        """Logs from which the estimator has learned; at the end also the present log."""
 
     @property
     def method(self) -> str:
-        """Of the estimator."""
+        """Method of the estimator."""
         return str(self.every["method"])
 
     def run(
@@ -175,7 +175,7 @@ class Replay:
         self.logs.append(LearnedLog(file, digest, ticks, statistics.skipped, phi, set_point))
 
     def answer(self) -> Answer:
-        """The curve and the points behind it, at the end."""
+        """The curve and its measured points, at the end."""
         outputs = self.statistics.spread_over_log
         found = curve(self.slave, self.every, self.logs, points_of(outputs, self.method))
         return Answer(found, shown_points(outputs, self.method), self.statistics.last_doubt)

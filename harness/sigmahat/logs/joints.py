@@ -1,9 +1,9 @@
-"""A configuration of several joints: what they share stands once, all else in their sections.
+"""A configuration of several joints: common values stand once, other values in joints' sections.
 
     [ports.theta]                  # of every joint
     counts_per_turn = 4096
 
-    [joints.elbow.ports.theta]     # of one; it comes before what all joints share
+    [joints.elbow.ports.theta]     # of one joint; values here replace common values
     column = "elbow_motor"
 
 A configuration of one joint has no section [joints], and its joint has the name "".
@@ -24,7 +24,7 @@ from sigmahat.files import toml_file
 JOINTS = "joints"
 """Name of the section."""
 Place = tuple[str, ...]
-"""Of a value, its sections and its key: ("ports", "q", "unit"), ("parameters", "motor.B")."""
+"""Sections and key of a value: ("ports", "q", "unit"), ("parameters", "motor.B")."""
 
 
 _NAME = re.compile(r"\w[\w.-]*")
@@ -60,9 +60,9 @@ def of_joint(document: tomlkit.TOMLDocument, name: str) -> tomlkit.TOMLDocument:
 
 
 def together(joints: Mapping[str, tomlkit.TOMLDocument]) -> tomlkit.TOMLDocument:
-    """One document of the configurations of several joints: what is equal in all stands once.
+    """One document for the configurations of several joints: common values stand once.
 
-    Comments on lines of their own are those of the first joint.
+    Comments on lines of their own are from the first joint.
     """
     first = next(iter(joints.values()))
     values = [items(each) for each in joints.values()]
@@ -87,7 +87,7 @@ def together(joints: Mapping[str, tomlkit.TOMLDocument]) -> tomlkit.TOMLDocument
 
 
 def section(document: tomlkit.TOMLDocument, name: str) -> MutableMapping[str, Any]:
-    """Where the keys of a joint stand: its section, or the whole document for the joint ""."""
+    """The table with the keys of a joint: its section, or the whole document for the joint ""."""
     found: MutableMapping[str, Any] = document
     return found[JOINTS][name] if name else found
 
@@ -99,7 +99,7 @@ def _comment(item: Item) -> str:
 def items(document: tomlkit.TOMLDocument, joint: str = "") -> dict[Place, Item]:
     """Every value with its comment, in the order of the document.
 
-    joint  only what stands in the section of this joint; its places begin there
+    joint  only values in the section of this joint, with places relative to the section
     """
     every = dict(_items(document, ()))
     if not joint:
@@ -136,7 +136,7 @@ def set_item(document: MutableMapping[str, Any], place: Place, item: Item) -> No
 
 
 def remove(document: MutableMapping[str, Any], place: Place) -> None:
-    """Removes a value, and the dotted group that it leaves empty."""
+    """Removes a value, and its dotted group if the group becomes empty."""
     *above, name = place
     table: Any = document
     for each in above:

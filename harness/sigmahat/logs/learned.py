@@ -1,7 +1,7 @@
-"""`state.json`: what the estimator has learned from a log, so that it goes on with the next one.
+"""`state.json`: what the estimator has learned from a log, to continue with the next log.
 
-It is one JSON file: what it is of, which logs it was learned from, and the state of the FMU as
-fmi2SerializeFMUstate gives it, in base64. The state contains the parameters of the estimator.
+The JSON file has the identity of the FMU, the logs, and the state of the FMU from
+fmi2SerializeFMUstate, in base64. The state contains the parameters of the estimator.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap
 
 _AGAIN = "run `sigmahat estimate` on the first log again"
-_OTHER = f"a learned state contains its parameters: use those, or {_AGAIN}"
+_OTHER = f"a learned state contains its parameters: use these parameters, or {_AGAIN}"
 
 
 @dataclass(frozen=True)
@@ -30,13 +30,13 @@ class Learned:
     """The contents of the file."""
 
     path: Path
-    """The file itself."""
+    """Path of the file."""
     fmu: FmuId
-    """Which FMU it is a state of."""
+    """Identity of the FMU of the state."""
     logs: Sequence[LearnedLog]
-    """What was learned from, in this order."""
+    """Logs from which the FMU has learned, in this order."""
     state: bytes
-    """Of the FMU."""
+    """State of the FMU."""
 
 
 @dataclass(frozen=True)
@@ -56,13 +56,13 @@ class _File:
 
 
 LEARNED = Format("state.json", "sigmahat learned state", 1, _File)
-"""Of the file."""
+"""Format of the file."""
 
 
 def write_learned(
     slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], path: Path
 ) -> None:
-    """Writes what a slave has learned from logs; every are its parameters."""
+    """Writes what a slave has learned from logs; `every` has the parameters of the slave."""
     parameters = {n: v for n, v in every.items() if v or not n.startswith("rls.eta_0")}
     state = base64.b64encode(save(slave)).decode()
     contents = _File(
@@ -79,9 +79,9 @@ def write_learned(
 
 
 def read_learned(path: Path) -> Learned:
-    """Reads a file, or the one in a folder of results.
+    """Reads a file, or the file in a folder of results.
 
-    Raises LogError, which says what was expected, if there is none or it is damaged.
+    Raises LogError, which says what was expected, if the file is missing or damaged.
     """
     try:
         file = LEARNED.read(path)
@@ -96,12 +96,12 @@ def read_learned(path: Path) -> Learned:
 
 
 def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configuration: Path) -> float:
-    """Gives an initialised slave what was learned; its filters start again with the next sample.
+    """Gives an initialised slave the learned state. Filters start again with the next sample.
 
     every          parameters of the slave
-    configuration  the file that they are from, for messages
+    configuration  the file of these parameters, for messages
 
-    Returns the time that the slave has reached [s]. Raises LogError if the state is of another FMU,
+    Returns the present time of the slave [s]. Raises LogError if the state is of another FMU,
     is damaged, or was learned with other parameters.
     """
     ours = FmuId.of(slave.fmu)
@@ -123,7 +123,7 @@ def _describe(fmu: FmuId) -> str:
 
 
 def _parameters(slave: Slave) -> dict[str, Value]:
-    """All parameters, as the FMU itself has them."""
+    """All parameters, read from the FMU itself."""
     fmu = slave.fmu
     names = [name for name, v in fmu.variables.items() if v.causality == "parameter"]
     recorder = Recorder(slave, names, 1)

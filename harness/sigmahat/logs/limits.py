@@ -1,7 +1,7 @@
-"""How much a log may hold: a small file must not fill the memory of whoever opens it.
+"""Limits for the contents of a log: a small file must not fill the memory.
 
-A file can be packed so well that some kilobytes become many gigabytes. What a recorder writes is
-far from that. Each limit has a floor, so that it never concerns a file of usual size.
+Some kilobytes of a compressed file can become many gigabytes. Recorded data are far from this
+ratio. Each limit has a lower bound, so that no limit concerns a file of usual size.
 """
 
 from __future__ import annotations
@@ -11,9 +11,12 @@ from pathlib import Path
 from sigmahat.logs.log import LogError
 
 MOST_COLUMNS = 2000
-_NUMBERS, _SMALL = 15_000_000, 10_000_000  # numbers in a file of so many bytes, or fewer
-_TOGETHER = 2  # times as many in all columns, where they are needed at the same time
-_NUMBERS_PER_BYTE = 3  # of the rest of a larger file; without compression it is at most one
+_NUMBERS, _SMALL = (
+    15_000_000,
+    10_000_000,
+)  # allowed numbers in a file with at most this number of bytes
+_TOGETHER = 2  # factor for all columns together, where they are needed at the same time
+_NUMBERS_PER_BYTE = 3  # of further bytes; without compression, a file has at most one
 _BYTES = 400_000_000  # of all columns of a file that is read as a whole
 MOST_TEXT = 100_000_000
 """Characters of a column of text at a time."""
@@ -29,7 +32,7 @@ def most_numbers(path: Path) -> int:
 def check_together(path: Path, numbers: int) -> None:
     """Raises LogError for more numbers than all columns that are compared may hold."""
     most = _TOGETHER * _NUMBERS
-    if numbers > most:  # else the size of the file does not matter
+    if numbers > most:  # for fewer numbers, the size of the file does not matter
         most = _TOGETHER * most_numbers(path)
     if numbers > most:
         raise LogError(
@@ -43,7 +46,7 @@ def check_columns(path: Path, columns: int) -> None:
     if columns > MOST_COLUMNS:
         raise LogError(
             f"{path}: {columns} columns, expected at most {MOST_COLUMNS}; "
-            "save those of one joint alone"
+            "save the columns of one joint alone"
         )
 
 

@@ -40,12 +40,12 @@ class Log(ABC):
         """One column, [size: samples]; nan where a sample is missing.
 
         Dates and times become seconds since the first row; integers beyond 2^53, such as
-        nanoseconds since 1970, are counted from the first one. Raises LogError if there is no such
-        column, or if it holds something other than numbers.
+        nanoseconds since 1970, are counted from the first value. Raises LogError for an unknown
+        column, or for a column with something other than numbers.
         """
         self.samples(name)
         values = self._read(name)
-        pa.default_memory_pool().release_unused()  # it would keep the column of a long log
+        pa.default_memory_pool().release_unused()  # the pool would keep the column
         return values
 
     def samples(self, name: str) -> int:
@@ -109,7 +109,7 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
 
 
 def first_text(column: pa.ChunkedArray) -> tuple[int, str] | None:
-    """Row, from 1 on, and begin of the first cell of text that is no number; None if none is."""
+    """Row, from 1 on, and start of the first cell that is no number; None if all are numbers."""
     is_text = pa.compute.invert(pa.compute.match_substring_regex(column, _NO_TEXT))
     row = pa.compute.index(is_text, True).as_py()
     return None if row < 0 else (row + 1, column[row].as_py()[:_SHOWN])

@@ -1,7 +1,7 @@
 """`estimate.mcap`: the estimates as messages, for Foxglove and PlotJuggler.
 
 One topic, `/estimate`, with a message for each tick: JSON with a schema that has the unit and the
-description of each field. The times are those since the start of the log.
+description of each field. Times count from the start of the log.
 """
 
 from __future__ import annotations

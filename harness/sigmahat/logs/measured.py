@@ -1,4 +1,4 @@
-"""Measured points: the torque over the deformation, as an estimator sees it, and their file."""
+"""Measured points: torque against deformation, as an estimator computes them, and their file."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from sigmahat.files.tables import numeric_columns, read_csv, title, write_csv
 from sigmahat.logs.log import Array
 
 NEEDED = ("phi", "setPoint", "tau_e", "tau_e_residual", "epsilon", "a", "valid", "confident")
-"""Outputs of the estimator that points are made of."""
+"""Outputs of the estimator from which points are computed."""
 _GOLDEN = 0.6180339887498949
 _POINTS = 3000
-"""That are shown, about."""
+"""Approximate number of points that are shown."""
 
 
 @dataclass(frozen=True)
 class MeasuredPoints:
-    """Of one size."""
+    """Arrays of one size."""
 
     phi: Array
     """Deformation [rad]"""
@@ -36,8 +36,8 @@ def points_of(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPoint
     """The points at the ticks from which the estimator has learned.
 
     FilteredRegression filters all signals and estimates friction, inertia and bias with the curve.
-    What it leaves unexplained, its prediction error, is added to the torque of the curve: a partial
-    residual. Paper2011 measures the torque itself, by its residual.
+    Its prediction error is added to the torque of the curve, which gives a partial residual.
+    Paper2011 uses the residual itself as the measured torque.
 
     outputs  of the estimator by name, of one size
     """
@@ -48,10 +48,10 @@ def points_of(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPoint
 
 
 def shown_points(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPoints:
-    """The points behind a curve: with FilteredRegression about 3000, since it was first confident.
+    """The points of a curve: with FilteredRegression about 3000, from the first confident tick on.
 
-    Before, it does not yet know friction and bias, and sees other torques. If it never was
-    confident, all points count.
+    Before this tick, friction and bias are not known, so the torques differ. Without a confident
+    tick, all points count.
     """
     if method != "FilteredRegression":
         return points_of(outputs, method)
@@ -62,9 +62,9 @@ def shown_points(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPo
 
 
 def spread(first: int, count: int, stride: int) -> NDArray[np.intp]:
-    """Indices, one in stride, of ticks first, first + 1 ...: they do not beat with a motion.
+    """Indices of ticks first, first + 1 ..., one per stride; no regular pattern beats with a motion.
 
-    Which index of each stretch of stride ticks is taken is the same for all ways to split a log.
+    The chosen index of each stride does not depend on how a log is split.
     """
     stretches = np.arange(first // stride, -(-(first + count) // stride))
     within = np.floor(stretches * _GOLDEN % 1 * stride).astype(np.intp)
@@ -85,7 +85,7 @@ def write_points(points: MeasuredPoints, path: Path) -> None:
 
 
 def read_points(path: Path) -> MeasuredPoints:
-    """Reads it back. Raises ValueError, which says what to do, for anything else."""
+    """Reads this file. Raises ValueError, which says what to do, for any other file."""
     again = "run `sigmahat estimate` again"
     try:
         columns = numeric_columns(read_csv(path))

@@ -1,11 +1,11 @@
-"""The table of `sigmahat estimate`, and its notes for the report. They are written and read here.
+"""Writes and reads the table of `sigmahat estimate`, and its notes for the report.
 
 A CSV log gives `estimate.csv`, every other log `estimate.parquet`: the log with the estimates. The
 titles of the estimates are "estimate.sigma [N.m/rad]" and so on; "estimate.t [s]" is the time of
 the tick since the start of the log. `estimate.json` has what no other file of the folder has.
 
-In Parquet the estimates are float32: seven digits, of numbers that are known to three or four. The
-columns of the log stay as they are, and so do times, whose digits count over hours.
+In Parquet the estimates are float32, with seven digits: three or four digits are accurate. The
+columns of the log are unchanged. Times are float64, because times of hours need more digits.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from sigmahat.logs.sampling import Samples
 _ROWS = 1 << 15
 _STEM = "estimate"
 _PREFIX = "estimate."
-_REPEATED = 2  # rows per value, from which on a dictionary is shorter
+_REPEATED = 2  # from this number of rows per distinct value on, a dictionary is shorter
 _TIME = "t"
 _TIMES = (_TIME, "change_age")
 DOUBT = "doubt"
@@ -48,7 +48,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
     """Writes every row of the log with the outputs of the last tick at or before it."""
 
     def __init__(self, log: Log, samples: Samples, units: Mapping[str, str], folder: Path) -> None:
-        """units  of the outputs that have one, by name"""
+        """units  of the outputs that have a unit, by name"""
         self._dialect = log.dialect if isinstance(log, CsvLog) else None
         self._path = folder / f"{_STEM}.{'csv' if self._dialect else 'parquet'}"
         self._units = {_TIME: "s", **units}
@@ -62,9 +62,9 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         self._written: Future[None] | None = None
 
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
-        """Writes the rows of the next ticks, whose outputs these are."""
+        """Writes the rows of the next ticks, with the outputs of these ticks."""
         ticks = len(next(iter(outputs.values())))
-        # Of the same type as the array, which would be converted as a whole.
+        # An int32 as in the array: for another type, the whole array would be converted.
         end = int(np.searchsorted(self._tick_of_row, np.int32(self._tick + ticks)))
         tick_of_row = self._tick_of_row[self._row : end] - self._tick
         # A row for each tick, as usual: nothing has to be copied.
@@ -87,7 +87,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         self._written = self._thread.submit(self._writer.write_table, table)
 
     def _finish(self) -> None:
-        """Waits for the last table. Raises what its writing raised."""
+        """Waits for the last table. Raises the error of its writing, if any."""
         if self._written is not None:
             self._written.result()
             self._written = None
@@ -120,7 +120,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
 
 
 def _is_smooth(column: pa.ChunkedArray) -> bool:
-    """Whether these are numbers whose first bytes change slowly from row to row.
+    """Whether a column has numbers whose first bytes change slowly from row to row.
 
     Measured numbers that were written in decimals and read again have all their bytes at random,
     but few values.
@@ -162,11 +162,11 @@ class _Rows:
 class EstimateTable(Mapping[str, NDArray[np.float64]]):
     """The numbers that `sigmahat estimate` wrote into a folder, by name; true is 1.
 
-    A column is read when it is asked for: all of a long log together do not fit the memory.
+    A column is read at each access: all columns of a long log together do not fit the memory.
     """
 
     def __init__(self, folder: Path) -> None:
-        """Raises LogError if there is no such table, or it is damaged."""
+        """Raises LogError if the table is missing or damaged."""
         path = next(folder.glob(f"{_STEM}.parquet"), folder / f"{_STEM}.csv")
         is_csv = path.suffix == ".csv"
         try:
@@ -193,7 +193,7 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         return len(self._titles)
 
     def without(self, *names: str) -> EstimateTable:
-        """The same table, with fewer numbers."""
+        """The table without these columns."""
         rest = copy(self)
         rest._titles = {n: title for n, title in self._titles.items() if n not in names}
         return rest
@@ -201,7 +201,7 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
     def doubts(self) -> Counter[str]:
         """Number of rows in the second half of the log for each value of the output `doubt`.
 
-        It is empty if an older version wrote the table.
+        The result is empty if an older version wrote the table.
         """
         found: Counter[str] = Counter()
         if self._doubt is None:
@@ -224,9 +224,9 @@ class Replayed:
     format: Text
     version: int
     log: Text
-    """Path of the log, as it was given."""
+    """Path of the log, as given by the user."""
     ticks: int
-    """Of the estimator over the log."""
+    """Number of ticks of the estimator in the log."""
     skipped: int
     """Ticks without an estimate: a measurement was missing."""
     T: float
@@ -236,7 +236,7 @@ class Replayed:
 
 
 REPLAYED = Format("estimate.json", "sigmahat estimate", 1, Replayed)
-"""Of the file."""
+"""Format of the file."""
 
 
 def write_replayed(

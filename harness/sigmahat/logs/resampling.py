@@ -1,11 +1,10 @@
 """The values of one column at the ticks of the estimator.
 
-A sample at a tick, within a thousandth of the period, is used without a change. Where a column has
-samples elsewhere, because it is slower, faster or uneven, the ticks between two samples are
-interpolated linearly, if these samples are not further apart than the longest gap: the configured
-one, else three times the usual interval of the column. All other ticks get nan, and the estimator
-skips them. So a column with a sample for nearly every tick is only interpolated if a longest gap is
-configured.
+A sample at a tick, within a thousandth of the period, is used without a change. A slower, faster or
+uneven column has samples elsewhere. Ticks between two such samples are interpolated linearly, if
+the samples are not further apart than the longest gap. The longest gap is configured, or three
+times the usual interval of the column. All other ticks get nan, and the estimator skips them. So a
+column with a sample for nearly every tick is only interpolated if a longest gap is configured.
 """
 
 from __future__ import annotations
@@ -24,26 +23,26 @@ _USUAL_INTERVALS = 3.0
 
 @dataclass(frozen=True)
 class Resampled:
-    """A column at the ticks, and how its samples lie."""
+    """A column at the ticks, and statistics of its samples."""
 
     values: Array
-    """[size: ticks], nan where there is no value."""
+    """Values [size: ticks], nan at ticks without a value."""
     interval: float
     """Usual time between two samples [s]."""
     even: bool
-    """Whether there is a sample at nearly every tick."""
+    """Whether nearly every tick has a sample."""
     interpolated: int = 0
-    """Ticks that were interpolated."""
+    """Number of interpolated ticks."""
     between: int = 0
-    """Samples between ticks, or before the first and after the last one."""
+    """Number of samples between ticks, before the first tick, and after the last tick."""
     missing: int = 0
-    """Samples without a time or a value."""
+    """Number of samples without a time or a value."""
 
 
 def at_ticks(
     t: Array, values: Array, T: float, ticks: int, longest_gap: float | None
 ) -> Resampled | None:
-    """The values of a column at the ticks; None if it holds no number.
+    """The values of a column at the ticks; None if the column has no number.
 
     t            times since the first tick [s], increasing; nan where unknown; [size: samples]
     values       [size: samples], nan where a sample is missing
@@ -56,14 +55,12 @@ def at_ticks(
     if not finite.all():
         t, values = t[finite], values[finite]
     if longest_gap is None and len(t) == ticks and _one_for_each_tick(t, T):
-        return Resampled(values, T, True)  # the usual case, and the one with the least memory
+        return Resampled(values, T, True)  # the usual case, with the least memory
     position = t / T
     nearest = np.round(position)
     at = (np.abs(position - nearest) <= AT_TICK) & (nearest >= 0) & (nearest < ticks)
     resampled = np.full(ticks, np.nan)
-    resampled[nearest[at][::-1].astype(np.int64)] = values[at][
-        ::-1
-    ]  # the first one, if there are two
+    resampled[nearest[at][::-1].astype(np.int64)] = values[at][::-1]  # of two samples, the first
     interval = float(np.median(np.diff(t))) if len(t) > 1 else T
     even = bool(abs(interval / T - 1) < AT_TICK and np.count_nonzero(at) > 0.99 * len(t))
     if longest_gap is None:
@@ -91,6 +88,6 @@ def _one_for_each_tick(t: Array, T: float) -> bool:
 
 
 def stretches(mask: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Stretches of true values: the first index of each, and the index after its last one."""
+    """Runs of true values: the first index of each run, and the index after its last index."""
     edges = np.diff(np.concatenate([[0], np.asarray(mask, dtype=np.int8), [0]]))
     return np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)

@@ -1,6 +1,6 @@
-"""What `sigmahat estimate` writes for a log of several joints: a table with rows for each of them.
+"""Output of `sigmahat estimate` for a log of several joints: a table with rows for each joint.
 
-Each joint has a folder of its name beside the table, with all that `estimate` writes for one joint.
+Each joint also has a folder of its name, with all that `estimate` writes for one joint.
 """
 
 from __future__ import annotations

@@ -21,22 +21,22 @@ _MOST = 20_000
 
 @dataclass(frozen=True)
 class Reduced:
-    """Signals over common times."""
+    """Signals at common times."""
 
     t: NDArray[np.float64]
     signals: Mapping[str, NDArray[Any]]
-    """Of the shape of t."""
+    """Signals, with the shape of t."""
     bucket: int
-    """Samples of which the least and the greatest are kept; 1: every sample is there."""
+    """Number of samples from which minimum and maximum are kept; 1: every sample is kept."""
     every: tuple[float, float]
-    """Between these times every sample is there."""
+    """Between these times every sample is kept."""
 
 
 def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = BUDGET) -> Reduced:
     """Keeps at most about budget values of all signals, and 20000 of each.
 
-    Half of them are every sample around the middle, where single counts of an encoder show. The
-    others are the least and the greatest value of each bucket, in the order of their times.
+    Half of the kept values are all samples around the middle, where single counts of an encoder
+    show. The other half are minimum and maximum of each bucket, in the order of time.
     t and the signals have the same shape (N,), N >= 1.
     """
     rows = min(max(budget // max(len(signals), 1), 8), _MOST)
@@ -88,9 +88,9 @@ def _extremes(x: NDArray[np.float32], starts: NDArray[np.intp], end: int) -> NDA
 
 Band = tuple[NDArray[Any], NDArray[Any]]
 _TIME = plain_axis("t")
-_WIDE = 3.5  # of the truth, so that an estimate on top of it still shows it
+_WIDE = 3.5  # line width of the truth, which stays visible under an estimate
 SIDES = ("", "_1", "_2")
-"""What variables end with: of the joint, or of the sides of an antagonistic pair."""
+"""Suffixes of variables: of the joint, or of the sides of an antagonistic pair."""
 _OUTER = 1.0  # percent of the values that the axis of a stiffness may leave out at each end
 
 
@@ -105,7 +105,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class _Signal:
-    """A curve of a panel, if it was recorded."""
+    """A curve of a panel, if its variable was recorded."""
 
     variable: str
     """{} stands for the side of an antagonistic pair."""
@@ -115,13 +115,13 @@ class _Signal:
 
 @dataclass(frozen=True)
 class _Quantity:
-    """A panel with signals, the noisy first, which would hide the others."""
+    """A panel with signals. Noisy signals are first, because they would hide other signals."""
 
     title: str
     axis: str
     signals: Sequence[_Signal]
     of_an_estimator: bool = True
-    """Whether an estimator computes it; else it is measured, and the same for all of them."""
+    """Whether an estimator computes the signals; else they are measured, for all estimators."""
 
 
 _QUANTITIES = (
@@ -170,7 +170,7 @@ _QUANTITIES = (
 
 
 def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterator[Panel]:
-    """Stiffness, and its relative error where the truth was recorded; for each side of a pair."""
+    """Stiffness, and its relative error if the truth was recorded; for each side of a pair."""
     for side in SIDES:
         signals = {
             each.label: reduced.signals[each.signals[f"sigma{side}"]]
@@ -209,7 +209,7 @@ def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterato
 
 
 def _band(sigma: NDArray[Any], reduced: Reduced, side: str) -> Band | None:
-    """The 95 % interval over time, of a log whose method claims one."""
+    """The 95 % interval over time; None if the method gives no interval."""
     std = reduced.signals.get(f"sigma_std{side}")
     if std is None or not np.nanmax(std) > 0:
         return None
@@ -223,7 +223,7 @@ def _with_band(shown: tuple[float, float], lines: Sequence[Curve]) -> tuple[floa
 
 
 def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
-    """All other quantities; estimator: whose they are, "" if that is clear."""
+    """Panels of all other quantities; titles name the estimator, unless `estimator` is empty."""
     for quantity in _QUANTITIES:
         whose = f", {estimator}" if estimator and quantity.of_an_estimator else ""
         for side in _sides(quantity, reduced):
@@ -234,13 +234,13 @@ def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
 
 
 def sampling(reduced: Reduced) -> list[str]:
-    """What the plots show of the samples, in words."""
+    """The samples that the plots show, in words."""
     if reduced.bucket == 1:
         return ["Every sample is in the plots: zoom in until single counts of the encoders show."]
     first, last = reduced.every
     return [
         f"Every sample is in the plots from {first:.6g} s to {last:.6g} s, the shaded part: zoom in"
-        f" there until single counts of the encoders show. Elsewhere they keep the least and the "
+        f" there until single counts of the encoders show. Elsewhere, plots have the least and the "
         f"greatest of every {reduced.bucket} samples."
     ]
 
@@ -250,7 +250,7 @@ def of_side(side: str) -> str:
 
 
 def _sides(quantity: _Quantity, reduced: Reduced) -> list[str]:
-    """The sides of which something was recorded, in the order of the signals."""
+    """The sides with a recorded signal, in the order of the signals."""
     return list(
         dict.fromkeys(
             side
@@ -271,14 +271,14 @@ def _curves(quantity: _Quantity, side: str, reduced: Reduced) -> list[Curve]:
             continue
         if signal.true:
             curves.append(Curve(signal.label, TRUE, reduced.t, values, width=_WIDE))
-        # What is constant was not connected: no sensor, no set-point.
+        # A constant signal was not connected: no sensor, no set-point.
         elif np.nanmin(values) != np.nanmax(values):
             curves.append(Curve(signal.label, next(colors), reduced.t, values, width=1.1))
     return curves
 
 
 def _error(estimate: NDArray[Any], true: NDArray[Any]) -> NDArray[np.float32]:
-    """Relative error [%]; nan for 0, which a logarithmic scale does not have."""
+    """Relative error [%]; nan for 0, because a logarithmic scale has no 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         error: NDArray[np.float32] = (100 * np.abs(estimate / true - 1)).astype(np.float32)
     error[~(error > 0) | ~np.isfinite(error)] = np.nan
@@ -286,7 +286,7 @@ def _error(estimate: NDArray[Any], true: NDArray[Any]) -> NDArray[np.float32]:
 
 
 def _every(curves: Sequence[Curve]) -> tuple[float, float]:
-    """Limits of an axis that a spike, for example after a gap, does not set."""
+    """Limits of an axis that do not depend on a spike, for example after a gap."""
     ends = [limits(curve.y) for curve in curves]
     return with_margin(min(end[0] for end in ends), max(end[1] for end in ends), 0.06)
 

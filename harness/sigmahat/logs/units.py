@@ -16,9 +16,9 @@ from sigmahat.logs.log import Array, LogError
 _USUAL = ("rad", "mrad", "deg", "turn", "counts", "N.m", "mN.m", "kN.m", "lbf.in", "A", "mA", "mm")
 _USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")
 _LONGEST = 40  # characters of a unit
-_SMALL = "\u2070\u00b9\u00b2\u00b3\u2074-\u2079"  # digits as exponents are written
+_SMALL = "\u2070\u00b9\u00b2\u00b3\u2074-\u2079"  # digits that are written as exponents
 _TOWER = re.compile(rf"[\d){_SMALL}]\s*(\*\*|\^|[{_SMALL}])|(\*\*|\^)\s*[+-]?\s*(\d\d|[^\d\s+-])")
-"""A power of a number or of a power, or one with more than a digit: 9**9**9 would take for ever."""
+"""A power of a number or of a power, or a long exponent: 9**9**9 would take for ever."""
 
 
 def seconds(unit: str) -> float:
@@ -34,7 +34,7 @@ def counts_per_turn(port: Port) -> float | None:
 
 
 def factor(name: str, port: Port) -> float:
-    """Value at the port, in its unit, of 1 in the column; without sign, zero and gear.
+    """Value of the port, in its unit, per 1 in the column; without sign, zero and gear.
 
     Raises LogError for a unit that is unknown or does not fit, and for a missing key that the unit
     needs.
@@ -60,7 +60,7 @@ def factor(name: str, port: Port) -> float:
 
 
 def scale(name: str, port: Port) -> float:
-    """As factor, with the sign and the gear."""
+    """As `factor`, with the sign and the gear."""
     return port.sign * factor(name, port) / port.gear_ratio
 
 
@@ -116,8 +116,7 @@ def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> 
         return float(quantity.to(_spelled(target)).magnitude)
     except pint.DimensionalityError as error:
         raise LogError(
-            f"{where}: unit {unit!r} is no unit of what is expected in {target}"
-            f"{_meant(unit, usual)}"
+            f"{where}: unit {unit!r} cannot be converted to {target}{_meant(unit, usual)}"
         ) from error
     except Exception as error:  # any: the parser of pint raises many kinds
         raise LogError(f"{where}: unknown unit {unit!r}{_meant(unit, usual)}") from error
@@ -132,11 +131,11 @@ def _meant(unit: str, usual: tuple[str, ...]) -> str:
     similar = get_close_matches(unit, usual, n=2, cutoff=0.5)
     if similar:
         return "; did you mean " + " or ".join(map(repr, similar)) + "?"
-    return f"; usual ones are {', '.join(usual)}"
+    return f"; usual units are {', '.join(usual)}"
 
 
 def _spelled(unit: str) -> str:
-    """N.m as pint writes it."""
+    """A unit such as N.m in the notation of pint."""
     return unit.replace(".", "*")
 
 

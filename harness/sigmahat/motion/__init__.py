@@ -1,1 +1,1 @@
-"""A motion to record: which one will show the stiffness of a joint, before there is a log."""
+"""Proposes a motion that will show the stiffness of a joint, before a log exists."""

@@ -2,8 +2,8 @@
 
 Every number of a message is a column, such as "/knee/angle.data". Elements of arrays have an index,
 or in a sensor_msgs/JointState the name of the joint: "/joint_states.position[knee]". The times of a
-topic are a column too, "/joint_states.time", in seconds since the beginning of the bag. They are
-those in the headers of the messages, or without headers those of the recording.
+topic are a column too, "/joint_states.time", in seconds since the beginning of the bag. Times are
+from the headers of the messages, or without headers from the recording.
 """
 
 from __future__ import annotations
@@ -37,7 +37,9 @@ def read_bag(path: Path) -> LogInMemory:
                 stamps[topic].append(recorded if stamp is None else stamp)
                 for name, number in _numbers(message):
                     column = values[f"{topic}.{name}"]
-                    column.extend([np.nan] * (row - len(column)))  # where a message lacks it
+                    column.extend(
+                        [np.nan] * (row - len(column))
+                    )  # for messages without this number
                     column.append(number)
     except (AnyReaderError, OSError, ValueError, KeyError, AssertionError) as error:
         raise LogError(f"{path}: not a whole ROS 2 bag ({error}); copy it again") from error

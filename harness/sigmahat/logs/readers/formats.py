@@ -20,9 +20,9 @@ _HEAD = 520  # bytes; in files of MATLAB the signature of HDF5 is at byte 512
 def open_log(path: str | Path) -> Log:
     """A log in CSV, Parquet, MAT (v5 to v7.3), HDF5, MCAP, or a ROS 2 bag.
 
-    Only the file itself is read, or the files in the folder of the bag: not what it names
-    elsewhere. Raises LogError if the file is missing, empty, damaged, or of another format, and if
-    it holds more than limits.py allows.
+    Only the file itself is read, or the files in the folder of the bag, but no files outside to
+    which they refer. Raises LogError if the file is missing, empty, damaged, or of another format,
+    and if the file holds more than limits.py allows.
     """
     path = Path(path)
     if path.is_dir():
@@ -31,7 +31,7 @@ def open_log(path: str | Path) -> Log:
         from sigmahat.logs.readers.bags import read_bag
 
         return read_bag(path)
-    if path.exists() and not path.is_file():  # a pipe would be waited for
+    if path.exists() and not path.is_file():  # reading a pipe would wait
         raise LogError(f"{path}: expected a file, got a pipe or a device; name a log")
     try:
         with path.open("rb") as file:
@@ -66,7 +66,7 @@ def _reader(path: Path, head: bytes) -> Log:
         return read_bag(path)
     for begin, what, then in _PACKED:
         if head.startswith(begin):
-            raise LogError(f"{path}: {what}; {then.format(path)}, and name what comes out")
+            raise LogError(f"{path}: {what}; {then.format(path)}, and name the result")
     if b"\0" in head:
         raise LogError(
             f"{path}: unknown format; expected CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag"

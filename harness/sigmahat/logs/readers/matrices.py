@@ -5,7 +5,7 @@ structure or group, the path is part of the name: "joint.theta".
 
 The elements of a MAT file of version 5 to 7 are checked before scipy reads the file: scipy unpacks
 a compressed variable whatever its size, and uses the kind of an element as an index. After a head
-of 128 bytes, each variable is a tag of two integers, kind and number of bytes, and that many bytes.
+of 128 bytes, each variable has a tag of two integers, kind and number of bytes, and then its bytes.
 A variable is a sequence of such elements again.
 """
 
@@ -29,7 +29,7 @@ _HEAD, _TAG = 128, 8  # bytes
 _AT_A_TIME = 1 << 20
 _PIECE = 1 << 16  # of the file
 _MOST = 300_000_000  # bytes
-_MOST_OF_PARTS = 80_000_000  # of structures and cells: eight bytes can be an object of a hundred
+_MOST_OF_PARTS = 80_000_000  # of structures and cells: 8 bytes can become an object of 100 bytes
 _MOST_ELEMENTS = 1_000_000
 _NUMBERS = {"double", "single", "logical"} | {
     f"{u}int{n}" for u in ("", "u") for n in (8, 16, 32, 64)
@@ -38,9 +38,9 @@ _MOST_PER_BYTE = 8  # of the file
 
 
 def check_packed(path: Path) -> None:
-    """Raises LogError for a file that becomes far larger than it is, or has unknown elements.
+    """Raises LogError for a file that is far larger without compression, or has unknown elements.
 
-    Others may be damaged, which scipy says.
+    scipy reports other damage.
     """
     size = path.stat().st_size
     most, unpacked = max(_MOST if _is_plain(path) else _MOST_OF_PARTS, _MOST_PER_BYTE * size), 0
@@ -75,12 +75,12 @@ def check_packed(path: Path) -> None:
 
 
 class _Elements:
-    """The elements of one variable, which comes in pieces."""
+    """The elements of one variable, which is read in pieces."""
 
     def __init__(self, order: str) -> None:
         self._tag = struct.Struct(f"{order}II")
         self._rest = b""  # begins with a tag
-        self._skip = 0  # bytes of an element that are still to come
+        self._skip = 0  # bytes of an element that are not read yet
 
     def kinds(self, piece: bytes) -> Iterator[int]:
         """The kinds of the elements whose tags are complete with this piece."""
@@ -93,14 +93,14 @@ class _Elements:
             at += _TAG
             if kind >> 16:  # up to four bytes in the tag itself
                 kind &= 0xFFFF
-            elif kind != _MATRIX:  # whose elements follow
+            elif kind != _MATRIX:  # the elements of a matrix follow
                 at += -(-length // 8) * 8
             yield kind
         self._rest, self._skip = data[at:], max(0, at - len(data))
 
 
 def _pieces(file: IO[bytes], length: int, *, packed: bool) -> Iterator[bytes]:
-    """The next bytes of a file, unpacked; up to where they are damaged."""
+    """The next bytes of a file, unpacked, up to the first damage."""
     unpack = zlib.decompressobj()
     try:
         while length > 0 and (piece := file.read(min(length, _PIECE))):
@@ -111,11 +111,11 @@ def _pieces(file: IO[bytes], length: int, *, packed: bool) -> Iterator[bytes]:
                 yield unpack.decompress(piece, _AT_A_TIME)
                 piece = unpack.unconsumed_tail
     except zlib.error:
-        pass  # damaged, which scipy says in words
+        pass  # scipy reports the damage
 
 
 def _is_plain(path: Path) -> bool:
-    """Whether all variables are arrays of numbers, so that the memory goes with the bytes."""
+    """Whether all variables are arrays of numbers: memory is then proportional to the bytes."""
     import scipy.io
 
     try:
@@ -124,7 +124,7 @@ def _is_plain(path: Path) -> bool:
         return False
 
 
-_MOST_COLUMNS = 256  # of one matrix; a larger one is an image, not a log
+_MOST_COLUMNS = 256  # of one matrix; a larger matrix is an image, not a log
 _DEEPEST = 32  # groups of HDF5 in groups
 
 Named = Iterator[tuple[str, NDArray[np.generic]]]
@@ -199,7 +199,7 @@ def _elsewhere(path: Path, name: str, file: str) -> LogError:
 
 
 def _columns(path: Path, name: str, array: Any) -> Named:
-    """Columns of an array or an HDF5 data set; none if it cannot be a signal."""
+    """Columns of an array or an HDF5 data set; no columns if it cannot be a signal."""
     if array.dtype.kind not in "biuf" or not 1 <= array.ndim <= 2 or max(array.shape) < 2:
         return
     if min(array.shape) > _MOST_COLUMNS and array.ndim == 2:

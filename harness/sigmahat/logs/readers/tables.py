@@ -29,8 +29,8 @@ from sigmahat.logs.log import (
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 _ALWAYS_READ = 100_000_000  # bytes without compression that every file may have
-_LINES = 20  # that are looked at before the text is parsed
-_FEW = 100  # rows with text that are looked at at a time
+_LINES = 20  # lines that are checked before the text is parsed
+_FEW = 100  # rows with text that are checked at a time
 
 
 class ParquetLog(Log):
@@ -74,7 +74,7 @@ class ParquetLog(Log):
         for name in names:
             check_numbers(self.path, _bytes(self._file.metadata, name) // 8)
         try:
-            # A text that repeats stays one text, until it is known how long all of them are.
+            # Repeated texts stay in a dictionary until the total length of the texts is known.
             file = pa.parquet.ParquetFile(self.path, pre_buffer=False, read_dictionary=texts)
             for batch in file.iter_batches(rows, columns=list(names), use_threads=False):
                 yield self._with_texts(batch)
@@ -98,12 +98,12 @@ class ParquetLog(Log):
 
 @dataclass(frozen=True)
 class Dialect:
-    """How a text file with a table is written."""
+    """Format of a text file with a table."""
 
     names: Sequence[str]
-    """Of the columns; with a row of units below them, name and unit."""
+    """Names of the columns; with a row of units, name and unit."""
     delimiter: str
-    """Between the columns."""
+    """Character between the columns."""
     decimal: str
     """Point or comma in numbers."""
     encoding: str
@@ -114,7 +114,7 @@ class Dialect:
 class CsvLog(Log):
     """A text file: one line that names the columns, then numbers between , or ; or tabs.
 
-    With ; between them the numbers may have decimal commas. A second line may have units.
+    With ; as delimiter, numbers may have decimal commas. A second line may have units.
 
     The text is parsed once, into a temporary Parquet file: so a long log needs little memory. Only
     a column that does not begin with numbers, such as dates, is parsed again when it is read.
@@ -123,7 +123,7 @@ class CsvLog(Log):
     def __init__(self, path: Path) -> None:
         """Raises LogError for a file that is no such table."""
         self.dialect = dialect(path)
-        """How the file is written."""
+        """Format of the file."""
         names = self._names = list(self.dialect.names)
         self._cut: list[int] = []
         self._parse = pa.csv.ParseOptions(
@@ -135,18 +135,18 @@ class CsvLog(Log):
         if self.dialect.head > 1:
             self.notes.append("line 2 has the units of the columns")
         file = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
-        weakref.finalize(self, file.close)  # which removes it
+        weakref.finalize(self, file.close)  # closing removes the file
         self._copy = self._copied(file)
         self._types = {field.name: field.type for field in self._copy.schema_arrow}
         self.columns = dict.fromkeys(names, self._copy.metadata.num_rows)
         if self._cut:
             self.notes.append(
-                f"a row with {self._cut[0]} of {len(names)} values was left out, as of a file that "
-                "was cut"
+                f"a row with {self._cut[0]} of {len(names)} values was left out: the file may have "
+                "been cut off"
             )
 
     def _left_out(self, row: pa.csv.InvalidRow) -> str:
-        """Leaves out one row that is too short: the last one of a recording that was stopped."""
+        """Leaves out one row that is too short, such as the last row of a stopped recording."""
         if row.actual_columns >= row.expected_columns or self._cut:
             return "error"
         self._cut.append(row.actual_columns)
@@ -163,7 +163,7 @@ class CsvLog(Log):
         yield from self._copy.iter_batches(rows, columns=list(names), use_threads=False)
 
     def _copied(self, file: IO[bytes]) -> pa.parquet.ParquetFile:
-        """All columns in Parquet, numbers as such, everything else as its text."""
+        """All columns in Parquet, numbers as such, other columns as text."""
         try:
             with self._stream({}) as stream:
                 kinds = {field.name: field.type for field in stream.schema}
@@ -175,7 +175,7 @@ class CsvLog(Log):
                 small = [name for name in integers if fits_float64(first[name])]
                 self._write(file, {**kinds, **dict.fromkeys(small, pa.float64())})
         except pa.ArrowInvalid:
-            # A column that has text behind its first numbers, or damage, which appears again here.
+            # A column has text after its first numbers, or damage, which fails again here.
             try:
                 self._write(file, {})
             except pa.ArrowInvalid as error:
@@ -239,7 +239,7 @@ def _first_lines(path: Path) -> tuple[list[str], str]:
 
 
 def dialect(path: Path) -> Dialect:
-    """How a text file with a table is written. Raises LogError if it is none."""
+    """The format of a text file with a table. Raises LogError if the file has no table."""
     lines, encoding = _first_lines(path)
     for i, line in enumerate(lines, 1):
         if len(line) >= _BLOCK:
@@ -273,7 +273,7 @@ def dialect(path: Path) -> Dialect:
 
 
 def _may_be_value(cell: str) -> bool:
-    """Whether a cell begins like a number, a date or a value that is missing, and not as a unit."""
+    """Whether a cell begins like a number, a date or a missing value, and not like a unit."""
     return cell[:1].isdigit() or (is_number(cell.replace(",", ".")) and cell != "")
 
 
@@ -288,10 +288,10 @@ def _is_text(kind: pa.DataType) -> bool:
 
 
 def _bytes(metadata: Any, name: str) -> int:
-    """What a column of a Parquet file is without compression, at most."""
+    """Upper limit of the size of a column of a Parquet file without compression [bytes]."""
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     whole = sum(group.total_byte_size for group in groups)
-    # Only where it matters: pyarrow aborts the process if what is said of a column is damaged.
+    # Only for large files: pyarrow aborts the process if the metadata of a column are damaged.
     if whole <= _ALWAYS_READ:
         return int(whole)
     places = [j for j in range(metadata.num_columns) if metadata.schema.column(j).path == name]
