@@ -53,7 +53,7 @@ int sh_has_nominal_curve(const sh_parameters *p)
 /* ---- the table --------------------------------------------------------------------------- */
 
 /* A std deviation of sh_parameters.prior is given in this unit. */
-enum { ONE, TAU_E, K_0, TAU_C, KNEE_TAU_E };
+enum { ONE, TAU_E, K_0, TAU_C };
 
 #define PRIOR(member) (int)offsetof(sh_parameters, prior.member)
 #define CURVE (SH_IS_SPRING | SH_IS_CURVE)
@@ -79,8 +79,7 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_CURVE, 2, CURVE},
     [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 3, SH_IS_SPRING},
     [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, SH_SIGNAL_LINEAR, SH_OF_HYSTERESIS, 4, 0},
-    [SH_COLUMN_KNEE] = {PRIOR(power), KNEE_TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 0, CURVE},
-    [SH_COLUMN_TWO_KNEES] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 6, CURVE},
+    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 6, CURVE},
     [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, SH_OF_NOTHING, 5,
                          SH_IS_MOTOR},
     [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, SH_OF_NOTHING, 5,
@@ -138,7 +137,7 @@ typedef struct {
 static void add(column_list *list, const sh_parameters *p, int kind, int i, int j)
 {
     const sh_real units[] = {1, p->prior.tau_e, p->prior.tau_e / p->range.phi,
-                             p->prior.tau_coulomb, SH_KNEE_PRIOR * p->prior.tau_e};
+                             p->prior.tau_coulomb};
     sh_column column = {kind, i, j, 0, 0};
     const void *prior = (const char *)p + sh_column_kinds[kind].prior;
 
@@ -183,11 +182,8 @@ static void list_columns(const sh_parameters *p, column_list *list)
         add(list, p, SH_COLUMN_DEAD_ZONE, i, 0);
     }
     /*@ loop unroll SH_WIDTHS; */
-    for (i = 0; i < SH_WIDTHS && !p->rls.symmetric && linear < n; ++i) {
+    for (i = p->rls.symmetric ? SH_WIDTHS - 1 : 0; i < SH_WIDTHS; ++i) {
         add(list, p, SH_COLUMN_KNEE, i, 0);
-    }
-    if (p->rls.symmetric) {
-        add(list, p, SH_COLUMN_TWO_KNEES, SH_WIDTHS - 1, 0);
     }
     add(list, p, SH_COLUMN_BIAS, 0, 0);
     add(list, p, SH_COLUMN_DAMPING, 0, 0);
@@ -287,7 +283,6 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
     case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- clip(z + dphi, h) */
         return at->stop[i % SH_WIDTHS] / (half_width(column) * p->range.phi);
     case SH_COLUMN_KNEE:
-    case SH_COLUMN_TWO_KNEES:
         beyond = beyond_knee(at->phi / p->range.phi, KNEES[i % SH_WIDTHS], p->rls.symmetric, slope);
         *slope /= p->range.phi;
         return beyond;

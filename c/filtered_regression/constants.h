@@ -37,12 +37,6 @@
  */
 #define SH_KNEES {(sh_real)0, -(sh_real)0.35, (sh_real)0.35}
 
-/* Std deviation of a change of slope at a knee that is always used, in prior.power prior.tau_e / range.phi
- * [1]. Piecewise linear springs fit a cubic so well that the data do not ask for knees, but the stiffness is
- * wrong by 10 %. With 0.1 the interval holds it too rarely, with 0.4 it is wider and not better.
- */
-#define SH_KNEE_PRIOR ((sh_real)0.2)
-
 /* Share of the covered range from which such an element looks like the spring [1]. */
 #define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
 

@@ -49,8 +49,7 @@ enum {
     SH_COLUMN_SET_POWER,    /* one more power of the set-point */
     SH_COLUMN_DEAD_ZONE,    /* backlash */
     SH_COLUMN_HYSTERESIS,
-    SH_COLUMN_KNEE,      /* a slope of the curve that changes at once */
-    SH_COLUMN_TWO_KNEES, /* the same on both sides, of a symmetric torque */
+    SH_COLUMN_KNEE,  /* a slope of the curve that changes at once */
     SH_COLUMN_SIN_M, /* motor encoder that is not centred */
     SH_COLUMN_COS_M,
     SH_COLUMN_VISCOUS, /* d */

@@ -84,10 +84,7 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
     if 1 < m < most_m and linear < n:
         found += [("SET_POWER", 0, of("power") * tau_e)]
     found += [("DEAD_ZONE", i, of("gap") * tau_e) for i in range(3)]
-    if p["rls.symmetric"]:
-        found.append(("TWO_KNEES", 2, of("power") * tau_e))
-    elif linear < n:
-        found += [("KNEE", i, 0.2 * of("power") * tau_e) for i in range(3)]
+    found += [("KNEE", i, of("power") * tau_e) for i in ([2] if p["rls.symmetric"] else range(3))]
     found += [("BIAS", 0, of("bias") * tau_e)]
     found += [("DAMPING", j, of("damping") * K_0) for j in sorted({0, m - 1})]
     found += [(f"{name}_Q", 0, of("eccentric") * K_0) for name in ("SIN", "COS")]
@@ -109,9 +106,9 @@ GROUPS = {
     "HYSTERESIS": 4,
     "SIN_M": 5,
     "COS_M": 5,
-    "TWO_KNEES": 6,
+    "KNEE": 6,
 }
-CURVE = ("POWER", "NOMINAL", "HIGHER_POWER", "SET_POWER", "KNEE", "TWO_KNEES")
+CURVE = ("POWER", "NOMINAL", "HIGHER_POWER", "SET_POWER", "KNEE")
 TORQUE = (*CURVE, "DEAD_ZONE")
 
 
@@ -170,7 +167,7 @@ class Inputs:
             return self.x * self.l**m, self.l**m / self.p["range.phi"]
         if kind == "NOMINAL":
             return self.nominal, self.nominal_slope
-        if kind in ("KNEE", "TWO_KNEES"):
+        if kind == "KNEE":
             knee, x = KNEES[index], self.x
             sides = np.sign(x) if self.p["rls.symmetric"] else -1.0 if knee < 0 else 1.0
             beyond = np.maximum(sides * x - abs(knee), 0.0)

@@ -110,7 +110,7 @@ def test_nothing_is_lost_when_the_log_vanishes_and_at_the_end(tmp_path: Path) ->
             hand.sees("assumptions that no log can verify")
             hand.types("motor.B", "2e-4")
             hand.presses("write")
-            hand.sees("exists, and is other than what is shown here")
+            hand.sees("exists, and differs from what is shown here")
             window.driver.get(page.address)  # the page is closed, and opened again
             assert hand.value("motor.B") == "0.0002"
         status, out, err = page.interrupt()

@@ -14,7 +14,7 @@ MOST_COLUMNS = 2000
 _NUMBERS, _SMALL = (
     15_000_000,
     10_000_000,
-)  # allowed numbers in a file with at most this number of bytes
+)  # allowed numbers in a file up to this size
 _TOGETHER = 2  # factor for all columns together, where they are needed at the same time
 _NUMBERS_PER_BYTE = 3  # of further bytes; without compression, a file has at most one
 _BYTES = 400_000_000  # of all columns of a file that is read as a whole

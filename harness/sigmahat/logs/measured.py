@@ -62,7 +62,7 @@ def shown_points(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPo
 
 
 def spread(first: int, count: int, stride: int) -> NDArray[np.intp]:
-    """Indices of ticks first, first + 1 ..., one per stride; no regular pattern beats with a motion.
+    """Indices of ticks first, first + 1 ..., one per stride, without a beat with the motion.
 
     The chosen index of each stride does not depend on how a log is split.
     """

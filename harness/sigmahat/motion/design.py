@@ -1,4 +1,4 @@
-"""Which motion shows the stiffness of a set of joints best, within limits that hold for all."""
+"""Finds the motion that shows the stiffness of a set of joints best, within common limits."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from sigmahat.runs.pool import spread
 
 _RATIOS = (1.0, 1.618, 2.713, 4.237)  # of the frequencies: no multiples of each other
 _PHASES = (0.0, 1.0, 2.0, 3.0)
-_OF_RESONANCE = (0.15, 0.3, 0.5)  # the highest frequency over the lowest resonance
+_OF_RESONANCE = (0.15, 0.3, 0.5)  # ratio of the highest frequency to the lowest resonance
 _EXPONENTS = (1.0, 2.0)  # amplitudes fall with the frequency to this power
 _HIGHEST = 5.0  # [Hz] no motion of a stiff joint is faster
 _CYCLES = 2.0  # of the slowest sine, at least
 _RAMP = 0.15  # of the duration, at most
 _LONGEST_RAMP = 2.0  # [s]
-_COARSE = 0.02  # [s] samples in which peaks are sought
-_MARGIN = 0.97  # of the limits, for joints between those that are tried
-_COMPARED, _PROMISED = 6, 20  # joints by which candidates are compared, and of the promise
+_COARSE = 0.02  # [s] sample period for the search of peaks
+_MARGIN = 0.97  # of the limits, for joints between the joints that are tried
+_COMPARED, _PROMISED = 6, 20  # number of joints: to compare candidates, and to predict the result
 
 NOT_SHOWN = 1.0
-"""Half width over the stiffness: above it the motion does not show the stiffness."""
+"""Largest ratio of half width to stiffness of a motion that shows the stiffness."""
 
 
 @dataclass(frozen=True)
 class Design:
-    """A motion, and what to expect of it."""
+    """A motion, and its expected results."""
 
     motion: Multisine
     peaks: Limits
-    """The largest of all joints that were tried."""
+    """Largest values of all joints that were tried."""
     half_widths: Sequence[float]
-    """Of the stiffness in the middle of the data over the stiffness, of drawn joints, sorted."""
+    """Half widths of the stiffness in the middle of the data, divided by the stiffness, sorted."""
 
     @property
     def not_shown(self) -> int:
@@ -46,7 +46,7 @@ class Design:
         return sum(each > NOT_SHOWN for each in self.half_widths)
 
     def quantile(self, share: float) -> float:
-        """A half width that this share of the joints does not exceed."""
+        """A half width that this fraction of the joints does not exceed."""
         return float(np.quantile(self.half_widths, share))
 
 
@@ -57,7 +57,7 @@ def design(
     duration: float,
     progress: Callable[[int], object] = lambda done: None,
 ) -> Design:
-    """The motion of the smallest half widths, in their geometric mean, among sums of four sines.
+    """The sum of four sines with the smallest geometric mean of the half widths.
 
     progress  is given the number of joints that were tried since the last call, of `trials()`
 
@@ -70,7 +70,7 @@ def design(
     compared = list(joints.draw(_COMPARED, np.random.default_rng(1)))
     pairs = [(motion, joint) for motion in candidates for joint in compared]
     found = np.array(_widths(pairs, sensors, progress)).reshape(len(candidates), _COMPARED)
-    # The mean of the logarithms: a joint that the motion does not show counts, how little does not.
+    # Mean of the logarithms: all joints that the motion does not show have equal weight.
     means = np.mean(np.log(np.minimum(found, NOT_SHOWN)), axis=1)
     best = candidates[int(np.argmin(means))]
     drawn = list(joints.draw(_PROMISED, np.random.default_rng(2)))
@@ -79,7 +79,7 @@ def design(
 
 
 def _why_none(joints: Sequence[Joint], limits: Limits, duration: float) -> str:
-    """In a sentence: a motion would have to be longer, or rest takes too much of the limits."""
+    """The reason in a sentence: the duration is too short, or weight and friction are too large."""
     lowest = min(each.resonance for each in joints)
     shortest = _shortest(_frequencies(lowest, _OF_RESONANCE[-1]))
     if duration < shortest:
@@ -103,7 +103,7 @@ def _frequencies(resonance: float, share: float) -> list[float]:
 
 
 def _shortest(frequencies: Sequence[float]) -> float:
-    """Least duration that has enough of the slowest sine between its ramps [s]."""
+    """Shortest duration with enough cycles of the slowest sine between the ramps [s]."""
     ramps = 2 * _RAMP  # together, of the duration
     cycles = _CYCLES / frequencies[0]
     return min(cycles, cycles * (1 - ramps) + 2 * _LONGEST_RAMP)
@@ -141,7 +141,7 @@ def _candidates(joints: Sequence[Joint], limits: Limits, duration: float) -> Ite
 
 
 def _within(motion: Multisine, joints: Sequence[Joint], limits: Limits) -> Multisine | None:
-    """The motion as large as the limits allow; None if not even rest keeps them."""
+    """The motion as large as the limits allow; None if even a joint at rest exceeds the limits."""
     position, velocity, _ = motion.at(motion.times(_COARSE))
     angle, speed = float(np.max(np.abs(position))), float(np.max(np.abs(velocity)))
     scale = _MARGIN * min(limits.angle / angle, limits.velocity / speed)

@@ -13,14 +13,14 @@ from sigmahat.motion.multisine import Multisine
 
 _ROS_PERIOD = 0.01  # [s]
 FILES = ("motion.csv", "motion.yaml", "motion.c")
-"""Their names."""
+"""Names of the files."""
 
 
 def write(motion: Multisine, joint: str, start: float, T: float, folder: Path) -> None:
     """Writes FILES.
 
-    joint  its name in ROS
-    start  position of the motor behind its gear at the start [rad]
+    joint  name of the joint in ROS
+    start  start position of the motor at the gear output [rad]
     T      time between the rows of the CSV [s]
     """
     t = motion.times(T)
@@ -50,7 +50,7 @@ def _ros(motion: Multisine, joint: str, start: float) -> str:
 
 
 def _c(motion: Multisine, start: float) -> str:
-    """C99 without a table; the formulas are those of Multisine."""
+    """C99 without a table, with the formulas of Multisine."""
     sines = ", ".join(
         f"{{{A!r}, {2 * np.pi * f!r}, {p!r}}}"
         for A, f, p in zip(motion.amplitudes, motion.frequencies, motion.phases, strict=True)
@@ -62,8 +62,8 @@ def _c(motion: Multisine, start: float) -> str:
 #define MOTION_DURATION {motion.duration!r} /* [s] */
 
 /*
- * Position [rad], velocity [rad/s] and acceleration [rad/s2] of the motor behind its gear,
- * t seconds after the start. Before it, and after MOTION_DURATION, the joint rests.
+ * Position [rad], velocity [rad/s] and acceleration [rad/s2] of the motor at its gear
+ * output, t seconds after the start. Before 0 and after MOTION_DURATION, the joint is at rest.
  */
 void motion(double t, double *position, double *velocity, double *acceleration)
 {{

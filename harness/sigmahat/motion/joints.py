@@ -1,4 +1,4 @@
-"""Joints that a motion has to suit: drawn from limits, or from what a log shows; how they move."""
+"""Joints that a motion has to suit, from limits or from a log, and the motion of these joints."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ Rng = np.random.Generator
 
 @dataclass(frozen=True)
 class Limits:
-    """What the motion may reach, behind the gear."""
+    """Limits of the motion, at the gear output."""
 
     angle: float
-    """To either side of the position at the start [rad]."""
+    """Largest distance from the start position [rad]."""
     velocity: float
     """[rad/s]"""
     torque: float
-    """Of the motor [N.m]."""
+    """Torque of the motor [N.m]."""
     deformation: float
     """[rad]"""
 
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint; all behind the gear. In `Ranges` each is the least and the largest value."""
+    """A joint; all values at the gear output. `Ranges` has the least and the largest values."""
 
     k: float
     """Stiffness [N.m/rad]."""
@@ -39,26 +39,26 @@ class Joint:
     D_q: float
     """Viscous friction of the link [N.m.s/rad]."""
     weight: float
-    """Largest torque of its weight [N.m]."""
+    """Largest torque of the weight of the link [N.m]."""
     angle: float
-    """Of the link at the start, 0 where the weight hangs [rad]."""
+    """Angle of the link at the start, 0 where the weight hangs down [rad]."""
     B: float
     """Inertia of the motor [kg.m2]."""
     D_theta: float
-    """Its viscous friction [N.m.s/rad]."""
+    """Viscous friction of the motor [N.m.s/rad]."""
     tau_coulomb: float
-    """Its Coulomb friction [N.m]."""
+    """Coulomb friction of the motor [N.m]."""
 
     @property
     def resonance(self) -> float:
-        """Of link and spring with the motor held [Hz]."""
+        """Resonance of link and spring with the motor held [Hz]."""
         return float(np.sqrt(self.k / self.M)) / (2 * np.pi)
 
     def move(self, motion: Multisine, T: float) -> tuple[Array, Array, Array]:
         """Motor [rad], deformation [rad] and torque of the motor [N.m] at k T.
 
-        The link is linear, (2), but for its weight, which is that at the angle of the motor.
-        Between the samples its inputs are linear: so the response is exact.
+        The link is linear, (2), but the torque of the weight is taken at the angle of the motor.
+        Inputs are linear between the samples, so the response is exact.
         """
         theta, velocity, acceleration = motion.at(motion.times(T))
         load = self.M * acceleration + self.D_q * velocity
@@ -75,8 +75,8 @@ class Joint:
         return theta, phi, self.B * acceleration + friction - self.k * phi
 
 
-_DAMPING = 0.02  # of the spring, over the critical one
-_SLOW = 1e-3  # [rad/s] below it the Coulomb friction is smaller
+_DAMPING = 0.02  # damping ratio of the spring
+_SLOW = 1e-3  # [rad/s] below this velocity, the Coulomb friction is smaller
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Ranges:
 
 
 def of_limits(limits: Limits) -> Ranges:
-    """Joints that somebody may have who gives these limits, and nothing else."""
+    """Joints that are likely for a user who gives these limits, and nothing else."""
     k = limits.torque / limits.deformation
     speed_up = limits.torque / limits.velocity  # [N.m.s/rad] times the time to the full velocity
     low = Joint(k, 0.1 * speed_up, 0.0, 0.0, 0.0, 0.02 * speed_up, 0.0, 0.0)

@@ -1,4 +1,4 @@
-"""What a log, or a configuration alone, says about a joint and its sensors."""
+"""Data of a joint and its sensors, from a log or from a configuration alone."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from sigmahat.logs.sampling import sample
 from sigmahat.motion.joints import Joint, Limits, Ranges
 from sigmahat.motion.record import NOISE, Sensors
 
-_COUNTS = 400_000.0  # a turn behind the gear, where no configuration says it
+_COUNTS = 400_000.0  # per turn at the gear output, without a configuration
 _PERIOD = 1e-3  # [s]
-_WITHIN = 1.2  # what the log shows, times and over this
-_LINK_BELOW = 20.0  # [Hz] motion of the link that is used
+_WITHIN = 1.2  # values of a log are multiplied and divided by this factor
+_LINK_BELOW = 20.0  # [Hz] motion of the link below this frequency is used
 
 
 def sensors(configuration: Configuration | None, limits: Limits) -> Sensors:
-    """Those of a configuration; what it does not say is assumed."""
+    """The sensors of a configuration; missing values are assumed."""
     noise = NOISE * limits.torque
     if configuration is None:
         return Sensors(1.0, (_COUNTS, _COUNTS), 0.02, noise, _PERIOD)
@@ -42,7 +42,7 @@ def sensors(configuration: Configuration | None, limits: Limits) -> Sensors:
 
 
 def of_log(log: Log, configuration: Configuration, start: float) -> Ranges:
-    """The joint of a log: the stiffness within its interval, all else within 20 %.
+    """The joint of a log: the stiffness within its interval, all other values within 20 %.
 
     start  position of the motor from which the next motion begins [rad]
 

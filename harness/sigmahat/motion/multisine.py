@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Multisine:
-    """Position e(t) sum_i A_i sin(2 pi f_i t + p_i) of the motor behind its gear.
+    """Position e(t) sum_i A_i sin(2 pi f_i t + p_i) of the motor at the gear output.
 
     e rises from 0 to 1 in the ramp and falls again at the end, as s^4 (35 - 84 s + 70 s^2 - 20 s^3)
     with s from 0 to 1: position, velocity, acceleration and jerk begin and end at 0.
@@ -31,7 +31,7 @@ class Multisine:
     """[s]"""
 
     def times(self, T: float) -> Array:
-        """From the start to the end, T apart [s]."""
+        """Times from the start to the end, T apart [s]."""
         return T * np.arange(round(self.duration / T) + 1, dtype=np.float64)
 
     def at(self, t: Array) -> tuple[Array, Array, Array]:
@@ -44,7 +44,7 @@ class Multisine:
         return e * x, de * x + e * v, dde * x + 2 * de * v + e * a
 
     def _envelope(self, t: Array) -> tuple[Array, Array, Array]:
-        """With its derivatives; the ramps do not overlap."""
+        """The envelope e with its derivatives; the ramps do not overlap."""
         rising = t < self.duration / 2
         s = np.clip(np.where(rising, t, self.duration - t) / self.ramp, 0.0, 1.0)
         slope = np.where(rising, 1.0, -1.0) / self.ramp
@@ -56,6 +56,6 @@ class Multisine:
         )
 
     def scaled(self, factor: float) -> Multisine:
-        """The same with other amplitudes."""
+        """The motion with amplitudes multiplied by a factor."""
         amplitudes = [factor * A for A in self.amplitudes]
         return Multisine(amplitudes, self.frequencies, self.phases, self.duration, self.ramp)

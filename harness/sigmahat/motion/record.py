@@ -1,4 +1,4 @@
-"""The log that a motion of a joint would give, and what the documented path makes of it."""
+"""Simulates the log of a motion of a joint, and its evaluation by `identify` and `estimate`."""
 
 from __future__ import annotations
 
@@ -20,28 +20,28 @@ from sigmahat.motion.joints import Joint
 from sigmahat.motion.multisine import Array, Multisine
 
 NOISE = 0.003
-"""Of the torque: its standard deviation over the limit of the torque, where nobody knows it."""
+"""Default noise of the torque: standard deviation divided by the limit of the torque."""
 
 
 @dataclass(frozen=True)
 class Sensors:
-    """How the joint is measured."""
+    """The sensors of a joint."""
 
     gear_ratio: float
     counts: tuple[float, float]
-    """Of the encoders of motor and link, per turn behind the gear."""
+    """Counts of the encoders of motor and link, per turn at the gear output."""
     torque_gain: float
     """Relative standard deviation of the gain of the torque: prior.torque_gain."""
     noise: float
-    """Of the torque of the motor behind the gear [N.m]."""
+    """Noise of the torque of the motor at the gear output [N.m]."""
     T: float
     """Time between samples [s]."""
 
 
 def relative_half_width(joint: Joint, motion: Multisine, sensors: Sensors) -> float:
-    """Half of the 95 % interval of the stiffness in the middle of the data, over the stiffness.
+    """Half of the 95 % interval of the stiffness in the middle, divided by the stiffness.
 
-    By `identify` and `estimate` on the log. Infinite if they refuse it.
+    `identify` and `estimate` evaluate a simulated log. Infinite if they refuse this log.
     """
     log = _log(joint, motion, sensors)
     document = tomlkit.document()
@@ -65,7 +65,7 @@ def relative_half_width(joint: Joint, motion: Multisine, sensors: Sensors) -> fl
     if not curve.branches:
         return float("inf")
     _, sigma, interval = stiffness_in_the_middle(curve.branches[0])
-    assert interval is not None  # FilteredRegression claims one
+    assert interval is not None  # FilteredRegression gives an interval
     return (interval[1] - interval[0]) / 2 / max(abs(sigma), 1e-300)
 
 

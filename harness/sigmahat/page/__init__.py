@@ -1,1 +1,1 @@
-"""The page in which a log is set up: what the commands do, in a browser."""
+"""The page to set up a log: the work of the commands, in a browser."""

@@ -1,6 +1,6 @@
-"""What there is to choose and to fill in, and keys of a configuration as text: read, set, removed.
+"""Fields to choose and to fill in; functions to read, set and remove keys of a configuration.
 
-Comments of people stay.
+Comments of the user stay.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ UNITS: Mapping[str, Sequence[str]] = {
     "tau": TORQUES,
     "tau_e_sensor": TORQUES[:3],
 }
-"""Units to choose from, by port; a file may name any other one."""
+"""Units to choose from, by port; a file may name any other unit."""
 TITLES: Mapping[str, str] = {
     "theta": "theta: motor",
     "q": "q: link",
@@ -32,9 +32,9 @@ TITLES: Mapping[str, str] = {
     "theta_c": "theta_c: set-point",
     "tau_e_sensor": "tau_e_sensor: torque sensor",
 }
-"""Ports, those that most joints have first."""
+"""Titles of the ports; ports that most joints have are first."""
 BY_SCALE = "factor"
-"""Stands for no unit: the port has a scale."""
+"""Choice in place of a unit: the port has a scale."""
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,11 @@ class NumberField:
     key: str
     title: str
     default: str = ""
-    """What holds where the key is not there."""
+    """Text for the value that holds without the key."""
     units: Sequence[str] = ()
-    """Units of the column with which it is shown; none: with all of them."""
+    """Units of the column with which the field is shown; empty: all units."""
     ports: Sequence[str] = ()
-    """Ports at which it is shown; none: at all of them."""
+    """Ports at which the field is shown; empty: all ports."""
 
 
 OF_PORT = (
@@ -61,37 +61,37 @@ OF_PORT = (
     NumberField("wrap", "starts again after", "never", ports=("theta", "q", "theta_c")),
     NumberField("delay", "recorded later by [s]", "0", ports=("tau",)),
 )
-"""Of each port."""
+"""Fields of each port."""
 PARAMETERS = (
     NumberField("samplePeriod", "sample period [s]", "0.001"),
     NumberField("motor.gamma", "motor.gamma", "of theta"),
     NumberField("motor.B", "motor.B [kg.m²]"),
     NumberField("motor.D_theta", "motor.D_theta [N.m.s/rad]"),
 )
-"""Of the estimator."""
+"""Fields of the estimator."""
 CHOICES: Mapping[str, Sequence[str]] = {
     "modality": ("Residual", "Sensor", "Model"),
     "method": ("Paper2011", "FilteredRegression"),
 }
-"""Parameters with a few values; the first one is the start value of the FMU."""
+"""Parameters with a few values; the first value is the start value of the FMU."""
 
 
 Value = str | float | bool
 GAMMA = "motor.gamma"
 SECTIONS = ("ports", "time")
-"""Keys that start so are of sections of their own; all others are of [parameters]."""
+"""First parts of keys with their own sections; all other keys are in [parameters]."""
 _NOT_ZERO = ("counts_per_turn", "gear_ratio", "torque_constant", "scale")
 _OF_A_GUESS = (FILL_IN, "CHECK", NOT_YOURS, WIDE_PRIOR)
-"""Begin of comments that are no longer true when somebody has set the value."""
+"""First words of comments that are no longer true after the user has set the value."""
 
 
 def value_of(document: tomlkit.TOMLDocument, key: str) -> Any:
-    """The value of a key as "ports.tau.sign" or "motor.B"; None if it is not there."""
+    """The value of a key as "ports.tau.sign" or "motor.B"; None if the key is missing."""
     return next((value for name, value in _values(document) if name == key), None)
 
 
 def set_value(document: tomlkit.TOMLDocument, key: str, value: Value) -> None:
-    """Sets a key; what a guess said about it in a comment is dropped."""
+    """Sets a key, and removes its comment if a guess wrote this comment."""
     table, name = _place(document, key)
     whole = isinstance(value, float) and value.is_integer() and abs(value) < 2**53
     item = tomlkit.item(int(value) if whole else value)
@@ -104,7 +104,7 @@ def set_value(document: tomlkit.TOMLDocument, key: str, value: Value) -> None:
 
 
 def remove_value(document: tomlkit.TOMLDocument, key: str) -> None:
-    """Removes a key, if it is there."""
+    """Removes a key, if the key exists."""
     if value_of(document, key) is not None:
         table, name = _holder(document, key)
         del table[name]
@@ -127,14 +127,14 @@ def comment_of(document: tomlkit.TOMLDocument, key: str) -> str:
 
 
 def to_fill_in(document: tomlkit.TOMLDocument) -> list[str]:
-    """Keys that need a value of somebody who knows the joint."""
+    """Keys that need a value from the user."""
     found = [
         key
         for key, value in _values(document)
         if (key.endswith(_NOT_ZERO) and value == 0)
         or (key.endswith(".column") and value == FILL_IN)
     ]
-    # 0 stands for the gear ratio of theta, if that is one.
+    # 0 stands for the gear ratio of theta, which must then not be 1.
     if value_of(document, GAMMA) == 0 and value_of(document, "ports.theta.gear_ratio") in (None, 1):
         found.append(GAMMA)
     return found
@@ -146,7 +146,7 @@ def _values(document: tomlkit.TOMLDocument) -> Iterator[tuple[str, Any]]:
 
 
 def _place(document: tomlkit.TOMLDocument, key: str) -> tuple[MutableMapping[str, Any], str]:
-    """The table of a key, which is made if it is missing, and its name there."""
+    """The table of a key, made if missing, and the name of the key in this table."""
     *path, name = key.split(".")
     if not path or path[0] not in SECTIONS:
         return document.setdefault("parameters", tomlkit.table()), key
@@ -157,7 +157,7 @@ def _place(document: tomlkit.TOMLDocument, key: str) -> tuple[MutableMapping[str
 
 
 def _holder(document: tomlkit.TOMLDocument, key: str) -> tuple[MutableMapping[str, Any], str]:
-    """The innermost table that has a key which is there, and its name in it."""
+    """The innermost table of an existing key, and the name of the key in this table."""
     table, name = _place(document, key)
     if name in table:
         return table, name
@@ -166,7 +166,7 @@ def _holder(document: tomlkit.TOMLDocument, key: str) -> tuple[MutableMapping[st
 
 
 def _item(document: tomlkit.TOMLDocument, key: str) -> Any:
-    """The item of a key with its comment; None if it is not there."""
+    """The item of a key with its comment; None if the key is missing."""
     if value_of(document, key) is None:
         return None
     table, name = _holder(document, key)

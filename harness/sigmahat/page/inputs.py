@@ -25,7 +25,7 @@ select.bk-input { background-image: url('data:image/svg+xml;utf8,<svg version="1
  fill="gray" /></svg>') !important; text-overflow: ellipsis; }
 :host(.open) .bk-input { border-color: #e06a1a; box-shadow: inset 0 0 0 1px #e06a1a; }
 """
-"""In the colours of the page, whose variables reach into the widgets."""
+"""Style of the widgets in the colours of the page, by CSS variables of the page."""
 _OPEN = "open"
 """Class of an input that has to be filled in."""
 
@@ -36,21 +36,21 @@ def style() -> InlineStyleSheet:
 
 
 def words(html: str = "", name: str | None = None, **styles: str | None) -> Div:
-    """A text in HTML; styles are those of CSS, with "_" for "-"."""
+    """A text in HTML; `styles` are CSS properties, with "_" for "-"."""
     css: dict[str, str | None] = {"color": "var(--ink)", "overflow-wrap": "anywhere"}
     css |= {key.replace("_", "-"): value for key, value in styles.items()}
     return Div(text=html, name=name, sizing_mode="stretch_width", styles=css, stylesheets=[style()])
 
 
 def button(name: str, clicked: Callable[[], object], label: str = "", **more: Any) -> Button:
-    """A button, and what a click does; more is given to Bokeh."""
+    """A button that calls `clicked`; `more` is passed to Bokeh."""
     made = Button(label=label, name=name, stylesheets=[style()], **more)
     made.on_click(lambda: clicked())
     return made
 
 
 def in_grid(children: Sequence[UIElement], least: str, name: str | None = None) -> Row:
-    """Side by side, as many as there is room for; one that is hidden leaves no gap.
+    """Elements side by side, as many as fit; a hidden element leaves no gap.
 
     least  width of a child, in CSS
     """
@@ -61,7 +61,7 @@ def in_grid(children: Sequence[UIElement], least: str, name: str | None = None) 
 
 
 class Number:
-    """A text field for a number; what is no number is refused with a message."""
+    """A text field for a number; other text is refused with a message."""
 
     def __init__(self, setup: Setup, key: str, field: NumberField) -> None:
         self.field = field
@@ -113,12 +113,12 @@ class Choice:
         current: Callable[[], str] | None = None,
         chosen: Callable[[str], object] | None = None,
     ) -> None:
-        """An item is the value of a key of the configuration; "" stands for none.
+        """An item is the value of a key of the configuration; "" stands for no value.
 
-        options          values and their texts; others are added when they are shown
-        default          what is shown where the key is not there
-        current, chosen  give the item that is shown, and are called with another one, in place of
-                         the key
+        options          values and their texts; other values are added when shown
+        default          item that is shown without the key
+        current, chosen  replace the key: current returns the item to show, chosen is called with
+                         a new item
         """
         self._options = list(options)
         self._current = current or (lambda: str(setup.get(key) or default))

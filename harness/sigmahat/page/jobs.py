@@ -1,4 +1,4 @@
-"""What takes time, in a thread of its own: guess, checks, curve. The page stays alive meanwhile."""
+"""Slow jobs in a thread: guess, checks, curve. The page stays responsive meanwhile."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from sigmahat.page.setup import Chosen, Setup
 
 
 def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
-    """The configuration of each joint of a log as `init` writes it, and what guesses units, signs
-    and gear of columns that somebody chooses.
+    """The configuration of each joint of a log as `init` writes it, and a function that guesses
+    units, signs and gear of columns that the user chooses.
     """
     columns = read_columns(log)
     joints = guess_of(columns, log)
@@ -40,8 +40,8 @@ def replayed(
 ) -> Answer:
     """Replays a log as `estimate` does, and writes nothing.
 
-    Now and then progress is called with the thousandths of the log done since the last call; what
-    it raises ends the replay.
+    Now and then progress is called with the thousandths of the log done since the last call; an
+    exception in progress ends the replay.
 
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
     """
@@ -63,7 +63,7 @@ class _OutdatedError(Exception):
 class Jobs:
     """Looks at the log of a setup, then checks each new configuration and computes its curve.
 
-    Only the newest configuration counts; a curve that is computed for another one is given up.
+    Only the newest configuration counts; a computation for an older configuration is stopped.
     """
 
     def __init__(self, setup: Setup, later: Later) -> None:
@@ -72,12 +72,12 @@ class Jobs:
         self._version = 0
         self._text: str | None = None
         self._estimate: str | None = None
-        # It must not keep the program alive, whatever it is at.
+        # The thread must not keep the program alive.
         setup.changed = self.wanted
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
-        """Begins with the columns, if it has not begun."""
+        """Begins with the columns, if the thread has not started."""
         if self._thread.ident is None:
             self._thread.start()
 
@@ -115,7 +115,7 @@ class Jobs:
     def _try(self, job: Callable[[], object]) -> None:
         try:
             job()
-        except Exception as error:  # any: without a word the page would wait for ever
+        except Exception as error:  # any: without a message, the page would wait for ever
             logging.getLogger("sigmahat").exception("a job of the page failed")
             self._later(partial(self._refused, None, f"a fault of sigmahat: {error!r}"))
 
@@ -182,7 +182,7 @@ class Jobs:
         self._show(version, problem=problem, checked=None, answer=None, busy="")
 
     def _show(self, version: int | None, **found: object) -> None:
-        """Gives the setup what was found, if it is of its configuration as it is now."""
+        """Gives results to the setup, if the results are for its present configuration."""
         if version not in (None, self._version):
             return
         for name, value in found.items():

@@ -1,4 +1,4 @@
-"""What a column looks like: its range, and a line that is small."""
+"""A preview of a column: its range, and a small line."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from sigmahat.logs.log import Array, Log, LogError
 
 _BUCKETS = 80
 WIDTH, HEIGHT = 160, 28
-"""Of the line."""
+"""Size of the line."""
 
 
 @dataclass(frozen=True)
 class Look:
-    """A column at a glance."""
+    """A preview of a column."""
 
     span: str
-    """Least and greatest value, or why there are none."""
+    """Least and greatest value, or why the column has no values."""
     line: Sequence[tuple[float, float]]
     """Points in a box of 160 x 28, from its upper left corner."""
 
 
 def look(log: Log, name: str) -> Look:
-    """Looks at a column of a log."""
+    """The preview of a column of a log."""
     try:
         values = log.read(name)
     except LogError:
@@ -41,7 +41,7 @@ def look(log: Log, name: str) -> Look:
 def _line(
     values: Array, finite: NDArray[np.intp], low: float, high: float
 ) -> Sequence[tuple[float, float]]:
-    """The least and the greatest value of each bucket, in the order in which they come."""
+    """The least and the greatest value of each bucket, in the order of the rows."""
     points = []
     for part in np.array_split(finite, min(_BUCKETS, len(finite))):
         own = values[part]

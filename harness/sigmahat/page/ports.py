@@ -1,4 +1,4 @@
-"""The panels of a port: its column, unit, sign, and what else they need."""
+"""The panels of ports and parameters: a port has its column, unit, sign, and other fields."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ class PortPanel:
             current=lambda: f"{setup.get(sign) or 1:g}",
             chosen=lambda item: setup.set(sign, int(item)),
         )
-        times = [(_NONE, "those of all"), *names]
-        self._time = Choice(setup, "its times", f"{self._where}.time", times)
+        times = [(_NONE, "common times"), *names]
+        self._time = Choice(setup, "times", f"{self._where}.time", times)
         self._numbers = [Number(setup, f"{self._where}.{f.key}", f) for f in OF_PORT]
         self._notes = words(color="var(--soft)")
         numbers = [each.widget for each in self._numbers]
@@ -86,7 +86,7 @@ class PortPanel:
         return str(self._setup.get(f"{self._where}.unit") or UNITS[self._port][0])
 
     def _comments(self) -> str:
-        """What the guess is not sure of."""
+        """Comments on uncertain guesses."""
         comment = partial(edits.comment_of, self._setup.document)
         keys = ("unit", "sign", *(field.key for field in OF_PORT))
         found = ((key, comment(f"{self._where}.{key}")) for key in keys)

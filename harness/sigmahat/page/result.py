@@ -1,4 +1,4 @@
-"""The panel of the answer: torque and stiffness over the deformation, with their bands."""
+"""The panels of the results: torque and stiffness against deformation; findings of the checks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ResultPanel:
-    """What `sigmahat estimate` finds."""
+    """Results of `sigmahat estimate`."""
 
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
@@ -28,7 +28,7 @@ class ResultPanel:
         self.root = Column(self._busy, self._plots, name="curve", sizing_mode="stretch_width")
 
     def show(self) -> None:
-        """Shows the last curve, faded while another one is computed."""
+        """Shows the last curve, dimmed while another curve is computed."""
         setup = self._setup
         self._busy.text = escape(setup.busy)
         self._plots.styles = {"opacity": "0.45" if setup.busy else "1"}
@@ -66,7 +66,7 @@ def _legend(made: Sequence[Plot]) -> str:
 
 
 class FindingsPanel:
-    """What `sigmahat check` says."""
+    """Findings of `sigmahat check`."""
 
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
@@ -74,7 +74,7 @@ class FindingsPanel:
         self.root = Column(name="checks", sizing_mode="stretch_width")
 
     def show(self) -> None:
-        """Shows the last check; it stays until there is another one."""
+        """Shows the last check, until another check is complete."""
         setup = self._setup
         now = (setup.checked, setup.problem, tuple(setup.open_keys))
         if now == self._shown:

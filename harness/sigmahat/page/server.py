@@ -37,8 +37,8 @@ _ENDS = ("SIGINT", "SIGTERM", "SIGHUP")
 """Signals that end the page; Windows has no SIGHUP."""
 
 
-class _Small(BokehTornado):  # type: ignore[misc] # its types are not looked at
-    """Serves only the parts of BokehJS that the page uses: it is there in half of the time."""
+class _Small(BokehTornado):  # type: ignore[misc] # types of Bokeh are not checked
+    """Serves only the parts of BokehJS that the page uses, so it loads in half of the time."""
 
     def resources(self, absolute_url: str | bool | None = None) -> Resources:
         found = super().resources(absolute_url)
@@ -55,13 +55,13 @@ def serve(
 ) -> Path | None:
     """Serves the page of a log, and opens it in the browser.
 
-    Who has the address can use it: it contains a token that nobody guesses. A page of another
-    origin cannot talk to it.
+    Anybody with the address can use the page. The address contains a random token. A page of
+    another origin cannot connect to this page.
 
     path      the file to write
-    document  its contents, to start from; None: the guess of `init`
-    port      0 for any that is free
-    say       is called with the address, and what the browser does
+    document  contents of the file, to start from; None: the guess of `init`
+    port      0 for any free port
+    say       is called with messages for the user
 
     Returns the file with edits that were not written, after Ctrl-C. Raises ValueError if the port
     is in use.
@@ -86,18 +86,18 @@ def serve(
 
 def _listen(token: str, port: int, window: Callable[[Document], object]) -> tuple[BaseServer, int]:
     """A server that listens, and its port; window fills the document of each window."""
-    # What browsers ask for besides the page, and windows that close, are no news to the user.
+    # No messages about other requests of browsers, and about windows that close.
     for name in ("tornado.access", "bokeh.server.views"):
         logging.getLogger(name).setLevel(logging.ERROR)
-    silence(EMPTY_LAYOUT)  # there are no checks yet, and no curve
-    # A browser may speak of a plot that was replaced meanwhile.
+    silence(EMPTY_LAYOUT)  # at first, the page has no checks and no curve
+    # A browser may refer to a plot that was replaced meanwhile.
     warnings.filterwarnings("ignore", "reference already known", BokehUserWarning)
     try:
         sockets, port = bind_sockets(_HOST, port)
     except OSError as error:
         reason = error.strerror or error
         raise ValueError(
-            f"port {port} cannot be used ({reason}); leave --port out for one that is free"
+            f"port {port} cannot be used ({reason}); leave --port out for a free port"
         ) from error
     tornado = _Small(
         {f"/{token}": Application(FunctionHandler(window))},
@@ -111,7 +111,7 @@ def _listen(token: str, port: int, window: Callable[[Document], object]) -> tupl
 
 @contextmanager
 def _until_a_signal(loop: IOLoop) -> Iterator[None]:
-    """Inside, Ctrl-C ends the loop, and so do the signals of a terminal that is closed."""
+    """Inside the block, Ctrl-C and the signals of a closing terminal end the loop."""
     before = {
         number: signal.signal(number, lambda *_: loop.add_callback_from_signal(loop.stop))
         for name in _ENDS
@@ -126,4 +126,4 @@ def _until_a_signal(loop: IOLoop) -> Iterator[None]:
 
 def _open(address: str, say: Callable[[str], object]) -> None:
     if not webbrowser.open(address):
-        say("No browser was found: open the address in one on this computer.")
+        say("No browser was found: open the address in a browser on this computer.")

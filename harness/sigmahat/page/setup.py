@@ -1,7 +1,7 @@
-"""The state of the page: a configuration that is being edited, and what is known about it.
+"""The state of the page: a configuration that is being edited, and results for it.
 
-There is one for all windows, so that they show the same, and a window that is closed loses
-nothing. It belongs to the thread of the server; the jobs tell it what they have found.
+All windows share one state, so that they show the same, and a closed window loses nothing. Only
+the thread of the server may use the state; jobs send their results to this thread.
 """
 
 from __future__ import annotations
@@ -29,36 +29,36 @@ if TYPE_CHECKING:
 Chosen = Callable[[Mapping[str, str | None]], "Mapping[str, PortGuess]"]
 """Guesses units, signs and gear of columns by port."""
 
-_DOUBLE_CLICK = 0.5  # [s] the second click of one is no answer to a question
+_DOUBLE_CLICK = 0.5  # [s] the second click of a double click does not confirm
 
 
 class Setup:
     """A log that is being set up."""
 
     def __init__(self, log: Log, path: Path) -> None:
-        """Starts from the file, if there is one. Raises LogError if it is not TOML."""
+        """Starts without a configuration, until start_from() or guessed() is called."""
         self.log = log
         self.path = path
         """The file to write."""
         self.document: tomlkit.TOMLDocument = tomlkit.document()
         self.is_edited = False
-        """Whether somebody has changed something that is not written yet."""
+        """Whether the configuration has edits that are not written yet."""
         self.looks: Mapping[str, Look] = {}
-        """What the columns look like, by name; empty until it is known."""
+        """Previews of the columns by name; empty until they are known."""
         self.joint = ""
-        """Which joint of the log is shown."""
+        """Name of the joint that is shown."""
         self.busy = "Looking at the columns ..."
-        """What is being computed; empty if nothing is."""
+        """The running computation, in words; empty without a computation."""
         self.problem = ""
-        """Why the configuration cannot be checked; empty if it can."""
+        """Why the configuration cannot be checked; empty without a problem."""
         self.checked: Checked | None = None
         self.answer: Answer | None = None
         self.message = ""
-        """What the last press of a button or the last value led to."""
+        """Message about the last click on a button, or about the last value."""
         self.changed: Callable[[], object] = lambda: None
         """Is called after every change of the configuration."""
         self.asks_to_overwrite = False
-        """Whether the file exists, and was not overwritten."""
+        """Whether the page asks before it overwrites the file."""
         self._asked = 0.0
         self._then: Callable[[], object] | None = None
         self._shown: set[Callable[[], object]] = set()
@@ -73,11 +73,11 @@ class Setup:
         self._shown.add(show)
 
     def unsubscribe(self, show: Callable[[], object]) -> None:
-        """Does not call it any more."""
+        """Does not call show any more."""
         self._shown.discard(show)
 
     def show(self) -> None:
-        """All windows show what there is."""
+        """Updates all windows."""
         for each in list(self._shown):
             each()
 
@@ -95,11 +95,11 @@ class Setup:
 
     @property
     def is_ready(self) -> bool:
-        """Whether there is a configuration to edit."""
+        """Whether the state has a configuration to edit."""
         return bool(self.document)
 
     def start_from(self, document: tomlkit.TOMLDocument) -> None:
-        """Takes the contents of the file. Raises LogError for a joint that has no possible name."""
+        """Takes the contents of the file. Raises LogError for an impossible name of a joint."""
         self._start({name: of_joint(document, name) for name in joints_of(document, self.path)})
 
     def _start(self, joints: dict[str, tomlkit.TOMLDocument]) -> None:
@@ -107,13 +107,13 @@ class Setup:
         self.set_joint(next(iter(joints)))
 
     def get(self, key: str) -> Any:
-        """The value of a key; None if it is not there."""
+        """The value of a key; None if the key is missing."""
         return edits.value_of(self.document, key)
 
     def set(self, key: str, value: edits.Value | None) -> None:
         """Sets a key; None removes it."""
         if value == self.get(key):
-            self.show()  # what was typed looks other than it is written
+            self.show()  # the typed text may differ from the usual form
             return
         if key.startswith("ports.") and key.endswith(".unit") and value is not None:
             self._set_unit(key.split(".")[1], str(value))
@@ -141,7 +141,7 @@ class Setup:
         self._edited()
 
     def _set_unit(self, port: str, unit: str) -> None:
-        """With a unit come the keys that it needs, and those of the unit before go."""
+        """Sets a unit, adds the keys that it needs, and removes keys of the unit before."""
         where = f"ports.{port}"
         before = self.get(f"{where}.unit") or BY_SCALE
         for field in OF_PORT:
@@ -154,7 +154,7 @@ class Setup:
             edits.remove_value(self.document, f"{where}.unit")
         else:
             edits.set_value(self.document, f"{where}.unit", unit)
-        # Counts of a port are those of its encoder; another unit hides them.
+        # With the unit counts, the port gives the counts of its encoder; other units do not.
         if unit == "counts":
             edits.remove_value(self.document, f"encoder.{port}")
         elif before == "counts" and port in ("theta", "q"):
@@ -167,7 +167,7 @@ class Setup:
     # What the jobs have found
 
     def guessed(self, templates: Mapping[str, str], chosen: Chosen) -> None:
-        """Takes what was guessed: the configuration of each joint as `init` writes it."""
+        """Takes the guesses: the configuration of each joint as `init` writes it."""
         self._chosen = chosen
         if not self.joints:
             self._start({name: tomlkit.parse(text) for name, text in templates.items()})
@@ -175,7 +175,7 @@ class Setup:
     def set_joint(self, name: str) -> None:
         """Shows another joint of the log."""
         self.joint, self.document = name, self.joints[name]
-        # All that was found and asked is of the joint before.
+        # Present results and questions belong to the joint before.
         self.message, self.problem, self.asks_to_overwrite = "", "", False
         self.checked = self.answer = None
         self.changed()
@@ -189,14 +189,14 @@ class Setup:
 
     @property
     def is_on_disk(self) -> bool:
-        """Whether the file exists, and is as the page shows it."""
+        """Whether the file exists and has the configuration that the page shows."""
         try:
             return self.path.read_text(encoding="utf-8") == self.text_of_file
         except (OSError, ValueError):
             return False
 
     def write(self, overwrite: bool, then: Callable[[], object] | None = None) -> None:
-        """Writes the file; one that exists only if it is to be overwritten, after the question.
+        """Writes the file; an existing file is overwritten only after a question to the user.
 
         then  is called when the file is written, also after the question
         """
@@ -207,7 +207,7 @@ class Setup:
         self.asks_to_overwrite = self.path.exists() and not (overwrite or self.is_on_disk)
         if self.asks_to_overwrite:
             self._asked = monotonic()
-            self.message = f"{self.path} exists, and is other than what is shown here."
+            self.message = f"{self.path} exists, and differs from what is shown here."
         elif self._is_written():
             log, default = self.log.path, Path(f"{self.log.path.stem}.toml")
             option = "" if self.path == default else f" --config {self.path}"
@@ -230,13 +230,13 @@ class Setup:
 
     @property
     def is_by_sensor(self) -> bool:
-        """Whether the torque is that of a sensor: then there is no motor to identify."""
+        """Whether a sensor measures the torque: then `identify` has no motor to identify."""
         return bool(self.get("modality") == "Sensor")
 
     def estimated(self, before: str, document: tomlkit.TOMLDocument, folder: Path) -> None:
         """Takes the configuration with which results were written into a folder, and writes it.
 
-        before  the configuration from which this began; if it was edited since, the edits stay
+        before  the configuration at the start of the job; later edits stay
         """
         results = f"Results: {folder.resolve()}."
         if self.text != before:
@@ -251,7 +251,7 @@ class Setup:
         self.show()
 
     def write_draft(self) -> Path | None:
-        """Writes edits that are not written into a file of a new name. Returns it, if there are."""
+        """Writes unsaved edits into a file of a new name. Returns this file; None without edits."""
         if not self.is_edited:
             return None
         draft, count = self.path.with_suffix(".draft.toml"), 2

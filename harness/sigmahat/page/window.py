@@ -1,4 +1,4 @@
-"""The document of one window: the panels, and how they follow the setup."""
+"""The document of one window: panels that show the setup."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _TEMPLATES = Environment(
 
 
 class SavingBar:
-    """Button and message."""
+    """Buttons and a message."""
 
     def __init__(self, setup: Setup, estimate: Callable[[], object]) -> None:
         self._setup = setup
@@ -42,7 +42,7 @@ class SavingBar:
             "overwrite", lambda: setup.write(overwrite=True), "Overwrite it", width=130
         )
         self._words = words(name="message", min_width="14rem")
-        # Write stays where it is when the others come.
+        # The button Write keeps its place when other elements appear.
         self.root = Row(
             self._estimate,
             self._write,
@@ -125,7 +125,7 @@ class Window:
         self._columns.text = _TEMPLATES.get_template("columns.html").render(
             columns=setup.log.columns, looks=setup.looks, uses=uses, width=WIDTH, height=HEIGHT
         )
-        # The last result is faded while another one is computed.
+        # The last result is dimmed while another result is computed.
         opacity = "0.45" if setup.busy else "1"
         self._headline.styles = {**self._headline.styles, "opacity": opacity}
         self._headline.text = "" if answer is None else escape(headline(answer.curve, answer.doubt))

@@ -1,1 +1,1 @@
-"""The scenarios of the paper, and what `sigmahat reproduce` makes of them."""
+"""The scenarios of the paper, and the results of `sigmahat reproduce`."""

@@ -31,7 +31,7 @@ def against_the_plant(estimators: Iterable[str]) -> list[Comparison]:
 
 
 SECTION_VI_B = Sine(0.3, 0.1)
-"""Torque of the principal motor there [N.m, Hz]."""
+"""Torque of the principal motor in section VI.B [N.m, Hz]."""
 R_0 = 0.1
 """Lever arm without retraction, (30) [m]."""
 _B = 0.0025 / (2 * math.pi)  # b of (30) [m/rad]
@@ -51,9 +51,9 @@ _AWAS_OUTPUTS = (
 
 
 def awas(retraction: float, tau: Sine = SECTION_VI_B) -> Plant:
-    """The AwAS under the torques of section VI.B or another one of the principal motor.
+    """The AwAS with the torques of section VI.B, or with another torque of the principal motor.
 
-    Its lever arm is shortened by retraction [m] at first.
+    At first, the lever arm is shortened by retraction [m].
     """
     return Plant(
         fmu="AwasPlant",
@@ -145,7 +145,7 @@ def experiment() -> Scenario:
             "link.tau_coulomb": 0.05,
             "sensor.gain": 1.03,
             "initial.theta_c": 0.0,
-            # The link swings from one turning point to the other; these are as far from 0.
+            # The link swings between two turning points at equal distances from 0.
             "initial.q": -1.75,
             "initial.theta": -1.75,
         },
@@ -166,7 +166,7 @@ def experiment() -> Scenario:
         comparisons=[
             Comparison("MODEL against nominal", "MODEL.sigma", "nominal.sigma"),
             against_sensor,
-            # SENSOR is 0 until the joint deforms, and nothing is relative to that.
+            # SENSOR is 0 until the joint deforms, and a reference of 0 gives no relative error.
             replace(
                 against_sensor,
                 name=f"{against_sensor.name}, relative to true",

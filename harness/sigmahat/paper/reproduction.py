@@ -22,7 +22,7 @@ class Result:
     recording: Recording
     """Run of the first seed, with the variants that only the figures need."""
     indices: Sequence[dict[str, Indices]]
-    """For each seed, by comparison."""
+    """Indices for each seed, by comparison."""
 
     def mean(self, comparison: str, field: str) -> tuple[float, float]:
         """An index over the seeds: its mean, and half the width of the 95 % interval."""
@@ -30,7 +30,7 @@ class Result:
 
 
 def progress_length(scenario: Scenario, seeds: Sequence[int]) -> int:
-    """What the progress of reproduce() adds up to: runs, or the steps of a single run.
+    """Total of the progress of reproduce(): runs, or the steps of a single run.
 
     seeds must not be empty.
     """

@@ -18,22 +18,22 @@ from sigmahat.paper.reproduction import Result
 from sigmahat.runs.metrics import INDICES, Index
 from sigmahat.runs.scenario import Scenario
 
-if TYPE_CHECKING:  # `reproduce` writes its files without it
+if TYPE_CHECKING:  # `reproduce` writes its files without pyarrow
     import pyarrow as pa
 
 
 TABLE = "table.csv"
 """File with the indices of each comparison; each estimator has a file over time, too."""
 ESTIMATION, SEEDS = "estimation", "seeds"
-"""The first columns of that file."""
+"""The first columns of the file with the indices."""
 TIME = "t"
 """The first column of a file over time."""
 PLANT = "plant."
-"""What the names of signals of the plant begin with, there."""
+"""Prefix of the names of plant signals in a file over time."""
 
 
 _ORDER = ("MODEL", "SENSOR", "RESIDUAL")
-"""That of Table I; other estimators follow by name."""
+"""The order of Table I; other estimators follow by name."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class ResultFiles:
 def read_result_files(folder: Path) -> ResultFiles:
     """Reads a folder of `sigmahat reproduce`, the estimators in the order of Table I.
 
-    Raises ValueError, which says what to do, if its files are not those of one run.
+    Raises ValueError, which says what to do, if the files are not from one run.
     """
     table = read_csv(folder / TABLE)
     series = {}
@@ -58,7 +58,7 @@ def read_result_files(folder: Path) -> ResultFiles:
         signals = {
             n: c.values for n, c in numeric_columns(read_csv(folder / f"{name}.csv")).items()
         }
-        if next(iter(signals), None) == TIME:  # files of other commands may be there
+        if next(iter(signals), None) == TIME:  # the folder may have files of other commands
             series[name] = signals
     if not series or table.column_names[:2] != [ESTIMATION, SEEDS]:
         raise ValueError(f"{folder}: no result of `sigmahat reproduce`; run it again")
@@ -83,7 +83,7 @@ def write_table(result: Result, path: Path) -> None:
 
 
 def as_dict(result: Result) -> dict[str, Any]:
-    """For JSON: what table.csv has."""
+    """The contents of table.csv, for JSON."""
     head, rows = _indices(result)
     table = [dict(zip(head, row, strict=True)) for row in rows]
     return {"scenario": result.scenario.name, "seeds": list(result.seeds), "table": table}
@@ -135,7 +135,7 @@ def conditions(result: Result) -> str:
 
 
 def table(result: Result) -> str:
-    """The indices of each comparison and those of the paper, as text; "-": not defined."""
+    """The indices of each comparison and of the paper, as text; "-": not defined."""
     tables = [
         _table(result, [INDICES[field] for field in fields], with_paper=i == 0)
         for i, fields in enumerate(result.scenario.tables)
@@ -160,7 +160,7 @@ def _table(result: Result, columns: Sequence[Index], with_paper: bool) -> str:
 
 
 def _head(scenario: Scenario, columns: Sequence[Index]) -> list[str]:
-    """Titles of a table; where all columns are of the same time, that stands in the corner."""
+    """Titles of a table; a time that is common to all columns stands in the corner."""
     settled = {index.settled for index in columns}
     if len(settled) > 1:
         return ["", *(index.title(index.when(scenario.settled)) for index in columns)]
@@ -177,7 +177,7 @@ def _cell(result: Result, comparison: str, index: Index) -> str:
 
 
 def _number(value: float, index: Index) -> str:
-    """Fixed point, except for what is small once the start-up is over."""
+    """A number in fixed point, but in exponential form for small values after the start-up."""
     if index.settled and abs(value) < 0.01:
         return f"{value:.1e}"
     return f"{value:.3f}" if index.unit == "%" else f"{value:.2f}"

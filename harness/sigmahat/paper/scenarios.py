@@ -13,8 +13,8 @@ def single(k_3: float, frequency: float) -> Scenario:
     """Section III: one flexible transmission, linear or hardening [N.m/rad3]."""
     spring = "hardening" if k_3 else "linear"
     name = f"single-{spring}" + ("" if frequency == 0.5 else f"-{frequency:g}hz")
-    # The regressors are powers of phi alone, of 0.01 rad; for the AwAS they go up to r^2 phi, of
-    # 100 mm2 rad. So the paper's ridge 1/(c P_0) = 1, harmless there, is far too strong here.
+    # The regressors are powers of phi, about 0.01 rad; for the AwAS they go up to r^2 phi, about
+    # 100 mm2 rad. So the paper's ridge 1/(c P_0) = 1 suits the AwAS, but is far too strong here.
     start: dict[str, Value] = {"rls.m": 1}
     estimators = {
         "RESIDUAL": {**start, "rls.P_0": 1e24},
@@ -54,7 +54,7 @@ def single(k_3: float, frequency: float) -> Scenario:
 
 
 def antagonistic() -> Scenario:
-    """Sections II and III: two motors, each behind a spring, pull at one link."""
+    """Sections II and III: two motors, each with a spring, pull at one link."""
     sides = (1, 2)
     pull = Sine(0.025, 0.1)  # co-contraction, added to its mean of 0.04 N.m
     move = Sine(0.012, 0.25)  # of the link
@@ -135,7 +135,7 @@ SCENARIOS = {
 
 
 def scenario(name: str) -> Scenario:
-    """Returns the scenario of that name. Raises ValueError if there is none."""
+    """Returns the scenario of that name. Raises ValueError for an unknown name."""
     if name not in SCENARIOS:
         raise ValueError(unknown("scenario", name, SCENARIOS))
     return SCENARIOS[name]

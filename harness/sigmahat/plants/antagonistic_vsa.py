@@ -1,9 +1,9 @@
 """A link between two motors with nonlinear transmissions, agonist and antagonist (section II).
 
 The motors are of the form (3); the link is (2) with the sum of both flexibility torques. The
-transmission is that of the qbmove Advanced. Its manual ("qbmove Advanced Kit", qbrobotics,
+transmission is from the qbmove Advanced. Its manual ("qbmove Advanced Kit", qbrobotics,
 28 April 2021, section 3.2.2, "Mathematical model") gives the torque of each side, k sinh(a phi), k
-and a. It gives no inertias, gears and friction: the motors have those of the AwAS, the values of
+and a. The manual has no inertias, gears and friction: the motors are as in the AwAS, the values of
 the link are chosen. We found no parameters of the VSA-II, which the paper names.
 
 At the start the springs are not deformed. With torques tau_1 = -tau_2 a pair is at rest at q = 0

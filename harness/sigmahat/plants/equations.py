@@ -1,4 +1,4 @@
-"""A plant as equations: what a user writes, and what is generated to C."""
+"""A plant as equations, which a user writes, and from which C code is generated."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class State:
 class PlantEquations:
     """Ordinary differential equations with inputs, parameters, noise and outputs.
 
-    A plant file creates one of these, declares its symbols, and adds equations::
+    A plant file creates such an object, declares its symbols, and adds equations::
 
         plant = PlantEquations("MassPlant")
         force = plant.input("force")
@@ -33,12 +33,12 @@ class PlantEquations:
 
     Names of inputs, parameters and outputs are those of the FMU's variables. Their units, start
     values and ranges are in ``modelDescription/NAME.xml``, or for `write_plant_fmu` in the
-    `PlantVariable` of each. Expressions are CasADi ``SX``.
+    `PlantVariable` of each variable. Expressions are CasADi ``SX``.
     """
 
     def __init__(self, name: str) -> None:
         self.name = name
-        """Of the FMU."""
+        """Name of the FMU."""
         self.inputs: dict[str, ca.SX] = {}
         """Symbols by name."""
         self.parameters: dict[str, ca.SX] = {}
@@ -106,6 +106,6 @@ class PlantEquations:
 
 
 def encoder(angle: ca.SX, counts: ca.SX | float) -> ca.SX:
-    """Angle [rad] rounded to the nearest of `counts` per turn; as it is for 0 counts."""
+    """Angle [rad] rounded to the nearest of `counts` per turn; unchanged for 0 counts."""
     count = 2 * math.pi / ca.if_else(counts > 0, counts, 1)
     return ca.if_else(counts > 0, count * ca.floor(angle / count + 0.5), angle)

@@ -1,8 +1,8 @@
 """Parts that joints have in common: the link (2), motors (3), friction, encoders, torque sensors.
 
-A plant declares its states and the torque of its transmission; the functions here add the rest,
-with the names that all plants use. In a joint with several motors, `side` is the end of the names
-of one of them: "_1" gives `theta_1`, `motor_1.B` and `tau_measured_1`.
+A plant declares its states and the torque of its transmission; these functions add other parts,
+with the names that all plants use. In a joint with several motors, `side` is the suffix of the
+names of a motor: "_1" gives `theta_1`, `motor_1.B` and `tau_measured_1`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""A joint with what real joints have and the models of the estimators do not: their misfits.
+"""A joint with misfits: effects of real joints that the models of the estimators do not have.
 
 The link (2), the motor (3) and the torque sensors (32), (33) are as in the other plants. Each
-departure is a parameter, which starts at the value for "none". The spring is linear and cubic, or
+effect is a parameter, which starts at the value for "none". The spring is linear and cubic, or
 the AwAS (28) with its lever arm as an input, or a sum of both.
 """
 
@@ -17,7 +17,7 @@ from sigmahat.plants.joint import (
 )
 
 PHASE_Q, PHASE_THETA = 0.4, 0.7
-"""Where the eccentric encoders of link and motor have their zero [rad]."""
+"""Phases of the eccentricity of the encoders of link and motor [rad]."""
 
 plant = PlantEquations("RealJointPlant")
 
@@ -33,7 +33,7 @@ theta = position(plant, "theta")
 q_dot = velocity(plant, "q_dot")
 theta_dot = velocity(plant, "theta_dot")
 tau_dahl = plant.state("tau_dahl", start=0.0, scale=1.0)
-bristle = plant.state("bristle", start=0.0, scale=1.0)  # over the deflection at which it slides
+bristle = plant.state("bristle", start=0.0, scale=1.0)  # relative to the deflection at which it slides
 clock = plant.state("clock", start=0.0, scale=1e12)  # integrated exactly: it needs no small steps
 
 # The gear has a kinematic error, once or several times per turn of the motor.
@@ -42,7 +42,7 @@ phi_dot = q_dot - theta_dot
 turns = plant.parameter("gear.kinematic_order") * gamma * theta
 deformation = phi + plant.parameter("gear.kinematic_error") * ca.sin(turns)
 
-# Behind the dead zone the spring is deformed by x.
+# After the dead zone, the spring is deformed by x.
 gap = plant.parameter("spring.gap")
 x = ca.fmax(deformation - gap, 0) + ca.fmin(deformation + gap, 0)
 engaged = ca.logic_or(ca.fabs(deformation) > gap, gap <= 0)
@@ -53,7 +53,7 @@ k_awas = plant.parameter("spring.k_s") * r**2
 elastic = k_1 * x + k_3 * x**3 + k_awas * ca.sin(2 * x)  # (28)
 slope = k_1 + 3 * k_3 * x**2 + 2 * k_awas * ca.cos(2 * x)  # (4), (29)
 
-# Beyond each knee the torque has another slope, as that of a harmonic drive.
+# Beyond each knee the torque has another slope, as in a harmonic drive.
 for knee in (1, 2):
     beyond = ca.fabs(x) - plant.parameter(f"spring.knee_{knee}")
     change = plant.parameter(f"spring.k_knee_{knee}")
@@ -70,7 +70,7 @@ plant.derivative(clock, ca.SX(1))
 elastic *= changed
 sigma = ca.if_else(engaged, slope * changed, 0)
 
-# Hysteresis: P. Dahl, "A solid friction model", 1968, of the exponent 1.
+# Hysteresis: P. Dahl, "A solid friction model", 1968, with the exponent 1.
 dahl = plant.parameter("spring.dahl") * phi_dot - ca.fabs(phi_dot) * tau_dahl
 plant.derivative(tau_dahl, dahl / plant.parameter("spring.dahl_phi"))
 

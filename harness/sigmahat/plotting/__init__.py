@@ -1,1 +1,1 @@
-"""What the figures of all commands share: colours, style, and the files that are written."""
+"""Common parts of the figures of all commands: colours, style, and files."""

@@ -1,4 +1,4 @@
-"""Panels as Matplotlib draws them."""
+"""Draws panels with Matplotlib."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def stacked(panels: Sequence[Panel]) -> Figure:
 
 
 def draw(axes: Axes, panel: Panel, columns: int = 3) -> None:
-    """All of a panel but the label of its x axis.
+    """Draws a panel without the label of its x axis.
 
     The legend is above the panel at the right, because an offset of the scale is at the left.
     """
@@ -58,7 +58,7 @@ def label_x(axes: Axes, panel: Panel) -> None:
 
 
 def _line(axes: Axes, curve: Curve, first: bool) -> None:
-    """A line with its band, both faded beyond the data, in front of the points it was fitted to."""
+    """A line with its band, both faded outside of the data, in front of its measured points."""
     color, within = curve.color, curve.within
     if curve.behind is not None:
         style: Any = {"color": color, "marker": "o", "linestyle": "", "markeredgewidth": 0}

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 TRUE = "#8f8f8f"
-"""Colour of what an estimate is compared with."""
+"""Colour of the reference of an estimate."""
 COLORS = ("#1f83c4", "#12a37c", "#e06a1a", "#c9589b", "#b58900", "#56b4e9")
 """Okabe and Ito, shifted to be read on white and on black."""
 
@@ -24,7 +24,7 @@ class Kind(Enum):
     MEANS = "means"
     """Points with intervals, and a line through them."""
     STEPS = "steps"
-    """y between edges x, of which there is one more."""
+    """y between edges x: one more edge than values."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Curve:
     band: tuple[NDArray[Any], NDArray[Any]] | None = None
     """Lower and upper end of the intervals of a line."""
     within: NDArray[np.bool_] | None = None
-    """Where a line is not faded, because the data reach it; None: everywhere."""
+    """Part of a line in the range of the data, which is not faded; None: the whole line."""
     behind: tuple[NDArray[Any], NDArray[Any]] | None = None
     """x and y of points that a line was fitted to."""
     width: float = 1.4
@@ -72,8 +72,8 @@ class Panel:
     x_log: bool = False
     y_log: bool = False
     linked: bool = True
-    """Its x axis moves with those of the other panels that are linked."""
+    """Whether the x axis moves with the x axes of the other linked panels."""
     caption: str = ""
-    """Below its title."""
+    """Text below the title."""
     y_range: tuple[float, float] | None = None
-    """What is shown at first, where an estimate jumps before it converges."""
+    """Limits of y that are shown at first, for estimates that jump before they converge."""

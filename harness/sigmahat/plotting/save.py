@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 Source = TypeVar("Source")
-"""What a figure is drawn from."""
+"""Data of a figure."""
 
 _STYLE: Any = {
     "font.size": 9,
@@ -33,7 +33,7 @@ def save(draw: Callable[[Source], Figure], source: Source, path: Path) -> None:
     with matplotlib.rc_context(_STYLE):
         figure = draw(source)
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
-        figure.set_layout_engine("none")  # it stays as it is; to compute it again takes long
+        figure.set_layout_engine("none")  # the layout is kept, because it takes long to compute
         pixels = BytesIO()
         figure.savefig(pixels, format="png")
     with Image.open(pixels) as image:  # 256 colours look the same in a third of the bytes

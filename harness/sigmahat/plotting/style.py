@@ -1,4 +1,4 @@
-"""What the figures of all commands share: colours, symbols with units, and limits of an axis."""
+"""Common parts of figures: colours, symbols with units, and limits of an axis."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _CYCLE = (BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE, BLACK)  # neighbours are 
 
 
 def cycle(count: int) -> list[str]:
-    """Colours for so many lines; they begin again after the seventh."""
+    """Colours for a number of lines; the colours begin again after the seventh."""
     return [_CYCLE[i % len(_CYCLE)] for i in range(count)]
 
 
@@ -27,9 +27,9 @@ class Quantity:
 
     words: str
     math: str
-    """Its symbol in the figures, which Matplotlib sets."""
+    """Symbol in the figures, for Matplotlib."""
     plain: str
-    """The same in a page."""
+    """Symbol in a page."""
     unit: str
 
 
@@ -41,7 +41,7 @@ QUANTITIES = {
     "setPoint": Quantity("set-point", "s", "s", "1"),
     "t": Quantity("time", "t", "t", "s"),
 }
-"""By output of the estimator."""
+"""Quantities by output of the estimator."""
 _DIGITS = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -53,7 +53,7 @@ def math_axis(name: str) -> str:
 
 
 def plain_axis(name: str) -> str:
-    """The same in a page."""
+    """Label of an axis in a page: words, symbol and unit."""
     quantity = QUANTITIES[name]
     return f"{quantity.words} {quantity.plain} [{plain_unit(quantity.unit)}]"
 
@@ -82,7 +82,7 @@ def plain_text(text: str) -> str:
 _OUTER = 0.5
 """Percent of the values at either end."""
 _FURTHER = 0.5
-"""How much further than the others these are shown, over the range of the others."""
+"""Largest distance of shown values from the inner values, relative to the range of the latter."""
 
 
 def limits(values: NDArray[Any]) -> tuple[float, float]:
@@ -102,13 +102,13 @@ def limits(values: NDArray[Any]) -> tuple[float, float]:
 
 
 def with_margin(low: float, high: float, share: float) -> tuple[float, float]:
-    """Limits of an axis with a margin at either end, a share of the span."""
+    """Limits of an axis with a margin at either end, a fraction of the span."""
     margin = share * ((high - low) or abs(high) or 1.0)
     return low - margin, high + margin
 
 
 def around(parts: Iterable[NDArray[Any]], share: float) -> tuple[float, float] | None:
-    """The same around all finite values; None without any."""
+    """Limits with a margin around all finite values; None without finite values."""
     values = np.concatenate([np.empty(0), *parts])
     values = values[np.isfinite(values)]
     return with_margin(float(values.min()), float(values.max()), share) if len(values) else None

@@ -1,4 +1,4 @@
-"""What a report shows, as data: lines of text, tables, and panels with curves."""
+"""Contents of a report as data: lines of text, tables, and panels with curves."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class TextTable:
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
     words: Sequence[bool]
-    """Of each column, whether its cells are words, which stand at the left, and not numbers."""
+    """For each column, whether its cells are words, aligned to the left, and not numbers."""
     note: str = ""
-    """Below the table."""
+    """Text below the table."""
     folded: bool = False
     """Whether only its title is shown at first."""
 
@@ -38,13 +38,13 @@ class Contents:
 
     title: str
     lines: Sequence[str]
-    """Below the title."""
+    """Lines below the title."""
     tables: Sequence[TextTable]
     panels: Sequence[Panel]
     headline: str = ""
     """The result in one line, above all lines."""
     answer: Sequence[Panel] = ()
-    """Panels that stand above all others, and above the tables."""
+    """Panels above all other panels, and above the tables."""
     notes: Sequence[str] = ()
     """What had to be done to the samples, in sentences."""
     pictures: Sequence[Path] = ()
@@ -56,7 +56,7 @@ class Contents:
 
 
 def number(value: object) -> str:
-    """A cell for a value; "-" for one that is not defined."""
+    """A cell for a value; "-" for a value that is not defined."""
     if value is None or value == "":
         return "-"
     if not isinstance(value, float):

@@ -1,4 +1,4 @@
-"""A log through the estimator into a folder of results, with what the checks say about it."""
+"""Estimates from a log, and writes a folder of results, with the findings of the checks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def estimated(
     start_from: Path | None = None,
     mcap: bool = False,
 ) -> Estimate:
-    """The estimate; with the findings it is written into out, all files or none.
+    """Returns the estimate, and writes estimate and findings into out: all files, or no file.
 
     findings  of the checks: severity and sentence
     mcap      whether estimate.mcap is written, too

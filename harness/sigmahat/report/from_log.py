@@ -1,4 +1,4 @@
-"""The contents of a report from what `sigmahat estimate` wrote."""
+"""The contents of a report from the files of `sigmahat estimate`."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ from sigmahat.report.residuals import residual_panels, residuals
 
 @dataclass(frozen=True)
 class ShownFinding:
-    """A finding as it is shown."""
+    """A finding as text."""
 
     __pydantic_config__ = NO_OTHER_KEYS
 
     severity: Text
-    """How much it matters: "wrong", "rests on", "note"."""
+    """How much the finding matters: "wrong", "rests on", "note"."""
     text: Text
     """A sentence: the key of the configuration, the number, and a value that is proposed."""
 
@@ -71,7 +71,7 @@ class FindingsFile:
 
 
 FINDINGS = Format("findings.json", "sigmahat findings", 1, FindingsFile)
-"""Of the file."""
+"""Format of the file."""
 
 
 def write_findings(findings: Sequence[ShownFinding], folder: Path) -> None:
@@ -81,7 +81,7 @@ def write_findings(findings: Sequence[ShownFinding], folder: Path) -> None:
 
 
 def findings_table(folder: Path) -> list[TextTable]:
-    """The table of the file in a folder; none if there is no file.
+    """The table of the file in a folder; no table without this file.
 
     Raises ValueError, which says what is wrong, for a damaged file.
     """
@@ -99,7 +99,7 @@ _OF_THE_METHOD = ("a", "rho")
 
 @dataclass(frozen=True)
 class _Answer:
-    """What stands in the files beside the table."""
+    """Contents of the files beside the table."""
 
     sheet: sheet.Sheet
     replayed: Replayed
@@ -108,10 +108,10 @@ class _Answer:
 
 
 def from_log(folder: Path) -> Contents:
-    """The curve, what was found, and the signals of the estimator over time.
+    """The curve, other results, and the signals of the estimator over time.
 
     A folder that an older version wrote has only the signals. Raises ValueError, which says what to
-    do, for a file that is damaged or of something else.
+    do, for a damaged or wrong file.
     """
     table = EstimateTable(folder)
     used, t = table["valid"].astype(bool), table["t"]
@@ -121,7 +121,7 @@ def from_log(folder: Path) -> Contents:
         drawn = signals.without("sigma_std")  # the method gives no interval
     reduced = reduce(t, drawn)
     marks = []
-    if "change_age" in signals:  # older versions have none
+    if "change_age" in signals:  # older versions have no such output
         marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
     marked = ["Dotted lines: changes of the stiffness, see Samples."] if marks else []
     tables = [] if answer is None else _found(answer)
@@ -150,7 +150,7 @@ def from_log(folder: Path) -> Contents:
 
 
 def from_joints(folder: Path) -> Contents:
-    """The table of several joints, and the curve of each.
+    """The table of several joints, and the curve of each joint.
 
     Raises ValueError, which says what to do, for a file that is missing or damaged.
     """
@@ -198,7 +198,7 @@ def _answer(folder: Path) -> _Answer | None:
 
 
 def _origin(answer: _Answer | None, folder: Path) -> Iterator[str]:
-    """From what, when and with which version the results were made."""
+    """A line with the log, the configuration, the version and the time of the results."""
     if answer is not None:
         made = datetime.fromtimestamp((folder / REPLAYED.file).stat().st_mtime).astimezone()
         version, source = answer.sheet.sigmahat, answer.sheet.configuration.file
@@ -206,9 +206,9 @@ def _origin(answer: _Answer | None, folder: Path) -> Iterator[str]:
 
 
 def _skipped(answer: _Answer | None, used: NDArray[np.bool_]) -> str:
-    """As `estimate` counts: ticks. A gap in the log has ticks, but no rows."""
+    """Number of skipped ticks, as in `estimate`. A gap in the log has ticks, but no rows."""
     if answer is None:
-        return f"in {np.count_nonzero(~used)} of them the estimator skipped the tick"
+        return f"in {np.count_nonzero(~used)} of the rows the estimator skipped the tick"
     replayed = answer.replayed
     return f"{replayed.skipped} of {replayed.ticks} ticks of {replayed.T:g} s skipped"
 
@@ -273,20 +273,20 @@ _FROM = {"prior": "the configuration (prior)", "identify": "identify", "exact": 
 
 
 def curve_table(curve: Curve) -> TextTable:
-    """The stiffness with its interval, over which range it holds, and the polynomial."""
+    """The stiffness with its interval, the range of the curve, and the polynomial."""
     several = len(curve.branches) > 1
     head = [plain_text(cell) for cell in (FAMILY_HEAD if several else STIFFNESS_HEAD)]
     rows = list(family_rows(curve) if several else stiffness_rows(curve))
     words = plain_text(polynomial_in_words(curve.polynomial))
     reach = plain_text(reach_in_words(curve))
-    note = f"It holds {reach}; beyond, where the plots are faded, it is a guess. {words}."
+    note = f"The curve holds {reach}; outside (faded in the plots), it is a guess. {words}."
     if not curve.claims:
-        note += " The method claims no interval."
+        note += " The method gives no interval."
     return TextTable("Stiffness", head, rows, [False] * len(rows[0]), note=note)
 
 
 def found_table(sheet: Sheet) -> TextTable:
-    """Motor data and what else was estimated, with intervals."""
+    """Motor data and other estimates, with intervals."""
     rows = []
     for name, each in sheet.parameters.items():
         interval = "-" if each.interval is None else " to ".join(map(number, each.interval))
@@ -302,7 +302,7 @@ def found_table(sheet: Sheet) -> TextTable:
 
 
 def estimator_table(sheet: Sheet) -> TextTable:
-    """All parameters of the estimator but the coefficients of its curve; folded."""
+    """All parameters of the estimator without the coefficients of its curve; folded."""
     rows = [
         [name, str(value).lower() if isinstance(value, bool) else number(value)]
         for name, value in sheet.start_values.items()

@@ -1,4 +1,4 @@
-"""The contents of a report from what `sigmahat reproduce` wrote."""
+"""The contents of a report from the files of `sigmahat reproduce`."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from sigmahat.plotting.style import QUANTITIES, plain_axis
 from sigmahat.report.contents import Contents, TextTable, of_file
 
 _MAIN = "RESIDUAL"
-"""What is shown of one estimator is shown of the one that needs no sensor of torque."""
+"""Estimator for panels of a single estimator: RESIDUAL needs no torque sensor."""
 _STIFFNESS = re.compile(r"sigma(_\d)?")
 
 
 def from_reproduction(folder: Path) -> Contents:
-    """Stiffness of every estimator, and all other signals of one of them.
+    """Stiffness of every estimator, and all other signals of one estimator.
 
     Raises ValueError as read_result_files() does.
     """
@@ -70,17 +70,17 @@ def _indices(table: pa.Table) -> TextTable:
 
 
 _LAST = 1 / 3
-"""Part of the run that is shown: there an estimate changes little."""
+"""Fraction of the run that is shown: at the end, an estimate changes little."""
 _COUNT = 100
-"""Samples of the estimate: so few that the truth is seen between them."""
+"""Number of dots of the estimate: few, so that the truth is visible between the dots."""
 
 Signals = Mapping[str, NDArray[Any]]
 
 
 def over_deformation(signals: Signals, estimator: str) -> Iterator[Panel]:
-    """Two panels for each transmission that does not change its stiffness; sides of a pair apart.
+    """Two panels for each transmission with a fixed spring; separate panels for sides of a pair.
 
-    None without the truth. signals  of the plant and of one estimator
+    No panels without the truth. signals  of the plant and of one estimator
     """
     for side in SIDES:
         needed = [f"{name}{side}" for name in ("phi", "tau_e", "sigma", "setPoint")]
@@ -94,7 +94,7 @@ def over_deformation(signals: Signals, estimator: str) -> Iterator[Panel]:
         for name in ("tau_e", "sigma"):
             words = QUANTITIES[name].words.capitalize()
             yield Panel(
-                f"{words} over the deformation{of_side(side)}, {estimator}",
+                f"{words} against deformation{of_side(side)}, {estimator}",
                 plain_axis("phi"),
                 plain_axis(name),
                 list(_curves(own, name, side)),

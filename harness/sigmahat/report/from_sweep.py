@@ -11,7 +11,7 @@ from sigmahat.sweep.table import FAILURE, RUN, Role, SweepTable, read, title
 
 
 def from_sweep(folder: Path) -> Contents:
-    """The summary, the distribution of the error, and the error over each parameter.
+    """The summary, the distribution of the error, and the error against each parameter.
 
     Raises ValueError as sigmahat.sweep.table.read() does.
     """

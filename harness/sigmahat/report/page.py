@@ -1,4 +1,4 @@
-"""The job of `sigmahat report`: one HTML file of the results in a folder, whatever they are of."""
+"""The job of `sigmahat report`: one HTML file of the results in a folder, of several commands."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from sigmahat.report.from_sweep import from_sweep
 from sigmahat.report.plots import plots
 
 METHODS, MISFITS = "compare.csv", "misfits.csv"
-"""Files of `compare` and `compare --misfits`; the figure beside has the same name."""
+"""Files of `compare` and `compare --misfits`; the figure has the same name."""
 _FIRST = {METHODS: "group", MISFITS: "class"}
 """Column whose values head the tables."""
 _SEEDS = "seeds"
@@ -61,7 +61,7 @@ def report(folder: Path) -> str:
 
     folder  where one of these commands wrote its results
 
-    Raises ValueError, which says what to do, if the folder holds nothing of that or damaged files.
+    Raises ValueError, which says what to do, if the folder has no such results, or damaged files.
     """
     if not folder.is_dir():
         raise ValueError(

@@ -1,4 +1,4 @@
-"""The panels of a report as Bokeh draws them.
+"""Draws the panels of a report with Bokeh.
 
 The page gives the plots their switches and, through CSS, their colours.
 """
@@ -34,7 +34,7 @@ _HEIGHT = 300
 
 @dataclass(frozen=True)
 class Plot:
-    """A panel as Bokeh draws it."""
+    """A panel that is drawn with Bokeh."""
 
     panel: Panel
     figure: figure
@@ -45,7 +45,7 @@ class Plot:
 def plots(
     panels: Sequence[Panel], every: tuple[float, float] | None, marks: Sequence[float] = ()
 ) -> list[Plot]:
-    """The plots of panels; those that are linked have every shaded, and dotted lines at marks."""
+    """The plots of panels; linked plots have `every` shaded, and dotted lines at `marks`."""
     sources: dict[int, ColumnDataSource] = {}
     linked = _time_range(panels)
     made = []
@@ -134,7 +134,7 @@ def _draw(plot: figure, curve: Curve, name: str, sources: dict[int, ColumnDataSo
             fill_color=curve.color, fill_alpha=0.3, line_color=curve.color, name=name,
         )  # fmt: skip
         return
-    # Signals over the same times are in one source, which holds the times once.
+    # Signals with the same times share one source, which has the times once.
     source = sources.setdefault(id(curve.x), ColumnDataSource({"x": curve.x}))
     source.data[name] = curve.y
     if curve.kind is Kind.LINE:
@@ -148,7 +148,7 @@ def _draw(plot: figure, curve: Curve, name: str, sources: dict[int, ColumnDataSo
 
 
 def _draw_line(plot: figure, curve: Curve, name: str, source: ColumnDataSource) -> None:
-    """A line, in front of its band and of the points it was fitted to; all of one name."""
+    """A line, in front of its band and its measured points; all parts have one name."""
     if curve.behind is not None:
         x, y = curve.behind
         style = {"color": curve.color, "alpha": 0.12, "line_color": None, "size": 3}
@@ -172,7 +172,7 @@ def _draw_line(plot: figure, curve: Curve, name: str, source: ColumnDataSource) 
 
 
 def _draw_means(plot: figure, curve: Curve, name: str, source: ColumnDataSource) -> None:
-    """Whiskers, a line and points; all of one name, so that one switch is for all."""
+    """Whiskers, a line and points; all parts have one name, so that one switch is for all."""
     source.data[f"{name}-low"] = curve.low
     source.data[f"{name}-high"] = curve.high
     plot.add_layout(

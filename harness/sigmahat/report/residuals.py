@@ -1,7 +1,7 @@
-"""Where a model fails: the torque that was predicted beside the measured one, and the residual.
+"""Shows where a model fails: the predicted and the measured torque, and the residual.
 
-Every tick is predicted before the estimator learns from it. So the second half of a log is held
-out: no sample of it was known when its torque was predicted.
+The torque of every tick is predicted before the estimator learns from this tick. So the second
+half of a log is a test set: no sample was known when its torque was predicted.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Residuals:
     residual: Array
     """Measured torque less the predicted one [N.m]."""
     signals: Mapping[str, Array]
-    """Of _OVER, at the same times."""
+    """Signals _OVER, at the same times."""
 
     @property
     def fit(self) -> float:
@@ -49,11 +49,11 @@ class Residuals:
 def residuals(
     t: Array, signals: Mapping[str, NDArray[Any]], used: NDArray[np.bool_], bandwidth: float
 ) -> Residuals | None:
-    """None if the second half is too short to say anything.
+    """The residuals of a log; None if the second half is too short.
 
-    signals    outputs of the estimator at the times t: epsilon and those of _OVER
+    signals    outputs of the estimator at the times t: epsilon and _OVER
     used       whether the estimator used the sample
-    bandwidth  of its filters [rad/s]: samples nearer than half a period of it say the same
+    bandwidth  of its filters [rad/s]: samples within half a period of it are not independent
     """
     rows = np.flatnonzero(used & (np.arange(len(t)) >= len(t) // 2))
     if len(rows) < 2:
@@ -68,7 +68,7 @@ def residuals(
 
 
 def residual_panels(found: Residuals) -> Iterator[Panel]:
-    """The torque over time, the autocorrelation of the residual, and its mean over each signal."""
+    """The torque over time, autocorrelation of the residual, and its mean against each signal."""
     predicted, torque = found.signals["tau_e"], QUANTITIES["tau_e"]
     shown = slice(-_SHOWN, None)
     yield Panel(
@@ -101,7 +101,7 @@ def residual_panels(found: Residuals) -> Iterator[Panel]:
     for name in _OVER:
         x, mean, half = means(found.signals[name], found.residual)
         yield Panel(
-            f"Residual over the {QUANTITIES[name].words}",
+            f"Residual against {QUANTITIES[name].words}",
             plain_axis(name),
             f"residual [{torque.unit.replace('.', '·')}]",
             [
@@ -109,7 +109,7 @@ def residual_panels(found: Residuals) -> Iterator[Panel]:
                 Curve("0", TRUE, x, np.zeros(len(x))),
             ],
             linked=False,
-            caption="band: 95 %; where it does not hold 0, the model fails",
+            caption="band: 95 %; where the band does not contain 0, the model fails",
             y_range=around([mean - half, mean + half], 0.1),
         )
 

@@ -1,1 +1,1 @@
-"""The engine: runs of scenarios over seeds, in parallel, and what is computed of each."""
+"""The engine: runs of scenarios over seeds, in parallel, and the evaluation of each run."""

@@ -1,4 +1,4 @@
-"""Runs of scenarios over seeds: one here, or many in parallel, and what is computed of each.
+"""Runs of scenarios over seeds: a single run, or many in parallel, and the evaluation of each run.
 
 A command makes its jobs from `run` and `measured`, and gives them to `run_all`.
 """
@@ -64,10 +64,10 @@ def run_all(
     processes: int | None = None,
     progress: Progress = lambda done: None,
 ) -> list[Result]:
-    """Results of the jobs, in their order; the first exception of one ends them all.
+    """Results of the jobs, in their order; the first exception of a job ends all jobs.
 
     jobs       partial objects of run or measured: other processes receive them
-    processes  at most so many, by default one per processor; the results do not depend on it
+    processes  largest number of processes, by default one per processor; no effect on results
     progress   called with 1 for every job that is done
     """
     results: dict[int, Result] = {}

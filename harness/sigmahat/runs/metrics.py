@@ -1,4 +1,4 @@
-"""Performance indices of a stiffness estimate, what each of them is, and their mean over seeds."""
+"""Performance indices of a stiffness estimate, their descriptions, and their mean over seeds."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from sigmahat.files import tables
 class Indices:
     """Performance indices of one estimate over one run.
 
-    Relative ones are nan where what they are relative to is zero at some time.
+    Relative indices are nan if their reference is zero at some time.
     """
 
     mse: float
@@ -35,22 +35,22 @@ class Indices:
 
 @dataclass(frozen=True)
 class Index:
-    """What one of the performance indices is."""
+    """Description of a performance index."""
 
     field: str
-    """Of Indices."""
+    """Field of Indices."""
     symbol: str
-    """As the paper calls it."""
+    """Symbol in the paper."""
     unit: str
     settled: bool
-    """Whether it leaves the start-up out."""
+    """Whether the index leaves the start-up out."""
 
     def when(self, settled: float) -> str:
-        """The part of a run that it is of, for people; settled: where the start-up ends [s]."""
+        """The part of a run that the index covers, in words; settled: end of the start-up [s]."""
         return f"after {settled:g} s" if self.settled else ""
 
     def name(self, when: str = "") -> str:
-        """For people, with the part of the run that it is of."""
+        """Name of the index, with the part of the run that the index covers."""
         return f"{self.symbol} {when}" if when else self.symbol
 
     def title(self, when: str = "") -> str:
@@ -85,7 +85,7 @@ def mse(sigma: ArrayLike, estimate: ArrayLike) -> float:
 def msrep(sigma: ArrayLike, estimate: ArrayLike, relative_to: ArrayLike | None = None) -> float:
     """Mean square relative error, (36) [%]; arguments as for mse.
 
-    The error is relative to sigma, or to another stiffness of the same shape; it must be nonzero.
+    The error is relative to sigma, or to another stiffness of the same shape, which must not be 0.
     """
     return mse(*_relative(sigma, estimate, relative_to)) * 100
 
@@ -105,7 +105,7 @@ def indices(
     relative_to: ArrayLike | None = None,
     settled: float = 1.0,
 ) -> Indices:
-    """All indices of one run, over all of it and without its start-up.
+    """All indices of one run, for the whole run and without its start-up.
 
     `t` [s] has the shape of `sigma` and `estimate` [N.m/rad], (p + 1,). Errors are relative to
     `relative_to` [N.m/rad], which is `sigma` if not given and may be zero here. The start-up ends
@@ -131,7 +131,7 @@ def indices(
 def mean_interval(values: Sequence[float]) -> tuple[float, float]:
     """Mean over independent runs and half the width of its 95 % interval (Student t).
 
-    The half width of a single value is not defined: nan. That of equal values is exactly 0.
+    The half width of a single value is not defined: nan. For equal values, it is exactly 0.
     """
     mean = float(np.mean(values))
     if len(values) < 2:

@@ -24,7 +24,7 @@ class WorkerError(RuntimeError):
 
 
 class WorkersLostError(WorkerError):
-    """Processes or machines were lost while they did their jobs; others may do them."""
+    """Processes or machines were lost during their jobs; another call may do these jobs."""
 
 
 def spread(
@@ -33,7 +33,7 @@ def spread(
     """Yields the place of a job and its result, in the order in which the jobs are done.
 
     jobs       partial objects or functions that other processes can import
-    processes  at most so many, by default one per processor
+    processes  largest number of processes, by default one per processor
 
     Raises what a job raises, and WorkersLostError if a process was ended from outside. Closing
     the generator cancels the jobs that have not begun.
@@ -54,7 +54,7 @@ def spread(
 
 @contextmanager
 def _interrupts_for_the_parent_alone() -> Iterator[None]:
-    """Processes started inside ignore Ctrl-C, which a terminal sends to them too.
+    """Processes that start inside the block ignore Ctrl-C, which a terminal sends to them too.
 
     They inherit the blocked signal. In this process the signal waits until the end of the block,
     also if another thread receives it, so that no process is left half started.
@@ -72,7 +72,7 @@ def _interrupts_for_the_parent_alone() -> Iterator[None]:
 
 
 def _end_with_the_parent() -> None:
-    """Ends this process when its parent is gone; it would wait for work for ever."""
+    """Ends this process when its parent has ended; else this process would wait for ever."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     sentinel = parent.sentinel

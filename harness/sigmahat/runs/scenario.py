@@ -1,4 +1,4 @@
-"""What a scenario is, as plain data: a plant, its inputs, estimators, and what is compared."""
+"""Scenarios as plain data: a plant, its inputs, estimators, and comparisons."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Sine:
     """amplitude sin(2 pi frequency t + phase)."""
 
     amplitude: float
-    """In the unit of the input."""
+    """Amplitude in the unit of the input."""
     frequency: float
     """[Hz]"""
     phase: float = 0.0
@@ -35,9 +35,9 @@ class Sines:
     """Constant plus sines."""
 
     offset: float
-    """In the unit of the input."""
+    """Constant in the unit of the input."""
     terms: Sequence[Sine]
-    """Of any number."""
+    """Any number of sines."""
 
     def __call__(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
         return self.offset + sum((term(t) for term in self.terms), np.zeros_like(t))
@@ -45,7 +45,7 @@ class Sines:
 
 @dataclass(frozen=True)
 class Comparison:
-    """One stiffness against another.
+    """A comparison of two stiffnesses.
 
     A signal is `"SOURCE.VARIABLE"`: the source is "plant", an estimator, or "nominal", the AwAS
     as its nominal data describe it.
@@ -56,9 +56,9 @@ class Comparison:
     estimate: str
     """Signal that is judged."""
     reference: str
-    """Signal that it is compared with."""
+    """Signal with which the estimate is compared."""
     relative_to: str | None = None
-    """Signal that errors are relative to; the reference if not given."""
+    """Signal for relative errors; the reference if not given."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Scenario:
     """One run of a plant and its estimators."""
 
     name: str
-    """For `sigmahat reproduce --scenario`, and for folders."""
+    """Name for `sigmahat reproduce --scenario`, and for folders."""
     description: str
     """One line."""
     duration: float
@@ -74,7 +74,7 @@ class Scenario:
     plant: Plant
     """The joint whose stiffness is estimated."""
     estimators: Mapping[str, EstimatorFmu]
-    """By modality."""
+    """Estimators by modality."""
     comparisons: Sequence[Comparison]
     """Rows of the table. The estimators in them are not variants."""
     figures: Sequence[str]

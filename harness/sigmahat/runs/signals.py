@@ -1,4 +1,4 @@
-"""Signals of comparisons, "SOURCE.VARIABLE": their values, and what to record for them."""
+"""Signals of comparisons, "SOURCE.VARIABLE": their values, and the variables to record."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sigmahat.fmi.master import Recording
 from sigmahat.runs.scenario import Comparison
 
 MOTION = ("phi", "theta_c")
-"""What has to be recorded of the plant."""
+"""Variables of the plant that have to be recorded."""
 MODEL = "MODEL"
 """The estimator whose parameters model.* are the nominal data."""
 
@@ -21,8 +21,8 @@ MODEL = "MODEL"
 def nominal_awas(recording: Recording) -> dict[str, NDArray[np.float64]]:
     """Lever arm r [m], flexibility torque tau_e [N.m] and stiffness sigma [N.m/rad].
 
-    Each has the shape (N + 1,) of the recording. The motion is that of the plant itself and not as
-    the encoders measure it, because the estimate of MODEL is compared with the result.
+    Each array has the shape (N + 1,) of the recording. The motion is the true motion of the plant,
+    not the measured motion, because the estimate of MODEL is compared with the result.
     """
     data = recording.estimators[MODEL].parameters
     k_s, r_0, b = (float(data[f"model.{name}"]) for name in ("k_s", "r_0", "b"))
@@ -54,7 +54,7 @@ def signal_of(recording: Recording, signal: str) -> NDArray[Any]:
 
 
 def to_record(comparisons: Iterable[Comparison]) -> dict[str, set[str]]:
-    """Variables that the comparisons need, by the plant or estimator that they are recorded of."""
+    """Variables that the comparisons need, by the plant or estimator that has the variables."""
     needed: dict[str, set[str]] = defaultdict(set)
     for each in comparisons:
         for signal in (each.estimate, each.reference, each.relative_to):

@@ -1,4 +1,4 @@
-"""Jobs on a Dask cluster; sigmahat.runs.pool does the same in processes of this machine."""
+"""Jobs on a Dask cluster; sigmahat.runs.pool does jobs in processes of this machine."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sigmahat.runs.pool import WorkerError, WorkersLostError
 Result = TypeVar("Result")
 
 _CONNECT = 10.0
-"""How long the answer of a scheduler, and its first worker, are waited for [s]."""
+"""Longest wait for a reply of a scheduler, and for its first worker [s]."""
 
 
 def spread_on_cluster(
@@ -22,8 +22,8 @@ def spread_on_cluster(
 
     scheduler  address of a Dask scheduler, "tcp://host:port"
 
-    The jobs of a lost worker are done by another one, and each result comes once. Raises
-    WorkerError if there is no scheduler or no worker, WorkersLostError if the scheduler is lost.
+    Another worker does the jobs of a lost worker, and each result is yielded once. Raises
+    WorkerError without a scheduler or a worker, WorkersLostError if the scheduler is lost.
     """
     import distributed
     from distributed.comm.core import CommClosedError
@@ -54,10 +54,10 @@ def _call(job: Callable[[], Result]) -> Result:
 def _connect(scheduler: str) -> Any:
     import distributed
 
-    for name in ("distributed", "distributed.client"):  # what matters is raised here
+    for name in ("distributed", "distributed.client"):  # important errors are raised here
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        # A client would wait for ever for the answer of something else that listens there.
+        # A client would wait for ever for a reply of another program at this address.
         asyncio.run(asyncio.wait_for(_ask(scheduler), _CONNECT))
         return distributed.Client(scheduler, timeout=_CONNECT, set_as_default=False)
     except (OSError, ValueError, TimeoutError, asyncio.TimeoutError, MemoryError) as error:

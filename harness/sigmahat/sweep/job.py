@@ -1,9 +1,9 @@
 """The job of `sigmahat sweep`: does the runs that are not done yet, and writes the results.
 
-The runs that are done are on disk, one line for each, so that a sweep can go on later. A line is
-JSON. The first says which sweep it is, with however many seeds. A run is named by its setting, the
-place of scenario and listed values in the plan, and by its seed: so a sweep that gets more seeds
-later goes on in the same file.
+A file has a line of JSON for each run that is done, so that a sweep can continue later. The first
+line identifies the sweep, with any number of seeds. Each run has its setting, which is the place of
+scenario and listed values in the plan, and its seed. So a sweep with more seeds can continue in the
+same file.
 """
 
 from __future__ import annotations
@@ -39,14 +39,15 @@ class Records:
     def __init__(self, path: Path, plan: Plan) -> None:
         """Reads the file if it exists.
 
-        Raises ValueError, which says where and what to do, if it is damaged or of another sweep.
+        Raises ValueError, which says where and what to do, if the file is damaged or of another
+        sweep.
         """
         self.path = path
         self.outcomes: dict[int, Outcome] = {}
         self._seeds = plan.seeds
         lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
         if lines and not lines[-1].endswith(b"\n"):
-            lines.pop()  # what a kill cut off; that run is done again
+            lines.pop()  # an incomplete line after a kill; its run is done again
         head = {"sweep": sweep_digest(replace(plan, seeds=1))}
         contents = [self._parse(line, i) for i, line in enumerate(lines, 1)]
         if contents and contents[0] != head:
@@ -72,7 +73,7 @@ class Records:
             self._write(head)
 
     def add(self, outcome: Outcome) -> None:
-        """Writes an outcome, which a process that is killed later does not lose."""
+        """Writes an outcome to the file at once, so that a later kill does not lose it."""
         self.outcomes[outcome.number] = outcome
         setting, seed = divmod(outcome.number, self._seeds)
         indices = {name: astuple(each) for name, each in outcome.indices.items()}
@@ -121,15 +122,15 @@ def sweep(
     scheduler: str | None = None,
     progress: Progress = lambda runs: None,
 ) -> SweepTable:
-    """Does what is not done of a sweep, here or on a Dask cluster, and writes all files into out.
+    """Does the remaining runs of a sweep, here or on a Dask cluster, and writes all files into out.
 
     scheduler  address of the scheduler of the cluster, "tcp://host:port"
-    progress   called with the number of runs done since the last call, first with those that
-               an earlier, interrupted call had done
+    progress   called with the number of runs done since the last call, first with the runs of
+               an earlier, interrupted call
 
     Raises ValueError for a plan that does not fit its scenarios, for records that do not fit and
     if every run failed, FmuError if an FMU refuses a listed value, WorkerError for workers that
-    are not there or lost, OSError for files that cannot be written.
+    are missing or lost, OSError for files that cannot be written.
     """
     check(plan)
     with records(out, plan) as done:
@@ -148,7 +149,7 @@ def sweep(
 
 
 def _run(plan: Plan, done: Records, scheduler: str | None, progress: Progress) -> None:
-    """Does the runs that are not done, and writes each into the records."""
+    """Does the remaining runs, and writes each outcome into the records."""
     digests = {name: fmu_digest([name]) for name in plan.scenarios}
     jobs: list[Callable[[], Outcome]] = [
         partial(execute, run, digests[run.scenario])
@@ -164,7 +165,7 @@ def _run(plan: Plan, done: Records, scheduler: str | None, progress: Progress) -
                 done.add(outcome)
                 progress(1)
     except WorkersLostError as error:
-        raise WorkersLostError(f"{error}; the same command goes on from what is done") from error
+        raise WorkersLostError(f"{error}; the same command does the remaining runs") from error
 
 
 def _draw(table: SweepTable, folder: Path) -> None:

@@ -33,7 +33,7 @@ class Part:
 
 
 def parts(sweep: SweepTable) -> list[Part]:
-    """One for each comparison of each scenario, in the order of the table."""
+    """A part for each comparison of each scenario, in the order of the table."""
     good = sweep.where([failure is None for failure in sweep.values(FAILURE)])
     keys = list(zip(good.values(ESTIMATION), good.values(SCENARIO), strict=True))
     several = len({scenario for _, scenario in keys}) > 1
@@ -44,7 +44,7 @@ def parts(sweep: SweepTable) -> list[Part]:
 
 
 def drawn_indices(sweep: SweepTable) -> list[Index]:
-    """MSREP over all and after start-up, or MSE where relative errors are not defined."""
+    """MSREP of the whole run and after start-up, or MSE if relative errors are not defined."""
     for fields in (("msrep", "msrep_settled"), ("mse", "mse_settled")):
         indices = [INDICES[field] for field in fields]
         if all(np.isfinite(sweep.numbers(index)).any() for index in indices):
@@ -53,12 +53,12 @@ def drawn_indices(sweep: SweepTable) -> list[Index]:
 
 
 def time_of(index: Index) -> str:
-    """The part of the run that a drawn index is of, in words."""
+    """The part of the run that a plotted index covers, in words."""
     return "after start-up" if index.settled else "of the whole run"
 
 
 def abscissas(sweep: SweepTable) -> list[ParameterColumn]:
-    """What the error is drawn against: errors of parameters, and other parameters with numbers."""
+    """Columns for the x axis: errors of parameters, and other parameters with numbers."""
     errors = [column for column in sweep.parameters(Role.ERROR) if _varies(sweep, column)]
     others = [
         column
@@ -75,12 +75,12 @@ def _varies(sweep: SweepTable, column: ParameterColumn) -> bool:
 
 
 def has_a_value_for_each_run(sweep: SweepTable, column: ParameterColumn) -> bool:
-    """Whether the parameter is drawn: runs are shown as points, those of others as means."""
+    """Whether the parameter is drawn for each seed. Then runs are plotted as points, else means."""
     return any(map(column.same_quantity, sweep.parameters(Role.DRAWN)))
 
 
 def interval_at(x: Column, y: Column) -> tuple[list[float], list[float], list[float]]:
-    """Different x, and for each the mean of y and half the width of its 95 % interval, 0 of one."""
+    """Distinct x, mean of y at each x, and half the width of its 95 % interval (0 for one run)."""
     at = np.unique(x).tolist()
     pairs = [mean_interval(y[x == value].tolist()) for value in at]
     return at, [mean for mean, _ in pairs], [0.0 if np.isnan(half) else half for _, half in pairs]
@@ -119,11 +119,11 @@ def _distribution(sweep: SweepTable, index: Index) -> Panel:
 
 
 def against_parameters(sweep: SweepTable) -> Iterator[Panel]:
-    """The error after start-up over each parameter, or over the error of that parameter."""
+    """The error after start-up against each parameter, or against the error of the parameter."""
     for column in abscissas(sweep):
         index = drawn_indices(sweep)[-1]
         yield Panel(
-            f"{index.name(time_of(index))} over {column.name}",
+            f"{index.name(time_of(index))} against {column.name}",
             title(column),
             index.title(time_of(index)),
             list(_curves(sweep, column, index)),

@@ -1,20 +1,20 @@
-"""The plan of a sweep: which runs it has, and in which order. And the outcome of a run.
+"""The plan of a sweep, with its runs in their order, and the outcome of a run.
 
 The plan as a TOML file:
 
     scenario = ["table1"]           # see `sigmahat scenarios`
-    seeds = 100                     # 1 to 100; of the noise, and of what is drawn
+    seeds = 100                     # 1 to 100; of the noise, and of drawn values
     modality = ["RESIDUAL"]         # estimators of the scenarios; left out: all
     [parameters]
     plant.motor.D_theta = [0.9e-3, 1.1e-3]
     estimator.residual.K_I = "100:500:5"
     RESIDUAL.motor.B = "normal(2.3e-5, 1e-6)"
 
-A parameter belongs to the plant, to one estimator, or to all of them: "estimator". Its values, on
-the command line or in a file:
+A parameter belongs to the plant, to one estimator, or to all estimators: "estimator". Values of a
+parameter, on the command line or in a file:
 
-0.9e-3,1.1e-3          each of a list; names of items and true, false too
-0.8e-3:1.2e-3:9        9 values at equal distances, both ends among them
+0.9e-3,1.1e-3          each value of a list; names of items and true, false too
+0.8e-3:1.2e-3:9        9 values at equal distances, both ends included
 uniform(0.9e-3,1.1e-3) drawn for each seed, between two ends
 normal(1e-3,5e-5)      drawn for each seed, by mean and standard deviation
 """
@@ -65,7 +65,7 @@ Values = tuple[Value, ...] | Drawn
 
 
 def values(text: Any) -> Values:
-    """Reads what stands behind a name: text as above, or a value or list of values of a plan.
+    """Reads the values of a parameter: text as above, or a value or list of values of a plan.
 
     Raises ValueError, which says what is expected.
     """
@@ -135,27 +135,27 @@ def _finite(text: str) -> float:
 
 @dataclass(frozen=True)
 class Run:
-    """One co-simulation; all that another process or machine needs to do it."""
+    """One co-simulation, with all that another process or machine needs for this run."""
 
     number: int
     scenario: str
     modalities: tuple[str, ...]
-    """Empty: all that the scenario compares."""
+    """Estimators to run; empty: all estimators that the scenario compares."""
     seed: int
     parameters: Mapping[str, Value]
-    """By name with owner, "plant.motor.B"."""
+    """Values by name with owner, "plant.motor.B"."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """The result of a run, or why there is none."""
+    """The result of a run, or why the run failed."""
 
     number: int
-    """Of the run."""
+    """Number of the run."""
     indices: Mapping[str, Indices]
-    """By comparison; empty if the run failed."""
+    """Indices by comparison; empty if the run failed."""
     failure: str | None
-    """Why it failed: an FMU refused a value, or an estimate is not finite."""
+    """Why the run failed: an FMU refused a value, or an estimate is not finite."""
 
 
 @dataclass(frozen=True)
@@ -165,16 +165,16 @@ class Plan:
     scenarios: tuple[str, ...]
     seeds: int
     modalities: tuple[str, ...]
-    """Empty: all that the scenarios compare."""
+    """Estimators to run; empty: all estimators that the scenarios compare."""
     parameters: Mapping[str, Values]
-    """By name with owner."""
+    """Values by name with owner."""
 
     def __len__(self) -> int:
         return self.count
 
     @property
     def count(self) -> int:
-        """Number of runs, also where it is too large for len()."""
+        """Number of runs, also if this number is too large for len()."""
         return len(self.scenarios) * self.seeds * math.prod(map(len, self.listed.values()))
 
     @property
@@ -205,7 +205,7 @@ class Plan:
     def samples(self) -> Iterator[Run]:
         """Few runs with every scenario and every listed value, for a check before the start.
 
-        The first run of each scenario, and that run with each other listed value.
+        The first run of each scenario, and the same run with each other listed value.
         """
         for scenario in self.scenarios:
             first = next(replace(self, scenarios=(scenario,))._runs())
@@ -229,9 +229,9 @@ def read_plan(
 ) -> Plan:
     """Reads a plan from a file, from the command line, or from both.
 
-    path        TOML file; None: there is none
-    scenarios, seeds, modalities   replace those of the file
-    settings    parameters, each "NAME=VALUES"; they replace those of the file, or are added
+    path        TOML file; None: no file
+    scenarios, seeds, modalities   replace values of the file
+    settings    parameters, each "NAME=VALUES", which replace parameters of the file, or are added
 
     Raises ValueError, which names the place, for text that does not fit. Whether the names and
     values fit the scenarios is checked by sigmahat.sweep.check.

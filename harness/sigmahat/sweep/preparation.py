@@ -1,4 +1,4 @@
-"""One run of a sweep: its scenario with the parameters of the run, and how a process runs it."""
+"""One run of a sweep: its scenario with the parameters of the run, and its execution."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ALL = "estimator"
 
 
 def prepare(run: Run) -> Scenario:
-    """The scenario of a run with its parameters; the seed is left to the engine.
+    """The scenario of a run with its parameters; the engine sets the seed.
 
     Raises ValueError for a name that does not fit the scenario.
     """
@@ -42,9 +42,9 @@ def prepare(run: Run) -> Scenario:
 
 
 def reduced(name: str, modalities: tuple[str, ...]) -> Scenario:
-    """A scenario with the estimators of these modalities, or of all that it compares.
+    """A scenario with the estimators of these modalities, or with all estimators of comparisons.
 
-    Recorded is only what their comparisons need. Raises ValueError for a name that does not fit.
+    Only variables of the comparisons are recorded. Raises ValueError for a name that does not fit.
     """
     base = scenario(name)
     needed = to_record(base.comparisons)
@@ -77,7 +77,7 @@ def parameters_by_owner(
     Raises ValueError for an owner that the scenario does not have, and for the seed.
     """
     own: dict[str, dict[str, Value]] = {name: {} for name in (PLANT, *chosen.estimators)}
-    # What is set for all estimators gives way to what is set for one.
+    # A value for one estimator replaces a value for all estimators.
     for full in sorted(parameters, key=lambda full: not full.startswith(f"{ALL}.")):
         owner, _, name = full.partition(".")
         if owner != ALL and owner not in own:
@@ -90,12 +90,12 @@ def parameters_by_owner(
 
 
 def check(plan: Plan) -> None:
-    """Lets the FMUs of each scenario see each listed value once, with the first of the others.
+    """Initialises the FMUs of each scenario with each listed value, and first other values.
 
     Raises ValueError for a name or value that does not fit, FmuError if an FMU refuses a value.
     """
     for run in plan.samples():
-        # What is drawn may leave its range now and then: that run fails, not the sweep.
+        # A drawn value may be out of range in some runs: then the run fails, not the sweep.
         listed = {name: run.parameters[name] for name in plan.listed}
         starts = models(prepare(replace(run, parameters=listed)))
         for name, model in models(prepare(run)).items():
@@ -113,7 +113,7 @@ def models(scenario: Scenario) -> dict[str, Plant | EstimatorFmu]:
 
 
 def fmu_digest(scenarios: Sequence[str]) -> str:
-    """Of the FMUs of some scenarios, as they are installed here: 32 hexadecimal digits."""
+    """Digest of the installed FMUs of some scenarios: 32 hexadecimal digits."""
     text = hashlib.sha256()
     for name in sorted({str(m.fmu) for each in scenarios for m in models(scenario(each)).values()}):
         text.update(installed_fmu(name).read_bytes())
@@ -121,7 +121,7 @@ def fmu_digest(scenarios: Sequence[str]) -> str:
 
 
 def sweep_digest(plan: Plan) -> str:
-    """Differs between sweeps that would not give the same numbers: 32 hexadecimal digits."""
+    """Digest that differs between sweeps with different results: 32 hexadecimal digits."""
     text = hashlib.sha256(fmu_digest(plan.scenarios).encode())
     for run in plan.runs:
         text.update(json.dumps(asdict(run)).encode())
@@ -129,7 +129,7 @@ def sweep_digest(plan: Plan) -> str:
 
 
 def execute(run: Run, fmus: str) -> Outcome:
-    """Does a run. Raises WorkerError if the FMUs here are not those of this digest."""
+    """Does a run. Raises WorkerError if the FMUs here have another digest."""
     if _digest(run.scenario) != fmus:
         raise WorkerError(
             "a worker has other FMUs than this machine; install the same sigmahat on both"

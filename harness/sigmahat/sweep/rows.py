@@ -83,6 +83,6 @@ def build(plan: Plan, outcomes: Mapping[int, Outcome]) -> SweepTable:
 
 
 def _error(name: str, estimator: Mapping[str, Value], plant: Mapping[str, Value]) -> float:
-    """Of a parameter, relative to that of the plant [%]; nan where that is 0, or is not there."""
+    """Error of a parameter, relative to the plant [%]; nan if the plant has 0 or no such value."""
     true = float(plant.get(name_in_the_plant(name), 0.0))
     return (float(estimator[name]) / true - 1) * 100 if true and name in estimator else math.nan

@@ -26,7 +26,7 @@ from sigmahat.sweep.table import (
 )
 
 _ROWS = 30
-"""Rows of a printed summary; summary.csv has all of them."""
+"""Rows of a printed summary; summary.csv has all rows."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Mean:
     runs: int
     failed: int
     indices: Mapping[Index, tuple[float, float]]
-    """Mean and half width of its 95 % interval; over what did not fail."""
+    """Mean and half width of its 95 % interval, over runs that did not fail."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def _mean(values: list[float]) -> tuple[float, float]:
 def summary_columns(sweep: SweepTable) -> list[SummaryColumn]:
     """The summary as text: mean +- half width of the 95 % interval.
 
-    It has the indices that the scenarios show in their own tables.
+    The columns are the indices in the tables of the scenarios.
     """
     every = means(sweep)
     names = {each.scenario for each in every}
@@ -113,7 +113,7 @@ def summary_columns(sweep: SweepTable) -> list[SummaryColumn]:
 
 
 def summary(sweep: SweepTable) -> str:
-    """One screen."""
+    """The summary as a text of one screen."""
     columns = summary_columns(sweep)
     rows = list(zip(*(column.cells for column in columns), strict=True))
     left = [i for i, column in enumerate(columns) if column.title == ESTIMATION]
@@ -153,7 +153,7 @@ def as_dicts(sweep: SweepTable) -> list[dict[str, object]]:
 
 
 def _about(mean: Mean) -> dict[str, object]:
-    """What a mean is of, by title."""
+    """Scenario, listed values and comparison of a mean, by title."""
     return {
         "scenario": mean.scenario,
         **{title(column): value for column, value in mean.listed.items()},
@@ -164,7 +164,7 @@ def _about(mean: Mean) -> dict[str, object]:
 
 
 def conditions(plan: Plan) -> str:
-    """What was run, in one line."""
+    """The runs of a plan, in one line."""
     seeds = f"{plan.seeds} seed{'s' if plan.seeds > 1 else ''}"
     names = f"; {', '.join(plan.parameters)}" if plan.parameters else ""
     return f"{', '.join(plan.scenarios)}: {len(plan)} runs, {seeds}{names}"

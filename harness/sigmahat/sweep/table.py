@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sigmahat.files import tables
 from sigmahat.runs.metrics import INDICES, Index
 
-# Parameters of the nominal AwAS in the estimator, and what the plant calls them.
+# Parameters of the nominal AwAS in the estimator, and their names in the plant.
 _NAMES_IN_THE_PLANT = {
     "model.k_s": "spring.k_s",
     "model.r_0": "spring.r_0",
@@ -26,19 +26,19 @@ _NAMES_IN_THE_PLANT = {
 
 
 def name_in_the_plant(parameter: str) -> str:
-    """What the plant calls a parameter of an estimator, if it has it."""
+    """Name in the plant of a parameter of an estimator."""
     return _NAMES_IN_THE_PLANT.get(parameter, parameter)
 
 
 class Role(str, Enum):
-    """What a column of a parameter holds."""
+    """Kind of the values in a column of a parameter."""
 
     LISTED = "listed"
-    """Values that every seed runs with."""
+    """Values that are used with every seed."""
     DRAWN = "drawn"
     """Values that are drawn for each seed."""
     ERROR = "error"
-    """Relative errors of a parameter of an estimator, compared with that of the plant."""
+    """Errors of a parameter of an estimator, relative to the parameter of the plant."""
 
 
 @dataclass(frozen=True)
@@ -47,20 +47,20 @@ class ParameterColumn:
 
     role: Role
     owner: str
-    """"plant", a modality, or "estimator": each of them."""
+    """"plant", a modality, or "estimator": all estimators."""
     parameter: str
     """Name in the FMU, "motor.B"."""
     unit: str | None
 
     @property
     def name(self) -> str:
-        """For people."""
+        """Name for people."""
         if self.role is Role.ERROR:
             return f"error of {self.parameter}"
         return f"{self.owner}.{self.parameter}"
 
     def same_quantity(self, other: ParameterColumn) -> bool:
-        """Whether both are of one parameter, whoever owns it."""
+        """Whether both columns are of one parameter, with any owner."""
         return name_in_the_plant(self.parameter) == name_in_the_plant(other.parameter)
 
 
@@ -69,7 +69,7 @@ Column = str | ParameterColumn | Index
 
 
 def title(column: Column) -> str:
-    """Of a column, in tables and files."""
+    """Title of a column, in tables and files."""
     if isinstance(column, str):
         return column
     name = column.field if isinstance(column, Index) else column.name
@@ -77,23 +77,23 @@ def title(column: Column) -> str:
 
 
 def half_width_title(index: Index) -> str:
-    """Of the column with half the width of the 95 % interval of a mean."""
+    """Title of the column with half the width of the 95 % interval of a mean."""
     return tables.title(f"{index.field} 95 % half width", index.unit)
 
 
 RUN, SCENARIO, SEED, ESTIMATION, FAILURE = "run", "scenario", "seed", "estimation", "failure"
-"""Columns that every sweep has, together with those of parameters and indices."""
+"""Columns of every sweep, in addition to columns of parameters and indices."""
 _MEANING = b"sigmahat.column"
 
 
 @dataclass(frozen=True)
 class SweepTable:
-    """Rows of a sweep, and what their columns are."""
+    """Rows of a sweep, and the meaning of their columns."""
 
     table: pa.Table
-    """With the titles of the columns as names."""
+    """Table with the titles of the columns as names."""
     columns: Sequence[Column]
-    """In the order of the table."""
+    """Columns in the order of the table."""
 
     def parameters(self, *roles: Role) -> list[ParameterColumn]:
         """Columns of parameters with these roles."""
@@ -104,12 +104,12 @@ class SweepTable:
         ]
 
     def values(self, column: Column) -> list[Any]:
-        """Of each row."""
+        """Value of each row."""
         values: list[Any] = self.table[title(column)].to_pylist()
         return values
 
     def numbers(self, column: Column) -> NDArray[np.float64]:
-        """Of each row, of a column with numbers."""
+        """Number of each row, for a column with numbers."""
         return np.asarray(self.table[title(column)].to_numpy(), dtype=np.float64)
 
     def where(self, rows: Sequence[bool]) -> SweepTable:
@@ -118,7 +118,7 @@ class SweepTable:
 
 
 def from_columns(columns: dict[Column, list[Any]]) -> SweepTable:
-    """A table of columns of one length, by what they are."""
+    """A table of columns of one length, by the meaning of the columns."""
     arrays = [_array(column, values) for column, values in columns.items()]
     fields = [
         pa.field(title(column), array.type, metadata=_meaning(column))
@@ -128,7 +128,7 @@ def from_columns(columns: dict[Column, list[Any]]) -> SweepTable:
 
 
 def _meaning(column: Column) -> dict[bytes, str] | None:
-    """What a file says of a column, whose title does not say all of a parameter."""
+    """Metadata of a column in a file: the title alone does not describe a parameter."""
     if not isinstance(column, ParameterColumn):
         return None
     return {_MEANING: json.dumps({"parameter": asdict(column)})}
@@ -157,7 +157,7 @@ def write(sweep: SweepTable, path: Path) -> None:
 
 
 def read(path: Path) -> SweepTable:
-    """Reads what write() wrote. Raises ValueError for another file, OSError if there is none."""
+    """Reads a file of write(). Raises ValueError for another file, OSError if it is missing."""
     try:
         table = pa.parquet.read_table(path)
         columns = [_column(field) for field in table.schema]

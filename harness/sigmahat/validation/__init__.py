@@ -1,1 +1,1 @@
-"""Whether another log of the same joint confirms what was learned from a first one."""
+"""Checks whether another log of the same joint confirms what was learned from a first log."""

@@ -20,7 +20,7 @@ LOW = 2.0
 """Frequency of the low pass [Hz]."""
 _CHUNK = 1 << 16
 _SHORTEST = 2.0
-"""Of a stretch that is filtered: over its ends, the filter knows nothing [1/LOW]."""
+"""Shortest stretch that is filtered: beyond both ends, the filter has no data [1/LOW]."""
 
 
 @dataclass(frozen=True)
@@ -33,16 +33,16 @@ class TorqueError:
     """Standard deviation of the measured torque [N.m]."""
 
     share: float
-    """Of the instants of the log at which it is taken [1]."""
+    """Fraction of the instants of the log that the error covers [1]."""
 
     @property
     def relative(self) -> float:
-        """The error over that standard deviation [1]."""
+        """The error divided by this standard deviation [1]."""
         return self.rms / self.std if self.std > 0 else float("nan")
 
     @staticmethod
     def of(error: Array, torque: Array, ticks: int) -> TorqueError | None:
-        """From samples, of a number of ticks; None without any."""
+        """The error from samples of a log with `ticks` ticks; None without samples."""
         if not len(error):
             return None
         rms, std = float(np.sqrt(np.mean(error**2))), float(np.std(torque))
@@ -52,11 +52,11 @@ class TorqueError:
 def torque_errors(
     fmu: Fmu, samples: Samples, start: Mapping[str, Value]
 ) -> tuple[TorqueError | None, TorqueError | None]:
-    """The error over all instants that count, and below 2 Hz; None where there are none.
+    """The error at all instants that count, and the error below 2 Hz; None without such instants.
 
-    The log is played twice: at the first time the estimator finds the friction and the bias of this
-    log; the second time counts. Where the motor is slower than regression.slow the sign of its
-    friction is unknown, and so is the torque of the spring: these instants do not count.
+    The log is replayed twice: the first replay finds friction and bias of this log, the second
+    replay counts. If the motor is slower than regression.slow, the sign of its friction is unknown,
+    and so is the torque of the spring: these instants do not count.
 
     start  values of the FMU with which the curve does not change, start_values.as_fixed_curve
     """
@@ -82,7 +82,7 @@ def torque_errors(
 
 
 def _below(values: Array, used: NDArray[np.bool_], T: float) -> Array:
-    """After a low pass without phase; nan outside of stretches that are long enough for it."""
+    """Values after a low pass without phase; nan outside of stretches that are long enough."""
     filtered = np.full(len(values), np.nan)
     for first, last in zip(*stretches(used), strict=True):
         if (last - first) * T * LOW >= _SHORTEST:
@@ -92,23 +92,23 @@ def _below(values: Array, used: NDArray[np.bool_], T: float) -> Array:
 
 @dataclass(frozen=True)
 class Agreement:
-    """The stiffness that was learned before, beside that of a log alone."""
+    """The stiffness that was learned before, compared with the stiffness of a log alone."""
 
     before: tuple[float, float]
-    """Median stiffness that was learned before, and of half the width of its interval [N.m/rad]."""
+    """Stiffness learned before, and half the width of its interval; both are medians [N.m/rad]."""
     alone: tuple[float, float]
-    """The same of what the log alone gives."""
+    """Stiffness of the log alone, and half the width of its interval; both are medians [N.m/rad]."""
     alone_in_before: float
-    """Share of the instants at which the interval of before holds what the log alone gives."""
+    """Fraction of instants at which the interval of `before` contains the stiffness of `alone`."""
     before_in_alone: float
-    """The other way round."""
+    """Fraction of instants at which the interval of `alone` contains the stiffness of `before`."""
     overlap: float
-    """Share of the instants at which both intervals overlap."""
+    """Fraction of the instants at which both intervals overlap."""
     z: float
-    """Difference over its standard deviation, root mean square over the instants."""
+    """Difference divided by its standard deviation, root mean square over the instants."""
     agree: bool | None
-    """Whether z is at most 1.96; None if an interval reaches down to 0 at half of the instants or
-    more: then agreement would mean nothing."""
+    """Whether z is at most 1.96; None if an interval contains 0 at half of the instants or more:
+    then agreement would mean nothing."""
 
 
 def agreement(
@@ -116,8 +116,8 @@ def agreement(
 ) -> Agreement:
     """Compares two estimates at the same points, logs.curve.stiffness_at.
 
-    torque_gain  relative standard deviation of the gain of the torque: it is one error of both, so
-                 that it does not explain a difference
+    torque_gain  relative standard deviation of the gain of the torque: both estimates have the same
+                 error of this gain, which does not explain a difference
     """
     difference = alone["sigma"] - before["sigma"]
     halves = [NORMAL_95 * each["sigma_std"] for each in (before, alone)]

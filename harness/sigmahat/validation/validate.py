@@ -1,4 +1,4 @@
-"""The job of `sigmahat validate`: another log of the same joint, with what was learned before."""
+"""The job of `sigmahat validate`: compares another log of a joint with what was learned before."""
 
 from __future__ import annotations
 
@@ -25,48 +25,48 @@ from sigmahat.logs.sampling import Samples, turns_from
 from sigmahat.validation.agreement import Agreement, TorqueError, agreement, torque_errors
 
 _INSTANTS = 20_000
-"""At which the stiffness is compared, at most: they are evenly spaced over the log."""
+"""Largest number of instants at which the stiffness is compared, evenly spaced in the log."""
 _MOST_ERROR = 0.15
-"""Error of the predicted torque over its standard deviation, above which the curve is wrong: logs
-of a robot have up to 0.13 below 2 Hz, docs/robot.md, and one with a wrong zero has 0.19."""
+"""Largest ratio of torque error to standard deviation of the torque, if the curve is right. Logs of
+a robot have up to 0.13 below 2 Hz (docs/robot.md), a log with a wrong zero has 0.19."""
 
 
 @dataclass(frozen=True)
 class Validation:
-    """What a log says about what was learned before."""
+    """Comparison of a log with what was learned before."""
 
     log: Path
     """The file."""
     configuration: Path
-    """That of the estimator."""
+    """File of the configuration of the estimator."""
     start_from: Path
-    """The file of what was learned."""
+    """The file of the learned state."""
     learned_from: Sequence[str]
-    """Logs that it was learned from."""
+    """Logs from which this state was learned."""
     repeated: bool
-    """Whether the log is one of them: then it confirms nothing."""
+    """Whether the log is among these logs: then the log confirms nothing."""
     ticks: int
     """Number of ticks of the estimator over the log."""
     torque: TorqueError | None
-    """Of the torque that the learned curve predicts; None if the regression used no sample."""
+    """Error of the torque that the learned curve predicts; None if the regression used no sample."""
     torque_below: TorqueError | None
-    """The same below 2 Hz; None if the log is too short for this."""
+    """Error of this torque below 2 Hz; None if the log is too short."""
     stiffness: Agreement
-    """The learned stiffness beside that of this log alone."""
+    """The learned stiffness compared with the stiffness of this log alone."""
     notes: Sequence[str]
     """What had to be done to the samples of the log, in sentences."""
     turned: str | None
-    """That a counter began in another turn than in the logs that were learned from, in words."""
+    """A sentence if a counter began in another turn than in the logs before, else None."""
 
     @property
     def agree(self) -> bool | None:
-        """Whether the logs agree; None if they cannot tell, or agree on what cannot be."""
+        """Whether the logs agree; None if the log decides nothing, or both results are wrong."""
         agree = self.stiffness.agree
         return None if self.repeated or (agree and self.fault is not None) else agree
 
     @property
     def fault(self) -> str | None:
-        """What is wrong with the estimates, with its likely cause; None if nothing is."""
+        """An error of the estimates, with its likely cause; None without an error."""
         if self.turned is not None:
             return self.turned
         for which, (value, half) in (
@@ -124,20 +124,20 @@ def _torque(error: TorqueError | None) -> dict[str, float] | None:
 
 
 def validate(log: Log, configuration: Configuration, start_from: str | Path) -> Validation:
-    """Replays a log with what was learned before, and alone, and compares.
+    """Replays a log with what was learned before, and without, and compares the results.
 
     start_from  a folder of results of `estimate`, or its state.json
 
     Raises LogError for a log, a configuration and a start_from that do not fit, and for method
-    Paper2011, which claims no interval; FmuError if the FMU refuses.
+    Paper2011, which gives no interval; FmuError if the FMU refuses.
     """
     learned = read_learned(Path(start_from))
     fmu = installed("StiffnessEstimator")
     every = fmu.parameters(parameters(fmu, configuration))
     if every["method"] != "FilteredRegression":
         raise LogError(
-            f"{configuration.path}: method = {every['method']} claims no interval, by which to "
-            "validate; expected method = FilteredRegression"
+            f"{configuration.path}: method = {every['method']} gives no interval, which validate "
+            "needs; expected method = FilteredRegression"
         )
     with Slave(fmu, "learned") as slave:
         replay = Replay(slave, log, configuration, learned)
@@ -171,7 +171,7 @@ def validate(log: Log, configuration: Configuration, start_from: str | Path) -> 
 def _turned(
     samples: Samples, configuration: Configuration, logs: Sequence[LearnedLog]
 ) -> str | None:
-    """Whether the deformation is whole periods of a counter away from where it was."""
+    """A sentence if the deformation differs from `logs` by whole periods of a counter."""
     ranges = [each.phi for each in logs if each.phi is not None]
     if not ranges:
         return None
@@ -181,8 +181,8 @@ def _turned(
     if not turns:
         return None
     return (
-        f"the counter of {name} began {-turns:+d} of its periods away from the logs that were "
-        "learned from, so that the deformation is wrong: set range.phi to the largest deformation, "
+        f"the counter of {name} began {-turns:+d} of its periods away from the logs of the learned "
+        "curve, so that the deformation is wrong: set range.phi to the largest deformation, "
         f"{max(abs(low), abs(high)):.2g} rad or a little more, or ports.{name}.zero for this log"
     )
 
@@ -196,20 +196,20 @@ def _points(log: Log, samples: Samples) -> Array:
 
 
 def summary(result: Validation) -> str:
-    """One screen."""
+    """The result as a text of one screen."""
     both = result.stiffness
     lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
     lines += [
         f"learned before from {', '.join(result.learned_from)} ({result.start_from})",
         "",
-        "torque at the stiffness that was learned, in motion; friction and bias are of this log:",
+        "torque with the learned stiffness, in motion; friction and bias from this log:",
         f"  error RMS         {_error(result.torque)}",
         f"  below 2 Hz        {_error(result.torque_below)}",
         "stiffness at the end, median over the instants of this log, with 95 % interval:",
         f"  learned before    {_value(both.before)}",
         f"  this log alone    {_value(both.alone)}",
-        f"  this log is within the interval of before at {100 * both.alone_in_before:.3g} % of the "
-        f"instants, the other way round {100 * both.before_in_alone:.3g} %",
+        f"  this log is within the learned interval at {100 * both.alone_in_before:.3g} % of the "
+        f"instants, the learned stiffness within this log's at {100 * both.before_in_alone:.3g} %",
         f"  intervals overlap at {100 * both.overlap:.3g} %; difference over its standard "
         f"deviation {both.z:.3g} (RMS)",
         "",
@@ -235,7 +235,7 @@ def _verdict(result: Validation) -> Iterator[str]:
     if result.fault is not None:
         yield result.fault
     if result.repeated:
-        yield "cannot tell: this log is one of those that were learned from"
+        yield "cannot tell: the stiffness was learned from this same log"
     elif result.agree is None:
         wide = "an interval is wider than the stiffness itself"
         yield f"cannot tell: {'see above' if result.stiffness.agree else wide}"

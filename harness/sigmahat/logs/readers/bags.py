@@ -39,7 +39,7 @@ def read_bag(path: Path) -> LogInMemory:
                     column = values[f"{topic}.{name}"]
                     column.extend(
                         [np.nan] * (row - len(column))
-                    )  # for messages without this number
+                    )  # messages without this number
                     column.append(number)
     except (AnyReaderError, OSError, ValueError, KeyError, AssertionError) as error:
         raise LogError(f"{path}: not a whole ROS 2 bag ({error}); copy it again") from error

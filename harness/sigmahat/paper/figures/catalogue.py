@@ -41,4 +41,4 @@ FIGURES: dict[str, Callable[[Recording], Figure]] = {
     "experiment": experiment.experiment,
     "antagonistic": curves.antagonistic,
 }
-"""Each takes the recording of a scenario, and returns a figure that no window manager holds."""
+"""Functions from the recording of a scenario to a figure, which no window manager holds."""

@@ -1,6 +1,6 @@
-"""Torque and stiffness over the deformation: what an estimator makes of a transmission.
+"""Torque and stiffness of a transmission against the deformation, as an estimator finds them.
 
-The spring of these scenarios does not change, so that both are curves. They are drawn of the last
+The spring of these scenarios does not change, so that both are curves. The curves show the last
 part of a run, in which an estimate changes little.
 """
 
@@ -29,10 +29,10 @@ from sigmahat.paper.figures.panels import (
 from sigmahat.plotting.style import BLUE, GREEN, VERMILION, math_axis
 
 _LAST = 1 / 3
-"""Part of the run."""
+"""Fraction of the run."""
 _DOTS: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": 3}
 _COUNT = 80
-"""So few dots that the truth is seen between them."""
+"""Number of dots, small enough that the truth is visible between the dots."""
 _TIME, _PHI = math_axis("t"), math_axis("phi")
 
 
@@ -106,7 +106,7 @@ def _torques(axes: Axes, recording: Recording) -> None:
 def over_deformation(
     axes: Axes, recording: Recording, output: str, side: str, colors: dict[str, str]
 ) -> None:
-    """An output, tau_e or sigma, over the deformation: true, and of estimators by their colour."""
+    """An output, tau_e or sigma, against deformation: true, and of estimators by their colour."""
     last = recording.t >= (1 - _LAST) * recording.t[-1]
     phi, true = recording.plant[f"phi{side}"][last], recording.plant[f"{output}{side}"][last]
     order = np.argsort(phi)

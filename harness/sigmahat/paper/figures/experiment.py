@@ -73,7 +73,7 @@ def _nominal_torque_zoom(axes: Axes, recording: Recording) -> None:
 def stiffness(recording: Recording) -> Figure:
     """Figure 12: stiffness, true, by the nominal data, and estimated in the three modalities.
 
-    The second panel shows where it is largest.
+    The second panel shows the part with the largest stiffness.
     """
     t, true = recording.t, recording.plant["sigma"]
     figure, panels = time_panels(2)
@@ -82,7 +82,7 @@ def stiffness(recording: Recording) -> Figure:
     shown = window(t, float(t[np.argmax(np.where(t > 1.0, true, 0.0))]), 2.0)
     _stiffness(panels[1], recording, shown)
     panels[1].set_ylim(0.95 * true[shown].min(), 1.2 * true[shown].max())
-    panels[1].set_title("where it is largest", fontsize=9)
+    panels[1].set_title("where the stiffness is largest", fontsize=9)
     return figure
 
 

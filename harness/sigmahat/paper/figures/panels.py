@@ -1,4 +1,4 @@
-"""Panels over time, and what is drawn in several of them."""
+"""Panels over time, and drawing functions that several panels need."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def line(axes: Axes, t: Array, values: Array, **style: Any) -> None:
 def stiffness_lines(axes: Axes, recording: Recording, window: slice, thin: bool = False) -> None:
     """True stiffness, and the estimate of each modality.
 
-    thin  where the true stiffness oscillates so fast that a wide line of it would be an area
+    thin  for a true stiffness that oscillates so fast that a wide line would fill an area
     """
     t, true = recording.t[window], recording.plant["sigma"][window]
     line(axes, t, true, **({**TRUE, **_THIN} if thin else TRUE))
@@ -77,7 +77,7 @@ def estimator_styles(recording: Recording) -> Iterator[tuple[str, dict[str, Any]
 
 
 def error_line(axes: Axes, t: Array, true: Array, estimate: Array, **style: Any) -> None:
-    """Relative error of a stiffness, the largest of each window."""
+    """Relative error of a stiffness, the largest error of each window."""
     window = int(np.searchsorted(t, _ERROR_WINDOW))
     windows = len(t) // window
     error = np.abs(estimate / true - 1)[: windows * window] * 100
@@ -93,13 +93,13 @@ def error_axes(axes: Axes) -> None:
 
 
 def limit(axes: Axes, true: Array) -> None:
-    """Keeps the scale where the true values are, however far an estimate goes."""
+    """Limits the axis to the range of the true values, however far an estimate goes."""
     top = float(np.max(true))
     axes.set_ylim(min(0.0, float(np.min(true))) - 0.1 * top, 1.4 * top)
 
 
 def legend_above(axes: Axes) -> None:
-    """Legend above the lines, where they reach all over the panel."""
+    """Legend above the lines, for lines that fill the panel."""
     bottom, top = axes.get_ylim()
     axes.set_ylim(bottom, top + 0.2 * (top - bottom))
     axes.legend(loc="upper right", ncols=len(axes.get_lines()))
@@ -117,14 +117,14 @@ def window(t: Array, centre: float, half_width: float) -> slice:
 
 
 def first_reversal(t: Array, values: Array) -> float:
-    """Time at which values first change sign after 1 s [s]; the middle if they do not."""
+    """Time at which values first change sign after 1 s [s]; the middle without a change."""
     later = t > 1.0
     changes = np.flatnonzero(np.diff(np.sign(values[later])))
     return float(t[later][changes[0]] if len(changes) else t[len(t) // 2])
 
 
 def _envelope(values: Array, buckets: int = 1000) -> NDArray[np.intp]:
-    """Samples that make the same picture: the least and the greatest of each bucket."""
+    """Indices that give the same picture as all samples: minimum and maximum of each bucket."""
     count = len(values) // buckets
     if count < 4:
         return np.arange(len(values))

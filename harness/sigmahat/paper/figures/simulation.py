@@ -109,7 +109,7 @@ def stability_factor(recording: Recording) -> Figure:
 
 
 def constant_factors(recording: Recording) -> Figure:
-    """Figure 8: stiffness with constant stability factors against the enhanced one."""
+    """Figure 8: stiffness with constant stability factors, and with the enhanced factor."""
     figure, (axes,) = time_panels(1)
     t, true = recording.t, recording.plant["sigma"]
     constant = {
