@@ -18,7 +18,7 @@ every_fmu = pytest.mark.parametrize(
     ("fmu", "version"),
     [(fmu, "fmi3" if fmu in IN_FMI3 else "fmi2") for fmu in ESTIMATORS + PLANTS],
 )
-# Memory and locks are of the shell alone, which all FMUs share; a model is a struct without pointers.
+# Memory and locks are of the shell alone, which all FMUs share: a model has no pointers.
 one_of_each_kind = pytest.mark.parametrize(
     ("fmu", "version"), [("StiffnessEstimator", "fmi2"), ("AwasPlant", "fmi3")]
 )

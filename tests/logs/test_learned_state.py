@@ -201,7 +201,7 @@ def test_another_configuration_is_refused(
     line = refused(capsys, "--start-from", "first")
     assert line.startswith("sigmahat: error: joint.toml: ")
     assert words in line
-    assert "first/state.json" in line and "contains its parameters: use those" in line
+    assert "first/state.json" in line and "contains its parameters: use these" in line
 
 
 def change(**values: Any) -> Callable[[dict[str, Any]], None]:

@@ -125,7 +125,7 @@ def test_the_scheduler_is_lost(
     (line,) = errors.splitlines()
     assert line == (
         f"sigmahat: error: lost the connection to the scheduler at {address}; "
-        "the same command goes on from what is done"
+        "the same command does the remaining runs"
     )
     assert 3 <= len(records(path)) < 200
 

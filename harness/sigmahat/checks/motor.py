@@ -1,6 +1,6 @@
 """The motor equation of a log, fitted quickly: signs, zero, delay and errors for the checks.
 
-The equation is the equation of `identify` with one form of friction and one filter. So intervals
+The equation is taken from `identify`, with one form of friction and one filter. So intervals
 are narrower than in `identify`. The slope of the torque is the column of a delay delta:
 tau(t - delta) = tau(t) - delta tau'(t).
 """

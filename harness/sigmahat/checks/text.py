@@ -90,7 +90,7 @@ def _what(f: Finding) -> str:
     elif f.kind is Kind.AT_REST:
         template = _STILL[f.about]
     elif f.kind is Kind.TORQUE_LAG and f.measured < 0:
-        template = "the torque comes {ms} earlier than the motion explains, or the spring is damped"
+        template = "the torque is {ms} earlier than the motion explains, or the spring is damped"
     return template.format(
         measured=_number(f.measured, f.unit),
         expected=_number(f.expected, f.unit),
@@ -109,11 +109,11 @@ def _what(f: Finding) -> str:
 
 
 _STILL = {
-    "joint": "the joint is at rest throughout the {measured} of the log; record one that moves",
+    "joint": "the joint is at rest throughout the {measured} of the log; record a joint that moves",
     "q": "the link does not move while the motor does: its encoder is dead, or the column is "
-    "another one. If the link is locked on purpose, write ports.q.value = 0 in place of the column",
+    "wrong. If the link is locked on purpose, write ports.q.value = 0 in place of the column",
     "theta": "the motor does not move while the link does: its encoder is dead, or the column is "
-    "another one",
+    "wrong",
 }
 _INERTIA = "the log shows an inertia of {measured}, {ratio:.3g} times motor.B"
 _SENTENCES: Mapping[Kind, str] = {
@@ -126,12 +126,12 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.ZERO: "the spring has no torque at a deformation of {measured}, not at 0",
     Kind.ASYMMETRY: "the torque is not symmetric in phi: the errors are {value:.3g} times as "
     "large as with all powers",
-    Kind.TORQUE_LAG: "the torque comes {ms} later than the motion explains",
+    Kind.TORQUE_LAG: "the torque is {ms} later than the motion explains",
     Kind.ENCODER_LAG: "the viscous friction would be negative, as if q were recorded {ms} {later} "
     "than theta",
     Kind.INERTIA: _INERTIA,
     Kind.TORQUE_SCALE: f"{_INERTIA}, as if the torque were geared twice or not at all",
-    Kind.OTHER_ROBOT: "motor.B, motor.D_theta and motor.gamma are still those of the AwAS",
+    Kind.OTHER_ROBOT: "motor.B, motor.D_theta and motor.gamma are still the values of the AwAS",
     Kind.STEP: "the values of {about} change in steps of {measured}, the configured encoder has "
     "{expected}",
     Kind.JUMP: "{about} jumps by {measured}, as a counter that starts again",
@@ -139,7 +139,7 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.NOISE: "the noise of the torque is {measured}, the configuration says {expected}",
     Kind.MISFIT: "the errors of the model are {value:.3g} times as large as noise explains",
     Kind.DOUBT: "not confident in {percent} of the second half: {reason}",
-    Kind.RANGE: "the log reaches {measured}, the configuration says {expected} (identify sets it)",
+    Kind.RANGE: "the log has up to {measured}, the configuration {expected} (identify sets it)",
     Kind.LEARNED: "the estimator learned at {percent} of the ticks only",
     Kind.TORQUE_GAIN: "gain of the torque, {gain}; 1 % of it changes the stiffness by "
     "{value:.3g} %",

@@ -122,7 +122,7 @@ def _greeting(session: Session, source: str, targets: Sequence[str], host: str) 
         if each.startswith(("tcp:", "foxglove")) or (each == source and each.startswith("udp:"))
     ]
     if opened and not host.startswith("127."):
-        lines.append(f"Open to every computer that reaches {host}: {', '.join(opened)}")
+        lines.append(f"Open to every computer that can connect to {host}: {', '.join(opened)}")
     for joint in session.joints:
         name = f"{joint.configuration.joint}: " if joint.configuration.joint else ""
         if not joint.time_column(""):

@@ -52,7 +52,7 @@ def estimate(
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag; `sigmahat init LOG` writes the
     configuration. Writes a table (CSV for CSV, else Parquet), the stiffness against deformation
-    (estimate.curve.csv), a figure, a data sheet of the joint
+    (estimate.curve.csv) and a figure. Also writes a data sheet of the joint
     (joint.json) for `sigmahat export`, and what was learned (state.json) for --start-from.
     With several joints, each joint has its own folder, and a row in joints.csv.
 

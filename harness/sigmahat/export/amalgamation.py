@@ -1,4 +1,4 @@
-"""The C library as one pair of files, for those who want to drop it into a project."""
+"""The C library as one pair of files, to copy into another project."""
 
 import re
 from collections.abc import Iterable

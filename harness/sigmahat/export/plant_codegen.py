@@ -21,8 +21,8 @@ from sigmahat.plants.equations import PlantEquations
 class Elimination:
     """Factors of a square sparse matrix, and the solution of systems with this matrix.
 
-    Pivots are diagonal entries, in the order of the least possible fill-in (Markowitz), whatever
-    their values: this suits the matrices s I - J of an implicit integration, where s is large.
+    Pivots are diagonal entries, in the order of the least possible fill-in (Markowitz), with any
+    values. This suits the matrices s I - J of an implicit integration, where s is large.
     """
 
     def __init__(self, matrix: ca.SX) -> None:
@@ -194,7 +194,7 @@ def write(
 
 
 def _compare(plant: PlantEquations, kind: str, own: Iterable[str], wanted: Iterable[str]) -> None:
-    """Raises ValueError unless the names in the equations are exactly those wanted."""
+    """Raises ValueError unless the names in the equations are exactly the names in `wanted`."""
     own, wanted = set(own), set(wanted)
     if not own:
         raise ValueError(f"{plant.name}: expected at least one {kind}, got none")

@@ -182,13 +182,13 @@ def write_plant_fmu(
     `variables` has each input, output and parameter of the plant by its name, `fmu` is the file to
     write; its folder is made.
 
-    The FMU is for FMI 2.0 Co-Simulation and behaves as the plants of sigmahat: inputs are held or
-    linear during a step, and a plant with noise has the parameters ``noise.seed`` and
+    The FMU is for FMI 2.0 Co-Simulation and behaves as the plants of sigmahat. Inputs are held or
+    linear during a step. A plant with noise has the parameters ``noise.seed`` and
     ``noise.samplePeriod``. Parameters are tunable, except parameters on which start values of
     states depend.
 
-    Raises ValueError for a variable that is missing, not in the equations or in an unknown unit,
-    RuntimeError if no compiler is found (gcc or clang, or the compiler in CC), or it fails.
+    Raises ValueError for a variable that is missing, not in the equations or in an unknown unit.
+    Raises RuntimeError if no compiler (gcc or clang, or the compiler in CC) is found, or it fails.
     """
     with TemporaryDirectory() as scratch:
         folder = Path(scratch, "fmu")

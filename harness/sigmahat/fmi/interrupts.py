@@ -12,7 +12,7 @@ from contextlib import contextmanager
 def interrupts_wait() -> Iterator[None]:
     """Ctrl-C inside the block has its effect at the end of the block.
 
-    The function has no effect outside of the main thread: Python handles signals there alone.
+    The function has no effect outside of the main thread: only this thread handles signals.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -1,7 +1,7 @@
 """Co-simulation master: one plant FMU and any number of estimator FMUs, side by side.
 
-At every t_k = k T the outputs of the plant at t_k go into the estimators, which run their tick
-at t_k; then the plant goes on to t_k+1 under inputs that are linear in between.
+At every t_k = k T the estimators get the outputs of the plant at t_k, and run their tick. Then the
+plant makes a step to t_k+1, with inputs that are linear during the step.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ def opened(path: Path) -> Fmu:
     """An FMU, unpacked until the process ends. Raises what Fmu does.
 
     The FMU is unpacked again if the file has changed since the last call, or if the FMU allows one
-    instance per process only: such an FMU may need its library loaded again.
+    instance per process only. Such an FMU may need its library loaded again.
     """
     status = path.stat()
     fmu = _opened(path.resolve(), status.st_mtime_ns, status.st_size)

@@ -27,7 +27,7 @@ class Series:
     parameters: Mapping[str, Value]
     """All parameters of the FMU at the start; with several joints, those of the first joint."""
     t: NDArray[np.float64]
-    """Time of each sample since the first one [s], shape (N,)."""
+    """Time of each sample since the first sample [s], shape (N,)."""
     descriptions: Mapping[str, str]
     """Description of each recorded variable, as in the model description."""
 

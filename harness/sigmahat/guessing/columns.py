@@ -196,7 +196,7 @@ def read_columns(log: Log) -> Columns:
 
 
 def _named(units: dict[str, str], meanings: Mapping[str, Meaning]) -> dict[str, str]:
-    """Only the clocks whose name says so, if any; else all clocks."""
+    """Only the clocks whose name means a time, if any; else all clocks."""
     named = {name: unit for name, unit in units.items() if meanings[name].quantity == "time"}
     return named or units
 

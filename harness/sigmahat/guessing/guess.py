@@ -97,11 +97,11 @@ class JointGuess:
     ports: Mapping[str, PortGuess]
     """Guesses of the ports that have a column, in the order of PORTS."""
     columns: Sequence[Seen]
-    """All columns of the log, also those of other joints."""
+    """All columns of the log, including columns of other joints."""
 
 
 def guess(log: Log) -> dict[str, JointGuess]:
-    """The joints of a log by their names, in the order of the columns; at least one.
+    """The joints of a log by their names, in the order of the columns; at least one joint.
 
     A joint lacks a port if no column of the log looks like this port.
     """

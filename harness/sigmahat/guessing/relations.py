@@ -1,4 +1,4 @@
-"""What columns say about each other: copies, derivatives, the equation of the motor."""
+"""Relations between columns: copies, derivatives, the equation of the motor."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from sigmahat.logs.log import Array
 
 _SMOOTH = 15  # samples of the polynomial with which columns are differentiated
 _INNER = slice(_SMOOTH // 2, -(_SMOOTH // 2))  # samples that have a polynomial around them
-_DERIVATIVE = 0.97  # correlation from which on a column is the derivative of another one
-_COPY = 1e-4  # rest of a fit over the column, up to which it is a copy in another unit
+_DERIVATIVE = 0.97  # from this correlation on, a column is the derivative of another column
+_COPY = 1e-4  # up to this relative residual of a fit, a column is a copy in another unit
 _BLOCKS = 8
 _BY_HAND = 0.8
-"""Correlation of deformation and velocity: 0.96 and more where a hand moves the link, below 0.5
-where the motor does."""
+"""Correlation of deformation and velocity: 0.96 and more if a hand moves the link, below 0.5 if the
+motor moves the link."""
 
 
 @dataclass(frozen=True)
@@ -29,11 +29,11 @@ class Line:
     offset: float
     correlation: float
     rest: float
-    """Standard deviation of what is left, over that of y."""
+    """Standard deviation of the residual, relative to y."""
 
 
 def line(x: Array, y: Array) -> Line:
-    """The line through two columns of one size; correlation 0 if one of them does not vary."""
+    """The line through two columns of one size; correlation 0 if a column does not vary."""
     x_0, y_0 = x - x.mean(), y - y.mean()
     xx, yy, xy = float(x_0 @ x_0), float(y_0 @ y_0), float(x_0 @ y_0)
     if xx == 0 or yy == 0:
@@ -48,15 +48,15 @@ def line(x: Array, y: Array) -> Line:
 
 
 def is_copy(x: Array, y: Array) -> bool:
-    """Whether one column is the other one in another unit."""
+    """Whether one column is the other column in another unit."""
     return line(x, y).rest < _COPY
 
 
 def smooth(x: Array, T: float = 1.0, order: int = 0) -> Array:
     """Derivative of samples T apart, along the last axis, at the samples _INNER.
 
-    It is the derivative of the cubic polynomial that fits the samples around (Savitzky and Golay,
-    Analytical Chemistry 36:1627-1639, 1964). The import of scipy.signal would take two seconds.
+    A cubic polynomial is fitted to the samples around each sample (Savitzky and Golay, Analytical
+    Chemistry 36:1627-1639, 1964). The import of scipy.signal would take two seconds.
     """
     places = np.arange(_SMOOTH) - _SMOOTH // 2
     factors = np.linalg.pinv(np.vander(places, 4, increasing=True))[order]
@@ -65,7 +65,7 @@ def smooth(x: Array, T: float = 1.0, order: int = 0) -> Array:
 
 
 def derivatives(columns: Sequence[Array], T: float) -> Sequence[bool]:
-    """Whether each column is the derivative of another one; samples T apart."""
+    """Whether each column is the derivative of another column; samples T apart."""
     if not columns or len(columns[0]) < 4 * _SMOOTH:
         return [False] * len(columns)
     x = np.array(columns)
@@ -80,7 +80,7 @@ def derivatives(columns: Sequence[Array], T: float) -> Sequence[bool]:
 
 
 def scale_of_derivative(x: Array, v: Array, T: float) -> float | None:
-    """v over the derivative of x; None if v is not the derivative of x."""
+    """Ratio of v to the derivative of x; None if v is not the derivative of x."""
     if len(x) < 4 * _SMOOTH:
         return None
     fitted = line(smooth(x, T, 1), smooth(v))
@@ -89,22 +89,22 @@ def scale_of_derivative(x: Array, v: Array, T: float) -> float | None:
 
 @dataclass(frozen=True)
 class Drive:
-    """How a torque goes with the motion of two positions, by the motor equation (3)."""
+    """Relation between a torque and the motion of two positions, by the motor equation (3)."""
 
     explained: float
-    """Share of the variance of the torque [1]."""
+    """Explained fraction of the variance of the torque [1]."""
     sign: int
-    """1 if the torque drives the motion, -1 if it is counted the other way round, 0: not sure."""
+    """1 if the torque drives the motion, -1 if its sign is reversed, 0: not sure."""
 
 
 def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     """Relates a torque to two positions, whatever their units are; all [size: samples].
 
     tau = B x'' + D x' + C sign(x') + K (x - y) for a linear spring, where only the part of y that
-    does not go as x does counts. The equation has the acceleration of the motor, not of the link:
-    it explains the torque better if x is the motor. Friction takes power from the motor, on the
-    average, and that gives the torque its sign. A hand that moves the link gives the motor power:
-    then the deformation goes as the velocity, and the sign is not sure.
+    is not proportional to x counts. The equation has the acceleration of the motor, not of the
+    link. So the equation explains the torque better if x is the motor. The sign of the torque
+    follows from friction, which takes power from the motor on average. But a hand that moves the
+    link gives power to the motor. The deformation then follows the velocity, and `sign` is 0.
     """
     if len(x) < 8 * _SMOOTH or not np.ptp(x) or not np.ptp(tau):
         return Drive(0.0, 0)
@@ -133,7 +133,7 @@ def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
 
 
 def _sign(blocks: list[Array]) -> int:
-    """Sign of a mean that is significant over blocks; 0 if it is not."""
+    """Sign of the mean; 0 if the mean is not significant over the blocks."""
     means = np.array([block.mean() for block in blocks])
     error = float(means.std(ddof=1)) / np.sqrt(len(means))
     return int(np.sign(means.mean())) if abs(means.mean()) > 3 * error else 0

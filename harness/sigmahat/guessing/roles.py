@@ -1,4 +1,4 @@
-"""Which column of one joint feeds which port, by the names and by how the columns move together."""
+"""Chooses the column of each port of one joint, by the names and the motions of the columns."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from sigmahat.guessing.relations import (
     scale_of_derivative,
 )
 
-# Points of a column for being the one that a port needs.
+# Points of a column as a candidate for a port.
 _SAID, _SUGGESTED, _QUANTITY = 4.0, 2.0, 1.0
 _REFERENCE, _COMPUTED, _COPY, _APART = -6.0, -3.0, -5.0, -2.0
 _OF_PORTS, _NO_PORT = ("position", "torque", "current"), -8.0
 _CLOSE, _ALIKE, _UNLIKE = 0.98, 0.9, 0.7
-"""Correlations of two positions of one joint: surely, likely, and not likely so."""
+"""Correlations of two columns that are sure, likely, and unlikely positions of one joint."""
 _SAME = 0.995  # correlation with a position from which on a column is no torque
-_BETTER = 0.7  # of what motor and link leave unexplained of the torque, to be swapped
-_MOST_COMPARED = 32  # columns of one joint; the time goes with the square of it
-_EXPLAINED = 0.5  # of a torque without a name by the motion
+_BETTER = 0.7  # a swap of motor and link must reduce the unexplained torque to this fraction
+_MOST_COMPARED = 32  # columns of one joint; the time grows with the square of this number
+_EXPLAINED = 0.5  # least fraction of a torque without a name that the motion explains
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,11 @@ class Roles:
 
     ports: Mapping[str, Role]
     drive: Drive
-    """How the torque goes with the motion."""
+    """Relation between the torque and the motion."""
 
     @property
     def is_complete(self) -> bool:
-        """Whether there are both positions and a torque."""
+        """Whether the joint has both positions and a torque."""
         torque = "tau" in self.ports or "tau_e_sensor" in self.ports
         return torque and "theta" in self.ports and "q" in self.ports
 
@@ -73,7 +73,7 @@ def assign(columns: Sequence[Column], T: float) -> Roles:
 
 
 def _few(columns: list[Column]) -> list[Column]:
-    """Columns to compare, each with each: those whose names say most before the others."""
+    """Columns to compare in pairs: columns with the most points of their names are kept."""
     if len(columns) <= _MOST_COMPARED:
         return columns
     kept = sorted(columns, key=_said, reverse=True)[:_MOST_COMPARED]
@@ -82,7 +82,7 @@ def _few(columns: list[Column]) -> list[Column]:
 
 
 def _said(column: Column) -> float:
-    """Points of a name for being any port; those without a meaning are between good and bad."""
+    """Points of a name for any port; names without a meaning are between good and bad names."""
     quantity = column.meaning.quantity
     points = _named(column) + _QUANTITY * (quantity in _OF_PORTS)
     points += _NO_PORT * (quantity not in (*_OF_PORTS, None))
@@ -90,14 +90,14 @@ def _said(column: Column) -> float:
 
 
 def _named(column: Column) -> float:
-    """Points of a name that says whose column it is, and not that it was computed."""
+    """Points of a name: positive if it gives a side of the joint, negative for computed signals."""
     meaning = column.meaning
     points = _SAID * (meaning.side is not None) + _SUGGESTED * (meaning.suggested is not None)
     return points + _COMPUTED * meaning.computed
 
 
 def chosen_roles(columns: Mapping[str, Column], T: float) -> Roles:
-    """The roles that somebody gives to columns, by port.
+    """The roles of columns that the user has chosen, by port.
 
     T  time between the samples of the windows of the columns [s]
     """
@@ -106,7 +106,7 @@ def chosen_roles(columns: Mapping[str, Column], T: float) -> Roles:
 
 
 def _swapped(ports: Mapping[str, Role]) -> dict[str, Role]:
-    """Motor and link the other way round; empty if names tell them apart, or one is missing."""
+    """Ports with motor and link swapped; empty if the names decide, or a port is missing."""
     if not {"theta", "q", "tau"} <= ports.keys():
         return {}
     theta, q = ports["theta"].column, ports["q"].column
@@ -151,7 +151,7 @@ def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
     correlation = np.abs(np.corrcoef([each.window for each in columns]))
 
     def points(places: tuple[int, int]) -> float:
-        """For being motor and link, in this order."""
+        """Points of two columns as motor and link, in this order."""
         theta, q = (columns[place] for place in places)
         together = float(correlation[places])
         found = _points(theta, "motor") + _points(q, "link") + 0.5 * _is_larger(theta, q)
@@ -162,7 +162,7 @@ def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
     if points(best) <= 0:
         named = max(columns, key=lambda each: _points(each, "link"))
         return {"q": Role(named, "the only position that stands out")}
-    how = f"moves as the other one does ({correlation[best]:.3g})"
+    how = f"moves like the other position ({correlation[best]:.3g})"
     return {
         port: Role(columns[place], _why(columns[place], how))
         for port, place in zip(("theta", "q"), best, strict=True)
@@ -170,7 +170,7 @@ def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
 
 
 def _is_larger(theta: Column, q: Column) -> bool:
-    """Whether one moves by larger numbers, as a motor before its gear does."""
+    """Whether theta moves by larger numbers than q, as a motor before its gear."""
     return bool(abs(line(q.window, theta.window).slope) > 1.5)
 
 
@@ -190,14 +190,14 @@ def _side(column: Column, side: str) -> float:
 
 
 def _points(column: Column, side: str) -> float:
-    """Points of a column for being the measured position of a side."""
+    """Points of a column as the measured position of a side."""
     meaning = column.meaning
     points = _side(column, side) + _QUANTITY * (meaning.quantity == "position")
     return points + _REFERENCE * meaning.reference + _COMPUTED * meaning.computed
 
 
 def _torques(columns: Sequence[Column], ports: Mapping[str, Role], T: float) -> dict[str, Role]:
-    """The torque of the motor, and the measured one of the link."""
+    """The torque of the motor, and the measured torque of the link."""
     torques = [each for each in columns if each.meaning.quantity == "torque"]
     currents = [each for each in columns if each.meaning.quantity == "current"]
     possible = [each for each in (*torques, *currents) if each.meaning.side != "setting"]
@@ -209,13 +209,13 @@ def _torques(columns: Sequence[Column], ports: Mapping[str, Role], T: float) -> 
     elif ports.keys() >= {"theta", "q"}:
         found |= _silent_torque([each for each in columns if each not in sensors], ports, T)
     if sensors:
-        why = "by its name" if sensors[0].meaning.side else "the motor has another one, or none"
+        why = "by its name" if sensors[0].meaning.side else "the motor has another torque, or none"
         found["tau_e_sensor"] = Role(max(sensors, key=_torque_points), why)
     return found
 
 
 def _is_sensor(column: Column, others: Sequence[Column], ports: Mapping[str, Role]) -> bool:
-    """Whether a torque is measured behind the motor, as its name or the other columns say."""
+    """Whether a sensor measures a torque after the motor, by its name or the other columns."""
     meaning = column.meaning
     if meaning.side is not None or _is_motor(column):
         return meaning.side in ("sensor", "link")
@@ -230,7 +230,7 @@ def _is_motor(column: Column) -> bool:
 
 
 def _torque_points(column: Column) -> float:
-    # Of a current, a constant is needed too.
+    # A current also needs a torque constant.
     points = _named(column) + _QUANTITY * (column.meaning.quantity == "torque")
     return points + 0.5 * _REFERENCE * column.meaning.reference
 
@@ -258,7 +258,7 @@ def _silent_torque(
 
 
 def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, Role]:
-    """The motor that sets the stiffness: by its name, or a second motor that goes its own way."""
+    """The motor that sets the stiffness: by its name, or a second, independent motor."""
     possible = [
         each
         for each in columns
@@ -285,11 +285,11 @@ def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, 
 
 
 def _says_setting(column: Column) -> bool:
-    """Whether its name leaves no doubt; a set-point may as well be that of a position."""
+    """Whether the name of a column leaves no doubt; a set-point may also be of a position."""
     return column.meaning.side == "setting" and not column.meaning.reference
 
 
 def _follows(column: Column, ports: Mapping[str, Role]) -> bool:
-    """Whether it moves as motor or link do."""
+    """Whether a column moves like motor or link."""
     windows = [role.column.window for role in ports.values()]
     return any(abs(line(column.window, each).correlation) > _CLOSE for each in windows)

@@ -124,14 +124,17 @@ def _largest(pieces: Sequence[Signals], name: str) -> float:
 
 
 def _apart(pieces: Sequence[Signals], count: float) -> int:
-    """Number of samples in which the motor moves by a count [rad] on the average, at least 1.
+    """How many samples apart the fit takes them: 1 if the motor moves by a count [rad] from one to the
+    next, in the root mean square; else as many as it needs for two counts.
 
-    The fit takes samples so far apart: those between them would repeat the same error of rounding,
-    which must be independent from one sample to the next.
+    The errors of rounding must be independent from one sample to the next. Of a slower motor, the
+    samples between repeat the same error.
     """
     moved = math.sqrt(np.mean(np.concatenate([np.diff(each.theta) for each in pieces]) ** 2))
+    if moved >= count or moved == 0:
+        return 1
     longest = max(len(each.theta) for each in pieces)
-    return max(1, min(math.ceil(count / moved), longest // _FEWEST)) if moved > 0 else 1
+    return max(1, min(math.ceil(2 * count / moved), longest // _FEWEST))
 
 
 def _step(counts: Value) -> float:

@@ -151,7 +151,7 @@ def _or_empty(columns: Sequence[Array | None], count: int) -> Iterator[Sequence[
 def read_curve(path: Path, polynomial: Polynomial) -> Curve:
     """Reads the table of a curve; the polynomial is in the data sheet, not in the table.
 
-    Raises ValueError, which says what to do, for anything else.
+    Raises ValueError, which says what to do, for any other file.
     """
     again = "run `sigmahat estimate` again"
     try:
@@ -228,7 +228,7 @@ def _plus_minus(branch: Branch) -> str:
 
 
 def stiffness_in_the_middle(branch: Branch) -> tuple[float, float, Range | None]:
-    """Deformation in the middle of the data [rad], stiffness there and its interval [N.m/rad]."""
+    """Deformation in the middle of the data [rad], its stiffness and the interval [N.m/rad]."""
     phi = characteristic(branch.reach)[1]
     return phi, *_at(branch, phi)
 

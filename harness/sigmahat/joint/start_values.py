@@ -51,9 +51,9 @@ def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
 def as_fixed_curve(start: Mapping[str, Value]) -> dict[str, Value]:
     """Start values with which the curve and the inertia do not change.
 
-    Only effects that differ from run to run are estimated, by a fit to all samples: bias of the
-    torque or zero of the deformation, friction, and the time between the encoders, which acts as a
-    damping. Other effects would hide a wrong stiffness: in a motion of one frequency, for example,
+    A fit to all samples estimates only effects that differ from run to run. These are bias of the
+    torque or zero of the deformation, friction, and the time between the encoders (as a damping).
+    Other effects would hide a wrong stiffness: in a motion of one frequency, for example,
     a delay of the torque looks like a wrong stiffness.
 
     start  from start_values, of the method FilteredRegression

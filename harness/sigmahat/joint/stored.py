@@ -87,7 +87,7 @@ class Format(Generic[_Contents]):
         try:
             document: Any = json.loads(text)
         except ValueError as error:
-            damaged = f"one that is cut off or damaged ({error})"
+            damaged = f"a file that is cut off or damaged ({error})"
             raise self._unexpected(path, damaged if self.name in text else "no JSON") from error
         found = document.get("format") if isinstance(document, dict) else None
         if found != self.name:

@@ -88,14 +88,14 @@ class Estimator:
         All arrays have the shape (N,) for one joint, or (joints, N). A sample that is not finite,
         or masked, is skipped: the estimate is kept, and "valid" is False at this sample.
 
-        `theta` and `q` are the positions of motor (at the gear output) and link [rad], `tau`
-        is the torque of the motor on its axis [N.m], which the modality Residual needs, `theta_c`
-        the position of the motor that adjusts the stiffness [rad], and `tau_e_sensor` the
-        flexibility torque of a sensor [N.m], which the modality Sensor needs. None stands for 0.
+        `theta` and `q` are the positions of motor (at the gear output) and link [rad]. `tau`
+        is the torque of the motor on its axis [N.m], for the modality Residual. `theta_c` is
+        the position of the motor that adjusts the stiffness [rad]. `tau_e_sensor` is the
+        flexibility torque of a sensor [N.m], for the modality Sensor. None stands for 0.
 
         Returns the recorded outputs, by name, in arrays of the same shape: Booleans as such,
-        enumerations as names of items; and the parameters of the first joint. Raises ValueError
-        for other shapes or if an array is missing.
+        enumerations as names of items. Also returns the parameters of the first joint. Raises
+        ValueError for other shapes or if an array is missing.
         """
         given = dict(zip(INPUTS, (theta, q, theta_c, tau, tau_e_sensor), strict=True))
         self._need(given)
@@ -227,7 +227,7 @@ class Estimator:
             if most > _FAR * given or 0 < _WIDE * most < given:
                 self._is_warned = True
                 logging.getLogger("sigmahat").warning(
-                    "the deformation reaches %.3g rad, but range.phi is %.3g rad: set it to about "
+                    "the deformation is up to %.3g rad, but range.phi is %.3g rad: set it to about "
                     "the largest deformation, or the stiffness may be wrong", most, given,
                 )  # fmt: skip
 

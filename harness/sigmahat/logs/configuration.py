@@ -246,7 +246,7 @@ def _explain(error: ErrorDetails) -> str:
         place = f"key in [{section}]" if section else "section"
         return unknown(place, key, [each.name for each in fields(kind)])
     if what == "missing":
-        return f"[{section}] has no {key}; name one of the log" if section else _NO_PORTS
+        return f"[{section}] has no {key}; name a column of the log" if section else _NO_PORTS
     if what == "unknown":
         return error["msg"]
     if what == "zero":

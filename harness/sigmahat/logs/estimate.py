@@ -85,7 +85,7 @@ class Estimate:
     changes: Sequence[StiffnessChange]
     """Changes that were detected."""
     notes: Sequence[str]
-    """What had to be done to the samples of the log, in sentences."""
+    """Sentences about the processing of the samples of the log."""
     learned_from: Sequence[str] = ()
     """Logs from which the estimator has learned before this log."""
     series: Series | None = None
@@ -285,7 +285,7 @@ def _uncertainty(result: Estimate) -> str:
 
 
 def _found(result: Estimate) -> Iterator[str]:
-    """What FilteredRegression estimated besides the stiffness, unless it is negligible."""
+    """Other estimates of FilteredRegression, unless an estimate is negligible."""
     B, D_theta, tau_coulomb = (
         result.motor[name] for name in ("B_hat", "D_theta_hat", "tau_coulomb_hat")
     )

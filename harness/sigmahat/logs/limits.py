@@ -11,12 +11,9 @@ from pathlib import Path
 from sigmahat.logs.log import LogError
 
 MOST_COLUMNS = 2000
-_NUMBERS, _SMALL = (
-    15_000_000,
-    10_000_000,
-)  # allowed numbers in a file up to this size
+_NUMBERS, _SMALL = 15_000_000, 10_000_000  # allowed numbers in a file up to this size [bytes]
 _TOGETHER = 2  # factor for all columns together, where they are needed at the same time
-_NUMBERS_PER_BYTE = 3  # of further bytes; without compression, a file has at most one
+_NUMBERS_PER_BYTE = 3  # for further bytes; without compression, at most 1 is possible
 _BYTES = 400_000_000  # of all columns of a file that is read as a whole
 MOST_TEXT = 100_000_000
 """Characters of a column of text at a time."""

@@ -34,7 +34,7 @@ class Log(ABC):
         self.columns = columns
         """Number of samples of each column."""
         self.notes: list[str] = []
-        """What had to be done to read the file, in sentences."""
+        """Sentences about the reading of the file."""
 
     def read(self, name: str) -> Array:
         """One column, [size: samples]; nan where a sample is missing.

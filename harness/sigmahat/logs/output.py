@@ -232,7 +232,7 @@ class Replayed:
     T: float
     """Time between ticks [s]."""
     notes: list[Text]
-    """What had to be done to the samples of the log, in sentences."""
+    """Sentences about the processing of the samples of the log."""
 
 
 REPLAYED = Format("estimate.json", "sigmahat estimate", 1, Replayed)

@@ -164,7 +164,7 @@ class Setup:
         self.is_edited, self.message, self.asks_to_overwrite = True, "", False
         self.changed()
 
-    # What the jobs have found
+    # Results of the jobs
 
     def guessed(self, templates: Mapping[str, str], chosen: Chosen) -> None:
         """Takes the guesses: the configuration of each joint as `init` writes it."""

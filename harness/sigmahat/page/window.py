@@ -54,7 +54,7 @@ class SavingBar:
         )
 
     def show(self) -> None:
-        """Shows whether there is something to write."""
+        """Updates the buttons and the message."""
         setup = self._setup
         self._write.label = f"Write {setup.path.name}"
         self._write.disabled = not setup.is_ready

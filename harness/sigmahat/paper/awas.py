@@ -69,7 +69,7 @@ def lever_arm(plant: Plant) -> float:
 
 
 def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> EstimatorFmu:
-    """The estimator of the AwAS with the start values of its FMU except for those given."""
+    """The estimator of the AwAS, with the given start values, else the values of the FMU."""
     return EstimatorFmu(
         fmu="StiffnessEstimator",
         start={"samplePeriod": T, **start},

@@ -33,7 +33,7 @@ theta = position(plant, "theta")
 q_dot = velocity(plant, "q_dot")
 theta_dot = velocity(plant, "theta_dot")
 tau_dahl = plant.state("tau_dahl", start=0.0, scale=1.0)
-bristle = plant.state("bristle", start=0.0, scale=1.0)  # relative to the deflection at which it slides
+bristle = plant.state("bristle", start=0.0, scale=1.0)  # relative to the deflection during sliding
 clock = plant.state("clock", start=0.0, scale=1e12)  # integrated exactly: it needs no small steps
 
 # The gear has a kinematic error, once or several times per turn of the motor.

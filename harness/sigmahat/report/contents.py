@@ -46,7 +46,7 @@ class Contents:
     answer: Sequence[Panel] = ()
     """Panels above all other panels, and above the tables."""
     notes: Sequence[str] = ()
-    """What had to be done to the samples, in sentences."""
+    """Sentences about the processing of the samples."""
     pictures: Sequence[Path] = ()
     """PNG files."""
     every: tuple[float, float] | None = None

@@ -244,7 +244,7 @@ def _doubts(doubts: Counter[str]) -> TextTable:
     shares = [[item, f"{100 * count / rows:.3g}"] for item, count in doubts.most_common()]
     return TextTable(
         "Doubt",
-        ["why not confident", "share of rows [%] *"],
+        ["why not confident", "fraction of rows [%] *"],
         shares,
         [True, False],
         note="* in the second half; None: it was confident",

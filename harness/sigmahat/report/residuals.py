@@ -35,7 +35,7 @@ class Residuals:
     t: Array
     """[s]"""
     residual: Array
-    """Measured torque less the predicted one [N.m]."""
+    """Measured torque minus predicted torque [N.m]."""
     signals: Mapping[str, Array]
     """Signals _OVER, at the same times."""
 

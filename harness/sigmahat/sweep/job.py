@@ -39,8 +39,7 @@ class Records:
     def __init__(self, path: Path, plan: Plan) -> None:
         """Reads the file if it exists.
 
-        Raises ValueError, which says where and what to do, if the file is damaged or of another
-        sweep.
+        Raises ValueError, which says where and what to do, for a damaged file or another sweep.
         """
         self.path = path
         self.outcomes: dict[int, Outcome] = {}

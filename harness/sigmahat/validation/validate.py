@@ -48,13 +48,13 @@ class Validation:
     ticks: int
     """Number of ticks of the estimator over the log."""
     torque: TorqueError | None
-    """Error of the torque that the learned curve predicts; None if the regression used no sample."""
+    """Error of the torque by the learned curve; None if the regression used no sample."""
     torque_below: TorqueError | None
     """Error of this torque below 2 Hz; None if the log is too short."""
     stiffness: Agreement
     """The learned stiffness compared with the stiffness of this log alone."""
     notes: Sequence[str]
-    """What had to be done to the samples of the log, in sentences."""
+    """Sentences about the processing of the samples of the log."""
     turned: str | None
     """A sentence if a counter began in another turn than in the logs before, else None."""
 

@@ -66,7 +66,7 @@ class Experiment:
     duration: float = 20.0
     """[s]"""
     rest: float = 0.0
-    """Time before which there is no torque [s]."""
+    """Time until the torque begins [s]."""
     drive: Drive = Drive.LINEAR
     control: Control | None = None
     """None: the torque is the command. Else the drive holds the torque of this control."""

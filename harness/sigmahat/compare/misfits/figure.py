@@ -54,7 +54,7 @@ def _regions(axes: Axes, limits: tuple[float, float]) -> None:
     low, high = limits
     claim, error = 100 * DANGEROUS_CLAIM, 100 * DANGEROUS_ERROR
     axes.add_patch(Rectangle((low, error), claim - low, high - error, color=_GREY, alpha=0.25))
-    corner = f"dangerous: over {error:g} % off,\nclaims under {claim:g} %"
+    corner = f"dangerous: over {error:g} % off,\nclaim under {claim:g} %"
     axes.text(1.3 * low, high / 1.3, corner, va="top")
     axes.plot(limits, limits, color=_GREY, linewidth=0.8, zorder=0)
     axes.text(high / 4, high / 6, "error = claim", color=_GREY, ha="center", va="top", rotation=45)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 SETTLED = 2.0
 """Time after the start of the torque from which an estimate is judged [s]."""
 DANGEROUS_ERROR, DANGEROUS_CLAIM = 0.1, 0.02
-"""An instant is dangerous if the error is above the first value and the claim below the second."""
+"""Limits of a dangerous instant: error above, and sigma_std / estimate below its limit [1]."""
 WRONG = 0.2
 """Error above which a confident estimate is wrong [1]."""
 _LARGEST = 10.0  # a larger relative error or claim counts as this value

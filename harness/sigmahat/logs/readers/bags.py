@@ -37,9 +37,7 @@ def read_bag(path: Path) -> LogInMemory:
                 stamps[topic].append(recorded if stamp is None else stamp)
                 for name, number in _numbers(message):
                     column = values[f"{topic}.{name}"]
-                    column.extend(
-                        [np.nan] * (row - len(column))
-                    )  # messages without this number
+                    column.extend([np.nan] * (row - len(column)))  # messages without this number
                     column.append(number)
     except (AnyReaderError, OSError, ValueError, KeyError, AssertionError) as error:
         raise LogError(f"{path}: not a whole ROS 2 bag ({error}); copy it again") from error
