@@ -7,6 +7,7 @@ import pytest
 
 from sigmahat.identification.identify import _apart
 from sigmahat.identification.regression import Form, Signals, equations, fit
+from sigmahat.logs.log import Array
 
 T, GAMMA, K, COUNT = 1e-3, 160.0, 2400.0, 2 * np.pi / 16384
 B, D_THETA = 1.3e-4, 6e-4
@@ -20,9 +21,9 @@ def recording(seed: int, noise: float) -> Signals:
     theta = np.sin(angle) @ amplitude
     motor = B * -np.sin(angle) @ (amplitude * w**2) + D_THETA * np.cos(angle) @ (amplitude * w)
     phi = 0.01 * np.sin(2 * np.pi * 0.23 * t + 1) + 0.006 * np.sin(2 * np.pi * 1.1 * t)
-    tau = GAMMA * motor - K * phi / GAMMA + noise * rng.standard_normal(len(t))
+    tau: Array = GAMMA * motor - K * phi / GAMMA + noise * rng.standard_normal(len(t))
     motor_angle, link_angle = (np.round(x / COUNT) * COUNT for x in (theta, theta + phi))
-    return Signals(motor_angle, link_angle - motor_angle, 0 * t, tau, None)
+    return Signals(motor_angle, link_angle - motor_angle, np.zeros(len(t)), tau, None)
 
 
 @pytest.mark.parametrize(("f_0", "noise"), [(20.0, 0.02), (100.0, 0.02), (100.0, 0.19)])
@@ -45,6 +46,10 @@ def test_a_motor_that_moves_fast_or_rests_keeps_all_samples() -> None:
     piece = recording(1, 0.02)
     assert _apart([piece], COUNT / 10) == 1
     assert (
-        _apart([Signals(0 * piece.theta, piece.phi, piece.set_point, piece.tau, None)], COUNT) == 1
+        _apart(
+            [Signals(np.zeros(len(piece.theta)), piece.phi, piece.set_point, piece.tau, None)],
+            COUNT,
+        )
+        == 1
     )
     assert _apart([piece], 0.0) == 1

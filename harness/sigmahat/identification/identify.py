@@ -124,8 +124,8 @@ def _largest(pieces: Sequence[Signals], name: str) -> float:
 
 
 def _apart(pieces: Sequence[Signals], count: float) -> int:
-    """How many samples apart the fit takes them: 1 if the motor moves by a count [rad] from one to the
-    next, in the root mean square; else as many as it needs for two counts.
+    """Distance of the samples that the fit takes, in samples: 1 if the motor moves by at least one
+    count [rad] between two samples (root mean square), else as many as it needs for two counts.
 
     The errors of rounding must be independent from one sample to the next. Of a slower motor, the
     samples between repeat the same error.

@@ -13,7 +13,7 @@ from sigmahat.logs.curve_panels import curve_panels
 from sigmahat.logs.job import DRAWN, Replay
 from sigmahat.logs.log import Array
 from sigmahat.logs.resampling import stretches
-from sigmahat.logs.sampling import Samples
+from sigmahat.logs.sampling import Samples, refused
 from sigmahat.logs.time_panels import Estimate, Reduced, quantity_panels, stiffness_panels
 from sigmahat.plotting.figure import draw as draw_panel
 from sigmahat.plotting.figure import label_x
@@ -75,7 +75,7 @@ def _sensor(replay: Replay) -> Array:
 
 def _skipped(samples: Samples) -> Array:
     """Begin and end of the longest stretches of ticks that the estimator skipped [s]."""
-    both = np.column_stack(stretches(np.isnan(samples.values).any(axis=1)))
+    both = np.column_stack(stretches(refused(samples.values)))
     longest = np.argsort(both[:, 1] - both[:, 0])[::-1][:200]
     times: Array = samples.T * both[longest].astype(np.float64)
     return times

@@ -202,9 +202,15 @@ _LARGEST = 1e12
 """SH_LARGEST_MEASUREMENT of sigmahat.h."""
 
 
+def refused(values: Array) -> NDArray[np.bool_]:
+    """Ticks that the estimator skips because of their values [size: ticks x ports]."""
+    skipped: NDArray[np.bool_] = np.any(~(np.abs(values) <= _LARGEST), axis=1)
+    return skipped
+
+
 def _skipped(values: Array, T: float) -> Iterator[str]:
     """Ticks at which the estimator has no value of some port, or one that it refuses."""
-    skipped = ~(np.abs(values) <= _LARGEST).all(axis=1)
+    skipped = refused(values)
     if not skipped.any():
         return
     first, last = stretches(skipped)
