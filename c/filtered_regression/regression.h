@@ -10,13 +10,13 @@
 
 /* Where the joint is, and the signals of the columns there, before the filter. */
 typedef struct {
-    sh_real theta, q, phi;      /* positions and deformation [rad] */
-    sh_real power[SH_MAX_N];    /* (phi / range.phi)^e / e, where e belongs to number i [1] */
-    sh_real slope[SH_MAX_N];    /* and its derivative by phi [1/rad] */
-    sh_real l[SH_MAX_M];        /* (set-point / range.setPoint)^j [1] */
-    sh_real tau_nominal;        /* torque of the curve rls.eta_0 [N.m] */
-    sh_real sigma_nominal;      /* and its stiffness [N.m/rad] */
-    const sh_real *stop;        /* [size: SH_WIDTHS] states of the stop operators of hysteresis [rad] */
+    sh_real theta, q, phi;   /* positions and deformation [rad] */
+    sh_real power[SH_MAX_N]; /* (phi / range.phi)^e / e, where e belongs to number i [1] */
+    sh_real slope[SH_MAX_N]; /* and its derivative by phi [1/rad] */
+    sh_real l[SH_MAX_M];     /* (set-point / range.setPoint)^j [1] */
+    sh_real tau_nominal;     /* torque of the curve rls.eta_0 [N.m] */
+    sh_real sigma_nominal;   /* and its stiffness [N.m/rad] */
+    const sh_real *stop; /* [size: SH_WIDTHS] states of the stop operators of hysteresis [rad] */
     sh_real F[SH_MAX_COLUMNS];  /* signals */
     sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
 } sh_joint_point;
@@ -60,11 +60,10 @@ enum {
 
 /* What a column is. */
 enum {
-    SH_IS_SPRING = 1, /* a part of the torque of the spring */
-    SH_IS_CURVE = 2,  /* a part of its smooth curve, which has a slope */
-    SH_IS_EQUATION =
-        4,           /* a term of the equation of motion (columns.c), not an additional effect */
-    SH_IS_MOTOR = 8, /* 0 where the torque of the spring is measured or modelled */
+    SH_IS_SPRING = 1,   /* a part of the torque of the spring */
+    SH_IS_CURVE = 2,    /* a part of its smooth curve, which has a slope */
+    SH_IS_EQUATION = 4, /* a term of the equation of motion (columns.c), not an additional effect */
+    SH_IS_MOTOR = 8,    /* 0 where the torque of the spring is measured or modelled */
     SH_IS_FRICTION = 16, /* friction of the motor that may drift */
     SH_IS_COULOMB = 32,  /* tau_C */
     SH_IS_INERTIA = 64,  /* b */
