@@ -24,6 +24,8 @@ from sigmahat.logs.readers.formats import open_log
 from sigmahat.logs.sampling import sample
 from strange_files import TRIALS, Trial, usual
 
+EXAMPLES = int(os.environ.get("SIGMAHAT_STRANGERS", "80"))
+"""More, and others each time, if somebody asks for so many."""
 CONFIGURED = CONFIGURATION.replace("motor.B", "rls.n = 3\nmotor.B")
 
 
@@ -35,9 +37,9 @@ def confined() -> Iterator[Confined]:
 
 @pytest.mark.slow("hundreds of commands, each in a process of its own")
 @settings(
-    max_examples=80,
+    max_examples=EXAMPLES,
     deadline=None,
-    derandomize=True,
+    derandomize="SIGMAHAT_STRANGERS" not in os.environ,
     database=None,
     phases=[Phase.generate],
     suppress_health_check=list(HealthCheck),
