@@ -52,8 +52,8 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
         return SH_ERROR;
     }
     /* An importer that adds up its time makes rounding errors. These errors have no effect, as
-     * ticks are counted by h. A larger, but still small, difference comes from an importer whose h
-     * does not quite fit its times. Then this step also covers the difference, to end at t + h.
+     * the ticks follow the sum of all h. A larger, but still small, difference comes from an importer
+     * whose h does not quite fit its times. Then this step also covers it, to end at t + h.
      */
     length = h;
     late = t - instance->time;

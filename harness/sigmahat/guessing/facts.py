@@ -68,7 +68,7 @@ def look_at(log: Log, name: str) -> tuple[Facts, Array]:
 
 
 def counts_per_turn(facts: Facts, unit: str) -> int:
-    """Counts per turn of the encoder, from the steps of a column; 0 if no encoder has so few."""
+    """Counts per turn of the encoder, from the steps of a column; 0 if too few for an encoder."""
     counts = TURN[unit] / facts.step if unit in TURN else 0.0
     return round(counts) if counts >= _FEWEST_COUNTS else 0
 

@@ -56,7 +56,7 @@ def _no_more() -> None:
 
 
 Source = Callable[[Inbox], None]
-"""Reads until the process ends, or until the end of the data."""
+"""Puts messages into the inbox until the data end; UDP, TCP and ROS 2 do not end."""
 
 
 def start(source: Source, inbox: Inbox) -> None:

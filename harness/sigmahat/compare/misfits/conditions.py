@@ -289,7 +289,7 @@ CONDITIONS: Sequence[Condition] = (
         )
     ),
     Condition(
-        "gain 0.9, B exact, prior 0.1",
+        "gain 0.9, prior 0.1, B exact",
         Group.GAIN,
         _exact_inertia(_gain(0.90)),
         torque_gain=0.10,
