@@ -281,4 +281,4 @@ def test_a_range_that_is_far_from_the_motion_is_warned_of_once(
         estimator.run(theta, q, np.cos(t))
     words = [each.getMessage() for each in caplog.records]
     assert len(words) == warned
-    assert all(f"reaches 0.01 rad, but range.phi is {given}" in each for each in words)
+    assert all(f"is up to 0.01 rad, but range.phi is {given}" in each for each in words)
