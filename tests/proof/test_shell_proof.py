@@ -145,6 +145,7 @@ def shell_without(code: str, file: str, folder: Path) -> Path:
     return folder
 
 
+@by_hand
 @pytest.mark.slow("the analysis of an estimator's shell")
 def test_the_proof_finds_a_length_that_is_not_checked(build: Path, tmp_path: Path) -> None:
     """GIVEN a shell that compares no length, THEN the proof finds reads beyond the bytes."""
@@ -154,6 +155,7 @@ def test_the_proof_finds_a_length_that_is_not_checked(build: Path, tmp_path: Pat
     assert any("saved_state.c" in a and "valid_src" in a for a in alarms)
 
 
+@by_hand
 @pytest.mark.slow("the analysis of a plant's shell")
 def test_any_bytes_as_the_state_of_a_plant_touch_no_other_memory(build: Path) -> None:
     alarms = alarms_of(build, "shell_states.c", "AwasPlant")
