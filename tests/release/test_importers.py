@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import subprocess
 from pathlib import Path
@@ -30,32 +29,6 @@ def run(request: pytest.FixtureRequest, released: Path, runs: dict[str, Run]) ->
     if name not in runs:
         runs[name] = Run(released / f"{name}.fmu")
     return runs[name]
-
-
-@each_fmu
-def test_fmi_sim_gives_the_same_trajectories(run: Run, build: Path, tmp_path: Path) -> None:
-    fmi_sim = build / "checkers" / "bin" / "fmi-sim"
-    if not fmi_sim.exists():
-        missing(
-            "fmi-sim", f"cargo install --locked --version 0.7.0 --root {build / 'checkers'} fmi-sim"
-        )
-    table = run.table()
-    with (tmp_path / "in.csv").open("w", newline="") as file:
-        csv.writer(file).writerows([table.dtype.names or (), *table.tolist()])
-    done = subprocess.run(
-        [
-            *(fmi_sim, "--model", str(run.fmu)),
-            *("-i", str(tmp_path / "in.csv"), "-o", str(tmp_path / "out.csv")),
-            *("co-simulation", "--output-interval", str(STEP), "-f", str(run.time[-1])),
-        ],
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0 and done.stderr == "", done.stderr
-    with (tmp_path / "out.csv").open(newline="") as file:
-        names, *rows = csv.reader(file)
-    columns = [names.index(v.name) for v in run.outputs]
-    run.assert_same(np.array([[float(row[c]) for c in columns] for row in rows]))
 
 
 @each_fmu
