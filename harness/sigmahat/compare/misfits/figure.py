@@ -10,9 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from sigmahat.compare.misfits.conditions import Group
-from sigmahat.compare.misfits.job import Row
-from sigmahat.compare.misfits.joints import JOINTS
-from sigmahat.compare.misfits.score import DANGEROUS_CLAIM, DANGEROUS_ERROR
+from sigmahat.compare.misfits.experiment import JOINTS
+from sigmahat.compare.misfits.job import DANGEROUS_CLAIM, DANGEROUS_ERROR, Row
 from sigmahat.plotting.style import cycle
 
 _MARKERS = dict(zip((joint.name for joint in JOINTS), "o^s", strict=True))

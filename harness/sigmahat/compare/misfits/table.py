@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from sigmahat.compare.misfits.conditions import Group
-from sigmahat.compare.misfits.job import Row
-from sigmahat.compare.misfits.score import Score
+from sigmahat.compare.misfits.job import Row, Score
 from sigmahat.files.tables import aligned, title, write_csv
 
 FIGURES = tuple(Score().figures)
