@@ -34,13 +34,7 @@ from sigmahat.logs.curve_panels import curve_panels
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
 from sigmahat.logs.several import JOINTS
-from sigmahat.logs.time_panels import (
-    Estimate,
-    quantity_panels,
-    reduce,
-    sampling,
-    stiffness_panels,
-)
+from sigmahat.logs.time_panels import Estimate, quantity_panels, reduce, sampling, stiffness_panels
 from sigmahat.plotting.panels import Panel
 from sigmahat.plotting.style import plain_text, plain_title, plain_unit
 from sigmahat.report.contents import Contents, TextTable, number, of_file

@@ -20,7 +20,7 @@ from sigmahat.logs.time_panels import (
     sampling,
     stiffness_panels,
 )
-from sigmahat.paper.result_files import SEEDS, TIME, read_result_files
+from sigmahat.paper.reproduction import SEEDS, TIME, read_result_files
 from sigmahat.plotting.panels import COLORS, TRUE, Curve, Kind, Panel
 from sigmahat.plotting.style import QUANTITIES, plain_axis
 from sigmahat.report.contents import Contents, TextTable, of_file

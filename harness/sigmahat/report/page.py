@@ -14,7 +14,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from sigmahat.files.tables import read_csv
 from sigmahat.logs.several import JOINTS
-from sigmahat.paper.result_files import TABLE
+from sigmahat.paper.reproduction import TABLE
 from sigmahat.report.contents import Contents, of_file
 from sigmahat.report.from_log import from_joints, from_log
 from sigmahat.report.from_reproduction import from_reproduction

@@ -116,10 +116,7 @@ def records(folder: Path, plan: Plan) -> Iterator[Records]:
 
 
 def sweep(
-    plan: Plan,
-    out: Path,
-    scheduler: str | None = None,
-    progress: Progress = lambda runs: None,
+    plan: Plan, out: Path, scheduler: str | None = None, progress: Progress = lambda runs: None
 ) -> SweepTable:
     """Does the remaining runs of a sweep, here or on a Dask cluster, and writes all files into out.
 

@@ -18,11 +18,7 @@ from sigmahat.files import tables
 from sigmahat.runs.metrics import INDICES, Index
 
 # Parameters of the nominal AwAS in the estimator, and their names in the plant.
-_NAMES_IN_THE_PLANT = {
-    "model.k_s": "spring.k_s",
-    "model.r_0": "spring.r_0",
-    "model.b": "spring.b",
-}
+_NAMES_IN_THE_PLANT = {"model.k_s": "spring.k_s", "model.r_0": "spring.r_0", "model.b": "spring.b"}
 
 
 def name_in_the_plant(parameter: str) -> str:

@@ -22,6 +22,7 @@ from sigmahat.paper.figures.panels import (
     error_lines,
     estimator_styles,
     everything,
+    legend_above,
     limit,
     line,
     stiffness_lines,
@@ -40,13 +41,12 @@ def transmission(recording: Recording) -> Figure:
     """One flexible transmission: stiffness over time, the curves, and the relative errors."""
     figure = Figure(figsize=(7.2, 8.7), layout="constrained")
     axes = figure.subplot_mosaic([["time", "time"], ["torque", "stiffness"], ["errors", "errors"]])
-    stiffness_lines(axes["time"], recording, everything(recording.t), thin=True)
+    stiffness_lines(recording, axes["time"], everything(recording.t), thin=True)
     axes["time"].legend(ncols=3)
     styles = {name: str(style["color"]) for name, style in estimator_styles(recording)}
-    over_deformation(axes["torque"], recording, "tau_e", "", styles)
-    over_deformation(axes["stiffness"], recording, "sigma", "", styles)
-    axes["torque"].set_title(_last_part(recording), fontsize=9)
-    axes["stiffness"].set_title(_last_part(recording), fontsize=9)
+    for panel, output in (("torque", "tau_e"), ("stiffness", "sigma")):
+        over_deformation(axes[panel], recording, output, "", styles)
+        axes[panel].set_title(_last_part(recording), fontsize=9)
     axes["stiffness"].legend()
     error_lines(axes["errors"], recording)
     for name in ("time", "errors"):
@@ -98,9 +98,7 @@ def _torques(axes: Axes, recording: Recording) -> None:
     total = plant["tau_e_1"] + plant["tau_e_2"]
     line(axes, t, total, color="black", linewidth=0.8, label="sum, which moves the link")
     axes.set_ylabel(TORQUE)
-    bottom, top = axes.get_ylim()
-    axes.set_ylim(bottom, top + 0.2 * (top - bottom))
-    axes.legend(loc="upper right", ncols=3)
+    legend_above(axes)
 
 
 def over_deformation(
