@@ -1,14 +1,16 @@
-"""Slow jobs in a thread: guess, checks, curve. The page stays responsive meanwhile."""
+"""Slow jobs in a thread: previews, guess, checks, curve. The page stays responsive meanwhile."""
 
 from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import tomlkit
+from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import FmuError, Slave
 from sigmahat.fmi.opened import installed
@@ -18,9 +20,38 @@ from sigmahat.guessing.guess import guess_chosen, guess_of
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import Answer
 from sigmahat.logs.job import Replay
-from sigmahat.logs.log import Log, LogError
-from sigmahat.page.look import look
-from sigmahat.page.setup import Chosen, Setup
+from sigmahat.logs.log import Array, Log, LogError
+from sigmahat.page.setup import Chosen, Look, Setup
+
+_BUCKETS = 80
+_WIDTH, _HEIGHT = 160, 28  # of the line of a preview
+
+
+def look(log: Log, name: str) -> Look:
+    """The preview of a column of a log."""
+    try:
+        values = log.read(name)
+    except LogError:
+        return Look("text", ())
+    finite = np.flatnonzero(np.isfinite(values))
+    if not len(finite):
+        return Look("no number", ())
+    low, high = float(values[finite].min()), float(values[finite].max())
+    return Look(f"{low:.5g} to {high:.5g}", _line(values, finite, low, high))
+
+
+def _line(
+    values: Array, finite: NDArray[np.intp], low: float, high: float
+) -> Sequence[tuple[float, float]]:
+    """The least and the greatest value of each bucket, in the order of the rows."""
+    points = []
+    for part in np.array_split(finite, min(_BUCKETS, len(finite))):
+        own = values[part]
+        for i in sorted({int(own.argmin()), int(own.argmax())}):
+            x = _WIDTH * part[i] / max(len(values) - 1, 1)
+            y = (_HEIGHT - 2) * (high - own[i]) / ((high - low) or 1.0) + 1
+            points.append((round(float(x), 1), round(float(y), 1)))
+    return points
 
 
 def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
@@ -162,7 +193,7 @@ class Jobs:
         from sigmahat.identification.identify import identify
         from sigmahat.identification.write import update
         from sigmahat.logs.configuration import checked_configuration
-        from sigmahat.report.estimated import estimated
+        from sigmahat.report.from_log import estimated
 
         setup, document = self._setup, tomlkit.parse(text)
         out = Path("sigmahat-results", setup.log.path.stem, setup.joint)

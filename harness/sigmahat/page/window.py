@@ -15,9 +15,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from sigmahat.logs.configuration import PORTS
 from sigmahat.page.edits import TITLES
 from sigmahat.page.inputs import Choice, button, words
-from sigmahat.page.look import HEIGHT, WIDTH
-from sigmahat.page.ports import ParameterPanel, PortPanel
-from sigmahat.page.result import FindingsPanel, ResultPanel
+from sigmahat.page.panels import FindingsPanel, ParameterPanel, PortPanel, ResultPanel
 from sigmahat.page.setup import Setup
 
 _TEMPLATES = Environment(
@@ -85,9 +83,7 @@ class Window:
         self._file = words(name="file", overflow_x="auto")
         panels: Sequence[ParameterPanel | PortPanel | FindingsPanel | ResultPanel | SavingBar] = (
             *(PortPanel(setup, port) for port in TITLES),
-            ParameterPanel(setup),
-            FindingsPanel(setup),
-            ResultPanel(setup),
+            *(kind(setup) for kind in (ParameterPanel, FindingsPanel, ResultPanel)),
             SavingBar(setup, estimate),
         )
         self._panels = panels
@@ -123,7 +119,7 @@ class Window:
         uses = {setup.get(f"ports.{port}.column"): port for port in PORTS}
         uses[setup.get("time.column")] = "time"
         self._columns.text = _TEMPLATES.get_template("columns.html").render(
-            columns=setup.log.columns, looks=setup.looks, uses=uses, width=WIDTH, height=HEIGHT
+            columns=setup.log.columns, looks=setup.looks, uses=uses
         )
         # The last result is dimmed while another result is computed.
         opacity = "0.45" if setup.busy else "1"

@@ -1,9 +1,9 @@
-"""The contents of a report from the files of `sigmahat estimate`."""
+"""The files of `sigmahat estimate` with the findings of the checks, and a report from the files."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.files.output import write_json
+from sigmahat.files.output import output_folder, write_json
 from sigmahat.files.tables import read_csv
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
@@ -29,8 +29,11 @@ from sigmahat.joint.curve import (
 )
 from sigmahat.joint.sheet import Sheet
 from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
+from sigmahat.logs import estimate as estimation
 from sigmahat.logs.changes import detected
+from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve_panels import curve_panels
+from sigmahat.logs.log import Log
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
 from sigmahat.logs.several import JOINTS
@@ -72,6 +75,28 @@ def write_findings(findings: Sequence[ShownFinding], folder: Path) -> None:
     """Writes the file into a folder of results; an empty list says that nothing was found."""
     contents = FindingsFile(FINDINGS.name, FINDINGS.version, list(findings))
     write_json(asdict(contents), folder / FINDINGS.file)
+
+
+def estimated(
+    log: Log,
+    configuration: Configuration,
+    findings: Sequence[tuple[str, str]],
+    out: Path,
+    progress: Callable[[int], object] = lambda thousandths: None,
+    start_from: Path | None = None,
+    mcap: bool = False,
+) -> estimation.Estimate:
+    """Returns the estimate, and writes estimate and findings into out: all files, or no file.
+
+    findings  of the checks: severity and sentence
+    mcap      whether estimate.mcap is written, too
+
+    Raises what `estimate` raises, OSError if out cannot be written to.
+    """
+    with output_folder(out) as folder:
+        result = estimation.estimate(log, configuration, folder, progress, start_from, mcap)
+        write_findings([ShownFinding(*each) for each in findings], folder)
+    return result
 
 
 def findings_table(folder: Path) -> list[TextTable]:
@@ -118,10 +143,16 @@ def from_log(folder: Path) -> Contents:
     if "change_age" in signals:  # older versions have no such output
         marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
     marked = ["Dotted lines: changes of the stiffness, see Samples."] if marks else []
-    tables = [] if answer is None else _found(answer)
+    tables = []
+    if answer is not None:
+        tables += [curve_table(answer.curve)] if answer.curve.branches else []
+        tables.append(found_table(answer.sheet))
     tables += findings_table(folder)
-    doubts = table.doubts()
-    tables += [_estimates(signals, used), *([_doubts(doubts)] if doubts else [])]
+    tables.append(_estimates(signals, used))
+    if doubts := table.doubts():
+        tables.append(_doubts(doubts))
+    if answer is not None:
+        tables.append(estimator_table(answer.sheet))
     return Contents(
         f"Log: {folder.resolve().name}",
         [
@@ -129,7 +160,7 @@ def from_log(folder: Path) -> Contents:
             f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}",
             *marked,
         ],
-        [*tables, *([] if answer is None else [estimator_table(answer.sheet)])],
+        tables,
         [
             *stiffness_panels(reduced, [Estimate("estimate", {"sigma": "sigma"})]),
             *quantity_panels(reduced, ""),
@@ -205,11 +236,6 @@ def _skipped(answer: _Answer | None, used: NDArray[np.bool_]) -> str:
         return f"in {np.count_nonzero(~used)} of the rows the estimator skipped the tick"
     replayed = answer.replayed
     return f"{replayed.skipped} of {replayed.ticks} ticks of {replayed.T:g} s skipped"
-
-
-def _found(answer: _Answer) -> list[TextTable]:
-    curve = [curve_table(answer.curve)] if answer.curve.branches else []
-    return [*curve, found_table(answer.sheet)]
 
 
 def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
