@@ -105,8 +105,10 @@ class Records:
         self._write({**place, "indices": indices, "failure": outcome.failure})
 
     def close(self) -> None:
-        """Closes the file."""
+        """Closes the file, and removes it if it has no outcome."""
         self._file.close()
+        if not self.outcomes:
+            self.path.unlink()
 
     def _write(self, content: dict[str, Any]) -> None:
         self._file.write(json.dumps(content).encode() + b"\n")
@@ -128,14 +130,8 @@ def records(folder: Path, plan: Plan) -> Iterator[Records]:
     lock = folder / f".{NAME}.lock"
     with created_folder(folder, ignored=lock.name):
         try:
-            with FileLock(lock, timeout=0):
-                opened = Records(folder / NAME, plan)
-                try:
-                    yield opened
-                finally:
-                    opened.close()
-                    if not opened.outcomes:
-                        opened.path.unlink()
+            with FileLock(lock, timeout=0), closing(Records(folder / NAME, plan)) as opened:
+                yield opened
         except Timeout as error:
             raise ValueError(f"another sweep is writing to {folder}; wait for it") from error
 
@@ -162,10 +158,16 @@ def sweep(
             done.outcomes.clear()  # nothing is worth keeping
             raise ValueError(f"every run failed, the first with: {failures[0]}")
         table = _table(plan, done.outcomes)
+        from sigmahat.plotting.figure import stacked
+        from sigmahat.plotting.save import save
+        from sigmahat.sweep.panels import against_parameters, distributions
+
         with output_folder(out) as folder:
             write(table, folder / "sweep.parquet")
             write_summary(table, folder / "summary.csv")
-            _draw(table, folder)
+            save(stacked, distributions(table), folder / "distributions")
+            if panels := list(against_parameters(table)):
+                save(stacked, panels, folder / "parameters")
     return table
 
 
@@ -187,16 +189,6 @@ def _run(plan: Plan, done: Records, scheduler: str | None, progress: Progress) -
                 progress(1)
     except WorkersLostError as error:
         raise WorkersLostError(f"{error}; the same command does the remaining runs") from error
-
-
-def _draw(table: SweepTable, folder: Path) -> None:
-    from sigmahat.plotting.figure import stacked
-    from sigmahat.plotting.save import save
-    from sigmahat.sweep.panels import against_parameters, distributions
-
-    save(stacked, distributions(table), folder / "distributions")
-    if panels := list(against_parameters(table)):
-        save(stacked, panels, folder / "parameters")
 
 
 _FAILED = Indices(*[math.nan] * len(INDICES))

@@ -69,12 +69,11 @@ def values(text: Any) -> Values:
 
     Raises ValueError, which says what is expected.
     """
-    if isinstance(text, Sequence) and not isinstance(text, str):
-        if not text or not all(isinstance(v, (float, int, str)) for v in text):
-            raise ValueError(f"expected {_FORMS}, got {text!r}")
-        return _distinct([v if not isinstance(v, str) else _literal(v) for v in text])
     if not isinstance(text, str):
-        return values([text])
+        given = text if isinstance(text, Sequence) else [text]
+        if not given or not all(isinstance(v, (float, int, str)) for v in given):
+            raise ValueError(f"expected {_FORMS}, got {given!r}")
+        return _distinct([_literal(v) if isinstance(v, str) else v for v in given])
     call = _CALL.fullmatch(text)
     if call is not None:
         return _drawn(text, call[1], call[2].split(","))
@@ -165,7 +164,7 @@ class Plan:
     scenarios: tuple[str, ...]
     seeds: int
     modalities: tuple[str, ...]
-    """Estimators to run; empty: all estimators that the scenarios compare."""
+    """As in Run."""
     parameters: Mapping[str, Values]
     """Values by name with owner."""
 
@@ -189,18 +188,14 @@ class Plan:
 
     def _runs(self) -> Iterator[Run]:
         points = list(itertools.product(*self.listed.values()))
-        numbers = itertools.count()
-        for scenario, point, seed in itertools.product(
-            self.scenarios, points, range(1, self.seeds + 1)
-        ):
+        every = itertools.product(self.scenarios, points, range(1, self.seeds + 1))
+        for number, (scenario, point, seed) in enumerate(every):
             listed = dict(zip(self.listed, point, strict=True))
-            yield Run(next(numbers), scenario, self.modalities, seed, self._values(listed, seed))
-
-    def _values(self, listed: Mapping[str, Value], seed: int) -> dict[str, Value]:
-        return {
-            name: values.value(name, seed) if isinstance(values, Drawn) else listed[name]
-            for name, values in self.parameters.items()
-        }
+            values = {
+                name: own.value(name, seed) if isinstance(own, Drawn) else listed[name]
+                for name, own in self.parameters.items()
+            }
+            yield Run(number, scenario, self.modalities, seed, values)
 
     def samples(self) -> Iterator[Run]:
         """Few runs with every scenario and every listed value, for a check before the start.
