@@ -79,11 +79,9 @@ class Row:
 
     joint: Joint
     case: Case
-    part: str
-    """An element of Joint.parts."""
+    part: str  # an element of Joint.parts
     index: Index
-    performance: Mapping[str, Performance]
-    """Mean performance over the seeds, by method."""
+    performance: Mapping[str, Performance]  # mean performance over the seeds, by method
 
     @property
     def judged_from(self) -> float:

@@ -26,8 +26,7 @@ select.bk-input { background-image: url('data:image/svg+xml;utf8,<svg version="1
 :host(.open) .bk-input { border-color: #e06a1a; box-shadow: inset 0 0 0 1px #e06a1a; }
 """
 """Style of the widgets in the colours of the page, by CSS variables of the page."""
-_OPEN = "open"
-"""Class of an input that has to be filled in."""
+_OPEN = "open"  # class of an input that has to be filled in
 
 
 def style() -> InlineStyleSheet:

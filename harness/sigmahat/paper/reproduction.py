@@ -32,10 +32,8 @@ class Result:
 
     scenario: Scenario
     seeds: Sequence[int]
-    recording: Recording
-    """Run of the first seed, with the variants that only the figures need."""
-    indices: Sequence[dict[str, Indices]]
-    """Indices for each seed, by comparison."""
+    recording: Recording  # run of the first seed, with the variants that only the figures need
+    indices: Sequence[dict[str, Indices]]  # indices for each seed, by comparison
 
     def mean(self, comparison: str, field: str) -> tuple[float, float]:
         """An index over the seeds: its mean, and half the width of the 95 % interval."""
@@ -84,8 +82,7 @@ PLANT = "plant."
 """Prefix of the names of plant signals in a file over time."""
 
 
-_ORDER = ("MODEL", "SENSOR", "RESIDUAL")
-"""The order of Table I; other estimators follow by name."""
+_ORDER = ("MODEL", "SENSOR", "RESIDUAL")  # the order of Table I; other estimators follow by name
 
 
 @dataclass(frozen=True)

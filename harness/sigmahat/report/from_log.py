@@ -50,10 +50,8 @@ class ShownFinding:
 
     __pydantic_config__ = NO_OTHER_KEYS
 
-    severity: Text
-    """How much the finding matters: "wrong", "rests on", "note"."""
-    text: Text
-    """A sentence: the key of the configuration, the number, and a value that is proposed."""
+    severity: Text  # how much the finding matters: "wrong", "rests on", "note"
+    text: Text  # A sentence: the key of the configuration, the number, and a value that is proposed
 
 
 @dataclass(frozen=True)

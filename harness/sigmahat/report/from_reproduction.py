@@ -25,8 +25,7 @@ from sigmahat.plotting.panels import COLORS, TRUE, Curve, Kind, Panel
 from sigmahat.plotting.style import QUANTITIES, plain_axis
 from sigmahat.report.contents import Contents, TextTable, of_file
 
-_MAIN = "RESIDUAL"
-"""Estimator for panels of a single estimator: RESIDUAL needs no torque sensor."""
+_MAIN = "RESIDUAL"  # estimator for panels of a single estimator: RESIDUAL needs no torque sensor
 _STIFFNESS = re.compile(r"sigma(_\d)?")
 
 
@@ -69,10 +68,8 @@ def _indices(table: pa.Table) -> TextTable:
     return of_file("Performance indices", table.select(shown))
 
 
-_LAST = 1 / 3
-"""Fraction of the run that is shown: at the end, an estimate changes little."""
-_COUNT = 100
-"""Number of dots of the estimate: few, so that the truth is visible between the dots."""
+_LAST = 1 / 3  # fraction of the run that is shown: at the end, an estimate changes little
+_COUNT = 100  # number of dots of the estimate: few, so that the truth is visible between the dots
 
 Signals = Mapping[str, NDArray[Any]]
 

@@ -25,8 +25,7 @@ from sigmahat.sweep.table import FAILURE, RUN, Role, read, title
 
 METHODS, MISFITS = "compare.csv", "misfits.csv"
 """Files of `compare` and `compare --misfits`; the figure has the same name."""
-_FIRST = {METHODS: "group", MISFITS: "class"}
-"""Column whose values head the tables."""
+_FIRST = {METHODS: "group", MISFITS: "class"}  # column whose values head the tables
 _SEEDS = "seeds"
 
 

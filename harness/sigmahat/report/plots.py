@@ -38,8 +38,7 @@ class Plot:
 
     panel: Panel
     figure: figure
-    switches: Sequence[tuple[Curve, str]]
-    """Each curve and the name that all its models have."""
+    switches: Sequence[tuple[Curve, str]]  # each curve and the name that all its models have
 
 
 def plots(

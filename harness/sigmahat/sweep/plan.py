@@ -47,12 +47,9 @@ _FORMS = "values 1,2,3; a range first:last:count; uniform(low,high); normal(mean
 class Drawn:
     """A value that depends on the seed of the run alone."""
 
-    kind: str
-    """uniform or normal."""
-    first: float
-    """Lower end, or mean."""
-    second: float
-    """Upper end, or standard deviation."""
+    kind: str  # uniform or normal
+    first: float  # lower end, or mean
+    second: float  # upper end, or standard deviation
 
     def value(self, name: str, seed: int) -> float:
         """Value of the parameter of this name under a seed; independent for every name."""
@@ -149,12 +146,9 @@ class Run:
 class Outcome:
     """The result of a run, or why the run failed."""
 
-    number: int
-    """Number of the run."""
-    indices: Mapping[str, Indices]
-    """Indices by comparison; empty if the run failed."""
-    failure: str | None
-    """Why the run failed: an FMU refused a value, or an estimate is not finite."""
+    number: int  # number of the run
+    indices: Mapping[str, Indices]  # indices by comparison; empty if the run failed
+    failure: str | None  # why the run failed: an FMU refused a value, or an estimate is not finite
 
 
 @dataclass(frozen=True)
@@ -163,10 +157,8 @@ class Plan:
 
     scenarios: tuple[str, ...]
     seeds: int
-    modalities: tuple[str, ...]
-    """As in Run."""
-    parameters: Mapping[str, Values]
-    """Values by name with owner."""
+    modalities: tuple[str, ...]  # as in Run
+    parameters: Mapping[str, Values]  # values by name with owner
 
     def __len__(self) -> int:
         return self.count

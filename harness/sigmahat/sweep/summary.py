@@ -25,8 +25,7 @@ from sigmahat.sweep.table import (
     title,
 )
 
-_ROWS = 30
-"""Rows of a printed summary; summary.csv has all rows."""
+_ROWS = 30  # rows of a printed summary; summary.csv has all rows
 
 
 @dataclass(frozen=True)
@@ -47,8 +46,7 @@ class SummaryColumn:
     """A column of the summary as text."""
 
     title: str
-    words: bool
-    """Whether its cells are words and not numbers."""
+    words: bool  # whether its cells are words and not numbers
     cells: list[str]
 
 

@@ -18,26 +18,16 @@ class Joint:
     """A joint without misfits."""
 
     name: str
-    plant: Mapping[str, float]
-    """Start values of RealJointPlant that differ from the default values."""
-    lever_arm: float | None
-    """Mean lever arm [m]; None for a joint without a lever arm."""
-    torque: float
-    """Peak of the torque command [N.m]."""
-    deformation: float
-    """Usual peak of the deformation [rad]."""
-    order: int
-    """rls.n and rls.m of the estimator."""
-    range_phi: float
-    """range.phi of the estimator [rad]."""
-    load: float
-    """Constant torque on the link, for conditions with a load [N.m]."""
-    contact: Mapping[str, float]
-    """Start values of RealJointPlant, for conditions with a contact."""
-    kp: float
-    """Gain of a control of the motor position, on the motor axis [N.m/rad]."""
-    kd: float
-    """Velocity gain of this control [N.m.s/rad]."""
+    plant: Mapping[str, float]  # start values of RealJointPlant that differ from the default values
+    lever_arm: float | None  # mean lever arm [m]; None for a joint without a lever arm
+    torque: float  # peak of the torque command [N.m]
+    deformation: float  # usual peak of the deformation [rad]
+    order: int  # rls.n and rls.m of the estimator
+    range_phi: float  # range.phi of the estimator [rad]
+    load: float  # constant torque on the link, for conditions with a load [N.m]
+    contact: Mapping[str, float]  # start values of RealJointPlant, for conditions with a contact
+    kp: float  # gain of a control of the motor position, on the motor axis [N.m/rad]
+    kd: float  # velocity gain of this control [N.m.s/rad]
 
 
 def _elastic(name: str, k: float, counts: float, deformation: float) -> Joint:
@@ -116,14 +106,10 @@ class Drive(Enum):
 class Control:
     """Control of the measured motor position, by the torque that the drive holds."""
 
-    reference: Sines
-    """Wanted position [rad]."""
-    kp: float
-    """Motor torque per position error at the gear output [N.m/rad]."""
-    kd: float
-    """Motor torque per motor velocity at the gear output [N.m.s/rad]."""
-    kq: float = 0.0
-    """Motor torque per link velocity [N.m.s/rad]."""
+    reference: Sines  # wanted position [rad]
+    kp: float  # motor torque per position error at the gear output [N.m/rad]
+    kd: float  # motor torque per motor velocity at the gear output [N.m.s/rad]
+    kq: float = 0.0  # motor torque per link velocity [N.m.s/rad]
 
 
 @dataclass(frozen=True)

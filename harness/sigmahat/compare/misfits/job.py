@@ -36,16 +36,12 @@ class Score:
     """Sums over instants. Error and claim are relative to the true stiffness."""
 
     instants: int = 0
-    error2: float = 0.0
-    """Squares of the error [1]."""
-    claim2: float = 0.0
-    """Squares of sigma_std divided by the true stiffness [1]."""
-    inside: int = 0
-    """Instants with an error of at most 1.96 sigma_std."""
+    error2: float = 0.0  # squares of the error [1]
+    claim2: float = 0.0  # squares of sigma_std divided by the true stiffness [1]
+    inside: int = 0  # instants with an error of at most 1.96 sigma_std
     dangerous_instants: int = 0
     confident_instants: int = 0
-    wrong_instants: int = 0
-    """Instants that are confident, with an error above WRONG."""
+    wrong_instants: int = 0  # instants that are confident, with an error above WRONG
 
     def __add__(self, other: Score) -> Score:
         return Score(
@@ -134,8 +130,7 @@ class Row:
 
     condition: Condition
     joint: Joint
-    score: Score
-    """Score over all instants of all seeds."""
+    score: Score  # score over all instants of all seeds
 
 
 def compare(

@@ -29,11 +29,9 @@ from sigmahat.paper.figures.panels import (
 )
 from sigmahat.plotting.style import BLUE, GREEN, VERMILION, math_axis
 
-_LAST = 1 / 3
-"""Fraction of the run."""
+_LAST = 1 / 3  # fraction of the run
 _DOTS: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": 3}
-_COUNT = 80
-"""Number of dots, small enough that the truth is visible between the dots."""
+_COUNT = 80  # number of dots, small enough that the truth is visible between the dots
 _TIME, _PHI = math_axis("t"), math_axis("phi")
 
 

@@ -28,8 +28,7 @@ _ESTIMATORS: dict[str, dict[str, Any]] = {
     "MODEL": {"color": VERMILION, "linestyle": (0, (1, 1.5))},
     "RESIDUAL-paper-prior": {"color": VERMILION, "linestyle": (0, (5, 2))},
 }
-_ERROR_WINDOW = 0.1
-"""[s]"""
+_ERROR_WINDOW = 0.1  # [s]
 
 
 def time_panels(count: int) -> tuple[Figure, list[Axes]]:
