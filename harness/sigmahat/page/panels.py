@@ -192,9 +192,7 @@ class FindingsPanel:
     def _findings(self, checked: Checked) -> list[UIElement]:
         from sigmahat.checks.text import TITLES, nothing_found, sentence
 
-        rows: list[UIElement] = []
-        if not checked.is_wrong:
-            rows.append(_line(nothing_found(checked), "fine"))
+        rows = [] if checked.is_wrong else [_line(nothing_found(checked), "fine")]
         for severity, title in TITLES.items():
             found = checked.of(severity)
             if found:

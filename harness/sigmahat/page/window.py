@@ -29,12 +29,9 @@ class SavingBar:
     def __init__(self, setup: Setup, estimate: Callable[[], object]) -> None:
         self._setup = setup
         self._estimate = button(
-            "estimate",
-            lambda: setup.write(overwrite=False, then=estimate),
-            "Identify and estimate",
-            button_type="primary",
-            width=220,
-        )
+            "estimate", lambda: setup.write(overwrite=False, then=estimate),
+            "Identify and estimate", button_type="primary", width=220,
+        )  # fmt: skip
         self._write = button("write", lambda: setup.write(overwrite=False), width=180)
         self._overwrite = button(
             "overwrite", lambda: setup.write(overwrite=True), "Overwrite it", width=130
@@ -42,14 +39,9 @@ class SavingBar:
         self._words = words(name="message", min_width="14rem")
         # The button Write keeps its place when other elements appear.
         self.root = Row(
-            self._estimate,
-            self._write,
-            self._overwrite,
-            self._words,
-            name="bar",
-            sizing_mode="stretch_width",
-            styles={"flex-wrap": "wrap-reverse"},
-        )
+            self._estimate, self._write, self._overwrite, self._words,
+            name="bar", sizing_mode="stretch_width", styles={"flex-wrap": "wrap-reverse"},
+        )  # fmt: skip
 
     def show(self) -> None:
         """Updates the buttons and the message."""
@@ -73,8 +65,7 @@ class Window:
         estimate: Callable[[], object],
     ) -> None:
         """ready is called when the browser has drawn the page, estimate by the button."""
-        self._setup, self._document = setup, document
-        self._is_due = False
+        self._setup, self._document, self._is_due = setup, document, False
         self._joint = Choice(
             setup, "joint", "joint", [], current=lambda: setup.joint, chosen=setup.set_joint
         )

@@ -140,7 +140,6 @@ def from_log(folder: Path) -> Contents:
     marks = []
     if "change_age" in signals:  # older versions have no such output
         marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
-    marked = ["Dotted lines: changes of the stiffness, see Samples."] if marks else []
     tables = []
     if answer is not None:
         tables += [curve_table(answer.curve)] if answer.curve.branches else []
@@ -156,7 +155,7 @@ def from_log(folder: Path) -> Contents:
         [
             *_origin(answer, folder),
             f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}",
-            *marked,
+            *(["Dotted lines: changes of the stiffness, see Samples."] if marks else []),
         ],
         tables,
         [

@@ -75,10 +75,6 @@ def _time_range(panels: Sequence[Panel]) -> Range1d:
     return Range1d(float(times[0][0]), float(times[0][-1]))
 
 
-def _x_range(panel: Panel) -> Range1d:
-    return Range1d(*_limits([curve.x for curve in panel.curves], panel.x_log))
-
-
 def _y_limits(panel: Panel) -> tuple[float, float]:
     # Computed here, because Bokeh would build a search tree of every curve.
     values = [curve.y for curve in panel.curves]
@@ -104,6 +100,7 @@ def _limits(values: Sequence[NDArray[Any]], log: bool) -> tuple[float, float]:
 
 
 def _figure(panel: Panel, linked: Range1d) -> figure:
+    xs = [curve.x for curve in panel.curves]
     plot = figure(
         height=_HEIGHT,
         sizing_mode="stretch_width",
@@ -111,7 +108,7 @@ def _figure(panel: Panel, linked: Range1d) -> figure:
         y_axis_label=panel.y_label,
         x_axis_type="log" if panel.x_log else "linear",
         y_axis_type="log" if panel.y_log else "linear",
-        x_range=linked if panel.linked else _x_range(panel),
+        x_range=linked if panel.linked else Range1d(*_limits(xs, panel.x_log)),
         y_range=Range1d(*(panel.y_range or _y_limits(panel))),
         tools=[PanTool(), BoxZoomTool(), WheelZoomTool(), ResetTool(), SaveTool()],
         active_drag="auto",

@@ -13,12 +13,12 @@ from matplotlib.figure import Figure
 from sigmahat.fmi.master import Recording
 from sigmahat.paper.figures import curves
 from sigmahat.paper.figures.panels import (
+    EVERYTHING,
     STIFFNESS,
     TORQUE,
     TRUE,
     Array,
     error_lines,
-    everything,
     first_reversal,
     legend_above,
     limit,
@@ -50,7 +50,7 @@ def _signals(t: Array, signals: Sequence[tuple[Array, Mapping[str, Any]]], label
 def _whole_and_part(t: Array, draw: Draw, part: slice, title: str) -> tuple[Figure, list[Axes]]:
     """A panel with all samples, and a panel with a part of them, which has the title."""
     figure, panels = time_panels(2)
-    draw(panels[0], everything(t))
+    draw(panels[0], EVERYTHING)
     draw(panels[1], part)
     panels[1].set_title(title, fontsize=9)
     return figure, panels
@@ -215,7 +215,7 @@ def experiment(recording: Recording) -> Figure:
     draw(panels[2], part)
     panels[2].set_title(_MOST_WRONG, fontsize=9)
     legend_above(panels[2])
-    _nominal_stiffness(recording, panels[3], everything(recording.t))
+    _nominal_stiffness(recording, panels[3], EVERYTHING)
     panels[3].legend(ncols=5)
     error_lines(panels[4], recording)
     return figure
@@ -224,7 +224,7 @@ def experiment(recording: Recording) -> Figure:
 def summary(recording: Recording) -> Figure:
     """Stiffness, true and estimated, and the relative error of each estimate."""
     figure, (above, below) = time_panels(2)
-    stiffness_lines(recording, above, everything(recording.t))
+    stiffness_lines(recording, above, EVERYTHING)
     above.legend(ncols=2)
     error_lines(below, recording)
     return figure

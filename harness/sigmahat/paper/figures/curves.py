@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from sigmahat.fmi.master import Recording
 from sigmahat.paper.figures.panels import (
+    EVERYTHING,
     STIFFNESS,
     TORQUE,
     TRUE,
@@ -21,7 +22,6 @@ from sigmahat.paper.figures.panels import (
     error_line,
     error_lines,
     estimator_styles,
-    everything,
     legend_above,
     limit,
     line,
@@ -39,7 +39,7 @@ def transmission(recording: Recording) -> Figure:
     """One flexible transmission: stiffness over time, the curves, and the relative errors."""
     figure = Figure(figsize=(7.2, 8.7), layout="constrained")
     axes = figure.subplot_mosaic([["time", "time"], ["torque", "stiffness"], ["errors", "errors"]])
-    stiffness_lines(recording, axes["time"], everything(recording.t), thin=True)
+    stiffness_lines(recording, axes["time"], EVERYTHING, thin=True)
     axes["time"].legend(ncols=3)
     styles = {name: str(style["color"]) for name, style in estimator_styles(recording)}
     for panel, output in (("torque", "tau_e"), ("stiffness", "sigma")):
