@@ -78,11 +78,15 @@ def table(rows: Sequence[Row]) -> str:
                 *("-" if math.isnan(value) else f"{value:.4g}" for value in motor),
             ]
         )
-    head, *lines = aligned(cells)
-    text, above = [head], ""
-    for row, line in zip(rows, lines, strict=True):
-        if group(row) != above:
-            text += ["", above := group(row)]
+    return with_headings(aligned(cells), list(map(group, rows)))
+
+
+def with_headings(lines: Sequence[str], headings: Sequence[str]) -> str:
+    """The first line, then the other lines, each group of them below its heading."""
+    text, above = [lines[0]], ""
+    for line, heading in zip(lines[1:], headings, strict=True):
+        if heading != above:
+            text += ["", above := heading]
         text.append(line)
     return "\n".join(text)
 
