@@ -107,7 +107,8 @@ def compare(
     """
     runs = [(i, seed) for i in range(len(joints)) for seed in seeds]
     # Longest runs first, so that no process waits for another process at the end.
-    runs.sort(key=lambda run: -_effort(joints[run[0]].scenario))
+    efforts = [each.scenario.duration * len(each.scenario.estimators) for each in joints]
+    runs.sort(key=lambda run: -efforts[run[0]])
     jobs = [partial(measured, joints[i].scenario, seed, performances) for i, seed in runs]
     results = dict(zip(runs, run_all(jobs, processes, progress), strict=True))
     rows = []
@@ -122,7 +123,3 @@ def compare(
                 fields = joint.scenario.tables[0]
                 rows += [Row(joint, case, part, INDICES[field], found) for field in fields]
     return rows
-
-
-def _effort(scenario: Scenario) -> float:
-    return scenario.duration * len(scenario.estimators)

@@ -71,24 +71,15 @@ class Setup:
         """Whether the page asks before it overwrites the file."""
         self._asked = 0.0
         self._then: Callable[[], object] | None = None
-        self._shown: set[Callable[[], object]] = set()
+        self.windows: set[Callable[[], object]] = set()
+        """Functions that are called after every change."""
         self._chosen: Chosen = lambda names: {}
         self.joints: dict[str, tomlkit.TOMLDocument] = {}
         """The configurations of the joints by name; empty until they are known."""
 
-    # Windows
-
-    def subscribe(self, show: Callable[[], object]) -> None:
-        """Calls show after every change, until it is unsubscribed."""
-        self._shown.add(show)
-
-    def unsubscribe(self, show: Callable[[], object]) -> None:
-        """Does not call show any more."""
-        self._shown.discard(show)
-
     def show(self) -> None:
         """Updates all windows."""
-        for each in list(self._shown):
+        for each in list(self.windows):
             each()
 
     # The configuration

@@ -87,8 +87,8 @@ class Window:
         document.title = f"sigmahat: {setup.log.path.name}"
         self._show()
         document.on_event(DocumentReady, lambda _: ready())
-        setup.subscribe(self._later)
-        document.on_session_destroyed(lambda _: setup.unsubscribe(self._later))
+        setup.windows.add(self._later)
+        document.on_session_destroyed(lambda _: setup.windows.discard(self._later))
 
     def _later(self) -> None:
         """Shows the setup as soon as the document may be changed; once for many changes."""

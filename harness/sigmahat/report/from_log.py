@@ -241,8 +241,9 @@ def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
     rows = []
     for name in signals:
         if name not in _OF_THE_METHOD:
-            values = signals[name]
-            cells = [values[-1], *_range_and_rms(values[late])]
+            values, own = signals[name], signals[name][late]
+            range_and_rms = [own.min(), own.max(), np.sqrt(np.mean(own**2))] if len(own) else []
+            cells = [values[-1], *(range_and_rms or [np.nan] * 3)]
             title = plain_title(name, signals.units[name])
             rows.append([title, *(number(float(cell)) for cell in cells)])
     return TextTable(
@@ -266,12 +267,6 @@ def _doubts(doubts: Counter[str]) -> TextTable:
         [True, False],
         note="* in the second half; None: it was confident",
     )
-
-
-def _range_and_rms(values: NDArray[Any]) -> list[float]:
-    if not len(values):
-        return [np.nan] * 3
-    return [values.min(), values.max(), float(np.sqrt(np.mean(values**2)))]
 
 
 _WORDS = {

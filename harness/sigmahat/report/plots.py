@@ -46,7 +46,9 @@ def plots(
 ) -> list[Plot]:
     """The plots of panels; linked plots have `every` shaded, and dotted lines at `marks`."""
     sources: dict[int, ColumnDataSource] = {}
-    linked = _time_range(panels)
+    times = [curve.x for panel in panels if panel.linked for curve in panel.curves]
+    # One object for all linked panels: they zoom together.
+    linked = Range1d(float(times[0][0]), float(times[0][-1])) if times else Range1d()
     made = []
     for i, panel in enumerate(panels):
         plot = _figure(panel, linked)
@@ -65,14 +67,6 @@ def plots(
             switches.append((curve, name))
         made.append(Plot(panel, plot, switches))
     return made
-
-
-def _time_range(panels: Sequence[Panel]) -> Range1d:
-    """One object for all linked panels: they zoom together."""
-    times = [curve.x for panel in panels if panel.linked for curve in panel.curves]
-    if not times:
-        return Range1d()
-    return Range1d(float(times[0][0]), float(times[0][-1]))
 
 
 def _y_limits(panel: Panel) -> tuple[float, float]:
