@@ -55,14 +55,11 @@ def _plot(axes: Axes, curve: Sequence[Row], method: str, marker: str) -> list[Li
     first = curve[0]
     condition = "Coulomb friction" if first.joint.coulomb else lever_arm(first.joint)
     return axes.plot(
-        [row.joint.frequency or 0.0 for row in curve],
-        [row.error(method) for row in curve],
-        color=_COLORS[method],
-        marker=marker,
-        markersize=4,
+        [row.joint.frequency or 0.0 for row in curve], [row.error(method) for row in curve],
+        color=_COLORS[method], marker=marker, markersize=4,
         linestyle="-" if first.case.motor_errors == {"D_theta": 0.1} else "--",
         label=f"{method}: {condition}, {case(first.case)}",
-    )
+    )  # fmt: skip
 
 
 def _title(row: Row) -> str:

@@ -52,6 +52,7 @@ def all_misfits(experiment: Experiment) -> Experiment:
     def uniform(most: float) -> float:
         return float(rng.uniform(0.0, most))
 
+    # The order is that of the random numbers.
     plant = {
         "sensor.tau_gain": 1 + normal(0.02),
         "sensor.tau_bias": normal(0.01) * joint.torque,

@@ -35,52 +35,25 @@ def _elastic(name: str, k: float, counts: float, deformation: float) -> Joint:
     return Joint(
         name=name,
         plant={
-            "motor.B": 1e-4,
-            "motor.D_theta": 5e-4,
-            "motor.gamma": 100.0,
-            "motor.tau_coulomb": 0.03,
-            "link.M": 0.5,
-            "link.D_q": 0.1,
-            "spring.k_1": k,
-            "encoder.theta": counts,
-            "encoder.q": counts,
+            "motor.B": 1e-4, "motor.D_theta": 5e-4, "motor.gamma": 100.0, "motor.tau_coulomb": 0.03,
+            "link.M": 0.5, "link.D_q": 0.1, "spring.k_1": k,
+            "encoder.theta": counts, "encoder.q": counts,
         },
-        lever_arm=None,
-        torque=0.35,
-        deformation=deformation,
-        order=1,
-        range_phi=2.5 * deformation,
-        load=-10.0,
-        contact={"contact.k": 3000.0, "contact.d": 20.0},
-        kp=15.0,
-        kd=0.4,
-    )
+        lever_arm=None, torque=0.35, deformation=deformation, order=1, range_phi=2.5 * deformation,
+        load=-10.0, contact={"contact.k": 3000.0, "contact.d": 20.0}, kp=15.0, kd=0.4,
+    )  # fmt: skip
 
 
 AWAS = Joint(
     name="AwAS",
     plant={
-        "motor.B": 2.3e-5,
-        "motor.D_theta": 1e-3,
-        "motor.gamma": 50.0,
-        "motor.tau_coulomb": 0.02,
-        "link.M": 0.1,
-        "link.D_q": 0.15,
-        "spring.k_1": 0.0,
-        "spring.k_s": 14220.0,
-        "encoder.theta": 40000.0,
-        "encoder.q": 40000.0,
+        "motor.B": 2.3e-5, "motor.D_theta": 1e-3, "motor.gamma": 50.0, "motor.tau_coulomb": 0.02,
+        "link.M": 0.1, "link.D_q": 0.15, "spring.k_1": 0.0, "spring.k_s": 14220.0,
+        "encoder.theta": 40000.0, "encoder.q": 40000.0,
     },
-    lever_arm=0.07,
-    torque=0.4,
-    deformation=0.05,
-    order=3,
-    range_phi=0.3,
-    load=-8.0,
-    contact={"contact.k": 200.0, "contact.d": 1.0},
-    kp=2.0,
-    kd=0.03,
-)
+    lever_arm=0.07, torque=0.4, deformation=0.05, order=3, range_phi=0.3,
+    load=-8.0, contact={"contact.k": 200.0, "contact.d": 1.0}, kp=2.0, kd=0.03,
+)  # fmt: skip
 SEA_1K = _elastic("SEA1k", 1000.0, 40000.0, 0.012)
 SEA_5K = _elastic("SEA5k", 5000.0, 262144.0, 0.0024)
 
