@@ -36,12 +36,12 @@ class Score:
     """Sums over instants. Error and claim are relative to the true stiffness."""
 
     instants: int = 0
-    error2: float = 0.0  # squares of the error [1]
-    claim2: float = 0.0  # squares of sigma_std divided by the true stiffness [1]
-    inside: int = 0  # instants with an error of at most 1.96 sigma_std
-    dangerous_instants: int = 0
-    confident_instants: int = 0
-    wrong_instants: int = 0  # instants that are confident, with an error above WRONG
+    error: float = 0.0  # squares of the error [1]
+    claim: float = 0.0  # squares of sigma_std divided by the true stiffness [1]
+    coverage: int = 0  # instants with an error of at most 1.96 sigma_std
+    dangerous: int = 0  # instants
+    confident: int = 0  # instants
+    wrong: int = 0  # instants that are confident, with an error above WRONG
 
     def __add__(self, other: Score) -> Score:
         return Score(
@@ -53,16 +53,10 @@ class Score:
         """Root mean squares of error and claim; percentages of instants that have the truth within
         1.96 sigma_std, are dangerous, confident, confident and wrong [%]; nan without instants.
         """
-        count = self.instants or math.nan
-        squares = {"error": self.error2, "claim": self.claim2}
-        counts = {
-            "coverage": self.inside,
-            "dangerous": self.dangerous_instants,
-            "confident": self.confident_instants,
-            "wrong": self.wrong_instants,
-        }
-        roots = {name: 100 * math.sqrt(total / count) for name, total in squares.items()}
-        return roots | {name: 100 * (total / count) for name, total in counts.items()}
+        found = {name: total / (self.instants or math.nan) for name, total in vars(self).items()}
+        del found["instants"]
+        found |= {name: math.sqrt(found[name]) for name in ("error", "claim")}
+        return {name: 100 * value for name, value in found.items()}
 
 
 def score(
@@ -82,12 +76,12 @@ def score(
     dangerous = (error > DANGEROUS_ERROR) & (sigma_std < DANGEROUS_CLAIM * np.abs(sigma))
     return Score(
         instants=len(true),
-        error2=float(np.sum(np.minimum(error, _LARGEST) ** 2)),
-        claim2=float(np.sum(np.minimum(claim, _LARGEST) ** 2)),
-        inside=int(np.sum(np.abs(sigma - true) <= 1.96 * sigma_std)),
-        dangerous_instants=int(np.sum(dangerous)),
-        confident_instants=int(np.sum(confident)),
-        wrong_instants=int(np.sum(confident & (error > WRONG))),
+        error=float(np.sum(np.minimum(error, _LARGEST) ** 2)),
+        claim=float(np.sum(np.minimum(claim, _LARGEST) ** 2)),
+        coverage=int(np.sum(np.abs(sigma - true) <= 1.96 * sigma_std)),
+        dangerous=int(np.sum(dangerous)),
+        confident=int(np.sum(confident)),
+        wrong=int(np.sum(confident & (error > WRONG))),
     )
 
 
