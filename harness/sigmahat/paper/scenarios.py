@@ -33,8 +33,6 @@ _AWAS_OUTPUTS = (
     "q_measured", "theta_measured", "theta_c_measured", "tau_measured", "tau_e_measured",
     "theta_dot", "phi", "r", "tau_e", "sigma",
 )  # fmt: skip
-
-
 _FIGURES_3_TO_8 = (
     "fig3-deformation", "fig4-velocity", "fig5-flexibility-torque", "fig6-stiffness",
     "fig7-stability-factor", "fig8-constant-factors", "summary",
@@ -63,18 +61,17 @@ def lever_arm(plant: Plant) -> float:
     return R_0 - _B * float(plant.start["initial.theta_c"])
 
 
+def _measured(*names: str) -> dict[str, str]:
+    """Connections of inputs to the measured outputs of a plant."""
+    return {name: f"{name}_measured" for name in names}
+
+
 def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> EstimatorFmu:
     """The estimator of the AwAS, with the given start values, else the values of the FMU."""
     return EstimatorFmu(
         fmu="StiffnessEstimator",
         start={"samplePeriod": T, **start},
-        connections={
-            "theta": "theta_measured",
-            "q": "q_measured",
-            "theta_c": "theta_c_measured",
-            "tau": "tau_measured",
-            "tau_e_sensor": sensor,
-        },
+        connections={**_measured("theta", "q", "theta_c", "tau"), "tau_e_sensor": sensor},
         record=OUTPUTS,
     )
 
@@ -93,21 +90,12 @@ def _modalities(start: Mapping[str, Value]) -> dict[str, EstimatorFmu]:
     }
 
 
-def _constant_factors(start: Mapping[str, Value]) -> dict[str, EstimatorFmu]:
-    """RESIDUAL with constant stability factors, one too small and one too large, for figure 8."""
-    return {
-        f"RESIDUAL, a = {a:g}": estimator(
-            {"modality": "Residual", "rls.kind": "ConstantFactor", "rls.a": a, **start}
-        )
-        for a in (1e-4, 1e-2)
-    }
-
-
 def simulation(
     name: str, description: str, duration: float, retraction: float, start: Mapping[str, Value]
 ) -> Scenario:
     """Section VI.B."""
     estimators = _modalities(start)
+    constant = {"modality": "Residual", "rls.kind": "ConstantFactor", **start}
     return Scenario(
         name=name,
         description=description,
@@ -116,7 +104,10 @@ def simulation(
         estimators=estimators,
         comparisons=against_the_plant(estimators),
         figures=_FIGURES_3_TO_8,
-        variants=_constant_factors(start),
+        # Constant stability factors, one too small and one too large, for figure 8.
+        variants={
+            f"RESIDUAL, a = {a:g}": estimator({**constant, "rls.a": a}) for a in (1e-4, 1e-2)
+        },
         paper={"MODEL": (24.1365, 0.12), "SENSOR": (24.3630, 0.12), "RESIDUAL": (128.1614, 0.58)},
     )
 
@@ -186,7 +177,7 @@ def single(k_3: float, frequency: float) -> Scenario:
             modality: EstimatorFmu(
                 fmu="StiffnessEstimator",
                 start={"samplePeriod": T, "modality": "Residual", **values},
-                connections={"theta": "theta_measured", "q": "q_measured", "tau": "tau_measured"},
+                connections=_measured("theta", "q", "tau"),
                 record=OUTPUTS,
             )
             for modality, values in estimators.items()
