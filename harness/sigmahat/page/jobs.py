@@ -17,8 +17,6 @@ from sigmahat.fmi.opened import installed
 from sigmahat.guessing import template
 from sigmahat.guessing.columns import read_columns
 from sigmahat.guessing.guess import guess_chosen, guess_of
-from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve import Answer
 from sigmahat.logs.job import Replay
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.page.setup import Chosen, Look, Setup
@@ -64,22 +62,6 @@ def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
     motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
     templates = {name: template.write(log, {name: joint}, motor) for name, joint in joints.items()}
     return templates, partial(guess_chosen, columns)
-
-
-def replayed(
-    log: Log, configuration: Configuration, progress: Callable[[int], object] = lambda _: None
-) -> Answer:
-    """Replays a log as `estimate` does, and writes nothing.
-
-    Now and then progress is called with the thousandths of the log done since the last call; an
-    exception in progress ends the replay.
-
-    Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
-    """
-    with Slave(installed("StiffnessEstimator"), "estimator") as slave:
-        replay = Replay(slave, log, configuration)
-        replay.run(progress=progress)
-        return replay.answer()
 
 
 _REFUSED = (LogError, FmuError, OSError, ValueError)
@@ -178,7 +160,10 @@ class Jobs:
             checked = check(log, configuration)
             busy = "The curve ..."
             self._later(partial(self._show, version, checked=checked, problem="", busy=busy))
-            found = replayed(log, configuration, progress)
+            with Slave(installed("StiffnessEstimator"), "estimator") as slave:
+                replay = Replay(slave, log, configuration)
+                replay.run(progress=progress)  # an exception in progress ends it
+                found = replay.answer()
         except _OutdatedError:
             return
         except _REFUSED as error:
