@@ -57,7 +57,8 @@ class FmuVariables(SphinxDirective):
         anchor = nodes.make_id(name)
         self.env.domains.standard_domain.note_object(OBJECT, name, anchor)
         title = nodes.paragraph("", "", nodes.literal("", row["name"]), ids=[anchor])
-        description: list[nodes.Node] = [nodes.paragraph("", row["description"] + _tunable(row))]
+        tunable = " (tunable)" if row["variability"] == "tunable" else ""
+        description: list[nodes.Node] = [nodes.paragraph("", row["description"] + tunable)]
         if row["choices"]:
             description.append(nodes.bullet_list("", *map(_choice, row["choices"])))
         values = (nodes.paragraph("", row[column]) for column in ("unit", "start", "range"))
@@ -81,13 +82,9 @@ def _prefix(row: Row) -> str:
 
 def _array(name: str, elements: list[Row]) -> Row:
     """One row for all elements, with the description of the first."""
-    first, last = elements[0]["name"], elements[-1]["name"]
-    text = f"{len(elements)} elements, {first} to {last}. The first: {elements[0]['description']}"
-    return {**elements[0], "name": name, "description": text}
-
-
-def _tunable(row: Row) -> str:
-    return " (tunable)" if row["variability"] == "tunable" else ""
+    first, last = elements[0], elements[-1]["name"]
+    text = f"{len(elements)} elements, {first['name']} to {last}. The first: {first['description']}"
+    return {**first, "name": name, "description": text}
 
 
 def _choice(item: Mapping[str, str]) -> nodes.list_item:

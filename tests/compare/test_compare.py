@@ -14,13 +14,13 @@ import pytest
 
 from misfit_priors import WITHOUT_MISFITS
 from sigmahat.cli import main
-from sigmahat.compare import conditions, labels
+from sigmahat.compare import conditions
+from sigmahat.compare import table as labels
 from sigmahat.compare.conditions import JOINTS, METHODS, REGRESSION, Joint
-from sigmahat.compare.job import Row, compare
-from sigmahat.compare.performance import performances
+from sigmahat.compare.job import Row, compare, performances
 from sigmahat.compare.table import table
 from sigmahat.fmi.instance import Value
-from sigmahat.paper.awas import against_the_plant, awas, estimator
+from sigmahat.paper.scenarios import against_the_plant, awas, estimator
 from sigmahat.runs.engine import measured, run_all
 from sigmahat.runs.metrics import mean_interval
 from sigmahat.runs.scenario import Scenario, Sine

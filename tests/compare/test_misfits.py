@@ -16,10 +16,8 @@ from sigmahat.compare.misfits.conditions import (
     Condition,
     Group,
 )
-from sigmahat.compare.misfits.experiment import Experiment, draw
-from sigmahat.compare.misfits.job import compare, pairs, settings
-from sigmahat.compare.misfits.joints import AWAS, JOINTS, SEA_1K, Joint
-from sigmahat.compare.misfits.score import Score, score
+from sigmahat.compare.misfits.experiment import AWAS, JOINTS, SEA_1K, Experiment, Joint, draw
+from sigmahat.compare.misfits.job import Score, compare, pairs, score, settings
 from sigmahat.runs.scenario import Sine, Sines
 
 EXACT: Mapping[str, float] = {**QUIET, "encoder.theta": 0.0, "encoder.q": 0.0}

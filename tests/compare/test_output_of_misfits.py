@@ -14,8 +14,8 @@ from PIL import Image
 from sigmahat.cli import main
 from sigmahat.compare.misfits import conditions
 from sigmahat.compare.misfits.conditions import CONDITIONS
+from sigmahat.compare.misfits.experiment import AWAS, JOINTS
 from sigmahat.compare.misfits.job import Row, compare
-from sigmahat.compare.misfits.joints import AWAS, JOINTS
 from sigmahat.compare.misfits.table import FIGURES, IN_FILE, table
 
 NAMES = ("none", "uneven Coulomb friction 20 %", "n = 1, too small")

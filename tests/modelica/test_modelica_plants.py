@@ -17,8 +17,7 @@ from modelica_package import NO_NOISE, REPOSITORY, compiled, modification
 from sigmahat.export.templates import render, variables
 from sigmahat.fmi.master import Plant, simulate
 from sigmahat.fmi.series import Series
-from sigmahat.paper.awas import SECTION_VI_B
-from sigmahat.paper.scenarios import scenario
+from sigmahat.paper.scenarios import SECTION_VI_B, scenario
 from sigmahat.runs.scenario import Sine, T
 
 AGREEMENT = 1e-6

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from recordings import one_seed
-from sigmahat.paper.result_files import conditions, table, write_series, write_table
+from sigmahat.paper.reproduction import conditions, table, write_series, write_table
 from sigmahat.runs.metrics import Indices
 
 ROWS = ["MODEL", "SENSOR", "RESIDUAL", "MODEL-measured"]

@@ -99,7 +99,7 @@ def _estimated(
     from sigmahat.checks.text import rows
     from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.readers.formats import open_log
-    from sigmahat.report.estimated import estimated
+    from sigmahat.report.from_log import estimated
 
     opened = open_log(log)
     configuration = read_configuration(config, joint)

@@ -47,8 +47,14 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
     Example: sigmahat reproduce --scenario as-printed --seeds 20 --out as-printed
     """
     from sigmahat.files.output import output_folder
-    from sigmahat.paper.reproduction import progress_length, reproduce
-    from sigmahat.paper.result_files import as_dict, conditions, table, write_results
+    from sigmahat.paper.reproduction import (
+        as_dict,
+        conditions,
+        progress_length,
+        reproduce,
+        table,
+        write_results,
+    )
     from sigmahat.runs.metrics import MSREP_IN_WORDS
 
     chosen = common.ready_scenario(name)
@@ -115,8 +121,7 @@ def compare(misfits: bool, seeds: int, jobs: int | None, out: Path) -> None:
 def _methods(seeds: int, jobs: int | None, out: Path) -> None:
     """Compares both methods on joints with wrong motor data."""
     from sigmahat.compare.conditions import JOINTS, TRUE
-    from sigmahat.compare.job import compare
-    from sigmahat.compare.performance import CALIBRATED
+    from sigmahat.compare.job import CALIBRATED, compare
     from sigmahat.compare.table import as_dicts, table, write
     from sigmahat.files.output import output_folder
     from sigmahat.runs.metrics import MSREP_IN_WORDS
@@ -147,10 +152,9 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
 def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
     """FilteredRegression on the catalogue of misfits."""
     from sigmahat.compare.misfits.conditions import CONDITIONS
-    from sigmahat.compare.misfits.job import ESTIMATOR, compare, pairs
-    from sigmahat.compare.misfits.joints import JOINTS
+    from sigmahat.compare.misfits.experiment import JOINTS
+    from sigmahat.compare.misfits.job import ESTIMATOR, SETTLED, compare, pairs
     from sigmahat.compare.misfits.motion import PLANT
-    from sigmahat.compare.misfits.score import SETTLED
     from sigmahat.compare.misfits.table import as_dicts, table, write
     from sigmahat.files.output import output_folder
 

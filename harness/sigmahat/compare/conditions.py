@@ -11,8 +11,7 @@ from dataclasses import dataclass, field, replace
 
 from sigmahat.fmi.instance import Value
 from sigmahat.fmi.master import EstimatorFmu
-from sigmahat.paper.awas import awas, lever_arm
-from sigmahat.paper.scenarios import SCENARIOS
+from sigmahat.paper.scenarios import SCENARIOS, awas, lever_arm
 from sigmahat.runs.scenario import Comparison, Scenario, Sine
 
 PAPER2011, REGRESSION = METHODS = ("Paper2011", "FilteredRegression")
@@ -45,7 +44,7 @@ class Joint:
     @property
     def parts(self) -> Sequence[str]:
         """Suffixes of the FMU variables of all stiffnesses that are judged: "", "_1", "_2"."""
-        return parts_of(self.scenario)
+        return ("", "_1", "_2") if self.scenario.plant.fmu == "AntagonisticVsaPlant" else ("",)
 
     @property
     def lever_arm(self) -> float | None:
@@ -66,21 +65,12 @@ class Joint:
         return float(self.scenario.plant.start.get("motor.tau_coulomb", 0.0))
 
 
-def parts_of(scenario: Scenario) -> Sequence[str]:
-    """Suffixes of the stiffnesses: of the device and, with two sides, of each side."""
-    return ("", "_1", "_2") if scenario.plant.fmu == "AntagonisticVsaPlant" else ("",)
-
-
 def comparison_name(case: int, method: str, part: str) -> str:
-    """Name of a comparison in the scenario of a joint: the signal of its estimate.
+    """Name of a comparison in the scenario of a joint, and the signal of its estimate.
 
     case  place in Joint.cases
     """
-    return f"{_estimator_name(case, method)}.sigma{part}"
-
-
-def _estimator_name(case: int, method: str) -> str:
-    return f"{method}-{case + 1}"
+    return f"{method}-{case + 1}.sigma{part}"
 
 
 _STIFFNESS = ("sigma", "sigma_std")
@@ -118,12 +108,12 @@ def _methods(base: EstimatorFmu, case: Case, parts: Sequence[str]) -> dict[str, 
 
 def _joint(scenario: Scenario, cases: Sequence[Case], *judged: str) -> Joint:
     """The plant of a scenario, with an estimator for each case and method."""
-    parts, base = parts_of(scenario), scenario.estimators["RESIDUAL"]
+    parts, base = Joint(scenario, cases).parts, scenario.estimators["RESIDUAL"]
     compared = replace(
         scenario,
         estimators={
-            _estimator_name(i, method): each
-            for i, case in enumerate(cases)
+            f"{method}-{i}": each
+            for i, case in enumerate(cases, 1)
             for method, each in _methods(base, case, parts).items()
         },
         comparisons=[

@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from sigmahat.compare import labels
 from sigmahat.compare.conditions import METHODS, PAPER2011, REGRESSION
 from sigmahat.compare.job import Row
+from sigmahat.compare.table import case, lever_arm
 from sigmahat.plotting.style import BLUE, VERMILION
 
 _COLORS = {PAPER2011: VERMILION, REGRESSION: BLUE}
@@ -53,16 +53,13 @@ def curves_over_frequency(rows: Sequence[Row]) -> list[list[Row]]:
 
 def _plot(axes: Axes, curve: Sequence[Row], method: str, marker: str) -> list[Line2D]:
     first = curve[0]
-    condition = "Coulomb friction" if first.joint.coulomb else labels.lever_arm(first.joint)
+    condition = "Coulomb friction" if first.joint.coulomb else lever_arm(first.joint)
     return axes.plot(
-        [row.joint.frequency or 0.0 for row in curve],
-        [row.error(method) for row in curve],
-        color=_COLORS[method],
-        marker=marker,
-        markersize=4,
+        [row.joint.frequency or 0.0 for row in curve], [row.error(method) for row in curve],
+        color=_COLORS[method], marker=marker, markersize=4,
         linestyle="-" if first.case.motor_errors == {"D_theta": 0.1} else "--",
-        label=f"{method}: {condition}, {labels.case(first.case)}",
-    )
+        label=f"{method}: {condition}, {case(first.case)}",
+    )  # fmt: skip
 
 
 def _title(row: Row) -> str:
@@ -70,4 +67,4 @@ def _title(row: Row) -> str:
     if not row.joint.coulomb:
         return f"all {row.joint.scenario.duration:g} s"
     friction = rf"Coulomb friction {row.joint.coulomb:g} N$\cdot$m"
-    return f"{friction}, {labels.lever_arm(row.joint)}, after {row.judged_from:g} s"
+    return f"{friction}, {lever_arm(row.joint)}, after {row.judged_from:g} s"

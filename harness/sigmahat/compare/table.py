@@ -1,4 +1,4 @@
-"""The table of `sigmahat compare`: printed, as a CSV file, and for JSON."""
+"""The table of `sigmahat compare` (printed, as a file, for JSON), and its conditions in words."""
 
 from __future__ import annotations
 
@@ -7,11 +7,54 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from sigmahat.compare import labels
-from sigmahat.compare.conditions import METHODS, REGRESSION
+from sigmahat.compare.conditions import METHODS, REGRESSION, Case, Joint
 from sigmahat.compare.job import Row
-from sigmahat.compare.performance import Performance
 from sigmahat.files.tables import aligned, write_csv
+
+_SIDES = {"": "device", "_1": "side 1", "_2": "side 2"}
+_IN_FILE = {
+    "msrep": "MSREP [%]",
+    "sigma_std": "sigma_std [%]",
+    "inside": "within 1.96 sigma_std [%]",
+    "D_theta": "D_theta_hat [N.m.s/rad]",
+    "B": "B_hat [kg.m2]",
+    "tau_coulomb": "tau_coulomb_hat [N.m]",
+}
+"""Titles of the numbers of a row in the file, by their names in JSON."""
+
+
+def group(row: Row) -> str:
+    """The heading that a row stands under."""
+    if not row.case.motor_errors:
+        return "motor data exact, and known to be"
+    if row.joint.lever_arm is None:
+        return "antagonistic pair" if len(row.joint.parts) > 1 else "single transmission"
+    friction = f", Coulomb friction {row.joint.coulomb:g} N.m" if row.joint.coulomb else ""
+    return f"{lever_arm(row.joint)}{friction}"
+
+
+def lever_arm(joint: Joint) -> str:
+    """The lever arm of an AwAS, as text."""
+    return f"r(0) = {1e3 * (joint.lever_arm or 0.0):g} mm"
+
+
+def motion(joint: Joint) -> str:
+    """The scenario of the paper, or the frequency."""
+    return joint.scenario.name if joint.frequency is None else f"{joint.frequency:g} Hz"
+
+
+def case(given: Case) -> str:
+    """The errors of the data given to the estimators."""
+    errors = [f"{name} {100 * error:+.0f} %" for name, error in given.motor_errors.items()]
+    if given.nominal_error is not None:
+        errors.append(f"nominal curve {100 * given.nominal_error:+.0f} %")
+    return ", ".join(errors) or "stiffness unknown"
+
+
+def case_and_part(row: Row) -> str:
+    """The case and, for a device with several stiffnesses, the stiffness."""
+    words = case(row.case)
+    return f"{words}, {_SIDES[row.part]}" if len(row.joint.parts) > 1 else words
 
 
 def table(rows: Sequence[Row]) -> str:
@@ -20,55 +63,37 @@ def table(rows: Sequence[Row]) -> str:
     For FilteredRegression alone: sigma_std, the percentage of instants with an error of at most
     1.96 sigma_std, and the motor data at the end.
     """
-    cells = [
-        [
-            "",
-            *(f"{method} [%]" for method in METHODS),
-            "sigma_std [%]",
-            "within [%]",
-            "D_theta_hat",
-            "B_hat",
-            "tau_coulomb_hat",
-        ]
-    ]
+    found = ("sigma_std [%]", "within [%]", "D_theta_hat", "B_hat", "tau_coulomb_hat")
+    cells = [["", *(f"{method} [%]" for method in METHODS), *found]]
     for row in rows:
         regression = row.performance[REGRESSION]
         motor = (regression.D_theta, regression.B, regression.tau_coulomb)
         after = f", after {row.judged_from:g} s" if row.index.settled else ""
         cells.append(
             [
-                f"  {labels.motion(row.joint)}, {labels.case_and_part(row)}{after}",
+                f"  {motion(row.joint)}, {case_and_part(row)}{after}",
                 *(f"{row.error(method):.3g}" for method in METHODS),
                 f"{regression.sigma_std:.2f}",
                 f"{regression.inside:.0f}",
                 *("-" if math.isnan(value) else f"{value:.4g}" for value in motor),
             ]
         )
-    head, *lines = aligned(cells)
-    text, above = [head], ""
-    for row, line in zip(rows, lines, strict=True):
-        if labels.group(row) != above:
-            text += ["", above := labels.group(row)]
+    return with_headings(aligned(cells), list(map(group, rows)))
+
+
+def with_headings(lines: Sequence[str], headings: Sequence[str]) -> str:
+    """The first line, then the other lines, each group of them below its heading."""
+    text, above = [lines[0]], ""
+    for line, heading in zip(lines[1:], headings, strict=True):
+        if heading != above:
+            text += ["", above := heading]
         text.append(line)
     return "\n".join(text)
 
 
 def write(rows: Sequence[Row], seeds: int, path: Path) -> None:
     """Writes a line for every row and method, numbers with all digits."""
-    head = [
-        "group",
-        "joint",
-        "case",
-        "method",
-        "seeds",
-        "judged from [s]",
-        "MSREP [%]",
-        "sigma_std [%]",
-        "within 1.96 sigma_std [%]",
-        "D_theta_hat [N.m.s/rad]",
-        "B_hat [kg.m2]",
-        "tau_coulomb_hat [N.m]",
-    ]
+    head = ["group", "joint", "case", "method", "seeds", "judged from [s]", *_IN_FILE.values()]
     lines = [
         [*_words(row), method, seeds, row.judged_from]
         + [None if math.isnan(value) else value for value in _figures(row, method).values()]
@@ -91,17 +116,10 @@ def as_dicts(rows: Sequence[Row]) -> list[dict[str, Any]]:
 
 
 def _words(row: Row) -> tuple[str, str, str]:
-    return labels.group(row), labels.motion(row.joint), labels.case_and_part(row)
+    return group(row), motion(row.joint), case_and_part(row)
 
 
 def _figures(row: Row, method: str) -> dict[str, float]:
     """The numbers of a row for a method, by their names in JSON."""
-    own: Performance = row.performance[method]
-    return {
-        "msrep": row.error(method),
-        "sigma_std": own.sigma_std,
-        "inside": own.inside,
-        "D_theta": own.D_theta,
-        "B": own.B,
-        "tau_coulomb": own.tau_coulomb,
-    }
+    found = {"msrep": row.error(method), **vars(row.performance[method])}
+    return {name: found[name] for name in _IN_FILE}

@@ -43,12 +43,9 @@ class NumberField:
 
     key: str
     title: str
-    default: str = ""
-    """Text for the value that holds without the key."""
-    units: Sequence[str] = ()
-    """Units of the column with which the field is shown; empty: all units."""
-    ports: Sequence[str] = ()
-    """Ports at which the field is shown; empty: all ports."""
+    default: str = ""  # text for the value that holds without the key
+    units: Sequence[str] = ()  # units of the column with which the field is shown; empty: all units
+    ports: Sequence[str] = ()  # ports at which the field is shown; empty: all ports
 
 
 OF_PORT = (

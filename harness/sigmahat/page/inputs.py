@@ -26,8 +26,7 @@ select.bk-input { background-image: url('data:image/svg+xml;utf8,<svg version="1
 :host(.open) .bk-input { border-color: #e06a1a; box-shadow: inset 0 0 0 1px #e06a1a; }
 """
 """Style of the widgets in the colours of the page, by CSS variables of the page."""
-_OPEN = "open"
-"""Class of an input that has to be filled in."""
+_OPEN = "open"  # class of an input that has to be filled in
 
 
 def style() -> InlineStyleSheet:
@@ -77,7 +76,8 @@ class Number:
         value = self._setup.get(self._key)
         is_open = self._key in self._setup.open_keys
         is_default = value is None or (value == 0 and self._key == GAMMA)
-        self._shown = "" if is_default or is_open else _text(value)
+        text = f"{value:.10g}" if isinstance(value, float) else str(value)
+        self._shown = "" if is_default or is_open else text
         self.widget.value = self._shown
         self.widget.placeholder = "fill in" if is_open else self.field.default
         self.widget.css_classes = [_OPEN] if is_open else []
@@ -86,14 +86,11 @@ class Number:
         text = new.strip()
         if text == self._shown:
             return
-        if not text:
-            self._setup.set(self._key, None)
-            return
         try:
-            value = float(text)
+            value = float(text) if text else None
         except ValueError:
             value = math.nan
-        if math.isfinite(value):
+        if value is None or math.isfinite(value):
             self._setup.set(self._key, value)
         else:
             self._setup.message = f"{self._key}: expected a number, got {text!r}"
@@ -124,12 +121,9 @@ class Choice:
         self._current = current or (lambda: str(setup.get(key) or default))
         self._chosen = chosen or (lambda item: setup.set(key, item or None))
         self.widget = Select(
-            title=title,
-            name=key,
-            options=self._options,
-            sizing_mode="stretch_width",
+            title=title, name=key, options=self._options, sizing_mode="stretch_width",
             stylesheets=[style()],
-        )
+        )  # fmt: skip
         self.widget.on_change("value", self._picked)
 
     def offer(self, items: Sequence[str]) -> None:
@@ -148,9 +142,3 @@ class Choice:
     def _picked(self, _attribute: str, _old: Any, new: str) -> None:
         if new != self._current():
             self._chosen(new)
-
-
-def _text(value: object) -> str:
-    if isinstance(value, float):
-        return f"{value:.10g}"
-    return str(value)

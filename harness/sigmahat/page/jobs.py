@@ -1,26 +1,55 @@
-"""Slow jobs in a thread: guess, checks, curve. The page stays responsive meanwhile."""
+"""Slow jobs in a thread: previews, guess, checks, curve. The page stays responsive meanwhile."""
 
 from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import tomlkit
+from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import FmuError, Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.guessing import template
 from sigmahat.guessing.columns import read_columns
 from sigmahat.guessing.guess import guess_chosen, guess_of
-from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve import Answer
 from sigmahat.logs.job import Replay
-from sigmahat.logs.log import Log, LogError
-from sigmahat.page.look import look
-from sigmahat.page.setup import Chosen, Setup
+from sigmahat.logs.log import Array, Log, LogError
+from sigmahat.page.setup import Chosen, Look, Setup
+
+_BUCKETS = 80
+_WIDTH, _HEIGHT = 160, 28  # of the line of a preview
+
+
+def look(log: Log, name: str) -> Look:
+    """The preview of a column of a log."""
+    try:
+        values = log.read(name)
+    except LogError:
+        return Look("text", ())
+    finite = np.flatnonzero(np.isfinite(values))
+    if not len(finite):
+        return Look("no number", ())
+    low, high = float(values[finite].min()), float(values[finite].max())
+    return Look(f"{low:.5g} to {high:.5g}", _line(values, finite, low, high))
+
+
+def _line(
+    values: Array, finite: NDArray[np.intp], low: float, high: float
+) -> Sequence[tuple[float, float]]:
+    """The least and the greatest value of each bucket, in the order of the rows."""
+    points = []
+    for part in np.array_split(finite, min(_BUCKETS, len(finite))):
+        own = values[part]
+        for i in sorted({int(own.argmin()), int(own.argmax())}):
+            x = _WIDTH * part[i] / max(len(values) - 1, 1)
+            y = (_HEIGHT - 2) * (high - own[i]) / ((high - low) or 1.0) + 1
+            points.append((round(float(x), 1), round(float(y), 1)))
+    return points
 
 
 def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
@@ -33,22 +62,6 @@ def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
     motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
     templates = {name: template.write(log, {name: joint}, motor) for name, joint in joints.items()}
     return templates, partial(guess_chosen, columns)
-
-
-def replayed(
-    log: Log, configuration: Configuration, progress: Callable[[int], object] = lambda _: None
-) -> Answer:
-    """Replays a log as `estimate` does, and writes nothing.
-
-    Now and then progress is called with the thousandths of the log done since the last call; an
-    exception in progress ends the replay.
-
-    Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
-    """
-    with Slave(installed("StiffnessEstimator"), "estimator") as slave:
-        replay = Replay(slave, log, configuration)
-        replay.run(progress=progress)
-        return replay.answer()
 
 
 _REFUSED = (LogError, FmuError, OSError, ValueError)
@@ -147,7 +160,10 @@ class Jobs:
             checked = check(log, configuration)
             busy = "The curve ..."
             self._later(partial(self._show, version, checked=checked, problem="", busy=busy))
-            found = replayed(log, configuration, progress)
+            with Slave(installed("StiffnessEstimator"), "estimator") as slave:
+                replay = Replay(slave, log, configuration)
+                replay.run(progress=progress)  # an exception in progress ends it
+                found = replay.answer()
         except _OutdatedError:
             return
         except _REFUSED as error:
@@ -162,7 +178,7 @@ class Jobs:
         from sigmahat.identification.identify import identify
         from sigmahat.identification.write import update
         from sigmahat.logs.configuration import checked_configuration
-        from sigmahat.report.estimated import estimated
+        from sigmahat.report.from_log import estimated
 
         setup, document = self._setup, tomlkit.parse(text)
         out = Path("sigmahat-results", setup.log.path.stem, setup.joint)

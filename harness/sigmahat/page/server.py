@@ -33,8 +33,7 @@ from sigmahat.page.setup import Setup
 from sigmahat.page.window import Window
 
 _HOST = "127.0.0.1"
-_ENDS = ("SIGINT", "SIGTERM", "SIGHUP")
-"""Signals that end the page; Windows has no SIGHUP."""
+_ENDS = ("SIGINT", "SIGTERM", "SIGHUP")  # signals that end the page; Windows has no SIGHUP
 
 
 class _Small(BokehTornado):  # type: ignore[misc] # types of Bokeh are not checked

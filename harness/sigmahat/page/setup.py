@@ -6,7 +6,8 @@ the thread of the server may use the state; jobs send their results to this thre
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -19,7 +20,6 @@ from sigmahat.logs.joints import of_joint, together
 from sigmahat.logs.log import Log
 from sigmahat.page import edits
 from sigmahat.page.edits import BY_SCALE, OF_PORT
-from sigmahat.page.look import Look
 
 if TYPE_CHECKING:
     from sigmahat.checks.findings import Checked
@@ -30,6 +30,16 @@ Chosen = Callable[[Mapping[str, str | None]], "Mapping[str, PortGuess]"]
 """Guesses units, signs and gear of columns by port."""
 
 _DOUBLE_CLICK = 0.5  # [s] the second click of a double click does not confirm
+
+
+@dataclass(frozen=True)
+class Look:
+    """A preview of a column."""
+
+    span: str
+    """Least and greatest value, or why the column has no values."""
+    line: Sequence[tuple[float, float]]
+    """Points of a small line in a box of 160 x 28, from its upper left corner."""
 
 
 class Setup:
@@ -61,24 +71,15 @@ class Setup:
         """Whether the page asks before it overwrites the file."""
         self._asked = 0.0
         self._then: Callable[[], object] | None = None
-        self._shown: set[Callable[[], object]] = set()
+        self.windows: set[Callable[[], object]] = set()
+        """Functions that are called after every change."""
         self._chosen: Chosen = lambda names: {}
         self.joints: dict[str, tomlkit.TOMLDocument] = {}
         """The configurations of the joints by name; empty until they are known."""
 
-    # Windows
-
-    def subscribe(self, show: Callable[[], object]) -> None:
-        """Calls show after every change, until it is unsubscribed."""
-        self._shown.add(show)
-
-    def unsubscribe(self, show: Callable[[], object]) -> None:
-        """Does not call show any more."""
-        self._shown.discard(show)
-
     def show(self) -> None:
         """Updates all windows."""
-        for each in list(self._shown):
+        for each in list(self.windows):
             each()
 
     # The configuration

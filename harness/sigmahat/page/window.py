@@ -15,9 +15,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from sigmahat.logs.configuration import PORTS
 from sigmahat.page.edits import TITLES
 from sigmahat.page.inputs import Choice, button, words
-from sigmahat.page.look import HEIGHT, WIDTH
-from sigmahat.page.ports import ParameterPanel, PortPanel
-from sigmahat.page.result import FindingsPanel, ResultPanel
+from sigmahat.page.panels import FindingsPanel, ParameterPanel, PortPanel, ResultPanel
 from sigmahat.page.setup import Setup
 
 _TEMPLATES = Environment(
@@ -31,12 +29,9 @@ class SavingBar:
     def __init__(self, setup: Setup, estimate: Callable[[], object]) -> None:
         self._setup = setup
         self._estimate = button(
-            "estimate",
-            lambda: setup.write(overwrite=False, then=estimate),
-            "Identify and estimate",
-            button_type="primary",
-            width=220,
-        )
+            "estimate", lambda: setup.write(overwrite=False, then=estimate),
+            "Identify and estimate", button_type="primary", width=220,
+        )  # fmt: skip
         self._write = button("write", lambda: setup.write(overwrite=False), width=180)
         self._overwrite = button(
             "overwrite", lambda: setup.write(overwrite=True), "Overwrite it", width=130
@@ -44,14 +39,9 @@ class SavingBar:
         self._words = words(name="message", min_width="14rem")
         # The button Write keeps its place when other elements appear.
         self.root = Row(
-            self._estimate,
-            self._write,
-            self._overwrite,
-            self._words,
-            name="bar",
-            sizing_mode="stretch_width",
-            styles={"flex-wrap": "wrap-reverse"},
-        )
+            self._estimate, self._write, self._overwrite, self._words,
+            name="bar", sizing_mode="stretch_width", styles={"flex-wrap": "wrap-reverse"},
+        )  # fmt: skip
 
     def show(self) -> None:
         """Updates the buttons and the message."""
@@ -75,8 +65,7 @@ class Window:
         estimate: Callable[[], object],
     ) -> None:
         """ready is called when the browser has drawn the page, estimate by the button."""
-        self._setup, self._document = setup, document
-        self._is_due = False
+        self._setup, self._document, self._is_due = setup, document, False
         self._joint = Choice(
             setup, "joint", "joint", [], current=lambda: setup.joint, chosen=setup.set_joint
         )
@@ -85,9 +74,7 @@ class Window:
         self._file = words(name="file", overflow_x="auto")
         panels: Sequence[ParameterPanel | PortPanel | FindingsPanel | ResultPanel | SavingBar] = (
             *(PortPanel(setup, port) for port in TITLES),
-            ParameterPanel(setup),
-            FindingsPanel(setup),
-            ResultPanel(setup),
+            *(kind(setup) for kind in (ParameterPanel, FindingsPanel, ResultPanel)),
             SavingBar(setup, estimate),
         )
         self._panels = panels
@@ -100,8 +87,8 @@ class Window:
         document.title = f"sigmahat: {setup.log.path.name}"
         self._show()
         document.on_event(DocumentReady, lambda _: ready())
-        setup.subscribe(self._later)
-        document.on_session_destroyed(lambda _: setup.unsubscribe(self._later))
+        setup.windows.add(self._later)
+        document.on_session_destroyed(lambda _: setup.windows.discard(self._later))
 
     def _later(self) -> None:
         """Shows the setup as soon as the document may be changed; once for many changes."""
@@ -123,7 +110,7 @@ class Window:
         uses = {setup.get(f"ports.{port}.column"): port for port in PORTS}
         uses[setup.get("time.column")] = "time"
         self._columns.text = _TEMPLATES.get_template("columns.html").render(
-            columns=setup.log.columns, looks=setup.looks, uses=uses, width=WIDTH, height=HEIGHT
+            columns=setup.log.columns, looks=setup.looks, uses=uses
         )
         # The last result is dimmed while another result is computed.
         opacity = "0.45" if setup.busy else "1"

@@ -1,16 +1,29 @@
-"""The job of `sigmahat reproduce`: runs of a scenario over seeds, and their performance indices."""
+"""The job of `sigmahat reproduce`: runs of a scenario over seeds, and their performance indices.
+
+Its files are written and read here, and the table of indices is printed.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from numpy.typing import NDArray
+
+from sigmahat.files import tables
+from sigmahat.files.tables import aligned, numeric_columns, read_csv, write_csv
 from sigmahat.fmi.master import Recording
+from sigmahat.fmi.series import Series
 from sigmahat.runs.engine import Progress, indices_by_comparison, measured, run, run_all
-from sigmahat.runs.metrics import Indices, mean_interval
+from sigmahat.runs.metrics import INDICES, Index, Indices, mean_interval
 from sigmahat.runs.scenario import Scenario
+
+if TYPE_CHECKING:  # `reproduce` writes its files without pyarrow
+    import pyarrow as pa
 
 
 @dataclass(frozen=True)
@@ -19,10 +32,8 @@ class Result:
 
     scenario: Scenario
     seeds: Sequence[int]
-    recording: Recording
-    """Run of the first seed, with the variants that only the figures need."""
-    indices: Sequence[dict[str, Indices]]
-    """Indices for each seed, by comparison."""
+    recording: Recording  # run of the first seed, with the variants that only the figures need
+    indices: Sequence[dict[str, Indices]]  # indices for each seed, by comparison
 
     def mean(self, comparison: str, field: str) -> tuple[float, float]:
         """An index over the seeds: its mean, and half the width of the 95 % interval."""
@@ -59,3 +70,169 @@ def reproduce(
     jobs += [partial(measured, scenario, seed, indices_by_comparison) for seed in seeds[1:]]
     first, *others = run_all(jobs, processes, progress)
     return Result(scenario, seeds, first, [indices_by_comparison(scenario, first), *others])
+
+
+TABLE = "table.csv"
+"""File with the indices of each comparison; each estimator has a file over time, too."""
+ESTIMATION, SEEDS = "estimation", "seeds"
+"""The first columns of the file with the indices."""
+TIME = "t"
+"""The first column of a file over time."""
+PLANT = "plant."
+"""Prefix of the names of plant signals in a file over time."""
+
+
+_ORDER = ("MODEL", "SENSOR", "RESIDUAL")  # the order of Table I; other estimators follow by name
+
+
+@dataclass(frozen=True)
+class ResultFiles:
+    """The files of one folder."""
+
+    table: pa.Table
+    """The indices of each comparison, as in table.csv."""
+    series: Mapping[str, Mapping[str, NDArray[Any]]]
+    """Signals by estimator and by name, of one shape: t, plant.<output>, <output>."""
+
+
+def read_result_files(folder: Path) -> ResultFiles:
+    """Reads a folder of `sigmahat reproduce`, the estimators in the order of Table I.
+
+    Raises ValueError, which says what to do, if the files are not from one run.
+    """
+    table = read_csv(folder / TABLE)
+    series = {}
+    names = {path.stem for path in folder.glob("*.csv") if path.name != TABLE}
+    for name in sorted(names, key=lambda name: (*(name != each for each in _ORDER), name)):
+        signals = {
+            n: c.values for n, c in numeric_columns(read_csv(folder / f"{name}.csv")).items()
+        }
+        if next(iter(signals), None) == TIME:  # the folder may have files of other commands
+            series[name] = signals
+    if not series or table.column_names[:2] != [ESTIMATION, SEEDS]:
+        raise ValueError(f"{folder}: no result of `sigmahat reproduce`; run it again")
+    if len({len(signals[TIME]) for signals in series.values()}) > 1:
+        raise ValueError(
+            f"{folder}: files of different lengths; run `sigmahat reproduce` again, "
+            "with an empty folder as --out"
+        )
+    return ResultFiles(table, series)
+
+
+def write_results(result: Result, folder: Path) -> None:
+    """Writes table.csv, and a file over time for each estimator."""
+    write_table(result, folder / TABLE)
+    for name in result.scenario.estimators:
+        write_series(result.recording, name, folder / f"{name}.csv")
+
+
+def write_table(result: Result, path: Path) -> None:
+    """Writes the indices of each comparison, with half the width of their 95 % interval."""
+    write_csv(path, *_indices(result))
+
+
+def as_dict(result: Result) -> dict[str, Any]:
+    """The contents of table.csv, for JSON."""
+    head, rows = _indices(result)
+    table = [dict(zip(head, row, strict=True)) for row in rows]
+    return {"scenario": result.scenario.name, "seeds": list(result.seeds), "table": table}
+
+
+def _indices(result: Result) -> tuple[list[str], list[list[Any]]]:
+    """Titles and rows of the table."""
+    scenario = result.scenario
+    indices = [INDICES[field] for fields in scenario.tables for field in fields]
+    head = [ESTIMATION, SEEDS]
+    for index in indices:
+        name = index.name(index.when(scenario.settled))
+        head += [tables.title(each, index.unit) for each in (name, f"{name} 95 % half width")]
+    head += ["MSE of the paper [(N.m/rad)2]", "MSREP of the paper [%]"]
+    rows: list[list[Any]] = []
+    for each in scenario.comparisons:
+        row: list[Any] = [each.name, len(result.seeds)]
+        for index in indices:
+            row += (None if math.isnan(x) else x for x in result.mean(each.name, index.field))
+        rows.append([*row, *scenario.paper.get(each.name, (None, None))])
+    return head, rows
+
+
+def write_series(recording: Recording, estimator: str, path: Path) -> None:
+    """Writes plant and one estimator over time: columns t, plant.<output>, <output>, with units."""
+    series = recording.estimators[estimator]
+    head = [tables.title(TIME, "s"), *_titles(recording.plant, PLANT), *_titles(series, "")]
+    values = [recording.t, *recording.plant.values.values(), *series.values.values()]
+    write_csv(path, head, zip(*(column.tolist() for column in values), strict=True))
+
+
+def _titles(series: Series, prefix: str) -> Iterator[str]:
+    for name in series.values:
+        yield tables.title(f"{prefix}{name}", series.units.get(name))
+
+
+def conditions(result: Result) -> str:
+    """The conditions of the runs in one line."""
+    scenario, seeds = result.scenario, result.seeds
+    noise = f"seed {seeds[0]}"
+    if len(seeds) > 1:
+        noise = f"mean +- 95 % interval over {len(seeds)} seeds"
+    parameters = result.recording.estimators["RESIDUAL"].parameters
+    prior = float(parameters["rls.c"]) * float(parameters["rls.P_0"])
+    return (
+        f"{scenario.duration:g} s, T = {scenario.T * 1e3:g} ms, "
+        f"V_a = {parameters['filter.V_a']:g} rad2/s4, c P(0) = {prior:g}, {noise}"
+    )
+
+
+def table(result: Result) -> str:
+    """The indices of each comparison and of the paper, as text; "-": not defined."""
+    tables = [
+        _table(result, [INDICES[field] for field in fields], with_paper=i == 0)
+        for i, fields in enumerate(result.scenario.tables)
+    ]
+    return "\n\n".join(tables)
+
+
+def _table(result: Result, columns: Sequence[Index], with_paper: bool) -> str:
+    """One table; the paper gives indices of the first two columns."""
+    paper = result.scenario.paper if with_paper else {}
+    rows = [_head(result.scenario, columns)]
+    beside = [("paper", "paper")]
+    for each in result.scenario.comparisons:
+        rows.append([each.name, *(_cell(result, each.name, index) for index in columns)])
+        beside.append(_paper(paper.get(each.name)))
+    if paper:
+        for row, (first, second) in zip(rows, beside, strict=True):
+            row[2:2], row[4:4] = [first], [second]
+    return "\n".join(aligned(rows))
+
+
+def _head(scenario: Scenario, columns: Sequence[Index]) -> list[str]:
+    """Titles of a table; a time that is common to all columns stands in the corner."""
+    settled = {index.settled for index in columns}
+    if len(settled) > 1:
+        return ["", *(index.title(index.when(scenario.settled)) for index in columns)]
+    time = columns[0].when(scenario.settled) or f"all {scenario.duration:g} s"
+    return [time, *(index.title() for index in columns)]
+
+
+def _cell(result: Result, comparison: str, index: Index) -> str:
+    mean, half_width = result.mean(comparison, index.field)
+    if math.isnan(mean):
+        return "-"
+    interval = "" if math.isnan(half_width) else f" +- {_number(half_width, index)}"
+    return f"{_number(mean, index)}{interval}"
+
+
+def _number(value: float, index: Index) -> str:
+    """A number in fixed point, but in exponential form for small values after the start-up."""
+    if index.settled and abs(value) < 0.01:
+        return f"{value:.1e}"
+    return f"{value:.3f}" if index.unit == "%" else f"{value:.2f}"
+
+
+def _paper(indices: tuple[float, float] | None) -> tuple[str, str]:
+    """Cells for the indices of the paper, with as many digits as show that they are not zero."""
+    if indices is None:
+        return "", ""
+    mse, msrep = (f"{value:.2f}" if value >= 0.1 else f"{value:.2g}" for value in indices)
+    return mse, msrep

@@ -1,12 +1,158 @@
-"""All scenarios of `sigmahat reproduce`, by name."""
+"""All scenarios of `sigmahat reproduce`: the AwAS, single transmissions, an antagonistic pair."""
 
 from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from sigmahat.fmi.instance import Value
 from sigmahat.fmi.master import EstimatorFmu, Plant
 from sigmahat.fmi.unknown_name import unknown
-from sigmahat.paper.awas import OUTPUTS, against_the_plant, experiment, simulation
 from sigmahat.runs.scenario import Comparison, Scenario, Sine, Sines, T
+
+OUTPUTS = (
+    "sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon",
+    "valid",
+)  # fmt: skip
+"""Outputs of StiffnessEstimator."""
+
+
+def against_the_plant(estimators: Iterable[str]) -> list[Comparison]:
+    """Each estimator compared with the true stiffness of the plant."""
+    return [Comparison(name, f"{name}.sigma", "plant.sigma") for name in estimators]
+
+
+SECTION_VI_B = Sine(0.3, 0.1)
+"""Torque of the principal motor in section VI.B [N.m, Hz]."""
+R_0 = 0.1
+"""Lever arm without retraction, (30) [m]."""
+_B = 0.0025 / (2 * math.pi)  # b of (30) [m/rad]
+
+_AWAS_OUTPUTS = (
+    "q_measured", "theta_measured", "theta_c_measured", "tau_measured", "tau_e_measured",
+    "theta_dot", "phi", "r", "tau_e", "sigma",
+)  # fmt: skip
+_FIGURES_3_TO_8 = (
+    "fig3-deformation", "fig4-velocity", "fig5-flexibility-torque", "fig6-stiffness",
+    "fig7-stability-factor", "fig8-constant-factors", "summary",
+)  # fmt: skip
+_FIGURES_9_TO_12 = (
+    "fig9-deformation", "fig10-lever-arm", "fig11-flexibility-torque", "fig12-stiffness",
+    "experiment",
+)  # fmt: skip
+
+
+def awas(retraction: float, tau: Sine = SECTION_VI_B) -> Plant:
+    """The AwAS with the torques of section VI.B, or with another torque of the principal motor.
+
+    At first, the lever arm is shortened by retraction [m].
+    """
+    return Plant(
+        fmu="AwasPlant",
+        start={"initial.theta_c": retraction / _B},
+        inputs={"tau": tau, "tau_c": Sine(8.0, 0.1)},
+        record=_AWAS_OUTPUTS,
+    )
+
+
+def lever_arm(plant: Plant) -> float:
+    """r(0) of an AwAS, (30) [m]."""
+    return R_0 - _B * float(plant.start["initial.theta_c"])
+
+
+def _measured(*names: str) -> dict[str, str]:
+    """Connections of inputs to the measured outputs of a plant."""
+    return {name: f"{name}_measured" for name in names}
+
+
+def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> EstimatorFmu:
+    """The estimator of the AwAS, with the given start values, else the values of the FMU."""
+    return EstimatorFmu(
+        fmu="StiffnessEstimator",
+        start={"samplePeriod": T, **start},
+        connections={**_measured("theta", "q", "theta_c", "tau"), "tau_e_sensor": sensor},
+        record=OUTPUTS,
+    )
+
+
+def _modalities(start: Mapping[str, Value]) -> dict[str, EstimatorFmu]:
+    """The three modalities of section VI.B, and the modality Model of the FMU.
+
+    The MODEL of the paper is fed with (28) at the actual deformation (its footnote 1), like a
+    sensor without noise. The modality Model of the FMU has only the measured positions.
+    """
+    return {
+        "MODEL": estimator({"modality": "Sensor", **start}, sensor="tau_e"),
+        "SENSOR": estimator({"modality": "Sensor", **start}),
+        "RESIDUAL": estimator({"modality": "Residual", **start}),
+        "MODEL-measured": estimator({"modality": "Model", **start}),
+    }
+
+
+def simulation(
+    name: str, description: str, duration: float, retraction: float, start: Mapping[str, Value]
+) -> Scenario:
+    """Section VI.B."""
+    estimators = _modalities(start)
+    constant = {"modality": "Residual", "rls.kind": "ConstantFactor", **start}
+    return Scenario(
+        name=name,
+        description=description,
+        duration=duration,
+        plant=awas(retraction),
+        estimators=estimators,
+        comparisons=against_the_plant(estimators),
+        figures=_FIGURES_3_TO_8,
+        # Constant stability factors, one too small and one too large, for figure 8.
+        variants={
+            f"RESIDUAL, a = {a:g}": estimator({**constant, "rls.a": a}) for a in (1e-4, 1e-2)
+        },
+        paper={"MODEL": (24.1365, 0.12), "SENSOR": (24.3630, 0.12), "RESIDUAL": (128.1614, 0.58)},
+    )
+
+
+def experiment() -> Scenario:
+    """Section VI.C: the plant differs from the nominal data as a real device does."""
+    plant = Plant(
+        fmu="AwasPlant",
+        start={
+            "spring.k_s": 0.85 * 14220,
+            "spring.r_0": 0.102,
+            "link.D_q": 1.5 * 0.15,
+            "link.tau_coulomb": 0.05,
+            "sensor.gain": 1.03,
+            "initial.theta_c": 0.0,
+            # The link swings between two turning points at equal distances from 0.
+            "initial.q": -1.75,
+            "initial.theta": -1.75,
+        },
+        inputs={"tau": Sine(0.3, 0.5), "tau_c": Sine(8.0, 0.05)},
+        record=(*_AWAS_OUTPUTS, "theta_c"),
+    )
+    names = ("MODEL", "SENSOR", "RESIDUAL")
+    against_sensor = Comparison("RESIDUAL against SENSOR", "RESIDUAL.sigma", "SENSOR.sigma")
+    return Scenario(
+        name="experiment",
+        description="AwAS that is not as its data say, for 60 s: the experiment of section VI.C",
+        duration=60.0,
+        plant=plant,
+        estimators={name: estimator({"modality": name.capitalize()}) for name in names},
+        comparisons=[
+            Comparison("MODEL against nominal", "MODEL.sigma", "nominal.sigma"),
+            against_sensor,
+            # SENSOR is 0 until the joint deforms, and a reference of 0 gives no relative error.
+            replace(
+                against_sensor,
+                name=f"{against_sensor.name}, relative to true",
+                relative_to="plant.sigma",
+            ),
+            *(replace(each, name=f"{each.name} against true") for each in against_the_plant(names)),
+        ],
+        figures=_FIGURES_9_TO_12,
+        paper={"MODEL against nominal": (9.36, 0.034), "RESIDUAL against SENSOR": (63.02, 1.55)},
+        tables=(("mse_settled", "msrep_settled", "error_settled"), ("mse", "msrep", "error")),
+    )
 
 
 def single(k_3: float, frequency: float) -> Scenario:
@@ -16,10 +162,7 @@ def single(k_3: float, frequency: float) -> Scenario:
     # The regressors are powers of phi, about 0.01 rad; for the AwAS they go up to r^2 phi, about
     # 100 mm2 rad. So the paper's ridge 1/(c P_0) = 1 suits the AwAS, but is far too strong here.
     start: dict[str, Value] = {"rls.m": 1}
-    estimators = {
-        "RESIDUAL": {**start, "rls.P_0": 1e24},
-        "RESIDUAL-paper-prior": start,
-    }
+    estimators = {"RESIDUAL": {**start, "rls.P_0": 1e24}, "RESIDUAL-paper-prior": start}
     return Scenario(
         name=name,
         description=f"one flexible transmission, {spring} spring, {frequency:g} Hz for 15 s",
@@ -28,22 +171,13 @@ def single(k_3: float, frequency: float) -> Scenario:
             fmu="FlexibleJointPlant",
             start={"spring.k_1": 150.0, "spring.k_3": k_3},
             inputs={"tau": Sine(0.3, frequency)},
-            record=(
-                "q_measured",
-                "theta_measured",
-                "tau_measured",
-                "tau_e_measured",
-                "theta_dot",
-                "phi",
-                "tau_e",
-                "sigma",
-            ),
+            record=[name for name in _AWAS_OUTPUTS if name not in ("theta_c_measured", "r")],
         ),
         estimators={
             modality: EstimatorFmu(
                 fmu="StiffnessEstimator",
                 start={"samplePeriod": T, "modality": "Residual", **values},
-                connections={"theta": "theta_measured", "q": "q_measured", "tau": "tau_measured"},
+                connections=_measured("theta", "q", "tau"),
                 record=OUTPUTS,
             )
             for modality, values in estimators.items()
@@ -58,6 +192,7 @@ def antagonistic() -> Scenario:
     sides = (1, 2)
     pull = Sine(0.025, 0.1)  # co-contraction, added to its mean of 0.04 N.m
     move = Sine(0.012, 0.25)  # of the link
+    own = ("theta_measured", "tau_measured", "tau_e_measured", "phi", "tau_e", "sigma")
     return Scenario(
         name="antagonistic",
         description="two antagonistic transmissions, slow co-contraction under a moving link, 30 s",
@@ -73,18 +208,7 @@ def antagonistic() -> Scenario:
             record=(
                 "q",
                 "q_measured",
-                *(
-                    f"{output}_{i}"
-                    for i in sides
-                    for output in (
-                        "theta_measured",
-                        "tau_measured",
-                        "tau_e_measured",
-                        "phi",
-                        "tau_e",
-                        "sigma",
-                    )
-                ),
+                *(f"{output}_{i}" for i in sides for output in own),
                 "sigma",
             ),
         ),

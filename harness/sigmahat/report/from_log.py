@@ -1,9 +1,9 @@
-"""The contents of a report from the files of `sigmahat estimate`."""
+"""The files of `sigmahat estimate` with the findings of the checks, and a report from the files."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.files.output import write_json
+from sigmahat.files.output import output_folder, write_json
 from sigmahat.files.tables import read_csv
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
@@ -29,18 +29,15 @@ from sigmahat.joint.curve import (
 )
 from sigmahat.joint.sheet import Sheet
 from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
+from sigmahat.logs import estimate as estimation
 from sigmahat.logs.changes import detected
+from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve_panels import curve_panels
+from sigmahat.logs.log import Log
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
 from sigmahat.logs.several import JOINTS
-from sigmahat.logs.time_panels import (
-    Estimate,
-    quantity_panels,
-    reduce,
-    sampling,
-    stiffness_panels,
-)
+from sigmahat.logs.time_panels import Estimate, quantity_panels, reduce, sampling, stiffness_panels
 from sigmahat.plotting.panels import Panel
 from sigmahat.plotting.style import plain_text, plain_title, plain_unit
 from sigmahat.report.contents import Contents, TextTable, number, of_file
@@ -53,10 +50,8 @@ class ShownFinding:
 
     __pydantic_config__ = NO_OTHER_KEYS
 
-    severity: Text
-    """How much the finding matters: "wrong", "rests on", "note"."""
-    text: Text
-    """A sentence: the key of the configuration, the number, and a value that is proposed."""
+    severity: Text  # how much the finding matters: "wrong", "rests on", "note"
+    text: Text  # A sentence: the key of the configuration, the number, and a value that is proposed
 
 
 @dataclass(frozen=True)
@@ -78,6 +73,28 @@ def write_findings(findings: Sequence[ShownFinding], folder: Path) -> None:
     """Writes the file into a folder of results; an empty list says that nothing was found."""
     contents = FindingsFile(FINDINGS.name, FINDINGS.version, list(findings))
     write_json(asdict(contents), folder / FINDINGS.file)
+
+
+def estimated(
+    log: Log,
+    configuration: Configuration,
+    findings: Sequence[tuple[str, str]],
+    out: Path,
+    progress: Callable[[int], object] = lambda thousandths: None,
+    start_from: Path | None = None,
+    mcap: bool = False,
+) -> estimation.Estimate:
+    """Returns the estimate, and writes estimate and findings into out: all files, or no file.
+
+    findings  of the checks: severity and sentence
+    mcap      whether estimate.mcap is written, too
+
+    Raises what `estimate` raises, OSError if out cannot be written to.
+    """
+    with output_folder(out) as folder:
+        result = estimation.estimate(log, configuration, folder, progress, start_from, mcap)
+        write_findings([ShownFinding(*each) for each in findings], folder)
+    return result
 
 
 def findings_table(folder: Path) -> list[TextTable]:
@@ -123,19 +140,24 @@ def from_log(folder: Path) -> Contents:
     marks = []
     if "change_age" in signals:  # older versions have no such output
         marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
-    marked = ["Dotted lines: changes of the stiffness, see Samples."] if marks else []
-    tables = [] if answer is None else _found(answer)
+    tables = []
+    if answer is not None:
+        tables += [curve_table(answer.curve)] if answer.curve.branches else []
+        tables.append(found_table(answer.sheet))
     tables += findings_table(folder)
-    doubts = table.doubts()
-    tables += [_estimates(signals, used), *([_doubts(doubts)] if doubts else [])]
+    tables.append(_estimates(signals, used))
+    if doubts := table.doubts():
+        tables.append(_doubts(doubts))
+    if answer is not None:
+        tables.append(estimator_table(answer.sheet))
     return Contents(
         f"Log: {folder.resolve().name}",
         [
             *_origin(answer, folder),
             f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}",
-            *marked,
+            *(["Dotted lines: changes of the stiffness, see Samples."] if marks else []),
         ],
-        [*tables, *([] if answer is None else [estimator_table(answer.sheet)])],
+        tables,
         [
             *stiffness_panels(reduced, [Estimate("estimate", {"sigma": "sigma"})]),
             *quantity_panels(reduced, ""),
@@ -213,19 +235,15 @@ def _skipped(answer: _Answer | None, used: NDArray[np.bool_]) -> str:
     return f"{replayed.skipped} of {replayed.ticks} ticks of {replayed.T:g} s skipped"
 
 
-def _found(answer: _Answer) -> list[TextTable]:
-    curve = [curve_table(answer.curve)] if answer.curve.branches else []
-    return [*curve, found_table(answer.sheet)]
-
-
 def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
     """Each output at the end, and its range and RMS where the estimator ran in the second half."""
     late = used & (np.arange(len(used)) >= len(used) // 2)
     rows = []
     for name in signals:
         if name not in _OF_THE_METHOD:
-            values = signals[name]
-            cells = [values[-1], *_range_and_rms(values[late])]
+            values, own = signals[name], signals[name][late]
+            range_and_rms = [own.min(), own.max(), np.sqrt(np.mean(own**2))] if len(own) else []
+            cells = [values[-1], *(range_and_rms or [np.nan] * 3)]
             title = plain_title(name, signals.units[name])
             rows.append([title, *(number(float(cell)) for cell in cells)])
     return TextTable(
@@ -249,12 +267,6 @@ def _doubts(doubts: Counter[str]) -> TextTable:
         [True, False],
         note="* in the second half; None: it was confident",
     )
-
-
-def _range_and_rms(values: NDArray[Any]) -> list[float]:
-    if not len(values):
-        return [np.nan] * 3
-    return [values.min(), values.max(), float(np.sqrt(np.mean(values**2)))]
 
 
 _WORDS = {

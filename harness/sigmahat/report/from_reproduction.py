@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
 from numpy.typing import NDArray
 
 from sigmahat.logs.time_panels import (
@@ -20,13 +19,12 @@ from sigmahat.logs.time_panels import (
     sampling,
     stiffness_panels,
 )
-from sigmahat.paper.result_files import SEEDS, TIME, read_result_files
+from sigmahat.paper.reproduction import SEEDS, TIME, read_result_files
 from sigmahat.plotting.panels import COLORS, TRUE, Curve, Kind, Panel
 from sigmahat.plotting.style import QUANTITIES, plain_axis
-from sigmahat.report.contents import Contents, TextTable, of_file
+from sigmahat.report.contents import Contents, of_file
 
-_MAIN = "RESIDUAL"
-"""Estimator for panels of a single estimator: RESIDUAL needs no torque sensor."""
+_MAIN = "RESIDUAL"  # estimator for panels of a single estimator: RESIDUAL needs no torque sensor
 _STIFFNESS = re.compile(r"sigma(_\d)?")
 
 
@@ -41,18 +39,18 @@ def from_reproduction(folder: Path) -> Contents:
     t = signals.pop(TIME)
     estimates = []
     for name, own in files.series.items():
-        keys = {
-            variable: f"{name} {variable}" for variable in own if _STIFFNESS.fullmatch(variable)
-        }
-        signals |= {key: own[variable] for variable, key in keys.items()}
+        keys = {each: f"{name} {each}" for each in own if _STIFFNESS.fullmatch(each)}
+        signals |= {key: own[each] for each, key in keys.items()}
         estimates.append(Estimate(name, keys))
     reduced = reduce(t, signals)
     seeds = files.table[SEEDS][0].as_py()
     of_seeds = f" of {seeds} seeds; the plots show the first" if seeds > 1 else ""
+    table = files.table  # the columns that have a value in some row
+    shown = [name for name in table.column_names if table[name].null_count < len(table)]
     return Contents(
         f"Reproduction: {folder.resolve().name}",
         [f"{len(t)} samples{of_seeds}"],
-        [_indices(files.table)],
+        [of_file("Performance indices", table.select(shown))],
         [
             *stiffness_panels(reduced, estimates),
             *quantity_panels(reduced, main if len(files.series) > 1 else ""),
@@ -63,16 +61,8 @@ def from_reproduction(folder: Path) -> Contents:
     )
 
 
-def _indices(table: pa.Table) -> TextTable:
-    """The columns that have a value in some row."""
-    shown = [name for name in table.column_names if table[name].null_count < len(table)]
-    return of_file("Performance indices", table.select(shown))
-
-
-_LAST = 1 / 3
-"""Fraction of the run that is shown: at the end, an estimate changes little."""
-_COUNT = 100
-"""Number of dots of the estimate: few, so that the truth is visible between the dots."""
+_LAST = 1 / 3  # fraction of the run that is shown: at the end, an estimate changes little
+_COUNT = 100  # number of dots of the estimate: few, so that the truth is visible between the dots
 
 Signals = Mapping[str, NDArray[Any]]
 

@@ -14,17 +14,18 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from sigmahat.files.tables import read_csv
 from sigmahat.logs.several import JOINTS
-from sigmahat.paper.result_files import TABLE
-from sigmahat.report.contents import Contents, of_file
+from sigmahat.paper.reproduction import TABLE
+from sigmahat.report.contents import Contents, TextTable, of_file
 from sigmahat.report.from_log import from_joints, from_log
 from sigmahat.report.from_reproduction import from_reproduction
-from sigmahat.report.from_sweep import from_sweep
 from sigmahat.report.plots import plots
+from sigmahat.sweep.panels import against_parameters, distributions
+from sigmahat.sweep.summary import summary_columns
+from sigmahat.sweep.table import FAILURE, RUN, Role, read, title
 
 METHODS, MISFITS = "compare.csv", "misfits.csv"
 """Files of `compare` and `compare --misfits`; the figure has the same name."""
-_FIRST = {METHODS: "group", MISFITS: "class"}
-"""Column whose values head the tables."""
+_FIRST = {METHODS: "group", MISFITS: "class"}  # column whose values head the tables
 _SEEDS = "seeds"
 
 
@@ -56,6 +57,29 @@ def from_comparison(name: str, folder: Path) -> Contents:
     )
 
 
+def from_sweep(folder: Path) -> Contents:
+    """The summary, the distribution of the error, and the error against each parameter.
+
+    Raises ValueError as sigmahat.sweep.table.read() does.
+    """
+    sweep = read(folder / "sweep.parquet")
+    runs = dict(zip(sweep.values(RUN), sweep.values(FAILURE), strict=True))
+    failed = sum(failure is not None for failure in runs.values())
+    lines = [f"{len(runs)} runs, {failed} of them failed"]
+    drawn = [title(column) for column in sweep.parameters(Role.DRAWN)]
+    if drawn:
+        lines.append(f"drawn for each seed: {', '.join(drawn)}")
+    columns = summary_columns(sweep)
+    summary = TextTable(
+        "Mean and 95 % interval over the runs",
+        [column.title for column in columns],
+        list(zip(*(column.cells for column in columns), strict=True)),
+        [column.words for column in columns],
+    )
+    panels = [*distributions(sweep), *against_parameters(sweep)]
+    return Contents(f"Sweep: {folder.resolve().name}", lines, [summary], panels)
+
+
 def report(folder: Path) -> str:
     """HTML with the tables and plots of a reproduction, a log, a sweep or a comparison.
 
@@ -76,9 +100,9 @@ def report(folder: Path) -> str:
         METHODS: partial(from_comparison, METHODS),
         MISFITS: partial(from_comparison, MISFITS),
     }
-    for name, read in kinds.items():
+    for name, contents in kinds.items():
         if (folder / name).is_file():
-            return _page(read(folder))
+            return _page(contents(folder))
     if (folder / "runs.jsonl").is_file():
         raise ValueError(f"{folder}: a sweep that is not complete; run its command again first")
     raise ValueError(
@@ -91,12 +115,13 @@ def _page(contents: Contents) -> str:
     """The report as HTML."""
     made = plots([*contents.answer, *contents.panels], contents.every, contents.marks)
     script, divs = components([plot.figure for plot in made]) if made else ("", [])
+    shown, first = list(zip(made, divs, strict=True)), len(contents.answer)
     loader = FileSystemLoader(Path(__file__).parent)
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
     return environment.get_template("page.html").render(
         contents=contents,
-        answer=list(zip(made, divs, strict=True))[: len(contents.answer)],
-        plots=list(zip(made, divs, strict=True))[len(contents.answer) :],
+        answer=shown[:first],
+        plots=shown[first:],
         pictures=[b64encode(path.read_bytes()).decode() for path in contents.pictures],
         library=Resources(mode="inline", components=["bokeh"]).render() if made else "",
         script=script,

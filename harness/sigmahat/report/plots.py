@@ -38,8 +38,7 @@ class Plot:
 
     panel: Panel
     figure: figure
-    switches: Sequence[tuple[Curve, str]]
-    """Each curve and the name that all its models have."""
+    switches: Sequence[tuple[Curve, str]]  # each curve and the name that all its models have
 
 
 def plots(
@@ -47,7 +46,9 @@ def plots(
 ) -> list[Plot]:
     """The plots of panels; linked plots have `every` shaded, and dotted lines at `marks`."""
     sources: dict[int, ColumnDataSource] = {}
-    linked = _time_range(panels)
+    times = [curve.x for panel in panels if panel.linked for curve in panel.curves]
+    # One object for all linked panels: they zoom together.
+    linked = Range1d(float(times[0][0]), float(times[0][-1])) if times else Range1d()
     made = []
     for i, panel in enumerate(panels):
         plot = _figure(panel, linked)
@@ -66,18 +67,6 @@ def plots(
             switches.append((curve, name))
         made.append(Plot(panel, plot, switches))
     return made
-
-
-def _time_range(panels: Sequence[Panel]) -> Range1d:
-    """One object for all linked panels: they zoom together."""
-    times = [curve.x for panel in panels if panel.linked for curve in panel.curves]
-    if not times:
-        return Range1d()
-    return Range1d(float(times[0][0]), float(times[0][-1]))
-
-
-def _x_range(panel: Panel) -> Range1d:
-    return Range1d(*_limits([curve.x for curve in panel.curves], panel.x_log))
 
 
 def _y_limits(panel: Panel) -> tuple[float, float]:
@@ -105,6 +94,7 @@ def _limits(values: Sequence[NDArray[Any]], log: bool) -> tuple[float, float]:
 
 
 def _figure(panel: Panel, linked: Range1d) -> figure:
+    xs = [curve.x for curve in panel.curves]
     plot = figure(
         height=_HEIGHT,
         sizing_mode="stretch_width",
@@ -112,7 +102,7 @@ def _figure(panel: Panel, linked: Range1d) -> figure:
         y_axis_label=panel.y_label,
         x_axis_type="log" if panel.x_log else "linear",
         y_axis_type="log" if panel.y_log else "linear",
-        x_range=linked if panel.linked else _x_range(panel),
+        x_range=linked if panel.linked else Range1d(*_limits(xs, panel.x_log)),
         y_range=Range1d(*(panel.y_range or _y_limits(panel))),
         tools=[PanTool(), BoxZoomTool(), WheelZoomTool(), ResetTool(), SaveTool()],
         active_drag="auto",

@@ -22,22 +22,17 @@ _NORMAL_95 = 1.96
 _SHOWN = 600  # samples of the torque over time
 _LAGS, _BINS = 40, 20
 _FEWEST = 200  # independent residuals
-_OVER = ("phi", "theta_dot", "tau_e")
-"""Signals with which the residual is compared."""
+_OVER = ("phi", "theta_dot", "tau_e")  # signals with which the residual is compared
 
 
 @dataclass(frozen=True)
 class Residuals:
     """The second half of a log, one sample in each period of the estimator's filters."""
 
-    T: float
-    """Time between the samples [s]."""
-    t: Array
-    """[s]"""
-    residual: Array
-    """Measured torque minus predicted torque [N.m]."""
-    signals: Mapping[str, Array]
-    """Signals _OVER, at the same times."""
+    T: float  # time between the samples [s]
+    t: Array  # [s]
+    residual: Array  # measured torque minus predicted torque [N.m]
+    signals: Mapping[str, Array]  # signals _OVER, at the same times
 
     @property
     def fit(self) -> float:

@@ -11,8 +11,7 @@ from sigmahat.runs.pool import WorkerError, WorkersLostError
 
 Result = TypeVar("Result")
 
-_CONNECT = 10.0
-"""Longest wait for a reply of a scheduler, and for its first worker [s]."""
+_CONNECT = 10.0  # longest wait for a reply of a scheduler, and for its first worker [s]
 
 
 def spread_on_cluster(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,27 +19,18 @@ from sigmahat.sweep.table import (
     title,
 )
 
-Column = NDArray[np.float64]
 _BINS = 40
 
 
-@dataclass(frozen=True)
-class Part:
-    """The rows of one comparison of one scenario that did not fail."""
-
-    label: str
-    rows: SweepTable
-
-
-def parts(sweep: SweepTable) -> list[Part]:
-    """A part for each comparison of each scenario, in the order of the table."""
+def parts(sweep: SweepTable) -> dict[str, SweepTable]:
+    """The rows of each comparison of each scenario that did not fail, by a label."""
     good = sweep.where([failure is None for failure in sweep.values(FAILURE)])
     keys = list(zip(good.values(ESTIMATION), good.values(SCENARIO), strict=True))
     several = len({scenario for _, scenario in keys}) > 1
-    return [
-        Part(", ".join(key) if several else key[0], good.where([each == key for each in keys]))
+    return {
+        ", ".join(key) if several else key[0]: good.where([each == key for each in keys])
         for key in dict.fromkeys(keys)
-    ]
+    }
 
 
 def drawn_indices(sweep: SweepTable) -> list[Index]:
@@ -60,12 +50,9 @@ def time_of(index: Index) -> str:
 def abscissas(sweep: SweepTable) -> list[ParameterColumn]:
     """Columns for the x axis: errors of parameters, and other parameters with numbers."""
     errors = [column for column in sweep.parameters(Role.ERROR) if _varies(sweep, column)]
-    others = [
-        column
-        for column in (*sweep.parameters(Role.LISTED), *sweep.parameters(Role.DRAWN))
-        if not any(map(column.same_quantity, errors)) and _varies(sweep, column)
-    ]
-    return [*errors, *others]
+    others = (*sweep.parameters(Role.LISTED), *sweep.parameters(Role.DRAWN))
+    unlike = [column for column in others if not any(map(column.same_quantity, errors))]
+    return [*errors, *(column for column in unlike if _varies(sweep, column))]
 
 
 def _varies(sweep: SweepTable, column: ParameterColumn) -> bool:
@@ -79,21 +66,13 @@ def has_a_value_for_each_run(sweep: SweepTable, column: ParameterColumn) -> bool
     return any(map(column.same_quantity, sweep.parameters(Role.DRAWN)))
 
 
-def interval_at(x: Column, y: Column) -> tuple[list[float], list[float], list[float]]:
-    """Distinct x, mean of y at each x, and half the width of its 95 % interval (0 for one run)."""
-    at = np.unique(x).tolist()
-    pairs = [mean_interval(y[x == value].tolist()) for value in at]
-    return at, [mean for mean, _ in pairs], [0.0 if np.isnan(half) else half for _, half in pairs]
-
-
-def log_bins(values: Column) -> list[float]:
+def log_bins(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Edges of bins of equal ratio around positive values."""
     if not len(values):
-        return [0.1, 1.0]
+        return np.array([0.1, 1.0])
     low, high = np.log10(values.min()), np.log10(values.max())
     margin = 0.02 * max(high - low, 0.1)
-    edges: list[float] = np.logspace(low - margin, high + margin, _BINS + 1).tolist()
-    return edges
+    return np.logspace(low - margin, high + margin, _BINS + 1)
 
 
 def distributions(sweep: SweepTable) -> list[Panel]:
@@ -102,8 +81,8 @@ def distributions(sweep: SweepTable) -> list[Panel]:
 
 
 def _distribution(sweep: SweepTable, index: Index) -> Panel:
-    every = {part.label: part.rows.numbers(index) for part in parts(sweep)}
-    edges = np.array(log_bins(np.concatenate([x[x > 0] for x in every.values()])))
+    every = {label: rows.numbers(index) for label, rows in parts(sweep).items()}
+    edges = log_bins(np.concatenate([x[x > 0] for x in every.values()]))
     curves = [
         Curve(label, COLORS[i % len(COLORS)], edges, np.histogram(x, edges)[0], Kind.STEPS)
         for i, (label, x) in enumerate(every.items())
@@ -129,16 +108,18 @@ def against_parameters(sweep: SweepTable) -> Iterator[Panel]:
             list(_curves(sweep, column, index)),
             y_log=True,
             linked=False,
-            caption=("" if has_a_value_for_each_run(sweep, column) else "mean and 95 % interval"),
+            caption="" if has_a_value_for_each_run(sweep, column) else "mean and 95 % interval",
         )
 
 
 def _curves(sweep: SweepTable, column: ParameterColumn, index: Index) -> Iterator[Curve]:
-    for i, part in enumerate(parts(sweep)):
+    for i, (label, rows) in enumerate(parts(sweep).items()):
         color = COLORS[i % len(COLORS)]
-        x, y = part.rows.numbers(column), part.rows.numbers(index)
+        x, y = rows.numbers(column), rows.numbers(index)
         if has_a_value_for_each_run(sweep, column):
-            yield Curve(part.label, color, x, y, Kind.POINTS)
-        else:
-            at, mean, half = map(np.array, interval_at(x, y))
-            yield Curve(part.label, color, at, mean, Kind.MEANS, half)
+            yield Curve(label, color, x, y, Kind.POINTS)
+            continue
+        at = np.unique(x)
+        mean, half = np.array([mean_interval(y[x == value].tolist()) for value in at]).T
+        # The interval of a single run is not defined.
+        yield Curve(label, color, at, mean, Kind.MEANS, np.nan_to_num(half))

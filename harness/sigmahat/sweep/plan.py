@@ -47,12 +47,9 @@ _FORMS = "values 1,2,3; a range first:last:count; uniform(low,high); normal(mean
 class Drawn:
     """A value that depends on the seed of the run alone."""
 
-    kind: str
-    """uniform or normal."""
-    first: float
-    """Lower end, or mean."""
-    second: float
-    """Upper end, or standard deviation."""
+    kind: str  # uniform or normal
+    first: float  # lower end, or mean
+    second: float  # upper end, or standard deviation
 
     def value(self, name: str, seed: int) -> float:
         """Value of the parameter of this name under a seed; independent for every name."""
@@ -69,12 +66,11 @@ def values(text: Any) -> Values:
 
     Raises ValueError, which says what is expected.
     """
-    if isinstance(text, Sequence) and not isinstance(text, str):
-        if not text or not all(isinstance(v, (float, int, str)) for v in text):
-            raise ValueError(f"expected {_FORMS}, got {text!r}")
-        return _distinct([v if not isinstance(v, str) else _literal(v) for v in text])
     if not isinstance(text, str):
-        return values([text])
+        given = text if isinstance(text, Sequence) else [text]
+        if not given or not all(isinstance(v, (float, int, str)) for v in given):
+            raise ValueError(f"expected {_FORMS}, got {given!r}")
+        return _distinct([_literal(v) if isinstance(v, str) else v for v in given])
     call = _CALL.fullmatch(text)
     if call is not None:
         return _drawn(text, call[1], call[2].split(","))
@@ -150,12 +146,9 @@ class Run:
 class Outcome:
     """The result of a run, or why the run failed."""
 
-    number: int
-    """Number of the run."""
-    indices: Mapping[str, Indices]
-    """Indices by comparison; empty if the run failed."""
-    failure: str | None
-    """Why the run failed: an FMU refused a value, or an estimate is not finite."""
+    number: int  # number of the run
+    indices: Mapping[str, Indices]  # indices by comparison; empty if the run failed
+    failure: str | None  # why the run failed: an FMU refused a value, or an estimate is not finite
 
 
 @dataclass(frozen=True)
@@ -164,10 +157,8 @@ class Plan:
 
     scenarios: tuple[str, ...]
     seeds: int
-    modalities: tuple[str, ...]
-    """Estimators to run; empty: all estimators that the scenarios compare."""
-    parameters: Mapping[str, Values]
-    """Values by name with owner."""
+    modalities: tuple[str, ...]  # as in Run
+    parameters: Mapping[str, Values]  # values by name with owner
 
     def __len__(self) -> int:
         return self.count
@@ -189,18 +180,14 @@ class Plan:
 
     def _runs(self) -> Iterator[Run]:
         points = list(itertools.product(*self.listed.values()))
-        numbers = itertools.count()
-        for scenario, point, seed in itertools.product(
-            self.scenarios, points, range(1, self.seeds + 1)
-        ):
+        every = itertools.product(self.scenarios, points, range(1, self.seeds + 1))
+        for number, (scenario, point, seed) in enumerate(every):
             listed = dict(zip(self.listed, point, strict=True))
-            yield Run(next(numbers), scenario, self.modalities, seed, self._values(listed, seed))
-
-    def _values(self, listed: Mapping[str, Value], seed: int) -> dict[str, Value]:
-        return {
-            name: values.value(name, seed) if isinstance(values, Drawn) else listed[name]
-            for name, values in self.parameters.items()
-        }
+            values = {
+                name: own.value(name, seed) if isinstance(own, Drawn) else listed[name]
+                for name, own in self.parameters.items()
+            }
+            yield Run(number, scenario, self.modalities, seed, values)
 
     def samples(self) -> Iterator[Run]:
         """Few runs with every scenario and every listed value, for a check before the start.

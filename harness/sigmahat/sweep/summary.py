@@ -25,8 +25,7 @@ from sigmahat.sweep.table import (
     title,
 )
 
-_ROWS = 30
-"""Rows of a printed summary; summary.csv has all rows."""
+_ROWS = 30  # rows of a printed summary; summary.csv has all rows
 
 
 @dataclass(frozen=True)
@@ -47,8 +46,7 @@ class SummaryColumn:
     """A column of the summary as text."""
 
     title: str
-    words: bool
-    """Whether its cells are words and not numbers."""
+    words: bool  # whether its cells are words and not numbers
     cells: list[str]
 
 
@@ -64,16 +62,10 @@ def means(sweep: SweepTable) -> list[Mean]:
     result = []
     for (scenario, *values, estimation), rows in groups.items():
         good = [row for row in rows if failures[row] is None]
-        result.append(
-            Mean(
-                scenario,
-                dict(zip(listed, values, strict=True)),
-                estimation,
-                len(rows),
-                len(rows) - len(good),
-                {index: _mean([x[row] for row in good]) for index, x in indices.items()},
-            )
-        )
+        given = dict(zip(listed, values, strict=True))
+        found = {index: _mean([x[row] for row in good]) for index, x in indices.items()}
+        failed = len(rows) - len(good)
+        result.append(Mean(scenario, given, estimation, len(rows), failed, found))
     return result
 
 
@@ -89,18 +81,19 @@ def summary_columns(sweep: SweepTable) -> list[SummaryColumn]:
     every = means(sweep)
     names = {each.scenario for each in every}
     fields = {f for name in names for table in SCENARIOS[name].tables for f in table}
-    columns = []
+    columns: dict[str, list[Any]] = {}
     if len(names) > 1:
-        columns.append(SummaryColumn(SCENARIO, True, [each.scenario for each in every]))
-    for parameter in sweep.parameters(Role.LISTED):
-        values = [each.listed[parameter] for each in every]
-        words = any(isinstance(value, (str, bool)) for value in values)
-        columns.append(SummaryColumn(title(parameter), words, [_value(v) for v in values]))
-    columns.append(SummaryColumn(ESTIMATION, True, [each.estimation for each in every]))
-    columns.append(SummaryColumn("runs", False, [str(each.runs) for each in every]))
+        columns[SCENARIO] = [each.scenario for each in every]
+    columns |= {title(p): [each.listed[p] for each in every] for p in sweep.parameters(Role.LISTED)}
+    columns[ESTIMATION] = [each.estimation for each in every]
+    columns["runs"] = [each.runs for each in every]
     if any(each.failed for each in every):
-        columns.append(SummaryColumn("failed", False, [str(each.failed) for each in every]))
-    columns += [
+        columns["failed"] = [each.failed for each in every]
+    found = [
+        SummaryColumn(name, any(isinstance(v, (str, bool)) for v in own), [_value(v) for v in own])
+        for name, own in columns.items()
+    ]
+    return found + [
         SummaryColumn(
             index.title("after start-up" if index.settled else ""),
             False,
@@ -109,7 +102,6 @@ def summary_columns(sweep: SweepTable) -> list[SummaryColumn]:
         for field, index in INDICES.items()
         if field in fields
     ]
-    return columns
 
 
 def summary(sweep: SweepTable) -> str:
@@ -131,10 +123,11 @@ def write_summary(sweep: SweepTable, path: Path) -> None:
     """Writes every mean and half width with all digits."""
     titles = [each for i in INDICES.values() for each in (title(i), half_width_title(i))]
     every = means(sweep)
-    rows = []
-    for mean in every:
-        cells = (x for pair in mean.indices.values() for x in pair)
-        rows.append([*_about(mean).values(), *(None if math.isnan(x) else x for x in cells)])
+    rows = [
+        [*_about(mean).values()]
+        + [None if math.isnan(x) else x for pair in mean.indices.values() for x in pair]
+        for mean in every
+    ]
     write_csv(path, [*_about(every[0]), *titles], rows)
 
 

@@ -18,11 +18,7 @@ from sigmahat.files import tables
 from sigmahat.runs.metrics import INDICES, Index
 
 # Parameters of the nominal AwAS in the estimator, and their names in the plant.
-_NAMES_IN_THE_PLANT = {
-    "model.k_s": "spring.k_s",
-    "model.r_0": "spring.r_0",
-    "model.b": "spring.b",
-}
+_NAMES_IN_THE_PLANT = {"model.k_s": "spring.k_s", "model.r_0": "spring.r_0", "model.b": "spring.b"}
 
 
 def name_in_the_plant(parameter: str) -> str:
@@ -33,12 +29,9 @@ def name_in_the_plant(parameter: str) -> str:
 class Role(str, Enum):
     """Kind of the values in a column of a parameter."""
 
-    LISTED = "listed"
-    """Values that are used with every seed."""
-    DRAWN = "drawn"
-    """Values that are drawn for each seed."""
-    ERROR = "error"
-    """Errors of a parameter of an estimator, relative to the parameter of the plant."""
+    LISTED = "listed"  # values that are used with every seed
+    DRAWN = "drawn"  # values that are drawn for each seed
+    ERROR = "error"  # errors of a parameter of an estimator, relative to the parameter of the plant
 
 
 @dataclass(frozen=True)
@@ -46,10 +39,8 @@ class ParameterColumn:
     """A column of a parameter."""
 
     role: Role
-    owner: str
-    """"plant", a modality, or "estimator": all estimators."""
-    parameter: str
-    """Name in the FMU, "motor.B"."""
+    owner: str  # "plant", a modality, or "estimator": all estimators
+    parameter: str  # name in the FMU, "motor.B"
     unit: str | None
 
     @property
@@ -90,10 +81,8 @@ _MEANING = b"sigmahat.column"
 class SweepTable:
     """Rows of a sweep, and the meaning of their columns."""
 
-    table: pa.Table
-    """Table with the titles of the columns as names."""
-    columns: Sequence[Column]
-    """Columns in the order of the table."""
+    table: pa.Table  # table with the titles of the columns as names
+    columns: Sequence[Column]  # columns in the order of the table
 
     def parameters(self, *roles: Role) -> list[ParameterColumn]:
         """Columns of parameters with these roles."""

@@ -9,8 +9,16 @@ from enum import Enum
 
 import numpy as np
 
-from sigmahat.compare.misfits.experiment import Control, Drive, Experiment
-from sigmahat.compare.misfits.joints import AWAS, JOINTS, SEA_1K, SEA_5K, Joint
+from sigmahat.compare.misfits.experiment import (
+    AWAS,
+    JOINTS,
+    SEA_1K,
+    SEA_5K,
+    Control,
+    Drive,
+    Experiment,
+    Joint,
+)
 from sigmahat.compare.misfits.motion import peak_deformation
 from sigmahat.runs.scenario import Sine, Sines
 
@@ -44,6 +52,7 @@ def all_misfits(experiment: Experiment) -> Experiment:
     def uniform(most: float) -> float:
         return float(rng.uniform(0.0, most))
 
+    # The order is that of the random numbers.
     plant = {
         "sensor.tau_gain": 1 + normal(0.02),
         "sensor.tau_bias": normal(0.01) * joint.torque,
@@ -119,20 +128,6 @@ def _run(**changed: float | Drive | Mapping[str, float]) -> Change:
     return lambda experiment: replace(experiment, **changed)  # type: ignore[arg-type]
 
 
-def _orders(**orders: int) -> Change:
-    """Orders of the estimator, "n" and "m"."""
-    values = {f"rls.{name}": order for name, order in orders.items()}
-    return lambda experiment: experiment.with_estimator(values)
-
-
-def _counts(counts: float) -> Change:
-    return _plant(encoder__theta=counts, encoder__q=counts)
-
-
-def _contact(experiment: Experiment) -> Experiment:
-    return experiment.with_plant(experiment.joint.contact)
-
-
 def _dahl(share: float) -> Change:
     """Hysteresis of a fraction of the peak torque, with 3 % of the peak deformation."""
 
@@ -168,10 +163,7 @@ def _control(link_velocity: bool, gravity: bool = False) -> Change:
         begin = sum(s.amplitude * math.sin(s.phase) for s in terms)
         middle = math.pi / 2 if gravity else 0.0
         control = Control(
-            Sines(middle - begin, terms),
-            joint.kp,
-            joint.kd,
-            joint.kd / 2 if link_velocity else 0.0,
+            Sines(middle - begin, terms), joint.kp, joint.kd, joint.kd / 2 if link_velocity else 0.0
         )
         heavy = experiment.with_plant({"link.mgl": 12.0}) if gravity else experiment
         return replace(heavy, control=control, drive=Drive.HELD_MEAN)
@@ -198,14 +190,7 @@ def _exact_inertia(change: Change, error: float = 0.0) -> Change:
     return both
 
 
-def _clean(experiment: Experiment) -> Experiment:
-    return experiment
-
-
-def _gain(gain: float) -> Change:
-    return _plant(sensor__tau_gain=gain)
-
-
+_clean = _run()
 _SEA = (SEA_1K, SEA_5K)
 _COARSE = (AWAS, SEA_1K)
 
@@ -213,7 +198,7 @@ CONDITIONS: Sequence[Condition] = (
     Condition("none", Group.CLEAN, _clean),
     Condition("500 Hz", Group.CLEAN, _run(T=2e-3)),
     Condition("5 kHz", Group.CLEAN, _run(T=2e-4)),
-    Condition("contact", Group.CLEAN, _contact),
+    Condition("contact", Group.CLEAN, lambda each: each.with_plant(each.joint.contact)),
     Condition("PD on motor, mean of held torque", Group.CLEAN, _control(False)),
     Condition("PD on motor, feedback of q", Group.CLEAN, _control(True)),
     Condition("PD and gravity, one sign of phi", Group.CLEAN, _control(False, True), _SEA),
@@ -222,15 +207,13 @@ CONDITIONS: Sequence[Condition] = (
     Condition("uneven Coulomb friction 20 %", Group.CLASS_1, _plant(motor__uneven=0.2)),
     Condition("load friction 0.1", Group.CLASS_1, _plant(motor__load_friction=0.1)),
     Condition("load friction 0.2", Group.CLASS_1, _plant(motor__load_friction=0.2)),
-    Condition(
-        "eccentric encoder of q, 0.31 mrad",
-        Group.CLASS_1,
-        _plant(encoder__q_eccentricity=0.31e-3),
-    ),
-    Condition(
-        "eccentric encoder of q, 0.87 mrad",
-        Group.CLASS_1,
-        _plant(encoder__q_eccentricity=0.87e-3),
+    *(
+        Condition(
+            f"eccentric encoder of q, {1e3 * size:g} mrad",
+            Group.CLASS_1,
+            _plant(encoder__q_eccentricity=size),
+        )
+        for size in (0.31e-3, 0.87e-3)
     ),
     Condition("zero of q 0.2 mrad off", Group.CLASS_1, _plant(encoder__q_offset=0.2e-3)),
     Condition("torque 1 ms late", Group.CLASS_1, _run(late=1e-3)),
@@ -242,20 +225,21 @@ CONDITIONS: Sequence[Condition] = (
     Condition("hysteresis 2 %", Group.CLASS_2, _dahl(0.02)),
     Condition("hysteresis 5 %", Group.CLASS_2, _dahl(0.05)),
     Condition("backlash 1 mrad", Group.CLASS_2, _plant(spring__gap=0.5e-3)),
-    Condition("n = 1, too small", Group.CLASS_2, _orders(n=1), (AWAS,)),
-    Condition("m = 2, too small", Group.CLASS_2, _orders(m=2), (AWAS,)),
-    Condition("hardening spring, n = 1", Group.CLASS_2, _hardening(1), _SEA),
     Condition(
-        "eccentric encoder of theta, 0.031 mrad",
-        Group.CLASS_2,
-        _plant(encoder__theta_eccentricity=0.031e-3),
-        _COARSE,
+        "n = 1, too small", Group.CLASS_2, lambda each: each.with_estimator({"rls.n": 1}), (AWAS,)
     ),
     Condition(
-        "eccentric encoder of theta, 0.087 mrad",
-        Group.CLASS_2,
-        _plant(encoder__theta_eccentricity=0.087e-3),
-        _COARSE,
+        "m = 2, too small", Group.CLASS_2, lambda each: each.with_estimator({"rls.m": 2}), (AWAS,)
+    ),
+    Condition("hardening spring, n = 1", Group.CLASS_2, _hardening(1), _SEA),
+    *(
+        Condition(
+            f"eccentric encoder of theta, {1e3 * size:g} mrad",
+            Group.CLASS_2,
+            _plant(encoder__theta_eccentricity=size),
+            _COARSE,
+        )
+        for size in (0.031e-3, 0.087e-3)
     ),
     *(
         Condition(
@@ -267,32 +251,29 @@ CONDITIONS: Sequence[Condition] = (
         for share in (0.02, 0.05)
     ),
     Condition("Stribeck 1.5 times", Group.CLASS_3, _plant(motor__stribeck=0.5)),
-    Condition(
-        "viscous friction -30 % in 60 s",
-        Group.CLASS_3,
-        _run(drift={"D_theta_change": -0.3}, duration=60.0),
-    ),
-    Condition(
-        "Coulomb friction -30 % in 60 s",
-        Group.CLASS_3,
-        _run(drift={"tau_coulomb_change": -0.3}, duration=60.0),
+    *(
+        Condition(
+            f"{words} friction -30 % in 60 s",
+            Group.CLASS_3,
+            _run(drift={f"{name}_change": -0.3}, duration=60.0),
+        )
+        for words, name in (("viscous", "D_theta"), ("Coulomb", "tau_coulomb"))
     ),
     *(
-        Condition(f"gain {gain:g}, prior {prior:g}", Group.GAIN, _gain(gain), torque_gain=prior)
-        for gain, prior in (
-            (0.98, 0.02),
-            (1.025, 0.02),
-            (0.95, 0.05),
-            (1.05, 0.05),
-            (0.90, 0.10),
-            (1.10, 0.10),
+        Condition(
+            f"gain {gain:g}, prior {prior:g}",
+            Group.GAIN,
+            _plant(sensor__tau_gain=gain),
+            torque_gain=prior,
         )
+        for prior, gains in ((0.02, (0.98, 1.025)), (0.05, (0.95, 1.05)), (0.1, (0.9, 1.1)))
+        for gain in gains
     ),
     Condition(
         "gain 0.9, prior 0.1, B exact",
         Group.GAIN,
-        _exact_inertia(_gain(0.90)),
-        torque_gain=0.10,
+        _exact_inertia(_plant(sensor__tau_gain=0.9)),
+        torque_gain=0.1,
     ),
     Condition("viscous friction bends at 4 rad/s", Group.NONE, _plant(motor__v_bend=4.0), _COARSE),
     Condition("torque 5 ms late", Group.NONE, _run(late=5e-3)),
@@ -302,9 +283,14 @@ CONDITIONS: Sequence[Condition] = (
     Condition("kinematic error 0.1 mrad", Group.NONE, _plant(gear__kinematic_error=0.1e-3), _SEA),
     Condition("hysteresis 10 %", Group.NONE, _dahl(0.1)),
     Condition("damping k/100 s", Group.NONE, _plant(spring__damping=1 / 100)),
-    Condition("encoders of 4096 counts", Group.NONE, _counts(4096.0)),
-    Condition("encoders of 65536 counts", Group.NONE, _counts(65536.0)),
-    Condition("encoders of 1048576 counts", Group.NONE, _counts(1048576.0)),
+    *(
+        Condition(
+            f"encoders of {counts:.0f} counts",
+            Group.NONE,
+            _plant(encoder__theta=counts, encoder__q=counts),
+        )
+        for counts in (4096.0, 65536.0, 1048576.0)
+    ),
     Condition("q read 2 ms after theta", Group.NONE, _plant(encoder__q_delay=2e-3)),
     Condition("hardening spring, n = 3", Group.NONE, _hardening(3), _SEA),
     Condition("rest for 30 s, then motion for 10 s", Group.NONE, _run(rest=30.0, duration=40.0)),

@@ -1,22 +1,67 @@
-"""One experiment: a joint, its command, how it is measured, and what the estimator is given."""
+"""A joint, its command, how it is measured, and what the estimator is given: an experiment."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import numpy as np
 
-from sigmahat.compare.misfits.joints import JOINTS, Joint
 from sigmahat.fmi.instance import Value
 from sigmahat.runs.scenario import Sine, Sines
 
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint without misfits."""
+
+    name: str
+    plant: Mapping[str, float]  # start values of RealJointPlant that differ from the default values
+    lever_arm: float | None  # mean lever arm [m]; None for a joint without a lever arm
+    torque: float  # peak of the torque command [N.m]
+    deformation: float  # usual peak of the deformation [rad]
+    order: int  # rls.n and rls.m of the estimator
+    range_phi: float  # range.phi of the estimator [rad]
+    load: float  # constant torque on the link, for conditions with a load [N.m]
+    contact: Mapping[str, float]  # start values of RealJointPlant, for conditions with a contact
+    kp: float  # gain of a control of the motor position, on the motor axis [N.m/rad]
+    kd: float  # velocity gain of this control [N.m.s/rad]
+
+
+def _elastic(name: str, k: float, counts: float, deformation: float) -> Joint:
+    """A series elastic actuator with the stiffness k [N.m/rad]."""
+    return Joint(
+        name=name,
+        plant={
+            "motor.B": 1e-4, "motor.D_theta": 5e-4, "motor.gamma": 100.0, "motor.tau_coulomb": 0.03,
+            "link.M": 0.5, "link.D_q": 0.1, "spring.k_1": k,
+            "encoder.theta": counts, "encoder.q": counts,
+        },
+        lever_arm=None, torque=0.35, deformation=deformation, order=1, range_phi=2.5 * deformation,
+        load=-10.0, contact={"contact.k": 3000.0, "contact.d": 20.0}, kp=15.0, kd=0.4,
+    )  # fmt: skip
+
+
+AWAS = Joint(
+    name="AwAS",
+    plant={
+        "motor.B": 2.3e-5, "motor.D_theta": 1e-3, "motor.gamma": 50.0, "motor.tau_coulomb": 0.02,
+        "link.M": 0.1, "link.D_q": 0.15, "spring.k_1": 0.0, "spring.k_s": 14220.0,
+        "encoder.theta": 40000.0, "encoder.q": 40000.0,
+    },
+    lever_arm=0.07, torque=0.4, deformation=0.05, order=3, range_phi=0.3,
+    load=-8.0, contact={"contact.k": 200.0, "contact.d": 1.0}, kp=2.0, kd=0.03,
+)  # fmt: skip
+SEA_1K = _elastic("SEA1k", 1000.0, 40000.0, 0.012)
+SEA_5K = _elastic("SEA5k", 5000.0, 262144.0, 0.0024)
+
+JOINTS: Sequence[Joint] = (AWAS, SEA_1K, SEA_5K)
+
 DRIFT_TIME = 60.0
 """Time in which a drift reaches its value [s]."""
-LEVER_ARM_CHANGE = 0.012
-"""Peak of the motion of a lever arm [m]."""
+_LEVER_ARM_CHANGE = 0.012  # peak of the motion of a lever arm [m]
 
 
 class Drive(Enum):
@@ -34,14 +79,10 @@ class Drive(Enum):
 class Control:
     """Control of the measured motor position, by the torque that the drive holds."""
 
-    reference: Sines
-    """Wanted position [rad]."""
-    kp: float
-    """Motor torque per position error at the gear output [N.m/rad]."""
-    kd: float
-    """Motor torque per motor velocity at the gear output [N.m.s/rad]."""
-    kq: float = 0.0
-    """Motor torque per link velocity [N.m.s/rad]."""
+    reference: Sines  # wanted position [rad]
+    kp: float  # motor torque per position error at the gear output [N.m/rad]
+    kd: float  # motor torque per motor velocity at the gear output [N.m.s/rad]
+    kq: float = 0.0  # motor torque per link velocity [N.m.s/rad]
 
 
 @dataclass(frozen=True)
@@ -105,7 +146,7 @@ def draw(joint: Joint, seed: int) -> Experiment:
     """
     rng = np.random.default_rng([seed, JOINTS.index(joint)])
     torque = _multisine(rng, (0.1, 10.0), joint.torque, (3, 6))
-    arm = _multisine(rng, (0.05, 0.5), LEVER_ARM_CHANGE, (1, 3))
+    arm = _multisine(rng, (0.05, 0.5), _LEVER_ARM_CHANGE, (1, 3))
     return Experiment(
         joint=joint,
         seed=int(rng.integers(1, 2**31)),

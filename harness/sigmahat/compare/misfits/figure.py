@@ -10,9 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from sigmahat.compare.misfits.conditions import Group
-from sigmahat.compare.misfits.job import Row
-from sigmahat.compare.misfits.joints import JOINTS
-from sigmahat.compare.misfits.score import DANGEROUS_CLAIM, DANGEROUS_ERROR
+from sigmahat.compare.misfits.experiment import JOINTS
+from sigmahat.compare.misfits.job import DANGEROUS_CLAIM, DANGEROUS_ERROR, Row
 from sigmahat.plotting.style import cycle
 
 _MARKERS = dict(zip((joint.name for joint in JOINTS), "o^s", strict=True))
@@ -32,19 +31,13 @@ def draw(rows: Sequence[Row]) -> Figure:
     axes.set_xlabel("claim: RMS of sigma_std relative to the true stiffness [%]")
     axes.set_ylabel("RMS error relative to the true stiffness [%]")
     _regions(axes, limits)
-    for row, point in zip(
-        rows[::-1], points[::-1], strict=True
-    ):  # rows of no class, which are last, below the others
+    # Rows of no class, which are last, below the others.
+    for row, point in zip(rows[::-1], points[::-1], strict=True):
         axes.plot(
-            *point,
-            marker=_MARKERS[row.joint.name],
-            color=_COLORS[row.condition.group],
-            markersize=5,
-            markeredgewidth=0.5,
-            markeredgecolor="white",
-            linestyle="none",
+            *point, marker=_MARKERS[row.joint.name], color=_COLORS[row.condition.group],
+            markersize=5, markeredgewidth=0.5, markeredgecolor="white", linestyle="none",
             label=f"{row.condition.name}, {row.joint.name}",
-        )
+        )  # fmt: skip
     figure.legend(handles=_legend(rows), loc="outside right upper", fontsize=8)
     return figure
 
@@ -63,15 +56,10 @@ def _regions(axes: Axes, limits: tuple[float, float]) -> None:
 def _legend(rows: Sequence[Row]) -> list[Line2D | Patch]:
     joints = {row.joint.name for row in rows}
     groups = {row.condition.group for row in rows}
-    return [
-        *(
-            Line2D([], [], color="#444444", marker=marker, linestyle="none", label=name)
-            for name, marker in _MARKERS.items()
-            if name in joints
-        ),
-        *(
-            Patch(color=color, label=group.value)
-            for group, color in _COLORS.items()
-            if group in groups
-        ),
+    markers = [
+        Line2D([], [], color="#444444", marker=marker, linestyle="none", label=name)
+        for name, marker in _MARKERS.items()
+        if name in joints
     ]
+    colors = [Patch(color=c, label=group.value) for group, c in _COLORS.items() if group in groups]
+    return [*markers, *colors]

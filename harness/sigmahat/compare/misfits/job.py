@@ -1,23 +1,88 @@
-"""The job of `sigmahat compare --misfits`: every row with every seed."""
+"""The job of `sigmahat compare --misfits`: every row with every seed, and its accuracy.
+
+Here, a *claim* is the standard deviation sigma_std of an estimate.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sigmahat.compare.misfits.conditions import CONDITIONS, Condition
-from sigmahat.compare.misfits.experiment import Experiment, draw
-from sigmahat.compare.misfits.joints import JOINTS, Joint
+from sigmahat.compare.misfits.experiment import JOINTS, Experiment, Joint, draw
 from sigmahat.compare.misfits.motion import Motion, run
-from sigmahat.compare.misfits.score import SETTLED, Score, score
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.opened import installed
 from sigmahat.logs.replay import replay
 from sigmahat.logs.sampling import Samples
 from sigmahat.runs.engine import Progress, run_all
+
+SETTLED = 2.0
+"""Time after the start of the torque from which an estimate is judged [s]."""
+DANGEROUS_ERROR, DANGEROUS_CLAIM = 0.1, 0.02
+"""Limits of a dangerous instant: error above, and sigma_std / estimate below its limit [1]."""
+WRONG = 0.2
+"""Error above which a confident estimate is wrong [1]."""
+_LARGEST = 10.0  # a larger relative error or claim counts as this value
+
+
+@dataclass(frozen=True)
+class Score:
+    """Sums over instants. Error and claim are relative to the true stiffness."""
+
+    instants: int = 0
+    error: float = 0.0  # squares of the error [1]
+    claim: float = 0.0  # squares of sigma_std divided by the true stiffness [1]
+    coverage: int = 0  # instants with an error of at most 1.96 sigma_std
+    dangerous: int = 0  # instants
+    confident: int = 0  # instants
+    wrong: int = 0  # instants that are confident, with an error above WRONG
+
+    def __add__(self, other: Score) -> Score:
+        return Score(
+            *(a + b for a, b in zip(vars(self).values(), vars(other).values(), strict=True))
+        )
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """Root mean squares of error and claim; percentages of instants that have the truth within
+        1.96 sigma_std, are dangerous, confident, confident and wrong [%]; nan without instants.
+        """
+        found = {name: total / (self.instants or math.nan) for name, total in vars(self).items()}
+        del found["instants"]
+        found |= {name: math.sqrt(found[name]) for name in ("error", "claim")}
+        return {name: 100 * value for name, value in found.items()}
+
+
+def score(
+    true: NDArray[np.float64],
+    sigma: NDArray[np.float64],
+    sigma_std: NDArray[np.float64],
+    confident: NDArray[np.bool_],
+) -> Score:
+    """The score of an estimate; arguments [N.m/rad] and flags of shape (N,).
+
+    Instants with a true stiffness of 0 are left out: the spring is in its dead zone.
+    """
+    engaged = true != 0
+    true, sigma, sigma_std, confident = (a[engaged] for a in (true, sigma, sigma_std, confident))
+    error = np.abs(sigma / true - 1)
+    claim = sigma_std / np.abs(true)
+    dangerous = (error > DANGEROUS_ERROR) & (sigma_std < DANGEROUS_CLAIM * np.abs(sigma))
+    return Score(
+        instants=len(true),
+        error=float(np.sum(np.minimum(error, _LARGEST) ** 2)),
+        claim=float(np.sum(np.minimum(claim, _LARGEST) ** 2)),
+        coverage=int(np.sum(np.abs(sigma - true) <= 1.96 * sigma_std)),
+        dangerous=int(np.sum(dangerous)),
+        confident=int(np.sum(confident)),
+        wrong=int(np.sum(confident & (error > WRONG))),
+    )
 
 
 def settings(experiment: Experiment, torque_gain: float) -> dict[str, Value]:
@@ -59,8 +124,7 @@ class Row:
 
     condition: Condition
     joint: Joint
-    score: Score
-    """Score over all instants of all seeds."""
+    score: Score  # score over all instants of all seeds
 
 
 def compare(

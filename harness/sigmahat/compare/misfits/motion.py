@@ -31,12 +31,9 @@ _MARGIN = 0.1  # a measured torque may be late or early by at most this time [s]
 class Motion:
     """Samples of a run, each array of shape (N,), at t = k T but for jitter."""
 
-    measured: Mapping[str, Array]
-    """Inputs of StiffnessEstimator by name."""
-    sigma: Array
-    """True stiffness [N.m/rad]; 0 in the dead zone of the spring."""
-    phi: Array
-    """True deformation [rad]."""
+    measured: Mapping[str, Array]  # inputs of StiffnessEstimator by name
+    sigma: Array  # true stiffness [N.m/rad]; 0 in the dead zone of the spring
+    phi: Array  # true deformation [rad]
 
 
 def run(experiment: Experiment) -> Motion:

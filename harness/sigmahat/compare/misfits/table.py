@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from sigmahat.compare.misfits.conditions import Group
-from sigmahat.compare.misfits.job import Row
-from sigmahat.compare.misfits.score import Score
+from sigmahat.compare.misfits.job import Row, Score
+from sigmahat.compare.table import with_headings
 from sigmahat.files.tables import aligned, title, write_csv
 
 FIGURES = tuple(Score().figures)
@@ -22,11 +22,9 @@ IN_FILE = {"wrong": "confident and over 20 % wrong"}
 def table(rows: Sequence[Row]) -> str:
     """The rows as text, with a part for each group; each part ends with the means by joint."""
     cells = [["", *(title(name, "%") for name in FIGURES)]]
-    heads: dict[int, str] = {}
+    headings: list[str] = []
     for group in Group:
         own = [row for row in rows if row.condition.group is group]
-        if own:
-            heads[len(cells)] = group.value
         cells += [
             [f"  {row.condition.name}, {row.joint.name}", *_cells(row.score.figures)] for row in own
         ]
@@ -35,10 +33,8 @@ def table(rows: Sequence[Row]) -> str:
             if len(values) > 1:
                 means = {name: float(np.mean([v[name] for v in values])) for name in FIGURES}
                 cells.append([f"  mean of {len(values)} rows, {joint}", *_cells(means)])
-    text: list[str] = []
-    for k, line in enumerate(aligned(cells)):
-        text += ["", heads[k], line] if k in heads else [line]
-    return "\n".join(text)
+        headings += [group.value] * (len(cells) - 1 - len(headings))
+    return with_headings(aligned(cells), headings)
 
 
 def write(rows: Sequence[Row], seeds: int, path: Path) -> None:
@@ -48,14 +44,7 @@ def write(rows: Sequence[Row], seeds: int, path: Path) -> None:
         path,
         [*head, *(title(IN_FILE.get(name, name), "%") for name in FIGURES)],
         (
-            [
-                row.condition.group.value,
-                row.condition.name,
-                row.joint.name,
-                seeds,
-                row.condition.torque_gain,
-                *row.score.figures.values(),
-            ]
+            [*_about(row).values(), seeds, row.condition.torque_gain, *row.score.figures.values()]
             for row in rows
         ),
     )
@@ -63,15 +52,12 @@ def write(rows: Sequence[Row], seeds: int, path: Path) -> None:
 
 def as_dicts(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """For JSON."""
-    return [
-        {
-            "class": row.condition.group.value,
-            "condition": row.condition.name,
-            "joint": row.joint.name,
-            **row.score.figures,
-        }
-        for row in rows
-    ]
+    return [{**_about(row), **row.score.figures} for row in rows]
+
+
+def _about(row: Row) -> dict[str, str]:
+    condition = row.condition
+    return {"class": condition.group.value, "condition": condition.name, "joint": row.joint.name}
 
 
 def _cells(values: dict[str, float]) -> list[str]:

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from sigmahat.fmi.master import Recording
 from sigmahat.paper.figures.panels import (
+    EVERYTHING,
     STIFFNESS,
     TORQUE,
     TRUE,
@@ -21,18 +22,16 @@ from sigmahat.paper.figures.panels import (
     error_line,
     error_lines,
     estimator_styles,
-    everything,
+    legend_above,
     limit,
     line,
     stiffness_lines,
 )
 from sigmahat.plotting.style import BLUE, GREEN, VERMILION, math_axis
 
-_LAST = 1 / 3
-"""Fraction of the run."""
+_LAST = 1 / 3  # fraction of the run
 _DOTS: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": 3}
-_COUNT = 80
-"""Number of dots, small enough that the truth is visible between the dots."""
+_COUNT = 80  # number of dots, small enough that the truth is visible between the dots
 _TIME, _PHI = math_axis("t"), math_axis("phi")
 
 
@@ -40,13 +39,12 @@ def transmission(recording: Recording) -> Figure:
     """One flexible transmission: stiffness over time, the curves, and the relative errors."""
     figure = Figure(figsize=(7.2, 8.7), layout="constrained")
     axes = figure.subplot_mosaic([["time", "time"], ["torque", "stiffness"], ["errors", "errors"]])
-    stiffness_lines(axes["time"], recording, everything(recording.t), thin=True)
+    stiffness_lines(recording, axes["time"], EVERYTHING, thin=True)
     axes["time"].legend(ncols=3)
     styles = {name: str(style["color"]) for name, style in estimator_styles(recording)}
-    over_deformation(axes["torque"], recording, "tau_e", "", styles)
-    over_deformation(axes["stiffness"], recording, "sigma", "", styles)
-    axes["torque"].set_title(_last_part(recording), fontsize=9)
-    axes["stiffness"].set_title(_last_part(recording), fontsize=9)
+    for panel, output in (("torque", "tau_e"), ("stiffness", "sigma")):
+        over_deformation(axes[panel], recording, output, "", styles)
+        axes[panel].set_title(_last_part(recording), fontsize=9)
     axes["stiffness"].legend()
     error_lines(axes["errors"], recording)
     for name in ("time", "errors"):
@@ -98,9 +96,7 @@ def _torques(axes: Axes, recording: Recording) -> None:
     total = plant["tau_e_1"] + plant["tau_e_2"]
     line(axes, t, total, color="black", linewidth=0.8, label="sum, which moves the link")
     axes.set_ylabel(TORQUE)
-    bottom, top = axes.get_ylim()
-    axes.set_ylim(bottom, top + 0.2 * (top - bottom))
-    axes.legend(loc="upper right", ncols=3)
+    legend_above(axes)
 
 
 def over_deformation(

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 # Wide and light, so that an estimate on top of the truth still shows it.
 TRUE: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 3.0, "label": "true"}
+EVERYTHING = slice(None)
 STIFFNESS = math_axis("sigma")
 TORQUE = math_axis("tau_e")
 
@@ -28,8 +29,7 @@ _ESTIMATORS: dict[str, dict[str, Any]] = {
     "MODEL": {"color": VERMILION, "linestyle": (0, (1, 1.5))},
     "RESIDUAL-paper-prior": {"color": VERMILION, "linestyle": (0, (5, 2))},
 }
-_ERROR_WINDOW = 0.1
-"""[s]"""
+_ERROR_WINDOW = 0.1  # [s]
 
 
 def time_panels(count: int) -> tuple[Figure, list[Axes]]:
@@ -37,7 +37,7 @@ def time_panels(count: int) -> tuple[Figure, list[Axes]]:
     figure = Figure(figsize=(7.2, 1.2 + 2.5 * count), layout="constrained")
     panels = figure.subplots(count, squeeze=False)[:, 0].tolist()
     for axes in panels:
-        axes.set_xlabel("time $t$ [s]")
+        axes.set_xlabel(math_axis("t"))
     return figure, panels
 
 
@@ -48,7 +48,7 @@ def line(axes: Axes, t: Array, values: Array, **style: Any) -> None:
     axes.margins(x=0.01)
 
 
-def stiffness_lines(axes: Axes, recording: Recording, window: slice, thin: bool = False) -> None:
+def stiffness_lines(recording: Recording, axes: Axes, window: slice, thin: bool = False) -> None:
     """True stiffness, and the estimate of each modality.
 
     thin  for a true stiffness that oscillates so fast that a wide line would fill an area
@@ -103,11 +103,6 @@ def legend_above(axes: Axes) -> None:
     bottom, top = axes.get_ylim()
     axes.set_ylim(bottom, top + 0.2 * (top - bottom))
     axes.legend(loc="upper right", ncols=len(axes.get_lines()))
-
-
-def everything(t: Array) -> slice:
-    """All samples."""
-    return slice(0, len(t))
 
 
 def window(t: Array, centre: float, half_width: float) -> slice:
