@@ -48,6 +48,7 @@ motor.B = 1.84e-5   # 20 % less than it is
 motor.D_theta = 1.2e-3
 motor.gamma = 50
 """
+REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\n'
 
 
 def awas_log(

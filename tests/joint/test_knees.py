@@ -27,9 +27,7 @@ def test_without_knees_it_stays_as_it_is() -> None:
 def test_more_powers_come_near_a_knee() -> None:
     knee = np.where(PHI > 0.1, 30.0, 0.0)
     found = with_knees(CUBIC, PHI, SET_POINT, SIGMA + knee)
-    slope = np.array(
-        [found.at(np.array([x]), s)[1][0] for x, s in zip(PHI, SET_POINT, strict=True)]
-    )
+    slope = [found.at(np.array([x]), s)[1][0] for x, s in zip(PHI, SET_POINT, strict=True)]
     # The least squares of a polynomial of seven powers, by another function
     powers = np.polynomial.Polynomial.fit(PHI, knee, 6)
     np.testing.assert_allclose(slope - SIGMA, powers(PHI), rtol=0, atol=1e-6)

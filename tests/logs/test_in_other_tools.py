@@ -10,7 +10,8 @@ import pytest
 from mcap.reader import make_reader
 
 import sigmahat
-from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
+from command_line import working_in
+from recorded_logs import REGRESSION, awas_log, read_estimate, write_log
 from sigmahat.cli import main
 
 
@@ -19,12 +20,11 @@ def knee(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a log, its configuration and results."""
     folder = tmp_path_factory.mktemp("knee")
     columns = awas_log(1.0, 0.3, 3.0)
-    columns["q"] = columns["q"].copy()
     columns["q"][500] = np.nan
-    log = write_log(columns, folder / "knee.parquet")
-    (folder / "knee.toml").write_text(CONFIGURATION + 'method = "FilteredRegression"\n')
-    of_log = [str(log), "--config", str(folder / "knee.toml"), "--quiet"]
-    assert main(["estimate", *of_log, "--out", str(folder), "--to", "mcap"]) == 0
+    with working_in(folder):
+        write_log(columns, Path("knee.parquet"))
+        Path("knee.toml").write_text(REGRESSION)
+        assert main(["estimate", "knee.parquet", "--quiet", "--out", ".", "--to", "mcap"]) == 0
     return folder
 
 
@@ -54,19 +54,13 @@ def test_without_a_folder_the_result_is_that_of_the_files(knee: Path) -> None:
     assert sorted(knee.iterdir()) == before
     assert result.series is not None
     table = read_estimate(knee)
-    frame = result.series.to_dataframe()
-    np.testing.assert_array_equal(
-        frame["sigma"].to_numpy().astype(np.float32), table["estimate.sigma [N.m/rad]"]
-    )
+    frame, sigma = result.series.to_dataframe(), result.series.to_xarray()["sigma"]
+    for values in (frame["sigma"].to_numpy(), sigma.to_numpy()):
+        assert np.array_equal(values.astype(np.float32), table["estimate.sigma [N.m/rad]"])
     np.testing.assert_array_equal(frame.index, table["estimate.t [s]"])
     assert frame.attrs["unit"]["tau_e"] == "N.m"
-    sigma = result.series.to_xarray()["sigma"]
-    np.testing.assert_array_equal(
-        sigma.to_numpy().astype(np.float32), table["estimate.sigma [N.m/rad]"]
-    )
-    assert sigma.attrs["unit"] == "N.m/rad"
+    assert (sigma.attrs["unit"], sigma.t.attrs["unit"]) == ("N.m/rad", "s")
     assert sigma.attrs["description"].startswith("Stiffness estimate")
-    assert sigma.t.attrs["unit"] == "s"
     assert isinstance(sigmahat.check(log, configuration), sigmahat.Checked)
 
 

@@ -44,12 +44,11 @@ def odd(fmu: Fmu, measured: list[Log]) -> Fit:
     return real_joint.replay(fmu, measured, symmetric=True)
 
 
-def test_the_general_basis_fits_the_torque(measured: list[Log], general: Fit) -> None:
+def test_the_general_basis_fits_the_torque_and_the_odd_one_does_not(
+    measured: list[Log], general: Fit, odd: Fit
+) -> None:
     assert [log.setting for log in measured] == list(SETTINGS)
     assert max(log.rms(general) for log in measured) <= 4.5
-
-
-def test_the_odd_basis_does_not(measured: list[Log], general: Fit, odd: Fit) -> None:
     for log in measured:
         assert 6.2 < log.rms(odd) < 9.0
         assert log.rms(general) < 0.5 * log.rms(odd)
@@ -58,15 +57,9 @@ def test_the_odd_basis_does_not(measured: list[Log], general: Fit, odd: Fit) -> 
 def test_the_recursion_ends_at_the_batch_fit(measured: list[Log], general: Fit) -> None:
     # GIVEN all samples at once THEN linear least squares, scaled to be well conditioned, fit alike
     unit_phi, unit_l = 0.2, 45.0
-    F = np.concatenate(
-        [
-            np.kron(
-                (log.setting / unit_l) ** np.arange(M),
-                (log.phi[:, None] / unit_phi) ** np.arange(N),
-            )
-            for log in measured
-        ]
-    )
+    settings = [(log.setting / unit_l) ** np.arange(M) for log in measured]
+    powers = [(log.phi[:, None] / unit_phi) ** np.arange(N) for log in measured]
+    F = np.concatenate([np.kron(s, p) for s, p in zip(settings, powers, strict=True)])
     solution = np.linalg.lstsq(F, np.concatenate([log.torque for log in measured]), rcond=None)[0]
     eta = solution.reshape(M, N).T / np.outer(unit_phi ** np.arange(N), unit_l ** np.arange(M))
     batch = Fit(False, eta, 0.0, 0.0)
@@ -76,14 +69,11 @@ def test_the_recursion_ends_at_the_batch_fit(measured: list[Log], general: Fit) 
         assert np.max(np.abs(difference)) < 1e-4 * span
 
 
-@pytest.mark.parametrize("basis", ["general", "odd"])
-def test_outputs_are_those_of_the_coefficients(
-    basis: str, measured: list[Log], request: pytest.FixtureRequest
-) -> None:
-    fit: Fit = request.getfixturevalue(basis)
+def test_outputs_are_those_of_the_coefficients(measured: list[Log], general: Fit, odd: Fit) -> None:
     last = measured[-1]
-    assert fit.tau_e == pytest.approx(fit.torque(last.setting, last.phi[-1:])[0], rel=1e-9)
-    assert fit.sigma == pytest.approx(fit.stiffness(last.setting, last.phi[-1]), rel=1e-9)
+    for fit in (general, odd):
+        assert fit.tau_e == pytest.approx(fit.torque(last.setting, last.phi[-1:])[0], rel=1e-9)
+        assert fit.sigma == pytest.approx(fit.stiffness(last.setting, last.phi[-1]), rel=1e-9)
 
 
 def test_a_setting_left_out_is_predicted(
@@ -109,9 +99,10 @@ def test_filtered_regression_is_no_worse(fmu: Fmu, measured: list[Log], general:
     regression = real_joint.replay(fmu, measured, False, real_joint.SPRING_ALONE)
     for log in measured:
         assert log.rms(regression) <= 1.001 * log.rms(general)
-    assert real_joint.worst(measured, regression, real_joint.HALF_WIDTH) <= real_joint.worst(
-        measured, general, real_joint.HALF_WIDTH
+    worst, of_general = (
+        real_joint.worst(measured, fit, real_joint.HALF_WIDTH) for fit in (regression, general)
     )
+    assert worst <= of_general
 
 
 def test_filtered_regression_claims_what_it_knows(
