@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 import tomlkit
 
+from command_line import Shell
 from foreign_joint import GEAR, TORQUE_CONSTANT, Array, Motion, joint
 from recorded_logs import write_log
-from sigmahat.cli import main
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.estimate import estimate
 from sigmahat.logs.readers.formats import open_log
@@ -229,19 +229,14 @@ def edited(text: str, values: dict[str, Any]) -> str:
 
 
 @pytest.mark.parametrize("style", STYLES, ids=lambda style: style.file)
-def test_from_log_to_stiffness(
-    style: Style, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_from_log_to_stiffness(style: Style, shell: Shell) -> None:
     motion = joint("theta_c" in style.ports)
-    log = style.write(style.log(motion), tmp_path / style.file)
-    chosen = ["--joint", style.joint] if style.joint else []
-    assert main(["init", str(log), "--quiet", *chosen]) == 0
-    path = tmp_path / f"{log.stem}.toml"
+    log = style.write(style.log(motion), Path(style.file))
+    shell.run(f"init {log}" + (f" --joint {style.joint}" if style.joint else ""))
+    path = log.with_suffix(".toml")
     found = tomlkit.parse(path.read_text()).unwrap()["ports"]
     assert {name: (each["column"], each.get("unit")) for name, each in found.items()} == style.ports
     path.write_text(edited(path.read_text(), {**style.sheet, **style.edits}))
-    assert main(["identify", str(log), "--quiet"]) == 0
-    (tmp_path / "out").mkdir()
-    result = estimate(open_log(log), read_configuration(path), tmp_path / "out")
+    shell.run(f"identify {log}")
+    result = estimate(open_log(log), read_configuration(path))
     assert result.sigma == pytest.approx(motion.stiffness[result.ticks - 1], rel=ACCURACY)

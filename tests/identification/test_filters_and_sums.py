@@ -101,14 +101,12 @@ def test_a_known_coefficient_and_parts_that_are_left_out() -> None:
 
 
 def test_a_check_imports_what_it_uses(tmp_path: Path) -> None:
-    log = write_log(awas_log(1.0, 0.3, 5.0), tmp_path / "log.parquet")
+    write_log(awas_log(1.0, 0.3, 5.0), tmp_path / "log.parquet")
     (tmp_path / "log.toml").write_text(CONFIGURATION)
     program = (
-        "import sys; from sigmahat.cli import main; main(sys.argv[1:]);"
+        "import sys; from sigmahat.cli import main; main(['check', 'log.parquet', '--quiet']);"
         "print({'pandas', 'scipy.signal', 'scipy.stats', 'matplotlib', 'bokeh'} & {*sys.modules})"
     )
-    arguments = ["check", str(log), "--config", str(tmp_path / "log.toml"), "--quiet"]
-    run = subprocess.run(
-        [sys.executable, "-c", program, *arguments], capture_output=True, text=True, check=True
-    )
-    assert run.stdout == "set()\n"
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"

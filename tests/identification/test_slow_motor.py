@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -26,7 +28,7 @@ def recording(seed: int, noise: float) -> Signals:
     return Signals(motor_angle, link_angle - motor_angle, np.zeros(len(t)), tau, None)
 
 
-@pytest.mark.parametrize(("f_0", "noise"), [(20.0, 0.02), (100.0, 0.02), (100.0, 0.19)])
+@pytest.mark.parametrize(("f_0", "noise"), [(20.0, 0.02), (100.0, 0.19)])
 def test_the_interval_of_the_inertia_holds_it(f_0: float, noise: float) -> None:
     """GIVEN 0.3 counts per sample, THEN samples two counts apart give an interval that holds B. All
     samples give less than B, with a small interval."""
@@ -44,12 +46,6 @@ def test_the_interval_of_the_inertia_holds_it(f_0: float, noise: float) -> None:
 
 def test_a_motor_that_moves_fast_or_rests_keeps_all_samples() -> None:
     piece = recording(1, 0.02)
-    assert _apart([piece], COUNT / 10) == 1
-    assert (
-        _apart(
-            [Signals(np.zeros(len(piece.theta)), piece.phi, piece.set_point, piece.tau, None)],
-            COUNT,
-        )
-        == 1
-    )
-    assert _apart([piece], 0.0) == 1
+    at_rest = replace(piece, theta=np.zeros(len(piece.theta)))
+    for moves, count in ((piece, COUNT / 10), (at_rest, COUNT), (piece, 0.0)):
+        assert _apart([moves], count) == 1

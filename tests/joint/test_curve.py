@@ -76,7 +76,7 @@ def truth(branch: Branch) -> tuple[Array, Array]:
     return share * (LINEAR * phi + CUBIC * phi**3), share * (LINEAR + 3 * CUBIC * phi**2)
 
 
-@pytest.mark.slow("ten logs are estimated")
+@pytest.mark.slow("twenty logs are estimated")
 def test_the_bands_hold_the_truth_as_often_as_they_say(tmp_path: Path) -> None:
     """Each log has its own noise, and a gain of the torque as likely as the configuration says."""
     gains = 1 + GAIN * np.random.default_rng(2).normal(size=20)
