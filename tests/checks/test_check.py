@@ -20,7 +20,7 @@ from checked_logs import (
     knee_log,
 )
 from command_line import Shell
-from recorded_logs import CONFIGURATION, awas_log, write_log
+from recorded_logs import CONFIGURATION, awas_log, configured, write_log
 from sigmahat.checks.check import check
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.text import sentence
@@ -123,7 +123,7 @@ def test_positions_that_do_not_change(still: list[str], words: str, tmp_path: Pa
 def test_a_link_that_is_locked_on_purpose_needs_no_column(tmp_path: Path) -> None:
     plant = {**KNEE, "contact.k": 1e7, "contact.d": 1e3}
     log = {name: x for name, x in joint_log(plant, 1e-3).items() if name != "q"}
-    text = parameters(KNEE, 1e-3).replace('[ports.q]\ncolumn = "q"', "[ports.q]\nvalue = 0")
+    text = parameters(KNEE, 1e-3).replace('ports.q.column = "q"', "ports.q.value = 0")
     assert wrong(log, text, tmp_path) == []
     recorded = LogInMemory(Path("log"), log)
     branch = estimate(recorded, read_configuration(tmp_path / "log.toml")).curve.branches[0]
@@ -135,22 +135,14 @@ def test_a_link_that_is_locked_on_purpose_needs_no_column(tmp_path: Path) -> Non
 
 def parameters(plant: Mapping[str, float], T: float) -> str:
     """A configuration of a joint in rad and N.m, its motor data some per cent wrong."""
-    ports = "".join(f'[ports.{name}]\ncolumn = "{name}"\n' for name in ("theta", "q", "tau"))
-    return f"""\
-[time]
-column = "t"
-{ports}
-[parameters]
-samplePeriod = {T}
-method = "FilteredRegression"
-motor.B = {1.05 * plant["motor.B"]}
-motor.D_theta = {0.9 * plant["motor.D_theta"]}
-motor.gamma = {plant["motor.gamma"]}
-prior.B = 0.1
-encoder.theta = {plant["encoder.theta"]}
-encoder.q = {plant["encoder.q"]}
-rls.m = 1
-"""
+    return configured(
+        f"samplePeriod = {T}",
+        f"motor.B = {1.05 * plant['motor.B']}",
+        f"motor.D_theta = {0.9 * plant['motor.D_theta']}",
+        "prior.B = 0.1",
+        "rls.m = 1",
+        *(f"{n} = {plant[n]}" for n in ("motor.gamma", "encoder.theta", "encoder.q")),
+    )
 
 
 GOOD = {
@@ -186,7 +178,7 @@ def test_no_false_alarm_with_a_set_point(tmp_path: Path) -> None:
 def test_a_wrong_sign_of_theta_and_torque_is_that_of_the_link(tmp_path: Path) -> None:
     text = parameters(KNEE, 1e-3)
     for name in ("theta", "tau"):
-        text = text.replace(f'column = "{name}"', f'column = "{name}"\nsign = -1')
+        text = f"ports.{name}.sign = -1\n{text}"
     (found,) = wrong(joint_log(KNEE, 1e-3), text, tmp_path)
     assert (found.key, found.proposed) == ("ports.q.sign", -1.0)
 

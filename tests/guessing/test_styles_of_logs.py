@@ -83,14 +83,6 @@ def german(m: Motion) -> Columns:
     }
 
 
-def write_german(columns: Mapping[str, Any], path: Path) -> Path:
-    """Semicolons and decimal commas."""
-    rows = np.column_stack(list(columns.values()))
-    lines = [";".join(f"{value:.7g}".replace(".", ",") for value in row) for row in rows]
-    path.write_text("\n".join([";".join(columns), *lines]), encoding="utf-8")
-    return path
-
-
 def french(m: Motion) -> Columns:
     """No units in the names; a lever in mm sets the stiffness."""
     return {
@@ -156,7 +148,6 @@ class Style:
     """Keys that are edited beyond that."""
     joint: str | None = None
     """For --joint."""
-    write: Callable[[Columns, Path], Path] = write_log
 
 
 CURRENT = {"ports.tau.torque_constant": TORQUE_CONSTANT}
@@ -180,7 +171,6 @@ STYLES = [
         {"theta": ("Motorwinkel [Grad]", "deg"), "q": ("Abtriebswinkel [Grad]", "deg")}
         | {"tau": ("Motorstrom [A]", "A")},
         {**CURRENT, "ports.theta.gear_ratio": GEAR},
-        write=write_german,
     ),
     Style(
         *("essai.csv", french),
@@ -231,7 +221,7 @@ def edited(text: str, values: dict[str, Any]) -> str:
 @pytest.mark.parametrize("style", STYLES, ids=lambda style: style.file)
 def test_from_log_to_stiffness(style: Style, shell: Shell) -> None:
     motion = joint("theta_c" in style.ports)
-    log = style.write(style.log(motion), Path(style.file))
+    log = write_log(style.log(motion), Path(style.file))
     shell.run(f"init {log}" + (f" --joint {style.joint}" if style.joint else ""))
     path = log.with_suffix(".toml")
     found = tomlkit.parse(path.read_text()).unwrap()["ports"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -49,6 +49,13 @@ motor.D_theta = 1.2e-3
 motor.gamma = 50
 """
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\n'
+
+
+def configured(*parameters: str, ports: Sequence[str] = ("theta", "q", "tau")) -> str:
+    """A configuration for FilteredRegression, in which each port has the column of its name."""
+    columns = [f'ports.{name}.column = "{name}"' for name in ports]
+    lines = ['time.column = "t"', *columns, "[parameters]", 'method = "FilteredRegression"']
+    return "\n".join([*lines, *parameters, ""])
 
 
 def awas_log(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from foreign_joint import GEAR, STIFFNESS, T, joint
-from recorded_logs import Array
+from recorded_logs import Array, configured
 from sigmahat.checks.check import check
 from sigmahat.checks.findings import Kind
 from sigmahat.identification.identify import identify
@@ -20,26 +20,11 @@ from sigmahat.logs.log import LogInMemory
 
 COUNTS = 2**17
 STIFFER = 4.0  # the stiffness is half as large again at one end of the motion [1/rad]
-CONFIGURATION = f"""\
-[time]
-column = "t"
-[ports]
-theta = {{column = "theta"}}
-q = {{column = "q"}}
-tau = {{column = "tau"}}
-[parameters]
-samplePeriod = {T}
-method = "FilteredRegression"
-motor.gamma = {GEAR}
-motor.B = 1e-4
-motor.D_theta = 1e-3
-prior.B = 1.0
-prior.D_theta = 1.0
-encoder.theta = {COUNTS}
-encoder.q = {COUNTS}
-rls.m = 1
-prior.torque_gain = 0.0
-"""
+CONFIGURATION = configured(
+    *(f"samplePeriod = {T}", f"motor.gamma = {GEAR}", "motor.B = 1e-4", "motor.D_theta = 1e-3"),
+    *("prior.B = 1.0", "prior.D_theta = 1.0", "prior.torque_gain = 0.0", "rls.m = 1"),
+    *(f"encoder.theta = {COUNTS}", f"encoder.q = {COUNTS}"),
+)
 ODD = "rls.symmetric = true\n"
 
 

@@ -14,52 +14,33 @@ from numpy.typing import NDArray
 
 from closed_form_joint import CUBIC, LINEAR, OF_THETA_C, closed_form_log
 from command_line import working_in
-from recorded_logs import CONFIGURATION, REGRESSION, Array, awas_log
+from recorded_logs import CONFIGURATION, REGRESSION, Array, awas_log, configured, write_log
 from sigmahat.cli import main
 from sigmahat.joint.curve import CURVE, Branch, curve_text, nearest, polynomial_in_words, read_curve
+from sigmahat.joint.sheet import Polynomial, start_of, with_knees
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.curve import reaches
 from sigmahat.logs.estimate import Estimate, estimate
 from sigmahat.logs.log import LogInMemory
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
+from sigmahat.logs.readers.formats import open_log
 
 GAIN = 0.02
 """Standard deviation of the gain of the torque: start value of prior.torque_gain."""
 Columns = dict[str, NDArray[Any]]
-CLOSED_FORM = """\
-[time]
-column = "t"
-[ports]
-theta = {column = "theta"}
-q = {column = "q"}
-theta_c = {column = "theta_c"}
-tau = {column = "tau"}
-[parameters]
-samplePeriod = 0.001
-method = "FilteredRegression"
-motor.B = 2.3e-5
-motor.D_theta = 1e-3
-motor.gamma = 50
-prior.B = 0.05
-prior.tau_coulomb = 0.02
-noise.tau = 1e-3
-encoder.theta = 262144
-encoder.q = 262144
-range.phi = 0.1
-prior.tau_e = 20
-setPoint.offset = 0
-setPoint.scale = 1
-range.setPoint = 1.2
-rls.n = 2
-rls.m = 2
-"""
+CLOSED_FORM = configured(
+    *("motor.B = 2.3e-5", "motor.D_theta = 1e-3", "motor.gamma = 50", "samplePeriod = 0.001"),
+    *("prior.B = 0.05", "prior.tau_coulomb = 0.02", "prior.tau_e = 20", "noise.tau = 1e-3"),
+    *("encoder.theta = 262144", "encoder.q = 262144", "range.phi = 0.1", "range.setPoint = 1.2"),
+    *("setPoint.offset = 0", "setPoint.scale = 1", "rls.n = 2", "rls.m = 2"),
+    ports=("theta", "q", "theta_c", "tau"),
+)
 
 
 def estimated(columns: Columns, configuration: str, folder: Path) -> Estimate:
-    folder.mkdir(exist_ok=True)
     (folder / "log.toml").write_text(configuration)
-    log = LogInMemory(folder / "log", columns)
+    log = open_log(write_log(columns, folder / "log.parquet"))
     with working_in(folder):
         return estimate(log, read_configuration(folder / "log.toml"), folder)
 
@@ -80,11 +61,13 @@ def truth(branch: Branch) -> tuple[Array, Array]:
 def test_the_bands_hold_the_truth_as_often_as_they_say(tmp_path: Path) -> None:
     """Each log has its own noise, and a gain of the torque as likely as the configuration says."""
     gains = 1 + GAIN * np.random.default_rng(2).normal(size=20)
+    (tmp_path / "log.toml").write_text(CLOSED_FORM)
+    configuration = read_configuration(tmp_path / "log.toml")
     inside: dict[str, list[float]] = {"tau_e": [], "sigma": []}
     scores = []
     for seed, gain in enumerate(gains):
         columns = closed_form("variable_stiffness", seed, float(gain))
-        found = estimated(columns, CLOSED_FORM, tmp_path).curve
+        found = estimate(LogInMemory(tmp_path / "log", columns), configuration).curve
         assert len(found.branches) == 5
         for branch in found.branches:
             torque, stiffness = truth(branch)
@@ -249,3 +232,42 @@ def test_levels_of_the_set_point_are_found() -> None:
     found = [r.set_point for r in reaches(moved, [], one_curve=False)]
     assert found == pytest.approx([1.0, 2.0, 5.0], abs=1e-3)
     assert np.array_equal(nearest(found, np.array([1.1, 1.5, 2.2, 9.0])), [0, -1, 1, -1])
+
+
+# ---- a curve with knees, as the nearest polynomial -----------------------------------------------
+
+
+OF_KNEE = Polynomial(
+    powers_of_phi=[0, 1, 2, 3],
+    powers_of_set_point=[0, 1],
+    eta=[[0.5, 0.0], [100.0, 3.0], [20.0, 0.0], [-40.0, 0.0]],
+    units=[["N.m"] * 2, ["N.m/rad"] * 2, ["N.m/rad2"] * 2, ["N.m/rad3"] * 2],
+    phi=None,
+    set_point=None,
+)
+ANGLES = np.linspace(-0.2, 0.3, 101)
+SETTINGS = np.linspace(1.0, 2.0, 101)
+SLOPE = 100 + 3 * SETTINGS + 40 * ANGLES - 120 * ANGLES**2
+
+
+def test_a_polynomial_without_knees_stays_as_it_is() -> None:
+    assert with_knees(OF_KNEE, ANGLES, SETTINGS, SLOPE) is OF_KNEE
+
+
+def test_more_powers_come_near_a_knee() -> None:
+    knee = np.where(ANGLES > 0.1, 30.0, 0.0)
+    found = with_knees(OF_KNEE, ANGLES, SETTINGS, SLOPE + knee)
+    slope = [found.at(np.array([x]), s)[1][0] for x, s in zip(ANGLES, SETTINGS, strict=True)]
+    # The least squares of a polynomial of seven powers, by another function
+    powers = np.polynomial.Polynomial.fit(ANGLES, knee, 6)
+    np.testing.assert_allclose(slope - SLOPE, powers(ANGLES), rtol=0, atol=1e-6)
+    assert found.powers_of_phi == list(range(8))
+    assert found.eta[0] == OF_KNEE.eta[0] and found.eta[1][1] == 3.0
+    torque, _ = found.at(np.array([0.0]), 1.0)
+    assert torque[0] == pytest.approx(0.5)
+
+
+def test_the_start_values_are_the_curve() -> None:
+    start = start_of(OF_KNEE)
+    assert (start["rls.n"], start["rls.m"]) == (4, 2)
+    assert start["rls.eta_0[1,1]"] == 3.0

@@ -1,16 +1,21 @@
-"""The simulated joint in the browser: settings, time, what it looks like."""
+"""The simulated joint in the browser: the numbers of the FMUs, settings, time, how it looks."""
 
 from __future__ import annotations
 
 import re
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
+import fmpy
+import numpy as np
 import pytest
 from selenium.webdriver.common.keys import Keys
 
 from live_page import LivePage, live_page
+from sigmahat.paper.scenarios import scenario
+from sigmahat.runs.engine import run
 
 _DRAWN = """
 const canvas = document.getElementById(arguments[0]), color = getComputedStyle(
@@ -24,6 +29,25 @@ let count = 0;
 for (let i = 0; i < data.length; i += 4)
   count += data[i] === r && data[i + 1] === g && data[i + 2] === b && data[i + 3] === 255;
 return count;
+"""
+
+
+WITHIN = 1e-12  # of the range of each output; what the project promises
+_SIMULATE = """
+const [method, plant, estimator, count] = given;
+joint.form.elements.method.value = METHODS[method];
+const record = { plant, estimator };
+const simulation = new Simulation(
+  joint.plant, joint.estimator, joint.starts(), joint.torques(), record);
+const found = {};
+for (const [of, names] of Object.entries(record))
+  for (const name of names) found[`${of} ${name}`] = new Float64Array(count);
+for (let k = 0; k < count; k += 1) {
+  simulation.advance();
+  for (const [of, names] of Object.entries(record))
+    names.forEach((name, i) => { found[`${of} ${name}`][k] = simulation.recorded[of].values[i]; });
+}
+return found;
 """
 
 
@@ -43,6 +67,32 @@ def simulate(page: LivePage, seconds: float) -> None:
 def error(page: LivePage) -> float:
     """Relative error of the stiffness at the end, as the page shows it [%]."""
     return float(page.text("value-error").removesuffix(" %").replace("\N{MINUS SIGN}", "-"))
+
+
+def outputs(fmu: Path) -> list[str]:
+    variables = fmpy.read_model_description(str(fmu)).modelVariables
+    return [v.name for v in variables if v.causality == "output" and v.type == "Real"]
+
+
+@pytest.mark.parametrize("method", ["Paper2011", "FilteredRegression"])
+def test_table1_in_the_browser_is_that_of_the_fmus(
+    method: str, page: LivePage, estimator_fmu: Path, plant_fmu: Path
+) -> None:
+    """The page makes its own torques, by the settings that it opens with."""
+    plant, estimator = outputs(plant_fmu), outputs(estimator_fmu)
+    table1 = scenario("table1")
+    residual = table1.estimators["RESIDUAL"]
+    residual = replace(residual, start={**residual.start, "method": method}, record=estimator)
+    of_all = replace(table1.plant, record=plant)
+    expected = run(replace(table1, plant=of_all, estimators={"RESIDUAL": residual}), seed=1)
+    found = page.arrays(_SIMULATE, method, plant, estimator, table1.steps + 1)
+    differences = {}
+    for name, values in found.items():
+        of, variable = name.split(" ")
+        series = expected.plant if of == "plant" else expected.estimators["RESIDUAL"]
+        differences[name] = np.max(np.abs(values - series[variable])), np.ptp(series[variable])
+    assert len(differences) == len(plant) + len(estimator) > 70
+    assert {name: d for name, d in differences.items() if d[0] > WITHIN * d[1]} == {}
 
 
 def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:

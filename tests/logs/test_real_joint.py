@@ -14,18 +14,25 @@ import pytest
 
 import real_joint
 from real_joint import SETTINGS, Fit, Log, M, N
-from sigmahat.fmi.instance import Fmu
+from sigmahat.checks.check import check
+from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.logs.configuration import Configuration, Port, Time
+from sigmahat.logs.readers.formats import open_log
 
 
 @pytest.fixture(scope="module")
-def measured() -> list[Log]:
+def data() -> Path:
     try:
-        folder = real_joint.folder()
+        return real_joint.folder()
     except FileNotFoundError as error:
         if "SIGMAHAT_DESR" in os.environ:
             raise
         pytest.skip(str(error))
-    return real_joint.logs(folder)
+
+
+@pytest.fixture(scope="module")
+def measured(data: Path) -> list[Log]:
+    return real_joint.logs(data)
 
 
 @pytest.fixture(scope="module")
@@ -114,3 +121,19 @@ def test_filtered_regression_claims_what_it_knows(
     for log in measured:
         assert log.rms(regression) <= 1.3 * log.rms(general)
     assert real_joint.coverage(fmu, measured, real_joint.FILTERED_REGRESSION) >= 90.0
+
+
+def test_check_finds_nothing_wrong_in_a_right_setup(data: Path) -> None:
+    """On this bench theta is the compliance of the bench, computed from the torque."""
+    ports = {
+        "theta": Port("torque_Nm", scale=8.00609748621252e-05),  # as in docs/real-joint.md
+        "q": Port("angle_rad"),
+        "tau_e_sensor": Port("torque_Nm", zero=-1.2),
+    }
+    parameters: dict[str, Value] = {
+        **{"method": "FilteredRegression", "modality": "Sensor", "samplePeriod": 1.2e-3},
+        **{"encoder.theta": 0.0, "encoder.q": 0.0},
+    }
+    configuration = Configuration(Path("desr.toml"), Time("time_s"), ports, parameters)
+    for setting in (0, 10, 25, 33, 35, 45):
+        assert not check(open_log(data / f"desr_x{setting:02d}.csv"), configuration).is_wrong

@@ -32,7 +32,7 @@ def die() -> int:
 
 def test_results_are_in_the_order_of_the_jobs() -> None:
     done: list[int] = []
-    jobs = [partial(after, 0.5, 1), partial(after, 0.0, 2), partial(after, 0.0, 3)]
+    jobs = [partial(after, seconds, value) for seconds, value in ((0.5, 1), (0.0, 2), (0.0, 3))]
     assert run_all(jobs, processes=2, progress=done.append) == [1, 2, 3]
     assert done == [1, 1, 1]
     assert [place for place, _ in spread(jobs, processes=2)][-1] == 0  # it takes longest
