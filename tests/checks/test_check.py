@@ -8,17 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from checked_logs import (
-    GEAR,
-    KNEE,
-    RIGHT,
-    SINES,
-    WRONG,
-    Array,
-    as_recorded,
-    joint_log,
-    knee_log,
-)
+from checked_logs import GEAR, KNEE, RIGHT, SINES, WRONG, Array, as_recorded, joint_log, knee_log
 from command_line import Shell
 from recorded_logs import CONFIGURATION, awas_log, configured, write_log
 from sigmahat.checks.check import check

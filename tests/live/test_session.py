@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from command_line import working_in
 from sender import CONFIGURATION, COUNTS, T, estimated, messages, of_joints
 from sigmahat.live.joint import OUTPUTS, Estimated
 from sigmahat.live.messages import Columns
@@ -26,15 +27,18 @@ SECOND = 1_000_000_000
 
 
 def live(
-    folder: Path, sent: Sequence[Columns], text: str = CONFIGURATION, start: Path | None = None
+    folder: Path,
+    sent: Sequence[Columns],
+    text: str = CONFIGURATION,
+    start: Path | None = None,
+    arrived: Callable[[int], int] = lambda number: 0,
 ) -> tuple[Session, list[Estimated]]:
-    """Everything goes through a session."""
-    config = folder / "arm.toml"
+    """Everything goes through a session; message of each number arrives at [ns]."""
+    config, out = folder / "arm.toml", folder / "out"
     config.write_text(text)
-    out = folder / "out"
-    out.mkdir(exist_ok=True)
+    out.mkdir(parents=True, exist_ok=True)
     session = Session(config, out, start)
-    ticks = [tick for each in sent for tick in session.take(each, 0)]
+    ticks = [tick for i, each in enumerate(sent) for tick in session.take(each, arrived(i))]
     return session, ticks + session.close()
 
 
@@ -102,27 +106,21 @@ def test_times_in_nanoseconds_are_not_rounded(tmp_path: Path) -> None:
 
 
 def test_without_stamps_the_time_of_arrival_counts(tmp_path: Path) -> None:
-    config = tmp_path / "arm.toml"
-    config.write_text(CONFIGURATION.replace('column = "t"', ""))
-    session = Session(config, tmp_path)
-    ticks = []
-    for i, each in enumerate(messages(500)):
-        del each["t"]
-        ticks += session.take(
-            each, 1_700_000_000 * SECOND + round(i * T * SECOND) + 50_000 * (i % 3)
-        )
-    ticks += session.close()
+    def arrived(i: int) -> int:
+        return 1_700_000_000 * SECOND + round(i * T * SECOND) + 50_000 * (i % 3)
+
+    sent = [{name: x for name, x in each.items() if name != "t"} for each in messages(500)]
+    text = CONFIGURATION.replace('column = "t"', "")
+    session, ticks = live(tmp_path, sent, text, arrived=arrived)
     assert len(ticks) == 500
     same(ticks, estimated(session.recordings[0]))
 
 
-def two_topics(rate: int = 2) -> Iterator[dict[str, float]]:
+def two_topics() -> Iterator[dict[str, float]]:
     """The link comes in messages of its own, half as often, and a little later."""
     for i, each in enumerate(messages(1000)):
         link = {"t_link": each["t"] + 7e-4, "arm/link[0]": each.pop("arm/link[0]")}
-        yield each
-        if i % rate == 0:
-            yield link
+        yield from [each, link] if i % 2 == 0 else [each]
 
 
 TWO_TOPICS = CONFIGURATION.replace('"arm/link[0]"', '"arm/link[0]"\ntime = "t_link"').replace(
@@ -158,17 +156,16 @@ def test_a_topic_that_dies_does_not_stop_the_others(tmp_path: Path) -> None:
 @pytest.mark.parametrize("again_at", [-3.0, 0.0, 60.0])
 def test_a_sender_that_starts_again_is_noticed(again_at: float, tmp_path: Path) -> None:
     """It begins a recording of its own, with which the estimator goes on."""
-    first, second = messages(3000, 1), messages(3000, 2)
+    first, second = messages(1000, 1), messages(1000, 2)
     for each in second:
         each["t"] += again_at
         each["arm/motor"] = (each["arm/motor"] + 1234) % COUNTS  # of another turn
     session, ticks = live(tmp_path, [*first, *second])
     one, two = session.recordings
-    same(ticks[:3000], estimated(one))
-    folder = tmp_path / "first"
-    folder.mkdir()
-    estimate(open_log(one), read_configuration(one.with_suffix(".toml")), folder)
-    same(ticks[3000:], estimated(two, start=folder))
+    same(ticks[:1000], estimated(one))
+    with working_in(tmp_path):
+        estimate(open_log(one), read_configuration(one.with_suffix(".toml")), tmp_path)
+    same(ticks[1000:], estimated(two, start=tmp_path))
 
 
 def test_what_was_learned_goes_on(tmp_path: Path) -> None:
@@ -194,7 +191,6 @@ def test_many_joints_in_one_message(tmp_path: Path) -> None:
     (recording,) = session.recordings
     for place, name in enumerate(names):
         own = [each for each in ticks if each.joint == name]
-        (tmp_path / name).mkdir()
         _, expected = live(tmp_path / name, each_joint[place])
         assert [each.outputs for each in own] == [each.outputs for each in expected]
         same(own, estimated(recording, joint=name))

@@ -17,23 +17,40 @@ import pytest
 import scipy.io
 from hypothesis import HealthCheck, Phase, given, settings
 
-from confined import MOST_MEMORY, Confined
-from recorded_logs import CONFIGURATION, write_log
+from confined import MOST_MEMORY, Confined, Done
+from recorded_logs import CONFIGURATION, plain_log, write_log
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.log import LogError, LogInMemory
 from sigmahat.logs.readers.formats import open_log
 from sigmahat.logs.sampling import sample
-from strange_files import TRIALS, Trial, usual
+from strange_files import TRIALS, Trial
 
 EXAMPLES = int(os.environ.get("SIGMAHAT_STRANGERS", "40"))
 """More, and others each time, if somebody asks for so many."""
 CONFIGURED = CONFIGURATION.replace("motor.B", "rls.n = 3\nmotor.B")
 
 
+Run = Callable[[str], Done]
+
+
 @pytest.fixture(scope="module")
 def confined() -> Iterator[Confined]:
     with Confined() as process:
         yield process
+
+
+@pytest.fixture
+def run(confined: Confined, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
+    """Runs a command in a folder with a configuration; nothing may be wrong with it."""
+    monkeypatch.chdir(tmp_path)
+    Path("log.toml").write_text(CONFIGURATION)
+
+    def command(words: str) -> Done:
+        done = confined.run(tmp_path, *words.split())
+        assert done.complaint() is None
+        return done
+
+    return command
 
 
 @pytest.mark.slow("hundreds of commands, each in a process of its own")
@@ -81,7 +98,7 @@ def hdf5(fill: Callable[[h5py.File], object], path: Path) -> None:
 
 
 def nothing(file: h5py.File) -> None:
-    file.create_dataset("t", shape=(10**10,), dtype="f8", chunks=(10**6,), compression="gzip")
+    file.create_dataset("a", shape=(10**10,), dtype="f8", chunks=(10**6,), compression="gzip")
 
 
 def circle(file: h5py.File) -> None:
@@ -134,48 +151,39 @@ def device(path: Path) -> None:
     ],
 )
 def test_a_log_that_is_more_than_it_seems(
-    write: Callable[[Path], None], words: str, tmp_path: Path, confined: Confined
+    write: Callable[[Path], None], words: str, run: Run
 ) -> None:
-    write(tmp_path / "log")
-    (tmp_path / "log.toml").write_text(CONFIGURATION)
-    for command in (["init", "log", "--config", "new.toml"], ["check", "log"]):
-        done = confined.run(tmp_path, *command)
-        assert done.complaint() is None
+    write(Path("log"))
+    for command in ("init log --config new.toml", "check log"):
+        done = run(command)
         assert done.status == 2 and words in done.err
 
 
 @pytest.mark.parametrize("value", [0x00, 0xFF])
-def test_a_parquet_file_with_a_damaged_description(
-    value: int, tmp_path: Path, confined: Confined
-) -> None:
+def test_a_parquet_file_with_a_damaged_description(value: int, run: Run) -> None:
     """GIVEN one wrong byte in what the file says of its columns, THEN it is read or refused.
     pyarrow ends the process for some of them, if it is asked for the size of a column."""
-    whole = write_log(usual(), tmp_path / "whole.parquet").read_bytes()
+    whole = write_log(plain_log(300), Path("whole.parquet")).read_bytes()
     begin = len(whole) - 8 - int.from_bytes(whole[-8:-4], "little")
-    (tmp_path / "log.toml").write_text(CONFIGURATION)
     for place in range(begin, begin + 70, 3):
-        (tmp_path / "log").write_bytes(whole[:place] + bytes([value]) + whole[place + 1 :])
-        done = confined.run(tmp_path, "check", "log")
-        assert done.complaint() is None
+        Path("log").write_bytes(whole[:place] + bytes([value]) + whole[place + 1 :])
+        done = run("check log")
         assert "codec" not in done.err or "not a whole Parquet file" in done.err
 
 
-def test_a_log_of_which_no_tick_can_be_used(tmp_path: Path, confined: Confined) -> None:
+def test_a_log_of_which_no_tick_can_be_used(run: Run) -> None:
     """GIVEN a scale that makes every value too large, THEN there are results, and all say so."""
-    write_log(usual(), tmp_path / "log.csv")
-    (tmp_path / "log.toml").write_text(
-        CONFIGURATION.replace('column = "theta_c"', 'column = "theta_c"\nscale = 1e300')
-    )
-    done = confined.run(tmp_path, "estimate", "log.csv", "--out", "results")
-    assert done.complaint() is None and done.status == 0, done
-    assert "300 of 300 ticks skipped" in done.out
+    write_log(plain_log(300), Path("log.csv"))
+    too_large = 'column = "theta_c"\nscale = 1e300'
+    Path("log.toml").write_text(CONFIGURATION.replace('column = "theta_c"', too_large))
+    done = run("estimate log.csv --out results")
+    assert done.status == 0 and "300 of 300 ticks skipped" in done.out
 
 
-def test_many_columns_that_move_are_guessed_in_time(tmp_path: Path, confined: Confined) -> None:
-    values = np.random.default_rng(1).integers(0, 999, (2000, 200)).astype(np.float64)
-    write_log({f"c{i}": column for i, column in enumerate(values.T)}, tmp_path / "log.csv")
-    done = confined.run(tmp_path, "init", "log.csv")
-    assert done.complaint() is None and done.status == 0
+def test_many_columns_that_move_are_guessed_in_time(run: Run) -> None:
+    values = np.random.default_rng(1).integers(0, 999, (200, 2000)).astype(np.float64)
+    write_log({f"c{i}": column for i, column in enumerate(values)}, Path("log.csv"))
+    assert run("init log.csv --config new.toml").status == 0
 
 
 @pytest.mark.parametrize(
@@ -189,38 +197,28 @@ def test_many_columns_that_move_are_guessed_in_time(tmp_path: Path, confined: Co
         ("rls.n = 3", "rls.n = [1]", "rls.n: expected Integer, got [1]"),
         ("samplePeriod = 0.001", "samplePeriod = 1e-12", "check time.unit and samplePeriod"),
         ('column = "tau"', 'column = "tau"\ndelay = 1e300', "check its delay"),
-        (
-            "[time]",
-            "".join(f"a.b.c.d{i} = 1\n" for i in range(1100)) + "[time]",
-            "at most 1000 keys",
-        ),
+        ("[time]", "\n".join(f"a.d{i} = 1" for i in range(1100)) + "\n[time]", "at most 1000 keys"),
         ("[time]", f"a = {'[' * 90}{']' * 90}\n[time]", "at most 6 tables in tables"),
         ("[time]", f"# {'x' * 300_000}\n[time]", "at most 256000 bytes"),
     ],
 )
-def test_a_configuration_that_would_take_for_ever(
-    old: str, new: str, words: str, tmp_path: Path, confined: Confined
-) -> None:
-    write_log(usual(), tmp_path / "log.csv")
+def test_a_configuration_that_would_take_for_ever(old: str, new: str, words: str, run: Run) -> None:
+    write_log(plain_log(300), Path("log.csv"))
     assert CONFIGURED.count(old) == 1
-    (tmp_path / "log.toml").write_text(CONFIGURED.replace(old, new), encoding="utf-8")
-    done = confined.run(tmp_path, "check", "log.csv")
-    assert done.complaint() is None
+    Path("log.toml").write_text(CONFIGURED.replace(old, new), encoding="utf-8")
+    done = run("check log.csv")
     assert done.status == 2 and words in done.err
 
 
-def test_names_of_columns_are_no_paths_and_no_commands(tmp_path: Path, confined: Confined) -> None:
-    folder = tmp_path / "in"
-    folder.mkdir()
-    columns = usual()
-    odd = {
-        f"../../{joint}/{n}\x1b[31m": columns[n] for joint in "xy" for n in ("theta", "q", "tau")
-    }
-    write_log({"t": columns["t"], **odd}, folder / "log.csv")
-    done = confined.run(folder, "init", "log.csv")
-    assert done.complaint() is None and "\x1b" not in done.out + done.err
-    assert {each.name for each in tmp_path.iterdir()} == {"in"}
-    assert all(each.name.startswith("log") for each in folder.iterdir())
+def test_names_of_columns_are_no_paths_and_no_commands(run: Run, tmp_path: Path) -> None:
+    columns = plain_log(300)
+    odd = {f"../{joint}/{n}\x1b[31m": columns[n] for joint in "xy" for n in ("theta", "q", "tau")}
+    write_log({"t": columns["t"], **odd}, Path("log.csv"))
+    beside = {*tmp_path.parent.iterdir()}
+    done = run("init log.csv --config log2.toml")
+    assert "\x1b" not in done.out + done.err
+    assert {*tmp_path.parent.iterdir()} == beside
+    assert all(each.name.startswith("log") for each in Path().iterdir())
 
 
 def test_a_slow_log_and_one_with_a_pause(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -245,16 +243,11 @@ def test_a_slow_log_and_one_with_a_pause(tmp_path: Path, monkeypatch: pytest.Mon
         ticks(t)
 
 
-def test_many_columns_that_repeat_are_few_bytes_and_no_bomb(
-    tmp_path: Path, confined: Confined
-) -> None:
-    t = 1e-3 * np.arange(100_000)
+def test_many_columns_that_repeat_are_few_bytes_and_no_bomb(run: Run) -> None:
     motion = np.sin(0.01 * (np.arange(100_000) % 628))
-    used = {"t": t, "theta": motion, "q": motion, "theta_c": motion, "tau": motion}
-    columns = {**used, **{f"c{i}": motion for i in range(195)}}
-    write_log(columns, tmp_path / "log.parquet")
-    (tmp_path / "log.toml").write_text(CONFIGURATION)
-    done = confined.run(tmp_path, "check", "log.parquet")
+    names = ["theta", "q", "theta_c", "tau", *(f"c{i}" for i in range(195))]
+    write_log({"t": 1e-3 * np.arange(100_000), **dict.fromkeys(names, motion)}, Path("log.parquet"))
+    done = run("check log.parquet")
     assert done.status in (0, 1) and done.megabytes < MOST_MEMORY, done.err
 
 
