@@ -69,9 +69,7 @@ def test_a_proposed_delay_puts_the_torque_right(tmp_path: Path) -> None:
     ("gear", "gamma"),
     [(10.0, True), (1000.0, False), (0.01, True), (-100.0, False), (101.0, True), (101.0, False)],
 )
-def test_a_wrong_gear_ratio_is_named_with_the_right_one(
-    gear: float, gamma: bool, tmp_path: Path
-) -> None:
+def test_a_wrong_gear_ratio_is_named(gear: float, gamma: bool, tmp_path: Path) -> None:
     """Whether motor.gamma is as wrong, because it is that of the encoder, or right."""
     text = RIGHT.replace("gear_ratio = 100", f"gear_ratio = {gear}")
     if gamma:

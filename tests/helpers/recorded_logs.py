@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from plant_runs import run_awas, sinusoids, times
 
 Array = NDArray[np.float64]
+Columns = dict[str, Array]
 T = 1e-3
 LEAD = 0.0025 / (2 * np.pi)
 RETRACTED = {"initial.theta_c": 0.030 / LEAD}  # r(0) = 70 mm
@@ -64,7 +65,7 @@ def awas_log(
     duration: float = 15.0,
     seed: int = 1,
     plant: Mapping[str, float] = MappingProxyType({}),
-) -> dict[str, Array]:
+) -> Columns:
     """AwAS with friction and noise, tau = amplitude sin(2 pi f t): ports, t, true stiffness.
 
     plant  other start values of it
@@ -76,7 +77,7 @@ def awas_log(
     return {"t": t, **{port: run[name] for port, name in COLUMNS.items()}, "true": run["sigma"]}
 
 
-def plain_log(rows: int = 2000) -> dict[str, Array]:
+def plain_log(rows: int = 2000) -> Columns:
     """A made-up motion without noise: ports and t, 1 ms apart."""
     t = T * np.arange(rows, dtype=np.float64)
     motion = np.sin(5 * t)

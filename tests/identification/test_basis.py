@@ -81,9 +81,7 @@ def test_a_linear_spring_hardly_loses(path: Path) -> None:
 
 
 @pytest.mark.parametrize(("stiffer", "is_named"), [(0.0, False), (STIFFER, True)])
-def test_check_names_a_spring_that_is_not_symmetric(
-    stiffer: float, is_named: bool, path: Path
-) -> None:
+def test_check_names_an_asymmetric_spring(stiffer: float, is_named: bool, path: Path) -> None:
     found = check(log_of(stiffer, 3), read_configuration(path)).findings
     named = [each for each in found if each.kind is Kind.ASYMMETRY]
     assert [(each.key, each.proposed) for each in named] == [("rls.symmetric", False)] * is_named

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recorded_logs import CONFIGURATION, Array, T, awas_log
+from recorded_logs import CONFIGURATION, Array, Columns, T, awas_log
 from sigmahat.identification.coherence import TorqueNoise, coherent_range
 from sigmahat.identification.identify import identify
 from sigmahat.identification.quantities import Identified
@@ -26,7 +26,7 @@ def path(tmp_path: Path) -> Path:
     return path
 
 
-def identified(log: dict[str, Array], path: Path) -> Identified:
+def identified(log: Columns, path: Path) -> Identified:
     return identify(LogInMemory(Path("log"), log), read_configuration(path))
 
 
@@ -34,10 +34,8 @@ def identified(log: dict[str, Array], path: Path) -> Identified:
     ("keys", "times"),
     [("", 1.0), ('unit = "deg"\nsign = -1\nzero = 0.5\ngear_ratio = 2.0', -360 / math.pi)],
 )
-def test_the_zero_is_moved_to_where_the_spring_has_no_torque(
-    keys: str, times: float, path: Path
-) -> None:
-    log = awas_log(1.0, 0.3)
+def test_the_zero_is_where_the_spring_has_no_torque(keys: str, times: float, path: Path) -> None:
+    log = awas_log(1.0, 0.3, 8.0)
     true, offset = log["q"], 15e-3
     log = {**log, "q": times * (true + offset) + (0.5 if keys else 0.0)}
     path.write_text(CONFIGURATION.replace('"q"', f'"q"\n{keys}'))
@@ -55,7 +53,7 @@ def test_the_zero_is_moved_to_where_the_spring_has_no_torque(
 
 
 def test_a_right_zero_is_left(path: Path) -> None:
-    found = identified(awas_log(3.0, 0.3), path)
+    found = identified(awas_log(3.0, 0.3, 8.0), path)
     assert found.zero == 0
     assert abs(found.quantities["zero"].value) <= found.quantities["zero"].half_width
     assert "ports.q.zero" not in write(found, path)
@@ -74,21 +72,21 @@ def motor(noise_of_phi: float) -> Signals:
     return Signals(theta, phi + rng.normal(0, noise_of_phi, len(t)), np.ones_like(t), tau, None)
 
 
-def recorded(joint: Signals) -> dict[str, Array]:
+def recorded(joint: Signals) -> Columns:
     t: Array = np.arange(len(joint.theta)) * np.float64(T)
     q = joint.theta + joint.phi
     return {"t": t, "theta": joint.theta, "q": q, "theta_c": 0 * t, "tau": joint.tau}
 
 
 def test_with_a_wrong_sign_the_zero_stays(path: Path) -> None:
-    log = awas_log(1.0, 0.3)
+    log = awas_log(1.0, 0.3, 8.0)
     log = {**log, "q": 2 * log["theta"] - log["q"] + 15e-3}  # phi with the other sign
     found = identified(log, path)
     assert not found.quantities["zero"].determined
     assert "ports.q.zero" not in write(found, path)
 
 
-def test_encoders_read_at_different_times_get_a_prior_that_holds_the_friction_they_show(
+def test_the_prior_holds_what_encoders_read_at_different_times_show(
     path: Path,
 ) -> None:
     # GIVEN a link encoder read 20 ms late: k times -20 ms times the velocity looks like friction
@@ -106,9 +104,7 @@ def test_encoders_read_at_different_times_get_a_prior_that_holds_the_friction_th
 
 
 @pytest.mark.parametrize(("noise_of_phi", "is_noise"), [(1e-7, False), (2e-3, True)])
-def test_a_deformation_that_is_noise_limits_the_bandwidth(
-    noise_of_phi: float, is_noise: bool
-) -> None:
+def test_a_noisy_deformation_limits_the_bandwidth(noise_of_phi: float, is_noise: bool) -> None:
     noise = TorqueNoise(torque=9e-6, position=0.0, inertia=1e-3, T=T)
     limit = coherent_range(motor(noise_of_phi), 50.0, 40.0, noise)
     assert (limit < 6.0) if is_noise else limit == math.inf

@@ -29,6 +29,7 @@ CASES = {
 }
 SUFFIXES = {"ssv": ".ssv", "matlab": ".m", "modelica": ".mo"}
 K_S = 14220.0
+Values = dict[str, Any]
 
 
 def estimated(folder: Path, configuration: str, duration: float = 10.0) -> Path:
@@ -65,8 +66,8 @@ def knee(original: Path, shell: Shell) -> Shell:
     return shell
 
 
-def sheet_of(folder: Path) -> dict[str, Any]:
-    sheet: dict[str, Any] = json.loads((folder / "knee" / "joint.json").read_text())
+def sheet_of(folder: Path) -> Values:
+    sheet: Values = json.loads((folder / "knee" / "joint.json").read_text())
     return sheet
 
 
@@ -165,13 +166,13 @@ def test_paper2011_claims_no_interval(tmp_path: Path) -> None:
 # ---- into the FMU -------------------------------------------------------------------------------
 
 
-def initial_outputs(start: dict[str, Any]) -> Any:
+def initial_outputs(start: Values) -> Any:
     """Outputs of the FMU before any sample, with FMPy alone."""
     path, T = sigmahat.fmu("StiffnessEstimator"), 1e-3
     return fmpy.simulate_fmu(path, start_values=start, stop_time=T, output_interval=T)[0]
 
 
-def for_fmpy(start: dict[str, Any]) -> dict[str, Any]:
+def for_fmpy(start: Values) -> Values:
     """FMPy takes the number of an item of an enumeration, and not its name."""
     variables = fmpy.read_model_description(sigmahat.fmu("StiffnessEstimator")).modelVariables
     kinds = {v.name: v.declaredType for v in variables if v.type == "Enumeration"}
@@ -179,7 +180,7 @@ def for_fmpy(start: dict[str, Any]) -> dict[str, Any]:
     return {n: items[n].get(v, v) if n in items else v for n, v in start.items()}
 
 
-def from_ssv(path: Path) -> dict[str, Any]:
+def from_ssv(path: Path) -> Values:
     parameters = read_ssv(str(path), validate=True).parameters
     read: dict[str, Callable[[str], Any]] = {
         **{"Real": float, "Integer": int},
@@ -211,14 +212,14 @@ def test_the_fmu_begins_with_what_was_learned_to_the_last_bit(case: Path, tmp_pa
 # ---- files for other tools ----------------------------------------------------------------------
 
 
-Read = Callable[[Path], dict[str, Any]]
+Read = Callable[[Path], Values]
 
 
-def from_matlab(path: Path) -> dict[str, Any]:
+def from_matlab(path: Path) -> Values:
     """Of a MATLAB function: what each line of it sets."""
     lines = path.read_text().splitlines()
     assert lines[0] == f"function p = {path.stem}" and lines[-1] == "end"
-    found: dict[str, Any] = {}
+    found: Values = {}
     for line in lines[1:-1]:
         if not line.startswith("%"):
             name, value = re.fullmatch(r"p\.([\w.]+) = ([^;%]+|\[.*\]);(?: % \S+)?", line).groups()  # type: ignore[union-attr]
@@ -226,10 +227,10 @@ def from_matlab(path: Path) -> dict[str, Any]:
     return with_curve(found)
 
 
-def from_modelica(path: Path) -> dict[str, Any]:
+def from_modelica(path: Path) -> Values:
     """Of a Modelica record with records in it."""
-    found: dict[str, Any] = {}
-    inside: list[tuple[str, dict[str, Any]]] = []
+    found: Values = {}
+    inside: list[tuple[str, Values]] = []
     named = r"parameter (Real|Integer|Boolean) (\w+)(?:\[(\d+), (\d+)\])?(\(unit=\"[^\"]+\"\))?"
     for line in path.read_text().splitlines():
         text = line.strip()
@@ -264,7 +265,7 @@ def literal(text: str) -> Any:
     return {"true": True, "false": False}[text] if text[0] in "tf" else ast.literal_eval(text)
 
 
-def with_curve(found: dict[str, Any]) -> dict[str, Any]:
+def with_curve(found: Values) -> Values:
     rows = found.pop("rls.eta_0")
     curve = {f"rls.eta_0[{i},{j}]": x for i, row in enumerate(rows) for j, x in enumerate(row)}
     return {**found, **curve}
@@ -346,7 +347,7 @@ def test_wrong_arguments(arguments: str, words: str, knee: Shell) -> None:
     ],
 )
 def test_a_sheet_that_does_not_fit_is_refused(
-    of_sheet: dict[str, Any], of_start: dict[str, Any], words: str, knee: Shell
+    of_sheet: Values, of_start: Values, words: str, knee: Shell
 ) -> None:
     sheet = sheet_of(Path())
     sheet["start_values"] |= of_start

@@ -16,6 +16,7 @@ from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.cli import main
 
 FILES = {"mjcf": "joint.xml", "sdf": "joint.sdf", "urdf": "joint.urdf", "drake": "joint.drake.sdf"}
+Sheet = dict[str, Any]
 SETTING = 'method = "FilteredRegression"\nprior.B = 0.2\nprior.tau_coulomb = 0.01\n'
 
 
@@ -34,30 +35,32 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def sheet(results: Path) -> dict[str, Any]:
-    read: dict[str, Any] = json.loads((results / "joint.json").read_text())
+def sheet(results: Path) -> Sheet:
+    read: Sheet = json.loads((results / "joint.json").read_text())
     return read
 
 
-def torque(sheet: dict[str, Any], phi: Any) -> Any:
+def torque(sheet: Sheet, phi: Any) -> Any:
     """As the page says: sum of eta[i][j] set-point^powers_of_set_point[j] phi^powers_of_phi[i]."""
     p, setting = sheet["polynomial"], sheet["at_the_end"]["set_point"]
     of_phi = np.array(p["eta"]) @ setting ** np.array(p["powers_of_set_point"], float)
     return of_phi @ phi ** np.array(p["powers_of_phi"])[:, None]
 
 
-def test_the_spring_of_mjcf_is_the_polynomial(results: Path, sheet: dict[str, Any]) -> None:
+def test_the_spring_of_mjcf_is_the_polynomial(results: Path, sheet: Sheet) -> None:
     tree: Any = etree.parse(results / FILES["mjcf"])
     hinge = tree.find(".//joint[@name='joint_flexibility']")
     stiffness = [float(each) for each in hinge.get("stiffness").split()]
-    phi = np.linspace(*sheet["polynomial"]["phi"], 50)
+    low, high = sheet["polynomial"]["phi"]
+    phi = np.linspace(low, high, 50)
     x = phi - float(hinge.get("springref"))
     found = sum(k * x ** (i + 1) for i, k in enumerate(stiffness))
     np.testing.assert_allclose(found, torque(sheet, phi), atol=1e-9 * np.abs(found).max())
 
 
-def test_the_other_formats_have_the_nearest_line(results: Path, sheet: dict[str, Any]) -> None:
-    phi = np.linspace(*sheet["polynomial"]["phi"], 201)
+def test_the_other_formats_have_the_nearest_line(results: Path, sheet: Sheet) -> None:
+    low, high = sheet["polynomial"]["phi"]
+    phi = np.linspace(low, high, 201)
     slope, offset = np.polyfit(phi, torque(sheet, phi), 1)
     for kind, places in {
         "sdf": (".//spring_stiffness", ".//spring_reference"),
@@ -70,9 +73,7 @@ def test_the_other_formats_have_the_nearest_line(results: Path, sheet: dict[str,
         assert reference == pytest.approx(-offset / slope, rel=1e-6)
 
 
-def test_a_parser_of_urdf_reads_the_motor_behind_its_gear(
-    results: Path, sheet: dict[str, Any]
-) -> None:
+def test_a_parser_of_urdf_reads_the_motor(results: Path, sheet: Sheet) -> None:
     parameters = sheet["parameters"]
     robot = URDF.from_xml_file(str(results / FILES["urdf"]))
     gamma = parameters["gamma"]["value"]
@@ -84,7 +85,7 @@ def test_a_parser_of_urdf_reads_the_motor_behind_its_gear(
     assert rotor.izz == pytest.approx(gamma**2 * parameters["B"]["value"])
 
 
-def test_friction_has_no_direction(sheet: dict[str, Any], shell: Shell) -> None:
+def test_friction_has_no_direction(sheet: Sheet, shell: Shell) -> None:
     sheet["parameters"]["gamma"] |= {"value": -7.0, "interval": None}
     sheet["parameters"]["tau_coulomb"] |= {"value": 0.5, "interval": None}
     Path("joint.json").write_text(json.dumps(sheet))
@@ -93,7 +94,7 @@ def test_friction_has_no_direction(sheet: dict[str, Any], shell: Shell) -> None:
     assert robot.joint_map["joint_motor"].dynamics.friction == pytest.approx(3.5)
 
 
-def test_ranges_contain_the_values(results: Path, sheet: dict[str, Any]) -> None:
+def test_ranges_contain_the_values(results: Path, sheet: Sheet) -> None:
     tree: Any = etree.parse(results / FILES["mjcf"])
     ranges = {
         n.get("name"): [float(x) for x in n.get("data").split()] for n in tree.iter("numeric")
@@ -107,9 +108,7 @@ def test_ranges_contain_the_values(results: Path, sheet: dict[str, Any]) -> None
     assert high - 1 == pytest.approx(1 - low)
 
 
-def test_a_file_says_where_it_is_from_and_how_certain_it_is(
-    results: Path, sheet: dict[str, Any]
-) -> None:
+def test_a_file_says_where_it_is_from(results: Path, sheet: Sheet) -> None:
     for name in FILES.values():
         text = (results / name).read_text()
         assert sheet["logs"][0]["sha256"] in text
@@ -117,7 +116,7 @@ def test_a_file_says_where_it_is_from_and_how_certain_it_is(
         assert "A placeholder" in text
 
 
-def test_a_sheet_without_motion_is_refused(sheet: dict[str, Any], shell: Shell) -> None:
+def test_a_sheet_without_motion_is_refused(sheet: Sheet, shell: Shell) -> None:
     sheet["polynomial"]["phi"] = None
     Path("joint.json").write_text(json.dumps(sheet))
     assert "expected the sheet of a joint that moved" in shell.refused("export . --to mjcf")

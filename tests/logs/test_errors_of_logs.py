@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from command_line import Shell
-from recorded_logs import CONFIGURATION, Array, plain_log, write_log
+from recorded_logs import CONFIGURATION, Columns, plain_log, write_log
 
 
 @pytest.fixture(autouse=True)
@@ -55,31 +55,31 @@ def test_missing_file_and_folder(shell: Shell) -> None:
     assert "sigmahat init" in shell.refused("estimate other.csv")
 
 
-Columns = dict[str, np.ndarray]
+Log = dict[str, np.ndarray]
 
 
-def text(log: dict[str, Array]) -> Columns:
+def text(log: Columns) -> Log:
     return {**log, "q": np.array(["1.0", *["fast"] * 1999])}
 
 
-def one_word(log: dict[str, Array]) -> Columns:
+def one_word(log: Columns) -> Log:
     """A word among numbers, and an empty cell before it."""
     q = log["q"].astype(str)
     q[700], q[300] = "abc", ""
     return {**log, "q": q}
 
 
-def back(log: dict[str, Array]) -> Columns:
+def back(log: Columns) -> Log:
     log["t"][1500] = log["t"][1400]
     return {**log}
 
 
-def back_since_1970(log: dict[str, Array]) -> Columns:
+def back_since_1970(log: Columns) -> Log:
     t = 1_700_000_000_000_000_000 + np.round(1e9 * back(log)["t"]).astype(np.int64)
     return {**log, "t": t}
 
 
-def nothing(log: dict[str, Array]) -> Columns:
+def nothing(log: Columns) -> Log:
     return {**log, "q": np.full(2000, np.nan)}
 
 
@@ -98,7 +98,7 @@ def nothing(log: dict[str, Array]) -> Columns:
     ],
 )
 def test_values_that_do_not_fit(
-    change: Callable[[dict[str, Array]], Columns], words: str, suffixes: list[str], shell: Shell
+    change: Callable[[Columns], Log], words: str, suffixes: list[str], shell: Shell
 ) -> None:
     if change is back_since_1970:
         Path("log.toml").write_text(CONFIGURATION.replace('"t"', '"t"\nunit = "ns"'))

@@ -17,7 +17,7 @@ from command_line import Shell
 from recorded_logs import (
     CONFIGURATION,
     REGRESSION,
-    Array,
+    Columns,
     awas_log,
     plain_log,
     read_estimate,
@@ -45,7 +45,7 @@ def table1() -> Recording:
 
 
 @pytest.fixture(scope="module")
-def log(table1: Recording) -> dict[str, Array]:
+def log(table1: Recording) -> Columns:
     return {"t": table1.t, **{port: table1.plant[name] for port, name in SENSORS.items()}}
 
 
@@ -58,7 +58,7 @@ def estimated(shell: Shell, log: Path, configuration: str = AS_IN_THE_FMU) -> pa
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet", ".mat", ".h5"])
 def test_replay_is_the_cosimulation(
-    suffix: str, table1: Recording, log: dict[str, Array], shell: Shell
+    suffix: str, table1: Recording, log: Columns, shell: Shell
 ) -> None:
     table = estimated(shell, write_log(log, Path(f"log{suffix}")))
     assert set(table.column_names[: len(log)]) == set(log)
@@ -76,7 +76,7 @@ def test_replay_is_the_cosimulation(
     assert {path.suffix for path in Path("out").iterdir()} == {".json", ".csv", table_suffix}
 
 
-def test_mat_of_version_7_3(table1: Recording, log: dict[str, Array], shell: Shell) -> None:
+def test_mat_of_version_7_3(table1: Recording, log: Columns, shell: Shell) -> None:
     # GIVEN what MATLAB writes: HDF5 behind 512 bytes, vectors as rows of a matrix, a structure
     path = Path("log.mat")
     with h5py.File(path, "w", userblock_size=512) as file:
@@ -88,7 +88,7 @@ def test_mat_of_version_7_3(table1: Recording, log: dict[str, Array], shell: She
     assert np.array_equal(table[SIGMA], np.float32(table1.estimators["RESIDUAL"]["sigma"]))
 
 
-def test_a_gap_is_skipped_as_the_estimator_skips_it(log: dict[str, Array], shell: Shell) -> None:
+def test_a_gap_is_skipped_as_the_estimator_skips_it(log: Columns, shell: Shell) -> None:
     # GIVEN rows taken out, and the same rows with nan instead
     lost = np.r_[4000:4300]
     holes = {name: np.delete(values, lost) for name, values in log.items()}
@@ -110,9 +110,7 @@ def test_a_gap_is_skipped_as_the_estimator_skips_it(log: dict[str, Array], shell
     assert np.all(b[lost] == b[lost[0] - 1])
 
 
-def test_units_sign_zero_gear_and_wrap(
-    table1: Recording, log: dict[str, Array], shell: Shell
-) -> None:
+def test_units_sign_zero_gear_and_wrap(table1: Recording, log: Columns, shell: Shell) -> None:
     # GIVEN the same log as a drive would write it
     counts = np.round(log["theta"] * 40000 / (2 * np.pi))
     columns = {
@@ -140,9 +138,7 @@ samplePeriod = 0.001
     assert table[SIGMA].to_numpy()[1000:] == pytest.approx(expected[1000:], rel=1e-6)
 
 
-def test_slow_and_uneven_columns_are_interpolated_and_said(
-    log: dict[str, Array], shell: Shell
-) -> None:
+def test_slow_and_uneven_columns_are_interpolated(log: Columns, shell: Shell) -> None:
     # GIVEN theta_c every 10 ms, empty in between, and time stamps of the rows that jitter
     rng = np.random.default_rng(1)
     t = log["t"] + rng.uniform(-2e-4, 2e-4, len(log["t"]))
@@ -158,7 +154,7 @@ def test_slow_and_uneven_columns_are_interpolated_and_said(
     assert sigma[5000:-10] == pytest.approx(truth[5000:-10], rel=0.05)
 
 
-def test_columns_with_times_of_their_own(log: dict[str, Array], shell: Shell) -> None:
+def test_columns_with_times_of_their_own(log: Columns, shell: Shell) -> None:
     # GIVEN data sets of several lengths THEN ticks at their common samples are exact
     columns = {**log, "slow_t": log["t"][::10], "theta_c": log["theta_c"][::10]}
     configuration = AS_IN_THE_FMU.replace(
@@ -171,7 +167,7 @@ def test_columns_with_times_of_their_own(log: dict[str, Array], shell: Shell) ->
     assert found == pytest.approx(100 + scale * columns["theta_c"], rel=1e-12)
 
 
-def test_other_columns_stay_as_they_are(log: dict[str, Array], shell: Shell) -> None:
+def test_other_columns_stay_as_they_are(log: Columns, shell: Shell) -> None:
     path = write_log({**log, "note": np.array(["x, y"] * len(log["t"]))}, Path("log.csv"))
     estimated(shell, path)
     ours = path.read_text().splitlines()
@@ -182,7 +178,7 @@ def test_other_columns_stay_as_they_are(log: dict[str, Array], shell: Shell) -> 
         assert '"x, y"' in theirs[row]
 
 
-def test_json_and_quiet(log: dict[str, Array], shell: Shell) -> None:
+def test_json_and_quiet(log: Columns, shell: Shell) -> None:
     write_log(log, Path("log.parquet"))
     Path("log.toml").write_text(AS_IN_THE_FMU)
     summary = shell.json("estimate log.parquet --out out")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ import pyarrow as pa
 import pytest
 
 from command_line import Shell, working_in
-from recorded_logs import CONFIGURATION, REGRESSION, Array, awas_log, read_estimate, write_log
+from recorded_logs import CONFIGURATION, REGRESSION, Columns, awas_log, read_estimate, write_log
 from sigmahat.cli import main
 from sigmahat.files.output import sha256
 
@@ -27,11 +27,11 @@ SECOND = "estimate second.parquet --config joint.toml --out second"
 
 
 @pytest.fixture(scope="module")
-def log() -> dict[str, Array]:
+def log() -> Columns:
     return awas_log(1.0, 0.3, duration=4.0)
 
 
-def part(log: Mapping[str, Array], rows: slice) -> dict[str, Array]:
+def part(log: Columns, rows: slice) -> Columns:
     """Rows of a log, whose times begin at 0."""
     cut = {name: values[rows] for name, values in log.items()}
     return {**cut, "t": cut["t"] - cut["t"][0]}
@@ -44,14 +44,14 @@ def estimate(name: str, *options: str) -> pa.Table:
     return read_estimate(Path(name))
 
 
-def write_halves(log: Mapping[str, Array], configuration: str) -> None:
+def write_halves(log: Columns, configuration: str) -> None:
     write_log(part(log, slice(0, HALF)), Path("first.parquet"))
     write_log(part(log, slice(HALF, None)), Path("second.parquet"))
     Path("joint.toml").write_text(configuration)
 
 
 @pytest.fixture(scope="module")
-def original(log: dict[str, Array], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def original(log: Columns, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("original")
     with working_in(folder):
         write_halves(log, REGRESSION)
@@ -72,9 +72,7 @@ def learned(original: Path, shell: Shell) -> Shell:
     [(REGRESSION, 1), (CONFIGURATION, 7), (SENSOR + 'modality = "Sensor"\n', 1)],
     ids=["FilteredRegression", "Paper2011", "Sensor"],
 )
-def test_two_logs_give_what_one_log_with_a_gap_gives(
-    configuration: str, ticks: int, log: dict[str, Array]
-) -> None:
+def test_two_logs_are_one_log_with_a_gap(configuration: str, ticks: int, log: Columns) -> None:
     """To the last bit. Paper2011 needs a gap of 2 / K_I = 6.7 ms, so that it starts again."""
     write_halves(log, configuration)
     lost = np.full(ticks, np.nan)
@@ -113,7 +111,7 @@ def test_what_was_learned_from_is_said_and_handed_on(learned: Shell) -> None:
 
 
 @pytest.mark.usefixtures("learned")
-def test_columns_of_the_second_log_may_differ(log: dict[str, Array]) -> None:
+def test_columns_of_the_second_log_may_differ(log: Columns) -> None:
     expected = estimate("second", "--start-from", "first")[SIGMA].to_numpy()
     renamed = part(log, slice(HALF, None))
     renamed["angle_deg"] = np.degrees(renamed.pop("q"))
@@ -145,7 +143,10 @@ def test_another_configuration_is_refused(old: str, new: str, words: str, learne
     assert "first/state.json" in line and "contains its parameters: use these" in line
 
 
-def change(**values: Any) -> Callable[[dict[str, Any]], None]:
+Edit = Callable[[dict[str, Any]], None]
+
+
+def change(**values: Any) -> Edit:
     return lambda state: state.update(values)
 
 
@@ -174,9 +175,7 @@ def cut(state: dict[str, Any]) -> None:
         (cut, "truncated"),
     ],
 )
-def test_another_or_a_damaged_state_is_refused(
-    edit: Callable[[dict[str, Any]], None], words: str, learned: Shell
-) -> None:
+def test_another_or_a_damaged_state_is_refused(edit: Edit, words: str, learned: Shell) -> None:
     path = Path("first/state.json")
     state = json.loads(path.read_text())
     edit(state)

@@ -19,6 +19,8 @@ from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.logs.configuration import Configuration, Port, Time
 from sigmahat.logs.readers.formats import open_log
 
+Logs = list[Log]
+
 
 @pytest.fixture(scope="module")
 def data() -> Path:
@@ -31,7 +33,7 @@ def data() -> Path:
 
 
 @pytest.fixture(scope="module")
-def measured(data: Path) -> list[Log]:
+def measured(data: Path) -> Logs:
     return real_joint.logs(data)
 
 
@@ -42,17 +44,17 @@ def fmu(estimator_fmu: Path) -> Iterator[Fmu]:
 
 
 @pytest.fixture(scope="module")
-def general(fmu: Fmu, measured: list[Log]) -> Fit:
+def general(fmu: Fmu, measured: Logs) -> Fit:
     return real_joint.replay(fmu, measured, symmetric=False)
 
 
 @pytest.fixture(scope="module")
-def odd(fmu: Fmu, measured: list[Log]) -> Fit:
+def odd(fmu: Fmu, measured: Logs) -> Fit:
     return real_joint.replay(fmu, measured, symmetric=True)
 
 
-def test_the_general_basis_fits_the_torque_and_the_odd_one_does_not(
-    measured: list[Log], general: Fit, odd: Fit
+def test_the_general_basis_fits_the_torque_the_odd_one_does_not(
+    measured: Logs, general: Fit, odd: Fit
 ) -> None:
     assert [log.setting for log in measured] == list(SETTINGS)
     assert max(log.rms(general) for log in measured) <= 4.5
@@ -61,7 +63,7 @@ def test_the_general_basis_fits_the_torque_and_the_odd_one_does_not(
         assert log.rms(general) < 0.5 * log.rms(odd)
 
 
-def test_the_recursion_ends_at_the_batch_fit(measured: list[Log], general: Fit) -> None:
+def test_the_recursion_ends_at_the_batch_fit(measured: Logs, general: Fit) -> None:
     # GIVEN all samples at once THEN linear least squares, scaled to be well conditioned, fit alike
     unit_phi, unit_l = 0.2, 45.0
     settings = [(log.setting / unit_l) ** np.arange(M) for log in measured]
@@ -76,16 +78,14 @@ def test_the_recursion_ends_at_the_batch_fit(measured: list[Log], general: Fit) 
         assert np.max(np.abs(difference)) < 1e-4 * span
 
 
-def test_outputs_are_those_of_the_coefficients(measured: list[Log], general: Fit, odd: Fit) -> None:
+def test_outputs_are_those_of_the_coefficients(measured: Logs, general: Fit, odd: Fit) -> None:
     last = measured[-1]
     for fit in (general, odd):
         assert fit.tau_e == pytest.approx(fit.torque(last.setting, last.phi[-1:])[0], rel=1e-9)
         assert fit.sigma == pytest.approx(fit.stiffness(last.setting, last.phi[-1]), rel=1e-9)
 
 
-def test_a_setting_left_out_is_predicted(
-    fmu: Fmu, measured: list[Log], general: Fit, odd: Fit
-) -> None:
+def test_a_setting_left_out_is_predicted(fmu: Fmu, measured: Logs, general: Fit, odd: Fit) -> None:
     left_out = real_joint.leave_one_out(fmu, measured)
     print(real_joint.torque_table(measured, general, odd, left_out))
     assert list(left_out) == [10, 25, 33, 35]
@@ -93,7 +93,7 @@ def test_a_setting_left_out_is_predicted(
 
 
 def test_stiffness_is_the_slope_of_the_measured_curve(
-    measured: list[Log], general: Fit, odd: Fit
+    measured: Logs, general: Fit, odd: Fit
 ) -> None:
     # Holds for windows of +-0.05 to +-0.06 rad, which were chosen with the data in view
     print(real_joint.stiffness_table(measured, general, odd))
@@ -102,7 +102,7 @@ def test_stiffness_is_the_slope_of_the_measured_curve(
     assert real_joint.worst(measured, odd, real_joint.HALF_WIDTH) > 50.0
 
 
-def test_filtered_regression_is_no_worse(fmu: Fmu, measured: list[Log], general: Fit) -> None:
+def test_filtered_regression_is_no_worse(fmu: Fmu, measured: Logs, general: Fit) -> None:
     regression = real_joint.replay(fmu, measured, False, real_joint.SPRING_ALONE)
     for log in measured:
         assert log.rms(regression) <= 1.001 * log.rms(general)
@@ -112,9 +112,7 @@ def test_filtered_regression_is_no_worse(fmu: Fmu, measured: list[Log], general:
     assert worst <= of_general
 
 
-def test_filtered_regression_claims_what_it_knows(
-    fmu: Fmu, measured: list[Log], general: Fit
-) -> None:
+def test_filtered_regression_claims_what_it_knows(fmu: Fmu, measured: Logs, general: Fit) -> None:
     """The joint has hysteresis of several N.m. With the columns for misfits the torque is hardly
     worse, and the interval contains the slope of the mean curve."""
     regression = real_joint.replay(fmu, measured, False, real_joint.FILTERED_REGRESSION)
