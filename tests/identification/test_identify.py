@@ -230,7 +230,7 @@ def test_torque_constant(shell: Shell) -> None:
     text = CONFIGURATION.replace("[parameters]", sensor)
     current = '"tau"\nunit = "A"\ntorque_constant = 0.06'
     Path("log.toml").write_text(text.replace('"tau"', current, 1))
-    shell.run("identify log.parquet --torque-constant")
+    assert shell.run("identify log.parquet --torque-constant --quiet") == ""
     document = tomlkit.parse(Path("log.toml").read_text()).unwrap()
     assert document["ports"]["tau"]["torque_constant"] == pytest.approx(0.05, rel=0.05)
     assert document["parameters"]["motor"]["B"] == pytest.approx(TRUE["B"], rel=0.05)

@@ -19,10 +19,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 
 from confined import MOST_MEMORY, Confined, Done
 from recorded_logs import CONFIGURATION, plain_log, write_log
-from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.log import LogError, LogInMemory
 from sigmahat.logs.readers.formats import open_log
-from sigmahat.logs.sampling import sample
 from strange_files import TRIALS, Trial
 
 EXAMPLES = int(os.environ.get("SIGMAHAT_STRANGERS", "40"))
@@ -219,28 +216,6 @@ def test_names_of_columns_are_no_paths_and_no_commands(run: Run, tmp_path: Path)
     assert "\x1b" not in done.out + done.err
     assert {*tmp_path.parent.iterdir()} == beside
     assert all(each.name.startswith("log") for each in Path().iterdir())
-
-
-def test_a_slow_log_and_one_with_a_pause(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """They may have 20 ticks for a row, if they are many."""
-    monkeypatch.setattr("sigmahat.logs.sampling._MOST_TICKS", 500_000)
-    (tmp_path / "log.toml").write_text(CONFIGURATION)
-    configuration = read_configuration(tmp_path / "log.toml")
-    rows = 51_000
-    columns = {name: np.arange(rows, dtype=np.float64) for name in ("theta", "q", "theta_c", "tau")}
-
-    def ticks(t: np.ndarray) -> int:
-        log = LogInMemory(Path("log"), {"t": t, **columns})
-        return len(sample(log, configuration, 1e-3).values)
-
-    assert ticks(0.01 * np.arange(rows)) == 10 * (rows - 1) + 1
-    t = 1e-3 * np.arange(rows)
-    t[9000:] += 500
-    assert ticks(t) == rows + 500_000
-    t[9000:] += 5_000
-    words = r"expected at most 1020000; the longest gap is 5500 s: split the log at the pause"
-    with pytest.raises(LogError, match=words):
-        ticks(t)
 
 
 def test_many_columns_that_repeat_are_few_bytes_and_no_bomb(run: Run) -> None:

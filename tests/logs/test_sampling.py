@@ -1,4 +1,4 @@
-"""A counter that goes on during a gap."""
+"""Samples at ticks: a counter that goes on during a gap, and logs of too many ticks."""
 
 from __future__ import annotations
 
@@ -47,3 +47,23 @@ def test_a_unit_of_time_that_does_not_fit() -> None:
     recorded, _ = log(slice(0, 0))
     with pytest.raises(LogError, match=r"rows are 0\.12 s apart, the ticks 0\.0001 s; check time"):
         sample(recorded, configuration("min"), 1e-4)
+
+
+def test_a_slow_log_and_one_with_a_pause(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They may have 20 ticks for a row, if they are many."""
+    monkeypatch.setattr("sigmahat.logs.sampling._MOST_TICKS", 500_000)
+    rows = 51_000
+    columns = dict.fromkeys(("motor", "link", "torque"), np.arange(rows, dtype=np.float64))
+
+    def ticks(t: np.ndarray) -> int:
+        slow = LogInMemory(Path("slow"), {"t": t, **columns})
+        return len(sample(slow, configuration(), 1e-3).values)
+
+    assert ticks(0.01 * np.arange(rows)) == 10 * (rows - 1) + 1
+    t = 1e-3 * np.arange(rows)
+    t[9000:] += 500
+    assert ticks(t) == rows + 500_000
+    t[9000:] += 5_000
+    words = r"expected at most 1020000; the longest gap is 5500 s: split the log at the pause"
+    with pytest.raises(LogError, match=words):
+        ticks(t)
