@@ -193,7 +193,7 @@ def test_a_torque_that_saturates_is_noted(tmp_path: Path) -> None:
 
 
 def test_the_command(shell: Shell) -> None:
-    write_log(knee_log(), Path("knee.csv"))
+    write_log({name: column[:8000] for name, column in knee_log().items()}, Path("knee.csv"))
     Path("knee.toml").write_text(RIGHT)
     assert "nothing" in shell.run("check knee.csv")
     Path("wrong.toml").write_text(RIGHT.replace("= 4096", "= 16384"))

@@ -30,15 +30,12 @@ def identified(log: Columns, path: Path) -> Identified:
     return identify(LogInMemory(Path("log"), log), read_configuration(path))
 
 
-@pytest.mark.parametrize(
-    ("keys", "times"),
-    [("", 1.0), ('unit = "deg"\nsign = -1\nzero = 0.5\ngear_ratio = 2.0', -360 / math.pi)],
-)
-def test_the_zero_is_where_the_spring_has_no_torque(keys: str, times: float, path: Path) -> None:
+def test_the_zero_is_where_the_spring_has_no_torque(path: Path) -> None:
     log = awas_log(1.0, 0.3, 8.0)
     true, offset = log["q"], 15e-3
-    log = {**log, "q": times * (true + offset) + (0.5 if keys else 0.0)}
-    path.write_text(CONFIGURATION.replace('"q"', f'"q"\n{keys}'))
+    log = {**log, "q": 0.5 - 2.0 * np.degrees(true + offset)}
+    column = '"q"\nunit = "deg"\nsign = -1\nzero = 0.5\ngear_ratio = 2.0'
+    path.write_text(CONFIGURATION.replace('"q"', column))
     found = identified(log, path)
     zero = found.quantities["zero"]
     assert zero.determined
