@@ -11,6 +11,7 @@ import pytest
 
 import gate
 import sigmahat
+from command_line import shell as shell
 from fmi_instance import Instance, Instance3
 from fmi_runs import Fmi
 

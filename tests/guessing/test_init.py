@@ -3,142 +3,125 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import tomlkit
 
+from command_line import Shell
 from recorded_logs import write_log
-from sigmahat.cli import main
+from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Fmu
+from sigmahat.guessing.guess import guess
+from sigmahat.guessing.template import write
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.joints import of_joint
+from sigmahat.logs.log import LogInMemory
 from sigmahat.logs.replay import parameters
 
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+T = 2e-3 * np.arange(1000)
+MOTION = np.sin(5 * T)
+LOG = {"t": T, "theta": MOTION, "q": MOTION, "tau": MOTION}
 
 
-def columns(**names: str) -> dict[str, np.ndarray]:
-    """A motion under column names by port."""
-    t = 2e-3 * np.arange(1000)
-    motion = np.sin(5 * t)
-    return {names["time"]: t, **{name: motion for port, name in names.items() if port != "time"}}
+def read(path: str = "log.toml", joint: str = "") -> Any:
+    return of_joint(tomlkit.parse(Path(path).read_text()), joint).unwrap()
 
 
 @pytest.mark.parametrize(
-    ("names", "units"),
+    ("time", "ports"),
     [
         (
-            {"time": "t", "theta": "theta", "q": "q", "theta_c": "theta_c", "tau": "tau"},
-            {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m"},
+            "t",
+            {"theta": ("theta", "rad"), "q": ("q", "rad")}
+            | {"theta_c": ("theta_c", "rad"), "tau": ("tau", "N.m")},
         ),
         (
-            {"time": "time [s]", "theta": "motor_pos [counts]", "q": "link_angle [deg]"}
-            | {"theta_c": "lever_mm", "tau": "motor_current [A]"},
-            {"theta": "counts", "q": "deg", "theta_c": "mm", "tau": "A"},
+            "time [s]",
+            {"theta": ("motor_pos [counts]", "counts"), "q": ("link_angle [deg]", "deg")}
+            | {"theta_c": ("lever_mm", "mm"), "tau": ("motor_current [A]", "A")},
         ),
         (
-            {"time": "timestamp", "theta": "motor_encoder_deg", "q": "joint_angle_deg"}
-            | {"tau": "motor_torque_mNm", "tau_e_sensor": "torque_sensor_Nm"},
-            {"theta": "deg", "q": "deg", "tau": "mN.m", "tau_e_sensor": "N.m"},
+            "timestamp",
+            {"theta": ("motor_encoder_deg", "deg"), "q": ("joint_angle_deg", "deg")}
+            | {"tau": ("motor_torque_mNm", "mN.m"), "tau_e_sensor": ("torque_sensor_Nm", "N.m")},
         ),
     ],
 )
-def test_guesses(names: dict[str, str], units: dict[str, str]) -> None:
-    write_log({**columns(**names), "motor_velocity": np.zeros(1000)}, Path("log.csv"))
-    assert main(["init", "log.csv"]) == 0
-    text = Path("log.toml").read_text()
-    found = tomlkit.parse(text).unwrap()
-    assert found["time"]["column"] == names["time"]
+def test_guesses(time: str, ports: dict[str, tuple[str, str]], shell: Shell) -> None:
+    names = [name for name, _ in ports.values()]
+    log = {time: T, **dict.fromkeys(names, MOTION), "motor_velocity": 0 * T}
+    write_log(log, Path("log.csv"))
+    shell.run("init log.csv")
+    found = read()
+    assert found["time"]["column"] == time
     assert found["parameters"]["samplePeriod"] == pytest.approx(2e-3)
-    ports = {port: (each["column"], each["unit"]) for port, each in found["ports"].items()}
-    assert ports == {port: (names[port], unit) for port, unit in units.items()}
-    for name in (*names.values(), "motor_velocity"):
-        assert f"#   {name}: 1000 samples" in text
+    assert {port: (p["column"], p["unit"]) for port, p in found["ports"].items()} == ports
+    for name in log:
+        assert f"#   {name}: 1000 samples" in Path("log.toml").read_text()
 
 
-def test_steps_and_turns_of_encoders() -> None:
-    log = columns(time="t", theta="theta_deg", q="q", tau="tau")
-    log["theta_deg"] = np.mod(np.round(2000 * log["theta_deg"] * 4096 / 360) * 360 / 4096, 360)
-    write_log(log, Path("log.parquet"))
-    assert main(["init", "log.parquet", "--quiet"]) == 0
-    found = tomlkit.parse(Path("log.toml").read_text()).unwrap()
-    assert found["ports"]["theta"]["wrap"] == 360
-    assert found["ports"]["theta"]["unit"] == "deg"
-    assert found["ports"]["theta"]["gear_ratio"] == 2000
+def test_steps_and_turns_of_encoders(shell: Shell) -> None:
+    degrees = np.mod(np.round(2000 * MOTION * 4096 / 360) * 360 / 4096, 360)
+    write_log({"t": T, "theta_deg": degrees, "q": MOTION, "tau": MOTION}, Path("log.parquet"))
+    shell.run("init log.parquet")
+    found = read()
+    theta = found["ports"]["theta"]
+    assert (theta["wrap"], theta["unit"], theta["gear_ratio"]) == (360, "deg", 2000)
     assert found["parameters"]["encoder"] == {"theta": 4096 * 2000, "q": 0}
     assert found["parameters"]["rls"]["m"] == 1
 
 
-def test_what_it_asks_for_must_be_filled_in(capsys: pytest.CaptureFixture[str]) -> None:
-    log = columns(time="t", theta="theta", q="q_deg", tau="i_q")
-    log["theta"] = np.round(4e4 * log["theta"])  # whole numbers are counts, and not radians
-    write_log(log, Path("log.csv"))
-    assert main(["init", "log.csv"]) == 0
-    text = Path("log.toml").read_text()
+def test_what_it_asks_for_must_be_filled_in(shell: Shell) -> None:
+    counts = np.round(4e4 * MOTION)  # whole numbers are counts, and not radians
+    write_log({"t": T, "theta": counts, "q_deg": MOTION, "i_q": MOTION}, Path("log.csv"))
+    shell.run("init log.csv")
     for key in ("theta.gear_ratio", "theta.counts_per_turn", "tau.torque_constant"):
-        capsys.readouterr()
-        assert main(["estimate", "log.csv"]) == 2
-        assert f"ports.{key} is 0; fill in" in capsys.readouterr().err
+        assert f"ports.{key} is 0; fill in" in shell.refused("estimate log.csv")
         name = key.split(".")[1]
-        text = text.replace(f"{name} = 0 ", f"{name} = 2 ")
-        Path("log.toml").write_text(text)
-    assert main(["estimate", "log.csv", "--quiet"]) == 0
+        text = Path("log.toml").read_text()
+        Path("log.toml").write_text(text.replace(f"{name} = 0 ", f"{name} = 2 "))
+    shell.run("estimate log.csv")
 
 
-def test_a_file_is_not_overwritten(capsys: pytest.CaptureFixture[str]) -> None:
-    write_log(columns(time="t", theta="theta", q="q", tau="tau"), Path("log.csv"))
+def test_a_file_is_not_overwritten(shell: Shell) -> None:
+    write_log(LOG, Path("log.csv"))
     Path("log.toml").write_text("mine")
-    assert main(["init", "log.csv"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "--force" in line
-    assert Path("log.toml").read_text() == "mine"
-    assert main(["init", "log.csv", "--force"]) == 0
+    assert "--force" in shell.refused("init log.csv")
+    shell.run("init log.csv --force")
 
 
-def test_no_column_that_looks_like_a_port(capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_column_that_looks_like_a_port(shell: Shell) -> None:
     """A skeleton, with every column and its range."""
     write_log({"x": np.arange(9.0) % 4, "note": np.array(list("abcdefghi"))}, Path("log.csv"))
-    assert main(["init", "log.csv"]) == 0
+    shell.run("init log.csv")
     text = Path("log.toml").read_text()
     assert "#   x: 9 samples, 0 to 3; a few values only" in text
     assert "#   note: 9 samples; text" in text
-    assert set(tomlkit.parse(text).unwrap()["ports"]) == {"theta", "q", "tau"}
-    capsys.readouterr()
-    assert main(["estimate", "log.csv"]) == 2
-    assert "motor.gamma is 0; fill in the gear ratio" in capsys.readouterr().err
+    assert set(read()["ports"]) == {"theta", "q", "tau"}
+    assert "motor.gamma is 0; fill in the gear ratio" in shell.refused("estimate log.csv")
     Path("log.toml").write_text(text.replace("motor.gamma = 0", "motor.gamma = 9"))
-    assert main(["estimate", "log.csv"]) == 2
-    assert "unknown column 'FILL IN'" in capsys.readouterr().err
+    assert "unknown column 'FILL IN'" in shell.refused("estimate log.csv")
 
 
-def two_joints() -> dict[str, np.ndarray]:
-    """Motor and link of a hip; a knee of which only the link is there."""
-    t = 2e-3 * np.arange(1000)
-    hip, knee = np.sin(5 * t), np.sin(3 * t)
-    return {
-        "t": t,
-        "hip_motor_pos_rad": hip,
-        "hip_link_pos_rad": 1.01 * hip,
-        "hip_current_A": np.cos(5 * t),
-        "knee_motor_pos_rad": knee,
-        "knee_link_pos_rad": 1.02 * knee,
-        "knee_current_A": np.cos(3 * t),
-    }
+def two_joints(*names: str) -> None:
+    """A log of motor and link of a hip and of a knee; the names choose some of its columns."""
+    log = {"t": T}
+    for joint, w in (("hip", 5), ("knee", 3)):
+        log[f"{joint}_motor_pos_rad"] = np.sin(w * T)
+        log[f"{joint}_link_pos_rad"] = 1.01 * np.sin(w * T)
+        log[f"{joint}_current_A"] = np.cos(w * T)
+    write_log({name: log[name] for name in names or log}, Path("leg.csv"))
 
 
 def port_columns(path: str, joint: str = "") -> dict[str, str]:
-    document = of_joint(tomlkit.parse(Path(path).read_text()), joint).unwrap()
-    return {name: port["column"] for name, port in document["ports"].items()}
+    return {name: port["column"] for name, port in read(path, joint)["ports"].items()}
 
 
-def test_all_joints_in_one_file() -> None:
-    write_log(two_joints(), Path("leg.csv"))
-    assert main(["init", "leg.csv"]) == 0
+def test_all_joints_in_one_file(shell: Shell) -> None:
+    two_joints()
+    shell.run("init leg.csv")
     text = Path("leg.toml").read_text()
     for once in ("torque_constant = 0", "samplePeriod", "motor.B"):
         assert text.count(once) == 1
@@ -148,52 +131,54 @@ def test_all_joints_in_one_file() -> None:
             "q": f"{joint}_link_pos_rad",
             "tau": f"{joint}_current_A",
         }
-    assert main(["init", "leg.csv", "--joint", "knee", "--config", "knee.toml"]) == 0
+    shell.run("init leg.csv --joint knee --config knee.toml")
     assert port_columns("knee.toml") == port_columns("leg.toml", "knee")
-
-
-def test_a_joint_that_is_not_clear(capsys: pytest.CaptureFixture[str]) -> None:
-    write_log(two_joints(), Path("leg.csv"))
-    assert main(["init", "leg.csv", "--joint", "kne"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
+    line = shell.refused("init leg.csv --joint kne --config kne.toml")
     assert "unknown joint 'kne'; did you mean 'knee'" in line
-    assert not list(Path().glob("*.toml"))
 
 
-def test_a_motor_never_goes_with_the_link_of_another_joint() -> None:
-    log = two_joints()
-    write_log({n: log[n] for n in ("t", "hip_motor_pos_rad", "knee_link_pos_rad")}, Path("l.csv"))
-    assert main(["init", "l.csv"]) == 0
-    assert port_columns("l.toml", "hip")["theta"] == "hip_motor_pos_rad"
-    assert port_columns("l.toml", "hip")["q"] == "FILL IN"
-    assert port_columns("l.toml", "knee")["q"] == "knee_link_pos_rad"
-    assert port_columns("l.toml", "knee")["theta"] == "FILL IN"
+def test_a_motor_never_goes_with_the_link_of_another_joint(shell: Shell) -> None:
+    two_joints("t", "hip_motor_pos_rad", "knee_link_pos_rad")
+    shell.run("init leg.csv")
+    hip, knee = (port_columns("leg.toml", joint) for joint in ("hip", "knee"))
+    assert (hip["theta"], hip["q"]) == ("hip_motor_pos_rad", "FILL IN")
+    assert (knee["theta"], knee["q"]) == ("FILL IN", "knee_link_pos_rad")
 
 
-def test_the_gear_ratio_of_theta_is_that_of_the_motor(estimator_fmu: Path) -> None:
+def test_the_gear_ratio_of_theta_is_that_of_the_motor(estimator_fmu: Path, tmp_path: Path) -> None:
     text = '[ports.theta]\ncolumn = "a"\ngear_ratio = -70\n[ports.q]\ncolumn = "b"\n'
+    path = tmp_path / "log.toml"
     with Fmu(estimator_fmu) as fmu:
         for given, gamma in (("", 70), ("motor.gamma = 0", 70), ("motor.gamma = 35", 35)):
-            Path("log.toml").write_text(f"{text}[parameters]\n{given}\n")
-            assert parameters(fmu, read_configuration(Path("log.toml")))["motor.gamma"] == gamma
+            path.write_text(f"{text}[parameters]\n{given}\n")
+            assert parameters(fmu, read_configuration(path))["motor.gamma"] == gamma
 
 
 @pytest.mark.parametrize(
     ("step", "unit", "period"), [(2.0, "ms", "0.002"), (1000.0, "us", "0.001"), (2e-3, None, "")]
 )
 def test_a_time_in_another_unit_is_doubted(
-    step: float, unit: str | None, period: str, capsys: pytest.CaptureFixture[str]
+    step: float, unit: str | None, period: str, shell: Shell
 ) -> None:
     """GIVEN times in ms or us under a name that says s, THEN init names the likely unit."""
-    t = step * np.arange(1000)
     motion = np.sin(np.arange(1000) / 100)
-    values = {"time_s": t, "theta": motion, "q": 0.9 * motion, "tau": motion**2}
-    write_log(values, Path("log.csv"))
-    main(["init", "log.csv"])
-    text = capsys.readouterr().out
+    columns = {"theta": motion, "q": 0.9 * motion, "tau": motion**2}
+    write_log({"time_s": step * np.arange(1000), **columns}, Path("log.csv"))
+    text = shell.run("init log.csv")
     if unit is None:
         assert "implausible" not in text
     else:
         assert f'If time_s is in {unit}, set time.unit = "{unit}"' in text
         assert f"samplePeriod = {period}" in text
         assert "implausible" in Path("log.toml").read_text()
+
+
+def test_the_configuration_of_many_columns_can_be_read_again(tmp_path: Path) -> None:
+    many = {
+        f"a_column_with_a_long_name_that_does_not_move[{i}]": np.ones(1000) for i in range(1500)
+    }
+    log = LogInMemory(tmp_path / "log", {**LOG, **many})
+    text = write(log, guess(log), {"motor.B": 1.0, "motor.D_theta": 1.0})
+    (tmp_path / "log.toml").write_text(text)
+    assert toml_file.read(tmp_path / "log.toml")["ports"]
+    assert "# " + "  and 1304 more, left out here" in text

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from foreign_joint import GEAR, T, joint
+from foreign_joint import GEAR, Motion, T, joint
 from sigmahat.guessing.columns import interval
 from sigmahat.guessing.facts import Facts, look_at
 from sigmahat.guessing.guess import JointGuess, guess
@@ -52,7 +52,7 @@ def facts(values: np.ndarray) -> Facts:
     return look_at(LogInMemory(Path("log"), {"x": values}), "x")[0]
 
 
-@pytest.mark.parametrize("period", [4096, 65536, 2**32, 20_000, 360.0, 2 * np.pi])
+@pytest.mark.parametrize("period", [4096, 2**32, 20_000, 360.0, 2 * np.pi])
 def test_a_counter_that_starts_again(period: float) -> None:
     whole = isinstance(period, int)
     x = 0.9 * period * np.sin(4 * T * np.arange(N)) + 0.3 * period
@@ -67,22 +67,18 @@ def test_what_only_jumps_does_not_start_again() -> None:
     assert facts(np.sin(T * np.arange(N))).wrap is None
 
 
-def even(rows: int = N) -> np.ndarray:
-    return T * np.arange(rows)
-
-
-def jitter() -> np.ndarray:
-    return even() + np.random.default_rng(2).uniform(-0.3 * T, 0.3 * T, N)
+EVEN, RNG = T * np.arange(N), np.random.default_rng(2)
+KEPT = np.r_[0:3000, 4500:N]
 
 
 @pytest.mark.parametrize(
     ("times", "period"),
     [
-        (even()[np.r_[0:3000, 4500:N]], T),
-        (jitter()[np.r_[0:3000, 4500:N]], T),
-        (even()[np.random.default_rng(3).uniform(size=N) > 0.15], T),
-        (np.floor(1500 * even()) / 1000, 1.5 * T),  # a clock of 1 ms, rows 1.5 ms apart
-        (1.7e9 + even(), T),
+        (EVEN[KEPT], T),
+        ((EVEN + RNG.uniform(-0.3 * T, 0.3 * T, N))[KEPT], T),
+        (EVEN[RNG.uniform(size=N) > 0.15], T),
+        (np.floor(1500 * EVEN) / 1000, 1.5 * T),  # a clock of 1 ms, rows 1.5 ms apart
+        (1.7e9 + EVEN, T),
     ],
     ids=["gap", "gap and jitter", "lost rows", "coarse clock", "since 1970"],
 )
@@ -95,17 +91,20 @@ def only(columns: dict[str, np.ndarray]) -> JointGuess:
     return found
 
 
+@pytest.fixture(scope="module")
+def m() -> Motion:
+    return joint(False)
+
+
 @pytest.mark.parametrize(
     ("step", "unit"), [(1_000_000, "ns"), (1000, "us"), (1, "ms"), (0.001, "s"), (5, "ms")]
 )
-def test_the_unit_of_times_by_their_steps(step: float, unit: str) -> None:
-    m = joint(False)
+def test_the_unit_of_times_by_their_steps(step: float, unit: str, m: Motion) -> None:
     found = only({"t": step * np.arange(N), "theta": m.theta, "q": m.q, "tau": m.tau})
     assert (found.time, found.time_unit) == ("t", unit)
 
 
-def test_a_velocity_tells_the_unit_of_its_position() -> None:
-    m = joint(False)
+def test_a_velocity_tells_the_unit_of_its_position(m: Motion) -> None:
     columns = {
         "t": m.t,
         "motor_pos": m.theta * GEAR / (2 * np.pi),
@@ -121,13 +120,12 @@ def test_a_velocity_tells_the_unit_of_its_position() -> None:
     assert ports["tau"].sign == -1
 
 
-def test_signs_and_zeros() -> None:
-    m = joint(False)
+def test_signs_and_zeros(m: Motion) -> None:
     columns = {"t": m.t, "motor_rad": m.theta, "link_deg": 200 - np.degrees(m.q), "tau": m.tau}
-    q = only({**columns, "load_cell_Nm": -m.tau_e}).ports["q"]
-    assert q.sign == -1
-    assert q.zero == pytest.approx(200 - np.degrees(m.q).mean(), rel=1e-4)
-    assert only({**columns, "load_cell_Nm": -m.tau_e}).ports["tau_e_sensor"].sign == -1
+    ports = only({**columns, "load_cell_Nm": -m.tau_e}).ports
+    assert ports["q"].sign == -1
+    assert ports["q"].zero == pytest.approx(200 - np.degrees(m.q).mean(), rel=1e-4)
+    assert ports["tau_e_sensor"].sign == -1
 
 
 def test_a_hand_on_the_link_leaves_the_sign_of_the_torque_open() -> None:
@@ -141,21 +139,18 @@ def test_a_hand_on_the_link_leaves_the_sign_of_the_torque_open() -> None:
     tau = -(10.0 * theta + 8.0 * velocity) / GEAR
     q = theta + GEAR * (B * GEAR * acceleration + D * GEAR * velocity - tau) / K
     assert np.mean(tau * velocity) < 0
-    found = guess(LogInMemory(Path("log"), {"t": t, "theta": theta, "q": q, "tau": tau}))[""]
-    port = found.ports["tau"]
+    port = only({"t": t, "theta": theta, "q": q, "tau": tau}).ports["tau"]
     assert port.column == "tau" and port.sign == 1
     assert port.notes["sign"].startswith("CHECK: the log does not show it")
 
 
-def test_a_torque_beside_an_angle_is_measured() -> None:
-    m = joint(False)
+def test_a_torque_beside_an_angle_is_measured(m: Motion) -> None:
     found = only({"t": m.t, "angle_rad": m.q, "torque_Nm": 40 * m.q})
     assert set(found.ports) == {"q", "tau_e_sensor"}
 
 
 @pytest.mark.parametrize("suffix", ["", "_setpoint", "_ref"])
-def test_what_was_asked_for_is_not_what_was_measured(suffix: str) -> None:
-    m = joint(False)
+def test_what_was_asked_for_is_not_what_was_measured(suffix: str, m: Motion) -> None:
     columns = {"t": m.t, f"motor_pos{suffix}": m.target, "motor_position": m.theta, "q": m.q}
     ports = only({**columns, "tau": m.tau}).ports
     assert ports["q"].column == "q"

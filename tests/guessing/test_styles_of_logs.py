@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 import tomlkit
 
+from command_line import Shell
 from foreign_joint import GEAR, TORQUE_CONSTANT, Array, Motion, joint
 from recorded_logs import write_log
-from sigmahat.cli import main
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.estimate import estimate
 from sigmahat.logs.readers.formats import open_log
@@ -81,14 +81,6 @@ def german(m: Motion) -> Columns:
         "Abtriebswinkel [Grad]": -counts(m.q, 2**18, 4000) * 360 / 2**18,
         "Motorstrom [A]": current(m),
     }
-
-
-def write_german(columns: Mapping[str, Any], path: Path) -> Path:
-    """Semicolons and decimal commas."""
-    rows = np.column_stack(list(columns.values()))
-    lines = [";".join(f"{value:.7g}".replace(".", ",") for value in row) for row in rows]
-    path.write_text("\n".join([";".join(columns), *lines]), encoding="utf-8")
-    return path
 
 
 def french(m: Motion) -> Columns:
@@ -156,7 +148,6 @@ class Style:
     """Keys that are edited beyond that."""
     joint: str | None = None
     """For --joint."""
-    write: Callable[[Columns, Path], Path] = write_log
 
 
 CURRENT = {"ports.tau.torque_constant": TORQUE_CONSTANT}
@@ -180,7 +171,6 @@ STYLES = [
         {"theta": ("Motorwinkel [Grad]", "deg"), "q": ("Abtriebswinkel [Grad]", "deg")}
         | {"tau": ("Motorstrom [A]", "A")},
         {**CURRENT, "ports.theta.gear_ratio": GEAR},
-        write=write_german,
     ),
     Style(
         *("essai.csv", french),
@@ -229,19 +219,14 @@ def edited(text: str, values: dict[str, Any]) -> str:
 
 
 @pytest.mark.parametrize("style", STYLES, ids=lambda style: style.file)
-def test_from_log_to_stiffness(
-    style: Style, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_from_log_to_stiffness(style: Style, shell: Shell) -> None:
     motion = joint("theta_c" in style.ports)
-    log = style.write(style.log(motion), tmp_path / style.file)
-    chosen = ["--joint", style.joint] if style.joint else []
-    assert main(["init", str(log), "--quiet", *chosen]) == 0
-    path = tmp_path / f"{log.stem}.toml"
+    log = write_log(style.log(motion), Path(style.file))
+    shell.run(f"init {log}" + (f" --joint {style.joint}" if style.joint else ""))
+    path = log.with_suffix(".toml")
     found = tomlkit.parse(path.read_text()).unwrap()["ports"]
     assert {name: (each["column"], each.get("unit")) for name, each in found.items()} == style.ports
     path.write_text(edited(path.read_text(), {**style.sheet, **style.edits}))
-    assert main(["identify", str(log), "--quiet"]) == 0
-    (tmp_path / "out").mkdir()
-    result = estimate(open_log(log), read_configuration(path), tmp_path / "out")
+    shell.run(f"identify {log}")
+    result = estimate(open_log(log), read_configuration(path))
     assert result.sigma == pytest.approx(motion.stiffness[result.ticks - 1], rel=ACCURACY)

@@ -94,15 +94,19 @@ def joint_log(plant: Mapping[str, float], T: float, load: float = 0.0) -> dict[s
     return {"t": t, **{name.removesuffix("_measured"): run[name] for name in record}}
 
 
-@cache
-def knee_log() -> Mapping[str, Array]:
-    """The columns of the log."""
-    log = joint_log(KNEE, 1e-3)
-    current = log["tau"] / CONSTANT
+def as_recorded(log: Mapping[str, Array]) -> dict[str, Array]:
+    """A log of joint_log in counts, degrees and amperes."""
     return {
         "t": log["t"],
         "motor_counts": np.round(log["theta"] / (2 * np.pi) * COUNTS * GEAR) + ZERO,
         "link_deg": np.degrees(log["q"]),
-        "current": current,
-        "late_current": np.concatenate([np.full(10, current[0]), current[:-10]]),
+        "current": log["tau"] / CONSTANT,
     }
+
+
+@cache
+def knee_log() -> Mapping[str, Array]:
+    """The columns of the log."""
+    log = as_recorded(joint_log(KNEE, 1e-3))
+    current = log["current"]
+    return {**log, "late_current": np.concatenate([np.full(10, current[0]), current[:-10]])}

@@ -1,8 +1,14 @@
-"""What the command line says when it refuses."""
+"""Commands of sigmahat in this process, and what the command line says when it refuses."""
 
 from __future__ import annotations
 
+import json
+import shlex
 import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -17,12 +23,46 @@ def one_line(done: subprocess.CompletedProcess[str]) -> str:
     return line
 
 
-def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """Runs a command in this process that must fail with one line, and returns that line."""
-    capsys.readouterr()
-    status = main([*arguments])
-    out, err = capsys.readouterr()
-    assert (status, out) == (2, "")
-    (line,) = err.splitlines()
-    assert line.startswith("sigmahat: error: ")
-    return str(line)
+class Shell:
+    """Runs commands without "sigmahat" before them; separates arguments as a shell does."""
+
+    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
+        self._capsys = capsys
+        self.err = ""
+        """What the last command printed there."""
+
+    def run(self, command: str, status: int = 0) -> str:
+        """What a command prints that must end with this status."""
+        self._capsys.readouterr()
+        found = main(shlex.split(command))
+        out, self.err = self._capsys.readouterr()
+        assert found == status, self.err
+        return out
+
+    def json(self, command: str, status: int = 0) -> Any:
+        """The result of a command that gets --json."""
+        return json.loads(self.run(f"{command} --json", status))
+
+    def refused(self, command: str) -> str:
+        """The line that a command fails with. No file may change."""
+        files = [path for path in Path().rglob("*") if path.is_file()]
+        before = {path: path.read_bytes() for path in files}
+        done = subprocess.CompletedProcess(command, 2, self.run(command, 2), self.err)
+        assert before == {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()}
+        return one_line(done)
+
+
+@contextmanager
+def working_in(folder: Path) -> Iterator[None]:
+    """Commands run in a folder, and draw no figures, which take most of the time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
+        yield
+
+
+@pytest.fixture
+def shell(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Iterator[Shell]:
+    """Commands in a folder of the test."""
+    with working_in(tmp_path):
+        yield Shell(capsys)

@@ -59,10 +59,7 @@ class Motion:
 
 def _target(t: Array | float) -> tuple[Array | float, Array | float]:
     waves = [(a, 2 * np.pi * f) for a, f in _MOTION]
-    return (
-        sum(a * np.sin(w * t) for a, w in waves),
-        sum(a * w * np.cos(w * t) for a, w in waves),
-    )
+    return (sum(a * np.sin(w * t) for a, w in waves), sum(a * w * np.cos(w * t) for a, w in waves))
 
 
 def _lever(t: Array | float) -> Array | float:

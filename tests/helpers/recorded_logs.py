@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from plant_runs import run_awas, sinusoids, times
 
 Array = NDArray[np.float64]
+Columns = dict[str, Array]
 T = 1e-3
 LEAD = 0.0025 / (2 * np.pi)
 RETRACTED = {"initial.theta_c": 0.030 / LEAD}  # r(0) = 70 mm
@@ -48,6 +49,14 @@ motor.B = 1.84e-5   # 20 % less than it is
 motor.D_theta = 1.2e-3
 motor.gamma = 50
 """
+REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\n'
+
+
+def configured(*parameters: str, ports: Sequence[str] = ("theta", "q", "tau")) -> str:
+    """A configuration for FilteredRegression, in which each port has the column of its name."""
+    columns = [f'ports.{name}.column = "{name}"' for name in ports]
+    lines = ['time.column = "t"', *columns, "[parameters]", 'method = "FilteredRegression"']
+    return "\n".join([*lines, *parameters, ""])
 
 
 def awas_log(
@@ -56,7 +65,7 @@ def awas_log(
     duration: float = 15.0,
     seed: int = 1,
     plant: Mapping[str, float] = MappingProxyType({}),
-) -> dict[str, Array]:
+) -> Columns:
     """AwAS with friction and noise, tau = amplitude sin(2 pi f t): ports, t, true stiffness.
 
     plant  other start values of it
@@ -68,7 +77,7 @@ def awas_log(
     return {"t": t, **{port: run[name] for port, name in COLUMNS.items()}, "true": run["sigma"]}
 
 
-def plain_log(rows: int = 2000) -> dict[str, Array]:
+def plain_log(rows: int = 2000) -> Columns:
     """A made-up motion without noise: ports and t, 1 ms apart."""
     t = T * np.arange(rows, dtype=np.float64)
     motion = np.sin(5 * t)

@@ -9,11 +9,12 @@ SIGMAHAT_KR300 names.
 
 from __future__ import annotations
 
+import io
 import json
-import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from matplotlib.figure import Figure
 
 from recorded_logs import read_estimate
 from shared_data import data_folder
+from sigmahat.cli import main
 
 RUNS = ("a", "b")
 AXES = (3, 2, 1)
@@ -136,11 +138,11 @@ def _estimate(runs: str, log: Path, config: Path, out: Path, *more: object) -> E
 
 
 def _sigmahat(*arguments: object, may_disagree: bool = False) -> str:
-    command = [sys.executable, "-m", "sigmahat", *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode not in ((0, 1) if may_disagree else (0,)):
-        raise RuntimeError(done.stderr)
-    return done.stdout
+    with redirect_stdout(io.StringIO()) as out:
+        status = main([*map(str, arguments)])
+    if status not in ((0, 1) if may_disagree else (0,)):
+        raise RuntimeError(f"{arguments} ended with {status}")
+    return out.getvalue()
 
 
 def draw(axes: Sequence[Axis]) -> Figure:
@@ -181,7 +183,7 @@ def table(axes: Sequence[Axis]) -> str:
     return "\n".join(lines)
 
 
-def main(picture: Path) -> None:
+def table_and_figure(picture: Path) -> None:
     """Prints the table and draws the figure."""
     data = folder()
     axes = []
@@ -193,4 +195,4 @@ def main(picture: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    table_and_figure(Path(sys.argv[1]))

@@ -1,10 +1,22 @@
-"""Messages of a joint that moves a load, as a robot would send them, and their configuration."""
+"""Messages of a joint that moves a load, as a robot would send them, their configuration, and
+`sigmahat live`, which receives them."""
 
 from __future__ import annotations
 
+import signal
 import socket
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+
+from sigmahat.logs.configuration import read_configuration
+from sigmahat.logs.estimate import estimate
+from sigmahat.logs.readers.formats import open_log
 
 T = 0.002
 COUNTS, GEAR = 4096, 20
@@ -62,3 +74,53 @@ def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
+
+
+def of_joints(names: Sequence[str], prefixes: Sequence[str] | None = None) -> str:
+    """A configuration of several joints; prefix of the columns of each, by default "arm/"."""
+    ports = CONFIGURATION[CONFIGURATION.index("[ports") : CONFIGURATION.index("[parameters]")]
+    return CONFIGURATION.replace(ports, "") + "".join(
+        ports.replace("[ports", f"[joints.{name}.ports").replace("arm/", prefix)
+        for name, prefix in zip(names, prefixes or ["arm/"] * len(names), strict=True)
+    )
+
+
+def csv(sent: Sequence[dict[str, float | int]]) -> list[str]:
+    """Lines of a CSV file: names, then messages."""
+    return [",".join(sent[0]), *(",".join(map(repr, each.values())) for each in sent)]
+
+
+def estimated(recording: Path, start: Path | None = None, joint: str = "") -> Any:
+    """The outputs that `estimate` finds in a recording, with the configuration beside it."""
+    configuration = read_configuration(recording.with_suffix(".toml"), joint)
+    return estimate(open_log(recording), configuration, start_from=start).series
+
+
+@contextmanager
+def running(
+    folder: Path, *options: str, text: str = CONFIGURATION, inside: Sequence[str] = ()
+) -> Iterator[subprocess.Popen[str]]:
+    """The command, which waits for messages, and writes to "out" in its folder.
+
+    inside  the command that runs it
+    """
+    (folder / "arm.toml").write_text(text)
+    command = [*inside, sys.executable, "-m", "sigmahat", "live", "arm.toml", *options]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        [*command, "--out", "out"], cwd=folder, stdin=pipe, stdout=pipe, stderr=pipe, text=True
+    ) as process:
+        try:
+            assert process.stderr is not None
+            assert "Ctrl-C ends it" in process.stderr.readline()
+            yield process
+        finally:
+            process.kill()
+
+
+def ended(process: subprocess.Popen[str], number: int = signal.SIGINT) -> tuple[str, str]:
+    """What the command prints after a signal."""
+    process.send_signal(number)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
+    return out, err

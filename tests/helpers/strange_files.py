@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import numpy as np
 from hypothesis import strategies as st
 
 from confined import Confined, Done
-from recorded_logs import CONFIGURATION, Array, write_log
+from recorded_logs import CONFIGURATION, plain_log, write_log
 
 _WORDS = "0 -1 1e999 -1e-999 nan inf 1e308 5e-324 1e-12 0x7f 1e300 true [1,2] {a=1} 1979-05-27 []"
 _NAMES = "../../x/theta /etc/passwd ~ {{7*7}} $$q$$ %n%s theta q tau theta_c 0 time A.B/C.d \u00b5"
@@ -36,16 +35,9 @@ _KEYS = [
 _UNITS = ["deg", "counts", "A", "9**9**9**9", "rad**99", "(" * 39, "N.m.s", "rad^-2", "1/0", ""]
 
 
-def usual() -> dict[str, Array]:
-    """Columns of a log without a fault."""
-    t = 1e-3 * np.arange(300, dtype=np.float64)
-    motion = np.sin(50 * t)
-    return {"t": t, "theta": motion, "q": 1.01 * motion, "theta_c": 75 + t, "tau": 0.1 * motion}
-
-
 def _usual_bytes(suffix: str) -> bytes:
     with TemporaryDirectory() as folder:
-        return write_log(usual(), Path(folder, f"log{suffix}")).read_bytes()
+        return write_log(plain_log(300), Path(folder, f"log{suffix}")).read_bytes()
 
 
 _WHOLE = {suffix: _usual_bytes(suffix) for suffix in (".csv", ".parquet", ".mat", ".h5")}

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recorded_logs import CONFIGURATION, Array, T, awas_log
+from recorded_logs import CONFIGURATION, Array, Columns, T, awas_log
 from sigmahat.identification.coherence import TorqueNoise, coherent_range
 from sigmahat.identification.identify import identify
 from sigmahat.identification.quantities import Identified
@@ -19,23 +19,24 @@ from sigmahat.logs.log import LogInMemory
 from sigmahat.logs.units import convert
 
 
-def identified(log: dict[str, Array], path: Path, configuration: str) -> Identified:
-    path.write_text(configuration)
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    path = tmp_path / "log.toml"
+    path.write_text(CONFIGURATION)
+    return path
+
+
+def identified(log: Columns, path: Path) -> Identified:
     return identify(LogInMemory(Path("log"), log), read_configuration(path))
 
 
-@pytest.mark.parametrize(
-    ("keys", "times"),
-    [("", 1.0), ('unit = "deg"\nsign = -1\nzero = 0.5\ngear_ratio = 2.0', -360 / math.pi)],
-)
-def test_the_zero_is_moved_to_where_the_spring_has_no_torque(
-    keys: str, times: float, tmp_path: Path
-) -> None:
-    log = awas_log(1.0, 0.3)
+def test_the_zero_is_where_the_spring_has_no_torque(path: Path) -> None:
+    log = awas_log(1.0, 0.3, 8.0)
     true, offset = log["q"], 15e-3
-    log = {**log, "q": times * (true + offset) + (0.5 if keys else 0.0)}
-    path = tmp_path / "log.toml"
-    found = identified(log, path, CONFIGURATION.replace('"q"', f'"q"\n{keys}'))
+    log = {**log, "q": 0.5 - 2.0 * np.degrees(true + offset)}
+    column = '"q"\nunit = "deg"\nsign = -1\nzero = 0.5\ngear_ratio = 2.0'
+    path.write_text(CONFIGURATION.replace('"q"', column))
+    found = identified(log, path)
     zero = found.quantities["zero"]
     assert zero.determined
     assert abs(zero.value - offset) <= zero.half_width < 5e-3
@@ -44,13 +45,12 @@ def test_the_zero_is_moved_to_where_the_spring_has_no_torque(
     q = convert("q", read_configuration(path).ports["q"], log["q"])
     assert np.max(np.abs(q - true)) <= zero.half_width
     # THEN a second run leaves it
-    again = identify(LogInMemory(Path("log"), log), read_configuration(path))
+    again = identified(log, path)
     assert again.zero == 0 and "ports.q.zero" not in write(again, path)
 
 
-def test_a_right_zero_is_left(tmp_path: Path) -> None:
-    path = tmp_path / "log.toml"
-    found = identified(awas_log(3.0, 0.3), path, CONFIGURATION)
+def test_a_right_zero_is_left(path: Path) -> None:
+    found = identified(awas_log(3.0, 0.3, 8.0), path)
     assert found.zero == 0
     assert abs(found.quantities["zero"].value) <= found.quantities["zero"].half_width
     assert "ports.q.zero" not in write(found, path)
@@ -69,26 +69,27 @@ def motor(noise_of_phi: float) -> Signals:
     return Signals(theta, phi + rng.normal(0, noise_of_phi, len(t)), np.ones_like(t), tau, None)
 
 
-def test_with_a_wrong_sign_the_zero_stays(tmp_path: Path) -> None:
-    log = awas_log(1.0, 0.3)
+def recorded(joint: Signals) -> Columns:
+    t: Array = np.arange(len(joint.theta)) * np.float64(T)
+    q = joint.theta + joint.phi
+    return {"t": t, "theta": joint.theta, "q": q, "theta_c": 0 * t, "tau": joint.tau}
+
+
+def test_with_a_wrong_sign_the_zero_stays(path: Path) -> None:
+    log = awas_log(1.0, 0.3, 8.0)
     log = {**log, "q": 2 * log["theta"] - log["q"] + 15e-3}  # phi with the other sign
-    path = tmp_path / "log.toml"
-    found = identified(log, path, CONFIGURATION)
+    found = identified(log, path)
     assert not found.quantities["zero"].determined
     assert "ports.q.zero" not in write(found, path)
 
 
-def test_encoders_read_at_different_times_get_a_prior_that_holds_the_friction_they_show(
-    tmp_path: Path,
+def test_the_prior_holds_what_encoders_read_at_different_times_show(
+    path: Path,
 ) -> None:
     # GIVEN a link encoder read 20 ms late: k times -20 ms times the velocity looks like friction
-    joint, late = motor(0.0), 20
-    q = joint.theta + joint.phi
-    t: Array = np.arange(len(q)) * np.float64(T)
-    log = {"t": t, "theta": joint.theta, "tau": joint.tau}
-    log |= {"q": np.concatenate([q[:late], q[:-late]]), "theta_c": np.zeros(len(q))}
-    path = tmp_path / "log.toml"
-    found = identified(log, path, CONFIGURATION)
+    late, log = 20, recorded(motor(0.0))
+    q = log["q"]
+    found = identified({**log, "q": np.concatenate([q[:late], q[:-late]])}, path)
     D_theta = found.quantities["D_theta"]
     assert not D_theta.determined
     assert D_theta.value == pytest.approx(1e-3 - 300 * late * T / 50**2, rel=0.05)
@@ -100,23 +101,16 @@ def test_encoders_read_at_different_times_get_a_prior_that_holds_the_friction_th
 
 
 @pytest.mark.parametrize(("noise_of_phi", "is_noise"), [(1e-7, False), (2e-3, True)])
-def test_a_deformation_that_is_noise_limits_the_bandwidth(
-    noise_of_phi: float, is_noise: bool
-) -> None:
+def test_a_noisy_deformation_limits_the_bandwidth(noise_of_phi: float, is_noise: bool) -> None:
     noise = TorqueNoise(torque=9e-6, position=0.0, inertia=1e-3, T=T)
     limit = coherent_range(motor(noise_of_phi), 50.0, 40.0, noise)
     assert (limit < 6.0) if is_noise else limit == math.inf
 
 
-def test_a_torque_that_is_late_does_not_look_like_friction(tmp_path: Path) -> None:
+def test_a_torque_that_is_late_does_not_look_like_friction(path: Path) -> None:
     # GIVEN a torque that acts 2 ms after it is recorded, and a spring that looks like friction then
-    joint, late = motor(1e-7), 2
-    q = joint.theta + joint.phi
-    t: Array = np.arange(len(q)) * np.float64(T)
-    log = {"t": t, "theta": joint.theta, "q": q, "theta_c": np.zeros(len(q))}
-    found = identified(
-        {**log, "tau": np.roll(joint.tau, -late)}, tmp_path / "log.toml", CONFIGURATION
-    )
+    late, log = 2, recorded(motor(1e-7))
+    found = identified({**log, "tau": np.roll(log["tau"], -late)}, path)
     for name, true in (("B", 2e-5), ("D_theta", 1e-3)):
         quantity = found.quantities[name]
         assert abs(quantity.value - true) <= quantity.half_width < 0.05 * true

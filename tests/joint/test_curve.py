@@ -13,62 +13,40 @@ import pytest
 from numpy.typing import NDArray
 
 from closed_form_joint import CUBIC, LINEAR, OF_THETA_C, closed_form_log
-from recorded_logs import CONFIGURATION, Array, awas_log, write_log
+from command_line import working_in
+from recorded_logs import CONFIGURATION, REGRESSION, Array, awas_log, configured, write_log
 from sigmahat.cli import main
 from sigmahat.joint.curve import CURVE, Branch, curve_text, nearest, polynomial_in_words, read_curve
+from sigmahat.joint.sheet import Polynomial, start_of, with_knees
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.curve import reaches
 from sigmahat.logs.estimate import Estimate, estimate
+from sigmahat.logs.log import LogInMemory
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.readers.formats import open_log
 
 GAIN = 0.02
 """Standard deviation of the gain of the torque: start value of prior.torque_gain."""
 Columns = dict[str, NDArray[Any]]
-CLOSED_FORM = """\
-[time]
-column = "t"
-[ports]
-theta = {column = "theta"}
-q = {column = "q"}
-theta_c = {column = "theta_c"}
-tau = {column = "tau"}
-[parameters]
-samplePeriod = 0.001
-method = "FilteredRegression"
-motor.B = 2.3e-5
-motor.D_theta = 1e-3
-motor.gamma = 50
-prior.B = 0.05
-prior.tau_coulomb = 0.02
-noise.tau = 1e-3
-encoder.theta = 262144
-encoder.q = 262144
-range.phi = 0.1
-prior.tau_e = 20
-setPoint.offset = 0
-setPoint.scale = 1
-range.setPoint = 1.2
-rls.n = 2
-rls.m = 2
-"""
-
-
-@pytest.fixture(autouse=True)
-def no_figure(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
+CLOSED_FORM = configured(
+    *("motor.B = 2.3e-5", "motor.D_theta = 1e-3", "motor.gamma = 50", "samplePeriod = 0.001"),
+    *("prior.B = 0.05", "prior.tau_coulomb = 0.02", "prior.tau_e = 20", "noise.tau = 1e-3"),
+    *("encoder.theta = 262144", "encoder.q = 262144", "range.phi = 0.1", "range.setPoint = 1.2"),
+    *("setPoint.offset = 0", "setPoint.scale = 1", "rls.n = 2", "rls.m = 2"),
+    ports=("theta", "q", "theta_c", "tau"),
+)
 
 
 def estimated(columns: Columns, configuration: str, folder: Path) -> Estimate:
-    folder.mkdir(exist_ok=True)
     (folder / "log.toml").write_text(configuration)
     log = open_log(write_log(columns, folder / "log.parquet"))
-    return estimate(log, read_configuration(folder / "log.toml"), folder)
+    with working_in(folder):
+        return estimate(log, read_configuration(folder / "log.toml"), folder)
 
 
-def closed_form(seed: int, gain: float) -> Columns:
-    log = closed_form_log("variable_stiffness", seed=seed)
+def closed_form(kind: str, seed: int, gain: float) -> Columns:
+    log = closed_form_log(kind, seed=seed)
     t = log.sample_period * np.arange(float(len(log.theta)))
     return {"t": t, "theta": log.theta, "q": log.q, "theta_c": log.theta_c, "tau": gain * log.tau}
 
@@ -83,10 +61,13 @@ def truth(branch: Branch) -> tuple[Array, Array]:
 def test_the_bands_hold_the_truth_as_often_as_they_say(tmp_path: Path) -> None:
     """Each log has its own noise, and a gain of the torque as likely as the configuration says."""
     gains = 1 + GAIN * np.random.default_rng(2).normal(size=20)
+    (tmp_path / "log.toml").write_text(CLOSED_FORM)
+    configuration = read_configuration(tmp_path / "log.toml")
     inside: dict[str, list[float]] = {"tau_e": [], "sigma": []}
     scores = []
     for seed, gain in enumerate(gains):
-        found = estimated(closed_form(seed, float(gain)), CLOSED_FORM, tmp_path / str(seed)).curve
+        columns = closed_form("variable_stiffness", seed, float(gain))
+        found = estimate(LogInMemory(tmp_path / "log", columns), configuration).curve
         assert len(found.branches) == 5
         for branch in found.branches:
             torque, stiffness = truth(branch)
@@ -106,19 +87,16 @@ def test_the_bands_hold_the_truth_as_often_as_they_say(tmp_path: Path) -> None:
     assert 0.8 < np.mean(scores) / np.mean(((gains - 1) / GAIN) ** 2) < 1.5
 
 
+Awas = tuple[Estimate, Columns, Path]
+
+
 @pytest.fixture(scope="module")
-def awas(tmp_path_factory: pytest.TempPathFactory) -> tuple[Estimate, Columns, Path]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
-        folder = tmp_path_factory.mktemp("awas")
-        log = awas_log(1.0, 0.3, 10.0)
-        configuration = CONFIGURATION + 'method = "FilteredRegression"\nprior.B = 0.2\nrls.n = 3\n'
-        return estimated(log, configuration, folder), log, folder
+def awas(tmp_path_factory: pytest.TempPathFactory) -> Awas:
+    folder, log = tmp_path_factory.mktemp("awas"), awas_log(1.0, 0.3, 10.0)
+    return estimated(log, REGRESSION + "prior.B = 0.2\n", folder), log, folder
 
 
-def test_the_band_is_what_the_estimator_said_at_its_last_sample(
-    awas: tuple[Estimate, Columns, Path],
-) -> None:
+def test_the_band_is_what_the_estimator_said_at_its_last_sample(awas: Awas) -> None:
     """The set-point of the last sample is that of a branch: there both are the same."""
     result, _, folder = awas
     end = json.loads((folder / "joint.json").read_text())["at_the_end"]
@@ -130,7 +108,7 @@ def test_the_band_is_what_the_estimator_said_at_its_last_sample(
     assert np.interp(end["phi"], branch.phi, branch.sigma_std) == pytest.approx(std, rel=5e-3)
 
 
-def test_each_branch_ends_where_its_data_end(awas: tuple[Estimate, Columns, Path]) -> None:
+def test_each_branch_ends_where_its_data_end(awas: Awas) -> None:
     result, log, _ = awas
     set_point = 100.0 - 1e3 * 0.0025 / (2 * np.pi) * log["theta_c"]
     phi, step = log["q"] - log["theta"], np.ptp(set_point) / 4
@@ -142,7 +120,7 @@ def test_each_branch_ends_where_its_data_end(awas: tuple[Estimate, Columns, Path
         assert branch.phi[0] < branch.reach[0] and branch.phi[-1] > branch.reach[1]
 
 
-def test_torque_is_the_integral_of_the_stiffness(awas: tuple[Estimate, Columns, Path]) -> None:
+def test_torque_is_the_integral_of_the_stiffness(awas: Awas) -> None:
     for branch in awas[0].curve.branches:
         steps = np.diff(branch.phi) * (branch.sigma[1:] + branch.sigma[:-1]) / 2
         np.testing.assert_allclose(np.diff(branch.tau_e), steps, atol=1e-3 * np.ptp(branch.tau_e))
@@ -151,16 +129,16 @@ def test_torque_is_the_integral_of_the_stiffness(awas: tuple[Estimate, Columns, 
         assert branch.tau_e[zero] == branch.tau_e_std[zero] == 0
 
 
-def test_measured_points_lie_about_the_curve(awas: tuple[Estimate, Columns, Path]) -> None:
+def test_measured_points_lie_about_the_curve(awas: Awas) -> None:
     """(29): tau_e = k_s r^2 sin(2 phi) is what a perfect sensor would have measured."""
     _, _, folder = awas
-    points = read_points(folder / POINTS)
-    assert 1000 < len(points.phi) <= 3001
-    true = 14220.0 * (points.set_point / 1e3) ** 2 * np.sin(2 * points.phi)
-    assert np.sqrt(np.mean((points.tau_e - true) ** 2)) < 0.1 * np.sqrt(np.mean(true**2))
+    found = read_points(folder / POINTS)
+    assert 1000 < len(found.phi) <= 3001
+    true = 14220.0 * (found.set_point / 1e3) ** 2 * np.sin(2 * found.phi)
+    assert np.sqrt(np.mean((found.tau_e - true) ** 2)) < 0.1 * np.sqrt(np.mean(true**2))
 
 
-def test_the_file_has_all_digits(awas: tuple[Estimate, Columns, Path], tmp_path: Path) -> None:
+def test_the_file_has_all_digits(awas: Awas, tmp_path: Path) -> None:
     result, _, folder = awas
     read = read_curve(folder / CURVE, result.curve.polynomial)
     for a, b in zip(read.branches, result.curve.branches, strict=True):
@@ -174,7 +152,7 @@ def test_the_file_has_all_digits(awas: tuple[Estimate, Columns, Path], tmp_path:
     assert row["in the data"] == "false"
 
 
-def test_the_words_say_the_same(awas: tuple[Estimate, Columns, Path]) -> None:
+def test_the_words_say_the_same(awas: Awas) -> None:
     curve = awas[0].curve
     formula = re.search(r"= (.*); phi in rad, s = setPoint", polynomial_in_words(curve.polynomial))
     assert formula
@@ -193,11 +171,9 @@ def test_the_words_say_the_same(awas: tuple[Estimate, Columns, Path]) -> None:
 
 def test_a_fixed_spring_with_an_offset_has_one_curve(tmp_path: Path) -> None:
     """A general polynomial: no motor torque tells its constant from a bias, as the band says."""
-    log = closed_form_log("stiff", seed=1)
-    t = log.sample_period * np.arange(float(len(log.theta)))
-    columns = {"t": t, "theta": log.theta, "q": log.q, "theta_c": log.theta_c, "tau": log.tau}
     general = CLOSED_FORM.replace("rls.m = 2", "rls.m = 1\nrls.symmetric = false")
-    result = estimated(columns, general.replace("rls.n = 2", "rls.n = 3"), tmp_path)
+    general = general.replace("rls.n = 2", "rls.n = 3")
+    result = estimated(closed_form("stiff", 1, 1.0), general, tmp_path)
     (branch,) = result.curve.branches
     assert branch.tau_e_std is not None and branch.sigma_std is not None
     band = branch.torque_interval()
@@ -222,7 +198,7 @@ def test_paper2011_has_a_curve_without_a_band(tmp_path: Path) -> None:
 
 def test_a_joint_that_does_not_move_has_a_point(tmp_path: Path) -> None:
     t = np.arange(0, 2, 1e-3)
-    columns = {"t": t, "theta": 0 * t, "q": 0 * t, "theta_c": 0 * t, "tau": 0 * t}
+    columns = {"t": t, **{name: 0 * t for name in ("theta", "q", "theta_c", "tau")}}
     result = estimated(columns, CLOSED_FORM, tmp_path)
     (branch,) = result.curve.branches
     assert (branch.phi.tolist(), branch.reach) == ([0.0], (0.0, 0.0))
@@ -230,30 +206,68 @@ def test_a_joint_that_does_not_move_has_a_point(tmp_path: Path) -> None:
     assert main(["report", str(tmp_path)]) == 0
 
 
+def points(set_point: Array, phi: Array) -> MeasuredPoints:
+    return MeasuredPoints(phi, set_point, np.zeros(len(phi)))
+
+
 def test_going_on_adds_to_the_reach() -> None:
-    before = LearnedLog("a", "b", 10, 0, (-1.0, 0.5), (0.0, 3.0))
-    points = MeasuredPoints(np.linspace(-0.1, 0.9, 100), np.full(100, 2.0), np.zeros(100))
-    assert [r.phi for r in reaches(points, [], one_curve=False)] == [
-        pytest.approx((-0.1, 0.9), abs=2e-3)
-    ]
-    both = reaches(points, [before], one_curve=False)
+    before, fixed = (LearnedLog("a", "b", 10, 0, (-1.0, 0.5), (x, 3.0 - x)) for x in (0.0, 1.5))
+    phi = np.linspace(-0.1, 0.9, 100)
+    now = points(np.full(100, 1.5), phi)
+    (alone,) = reaches(now, [], one_curve=False)
+    assert alone.phi == pytest.approx((-0.1, 0.9), abs=2e-3)
+    both = reaches(points(np.full(100, 2.0), phi), [before], one_curve=False)
     assert [r.set_point for r in both] == [0.0, 0.75, 1.5, 2.25, 3.0]
-    assert both[0].phi == (-1.0, 0.5)
-    assert both[3].phi == pytest.approx((-1.0, 0.5))
-    assert both[2].phi == (-1.0, 0.5)
-    own = MeasuredPoints(np.linspace(-0.1, 0.9, 100), np.full(100, 1.5), np.zeros(100))
-    assert reaches(own, [before], one_curve=False)[2].phi == pytest.approx((-0.1, 0.9), abs=2e-3)
-    fixed = LearnedLog("a", "b", 10, 0, (-1.0, 0.5), (2.0, 2.0))
-    (single,) = reaches(points, [fixed], one_curve=False)
-    assert single.phi == pytest.approx((-1.0, 0.9), abs=2e-3)
-    (single,) = reaches(points, [before], one_curve=True)
-    assert single.phi == pytest.approx((-1.0, 0.9), abs=2e-3)
+    assert [both[i].phi for i in (0, 2, 3)] == [pytest.approx((-1.0, 0.5))] * 3
+    assert reaches(now, [before], one_curve=False)[2].phi == pytest.approx((-0.1, 0.9), abs=2e-3)
+    for log, one_curve in ((fixed, False), (before, True)):
+        (single,) = reaches(now, [log], one_curve=one_curve)
+        assert single.phi == pytest.approx((-1.0, 0.9), abs=2e-3)
 
 
 def test_levels_of_the_set_point_are_found() -> None:
     rng = np.random.default_rng(1)
     levels = np.repeat([1.0, 2.0, 5.0], 1000)
-    points = MeasuredPoints(rng.uniform(-1, 1, 3000), levels + 1e-3 * rng.normal(size=3000), levels)
-    found = [r.set_point for r in reaches(points, [], one_curve=False)]
+    moved = points(levels + 1e-3 * rng.normal(size=3000), rng.uniform(-1, 1, 3000))
+    found = [r.set_point for r in reaches(moved, [], one_curve=False)]
     assert found == pytest.approx([1.0, 2.0, 5.0], abs=1e-3)
     assert np.array_equal(nearest(found, np.array([1.1, 1.5, 2.2, 9.0])), [0, -1, 1, -1])
+
+
+# ---- a curve with knees, as the nearest polynomial -----------------------------------------------
+
+
+OF_KNEE = Polynomial(
+    powers_of_phi=[0, 1, 2, 3],
+    powers_of_set_point=[0, 1],
+    eta=[[0.5, 0.0], [100.0, 3.0], [20.0, 0.0], [-40.0, 0.0]],
+    units=[["N.m"] * 2, ["N.m/rad"] * 2, ["N.m/rad2"] * 2, ["N.m/rad3"] * 2],
+    phi=None,
+    set_point=None,
+)
+ANGLES = np.linspace(-0.2, 0.3, 101)
+SETTINGS = np.linspace(1.0, 2.0, 101)
+SLOPE = 100 + 3 * SETTINGS + 40 * ANGLES - 120 * ANGLES**2
+
+
+def test_a_polynomial_without_knees_stays_as_it_is() -> None:
+    assert with_knees(OF_KNEE, ANGLES, SETTINGS, SLOPE) is OF_KNEE
+
+
+def test_more_powers_come_near_a_knee() -> None:
+    knee = np.where(ANGLES > 0.1, 30.0, 0.0)
+    found = with_knees(OF_KNEE, ANGLES, SETTINGS, SLOPE + knee)
+    slope = [found.at(np.array([x]), s)[1][0] for x, s in zip(ANGLES, SETTINGS, strict=True)]
+    # The least squares of a polynomial of seven powers, by another function
+    powers = np.polynomial.Polynomial.fit(ANGLES, knee, 6)
+    np.testing.assert_allclose(slope - SLOPE, powers(ANGLES), rtol=0, atol=1e-6)
+    assert found.powers_of_phi == list(range(8))
+    assert found.eta[0] == OF_KNEE.eta[0] and found.eta[1][1] == 3.0
+    torque, _ = found.at(np.array([0.0]), 1.0)
+    assert torque[0] == pytest.approx(0.5)
+
+
+def test_the_start_values_are_the_curve() -> None:
+    start = start_of(OF_KNEE)
+    assert (start["rls.n"], start["rls.m"]) == (4, 2)
+    assert start["rls.eta_0[1,1]"] == 3.0

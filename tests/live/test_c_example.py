@@ -35,7 +35,7 @@ def test_every_sample_is_sent(program: Path) -> None:
         viewer.settimeout(1)
         port = viewer.getsockname()[1]
         running = subprocess.Popen(
-            [program, "5", str(port)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            [program, "3", str(port)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
         received = []
         with suppress(TimeoutError):  # after the last one
@@ -43,16 +43,16 @@ def test_every_sample_is_sent(program: Path) -> None:
                 received.append(json.loads(viewer.recv(4096)))
         printed, _ = running.communicate(timeout=10)
     assert running.returncode == 0
-    found = re.search(r"(\d+) of 5000 samples missed; stiffness (\S+) \+- (\S+) N.m/rad", printed)
+    found = re.search(r"(\d+) of 3000 samples missed; stiffness (\S+) \+- (\S+) N.m/rad", printed)
     assert found is not None, printed
-    assert len(received) == 5000 - int(found[1])
+    assert len(received) == 3000 - int(found[1])
     estimate = received[-1]["joint"]
     assert abs(estimate["sigma"] - STIFFNESS) < 1.96 * estimate["sigma_std"]
     assert estimate["confident"] is True
 
 
-@pytest.mark.parametrize("arguments", [["0"], ["nan"], ["1", "0"], ["1", "70000"]])
-def test_wrong_arguments_are_said(arguments: list[str], program: Path) -> None:
-    done = subprocess.run([program, *arguments], capture_output=True, text=True)
-    assert done.returncode == 2
-    assert "expected live [SECONDS [PORT]]" in done.stderr
+def test_wrong_arguments_are_said(program: Path) -> None:
+    for arguments in (["0"], ["nan"], ["1", "0"], ["1", "70000"]):
+        done = subprocess.run([program, *arguments], capture_output=True, text=True)
+        assert done.returncode == 2
+        assert "expected live [SECONDS [PORT]]" in done.stderr

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import json
-import signal
 import struct
 import subprocess
-import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
@@ -17,33 +14,18 @@ import pytest
 from websocket import ABNF, WebSocket, create_connection
 
 from browser import opened
-from sender import CONFIGURATION, free_port, messages
+from sender import csv, ended, free_port, messages, of_joints, running
 
 pytest.importorskip("foxglove")
 
-PORTS = CONFIGURATION[CONFIGURATION.index("[ports") : CONFIGURATION.index("[parameters]")]
-TWO_JOINTS = CONFIGURATION.replace(PORTS, "") + "".join(
-    PORTS.replace("[ports", f"[joints.{name}.ports") for name in ("elbow", "wrist")
-)
-"""Both have the same columns."""
 
-
-@contextmanager
-def replayed(folder: Path, samples: int, port: int) -> Iterator[subprocess.Popen[str]]:
-    """The command with a log, whose estimates go to a port."""
-    sent = messages(samples)
-    rows = [",".join(map(repr, each.values())) for each in sent]
-    (folder / "arm.csv").write_text("\n".join([",".join(sent[0]), *rows]) + "\n")
-    (folder / "arm.toml").write_text(TWO_JOINTS)
-    command = [sys.executable, "-m", "sigmahat", "live", "arm.toml", "--replay", "arm.csv"]
-    with subprocess.Popen(
-        [*command, "--to", f"foxglove:{port}", "--out", "out"],
-        cwd=folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-    ) as process:  # fmt: skip
-        assert process.stderr is not None
-        assert "Ctrl-C ends it" in process.stderr.readline()
-        yield process
-        process.kill()
+def replayed(
+    folder: Path, samples: int, port: int
+) -> AbstractContextManager[subprocess.Popen[str]]:
+    """The command with a log, whose estimates go to a port; both joints have the same columns."""
+    (folder / "arm.csv").write_text("\n".join(csv(messages(samples))) + "\n")
+    options = ["--replay", "arm.csv", "--to", f"foxglove:{port}"]
+    return running(folder, *options, text=of_joints(["elbow", "wrist"]))
 
 
 class Client:
@@ -51,29 +33,26 @@ class Client:
 
     def __init__(self, port: int) -> None:
         address = f"ws://127.0.0.1:{port}"
-        self._socket: WebSocket = create_connection(
+        self.socket: WebSocket = create_connection(
             address, timeout=10, subprotocols=["foxglove.sdk.v1"]
         )
         self.channels: dict[str, Any] = {}
         while len(self.channels) < 2:
-            message = json.loads(self._socket.recv())
+            message = json.loads(self.socket.recv())
             self.channels |= {each["topic"]: each for each in message.get("channels", [])}
 
     def subscribe(self, topic: str) -> None:
         subscription = {"id": 7, "channelId": self.channels[topic]["id"]}
-        self._socket.send(json.dumps({"op": "subscribe", "subscriptions": [subscription]}))
+        self.socket.send(json.dumps({"op": "subscribe", "subscriptions": [subscription]}))
 
     def next(self) -> tuple[int, Any]:
         """Time [ns] and contents of the next message."""
         while True:
-            kind, data = self._socket.recv_data()
+            kind, data = self.socket.recv_data()
             if kind == ABNF.OPCODE_BINARY and data[0] == 1:
                 _, subscription, stamp = struct.unpack_from("<BIQ", data)
                 assert subscription == 7
                 return stamp, json.loads(data[13:])
-
-    def close(self) -> None:
-        self._socket.close()
 
 
 def test_a_client_receives_channels_and_samples(tmp_path: Path) -> None:
@@ -90,14 +69,12 @@ def test_a_client_receives_channels_and_samples(tmp_path: Path) -> None:
         assert set(first) == set(properties)
         later, _ = client.next()
         assert later - stamp == 2_000_000
-        client.close()
+        client.socket.close()
         client = Client(port)  # a viewer that comes back
         client.subscribe("/elbow/estimate")
         values = [client.next()[1] for _ in range(500)]
         assert values[-1]["sigma_low"] < values[-1]["sigma"] < values[-1]["sigma_high"]
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=60)
-        assert process.returncode == 0
+        ended(process)
     layout = json.loads((tmp_path / "out" / "foxglove-layout.json").read_text())
     assert [tab["title"] for tab in layout["content"]["tabs"]] == ["elbow", "wrist"]
     assert '"/elbow/estimate.sigma_low"' in json.dumps(layout)

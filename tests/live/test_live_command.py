@@ -6,11 +6,9 @@ import json
 import random
 import signal
 import socket
-import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Thread
@@ -18,10 +16,9 @@ from typing import Any
 
 import pytest
 
-from command_line import refused
-from sender import CONFIGURATION, free_port, messages
-from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.estimate import estimate
+from command_line import Shell
+from sender import CONFIGURATION, csv, ended, estimated, free_port, messages, running
+from sigmahat.live.session import Session
 from sigmahat.logs.readers.formats import open_log
 
 needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT")
@@ -37,34 +34,9 @@ def nested(message: dict[str, Any]) -> bytes:
     return json.dumps({"t": message["t"], "arm": arm}).encode()
 
 
-@contextmanager
-def running(folder: Path, *options: str) -> Iterator[subprocess.Popen[str]]:
-    """The command, which waits for messages; "error" of what it prints is kept for the test."""
-    (folder / "arm.toml").write_text(CONFIGURATION)
-    command = [sys.executable, "-m", "sigmahat", "live", "arm.toml", *options, "--out", "out"]
-    process = subprocess.Popen(
-        command, cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True,
-    )  # fmt: skip
-    try:
-        assert process.stderr is not None
-        assert "Ctrl-C ends it" in process.stderr.readline()
-        yield process
-    finally:
-        process.kill()
-        process.wait()
-
-
-def ended(process: subprocess.Popen[str], number: int = signal.SIGINT) -> tuple[str, str]:
-    """What the command prints after a signal."""
-    process.send_signal(number)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 0, err
-    return out, err
-
-
-def recorded(folder: Path) -> list[Path]:
-    return sorted((folder / "out").glob("*.parquet"))
+def recorded(folder: Path) -> Path:
+    (recording,) = (folder / "out").glob("*.parquet")
+    return recording
 
 
 class Viewer:
@@ -85,29 +57,25 @@ class Viewer:
         return json.loads(self._received.get(timeout=10))
 
 
-def send(port: int, datagrams: Sequence[bytes], pause: float = 5e-4) -> None:
+def send(port: int, datagrams: Sequence[bytes]) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         for each in datagrams:
             sender.sendto(each, ("127.0.0.1", port))
-            time.sleep(pause)
+            time.sleep(5e-4)
 
 
 @needs_signals
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_udp_in_and_out(number: int, tmp_path: Path) -> None:
+def test_udp_in_and_out(tmp_path: Path) -> None:
     viewer, port = Viewer(), free_port()
     sent = messages(1000)
     with running(tmp_path, "--from", f"udp:{port}", "--to", f"udp:{viewer.port}") as process:
         send(port, [nested(each) for each in sent])
         received = [viewer.next() for _ in sent]
-        out, _ = ended(process, number)
+        out, _ = ended(process, signal.SIGTERM)
     assert out.startswith("messages: 1000 read\n")
-    (recording,) = recorded(tmp_path)
+    recording = recorded(tmp_path)
     assert f"sigmahat estimate {Path('out', recording.name)} --config" in out
-    series = estimate(
-        open_log(recording), read_configuration(recording.with_suffix(".toml"))
-    ).series
-    assert series is not None
+    series = estimated(recording)
     assert [each["timestamp"] for each in received] == pytest.approx([each["t"] for each in sent])
     assert [each["joint"]["sigma"] for each in received] == series["sigma"].tolist()
     assert [each["joint"]["doubt"] for each in received] == series["doubt"].tolist()
@@ -132,33 +100,29 @@ def test_any_datagrams_leave_the_estimate_as_it_is(tmp_path: Path) -> None:
         sent += noise.sample(fuzz, noise.randrange(3))
     with running(tmp_path, "--from", f"udp:{port}", "--to", f"udp:{viewer.port}") as process:
         send(port, sent)
-        received = [viewer.next() for _ in good]
+        received = [viewer.next()["joint"]["sigma"] for _ in good]
         out, err = ended(process)
     assert err.count("a message that cannot be read") == 1
     counted = out.splitlines()[0]
     assert all(each in counted for each in ("not readable", "late", "far off in time"))
-    alone = tmp_path / "alone"
-    alone.mkdir()
-    with running(alone, "--from", f"udp:{port}", "--to", f"udp:{viewer.port}") as process:
-        send(port, good)
-        assert [viewer.next() for _ in good] == received
-        ended(process)
+    # THEN it is that of the good ones alone
+    session = Session(tmp_path / "arm.toml", tmp_path)
+    ticks = [tick for each in messages(600) for tick in session.take(each, 0)] + session.close()
+    assert received == [tick.outputs["sigma"] for tick in ticks]
 
 
 @needs_signals
 def test_senders_over_tcp_come_and_go(tmp_path: Path) -> None:
     port = free_port()
-    sent = messages(1000)
-    lines = ["t,arm/motor,arm/link[0],arm/torque\n"]
-    lines += [",".join(map(str, each.values())) + "\n" for each in sent]
+    names, *lines = csv(messages(1000))
     with running(tmp_path, "--from", f"tcp:{port}") as process:
-        for part in (lines[:500], [lines[0], *lines[500:]]):
+        for part in (lines[:500], lines[500:]):
             with socket.create_connection(("127.0.0.1", port)) as sender:
-                sender.sendall("".join(part).encode())
+                sender.sendall("".join(f"{line}\n" for line in [names, *part]).encode())
             time.sleep(1.0)
         out, _ = ended(process)
     assert "messages: 1002 read" in out
-    assert open_log(recorded(tmp_path)[0]).samples("t") == 1000
+    assert open_log(recorded(tmp_path)).samples("t") == 1000
 
 
 def test_standard_input_ends_the_command(tmp_path: Path) -> None:
@@ -170,10 +134,8 @@ def test_standard_input_ends_the_command(tmp_path: Path) -> None:
 
 
 def test_a_replayed_log_takes_its_time(tmp_path: Path) -> None:
-    sent = messages(1000)
     log = tmp_path / "arm.csv"
-    rows = [",".join(map(repr, each.values())) for each in sent]
-    log.write_text("\n".join([",".join(sent[0]), *rows]) + "\n")
+    log.write_text("\n".join(csv(messages(1000))) + "\n")
     viewer = Viewer()
     with running(tmp_path, "--replay", "arm.csv", "--to", f"udp:{viewer.port}") as process:
         received = [viewer.next() for _ in range(100)]
@@ -182,67 +144,35 @@ def test_a_replayed_log_takes_its_time(tmp_path: Path) -> None:
         took = time.monotonic() - begin
         process.communicate(timeout=60)
     assert took > 0.9 * 1.8
-    series = estimate(open_log(log), read_configuration(tmp_path / "arm.toml")).series
-    assert series is not None
-    assert [each["joint"]["sigma"] for each in received] == series["sigma"].tolist()
-
-
-@needs_signals
-@pytest.mark.slow("the command starts twice, and takes messages in real time")
-def test_what_was_learned_is_gone_on_with(tmp_path: Path) -> None:
-    port = free_port()
-    datagrams = [nested(each) for each in messages(2000)]
-    for part, options in ((datagrams[:1000], ()), (datagrams[1000:], ("--start-from", "out"))):
-        with running(tmp_path, "--from", f"udp:{port}", *options) as process:
-            send(port, part)
-            time.sleep(0.5)
-            ended(process)
-    state = json.loads((tmp_path / "out" / "state.json").read_text())
-    assert [each["ticks"] for each in state["logs"]] == [1000, 1000]
+    log.with_suffix(".toml").write_text(CONFIGURATION)
+    assert [each["joint"]["sigma"] for each in received] == estimated(log)["sigma"].tolist()
 
 
 @pytest.mark.parametrize(
     ("options", "expected"),
     [
+        ("--from serial:1", "--from: expected udp:PORT, tcp:PORT, stdin or ros2, got 'serial:1'"),
+        ("--from udp:70000", "--from: expected a port from 1 to 65535, got '70000'"),
         (
-            ["--from", "serial:1"],
-            "--from: expected udp:PORT, tcp:PORT, stdin or ros2, got 'serial:1'",
-        ),
-        (["--from", "udp:70000"], "--from: expected a port from 1 to 65535, got '70000'"),
-        (
-            ["--to", "tcp:1"],
+            "--to tcp:1",
             "--to: expected udp:PORT, udp:HOST:PORT, foxglove[:PORT] or ros2, got 'tcp:1'",
         ),
-        (["--columns", "t,x"], "--columns lacks arm/motor"),
-        (["--host", "203.0.113.1"], "cannot listen at 203.0.113.1, udp:9870:"),
-        (["--replay", "none.csv"], "none.csv: No such file or directory"),
-        (["--start-from", "none"], "none: No such file or directory; name the folder"),
+        ("--columns t,x", "--columns lacks arm/motor"),
+        ("--host 203.0.113.1", "cannot listen at 203.0.113.1, udp:9870:"),
+        ("--replay none.csv", "none.csv: No such file or directory"),
+        ("--start-from none", "none: No such file or directory; name the folder"),
     ],
 )
-def test_wrong_arguments_are_said(
-    options: list[str], expected: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    config = tmp_path / "arm.toml"
-    config.write_text(CONFIGURATION)
-    out = tmp_path / "out"
-    assert expected in refused(capsys, "live", str(config), "--out", str(out), *options)
-    assert not out.exists()
+def test_wrong_arguments_are_said(options: str, expected: str, shell: Shell) -> None:
+    Path("arm.toml").write_text(CONFIGURATION)
+    assert expected in shell.refused(f"live arm.toml --out out {options}")
+    assert not Path("out").exists()
 
 
-def test_a_port_in_use_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "arm.toml").write_text(CONFIGURATION)
+def test_a_port_in_use_is_said(shell: Shell) -> None:
+    Path("arm.toml").write_text(CONFIGURATION)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("127.0.0.1", 0))
         source = f"udp:{other.getsockname()[1]}"
-        said = refused(
-            capsys,
-            "live",
-            str(tmp_path / "arm.toml"),
-            "--from",
-            source,
-            "--out",
-            str(tmp_path / "out"),
-        )
-    assert (
-        f"cannot listen at 127.0.0.1, {source}: Address already in use; name another port" in said
-    )
+        said = shell.refused(f"live arm.toml --out out --from {source}")
+    assert f"at 127.0.0.1, {source}: Address already in use; name another port" in said

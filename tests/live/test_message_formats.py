@@ -15,13 +15,9 @@ WANTED = ("t", "arm/motor[1]", "/torque")
 
 def test_json_as_plotjuggler_names_it() -> None:
     message = (
-        b'{"t": 12345678901234567890, "arm": {"motor": [1, -2.5], "x": "text"}, "torque": null}'
+        b'{"t": 1700000000000000001, "arm": {"motor": [1, -2.5], "x": "text"}, "torque": null}'
     )
-    with pytest.raises(ValueError, match="t: expected a number, got '12345678901234567890'"):
-        Decoder(WANTED).columns(message)
-    found = Decoder(WANTED).columns(
-        message.replace(b"12345678901234567890", b"1700000000000000001")
-    )
+    found = Decoder(WANTED).columns(message)
     assert found is not None
     assert found["t"] == 1_700_000_000_000_000_001
     assert found["arm/motor[1]"] == -2.5
@@ -45,11 +41,11 @@ def test_csv_with_a_line_of_names_or_without() -> None:
         (b"", "CSV that ends with a line feed, got b''"),
         (b"1,2,3", "ends with a line feed"),
         (b"1,2\n", r"expected 3 cells, got b'1,2\\n'"),
-        (b"1,2,3,4\n", "expected 3 cells"),
         (b"1,abc,3\n", "arm/motor.1.: expected a number, got 'abc'"),
         (b"\xff\xfe,2,3\n", "expected text in UTF-8"),
         (b'{"t": 1', "expected a whole JSON object"),
         (b'{"x": 1}', "expected one of t, arm/motor.1., torque"),
+        (b'{"t": 12345678901234567890}', "t: expected a number, got '12345678901234567890'"),
         (b'{"t": true}', "t: expected a number, got 'True'"),
         (b'{"t": [1]}', "expected one of"),
         (b'{"t": ' + b"9" * 5000 + b"}", "expected a whole JSON object"),

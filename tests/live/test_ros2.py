@@ -5,7 +5,6 @@ Both run in a network of their own, whose loopback has multicast, by which they 
 
 from __future__ import annotations
 
-import signal
 import subprocess
 import sys
 import time
@@ -17,10 +16,7 @@ import numpy as np
 import pytest
 
 from gate import missing, need
-from sender import CONFIGURATION, messages
-from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.estimate import estimate
-from sigmahat.logs.readers.formats import open_log
+from sender import CONFIGURATION, ended, estimated, messages, running
 
 FIRST = 1_700_000_000_000_000_000  # [ns] since 1970
 NETWORK = (
@@ -62,44 +58,35 @@ def test_joint_states_in_and_estimates_out(
     if not robot.exists():
         source = "tests/drivers/ros2_robot"
         missing("ros2-robot", f"cargo install --root {build / 'checkers'} --path {source}")
-    config = tmp_path / "arm.toml"
-    config.write_text(ROS)
-    command = [sys.executable, "-m", "sigmahat", "live", str(config), "--out", str(tmp_path)]
-    live = subprocess.Popen(
-        [*network, *command, "--from", "ros2", "--to", "ros2"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    received = tmp_path / "received"
-    ours = subprocess.Popen(
-        [*network, str(robot), reliability, "arm_motor", "arm"],
-        stdin=subprocess.PIPE, stdout=received.open("w"), stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    try:
-        assert ours.stdin is not None and ours.stderr is not None
-        assert ours.stderr.readline() == "somebody listens\n"
-        time.sleep(0.5)
-        for each in messages(1500):
-            stamp = FIRST + round(each["t"] * 1e9)
-            row = [each["arm/motor"], each["arm/torque"], each["arm/link[0]"], 0.0]
-            ours.stdin.write(" ".join([str(stamp), *map(repr, row)]) + "\n")
-            ours.stdin.flush()
-            time.sleep(1e-3)
-        ours.communicate(timeout=60)
-        live.send_signal(signal.SIGINT)
-        printed, errors = live.communicate(timeout=60)
-    finally:
-        live.kill()
-        ours.kill()
-    assert live.returncode == 0, errors
+    received, pipe = tmp_path / "received", subprocess.PIPE
+    command = [*network, str(robot), reliability, "arm_motor", "arm"]
+    with (
+        running(tmp_path, "--from", "ros2", "--to", "ros2", text=ROS, inside=network) as live,
+        received.open("w") as written,
+        subprocess.Popen(command, stdin=pipe, stdout=written, stderr=pipe, text=True) as ours,
+    ):
+        try:
+            assert ours.stdin is not None and ours.stderr is not None
+            assert ours.stderr.readline() == "somebody listens\n"
+            time.sleep(0.5)
+            for each in messages(1500):
+                stamp = FIRST + round(each["t"] * 1e9)
+                row = [each["arm/motor"], each["arm/torque"], each["arm/link[0]"], 0.0]
+                ours.stdin.write(" ".join([str(stamp), *map(repr, row)]) + "\n")
+                ours.stdin.flush()
+                time.sleep(1e-3)
+            ours.communicate(timeout=60)
+            printed, _ = ended(live)
+        finally:
+            ours.kill()
     lines = defaultdict(list)
     for line in received.read_text().splitlines():
         kind, _, rest = line.partition(" ")
         lines[kind].append(rest.split())
     assert any(" ".join(each).startswith("0 sigmahat: stiffness of joint: confident") or
                each[0] == "1" for each in lines["diagnosis"])  # fmt: skip
-    (recording,) = tmp_path.glob("*.parquet")
-    found = estimate(open_log(recording), read_configuration(recording.with_suffix(".toml"))).series
-    assert found is not None
+    (recording,) = (tmp_path / "out").glob("*.parquet")
+    found = estimated(recording)
     ticks = len(found.t)
     assert ticks == 1500 and "messages: 1500 read" in printed
     stamps = [int(each[0]) for each in lines["estimate"]]

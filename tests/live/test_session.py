@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sender import CONFIGURATION, COUNTS, T, messages
+from command_line import working_in
+from sender import CONFIGURATION, COUNTS, T, estimated, messages, of_joints
 from sigmahat.live.joint import OUTPUTS, Estimated
 from sigmahat.live.messages import Columns
 from sigmahat.live.session import Session
@@ -25,15 +27,18 @@ SECOND = 1_000_000_000
 
 
 def live(
-    folder: Path, sent: Sequence[Columns], text: str = CONFIGURATION, start: Path | None = None
+    folder: Path,
+    sent: Sequence[Columns],
+    text: str = CONFIGURATION,
+    start: Path | None = None,
+    arrived: Callable[[int], int] = lambda number: 0,
 ) -> tuple[Session, list[Estimated]]:
-    """Everything goes through a session."""
-    config = folder / "arm.toml"
+    """Everything goes through a session; message of each number arrives at [ns]."""
+    config, out = folder / "arm.toml", folder / "out"
     config.write_text(text)
-    out = folder / "out"
-    out.mkdir(exist_ok=True)
+    out.mkdir(parents=True, exist_ok=True)
     session = Session(config, out, start)
-    ticks = [tick for each in sent for tick in session.take(each, 0)]
+    ticks = [tick for i, each in enumerate(sent) for tick in session.take(each, arrived(i))]
     return session, ticks + session.close()
 
 
@@ -41,12 +46,6 @@ def same(ticks: Sequence[Estimated], series: Any) -> None:
     """Every output of every tick is equal."""
     for name in (*OUTPUTS, "confident", "valid", "doubt"):
         np.testing.assert_array_equal([each.outputs[name] for each in ticks], series[name], name)
-
-
-def estimated(recording: Path, start: Path | None = None) -> Any:
-    """The outputs that `estimate` finds in a recording, with the configuration beside it."""
-    configuration = read_configuration(recording.with_suffix(".toml"))
-    return estimate(open_log(recording), configuration, start_from=start).series
 
 
 @st.composite
@@ -73,9 +72,8 @@ def disturbed(draw: st.DrawFn) -> list[dict[str, Any]]:
             case "no stamp":
                 found[place].pop("t", None)
             case "far":
-                found.insert(
-                    place, {**found[place], "t": draw(st.sampled_from([-50.0, 900.0, 1e300]))}
-                )
+                t = draw(st.sampled_from([-50.0, 900.0, 1e300]))
+                found.insert(place, {**found[place], "t": t})
     return found
 
 
@@ -108,27 +106,21 @@ def test_times_in_nanoseconds_are_not_rounded(tmp_path: Path) -> None:
 
 
 def test_without_stamps_the_time_of_arrival_counts(tmp_path: Path) -> None:
-    config = tmp_path / "arm.toml"
-    config.write_text(CONFIGURATION.replace('column = "t"', ""))
-    session = Session(config, tmp_path)
-    ticks = []
-    for i, each in enumerate(messages(500)):
-        del each["t"]
-        ticks += session.take(
-            each, 1_700_000_000 * SECOND + round(i * T * SECOND) + 50_000 * (i % 3)
-        )
-    ticks += session.close()
+    def arrived(i: int) -> int:
+        return 1_700_000_000 * SECOND + round(i * T * SECOND) + 50_000 * (i % 3)
+
+    sent = [{name: x for name, x in each.items() if name != "t"} for each in messages(500)]
+    text = CONFIGURATION.replace('column = "t"', "")
+    session, ticks = live(tmp_path, sent, text, arrived=arrived)
     assert len(ticks) == 500
     same(ticks, estimated(session.recordings[0]))
 
 
-def two_topics(rate: int = 2) -> Iterator[dict[str, float]]:
+def two_topics() -> Iterator[dict[str, float]]:
     """The link comes in messages of its own, half as often, and a little later."""
     for i, each in enumerate(messages(1000)):
         link = {"t_link": each["t"] + 7e-4, "arm/link[0]": each.pop("arm/link[0]")}
-        yield each
-        if i % rate == 0:
-            yield link
+        yield from [each, link] if i % 2 == 0 else [each]
 
 
 TWO_TOPICS = CONFIGURATION.replace('"arm/link[0]"', '"arm/link[0]"\ntime = "t_link"').replace(
@@ -161,26 +153,27 @@ def test_a_topic_that_dies_does_not_stop_the_others(tmp_path: Path) -> None:
     same(ticks, estimated(session.recordings[0]))
 
 
-@pytest.mark.parametrize("again_at", [-3.0, 0.0, 60.0, 1e6])
+@pytest.mark.parametrize("again_at", [-3.0, 0.0, 60.0])
 def test_a_sender_that_starts_again_is_noticed(again_at: float, tmp_path: Path) -> None:
     """It begins a recording of its own, with which the estimator goes on."""
-    first, second = messages(3000, 1), messages(3000, 2)
+    first, second = messages(1000, 1), messages(1000, 2)
     for each in second:
         each["t"] += again_at
         each["arm/motor"] = (each["arm/motor"] + 1234) % COUNTS  # of another turn
     session, ticks = live(tmp_path, [*first, *second])
     one, two = session.recordings
-    same(ticks[:3000], estimated(one))
-    folder = tmp_path / "first"
-    folder.mkdir()
-    estimate(open_log(one), read_configuration(one.with_suffix(".toml")), folder)
-    same(ticks[3000:], estimated(two, start=folder))
+    same(ticks[:1000], estimated(one))
+    with working_in(tmp_path):
+        estimate(open_log(one), read_configuration(one.with_suffix(".toml")), tmp_path)
+    same(ticks[1000:], estimated(two, start=tmp_path))
 
 
 def test_what_was_learned_goes_on(tmp_path: Path) -> None:
     sent = messages(6000)
     live(tmp_path, sent[:3000])
     _, ticks = live(tmp_path, sent[3000:], start=tmp_path / "out")
+    state = json.loads((tmp_path / "out" / "state.json").read_text())
+    assert [each["ticks"] for each in state["logs"]] == [3000, 3000]
     assert ticks[0].outputs["confident"]
     assert [each.outputs["sigma"] for each in ticks] == pytest.approx([400] * 3000, rel=0.05)
 
@@ -188,27 +181,17 @@ def test_what_was_learned_goes_on(tmp_path: Path) -> None:
 def test_many_joints_in_one_message(tmp_path: Path) -> None:
     """Each of them as if it were alone."""
     names = [f"a{i}" for i in range(1, 8)]
-    ports = CONFIGURATION[CONFIGURATION.index("[ports") : CONFIGURATION.index("[parameters]")]
-    several = CONFIGURATION.replace(ports, "") + "".join(
-        ports.replace("[ports", f"[joints.{n}.ports").replace("arm/", f"{n}/") for n in names
-    )
+    several = of_joints(names, [f"{name}/" for name in names])
     each_joint = [messages(400, seed) for seed in range(7)]
-    sent = [
-        {
-            key.replace("arm/", f"{n}/"): v
-            for n, one in zip(names, row, strict=True)
-            for key, v in one.items()
-        }
-        for row in zip(*each_joint, strict=True)
-    ]
+    sent: list[dict[str, Any]] = [{} for _ in range(400)]
+    for name, alone in zip(names, each_joint, strict=True):
+        for message, of_one in zip(sent, alone, strict=True):
+            message |= {key.replace("arm/", f"{name}/"): v for key, v in of_one.items()}
     session, ticks = live(tmp_path, sent, several)
     (recording,) = session.recordings
     for place, name in enumerate(names):
         own = [each for each in ticks if each.joint == name]
-        alone = tmp_path / name
-        alone.mkdir()
-        _, expected = live(alone, each_joint[place])
+        _, expected = live(tmp_path / name, each_joint[place])
         assert [each.outputs for each in own] == [each.outputs for each in expected]
-        configuration = read_configuration(recording.with_suffix(".toml"), name)
-        same(own, estimate(open_log(recording), configuration).series)
+        same(own, estimated(recording, joint=name))
         assert (tmp_path / "out" / name / "state.json").is_file()

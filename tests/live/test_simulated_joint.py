@@ -1,16 +1,21 @@
-"""The simulated joint in the browser: settings, time, what it looks like."""
+"""The simulated joint in the browser: the numbers of the FMUs, settings, time, how it looks."""
 
 from __future__ import annotations
 
 import re
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
+import fmpy
+import numpy as np
 import pytest
 from selenium.webdriver.common.keys import Keys
 
 from live_page import LivePage, live_page
+from sigmahat.paper.scenarios import scenario
+from sigmahat.runs.engine import run
 
 _DRAWN = """
 const canvas = document.getElementById(arguments[0]), color = getComputedStyle(
@@ -27,6 +32,25 @@ return count;
 """
 
 
+WITHIN = 1e-12  # of the range of each output; what the project promises
+_SIMULATE = """
+const [method, plant, estimator, count] = given;
+joint.form.elements.method.value = METHODS[method];
+const record = { plant, estimator };
+const simulation = new Simulation(
+  joint.plant, joint.estimator, joint.starts(), joint.torques(), record);
+const found = {};
+for (const [of, names] of Object.entries(record))
+  for (const name of names) found[`${of} ${name}`] = new Float64Array(count);
+for (let k = 0; k < count; k += 1) {
+  simulation.advance();
+  for (const [of, names] of Object.entries(record))
+    names.forEach((name, i) => { found[`${of} ${name}`][k] = simulation.recorded[of].values[i]; });
+}
+return found;
+"""
+
+
 @pytest.fixture(scope="module")
 def page(site: Path) -> Iterator[LivePage]:
     with live_page(site / "live") as page:
@@ -35,14 +59,34 @@ def page(site: Path) -> Iterator[LivePage]:
 
 def simulate(page: LivePage, seconds: float) -> None:
     """Lets simulated time pass at once."""
-    page.page.run(
-        "joint.start(); joint.advance(arguments[0] / SCENARIO.T, Infinity); joint.show()", seconds
-    )
+    steps = "arguments[0] / SCENARIO.T"
+    page.page.run(f"joint.start(); joint.advance({steps}, Infinity); joint.show()", seconds)
 
 
-def error(page: LivePage) -> float:
-    """Relative error of the stiffness at the end, as the page shows it [%]."""
-    return float(page.text("value-error").removesuffix(" %").replace("\N{MINUS SIGN}", "-"))
+def outputs(fmu: Path) -> list[str]:
+    variables = fmpy.read_model_description(str(fmu)).modelVariables
+    return [v.name for v in variables if v.causality == "output" and v.type == "Real"]
+
+
+@pytest.mark.parametrize("method", ["Paper2011", "FilteredRegression"])
+def test_table1_in_the_browser_is_that_of_the_fmus(
+    method: str, page: LivePage, estimator_fmu: Path, plant_fmu: Path
+) -> None:
+    """The page makes its own torques, by the settings that it opens with."""
+    plant, estimator = outputs(plant_fmu), outputs(estimator_fmu)
+    table1 = scenario("table1")
+    residual = table1.estimators["RESIDUAL"]
+    residual = replace(residual, start={**residual.start, "method": method}, record=estimator)
+    of_all = replace(table1.plant, record=plant)
+    expected = run(replace(table1, plant=of_all, estimators={"RESIDUAL": residual}), seed=1)
+    found = page.arrays(_SIMULATE, method, plant, estimator, table1.steps + 1)
+    differences = {}
+    for name, values in found.items():
+        of, variable = name.split(" ")
+        series = expected.plant if of == "plant" else expected.estimators["RESIDUAL"]
+        differences[name] = np.max(np.abs(values - series[variable])), np.ptp(series[variable])
+    assert len(differences) == len(plant) + len(estimator) > 70
+    assert {name: d for name, d in differences.items() if d[0] > WITHIN * d[1]} == {}
 
 
 def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
@@ -64,16 +108,19 @@ def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
 
 
 def test_wrong_friction_misleads_paper2011_and_not_filtered_regression(page: LivePage) -> None:
+    """And only the method that claims a band gets one."""
     errors = {}
-    for method in ("Paper2011", "FilteredRegression"):
+    for method, claims in (("Paper2011", False), ("FilteredRegression", True)):
         page.page.run("joint.form.elements.method.value = METHODS[arguments[0]]", method)
-        for friction in (0, 20):
+        for friction in (20, 0):
             page.sets("friction", friction)
             simulate(page, 15)
-            errors[method, friction] = abs(error(page))
+            shown = page.text("value-error").removesuffix(" %").replace("\N{MINUS SIGN}", "-")
+            errors[method, friction] = abs(float(shown))
+        assert ("±" in page.text("value-sigma")) == claims
+        assert (page.text("value-doubt") == "confident") == claims
     assert errors["Paper2011", 20] > 20 > 5 > errors["FilteredRegression", 20]
     assert max(errors["Paper2011", 0], errors["FilteredRegression", 0]) < 5
-    page.sets("friction", 0)
 
 
 def test_the_band_holds_without_noise(page: LivePage) -> None:
@@ -82,20 +129,10 @@ def test_the_band_holds_without_noise(page: LivePage) -> None:
     for noise in (0, 1):
         page.sets("noise", noise)
         simulate(page, 45)
-        history = {
-            name: page.page.run("return joint.history.get(arguments[0]).at(-1)", name)
-            for name in ("sigma", "low", "high")
-        }
-        assert history["low"] < history["sigma"] < history["high"]
+        last = "return ['low', 'sigma', 'high'].map((name) => joint.history.get(name).at(-1))"
+        low, sigma, high = page.page.run(last)
+        assert low < sigma < high
         assert page.text("value-doubt") == "confident"
-
-
-def test_only_a_method_that_claims_a_band_gets_one(page: LivePage) -> None:
-    for method, claims in (("Paper2011", False), ("FilteredRegression", True)):
-        page.page.run("joint.form.elements.method.value = METHODS[arguments[0]]", method)
-        simulate(page, 10)
-        assert ("±" in page.text("value-sigma")) == claims
-        assert (page.text("value-doubt") == "confident") == claims
 
 
 def test_what_an_fmu_refuses_is_shown_in_its_own_words(page: LivePage) -> None:
@@ -125,11 +162,7 @@ def test_it_fits_the_window_without_a_complaint(width: int, dark: bool, site: Pa
         brightness = sum(map(int, re.findall(r"\d+", shown)[:3])) / 3
         assert brightness < 64 if dark else brightness > 192
         assert live.page.run("return document.documentElement.scrollWidth") <= width
-        for plot, color in (
-            ("stiffness", "true"),
-            ("stiffness", "estimate"),
-            ("torque", "estimate"),
-        ):
-            assert live.page.run(_DRAWN, plot, color) > 100, (plot, color)
+        for drawn in (["stiffness", "true"], ["stiffness", "estimate"], ["torque", "estimate"]):
+            assert live.page.run(_DRAWN, *drawn) > 100, drawn
         assert live.page.complaints() == []
         assert all(url.startswith("file:") for url in live.page.requests())

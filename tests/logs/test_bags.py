@@ -9,45 +9,13 @@ import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
+from command_line import Shell
 from recorded_logs import read_estimate
-from sigmahat.cli import main
 from sigmahat.logs.readers.formats import open_log
 
 T = 1e-3
 N = 3000
 START = 1_700_000_000_000_000_000
-
-
-def signals() -> dict[str, np.ndarray]:
-    t = T * np.arange(N)
-    theta = np.sin(5 * t)
-    return {"theta": theta, "q": theta + 2e-3 * np.sin(7 * t), "tau": 0.2 * np.cos(5 * t)}
-
-
-def write_bag(path: Path, storage: StoragePlugin) -> None:
-    """A sensor_msgs/JointState every ms, and the torque as std_msgs/Float64."""
-    store = get_typestore(Stores.ROS2_HUMBLE)
-    kinds = store.types
-    joint, number = "sensor_msgs/msg/JointState", "std_msgs/msg/Float64"
-    values = signals()
-    with Writer(path, version=9, storage_plugin=storage) as writer:
-        states = writer.add_connection("/joint_states", joint, typestore=store)
-        torque = writer.add_connection("/drive/torque", number, typestore=store)
-        for k in range(N):
-            now = START + k * 1_000_000
-            stamp = kinds["builtin_interfaces/msg/Time"](now // 10**9, now % 10**9)
-            message = kinds[joint](
-                kinds["std_msgs/msg/Header"](stamp, "base"),
-                ["motor", "link"],
-                np.array([values["theta"][k], values["q"][k]]),
-                np.array([]),
-                np.array([]),
-            )
-            writer.write(states, now + 300, store.serialize_cdr(message, joint))
-            data = store.serialize_cdr(kinds[number](float(values["tau"][k])), number)
-            writer.write(torque, now, data)
-
-
 CONFIGURATION = """
 [time]
 column = "/joint_states.time"
@@ -64,42 +32,52 @@ rls.m = 1
 """
 
 
+def signals() -> dict[str, np.ndarray]:
+    t = T * np.arange(N)
+    theta = np.sin(5 * t)
+    return {"theta": theta, "q": theta + 2e-3 * np.sin(7 * t), "tau": 0.2 * np.cos(5 * t)}
+
+
+def write_bag(storage: StoragePlugin) -> None:
+    """A sensor_msgs/JointState every ms, and the torque as std_msgs/Float64."""
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    joint, number = "sensor_msgs/msg/JointState", "std_msgs/msg/Float64"
+    Time, Header, JointState, Float64 = (
+        store.types[name]
+        for name in ("builtin_interfaces/msg/Time", "std_msgs/msg/Header", joint, number)
+    )
+    none = np.array([])
+    with Writer(Path("bag"), version=9, storage_plugin=storage) as writer:
+        states = writer.add_connection("/joint_states", joint, typestore=store)
+        torque = writer.add_connection("/drive/torque", number, typestore=store)
+        for k, (theta, q, tau) in enumerate(zip(*signals().values(), strict=True)):
+            now = START + k * 1_000_000
+            header = Header(Time(now // 10**9, now % 10**9), "base")
+            message = JointState(header, ["motor", "link"], np.array([theta, q]), none, none)
+            writer.write(states, now + 300, store.serialize_cdr(message, joint))
+            writer.write(torque, now, store.serialize_cdr(Float64(float(tau)), number))
+    Path("bag.toml").write_text(CONFIGURATION)
+
+
 @pytest.mark.parametrize("storage", [StoragePlugin.MCAP, StoragePlugin.SQLITE3])
-def test_bag(storage: StoragePlugin, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    write_bag(Path("bag"), storage)
-    log = open_log(Path("bag"))
-    values = signals()
+def test_bag(storage: StoragePlugin, shell: Shell) -> None:
+    write_bag(storage)
+    log, values = open_log(Path("bag")), signals()
     assert np.array_equal(log.read("/joint_states.position[link]"), values["q"])
     assert np.array_equal(log.read("/drive/torque.data"), values["tau"])
-    assert log.read("/joint_states.time")[-1] - log.read("/joint_states.time")[0] == pytest.approx(
-        (N - 1) * T, abs=1e-9
-    )
-    Path("bag.toml").write_text(CONFIGURATION)
-    assert main(["estimate", "bag"]) == 0
+    assert np.ptp(log.read("/joint_states.time")) == pytest.approx((N - 1) * T, abs=1e-9)
+    shell.run("estimate bag")
     phi = read_estimate(Path("sigmahat-results/bag"))["estimate.phi [rad]"].to_numpy()
     assert np.array_equal(phi, (values["q"] - values["theta"]).astype(np.float32))
 
 
-def test_one_mcap_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    write_bag(Path("bag"), StoragePlugin.MCAP)
+def test_one_mcap_file_whole_and_cut_in_the_middle(shell: Shell) -> None:
+    write_bag(StoragePlugin.MCAP)
     (file,) = Path("bag").glob("*.mcap")
     assert np.array_equal(open_log(file).read("/drive/torque.data"), signals()["tau"])
-    assert main(["init", str(file), "--config", "one.toml"]) == 0
+    shell.run(f"init {file} --config one.toml")
     text = Path("one.toml").read_text()
     assert 'column = "/joint_states.position[motor]"' in text
     assert 'time = "/drive/torque.time"' in text
-
-
-def test_bag_cut_in_the_middle(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    write_bag(Path("bag"), StoragePlugin.MCAP)
-    (file,) = Path("bag").glob("*.mcap")
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
-    Path("bag.toml").write_text(CONFIGURATION)
-    assert main(["estimate", "bag"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "not a whole ROS 2 bag" in line
+    assert "not a whole ROS 2 bag" in shell.refused("estimate bag")

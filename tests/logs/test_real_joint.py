@@ -14,18 +14,27 @@ import pytest
 
 import real_joint
 from real_joint import SETTINGS, Fit, Log, M, N
-from sigmahat.fmi.instance import Fmu
+from sigmahat.checks.check import check
+from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.logs.configuration import Configuration, Port, Time
+from sigmahat.logs.readers.formats import open_log
+
+Logs = list[Log]
 
 
 @pytest.fixture(scope="module")
-def measured() -> list[Log]:
+def data() -> Path:
     try:
-        folder = real_joint.folder()
+        return real_joint.folder()
     except FileNotFoundError as error:
         if "SIGMAHAT_DESR" in os.environ:
             raise
         pytest.skip(str(error))
-    return real_joint.logs(folder)
+
+
+@pytest.fixture(scope="module")
+def measured(data: Path) -> Logs:
+    return real_joint.logs(data)
 
 
 @pytest.fixture(scope="module")
@@ -35,38 +44,31 @@ def fmu(estimator_fmu: Path) -> Iterator[Fmu]:
 
 
 @pytest.fixture(scope="module")
-def general(fmu: Fmu, measured: list[Log]) -> Fit:
+def general(fmu: Fmu, measured: Logs) -> Fit:
     return real_joint.replay(fmu, measured, symmetric=False)
 
 
 @pytest.fixture(scope="module")
-def odd(fmu: Fmu, measured: list[Log]) -> Fit:
+def odd(fmu: Fmu, measured: Logs) -> Fit:
     return real_joint.replay(fmu, measured, symmetric=True)
 
 
-def test_the_general_basis_fits_the_torque(measured: list[Log], general: Fit) -> None:
+def test_the_general_basis_fits_the_torque_the_odd_one_does_not(
+    measured: Logs, general: Fit, odd: Fit
+) -> None:
     assert [log.setting for log in measured] == list(SETTINGS)
     assert max(log.rms(general) for log in measured) <= 4.5
-
-
-def test_the_odd_basis_does_not(measured: list[Log], general: Fit, odd: Fit) -> None:
     for log in measured:
         assert 6.2 < log.rms(odd) < 9.0
         assert log.rms(general) < 0.5 * log.rms(odd)
 
 
-def test_the_recursion_ends_at_the_batch_fit(measured: list[Log], general: Fit) -> None:
+def test_the_recursion_ends_at_the_batch_fit(measured: Logs, general: Fit) -> None:
     # GIVEN all samples at once THEN linear least squares, scaled to be well conditioned, fit alike
     unit_phi, unit_l = 0.2, 45.0
-    F = np.concatenate(
-        [
-            np.kron(
-                (log.setting / unit_l) ** np.arange(M),
-                (log.phi[:, None] / unit_phi) ** np.arange(N),
-            )
-            for log in measured
-        ]
-    )
+    settings = [(log.setting / unit_l) ** np.arange(M) for log in measured]
+    powers = [(log.phi[:, None] / unit_phi) ** np.arange(N) for log in measured]
+    F = np.concatenate([np.kron(s, p) for s, p in zip(settings, powers, strict=True)])
     solution = np.linalg.lstsq(F, np.concatenate([log.torque for log in measured]), rcond=None)[0]
     eta = solution.reshape(M, N).T / np.outer(unit_phi ** np.arange(N), unit_l ** np.arange(M))
     batch = Fit(False, eta, 0.0, 0.0)
@@ -76,19 +78,14 @@ def test_the_recursion_ends_at_the_batch_fit(measured: list[Log], general: Fit) 
         assert np.max(np.abs(difference)) < 1e-4 * span
 
 
-@pytest.mark.parametrize("basis", ["general", "odd"])
-def test_outputs_are_those_of_the_coefficients(
-    basis: str, measured: list[Log], request: pytest.FixtureRequest
-) -> None:
-    fit: Fit = request.getfixturevalue(basis)
+def test_outputs_are_those_of_the_coefficients(measured: Logs, general: Fit, odd: Fit) -> None:
     last = measured[-1]
-    assert fit.tau_e == pytest.approx(fit.torque(last.setting, last.phi[-1:])[0], rel=1e-9)
-    assert fit.sigma == pytest.approx(fit.stiffness(last.setting, last.phi[-1]), rel=1e-9)
+    for fit in (general, odd):
+        assert fit.tau_e == pytest.approx(fit.torque(last.setting, last.phi[-1:])[0], rel=1e-9)
+        assert fit.sigma == pytest.approx(fit.stiffness(last.setting, last.phi[-1]), rel=1e-9)
 
 
-def test_a_setting_left_out_is_predicted(
-    fmu: Fmu, measured: list[Log], general: Fit, odd: Fit
-) -> None:
+def test_a_setting_left_out_is_predicted(fmu: Fmu, measured: Logs, general: Fit, odd: Fit) -> None:
     left_out = real_joint.leave_one_out(fmu, measured)
     print(real_joint.torque_table(measured, general, odd, left_out))
     assert list(left_out) == [10, 25, 33, 35]
@@ -96,7 +93,7 @@ def test_a_setting_left_out_is_predicted(
 
 
 def test_stiffness_is_the_slope_of_the_measured_curve(
-    measured: list[Log], general: Fit, odd: Fit
+    measured: Logs, general: Fit, odd: Fit
 ) -> None:
     # Holds for windows of +-0.05 to +-0.06 rad, which were chosen with the data in view
     print(real_joint.stiffness_table(measured, general, odd))
@@ -105,21 +102,36 @@ def test_stiffness_is_the_slope_of_the_measured_curve(
     assert real_joint.worst(measured, odd, real_joint.HALF_WIDTH) > 50.0
 
 
-def test_filtered_regression_is_no_worse(fmu: Fmu, measured: list[Log], general: Fit) -> None:
+def test_filtered_regression_is_no_worse(fmu: Fmu, measured: Logs, general: Fit) -> None:
     regression = real_joint.replay(fmu, measured, False, real_joint.SPRING_ALONE)
     for log in measured:
         assert log.rms(regression) <= 1.001 * log.rms(general)
-    assert real_joint.worst(measured, regression, real_joint.HALF_WIDTH) <= real_joint.worst(
-        measured, general, real_joint.HALF_WIDTH
+    worst, of_general = (
+        real_joint.worst(measured, fit, real_joint.HALF_WIDTH) for fit in (regression, general)
     )
+    assert worst <= of_general
 
 
-def test_filtered_regression_claims_what_it_knows(
-    fmu: Fmu, measured: list[Log], general: Fit
-) -> None:
+def test_filtered_regression_claims_what_it_knows(fmu: Fmu, measured: Logs, general: Fit) -> None:
     """The joint has hysteresis of several N.m. With the columns for misfits the torque is hardly
     worse, and the interval contains the slope of the mean curve."""
     regression = real_joint.replay(fmu, measured, False, real_joint.FILTERED_REGRESSION)
     for log in measured:
         assert log.rms(regression) <= 1.3 * log.rms(general)
     assert real_joint.coverage(fmu, measured, real_joint.FILTERED_REGRESSION) >= 90.0
+
+
+def test_check_finds_nothing_wrong_in_a_right_setup(data: Path) -> None:
+    """On this bench theta is the compliance of the bench, computed from the torque."""
+    ports = {
+        "theta": Port("torque_Nm", scale=8.00609748621252e-05),  # as in docs/real-joint.md
+        "q": Port("angle_rad"),
+        "tau_e_sensor": Port("torque_Nm", zero=-1.2),
+    }
+    parameters: dict[str, Value] = {
+        **{"method": "FilteredRegression", "modality": "Sensor", "samplePeriod": 1.2e-3},
+        **{"encoder.theta": 0.0, "encoder.q": 0.0},
+    }
+    configuration = Configuration(Path("desr.toml"), Time("time_s"), ports, parameters)
+    for setting in (0, 10, 25, 33, 35, 45):
+        assert not check(open_log(data / f"desr_x{setting:02d}.csv"), configuration).is_wrong

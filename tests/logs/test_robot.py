@@ -6,46 +6,49 @@ The requirements are those of the issue that asked for it; intervals are of 95 %
 from __future__ import annotations
 
 import os
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 
 import robot
-from robot import Axis
+from command_line import working_in
+
+Study = Callable[[int], robot.Axis]
 
 
 @pytest.fixture(scope="module")
-def data() -> Path:
+def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
     try:
-        return robot.folder()
+        data = robot.folder()
     except FileNotFoundError as error:
         if "SIGMAHAT_KR300" in os.environ:
             raise
         pytest.skip(str(error))
 
+    def run(number: int) -> robot.Axis:
+        folder = tmp_path_factory.mktemp("axis")
+        with working_in(folder):
+            return robot.study(number, data, folder)
 
-@pytest.fixture(scope="module")
-def third(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Axis:
-    return robot.study(3, data, tmp_path_factory.mktemp("axis"))
+    return run
 
 
-@pytest.mark.slow("identify, estimate and validate run as commands, twice each")
-def test_the_stiffness_of_axis_3_is_found(third: Axis) -> None:
-    a, b, both = third.estimated
+@pytest.mark.slow("identify, estimate and validate, twice each")
+def test_the_stiffness_of_axis_3_is_found(study: Study) -> None:
+    axis = study(3)
+    a, b, both = axis.estimated
     for each in (a, b, both):
         assert 4.1e6 <= each.stiffness <= 5.8e6
         assert 1.96 * each.std <= 0.35 * each.stiffness
     assert abs(a.stiffness - b.stiffness) <= 1.96 * min(a.std, b.std)
-
-
-def test_the_torque_of_the_other_run_follows_from_it(third: Axis) -> None:
-    for each in third.validated:
-        assert each["torque below 2 Hz"]["relative [1]"] <= 0.13
-        assert each["agree"]
+    # THEN the torque of the other run follows from it
+    for other in axis.validated:
+        assert other["torque below 2 Hz"]["relative [1]"] <= 0.13
+        assert other["agree"]
 
 
 @pytest.mark.slow("the same for another axis")
-def test_an_axis_that_carries_no_weight_is_never_confident(data: Path, tmp_path: Path) -> None:
-    first = robot.study(1, data, tmp_path)
+def test_an_axis_that_carries_no_weight_is_never_confident(study: Study) -> None:
+    first = study(1)
     assert [each.confident for each in first.estimated] == [0, 0, 0]
     assert not any(each["agree"] for each in first.validated)

@@ -1,14 +1,18 @@
-"""CSV logs, which are parsed once, and the table with the estimates, written and read."""
+"""CSV logs, which are parsed once; the estimates as a table, and in MCAP, pandas and xarray."""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pyarrow.csv
 import pytest
+from mcap.reader import make_reader
 
-from recorded_logs import CONFIGURATION, plain_log, write_log
+import sigmahat
+from command_line import Shell, working_in
+from recorded_logs import CONFIGURATION, REGRESSION, awas_log, plain_log, read_estimate, write_log
 from sigmahat.cli import main
 from sigmahat.logs.log import LogError
 from sigmahat.logs.output import EstimateTable
@@ -40,79 +44,59 @@ def test_a_column_that_begins_with_numbers_may_go_on_with_text(tmp_path: Path) -
     assert np.array_equal(log.read("q"), plain_log(rows)["q"])
     with pytest.raises(LogError, match=r"'note' holds text \('end' in row 40000\)"):
         log.read("note")
-    assert [each for batch in log.batches(["note"], rows) for each in batch["note"].to_pylist()][
-        -2:
-    ] == ["39998", "end"]
+    (batch,) = log.batches(["note"], rows)
+    assert batch["note"].to_pylist()[-2:] == ["39998", "end"]
 
 
 @pytest.mark.parametrize("begin", [0, 500], ids=["whole numbers", "fractions later"])
-def test_whole_numbers_stay_whole_numbers(
-    begin: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_whole_numbers_stay_whole_numbers(begin: int, tmp_path: Path) -> None:
     # GIVEN nanoseconds since 1970, which a float64 does not hold, and a column that is whole
     # at rest and has fractions behind the part of the file that decides on the types
-    monkeypatch.chdir(tmp_path)
     rows = ROWS if not begin else 60_000
     stamps = 1_700_000_000_123_456_789 + 1_000_000 * np.arange(rows, dtype=np.int64)
     note = np.array(["0"] * (rows - begin) + ["0.5"] * begin)
-    write_log({**plain_log(rows), "t": stamps, "note": note}, Path("log.csv"))
-    text = Path("log.csv").read_text().replace('"', "")
-    Path("log.csv").write_text(text)
-    log = open_log(Path("log.csv"))
+    path = write_log({**plain_log(rows), "t": stamps, "note": note}, tmp_path / "log.csv")
+    path.write_text(path.read_text().replace('"', ""))
+    log = open_log(path)
     (first,) = log.batches(["t"], rows)
     assert first["t"].to_pylist() == stamps.tolist()
     assert np.array_equal(log.read("t"), 1e6 * np.arange(rows))
     assert log.read("note").sum() == 0.5 * begin
 
 
-def test_dates_are_times_and_stay_as_they_are(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_dates_are_times_and_stay_as_they_are(shell: Shell) -> None:
     stamps = np.datetime64("2024-05-01T12:00:00.250") + np.arange(ROWS).astype("timedelta64[ms]")
     text = np.datetime_as_string(stamps, "ms")
     write_log({**plain_log(), "t": text}, Path("log.csv"))
     Path("log.toml").write_text(CONFIGURATION)
-    assert main(["estimate", "log.csv", "--out", ".", "--quiet"]) == 0
-    written = pyarrow.csv.read_csv(
-        "estimate.csv",
-        convert_options=pyarrow.csv.ConvertOptions(column_types={"t": pyarrow.string()}),
-    )
+    shell.run("estimate log.csv --out .")
+    strings = pyarrow.csv.ConvertOptions(column_types={"t": pyarrow.string()})
+    written = pyarrow.csv.read_csv("estimate.csv", convert_options=strings)
     assert written["t"].to_pylist() == text.tolist()
     assert np.allclose(EstimateTable(Path())["t"], plain_log()["t"], rtol=0, atol=1e-12)
 
 
-def test_a_text_as_programs_write_it_is_read_with_a_word(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_text_as_programs_write_it_is_read_with_a_word(shell: Shell) -> None:
     """Windows-1252, a line of units, decimal commas, a time twice, and a last line that is cut."""
-    monkeypatch.chdir(tmp_path)
     write_log(plain_log(), Path("clean.csv"))
-    lines = Path("clean.csv").read_text().replace('"', "").splitlines()
-    names = lines[0].split(",")
+    names, *rows = Path("clean.csv").read_text().replace('"', "").replace(",", ";").splitlines()
     units = {"t": "s", "theta": "rad", "q": "rad", "theta_c": "mm", "tau": "N.m"}
-    text = [
-        ";".join([*names, "Größe"]),
-        ";".join([units.get(name, "") for name in names] + ["µm"]),
-        *(";".join([*_cells(line), "1"]) for line in lines[1:]),
-    ]
+    text = [f"{names};Größe", ";".join([*(units[name] for name in names.split(";")), "µm"])]
+    text += [f"{row};1".replace(".", ",") for row in rows]
     text.insert(20, text[19])
     text[-1] = ";".join(text[-1].split(";")[:2])
     Path("dirty.csv").write_bytes("\r\n".join(text).encode("cp1252"))
 
-    assert main(["init", "dirty.csv"]) == 0
-    said = capsys.readouterr().out
+    said = shell.run("init dirty.csv")
     for each in ("read as windows-1252", "line 2 has the units", "a row with 2 of"):
         assert each in said
     configuration = CONFIGURATION
-    for name in ("t", "theta", "q", "theta_c", "tau"):
-        unit = f" [{units[name]}]"
-        configuration = configuration.replace(f'column = "{name}"', f'column = "{name}{unit}"')
+    for name, unit in units.items():
+        configuration = configuration.replace(f'column = "{name}"', f'column = "{name} [{unit}]"')
     Path("dirty.toml").write_text(configuration)
     Path("clean.toml").write_text(CONFIGURATION)
-    for name in ("clean", "dirty"):
-        assert main(["estimate", f"{name}.csv", "--out", name]) == 0
-    said = capsys.readouterr().out
+    shell.run("estimate clean.csv --out clean")
+    said = shell.run("estimate dirty.csv --out dirty")
     assert "1 rows with the time of the row before left out" in said
     clean, dirty = EstimateTable(Path("clean")), EstimateTable(Path("dirty"))
     got = np.delete(dirty["sigma"], 18)  # the time that stands twice
@@ -121,18 +105,11 @@ def test_a_text_as_programs_write_it_is_read_with_a_word(
     assert ";" in last and "." not in last.replace("FilteredRegression", "")
 
 
-def _cells(line: str) -> list[str]:
-    return [cell.replace(".", ",") for cell in line.split(",")]
-
-
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
-def test_estimates_are_read_as_they_were_written(
-    suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_estimates_are_read_as_they_were_written(suffix: str, shell: Shell) -> None:
     write_log({**plain_log(), "note [V]": np.full(ROWS, 3.0)}, Path(f"log{suffix}"))
     Path("log.toml").write_text(CONFIGURATION)
-    assert main(["estimate", f"log{suffix}", "--out", "out", "--quiet"]) == 0
+    shell.run(f"estimate log{suffix} --out out")
     signals = EstimateTable(Path("out"))
     assert next(iter(signals)) == "t"
     units = signals.units
@@ -153,3 +130,64 @@ def test_a_table_that_cannot_be_read(name: str, content: bytes, tmp_path: Path) 
     (tmp_path / name).write_bytes(content)
     with pytest.raises(LogError, match=rf"{name}: .*sigmahat estimate"):
         EstimateTable(tmp_path)
+
+
+# ---- in other tools ------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def knee(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a log, its configuration and results."""
+    folder = tmp_path_factory.mktemp("knee")
+    columns = awas_log(1.0, 0.3, 3.0)
+    columns["q"][500] = np.nan
+    with working_in(folder):
+        write_log(columns, Path("knee.parquet"))
+        Path("knee.toml").write_text(REGRESSION)
+        assert main(["estimate", "knee.parquet", "--quiet", "--out", ".", "--to", "mcap"]) == 0
+    return folder
+
+
+def test_mcap_has_the_rows_of_the_table_with_units(knee: Path) -> None:
+    with (knee / "estimate.mcap").open("rb") as file:
+        found = list(make_reader(file).iter_messages(topics="/estimate"))
+    described = found[0][0]
+    assert described is not None
+    assert described.encoding == "jsonschema"
+    schema = json.loads(described.data)
+    assert schema["properties"]["sigma"]["description"].endswith("[N.m/rad]")
+    rows = [json.loads(message.data) for _, _, message in found]
+    table = read_estimate(knee)
+    for name in ("sigma [N.m/rad]", "tau_e_std [N.m]", "valid", "doubt"):
+        wanted = table[f"estimate.{name}"].to_numpy()
+        sent = np.array([row[name.partition(" ")[0]] for row in rows])
+        assert np.array_equal(sent.astype(wanted.dtype), wanted)
+    times = table["estimate.t [s]"].to_pylist()
+    assert [m.log_time for _, _, m in found] == [round(1e9 * t) for t in times]
+
+
+def test_without_a_folder_the_result_is_that_of_the_files(knee: Path) -> None:
+    log = sigmahat.open_log(str(knee / "knee.parquet"))
+    configuration = sigmahat.read_configuration(str(knee / "knee.toml"))
+    before = sorted(knee.iterdir())
+    result = sigmahat.estimate(log, configuration)
+    assert sorted(knee.iterdir()) == before
+    assert result.series is not None
+    table = read_estimate(knee)
+    frame, sigma = result.series.to_dataframe(), result.series.to_xarray()["sigma"]
+    for values in (frame["sigma"].to_numpy(), sigma.to_numpy()):
+        assert np.array_equal(values.astype(np.float32), table["estimate.sigma [N.m/rad]"])
+    np.testing.assert_array_equal(frame.index, table["estimate.t [s]"])
+    assert frame.attrs["unit"]["tau_e"] == "N.m"
+    assert (sigma.attrs["unit"], sigma.t.attrs["unit"]) == ("N.m/rad", "s")
+    assert sigma.attrs["description"].startswith("Stiffness estimate")
+    assert isinstance(sigmahat.check(log, configuration), sigmahat.Checked)
+
+
+def test_several_joints_are_a_dimension() -> None:
+    theta = np.stack([np.sin(np.arange(50) / 10), np.cos(np.arange(50) / 10)])
+    found = sigmahat.Estimator({"method": "Paper2011"}).run(theta, 1.01 * theta, 0 * theta)
+    assert found.to_xarray()["phi"].dims == ("joint", "t")
+    frame = found.to_dataframe()
+    assert frame.index.names == ["joint", "t"]
+    np.testing.assert_array_equal(frame.loc[1, "phi"], found["phi"][1])

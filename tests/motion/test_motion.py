@@ -11,7 +11,8 @@ import pytest
 import yaml
 from scipy.integrate import solve_ivp
 
-from command_line import refused
+from command_line import Shell
+from recorded_logs import configured
 from sigmahat.cli import main
 from sigmahat.identification.identify import identify
 from sigmahat.identification.write import update
@@ -24,10 +25,10 @@ from sigmahat.motion.multisine import Multisine
 from sigmahat.motion.record import Sensors, _log, relative_half_width
 
 LIMITS = Limits(angle=0.8, velocity=1.5, torque=60.0, deformation=0.03)
-OPTIONS = ["--angle", "0.8", "--velocity", "1.5", "--torque", "60", "--deformation", "0.03"]
+OPTIONS = "--angle 0.8 --velocity 1.5 --torque 60 --deformation 0.03"
 JOINT = Joint(k=3000, M=6, D_q=0.3, weight=8, angle=1, B=2, D_theta=3, tau_coulomb=2)
 MOTION = Multisine([0.1, 0.06, 0.03], [0.4, 0.65, 1.1], [0.0, 1.0, 2.0], 20.0, 2.0)
-SENSORS = Sensors(gear_ratio=100, counts=(4e5, 4e5), torque_gain=0.02, noise=0.2, T=1e-3)
+SENSORS = Sensors(gear_ratio=100, counts=(4e5, 4e5), torque_gain=0.02, noise=0.2, T=2e-3)
 
 
 def test_velocity_and_acceleration_are_the_derivatives() -> None:
@@ -63,20 +64,23 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The files of a motion that begins at 0.5 rad."""
     folder = tmp_path_factory.mktemp("motion")
     more = ["--seconds", "20", "--start", "0.5", "--out", str(folder), "--quiet"]
-    with pytest.MonkeyPatch.context() as patch:  # not so many joints as a user needs
+    with pytest.MonkeyPatch.context() as patch:  # two motions; few joints
+        patch.setattr("sigmahat.motion.design._OF_RESONANCE", (0.3, 0.5))
+        patch.setattr("sigmahat.motion.design._EXPONENTS", (1.0,))
         patch.setattr("sigmahat.motion.design._COMPARED", 1)
-        patch.setattr("sigmahat.motion.design._PROMISED", 2)
-        assert main(["motion", *OPTIONS, *more]) == 0
+        patch.setattr("sigmahat.motion.design._PROMISED", 1)
+        assert main(["motion", *OPTIONS.split(), *more]) == 0
     return folder
 
 
-def rows(folder: Path) -> np.ndarray:
-    return np.loadtxt(folder / "motion.csv", delimiter=",", skiprows=1)
+@pytest.fixture(scope="module")
+def rows(written: Path) -> np.ndarray:
+    return np.loadtxt(written / "motion.csv", delimiter=",", skiprows=1)
 
 
-@pytest.mark.slow("eight logs are identified and estimated, to choose the motion")
-def test_the_csv_begins_and_ends_at_rest_and_keeps_the_limits(written: Path) -> None:
-    t, position, velocity, acceleration = rows(written).T
+@pytest.mark.slow("three logs are identified and estimated, to choose the motion")
+def test_the_csv_begins_and_ends_at_rest_and_keeps_the_limits(rows: np.ndarray) -> None:
+    t, position, velocity, acceleration = rows.T
     np.testing.assert_allclose(np.diff(t), 1e-3)
     for end in (0, -1):
         assert position[end] == pytest.approx(0.5)
@@ -92,8 +96,9 @@ def test_the_csv_begins_and_ends_at_rest_and_keeps_the_limits(written: Path) -> 
         assert np.abs(torque).max() + joint.tau_coulomb <= LIMITS.torque
 
 
-def test_the_c_code_and_the_trajectory_for_ros_are_the_csv(written: Path, tmp_path: Path) -> None:
-    table = rows(written)
+def test_the_c_code_and_the_trajectory_for_ros_are_the_csv(
+    written: Path, rows: np.ndarray, tmp_path: Path
+) -> None:
     program = tmp_path / "program.c"
     program.write_text(
         "#include <stdio.h>\nvoid motion(double, double *, double *, double *);\n"
@@ -106,24 +111,21 @@ def test_the_c_code_and_the_trajectory_for_ros_are_the_csv(written: Path, tmp_pa
     subprocess.run(["cc", *flags, *sources, "-o", binary, "-lm"], check=True)
     output = subprocess.run([binary], check=True, capture_output=True, text=True).stdout
     found = np.array([line.split() for line in output.splitlines()], dtype=float)
-    np.testing.assert_allclose(found, table[:, 1:], atol=1e-9)
+    np.testing.assert_allclose(found, rows[:, 1:], atol=1e-9)
 
     trajectory = yaml.safe_load((written / "motion.yaml").read_text())
     assert trajectory["joint_names"] == ["joint"]
     points = trajectory["points"]
     times = [p["time_from_start"]["sec"] + p["time_from_start"]["nanosec"] / 1e9 for p in points]
-    np.testing.assert_allclose(times, table[::10, 0], atol=1e-9)
+    np.testing.assert_allclose(times, rows[::10, 0], atol=1e-9)
     for column, key in ((1, "positions"), (2, "velocities"), (3, "accelerations")):
-        np.testing.assert_allclose([p[key][0] for p in points], table[::10, column], atol=1e-7)
+        np.testing.assert_allclose([p[key][0] for p in points], rows[::10, column], atol=1e-7)
 
 
 def test_what_a_log_says_contains_the_joint(tmp_path: Path) -> None:
     configuration = tmp_path / "knee.toml"
-    configuration.write_text(
-        "".join(f'ports.{name}.column = "{name}"\n' for name in ("theta", "q", "tau"))
-        + '[parameters]\nmethod = "FilteredRegression"\nmotor.gamma = 100\n'
-        "samplePeriod = 1e-3\nencoder.theta = 4e5\nencoder.q = 4e5\n"
-    )
+    encoders = ("encoder.theta = 4e5", "encoder.q = 4e5")
+    configuration.write_text(configured("motor.gamma = 100", "samplePeriod = 2e-3", *encoders))
     log = _log(JOINT, MOTION, SENSORS)
     document = read_document(configuration)
     update(document, identify(log, checked_configuration(document, configuration)))
@@ -157,22 +159,14 @@ def test_joints_of_limits_and_corners() -> None:
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["--seconds", "5"], "expected"),
-        (["--after", "log.csv"], "needs CONFIG"),
-        (["--seconds", "1"], "5<=x<=600"),
-        (["--torque", "-1"], "0<x<=1000000.0"),
-        (["--torque", "nan"], "expected a number, got nan"),
-        (["--start", "nan"], "expected a number, got nan"),
-        (["missing.toml"], "missing.toml"),
+        ("--seconds 5", "no motion of 5 s stays below the lowest resonance"),
+        ("--after log.csv", "needs CONFIG"),
+        ("--seconds 1", "5<=x<=600"),
+        ("--torque -1", "0<x<=1000000.0"),
+        ("--torque nan", "expected a number, got nan"),
+        ("missing.toml", "missing.toml"),
     ],
 )
-def test_wrong_arguments(
-    arguments: list[str],
-    expected: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert expected in refused(capsys, "motion", *OPTIONS, *arguments)
-    assert not list(tmp_path.iterdir())
+def test_wrong_arguments(arguments: str, expected: str, shell: Shell) -> None:
+    assert expected in shell.refused(f"motion {OPTIONS} {arguments}")
+    assert not list(Path().iterdir())

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import json
+import shutil
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from recorded_logs import CONFIGURATION, Array, awas_log, write_log
+from command_line import Shell, working_in
+from recorded_logs import CONFIGURATION, REGRESSION, Array, awas_log, write_log
 from sigmahat.cli import main
 from sigmahat.validation.agreement import agreement
 
-REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nrls.n = 3\nprior.B = 0.2\n'
+KNEE = REGRESSION + "prior.B = 0.2\n"
 DURATION = 10.0
 SOFT = {"spring.k_s": 0.8 * 14220.0}
 
@@ -22,124 +22,97 @@ SOFT = {"spring.k_s": 0.8 * 14220.0}
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder in which a first log was learned from, with three others."""
     folder = tmp_path_factory.mktemp("validate")
-    write_log(awas_log(1.0, 0.3, DURATION), folder / "knee.parquet")
-    write_log(awas_log(1.3, 0.3, DURATION, seed=2), folder / "same.parquet")
-    write_log(awas_log(1.3, 0.3, DURATION, seed=2, plant=SOFT), folder / "softer.parquet")
-    at_rest = awas_log(1.0, 0.3, 3.0, seed=3)
-    still = {name: np.full_like(values, values[0]) for name, values in at_rest.items()}
-    write_log({**still, "t": at_rest["t"]}, folder / "still.parquet")
-    (folder / "knee.toml").write_text(REGRESSION)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
+    with working_in(folder):
+        write_log(awas_log(1.0, 0.3, DURATION), Path("knee.parquet"))
+        write_log(awas_log(1.3, 0.3, DURATION, seed=2), Path("same.parquet"))
+        write_log(awas_log(1.3, 0.3, DURATION, seed=2, plant=SOFT), Path("softer.parquet"))
+        at_rest = awas_log(1.0, 0.3, 3.0, seed=3)
+        still = {name: np.full_like(values, values[0]) for name, values in at_rest.items()}
+        write_log({**still, "t": at_rest["t"]}, Path("still.parquet"))
+        Path("knee.toml").write_text(KNEE)
         assert main(["estimate", "knee.parquet", "--quiet"]) == 0
     return folder
 
 
-@pytest.fixture(autouse=True)
-def here(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(folder)
+@pytest.fixture
+def knee(folder: Path, shell: Shell) -> Shell:
+    """Commands in a copy of the folder."""
+    shutil.copytree(folder, Path(), dirs_exist_ok=True)
+    return shell
 
 
-def validate(
-    log: str, expected: int, capsys: pytest.CaptureFixture[str], *options: str
-) -> dict[str, Any]:
-    """The result of a validation with --json."""
-    assert main(["validate", log, "--with", "knee.toml", "--json", *options]) == expected
-    captured = capsys.readouterr()
-    assert captured.err == ""
-    result: dict[str, Any] = json.loads(captured.out)
-    return result
+WITH = "--with knee.toml"
 
 
-# ---- the command --------------------------------------------------------------------------------
-
-
-def test_another_log_of_the_same_joint_agrees(capsys: pytest.CaptureFixture[str]) -> None:
-    result = validate("same.parquet", 0, capsys)
-    assert result["agree"] is True and not result["repeated"]
-    assert result["z"] < 1.96
-    assert result["learned_from"] == ["knee.parquet"]
-    assert result["start_from"] == "sigmahat-results/knee/state.json"
-    assert result["this log within learned"] > 0.9 and result["learned within this log"] > 0.9
-    assert result["overlap"] > 0.99
+def test_another_log_of_the_same_joint_agrees_and_a_softer_spring_does_not(knee: Shell) -> None:
+    same = knee.json(f"validate same.parquet {WITH}")
+    assert knee.err == ""
+    assert same["agree"] is True and not same["repeated"]
+    assert same["z"] < 1.96
+    assert same["learned_from"] == ["knee.parquet"]
+    assert same["start_from"] == "sigmahat-results/knee/state.json"
+    assert same["this log within learned"] > 0.9 and same["learned within this log"] > 0.9
+    assert same["overlap"] > 0.99
     # THEN the torque is explained, and below 2 Hz better, where there is less noise
-    assert result["torque"]["relative [1]"] < 0.05
-    assert result["torque below 2 Hz"]["relative [1]"] < 0.02
-    assert 0.9 < result["torque"]["share"] <= 1.0
+    assert same["torque"]["relative [1]"] < 0.05
+    assert same["torque below 2 Hz"]["relative [1]"] < 0.02
+    assert 0.9 < same["torque"]["share"] <= 1.0
     # THEN the stiffness is that of the plant, as the median over the log
     true = np.median(awas_log(1.3, 0.3, DURATION, seed=2)["true"])
-    for name in ("stiffness learned [N.m/rad]", "stiffness of this log [N.m/rad]"):
-        value, half = result[name]
+    learned, alone = "stiffness learned [N.m/rad]", "stiffness of this log [N.m/rad]"
+    for name in (learned, alone):
+        value, half = same[name]
         assert abs(value - true) < half + 0.02 * true
-
-
-def test_a_softer_spring_does_not_agree(capsys: pytest.CaptureFixture[str]) -> None:
-    result = validate("softer.parquet", 1, capsys)
-    same = validate("same.parquet", 0, capsys)
-    assert result["agree"] is False
-    assert result["z"] > 3
-    assert result["this log within learned"] < 0.1 and result["learned within this log"] < 0.1
-    # THEN the spring that is 20 % softer leaves about that of the torque: friction hides some of it
+    # WHEN the spring is 20 % softer
+    softer = knee.json(f"validate softer.parquet {WITH}", 1)
+    assert softer["agree"] is False
+    assert softer["z"] > 3
+    assert softer["this log within learned"] < 0.1 and softer["learned within this log"] < 0.1
+    # THEN it leaves about that of the torque: friction hides some of it
     for name in ("torque", "torque below 2 Hz"):
-        assert 0.1 < result[name]["relative [1]"] < 0.25
-        assert result[name]["relative [1]"] > 5 * same[name]["relative [1]"]
-    learned, alone = (
-        result[name][0]
-        for name in ("stiffness learned [N.m/rad]", "stiffness of this log [N.m/rad]")
-    )
-    assert alone / learned == pytest.approx(0.8, abs=0.08)
+        assert 0.1 < softer[name]["relative [1]"] < 0.25
+        assert softer[name]["relative [1]"] > 5 * same[name]["relative [1]"]
+    assert softer[alone][0] / softer[learned][0] == pytest.approx(0.8, abs=0.08)
 
 
-def test_a_log_without_motion_cannot_tell(capsys: pytest.CaptureFixture[str]) -> None:
-    result = validate("still.parquet", 1, capsys)
+def test_a_log_without_motion_cannot_tell_and_nothing_is_written(knee: Shell) -> None:
+    before = {path: path.stat().st_mtime_ns for path in Path().rglob("*")}
+    result = knee.json(f"validate still.parquet {WITH}", 1)
     assert result["agree"] is None
     assert result["torque"] is None and result["torque below 2 Hz"] is None
-    assert main(["validate", "still.parquet", "--with", "knee.toml"]) == 1
-    text = capsys.readouterr().out
+    start = "--start-from sigmahat-results/knee/state.json"
+    text = knee.run(f"validate still.parquet {WITH} {start}", 1)
     assert "cannot tell: too few samples in motion" in text
     assert text.rstrip().endswith("cannot tell: an interval is wider than the stiffness itself")
+    assert {path: path.stat().st_mtime_ns for path in Path().rglob("*")} == before
 
 
-def test_a_log_that_was_learned_from_confirms_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    result = validate("knee.parquet", 1, capsys)
+def test_a_log_that_was_learned_from_confirms_nothing(knee: Shell) -> None:
+    result = knee.json(f"validate knee.parquet {WITH}", 1)
     assert result["repeated"] is True and result["agree"] is None
     # THEN both stiffnesses are the same, to the last bit: both are from the state at the end
     assert result["z"] == 0.0
     assert result["stiffness learned [N.m/rad]"] == result["stiffness of this log [N.m/rad]"]
 
 
-def test_nothing_is_written(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
-    validate("still.parquet", 1, capsys, "--start-from", "sigmahat-results/knee/state.json")
-    assert {path: path.stat().st_mtime_ns for path in folder.rglob("*")} == before
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["same.parquet"], "Missing option '--with'"),
-        (["nothere.csv", "--with", "knee.toml"], "nothere.csv: No such file"),
-        (["same.parquet", "--with", "nothere.toml"], "nothere.toml: No such file"),
-        (["same.parquet", "--with", "other.toml"], "sigmahat-results/other: "),
-        (["same.parquet", "--with", "other.toml"], "name the folder or the state.json"),
-        (["same.parquet", "--with", "knee.toml", "--start-from", "knee.toml"], "got no JSON"),
-        (["same.parquet", "--with", "b.toml", "--start-from", "L"], "motor.B = 2e-05, but"),
-        (["same.parquet", "--with", "paper.toml", "--start-from", "L"], "gives no interval"),
+        ("same.parquet", "Missing option '--with'"),
+        ("nothere.csv --with knee.toml", "nothere.csv: No such file"),
+        ("same.parquet --with nothere.toml", "nothere.toml: No such file"),
+        ("same.parquet --with other.toml", "sigmahat-results/other: "),
+        ("same.parquet --with other.toml", "name the folder or the state.json"),
+        ("same.parquet --with knee.toml --start-from knee.toml", "got no JSON"),
+        ("same.parquet --with b.toml --start-from sigmahat-results/knee", "motor.B = 2e-05, but"),
+        ("same.parquet --with paper.toml --start-from sigmahat-results/knee", "gives no interval"),
     ],
 )
-def test_wrong_arguments(
-    arguments: list[str], words: str, folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (folder / "other.toml").write_text(REGRESSION)
-    (folder / "b.toml").write_text(REGRESSION.replace("1.84e-5", "2e-5"))
-    (folder / "paper.toml").write_text(CONFIGURATION)
-    given = ["sigmahat-results/knee" if each == "L" else each for each in arguments]
-    assert main(["validate", *given]) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    (line,) = captured.err.splitlines()
-    assert words in line
+def test_wrong_arguments(arguments: str, words: str, knee: Shell) -> None:
+    Path("other.toml").write_text(KNEE)
+    Path("b.toml").write_text(KNEE.replace("1.84e-5", "2e-5"))
+    Path("paper.toml").write_text(CONFIGURATION)
+    assert words in knee.refused(f"validate {arguments}")
 
 
 # ---- what it is made of -------------------------------------------------------------------------

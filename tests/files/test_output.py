@@ -1,14 +1,17 @@
-"""Folders that are written to: filled, or as they were."""
+"""Folders that are written to: filled, or as they were. SHA-256 of files and folders."""
 
 from __future__ import annotations
 
+import hashlib
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from sigmahat.files.output import created_folder, output_folder, write_whole
+from gate import need
+from sigmahat.files.output import created_folder, output_folder, sha256, write_whole
 
 
 def test_folder_appears_filled_or_not_at_all(tmp_path: Path) -> None:
@@ -33,17 +36,15 @@ def test_failure_keeps_earlier_results(tmp_path: Path) -> None:
 
 
 def test_a_created_folder_that_stays_empty_is_removed(tmp_path: Path) -> None:
-    with created_folder(tmp_path / "a" / "b", ignored="lock"):
-        (tmp_path / "a" / "b" / "lock").write_text("")
+    folder = tmp_path / "a" / "b"
+    with created_folder(folder, ignored="lock"):
+        (folder / "lock").write_text("")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_folder_that_was_there_or_holds_something_stays(tmp_path: Path) -> None:
-    with created_folder(tmp_path / "a" / "b", ignored="lock"):
-        (tmp_path / "a" / "b" / "result").write_text("")
-    with created_folder(tmp_path / "a"):
+    with created_folder(folder, ignored="lock"):
+        (folder / "result").write_text("")
+    with created_folder(tmp_path / "a"):  # it was there
         pass
-    assert [p.name for p in (tmp_path / "a" / "b").iterdir()] == ["result"]
+    assert [p.name for p in folder.iterdir()] == ["result"]
 
 
 def test_a_file_is_replaced_at_once_or_not_changed(tmp_path: Path) -> None:
@@ -66,3 +67,29 @@ def test_a_device_is_written_to(tmp_path: Path) -> None:
     command = [sys.executable, "-c", code]
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert (done.stdout, done.stderr) == ("text", "")
+
+
+def test_the_digest_of_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes(b"abc")
+    assert sha256(path) == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+    path.write_bytes(bytes(range(256)) * 10_000)  # more than is read at a time
+    assert sha256(path) == hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def test_the_digest_of_a_folder(tmp_path: Path) -> None:
+    """That of the list of sha256sum. Any change of a file, or of its name, changes it."""
+    bag = tmp_path / "bag"
+    (bag / "more").mkdir(parents=True)
+    (bag / "metadata.yaml").write_text("a")
+    (bag / "more" / "bag.db3").write_text("b")
+    command = [need("sha256sum"), "metadata.yaml", "more/bag.db3"]
+    listed = subprocess.run(command, cwd=bag, capture_output=True, check=True)
+    found = sha256(bag)
+    assert found == hashlib.sha256(listed.stdout).hexdigest()
+    assert found == sha256(shutil.copytree(bag, tmp_path / "copy"))
+    (bag / "more" / "bag.db3").write_text("c")
+    assert sha256(bag) != found
+    (bag / "more" / "bag.db3").write_text("b")
+    (bag / "metadata.yaml").rename(bag / "metadata.yml")
+    assert sha256(bag) != found
