@@ -47,9 +47,7 @@ def test_an_error_is_raised_with_the_messages_of_its_slave() -> None:
         wrong.initialize({"residual.K_I": -1.0})
 
 
-def test_an_older_slave_speaks_after_a_newer_one_is_gone(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
+def test_an_older_slave_speaks_after_a_newer_one_is_gone(caplog: pytest.LogCaptureFixture) -> None:
     with (
         caplog.at_level(logging.WARNING, "sigmahat"),
         Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu,

@@ -98,9 +98,7 @@ def test_a_state_contains_the_mode_of_the_instance(at: str, fmi: Fmi) -> None:
         fmu.free(state)
 
 
-def test_a_state_of_initialisation_mode_gives_initial_outputs(
-    fmi: Fmi,
-) -> None:
+def test_a_state_of_initialisation_mode_gives_initial_outputs(fmi: Fmi) -> None:
     with fmi() as fmu:
         assert fmu.enter() == OK
         fmu.set_all({"rls.eta_0[0,0]": 5.0})

@@ -15,8 +15,7 @@ from gate import need
 # those of FMI 3.0, the others through those of FMI 2.0.
 IN_FMI3 = ["StiffnessEstimator", "AwasPlant"]
 every_fmu = pytest.mark.parametrize(
-    ("fmu", "version"),
-    [(fmu, "fmi3" if fmu in IN_FMI3 else "fmi2") for fmu in ESTIMATORS + PLANTS],
+    ("fmu", "version"), [(fmu, "fmi3" if fmu in IN_FMI3 else "fmi2") for fmu in ESTIMATORS + PLANTS]
 )
 # Memory and locks are of the shell alone, which all FMUs share: a model has no pointers.
 one_of_each_kind = pytest.mark.parametrize(

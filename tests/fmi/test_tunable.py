@@ -198,8 +198,7 @@ def test_a_plant_continues_from_its_state_with_the_new_value(fmu: str, name: str
     at_change = dict(zip(outputs, with_change[CHANGE - 1], strict=True))
     with Instance(sigmahat.fmu(fmu)) as other:
         other.initialise(
-            exact | {f"initial.{n}": at_change[n] for n in states} | {name: value},
-            start=CHANGE * T,
+            exact | {f"initial.{n}": at_change[n] for n in states} | {name: value}, start=CHANGE * T
         )
         expected = []
         for k in range(CHANGE, STEPS):
