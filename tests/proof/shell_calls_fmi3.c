@@ -74,36 +74,27 @@ static void call(int which, course here)
     }
 }
 
+#define ACCESS(number, call)                                                                       \
+    case number:                                                                                   \
+        return call
+
 static fmi3Status access_values(int which, const uint32_t vr[], size_t n, void *values,
                                 size_t count)
 {
     switch (which) {
-    case 0:
-        return fmi3GetFloat64(&instance, vr, n, values, count);
-    case 1:
-        return fmi3SetFloat64(&instance, vr, n, values, count);
-    case 2:
-        return fmi3GetInt64(&instance, vr, n, values, count);
-    case 3:
-        return fmi3SetInt64(&instance, vr, n, values, count);
-    case 4:
-        return fmi3GetInt32(&instance, vr, n, values, count);
-    case 5:
-        return fmi3SetInt32(&instance, vr, n, values, count);
-    case 6:
-        return fmi3GetBoolean(&instance, vr, n, values, count);
-    case 7:
-        return fmi3SetBoolean(&instance, vr, n, values, count);
-    case 8:
-        return fmi3GetString(&instance, vr, n, values, count);
-    case 9:
-        return fmi3SetString(&instance, vr, n, values, count);
-    case 10:
-        return fmi3GetBinary(&instance, vr, n, NULL, values, count);
-    case 11:
-        return fmi3SetBinary(&instance, vr, n, NULL, values, count);
-    case 12:
-        return fmi3GetClock(&instance, vr, n, values);
+        ACCESS(0, fmi3GetFloat64(&instance, vr, n, values, count));
+        ACCESS(1, fmi3SetFloat64(&instance, vr, n, values, count));
+        ACCESS(2, fmi3GetInt64(&instance, vr, n, values, count));
+        ACCESS(3, fmi3SetInt64(&instance, vr, n, values, count));
+        ACCESS(4, fmi3GetInt32(&instance, vr, n, values, count));
+        ACCESS(5, fmi3SetInt32(&instance, vr, n, values, count));
+        ACCESS(6, fmi3GetBoolean(&instance, vr, n, values, count));
+        ACCESS(7, fmi3SetBoolean(&instance, vr, n, values, count));
+        ACCESS(8, fmi3GetString(&instance, vr, n, values, count));
+        ACCESS(9, fmi3SetString(&instance, vr, n, values, count));
+        ACCESS(10, fmi3GetBinary(&instance, vr, n, NULL, values, count));
+        ACCESS(11, fmi3SetBinary(&instance, vr, n, NULL, values, count));
+        ACCESS(12, fmi3GetClock(&instance, vr, n, values));
     default:
         return fmi3SetClock(&instance, vr, n, values);
     }
