@@ -12,14 +12,10 @@ package Sources "Signals for the examples"
     y = amplitude*sin(2*Constants.pi*frequency*time);
     annotation (
       Icon(coordinateSystem(extent={{-100,-100},{100,100}}), graphics={Line(
-            points={{-80,0},{-60,45},{-40,65},{-20,45},{0,0},{20,-45},{40,-65},{60,-45},{80,0}},
-            color={29,53,87},
-            thickness=0.5,
-            smooth=Smooth.Bezier)}),
+            points={{-80,0},{-60,45},{-40,65},{-20,45},{0,0},{20,-45},{40,-65},{60,-45},{80,0}}, color={29,53,87},
+            thickness=0.5, smooth=Smooth.Bezier)}),
       Documentation(info="<html><p>The torque of a motor in the paper, section VI.</p></html>"));
   end Sine;
 
-  annotation (Documentation(info="<html>
-<p>Any block of the Modelica Standard Library can be connected instead.</p>
-</html>"));
+  annotation (Documentation(info="<html><p>Any block of the Modelica Standard Library can be connected instead.</p></html>"));
 end Sources;

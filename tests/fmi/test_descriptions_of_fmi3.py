@@ -35,16 +35,8 @@ def test_every_file_obeys_its_schema(name: str, twin: Twin) -> None:
         etree.XMLSchema(file=str(SCHEMAS / schema)).assertValid(read(twin(name), file))
 
 
-@every_fmu
-def test_the_archive_has_what_the_standard_names(name: str, twin: Twin) -> None:
-    with zipfile.ZipFile(twin(name)) as archive:
-        files = set(archive.namelist())
-    sources = read(twin(name), "sources/buildDescription.xml").xpath("//SourceFile/@name")
-    assert {f"sources/{source}" for source in sources} == {f for f in files if f.endswith(".c")}
-    assert {"terminalsAndIcons/icon.png", "terminalsAndIcons/icon.svg"} < files
-    assert {"documentation/index.html", "documentation/licenses/license.txt"} < files
-    assert f"binaries/{fmpy.platform_tuple}/{name}{fmpy.sharedLibraryExtension}" in files
-    assert not any("fmi2" in source for source in sources)
+def items_of(variable: Any) -> list[tuple[str, ...]]:
+    return [(item.name, item.value, item.description) for item in variable.declaredType.items]
 
 
 @every_fmu
@@ -55,17 +47,14 @@ def test_variables_are_those_of_fmi_2(name: str, twin: Twin) -> None:
     *others, time = new.modelVariables
     assert (time.name, time.causality) == ("time", "independent")
     types = {"Real": "Float64", "Integer": "Int32"}
+    keys = "name valueReference causality variability initial start unit nominal min max"
     for first, variable in zip(old.modelVariables, others, strict=True):
         assert variable.type == types.get(first.type, first.type)
         assert list(variable.dimensions) == []
-        for key in ("name", "valueReference", "causality", "variability", "initial", "start"):
-            assert getattr(variable, key) == getattr(first, key), (first.name, key)
-        for key in ("unit", "nominal", "min", "max", "displayUnit", "description"):
+        for key in (*keys.split(), "displayUnit", "description"):
             assert getattr(variable, key) == getattr(first, key), (first.name, key)
         if first.type == "Enumeration":
-            items = [[(i.name, i.value, i.description) for i in v.declaredType.items]
-                     for v in (first, variable)]  # fmt: skip
-            assert items[0] == items[1]
+            assert items_of(variable) == items_of(first)
 
 
 @every_fmu
@@ -83,15 +72,9 @@ def test_outputs_depend_on_what_they_depend_on_in_fmi_2(name: str, twin: Twin) -
         assert found == expected and found
 
 
-@pytest.mark.parametrize(
-    ("plant", "estimator"),
-    [("AwasPlant", ESTIMATORS[0]), ("FlexibleJointPlant", ESTIMATORS[0]),
-     ("RealJointPlant", ESTIMATORS[0]), ("AntagonisticVsaPlant", ESTIMATORS[1])],
-)  # fmt: skip
-def test_the_terminals_of_a_plant_and_its_estimator_belong_together(
-    plant: str, estimator: str, twin: Twin
-) -> None:
-    terminals = []
+@pytest.mark.parametrize("plant", PLANTS)
+def test_the_terminals_of_a_plant_and_its_estimator_belong_together(plant: str, twin: Twin) -> None:
+    terminals, estimator = [], ESTIMATORS[plant == "AntagonisticVsaPlant"]
     for name in (plant, estimator):
         root = read(twin(name), "terminalsAndIcons/terminalsAndIcons.xml")
         (terminal,) = root.iterfind("Terminals/Terminal")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 import re
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,23 +13,82 @@ import fmpy
 import pytest
 from fmpy import fmi2
 
+import sigmahat
 from fmi_instance import DISCARD, ERROR, OK, REAL, SIZE, WARNING, Instance, Instance3
 from fmi_runs import ESTIMATORS, PLANTS, Driver, Fmi, names
 
 every_fmu = pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
+each_kind = pytest.mark.parametrize("name", [*ESTIMATORS, "AwasPlant"])
 ONE, NONE = SIZE(1), SIZE(0)
+
+
+def error_of(fmu: Any) -> str:
+    """The last message, which is of an error."""
+    status, category, message = fmu.messages[-1]
+    assert (status, category) == (ERROR, "logStatusError")
+    return str(message)
 
 
 # Parameters and measurements
 
 
+# At this limit alone, a relation to another parameter is not met: filter.V_min is not above V_max.
+REFUSED_BY_A_RELATION = {("filter.V_max", "min")}
+
+
+def limits(variable: Any) -> Iterator[tuple[str, float, float]]:
+    """Of a parameter: which limit, the limit, and the next value outside."""
+    if variable.type == "Enumeration":
+        items = [int(item.value) for item in variable.declaredType.items]
+        yield "min", min(items), min(items) - 1
+        yield "max", max(items), max(items) + 1
+    elif variable.type == "Integer":
+        for which, step in (("min", -1), ("max", 1)):
+            limit = getattr(variable, which)
+            if limit is not None:
+                yield which, int(limit), int(limit) + step
+    elif variable.type == "Real":
+        for which, outward in (("min", -math.inf), ("max", math.inf)):
+            limit = getattr(variable, which)
+            real = float(outward if limit is None else limit)
+            yield which, real, math.nextafter(real, outward)
+
+
+def initialised(fmu: Instance, name: str, value: float) -> tuple[int, str]:
+    """The first status that is not OK when a parameter is set and initialised, and its message."""
+    assert fmu.call("Reset") == OK
+    status = fmu.set(name, value)
+    if status == OK:
+        assert fmu.enter() == OK
+        status = fmu.exit()
+    return status, fmu.last_message if status != OK else ""
+
+
+@every_fmu
+def test_a_parameter_at_its_limit_is_accepted_and_beyond_it_refused_by_its_name(name: str) -> None:
+    with Instance(sigmahat.fmu(name)) as fmu:
+        checked = 0
+        for parameter, variable in fmu.variables.items():
+            if variable.causality != "parameter":
+                continue
+            for which, limit, beyond in limits(variable):
+                if math.isfinite(limit):
+                    status, message = initialised(fmu, parameter, limit)
+                    by_relation = (parameter, which) in REFUSED_BY_A_RELATION
+                    assert status == (ERROR if by_relation else OK), message
+                status, message = initialised(fmu, parameter, beyond)
+                assert status == ERROR, (parameter, beyond)
+                assert parameter in message
+                checked += 1
+        assert checked > 20
+
+
 @pytest.mark.parametrize(
     ("name", "bad", "allowed"),
-    [  # test_limits.py has all limits
+    [
         ("samplePeriod", math.nan, "[1e-09, inf)"),
         ("filter.kind", 4, "[1, 3]"),
         ("rls.n", 9, "[1, 8]"),
-        ("rls.a", 1.5, "[1e-15, 1]"),
         ("rls.eta_0[1,2]", math.inf, "(-inf, inf)"),
     ],
 )
@@ -38,8 +98,7 @@ def test_a_parameter_out_of_range_is_refused_where_it_is_set(
     with fmi() as fmu:
         start = fmu.get(name) if fmi.kind is Instance3 else float(fmu.variables[name].start)
         assert fmu.set(name, bad) == ERROR
-        status, category, message = fmu.messages[-1]
-        assert (status, category) == (ERROR, "logStatusError")
+        message = error_of(fmu)
         assert f"{name} = " in message and allowed in message
         assert fmu.enter() == OK  # it still has its start value
         assert fmu.get(name) == start
@@ -48,7 +107,7 @@ def test_a_parameter_out_of_range_is_refused_where_it_is_set(
         assert fmu.step(0.0, 1e-3) == OK
 
 
-@pytest.mark.parametrize("bad", [0, 4, -1, 2**31, 2**40, -(2**63), 2**63 - 1])
+@pytest.mark.parametrize("bad", [0, 4, 2**40, -(2**63)])
 def test_an_enumeration_outside_its_items_is_refused(bad: int, estimator_twin: Path) -> None:
     with Instance3(estimator_twin) as fmu:
         assert fmu.set("modality", bad) == ERROR
@@ -73,8 +132,7 @@ def test_parameters_that_contradict_each_other_are_named_at_the_end_of_the_initi
         fmu.set_all(values)
         assert fmu.enter() == OK
         assert fmu.exit() == ERROR
-        status, category, message = fmu.messages[-1]
-        assert (status, category) == (ERROR, "logStatusError")
+        message = error_of(fmu)
         assert named in message and allowed in message
         assert fmu.step(0.0, 1e-3) == ERROR  # not initialised
         fmu.set_all({name: float(fmu.variables[name].start) for name in values})
@@ -198,8 +256,8 @@ def test_a_function_is_refused_where_the_standard_does_not_allow_it(state: str, 
                 assert not refused, function
                 continue
             assert status == ERROR, function
-            ((status, category, message),) = fmu.messages
-            assert (status, category) == (ERROR, "logStatusError")
+            assert len(fmu.messages) == 1
+            message = error_of(fmu)
             assert message.startswith(f"{fmu.prefix}{function}: "), message
             assert refused or "has no" in message
 
@@ -218,7 +276,7 @@ def test_without_an_instance_every_function_fails_quietly(fmi: Fmi) -> None:
 # Arguments
 
 
-@every_fmu
+@each_kind
 def test_invalid_references_and_values_are_refused(name: str, fmi: Fmi) -> None:
     with fmi(name) as fmu:
         driver = Driver(fmu)
@@ -264,17 +322,6 @@ def test_a_set_with_one_bad_reference_changes_nothing(fmi: Fmi) -> None:
         assert fmu.get("tau") == 0.0
 
 
-def test_a_variable_of_another_type_is_named_with_its_type(fmi: Fmi) -> None:
-    kinds = {"modality": "Integer or Enumeration", "rls.n": "Integer or Enumeration"}
-    if fmi.kind is Instance3:
-        kinds = {"modality": "an Enumeration (Int64)", "rls.n": "Int32"}
-    with fmi() as fmu:
-        fmu.initialise()
-        for name, kind in {**kinds, "rls.symmetric": "Boolean"}.items():
-            assert fmu.access(f"Get{fmu.real}", fmu.references([name]), (REAL * 1)()) == ERROR
-            assert f"is {name}, which is {kind}." in fmu.last_message
-
-
 BYTES, STATE = ctypes.create_string_buffer(1), ctypes.byref(ctypes.c_void_p())
 
 
@@ -315,23 +362,23 @@ def test_derivatives_of_inputs_need_an_input_and_the_order_1(estimator_fmu: Path
 RESULTS = ["eventHandlingNeeded", "terminateSimulation", "earlyReturn", "lastSuccessfulTime"]
 
 
-@pytest.mark.parametrize("missing", range(4))
-def test_a_step_needs_a_place_for_each_of_its_results(missing: int, estimator_twin: Path) -> None:
+def test_a_step_needs_a_place_for_each_of_its_results(estimator_twin: Path) -> None:
     with Instance3(estimator_twin) as fmu:
         fmu.initialise()
-        given = [None if i == missing else ctypes.byref(REAL()) for i in range(4)]
-        assert fmu.call("DoStep", REAL(0.0), REAL(1e-3), True, *given) == ERROR
-        assert f"argument {RESULTS[missing]} is NULL" in fmu.last_message
+        for missing, name in enumerate(RESULTS):
+            given = [None if i == missing else ctypes.byref(REAL()) for i in range(4)]
+            assert fmu.call("DoStep", REAL(0.0), REAL(1e-3), True, *given) == ERROR
+            assert f"argument {name} is NULL" in fmu.last_message
         assert fmu.step(0.0, 1e-3) == OK
 
 
-@pytest.mark.parametrize("wrong", [0, 1, 3])
-def test_each_reference_needs_one_value(wrong: int, estimator_twin: Path) -> None:
+def test_each_reference_needs_one_value(estimator_twin: Path) -> None:
     with Instance3(estimator_twin) as fmu:
         references, values = fmu.references(["rls.c", "rls.a"]), (REAL * 3)(0.5, 0.5)
         for function in ("SetFloat64", "GetFloat64"):
-            assert fmu.call(function, references, SIZE(2), values, SIZE(wrong)) == ERROR
-            assert f"nValues = {wrong}; expected 2" in fmu.last_message
+            for wrong in (0, 1, 3):
+                assert fmu.call(function, references, SIZE(2), values, SIZE(wrong)) == ERROR
+                assert f"nValues = {wrong}; expected 2" in fmu.last_message
         assert fmu.get("rls.a") == 0.1
 
 
@@ -342,8 +389,7 @@ def test_each_reference_needs_one_value(wrong: int, estimator_twin: Path) -> Non
 def test_a_wrong_token_is_refused_with_both_values(token: str, fmi: Fmi) -> None:
     with fmi(token=token) as fmu:
         assert fmu.component is None
-        status, category, message = fmu.messages[-1]
-        assert (status, category) == (ERROR, "logStatusError")
+        message = error_of(fmu)
         assert message.startswith(f"{fmu.prefix}Instantiate")
         assert token in message and fmu.description.guid in message
 
@@ -380,13 +426,18 @@ def test_an_instantiation_that_fails_returns_null(estimator_fmu: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "resources", [None, "", "/tmp/x", "file:/tmp/x", "file:///x/", "file:////x"]
+    ("version", "options"),
+    [
+        *((2, {"resources": name}) for name in (None, "", "/tmp/x", "file:/tmp/x", "file:////x")),
+        *((2, {"memory": True}), (2, {"logger": False})),
+        *((3, {"early_return": True}), (3, {"logger": False})),
+    ],
 )
-@pytest.mark.parametrize("own", [True, False])
 def test_importers_with_unusual_arguments_can_run_it(
-    resources: str | None, own: bool, estimator_fmu: Path
+    version: int, options: dict[str, Any], estimator_fmu: Path, estimator_twin: Path
 ) -> None:
-    with Instance(estimator_fmu, resources=resources, logger=own, memory=own) as fmu:
+    kind, path = (Instance, estimator_fmu) if version == 2 else (Instance3, estimator_twin)
+    with kind(path, **options) as fmu:
         assert fmu.set("rls.n", 3) == OK  # before ...
         assert fmu.enter() == OK
         assert fmu.set("rls.m", 2) == OK  # ... and in initialisation mode
@@ -395,14 +446,15 @@ def test_importers_with_unusual_arguments_can_run_it(
         assert fmu.step(5.0, 1e-3) == ERROR  # with a message, even if there is no logger
 
 
-@pytest.mark.parametrize("options", [{"early_return": True}, {"logger": False}])
-def test_importers_with_other_wishes_can_run_it(
-    options: dict[str, Any], estimator_twin: Path
-) -> None:
-    with Instance3(estimator_twin, **options) as fmu:
-        fmu.initialise()
-        assert fmu.step(0.0, 1e-3) == OK
-        assert fmu.step(7.0, 1e-3) == ERROR
+def limit_memory(fmu: Instance, full: Callable[[], bool]) -> Callable[[], int | None]:
+    """Makes instances of an importer that has no more memory when it is full."""
+
+    def allocate(count: int, size: int) -> int | None:
+        return None if full() else fmu.allocate(count, size)
+
+    fmu.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(allocate)
+    arguments = (fmu.description.guid.encode(), None, ctypes.byref(fmu.callbacks), 0, 1)
+    return lambda: fmu.dll.fmi2Instantiate(b"full", 1, *arguments)
 
 
 @pytest.mark.parametrize("after", range(3))
@@ -411,13 +463,7 @@ def test_lack_of_memory_gives_no_instance_and_no_leak(after: int, estimator_fmu:
     with Instance(estimator_fmu, memory=True) as fmu:
         before = set(fmu.blocks)
         assert len(before) == 3
-
-        def allocate(count: int, size: int) -> int | None:
-            return None if len(fmu.blocks) == 3 + after else fmu.allocate(count, size)
-
-        fmu.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(allocate)
-        arguments = (fmu.description.guid.encode(), None, ctypes.byref(fmu.callbacks))
-        assert fmu.dll.fmi2Instantiate(b"x", 1, *arguments, 0, 0) is None
+        assert limit_memory(fmu, lambda: len(fmu.blocks) == 3 + after)() is None
         assert "out of memory" in fmu.last_message
         assert fmu.blocks == before
 
@@ -425,15 +471,8 @@ def test_lack_of_memory_gives_no_instance_and_no_leak(after: int, estimator_fmu:
 def test_lack_of_memory_for_a_state_is_an_error(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu, memory=True) as fmu:
         fmu.initialise()
-        data, full = fmu.serialise(fmu.save()), False
-
-        def allocate(count: int, size: int) -> int | None:
-            return None if full else fmu.allocate(count, size)
-
-        fmu.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(allocate)
-        arguments = (fmu.description.guid.encode(), None, ctypes.byref(fmu.callbacks))
-        first = fmu.component
-        fmu.component = fmu.dll.fmi2Instantiate(b"full", 1, *arguments, 0, 1)
+        data, first, full = fmu.serialise(fmu.save()), fmu.component, False
+        fmu.component = limit_memory(fmu, lambda: full)()
         full = True
         assert fmu.call("GetFMUstate", STATE) == ERROR
         assert "out of memory" in fmu.last_message
@@ -504,7 +543,6 @@ def test_in_fmi_3_named_log_categories_are_turned_on_and_off(estimator_twin: Pat
 @pytest.mark.parametrize(
     ("name", "shown"),
     [
-        ("\udcff\udcfe", "??"),
         ("Gel\udce4nk", "Gel?nk"),
         ("\udced\udca0\udc80", "???"),
         ("Gelenk \u00fc \u03c3\u0302 \u20ac \U0001f9be", None),
@@ -540,12 +578,10 @@ def test_messages_about_texts_that_are_not_utf8_are_utf8(estimator_fmu: Path) ->
 @pytest.mark.parametrize(
     ("times", "expected"),
     [
-        ({"start": math.nan}, "startTime"),
         ({"start": math.inf}, "startTime"),
         ({"stop": -1.0}, "stopTime = -1 is before startTime = 0"),
         ({"stop": math.nan}, "stopTime"),
         ({"tolerance": -1e-6}, "tolerance = "),
-        ({"tolerance": math.nan}, "tolerance = "),
         ({"tolerance": math.inf}, "tolerance = "),
     ],
 )
@@ -559,7 +595,7 @@ def test_an_impossible_experiment_is_refused(
         assert fmu.step(0.0, 1e-3) == OK
 
 
-@every_fmu
+@each_kind
 def test_a_step_after_the_stop_time_is_refused(name: str, fmi: Fmi) -> None:
     for h in (1e-4, 0.01):
         with fmi(name) as fmu:
@@ -575,7 +611,7 @@ def test_a_step_after_the_stop_time_is_refused(name: str, fmi: Fmi) -> None:
             assert fmu.step(1.0 + count * h, 1e-13) == OK  # as an importer makes it by rounding
 
 
-@every_fmu
+@each_kind
 def test_steps_at_a_wrong_time_are_refused_and_change_nothing(name: str, fmi: Fmi) -> None:
     with fmi(name) as fmu, fmi(name) as other:
         driver, expected = Driver(fmu), Driver(other)
@@ -585,20 +621,15 @@ def test_steps_at_a_wrong_time_are_refused_and_change_nothing(name: str, fmi: Fm
             each.run([(1.0, 1e-3), (1.001, 1e-3)])
         for t, h, named in [
             (1.001, 1e-3, "currentCommunicationPoint = 1.001 s; expected 1.002 s"),  # backwards
-            (1.003, 1e-3, "currentCommunicationPoint = 1.003 s; expected 1.002 s"),  # a gap
             (1.00201, 2.0, "currentCommunicationPoint = 1.00201 s; expected 1.002 s"),
             (math.nan, 1e-3, "currentCommunicationPoint"),
-            (math.inf, 1e-3, "currentCommunicationPoint"),
             (1.002, 0.0, "communicationStepSize = 0 s"),
-            (1.002, -1e-3, "communicationStepSize = -0.001 s"),
             (1.002, math.nan, "communicationStepSize"),
             (1.002, math.inf, "communicationStepSize"),
         ]:
             assert fmu.step(t, h) == ERROR
-            assert fmu.messages[-1][:2] == (ERROR, "logStatusError")
-            assert (
-                fmu.last_message.startswith(f"{fmu.prefix}DoStep: ") and named in fmu.last_message
-            )
+            message = error_of(fmu)
+            assert message.startswith(f"{fmu.prefix}DoStep: ") and named in message
             assert driver.result() == expected.result()
         assert driver.step(1.002, 1e-3) == expected.step(1.002, 1e-3)
 
@@ -624,16 +655,12 @@ def test_the_status_gives_the_time_that_was_reached(estimator_fmu: Path) -> None
         fmu.free(state)
         assert fmu.call("GetBooleanStatus", 3, ctypes.byref(number)) == OK
         assert number.value == 0  # it does not request the end of the simulation
-        others: list[tuple[str, int, Any]] = [
-            ("GetStatus", 0, number),
-            ("GetRealStatus", 0, time),
-            ("GetIntegerStatus", 0, number),
-            ("GetBooleanStatus", 0, number),
-            ("GetStringStatus", 1, text),
-        ]
-        for function, kind, value in others:
-            assert fmu.call(function, kind, ctypes.byref(value)) == DISCARD
-            assert function in fmu.last_message
+        for what in ("", "Real", "Integer", "Boolean", "String"):
+            value = {"Real": time, "String": text}.get(what, number)
+            assert (
+                fmu.call(f"Get{what}Status", int(what == "String"), ctypes.byref(value)) == DISCARD
+            )
+            assert f"Get{what}Status" in fmu.last_message
         assert fmu.call("GetRealStatus", 2, None) == ERROR
         assert fmu.call("CancelStep") == ERROR
         assert "no step is in progress" in fmu.last_message

@@ -18,14 +18,8 @@ from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 SENSOR, STANDARD, FINITE_DIFFERENCE = 2, 2, 3
 # One parameter, regressor phi = 1 and P_0 = 1: P(k) = 1 / (1 + k), so 1 / rho counts the ticks.
-COUNTING = {
-    "modality": SENSOR,
-    "rls.kind": STANDARD,
-    "rls.n": 1,
-    "rls.m": 1,
-    "rls.P_0": 1.0,
-    "q": 1.0,
-}
+ONE_PARAMETER = {"rls.n": 1, "rls.m": 1, "rls.P_0": 1.0}
+COUNTING = {**ONE_PARAMETER, "modality": SENSOR, "rls.kind": STANDARD, "q": 1.0}
 
 
 def ticks(fmu: Instance) -> int:
@@ -33,23 +27,20 @@ def ticks(fmu: Instance) -> int:
     return round(1.0 / fmu.get("rho"))
 
 
-@pytest.mark.parametrize("name", ESTIMATORS)
-def test_a_million_steps_of_a_sample_period_are_a_million_ticks(name: str) -> None:
-    with Fmu(sigmahat.fmu(name)) as fmu, Slave(fmu, "one") as slave:
+def test_a_million_steps_of_a_sample_period_are_a_million_ticks(estimator_fmu: Path) -> None:
+    with Fmu(estimator_fmu) as fmu, Slave(fmu, "one") as slave:
         slave.initialize({**COUNTING, "modality": "Sensor", "rls.kind": "Standard"})
         h, loop, count = 1e-3, SampleLoop(), 1_000_000
         # With the same rounding errors as in importers, which add up the time.
         times = np.concatenate([[0.0], np.cumsum(np.full(count - 1, h))])
         loop.step(slave, step_times(times, h))
         loop.run(0, count)
-        recorder = Recorder(slave, [n for n in fmu.variables if n in ("rho", "rho_1", "rho_2")], 1)
+        recorder = Recorder(slave, ["rho"], 1)
         recorder.sample(0)
-        assert {round(1.0 / rho[0]) for rho in recorder.columns().values()} == {count}
+        assert round(1.0 / recorder.columns()["rho"][0]) == count
 
 
-@pytest.mark.parametrize(
-    "h", [1e-4, 5e-4, 1e-3, 2.5e-3, 1e-2, 1 / 60, 1e-3 / 7, 0.016666666666666677]
-)
+@pytest.mark.parametrize("h", [1e-4, 1e-3, 2.5e-3, 1 / 60, 1e-3 / 7, 0.016666666666666677])
 def test_a_step_of_any_length_computes_the_ticks_within_it(h: float, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise(COUNTING)
@@ -106,7 +97,7 @@ def test_inputs_with_derivatives_give_the_same_ticks_for_any_step(name: str) -> 
     assert len(reference) == 10
     scale = np.max(np.abs(reference), axis=0)
     scale[scale == 0.0] = 1.0  # coefficients eta that are not used
-    for h in (Fraction(1, n) for n in (10000, 2000, 400, 100, 60)):
+    for h in (Fraction(1, n) for n in (2000, 400, 60)):
         np.testing.assert_allclose(run(name, h) / scale, reference / scale, rtol=0, atol=1e-12)
 
 
@@ -126,9 +117,9 @@ def test_inputs_without_derivatives_are_held(estimator_fmu: Path) -> None:
 def test_ticks_follow_the_times_if_steps_differ_slightly(h: float, estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise(COUNTING)
-        for k in range(10000):
+        for k in range(3000):
             assert fmu.step(k * 1e-3, h) == OK
-        end = 9999 * 1e-3 + h
+        end = 2999 * 1e-3 + h
         assert ticks(fmu) == math.ceil(end / 1e-3 - 1e-6)
 
 
@@ -140,7 +131,7 @@ def test_a_missing_step_is_an_error_at_any_time(start: float, estimator_fmu: Pat
             assert fmu.step(start + k * 1e-3, 1e-3) == OK
             assert ticks(fmu) == k + 1
         assert fmu.step(start + 3.001, 1e-3) == ERROR
-        received, expected = fmu.messages[-1][2].split("; expected ")
+        received, expected = fmu.last_message.split("; expected ")
         assert received.split()[-2] != expected.split()[0]
         assert fmu.step(start + 3.0, 1e-3) == OK
 
@@ -168,7 +159,7 @@ def test_a_step_of_too_many_ticks_is_refused(estimator_fmu: Path) -> None:
     with Instance(estimator_fmu) as fmu:
         fmu.initialise(COUNTING)
         assert fmu.step(0.0, 1e9) == ERROR
-        assert "step of 1e+09 s is more than 1e+09 times samplePeriod" in fmu.messages[-1][2]
+        assert "step of 1e+09 s is more than 1e+09 times samplePeriod" in fmu.last_message
         assert fmu.step(0.0, 1e-3) == OK  # the instance can continue
         assert ticks(fmu) == 1
 
@@ -181,7 +172,7 @@ def test_a_tunable_parameter_out_of_range_stops_the_step_until_it_is_corrected(
         assert fmu.step(0.0, 1e-3) == OK
         assert fmu.set("filter.V_min", 11.0) == OK
         assert fmu.step(1e-3, 1e-3) == ERROR
-        assert "filter.V_min = 11" in fmu.messages[-1][2]
+        assert "filter.V_min = 11" in fmu.last_message
         assert fmu.set("filter.V_max", 12.0) == OK  # now V_min < V_max again
         assert fmu.step(1e-3, 1e-3) == OK
         assert ticks(fmu) == 2

@@ -21,7 +21,6 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 FMU_SOURCES = REPOSITORY / "fmu_src"
 PLANT_SOURCES = ("plant.c", "radau.c", "noise.c")
 DRIVERS = REPOSITORY / "tests" / "drivers"
-VERSIONS = ["fmi2", "fmi3"]
 
 
 def sources(fmu: str, build: Path, version: str) -> list[Path]:
@@ -50,7 +49,7 @@ def compile_driver(
     """Compiles a program of drivers/ and an FMU, in a new folder inside `folder`.
 
     driver   "threads", "cycles" or "fuzz"
-    version  of FMI, one of VERSIONS
+    version  of FMI, "fmi2" or "fmi3"
     """
     program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{version}_{fmu}"
     folders = [*FOLDERS, FMU_SOURCES, FMU_SOURCES / "shell", build / "fmu" / fmu]

@@ -22,7 +22,7 @@ SMALLEST = {"double": 5e-324, "float": 1.4e-45}
 """Smallest subnormal number."""
 
 often = settings(
-    max_examples=40 * int(os.environ.get("SIGMAHAT_PROMISES", "1")),
+    max_examples=20 * int(os.environ.get("SIGMAHAT_PROMISES", "1")),
     deadline=None,
     derandomize=True,
     database=None,

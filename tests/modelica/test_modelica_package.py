@@ -1,12 +1,9 @@
-"""The Modelica package: parsers read it, every class is documented, the archive is complete."""
+"""The Modelica package: parsers read it, and its examples compile."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from pathlib import Path
 
-import pymoca.ast
 import pymoca.parser
 import pytest
 import rumoca
@@ -14,22 +11,10 @@ import rumoca
 from modelica_package import FILES, PACKAGE, REPOSITORY, compiled
 
 
-def by_rumoca(file: Path) -> None:
-    found = rumoca.validate(file)
-    assert found == [], [each.message for each in found]
-
-
-def by_pymoca(file: Path) -> None:
-    assert pymoca.parser.parse(file.read_text(encoding="utf-8")) is not None
-
-
-each_parser = pytest.mark.parametrize("parse", [by_rumoca, by_pymoca])
-
-
-@each_parser
-def test_every_file_is_read_without_error(parse: Callable[[Path], None]) -> None:
+def test_two_parsers_read_every_file_without_error() -> None:
     for file in FILES:
-        parse(file)
+        assert [each.message for each in rumoca.validate(file)] == []
+        assert pymoca.parser.parse(file.read_text(encoding="utf-8")) is not None
 
 
 EXAMPLES = sorted({file.stem for file in (PACKAGE / "Examples").glob("*.mo")} - {"package"})

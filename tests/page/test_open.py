@@ -1,4 +1,4 @@
-"""`sigmahat open`: a log set up in the browser, from an empty configuration to the written file."""
+"""`sigmahat open`: a log set up in the browser, from an empty configuration to the results."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import http.client
 import json
 import socket
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
@@ -26,8 +27,24 @@ def by_hand(text: str) -> str:
     return text.replace("motor.D_theta = 0.001 ", "motor.D_theta = 5e-4 ")
 
 
-@pytest.mark.slow("two browsers, four checks and curves")
-def test_from_an_empty_configuration_to_the_written_file(
+def fill_in(hand: Hand) -> None:
+    """The same in the page, with a slip."""
+    hand.types("ports.theta.counts_per_turn", "4096")
+    hand.types("ports.theta.gear_ratio", "1OO")
+    hand.sees("ports.theta.gear_ratio: expected a number, got '1OO'")
+    hand.types("ports.theta.gear_ratio", "100")
+    hand.types("ports.tau.torque_constant", "0.05")
+
+
+def estimated(capsys: pytest.CaptureFixture[str]) -> Any:
+    """What the command prints of the log."""
+    capsys.readouterr()
+    assert main(["estimate", "knee.csv", "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.slow("two browsers, five checks and curves, an identification")
+def test_from_an_empty_configuration_to_the_results(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """One window edits, on a desktop; another one, narrow and dark, follows it."""
@@ -38,11 +55,7 @@ def test_from_an_empty_configuration_to_the_written_file(
             hand, other = Hand(first), Hand(second)
             hand.sees("Fill in: ports.theta.counts_per_turn, ports.theta.gear_ratio")
             assert hand.value("ports.theta.column") == "motor_counts"
-            hand.types("ports.theta.counts_per_turn", "4096")
-            hand.types("ports.theta.gear_ratio", "1OO")
-            hand.sees("ports.theta.gear_ratio: expected a number, got '1OO'")
-            hand.types("ports.theta.gear_ratio", "100")
-            hand.types("ports.tau.torque_constant", "0.05")
+            fill_in(hand)
             hand.chooses("ports.q.sign", "-1: turned round")
             hand.sees("ports.q.sign: q moves against theta")
             hand.accepts("ports.q.sign")
@@ -52,12 +65,19 @@ def test_from_an_empty_configuration_to_the_written_file(
             other.sees("the stiffness as a curve")
             other.presses("write")
             hand.sees("Written:")
-            capsys.readouterr()
-            assert main(["estimate", "knee.csv", "--json"]) == 0
-            middle = json.loads(capsys.readouterr().out)["curve"][1]
+            middle = estimated(capsys)["curve"][1]
             low, high = middle["interval [N.m/rad]"]
             assert low < 1000 < high
             other.sees(f"{middle['sigma [N.m/rad]']:.4g} {low:.4g} to {high:.4g}")
+            assert "phi^11" not in hand.text()  # of orders that nobody has chosen
+            written = tomlkit.parse(Path("knee.toml").read_text()).unwrap()
+            hand.presses("estimate")  # identifies, too
+            hand.sees("Results: ")
+            assert float(hand.value("motor.B")) == pytest.approx(1e-4, rel=0.01)
+            assert Path("sigmahat-results/knee/estimate.png").is_file()
+            hand.sees(estimated(capsys)["answer"])
+            place = first.run("return document.querySelector('h1').nextElementSibling.offsetTop")
+            assert place < 100  # on the first screen
             for each in (first, second):
                 assert each.complaints() == []
                 assert {urlsplit(url).netloc for url in each.requests()} == {
@@ -67,32 +87,7 @@ def test_from_an_empty_configuration_to_the_written_file(
                 assert wide <= there
         assert page.interrupt() == (0, "", "")
     assert main(["init", "knee.csv", "--config", "own.toml", "--quiet"]) == 0
-    own = tomlkit.parse(by_hand(Path("own.toml").read_text())).unwrap()
-    written = tomlkit.parse(Path("knee.toml").read_text()).unwrap()
-    assert written == own
-
-
-@pytest.mark.slow("a browser, and the command")
-def test_one_button_identifies_and_estimates(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    write_log(knee_log(), Path("knee.csv"))
-    assert main(["init", "knee.csv", "--quiet"]) == 0
-    Path("knee.toml").write_text(by_hand(Path("knee.toml").read_text()))
-    with served("knee.csv", folder=tmp_path) as page, opened(page.address) as window:
-        hand = Hand(window)
-        hand.sees("the stiffness as a curve")
-        assert "phi^11" not in hand.text()  # of orders that nobody has chosen
-        hand.presses("estimate")
-        hand.sees("Results: ")
-        assert float(hand.value("motor.B")) == pytest.approx(1e-4, rel=0.01)
-        assert Path("sigmahat-results/knee/estimate.png").is_file()
-        assert main(["estimate", "knee.csv", "--json"]) == 0
-        hand.sees(json.loads(capsys.readouterr().out)["answer"])
-        place = window.run("return document.querySelector('h1').nextElementSibling.offsetTop")
-        assert place < 100  # on the first screen
-        assert window.complaints() == []
+    assert written == tomlkit.parse(by_hand(Path("own.toml").read_text())).unwrap()
 
 
 @pytest.mark.slow("a browser")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-import pytest
 
 import reference_joints
 from plant_runs import QUIET, Array, relative_error, run_plant, times
@@ -15,19 +14,10 @@ INPUTS = ("tau_1", "tau_2", "tau_ext")
 STATES = ("q", "theta_1", "theta_2", "q_dot", "theta_dot_1", "theta_dot_2")
 # Two different motors, so that a mix-up shows.
 UNEQUAL = {
-    "link.M": 0.03,
-    "link.D_q": 0.04,
-    "link.mgl": 0.3,
-    "motor_1.B": 2e-5,
-    "motor_2.B": 3e-5,
-    "motor_1.D_theta": 1e-3,
-    "motor_2.D_theta": 2e-3,
-    "motor_1.gamma": 50.0,
-    "motor_2.gamma": 60.0,
-    "spring_1.k": 0.003,
-    "spring_2.k": 0.002,
-    "spring_1.a": 8.0,
-    "spring_2.a": 10.0,
+    **{"link.M": 0.03, "link.D_q": 0.04, "link.mgl": 0.3},
+    **{"motor_1.B": 2e-5, "motor_1.D_theta": 1e-3, "motor_1.gamma": 50.0},
+    **{"motor_2.B": 3e-5, "motor_2.D_theta": 2e-3, "motor_2.gamma": 60.0},
+    **{"spring_1.k": 0.003, "spring_1.a": 8.0, "spring_2.k": 0.002, "spring_2.a": 10.0},
 }
 
 
@@ -37,23 +27,13 @@ def run(
     return run_plant("AntagonisticVsaPlant", INPUTS, h, torques, start, record)
 
 
-@pytest.mark.parametrize("h", [1e-3, 1e-2])
-def test_friction_gravity_and_external_torque_enter_as_in_the_equations(h: float) -> None:
-    start = {
-        **UNEQUAL,
-        "link.tau_coulomb": 0.05,
-        "motor_1.tau_coulomb": 0.02,
-        "motor_2.tau_coulomb": 0.01,
-    }
+def test_friction_gravity_and_external_torque_enter_as_in_the_equations() -> None:
+    h, coulomb = 1e-2, {"link": 0.05, "motor_1": 0.02, "motor_2": 0.01}
+    start = {**UNEQUAL, **{f"{of}.tau_coulomb": value for of, value in coulomb.items()}}
     initial = np.array([0.1, -0.5, 0.6, 0.5, -0.2, 0.3])
     t = times(h, 1.0)
-    torques = np.column_stack(
-        [
-            0.1 * np.sin(2 * np.pi * 2 * t) - 0.05,
-            0.05 * np.cos(2 * np.pi * t),
-            0.3 * np.sin(2 * np.pi * 1.1 * t),
-        ]
-    )
+    tau_1, tau_2 = 0.1 * np.sin(2 * np.pi * 2 * t) - 0.05, 0.05 * np.cos(2 * np.pi * t)
+    torques = np.column_stack([tau_1, tau_2, 0.3 * np.sin(2 * np.pi * 1.1 * t)])
     reference = reference_joints.solve(reference_joints.pair(start), h, torques, initial)
     at = {f"initial.{name}": value for name, value in zip(STATES, initial, strict=True)}
     assert relative_error(run(h, torques, {**start, **at}), reference).max() < 1e-8
@@ -79,9 +59,7 @@ def test_encoders_and_sensors_are_those_of_their_side() -> None:
     angles, counts = ("q", "theta_1", "theta_2"), (700.0, 300.0, 500.0)
     encoders = {f"encoder.{name}": n for name, n in zip(angles, counts, strict=True)}
     measured = ["q_measured", "theta_measured_1", "theta_measured_2"]
-    sensors = [
-        f"{name}_{i}" for i in (1, 2) for name in ("tau_e", "tau_measured", "tau_e_measured")
-    ]
+    sensors = [f"{n}_{i}" for i in (1, 2) for n in ("tau_e", "tau_measured", "tau_e_measured")]
     t = times(1e-2, 1.0)
     torques = np.column_stack([0.1 * np.sin(9 * t), -0.1 * np.sin(5 * t), np.cos(5 * t)])
     start = {**QUIET, **encoders, "sensor.gain": 1.03}

@@ -18,8 +18,8 @@ RETRACTED = 0.030 / SCREW  # theta_c for a lever arm of 70 mm
 AT_REST = np.array([0.0, 0.0, RETRACTED, 0.0, 0.0, 0.0])
 
 
-@pytest.mark.parametrize("h", [1e-4, 1e-3])
-def test_table1_is_the_solution_of_the_equations(h: float) -> None:
+def test_table1_is_the_solution_of_the_equations() -> None:
+    h = 1e-3
     # A sinusoid interpolated linearly is smaller by (w h)^2 / 12, but for a ripple of mean zero.
     share = 1 - (0.2 * math.pi * h) ** 2 / 12
     solution = solve(
@@ -30,8 +30,8 @@ def test_table1_is_the_solution_of_the_equations(h: float) -> None:
     assert relative_error(run, solution(t).T).max() < 1e-7
 
 
-@pytest.mark.parametrize("h", [1e-3, 1e-2])
-def test_friction_gravity_and_external_torque_enter_as_in_the_equations(h: float) -> None:
+def test_friction_gravity_and_external_torque_enter_as_in_the_equations() -> None:
+    h = 1e-2
     plant = Awas(link_mgl=1.0, link_tau_coulomb=0.05, motor_tau_coulomb=0.02)
     start = {"link.mgl": 1.0, "link.tau_coulomb": 0.05, "motor.tau_coulomb": 0.02}
     torques = sinusoids(times(h, 0.4), (0.3, 2.0), (8.0, 3.0), (5.0, 1.1))
@@ -51,25 +51,19 @@ def test_held_torques_are_held() -> None:
     np.testing.assert_array_equal(run["tau_measured"][1:], torques[:-1, 0])
 
 
-def test_measured_torque_is_that_at_the_end_of_the_step() -> None:
-    torques = sinusoids(times(1e-2, 1.0), (0.3, 1.0), (0.0, 0.0), (0.0, 0.0))
-    run = run_awas(1e-2, torques, QUIET, ["tau_measured", "tau_e_measured", "tau_e"])
-    np.testing.assert_allclose(run["tau_measured"], torques[:, 0], rtol=0, atol=1e-15)
-    np.testing.assert_array_equal(run["tau_e_measured"], run["tau_e"])
-
-
 def test_outputs_are_those_of_the_state() -> None:
     plant = Awas()
     torques = sinusoids(times(1e-3, 0.5), (0.5, 3.0), (8.0, 1.0), (2.0, 5.0))
-    outputs = ["phi", "r", "tau_e", "sigma"]
-    run = run_awas(1e-3, torques, record=[*STATES, *outputs])
+    outputs = ["phi", "r", "tau_e", "sigma", "tau_e_measured", "tau_measured"]
+    run = run_awas(1e-3, torques, QUIET, [*STATES, *outputs])
     phi, r = run["q"] - run["theta"], plant.lever_arm(run["theta_c"])
-    expected = (phi, r, plant.flexibility_torque(r, phi), plant.stiffness(r, phi))
+    tau_e = plant.flexibility_torque(r, phi)
+    expected = (phi, r, tau_e, plant.stiffness(r, phi), tau_e, torques[:, 0])
     for name, value in zip(outputs, expected, strict=True):
         np.testing.assert_allclose(run[name], value, rtol=1e-12, atol=1e-14, err_msg=name)
 
 
-@pytest.mark.parametrize("counts", [40000.0, 1024.0, 7.0])
+@pytest.mark.parametrize("counts", [40000.0, 7.0])
 def test_encoders_round_to_the_nearest_count(counts: float) -> None:
     names = ("q", "theta", "theta_c")
     torques = sinusoids(times(1e-3, 1.0), (0.5, 1.0), (8.0, 0.5), (0.0, 0.0))

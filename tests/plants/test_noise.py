@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cache
 
@@ -17,7 +17,7 @@ from plant_runs import Array, run_awas
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.engine import run
 
-SAMPLES = 50_000
+SAMPLES = 20_000
 MASK = (1 << 64) - 1
 
 
@@ -29,63 +29,45 @@ def normals(seed: int, samples: int = SAMPLES) -> Array:
     return np.column_stack([run["tau_measured"], run["tau_e_measured"]])
 
 
-class SplitMix64:
+def splitmix64(state: int) -> Iterator[int]:
     """The generator of Steele, Lea and Flood (2014), in Python's integers."""
-
-    def __init__(self, state: int) -> None:
-        self.state = state & MASK
-
-    def bits(self) -> int:
-        self.state = (self.state + 0x9E3779B97F4A7C15) & MASK
-        z = self.state
-        z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & MASK
+    while True:
+        state = (state + 0x9E3779B97F4A7C15) & MASK
+        z = ((state ^ (state >> 30)) * 0xBF58476D1CE4E5B9) & MASK
         z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & MASK
-        return z ^ (z >> 31)
-
-    def uniform(self) -> float:
-        return ((self.bits() >> 12) + 0.5) / 2.0**52
+        yield z ^ (z >> 31)
 
 
 def normal(seed: int, channel: int, sample: int) -> float:
     """A standard normal by the ratio of uniforms (Kinderman, Monahan 1977)."""
-    by_seed = SplitMix64(seed).bits()
-    by_channel = SplitMix64(by_seed + channel).bits()
-    generator = SplitMix64(SplitMix64(by_channel + sample).bits())
+    by_channel = next(splitmix64(next(splitmix64(seed & MASK)) + channel))
+    bits = splitmix64(next(splitmix64(by_channel + sample)))
+    uniforms = (((each >> 12) + 0.5) / 2.0**52 for each in bits)
     while True:
-        v = math.sqrt(8 / math.e) * (generator.uniform() - 0.5)
-        u = generator.uniform()
+        v = math.sqrt(8 / math.e) * (next(uniforms) - 0.5)
+        u = next(uniforms)
         if (v / u) ** 2 <= -4 * math.log(u):
             return v / u
 
 
-@pytest.mark.parametrize("seed", [0, 1, -5, 2**31 - 1, -(2**31)])
+@pytest.mark.parametrize("seed", [1, 2**31 - 1, -(2**31)])
 def test_noise_is_the_published_method_bit_for_bit(seed: int) -> None:
     expected = [[normal(seed, channel, k) for channel in (0, 1)] for k in range(300)]
     np.testing.assert_array_equal(normals(seed, 300), expected)
 
 
-@pytest.mark.parametrize("channel", [0, 1])
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_noise_is_standard_normal(seed: int, channel: int) -> None:
-    noise = normals(seed)[:, channel]
-    # Bounds of five standard deviations of each estimate.
-    five = 5 / math.sqrt(SAMPLES)
-    assert abs(noise.mean()) < five
-    assert abs(noise.var() - 1) < five * math.sqrt(2)
-    assert abs(stats.skew(noise)) < five * math.sqrt(6)
-    assert abs(stats.kurtosis(noise)) < five * math.sqrt(24)
-    assert stats.kstest(noise, "norm").pvalue > 1e-3
-
-
-def test_noise_is_white_and_independent_between_channels_and_seeds() -> None:
+def test_noise_is_standard_normal_white_and_independent_between_channels_and_seeds() -> None:
+    """Bounds of five standard deviations of each estimate."""
     five = 5 / math.sqrt(SAMPLES)
     streams = np.column_stack([normals(seed) for seed in (1, 2, 3)])
-    correlation = np.corrcoef(streams.T) - np.eye(6)
-    assert np.abs(correlation).max() < five
+    assert np.abs(streams.mean(axis=0)).max() < five
+    assert np.abs(streams.var(axis=0) - 1).max() < five * math.sqrt(2)
+    assert np.abs(stats.skew(streams)).max() < five * math.sqrt(6)
+    assert np.abs(stats.kurtosis(streams)).max() < five * math.sqrt(24)
+    assert stats.kstest(streams, "norm").pvalue.min() > 1e-3
+    assert np.abs(np.corrcoef(streams.T) - np.eye(6)).max() < five
     for lag in (1, 2, 3, 10, 1000):
-        for one in streams.T:
-            for other in streams.T:
-                assert abs(np.mean(one[lag:] * other[:-lag])) < five
+        assert np.abs(streams[lag:].T @ streams[:-lag]).max() / (SAMPLES - lag) < five
 
 
 def measured(h: float, duration: float, start: Mapping[str, float] | None = None) -> Array:
@@ -150,8 +132,10 @@ def test_a_scenario_draws_noise_at_its_own_sampling_times() -> None:
     np.testing.assert_array_equal(held, normals(1)[np.arange(101) // 2, 0])
 
 
-def test_noise_is_that_of_the_paper_by_default() -> None:
-    run = run_awas(1e-3, np.zeros((100, 3)), {}, ["tau_measured", "tau_e_measured"])
+def test_noise_is_that_of_the_paper_by_default_and_not_scaled_by_the_gain() -> None:
+    run = run_awas(
+        1e-3, np.zeros((100, 3)), {"sensor.gain": 1.03}, ["tau_measured", "tau_e_measured"]
+    )
     expected = normals(1)[:100] * np.sqrt([1e-5, 1e-3])  # (32), (33)
     np.testing.assert_array_equal(run["tau_measured"], expected[:, 0])
     np.testing.assert_array_equal(run["tau_e_measured"], expected[:, 1])

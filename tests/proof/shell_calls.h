@@ -11,6 +11,13 @@
 #include "shell_invariant.h"
 #include "state_block.h"
 
+#define CASE(number, ...)                                                                          \
+    case number:                                                                                   \
+        __VA_ARGS__;                                                                               \
+        break
+
+#define OR_NULL(pointer) (any_choice() ? (pointer) : NULL)
+
 /* Calls function `which` of the version of FMI with any arguments that FMI allows, and NULL. */
 static void call(int which, course here);
 

@@ -14,62 +14,28 @@ static void call(int which, course here)
     //@ dynamic_split instance.parameters_unchecked;
     //@ dynamic_split instance.state;
     switch (which) {
-    case 0:
-        fmi2SetDebugLogging(&instance, any_choice(), any_choice() ? 3 : 0, categories);
-        break;
-    case 1:
-        fmi2SetDebugLogging(&instance, any_choice(), any_size(), NULL);
-        break;
-    case 2:
-        fmi2SetupExperiment(&instance, any_int(), any_real(), any_real(), any_int(), any_real());
-        break;
-    case 3:
-        fmi2EnterInitializationMode(&instance);
-        break;
-    case 4:
-        fmi2ExitInitializationMode(&instance);
-        break;
-    case 5:
-        fmi2Terminate(&instance);
-        break;
-    case 6:
-        fmi2Reset(&instance);
-        break;
-    case 7:
-        fmi2DoStep(&instance, any_real(), any_real(), any_int());
-        break;
-    case 8:
-        fmi2CancelStep(&instance);
-        break;
-    case 9:
-        fmi2GetStatus(&instance, kind, any_choice() ? (fmi2Status *)&integer : NULL);
-        break;
-    case 10:
-        fmi2GetRealStatus(&instance, kind, any_choice() ? &real : NULL);
-        break;
-    case 11:
-        fmi2GetIntegerStatus(&instance, kind, any_choice() ? &integer : NULL);
-        break;
-    case 12:
-        fmi2GetBooleanStatus(&instance, kind, any_choice() ? &integer : NULL);
-        break;
-    case 13:
-        fmi2GetStringStatus(&instance, kind, NULL);
-        break;
-    case 14:
-        fmi2GetDirectionalDerivative(&instance, NULL, any_size(), NULL, any_size(), NULL, NULL);
-        break;
-    case 15:
-        fmi2GetFMUstate(&instance, any_choice() ? &state : NULL);
-        fmi2SerializedFMUstateSize(&instance, state, any_choice() ? &size : NULL);
-        fmi2FreeFMUstate(&instance, any_choice() ? &state : NULL);
-        break;
-    case 16:
-        fmi2SetFMUstate(&instance, any_choice() ? saved_state() : NULL);
-        break;
-    case 17:
-        fmi2DeSerializeFMUstate(&instance, any_state(here), sh_block_size(), &state);
-        break;
+        CASE(0, fmi2SetDebugLogging(&instance, any_choice(), any_choice() ? 3 : 0, categories));
+        CASE(1, fmi2SetDebugLogging(&instance, any_choice(), any_size(), NULL));
+        CASE(2, fmi2SetupExperiment(&instance, any_int(), any_real(), any_real(), any_int(),
+                                    any_real()));
+        CASE(3, fmi2EnterInitializationMode(&instance));
+        CASE(4, fmi2ExitInitializationMode(&instance));
+        CASE(5, fmi2Terminate(&instance));
+        CASE(6, fmi2Reset(&instance));
+        CASE(7, fmi2DoStep(&instance, any_real(), any_real(), any_int()));
+        CASE(8, fmi2CancelStep(&instance));
+        CASE(9, fmi2GetStatus(&instance, kind, OR_NULL((fmi2Status *)&integer)));
+        CASE(10, fmi2GetRealStatus(&instance, kind, OR_NULL(&real)));
+        CASE(11, fmi2GetIntegerStatus(&instance, kind, OR_NULL(&integer)));
+        CASE(12, fmi2GetBooleanStatus(&instance, kind, OR_NULL(&integer)));
+        CASE(13, fmi2GetStringStatus(&instance, kind, NULL));
+        CASE(14, fmi2GetDirectionalDerivative(&instance, NULL, any_size(), NULL, any_size(), NULL,
+                                              NULL));
+        CASE(15, fmi2GetFMUstate(&instance, OR_NULL(&state));
+             fmi2SerializedFMUstateSize(&instance, state, OR_NULL(&size));
+             fmi2FreeFMUstate(&instance, OR_NULL(&state)));
+        CASE(16, fmi2SetFMUstate(&instance, OR_NULL(saved_state())));
+        CASE(17, fmi2DeSerializeFMUstate(&instance, any_state(here), sh_block_size(), &state));
     default:
         fmi2SerializeFMUstate(&instance, any_state(here), any_block(), any_size());
         fmi2SerializeFMUstate(&instance, any_state(here), NULL, any_size());
@@ -93,33 +59,15 @@ static void access(int which, const uint32_t vr[], size_t n, int way)
     //@ dynamic_split instance.parameters_unchecked;
     (void)way; /* one value for each reference */
     switch (which) {
-    case 0:
-        fmi2GetReal(&instance, vr, n, values);
-        break;
-    case 1:
-        fmi2SetReal(&instance, vr, n, values);
-        break;
-    case 2:
-        fmi2GetInteger(&instance, vr, n, values);
-        break;
-    case 3:
-        fmi2SetInteger(&instance, vr, n, values);
-        break;
-    case 4:
-        fmi2GetBoolean(&instance, vr, n, values);
-        break;
-    case 5:
-        fmi2SetBoolean(&instance, vr, n, values);
-        break;
-    case 6:
-        fmi2GetString(&instance, vr, n, values);
-        break;
-    case 7:
-        fmi2SetString(&instance, vr, n, values);
-        break;
-    case 8:
-        fmi2SetRealInputDerivatives(&instance, vr, n, order, values);
-        break;
+        CASE(0, fmi2GetReal(&instance, vr, n, values));
+        CASE(1, fmi2SetReal(&instance, vr, n, values));
+        CASE(2, fmi2GetInteger(&instance, vr, n, values));
+        CASE(3, fmi2SetInteger(&instance, vr, n, values));
+        CASE(4, fmi2GetBoolean(&instance, vr, n, values));
+        CASE(5, fmi2SetBoolean(&instance, vr, n, values));
+        CASE(6, fmi2GetString(&instance, vr, n, values));
+        CASE(7, fmi2SetString(&instance, vr, n, values));
+        CASE(8, fmi2SetRealInputDerivatives(&instance, vr, n, order, values));
     default:
         fmi2GetRealOutputDerivatives(&instance, vr, n, order, values);
         break;

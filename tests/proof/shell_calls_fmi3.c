@@ -8,30 +8,24 @@ enum { ACCESSES = 14 };
 static void call_refused(int which)
 {
     switch (which) {
-    case 11:
-        fmi3EnterEventMode(&instance);
-        fmi3EnterStepMode(&instance);
-        fmi3EvaluateDiscreteStates(&instance);
-        fmi3UpdateDiscreteStates(&instance, NULL, NULL, NULL, NULL, NULL, NULL);
-        fmi3EnterConfigurationMode(&instance);
-        fmi3ExitConfigurationMode(&instance);
-        fmi3GetNumberOfVariableDependencies(&instance, 0, NULL);
-        fmi3GetVariableDependencies(&instance, 0, NULL, NULL, NULL, NULL, any_size());
-        fmi3GetDirectionalDerivative(&instance, NULL, 1, NULL, 1, NULL, 1, NULL, any_size());
-        fmi3GetAdjointDerivative(&instance, NULL, 1, NULL, 1, NULL, 1, NULL, any_size());
-        fmi3GetOutputDerivatives(&instance, NULL, 1, NULL, NULL, any_size());
-        break;
-    case 12:
-        fmi3GetIntervalDecimal(&instance, NULL, any_size(), NULL, NULL);
-        fmi3GetIntervalFraction(&instance, NULL, any_size(), NULL, NULL, NULL);
-        fmi3GetShiftDecimal(&instance, NULL, any_size(), NULL);
-        fmi3GetShiftFraction(&instance, NULL, any_size(), NULL, NULL);
-        fmi3SetIntervalDecimal(&instance, NULL, any_size(), NULL);
-        fmi3SetIntervalFraction(&instance, NULL, any_size(), NULL, NULL);
-        fmi3SetShiftDecimal(&instance, NULL, any_size(), NULL);
-        fmi3SetShiftFraction(&instance, NULL, any_size(), NULL, NULL);
-        fmi3ActivateModelPartition(&instance, 0, any_real());
-        break;
+        CASE(11, fmi3EnterEventMode(&instance); fmi3EnterStepMode(&instance);
+             fmi3EvaluateDiscreteStates(&instance);
+             fmi3UpdateDiscreteStates(&instance, NULL, NULL, NULL, NULL, NULL, NULL);
+             fmi3EnterConfigurationMode(&instance); fmi3ExitConfigurationMode(&instance);
+             fmi3GetNumberOfVariableDependencies(&instance, 0, NULL);
+             fmi3GetVariableDependencies(&instance, 0, NULL, NULL, NULL, NULL, any_size());
+             fmi3GetDirectionalDerivative(&instance, NULL, 1, NULL, 1, NULL, 1, NULL, any_size());
+             fmi3GetAdjointDerivative(&instance, NULL, 1, NULL, 1, NULL, 1, NULL, any_size());
+             fmi3GetOutputDerivatives(&instance, NULL, 1, NULL, NULL, any_size()));
+        CASE(12, fmi3GetIntervalDecimal(&instance, NULL, any_size(), NULL, NULL);
+             fmi3GetIntervalFraction(&instance, NULL, any_size(), NULL, NULL, NULL);
+             fmi3GetShiftDecimal(&instance, NULL, any_size(), NULL);
+             fmi3GetShiftFraction(&instance, NULL, any_size(), NULL, NULL);
+             fmi3SetIntervalDecimal(&instance, NULL, any_size(), NULL);
+             fmi3SetIntervalFraction(&instance, NULL, any_size(), NULL, NULL);
+             fmi3SetShiftDecimal(&instance, NULL, any_size(), NULL);
+             fmi3SetShiftFraction(&instance, NULL, any_size(), NULL, NULL);
+             fmi3ActivateModelPartition(&instance, 0, any_real()));
     default:
         fmi3EnterContinuousTimeMode(&instance);
         fmi3CompletedIntegratorStep(&instance, any_choice(), NULL, NULL);
@@ -58,81 +52,49 @@ static void call(int which, course here)
     //@ dynamic_split instance.parameters_unchecked;
     //@ dynamic_split instance.state;
     switch (which) {
-    case 0:
-        fmi3SetDebugLogging(&instance, any_choice(), any_choice() ? 3 : 0, categories);
-        break;
-    case 1:
-        fmi3SetDebugLogging(&instance, any_choice(), any_size(), NULL);
-        break;
-    case 2:
-        fmi3EnterInitializationMode(&instance, any_choice(), any_real(), any_real(), any_choice(),
-                                    any_real());
-        break;
-    case 3:
-        fmi3ExitInitializationMode(&instance);
-        break;
-    case 4:
-        fmi3Terminate(&instance);
-        break;
-    case 5:
-        fmi3Reset(&instance);
-        break;
-    case 6:
-        fmi3DoStep(&instance, any_real(), any_real(), any_choice(), any_choice() ? &handle : NULL,
-                   any_choice() ? &end : NULL, any_choice() ? &early : NULL,
-                   any_choice() ? &last : NULL);
-        break;
-    case 7:
-        fmi3GetFMUState(&instance, any_choice() ? &state : NULL);
-        fmi3SerializedFMUStateSize(&instance, state, any_choice() ? &size : NULL);
-        fmi3FreeFMUState(&instance, any_choice() ? &state : NULL);
-        break;
-    case 8:
-        fmi3SetFMUState(&instance, any_choice() ? saved_state() : NULL);
-        break;
-    case 9:
-        fmi3DeserializeFMUState(&instance, any_state(here), sh_block_size(), &state);
-        break;
-    case 10:
-        fmi3SerializeFMUState(&instance, any_state(here), any_block(), any_size());
-        fmi3SerializeFMUState(&instance, any_state(here), NULL, any_size());
-        break;
+        CASE(0, fmi3SetDebugLogging(&instance, any_choice(), any_choice() ? 3 : 0, categories));
+        CASE(1, fmi3SetDebugLogging(&instance, any_choice(), any_size(), NULL));
+        CASE(2, fmi3EnterInitializationMode(&instance, any_choice(), any_real(), any_real(),
+                                            any_choice(), any_real()));
+        CASE(3, fmi3ExitInitializationMode(&instance));
+        CASE(4, fmi3Terminate(&instance));
+        CASE(5, fmi3Reset(&instance));
+        CASE(6, fmi3DoStep(&instance, any_real(), any_real(), any_choice(), OR_NULL(&handle),
+                           OR_NULL(&end), OR_NULL(&early), OR_NULL(&last)));
+        CASE(7, fmi3GetFMUState(&instance, OR_NULL(&state));
+             fmi3SerializedFMUStateSize(&instance, state, OR_NULL(&size));
+             fmi3FreeFMUState(&instance, OR_NULL(&state)));
+        CASE(8, fmi3SetFMUState(&instance, OR_NULL(saved_state())));
+        CASE(9, fmi3DeserializeFMUState(&instance, any_state(here), sh_block_size(), &state));
+        CASE(10, fmi3SerializeFMUState(&instance, any_state(here), any_block(), any_size());
+             fmi3SerializeFMUState(&instance, any_state(here), NULL, any_size()));
     default:
         call_refused(which);
         break;
     }
 }
 
+#define ACCESS(number, call)                                                                       \
+    case number:                                                                                   \
+        return call
+
 static fmi3Status access_values(int which, const uint32_t vr[], size_t n, void *values,
                                 size_t count)
 {
     switch (which) {
-    case 0:
-        return fmi3GetFloat64(&instance, vr, n, values, count);
-    case 1:
-        return fmi3SetFloat64(&instance, vr, n, values, count);
-    case 2:
-        return fmi3GetInt64(&instance, vr, n, values, count);
-    case 3:
-        return fmi3SetInt64(&instance, vr, n, values, count);
-    case 4:
-        return fmi3GetInt32(&instance, vr, n, values, count);
-    case 5:
-        return fmi3SetInt32(&instance, vr, n, values, count);
-    case 6:
-        return fmi3GetBoolean(&instance, vr, n, values, count);
-    case 7:
-        return fmi3SetBoolean(&instance, vr, n, values, count);
-    case 8:
-        return fmi3GetString(&instance, vr, n, values, count);
-    case 9:
-        return fmi3SetString(&instance, vr, n, values, count);
-    case 10:
-        return fmi3GetBinary(&instance, vr, n, NULL, values, count);
-    case 11:
-        return fmi3SetBinary(&instance, vr, n, NULL, values, count);
-    case 12:
-        return fmi3GetClock(&instance, vr, n, values);
+        ACCESS(0, fmi3GetFloat64(&instance, vr, n, values, count));
+        ACCESS(1, fmi3SetFloat64(&instance, vr, n, values, count));
+        ACCESS(2, fmi3GetInt64(&instance, vr, n, values, count));
+        ACCESS(3, fmi3SetInt64(&instance, vr, n, values, count));
+        ACCESS(4, fmi3GetInt32(&instance, vr, n, values, count));
+        ACCESS(5, fmi3SetInt32(&instance, vr, n, values, count));
+        ACCESS(6, fmi3GetBoolean(&instance, vr, n, values, count));
+        ACCESS(7, fmi3SetBoolean(&instance, vr, n, values, count));
+        ACCESS(8, fmi3GetString(&instance, vr, n, values, count));
+        ACCESS(9, fmi3SetString(&instance, vr, n, values, count));
+        ACCESS(10, fmi3GetBinary(&instance, vr, n, NULL, values, count));
+        ACCESS(11, fmi3SetBinary(&instance, vr, n, NULL, values, count));
+        ACCESS(12, fmi3GetClock(&instance, vr, n, values));
     default:
         return fmi3SetClock(&instance, vr, n, values);
     }
@@ -146,12 +108,8 @@ static void access(int which, const uint32_t vr[], size_t n, int way)
 
     //@ dynamic_split instance.parameters_unchecked;
     switch (way) { /* the right number of values, or too few, or too many */
-    case 0:
-        access_values(which, vr, n, any_array(n * SIZES[which]), n);
-        break;
-    case 1:
-        access_values(which, vr, n, any_array(0), Frama_C_size_t_interval(0, n - 1));
-        break;
+        CASE(0, access_values(which, vr, n, any_array(n * SIZES[which]), n));
+        CASE(1, access_values(which, vr, n, any_array(0), Frama_C_size_t_interval(0, n - 1)));
     default:
         access_values(which, vr, n, any_array(0), Frama_C_size_t_interval(n + 1, SIZE_MAX));
         break;

@@ -1,8 +1,6 @@
 /* In place of the equations that CasADi generated for a plant: they write any values to their
- * results. fmin and fmax are those of the C standard; Eva has none.
+ * results.
  */
-#include <math.h>
-
 #include "__fc_builtin.h"
 #include "plant_functions.h"
 #include "shell_importer.h"
@@ -68,39 +66,13 @@ int sh_plant_solve_complex(const double **arg, double **res, int *iw, double *w,
     return any_results(res[1], SH_PLANT_STATES);
 }
 
-double fmin(double a, double b)
-{
-    if (!(b >= -HUGE_VAL)) { /* not a number */
-        return a;
-    }
-    return a <= b ? a : b;
-}
-
-double fmax(double a, double b)
-{
-    if (!(b >= -HUGE_VAL)) {
-        return a;
-    }
-    return a >= b ? a : b;
-}
-
 /* A plant needs no marks: whatever its numbers are, they lead to no other memory. */
-void mark_checked(sh_plant *model)
-{
-    (void)model;
-}
-
-void mark_sound(sh_plant *model)
-{
-    (void)model;
-}
-
-void expect_checked(const sh_plant *model)
-{
-    (void)model;
-}
-
-void expect_sound(const sh_plant *model)
-{
-    (void)model;
-}
+#define NO_MARK(function, type)                                                                    \
+    void function(type *model)                                                                     \
+    {                                                                                              \
+        (void)model;                                                                               \
+    }
+NO_MARK(mark_checked, sh_plant)
+NO_MARK(mark_sound, sh_plant)
+NO_MARK(expect_checked, const sh_plant)
+NO_MARK(expect_sound, const sh_plant)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -10,8 +11,7 @@ import pytest
 from controllers import REPOSITORY, TARGETS, cross_build, run
 
 PAGE = REPOSITORY / "docs" / "proof" / "bounds.md"
-ROW = r"^(\w+)" + 4 * r" (\d+)" + "$"
-METHODS = {"paper2011": "Paper2011", "filtered_regression": "FilteredRegression"}
+METHODS = {"1": "Paper2011", "2": "FilteredRegression"}
 
 
 def table(processor: str) -> dict[str, float]:
@@ -22,8 +22,16 @@ def table(processor: str) -> dict[str, float]:
 
 
 # A Cortex-M4F computes double in software, which QEMU takes a minute to measure.
+by_hand = pytest.mark.skipif(
+    not os.environ.get("SIGMAHAT_PROOF"), reason="runs with SIGMAHAT_PROOF=1 in the environment"
+)
+
+
 @pytest.mark.slow("a library is built, and run in QEMU")
-@pytest.mark.parametrize(("name", "real"), [("Cortex-M4F", "float"), ("Cortex-M7", "double")])
+@pytest.mark.parametrize(
+    ("name", "real"),
+    [pytest.param("Cortex-M4F", "float", marks=by_hand), ("Cortex-M7", "double")],
+)
 def test_the_longest_ticks_are_those_of_the_page(
     name: str, real: str, build: Path, tmp_path: Path
 ) -> None:
@@ -31,11 +39,10 @@ def test_the_longest_ticks_are_those_of_the_page(
     tree = cross_build("tests/proof/ticks", TARGETS[name], real, ninja, tmp_path)
     emulator = [part for part in (tree / "emulator.txt").read_text().split(";") if part]
     text = run(*emulator, str(tree / "ticks"))
-    found = {
-        f"{METHODS[method]}, {n} x {m}" + (f", {columns} columns" if columns != "0" else ""): (
-            1.5 * float(longest)
-        )
-        for method, n, m, columns, longest in re.findall(ROW, text, re.M)
-    }
+    found = {}
+    for line in text.splitlines():
+        method, n, m, columns, longest = line.split()
+        of = f", {columns} columns" if columns != "0" else ""
+        found[f"{METHODS[method]}, {n} x {m}{of}"] = 1.5 * float(longest)
     # Another compiler may differ a little.
     assert table(f"{name}, {real}") == pytest.approx(found, rel=0.1)

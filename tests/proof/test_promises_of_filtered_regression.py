@@ -128,9 +128,7 @@ def test_a_weight_whose_square_overflows_leaves_the_blocks_finite(c: Library) ->
     assert np.all(np.isfinite(factors(blocks.constant)[1]))
 
 
-def test_a_stiffness_that_is_too_large_for_the_next_row_does_not_block_all_rows(
-    c: Library,
-) -> None:
+def test_a_stiffness_that_is_too_large_for_the_next_row_does_not_block_all_rows(c: Library) -> None:
     """GIVEN a sensor that gives 1e12 N.m, from which a stiffness of 1e15 N.m/rad follows in single
     precision, WHEN the motor data are used instead, whose column of the encoder is multiplied by
     the stiffness, THEN at most one sample is skipped."""

@@ -15,15 +15,9 @@ from released_fmus import FMUS, TWINS
 
 # Functions of the header that are not for co-simulation.
 MODEL_EXCHANGE = {
-    "fmi2EnterEventMode",
-    "fmi2NewDiscreteStates",
-    "fmi2EnterContinuousTimeMode",
-    "fmi2CompletedIntegratorStep",
-    "fmi2SetTime",
-    "fmi2SetContinuousStates",
-    "fmi2GetDerivatives",
-    "fmi2GetEventIndicators",
-    "fmi2GetContinuousStates",
+    *("fmi2EnterEventMode", "fmi2NewDiscreteStates", "fmi2EnterContinuousTimeMode"),
+    *("fmi2CompletedIntegratorStep", "fmi2SetTime", "fmi2SetContinuousStates"),
+    *("fmi2GetDerivatives", "fmi2GetEventIndicators", "fmi2GetContinuousStates"),
     "fmi2GetNominalsOfContinuousStates",
 }
 BY_THE_LINKER = {"__mh_dylib_header", "___dso_handle"}  # symbols of a library of macOS

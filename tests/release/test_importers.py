@@ -4,34 +4,27 @@ from __future__ import annotations
 
 import os
 import subprocess
+from functools import cache
 from pathlib import Path
 
 import fmpy
 import numpy as np
 import pytest
 
+from c_programs import DRIVERS
 from gate import missing, need
-from released_fmus import FMUS, STEP, Run
+from released_fmus import STEP, Run
 from sigmahat.export.cross_compiler import HEADERS, compile_files
 
-each_fmu = pytest.mark.parametrize("run", FMUS, indirect=True)
+run_of = cache(Run)
 
 
-@pytest.fixture(scope="module")
-def runs() -> dict[str, Run]:
-    return {}
+@pytest.fixture(params=["AntagonisticStiffnessEstimator", "RealJointPlant"])
+def run(request: pytest.FixtureRequest, released: Path) -> Run:
+    """The run in FMPy of the estimator and the plant with the most variables."""
+    return run_of(released / f"{request.param}.fmu")
 
 
-@pytest.fixture
-def run(request: pytest.FixtureRequest, released: Path, runs: dict[str, Run]) -> Run:
-    """The run of an FMU in FMPy, which all tests of this FMU share."""
-    name: str = request.param
-    if name not in runs:
-        runs[name] = Run(released / f"{name}.fmu")
-    return runs[name]
-
-
-@each_fmu
 def test_libcosim_gives_the_same_trajectories(run: Run, capfd: pytest.CaptureFixture[str]) -> None:
     try:
         from libcosimpy.CosimExecution import CosimExecution
@@ -61,30 +54,29 @@ def test_libcosim_gives_the_same_trajectories(run: Run, capfd: pytest.CaptureFix
     run.assert_same(np.array([run.trajectory[0], *rows[1:]]))
 
 
-def master(fmi: int, target: str, build: Path, program: Path) -> Path:
-    """``drivers/master.c`` for a version of FMI and a target of the cross compiler."""
-    source = Path(__file__).parents[1] / "drivers" / "master.c"
+def assert_same_in(
+    fmu: Path, target: str, binary: str, emulator: list[str], build: Path, folder: Path
+) -> None:
+    """Steps an FMU, unpacked into a folder, with the master of drivers/, in an emulator.
+
+    target  of the cross compiler
+    binary  of the FMU
+    """
+    run, program, source = run_of(fmu), folder / "master.exe", DRIVERS / "master.c"
+    version = f"-DSH_FMI={run.description.fmiVersion[0]}"
     # With -s and in a folder outside of the sources as the binaries of the release: so what the
     # compiler made of its C library for them is used again, which takes minutes to make.
-    compile_files(
-        target,
-        ["-std=c99", "-O2", "-s", f"-DSH_FMI={fmi}", f"-I{HEADERS}", source, "-o", program],
-        build / "cross-compiler",
-        program.parent,
-    )
-    return program
-
-
-def assert_same_in(run: Run, command: list[str], build: Path, cwd: Path) -> None:
-    """Steps the FMU, unpacked in `cwd`, with a master that takes the arguments of drivers/."""
+    options = ["-std=c99", "-O2", "-s", version, f"-I{HEADERS}", "-o", str(program), str(source)]
+    compile_files(target, options, build / "cross-compiler", folder)
+    fmpy.extract(str(fmu), unzipdir=str(folder))
     done = subprocess.run(
         [
-            *command,
+            *(*emulator, str(program), f"binaries/{binary}"),
             *(run.description.guid, repr(STEP), str(len(run.inputs))),
             *(str(v.valueReference) for v in run.inputs + run.outputs),
         ],
         input="\n".join(",".join(map(repr, row)) for row in run.signals[:-1].tolist()),
-        cwd=cwd,
+        cwd=folder,
         env={
             **os.environ,
             "WINEPREFIX": str((build / "wine").resolve()),  # a separate one, not that of the user
@@ -101,53 +93,28 @@ def assert_same_in(run: Run, command: list[str], build: Path, cwd: Path) -> None
     run.assert_same(np.array([line.split(",") for line in done.stdout.split()], np.float64))
 
 
-def wine() -> str:
-    # Debian installs it in a folder that is not on the PATH.
-    return need("wine64", folder="/usr/lib/wine")
-
-
-@pytest.fixture(scope="module")
-def windows_master(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    program = tmp_path_factory.mktemp("windows") / "master.exe"
-    return master(2, "x86_64-windows-gnu", build, program)
-
-
-@each_fmu
-@pytest.mark.slow("Wine starts for each FMU and steps it through a whole run")
-def test_the_windows_binary_gives_the_same_trajectories(
-    run: Run, windows_master: Path, build: Path, tmp_path: Path
-) -> None:
-    fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))
-    library = f"binaries/win64/{run.fmu.stem}.dll"
-    assert_same_in(run, [wine(), str(windows_master), library], build, tmp_path)
-
-
-two_twins = pytest.mark.parametrize("name", ["AwasPlant_FMI3", "StiffnessEstimator_FMI3"])
-
-
-@two_twins
+@pytest.mark.parametrize(
+    ("name", "binary"),
+    [
+        ("RealJointPlant", "win64/RealJointPlant.dll"),
+        ("StiffnessEstimator_FMI3", "x86_64-windows/StiffnessEstimator.dll"),
+    ],
+)
 @pytest.mark.slow("Wine starts and steps an FMU through a whole run")
-def test_the_windows_binary_of_a_twin_gives_the_same_trajectories(
-    name: str, released: Path, build: Path, tmp_path: Path
+def test_the_windows_binary_gives_the_same_trajectories(
+    name: str, binary: str, released: Path, build: Path, tmp_path: Path
 ) -> None:
-    run = Run(released / f"{name}.fmu")
-    program = master(3, "x86_64-windows-gnu", build, tmp_path / "master.exe")
-    fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))
-    library = f"binaries/x86_64-windows/{name.removesuffix('_FMI3')}.dll"
-    assert_same_in(run, [wine(), str(program), library], build, tmp_path)
+    wine = [need("wine64", folder="/usr/lib/wine")]  # where Debian has it
+    fmu = released / f"{name}.fmu"
+    assert_same_in(fmu, "x86_64-windows-gnu", binary, wine, build, tmp_path)
 
 
-@two_twins
+@pytest.mark.parametrize("name", ["AwasPlant", "StiffnessEstimator"])
 def test_the_binary_for_arm_gives_the_same_trajectories(
     name: str, released: Path, build: Path, tmp_path: Path
 ) -> None:
     emulator, libraries = need("qemu-aarch64"), Path("/usr/aarch64-linux-gnu")
     if not libraries.is_dir():
         missing("the C library for aarch64", "apt-get install libc6-dev-arm64-cross")
-    run = Run(released / f"{name}.fmu")
-    program = master(3, "aarch64-linux-gnu.2.34", build, tmp_path / "master")
-    fmpy.extract(str(run.fmu), unzipdir=str(tmp_path))
-    library = tmp_path / f"binaries/aarch64-linux/{name.removesuffix('_FMI3')}.so"
-    assert_same_in(
-        run, [emulator, "-L", str(libraries), str(program), str(library)], build, tmp_path
-    )
+    fmu, qemu = released / f"{name}_FMI3.fmu", [emulator, "-L", str(libraries)]
+    assert_same_in(fmu, "aarch64-linux-gnu.2.34", f"aarch64-linux/{name}.so", qemu, build, tmp_path)

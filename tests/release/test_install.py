@@ -1,6 +1,5 @@
-"""What pip makes of a fresh clone, in environments with nothing else, used from another folder.
+"""What pip makes of a fresh clone, in an environment with nothing else, used from another folder.
 
-`pip wheel .` is the first half of `pip install .`, and the installation of its wheels the second.
 Nothing of this tree is on a path of what runs here.
 """
 
@@ -9,9 +8,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import sysconfig
 import tarfile
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -38,25 +35,6 @@ def outside() -> dict[str, str]:
     return {**kept, "PATH": os.pathsep.join(path), "PIP_COMPILE": "0"}
 
 
-def new_environment(folder: Path, *options: str) -> Path:
-    """The folder of the programs of a new environment, with pip and nothing else."""
-    subprocess.run([sys.executable, "-m", "venv", *options, folder], env=outside(), check=True)
-    scheme = {"base": str(folder), "platbase": str(folder)}
-    return Path(sysconfig.get_path("scripts", "venv", scheme))
-
-
-def pip(programs: Path, *arguments: str | Path) -> None:
-    """Runs pip of an environment, in its folder."""
-    done = subprocess.run(
-        [programs / "python", "-m", "pip", *arguments, "-q"],
-        cwd=programs,
-        env=outside(),
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Fresh clone of what is committed."""
@@ -66,64 +44,43 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def empty(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Programs of an environment with pip and nothing else."""
-    return new_environment(tmp_path_factory.mktemp("empty"))
-
-
-@pytest.fixture(scope="module")
-def wheels(clone: Path, empty: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder of the wheel built from the clone, and of those that it requires."""
-    folder = tmp_path_factory.mktemp("wheels")
-    probe: list[str | Path] = [empty / "python", "-m", "pip", "download", "-d", folder, "click"]
+def programs(clone: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Programs of an environment into which pip installed the clone."""
+    folder = tmp_path_factory.mktemp("installed")
+    subprocess.run([sys.executable, "-m", "venv", folder], env=outside(), check=True)
+    programs = folder / Path(sys.executable).parent.name
+    pip = [str(programs / "python"), "-m", "pip", "-q"]
+    probe = [*pip, "download", "-d", str(folder / "probe"), "click"]
     if subprocess.run(probe, env=outside(), capture_output=True).returncode:
         missing("a connection to a package index", "connect this machine to one")
-    pip(empty, "wheel", clone, "-w", folder)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def wheel(wheels: Path) -> Path:
-    (path,) = wheels.glob("sigmahat-*.whl")
-    return path
-
-
-@pytest.fixture(scope="module")
-def installed(wheels: Path, empty: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Programs of an environment with the wheel, and with those that it requires."""
-    programs = new_environment(tmp_path_factory.mktemp("installed"), "--without-pip")
-    into = ("--python", programs / "python")
-    pip(empty, *into, "install", "--no-index", "--find-links", wheels, "sigmahat")
+    install = [*pip, "install", str(clone)]
+    done = subprocess.run(install, cwd=folder, env=outside(), capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
     return programs
 
 
-def run(program: Path, *arguments: str, cwd: Path, status: int = 0) -> str:
-    """What a program prints with nothing else on the path: stdout, or stderr if it has to fail."""
-    done = subprocess.run(
-        [program, *arguments],
-        cwd=cwd,
-        env={**outside(), "PATH": str(program.parent)},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == status, done.stdout + done.stderr
-    printed, empty = (done.stderr, done.stdout) if status else (done.stdout, done.stderr)
-    assert empty == ""
-    return printed
+def run(program: Path, *arguments: str, cwd: Path) -> str:
+    """What a program prints with nothing else on the path, and no error."""
+    environment = {**outside(), "PATH": str(program.parent)}
+    command = [str(program), *arguments]
+    done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, ""), done.stdout + done.stderr
+    return done.stdout
 
 
-def test_wheel_is_for_the_platform_and_any_python(wheel: Path) -> None:
-    name, version, python, abi, platform = wheel.stem.split("-")
-    assert (name, version, python, abi) == ("sigmahat", sigmahat.__version__, "py3", "none")
-    assert platform != "any"
-    with zipfile.ZipFile(wheel) as archive:
-        files = archive.namelist()
-    in_folder = {Path(f).name for f in files if f.startswith("sigmahat/fmus/")}
+def test_the_package_is_for_the_platform_and_any_python(programs: Path) -> None:
+    (described,) = programs.parent.rglob(f"sigmahat-{sigmahat.__version__}.dist-info")
+    (tag,) = (t for t in (described / "WHEEL").read_text().splitlines() if t.startswith("Tag: "))
+    assert tag.startswith("Tag: py3-none-") and not tag.endswith("-any")
+    package = described.with_name("sigmahat")
+    assert (package / "py.typed").is_file()
+    in_folder = {path.name for path in (package / "fmus").iterdir()}
     native = {f"sigmahat_native{extension}" for extension in (".so", ".dll", ".dylib")}
     assert len(in_folder & native) == 1
     assert in_folder - native == {*(f"{name}.fmu" for name in FMUS), "sigmahat-awas.ssp"}
-    assert "sigmahat/py.typed" in files
-    assert {f.split("/")[0] for f in files} == {"sigmahat", f"{name}-{version}.dist-info"}
+    files = [line.split(",")[0] for line in (described / "RECORD").read_text().splitlines()]
+    others = [f for f in files if not f.startswith(("sigmahat/", f"{described.name}/"))]
+    assert [Path(file).stem for file in others] == ["sigmahat"]  # the command
 
 
 def test_source_distribution_holds_what_git_holds(clone: Path, tmp_path: Path) -> None:
@@ -133,20 +90,19 @@ def test_source_distribution_holds_what_git_holds(clone: Path, tmp_path: Path) -
     (path,) = tmp_path.iterdir()
     with tarfile.open(path) as archive:
         files = {name.split("/", 1)[1] for name in archive.getnames()}
-    tracked = subprocess.run(
-        [need("git"), "ls-files", "-z"], cwd=clone, capture_output=True, text=True, check=True
-    ).stdout.split("\0")
-    assert files == {*tracked, "PKG-INFO"} - {""}
+    git = [need("git"), "ls-files", "-z"]
+    tracked = subprocess.run(git, cwd=clone, capture_output=True, text=True, check=True)
+    assert files == {*tracked.stdout.split("\0"), "PKG-INFO"} - {""}
 
 
-def test_commands_give_what_the_development_tree_gives(installed: Path, tmp_path: Path) -> None:
+def test_commands_give_what_the_development_tree_gives(programs: Path, tmp_path: Path) -> None:
     arguments = ("reproduce", "--scenario", "single-linear", "--seeds", "2", "--json")
-    printed = run(installed / "sigmahat", *arguments, cwd=tmp_path)
+    printed = run(programs / "sigmahat", *arguments, cwd=tmp_path)
     assert "RESIDUAL" in printed
     assert printed == run(Path(sys.executable).with_name("sigmahat"), *arguments, cwd=tmp_path)
 
 
-def test_every_command_has_what_it_needs(installed: Path, tmp_path: Path) -> None:
+def test_every_command_has_what_it_needs(programs: Path, tmp_path: Path) -> None:
     log = awas_log(1.0, 0.3, duration=4.0)
     del log["true"]
     write_log(log, tmp_path / "a.csv")
@@ -160,4 +116,4 @@ def test_every_command_has_what_it_needs(installed: Path, tmp_path: Path) -> Non
         "sweep --scenario single-linear --out sweep",
         "report sweep",
     ):
-        assert run(installed / "sigmahat", *command.split(), cwd=tmp_path)
+        assert run(programs / "sigmahat", *command.split(), cwd=tmp_path)

@@ -54,16 +54,8 @@ def test_it_contains_the_released_fmus_and_its_library_alone(
 @each_platform
 def test_its_record_is_right(tag: str, folder: Path, tmp_path: Path) -> None:
     """`wheel unpack` compares every file with its hash."""
-    command = [
-        sys.executable,
-        "-m",
-        "wheel",
-        "unpack",
-        str(wheel(folder, tag)),
-        "-d",
-        str(tmp_path),
-    ]
-    subprocess.run(command, check=True, capture_output=True)
+    unpack = [sys.executable, "-m", "wheel", "unpack", "-d", str(tmp_path)]
+    subprocess.run([*unpack, str(wheel(folder, tag))], check=True, capture_output=True)
     (kind,) = tmp_path.glob("*/*.dist-info/WHEEL")
     text = kind.read_text()
     assert f"Tag: py3-none-{tag}\n" in text and "Root-Is-Purelib: false\n" in text
@@ -80,10 +72,9 @@ import json, math, sys
 sys.path += sys.argv[1:]
 import sigmahat
 run = sigmahat.run(sigmahat.scenario("single-linear"), seed=1)
-estimator = sigmahat.Estimator({"method": "FilteredRegression"})
 theta = [math.sin(0.01 * k) for k in range(2000)]
-q = [1.002 * x for x in theta]
-sigma = estimator.run(theta, q, [-0.04 * x for x in theta])["sigma"]
+estimator = sigmahat.Estimator({"method": "FilteredRegression"})
+sigma = estimator.run(theta, [1.002 * x for x in theta], [-0.04 * x for x in theta])["sigma"]
 print(json.dumps([sigmahat.__file__, run.estimators["RESIDUAL"]["sigma"].tolist(), sigma.tolist()]))
 """
     found = []

@@ -13,71 +13,67 @@
 static int configure(sh_parameters *p, char configuration)
 {
     sh_parameters_default(p);
+    p->method = configuration < 'g' ? SH_METHOD_PAPER2011 : SH_METHOD_FILTERED_REGRESSION;
     switch (configuration) {
     case 'a': /* Table I */
-        return 1;
+    case 'g':
+        break;
     case 'b':
         p->modality = SH_MODALITY_SENSOR;
-        return 1;
+        break;
     case 'c':
         p->modality = SH_MODALITY_MODEL;
-        return 1;
+        break;
     case 'd':
         p->deformation = SH_DEFORMATION_FILTERED;
         p->filter.kind = SH_FILTER_KALMAN;
-        return 1;
+        break;
     case 'e':
         p->filter.kind = SH_FILTER_FINITE_DIFFERENCE;
         p->rls.kind = SH_RLS_STANDARD;
         p->rls.P_0 = 1; /* the same ridge as in Table I: c P_0 */
-        return 1;
+        break;
     case 'f':
         p->filter.weighting = SH_WEIGHTING_AS_PRINTED;
         p->rls.kind = SH_RLS_CONSTANT_FACTOR;
-        return 1;
-    case 'g':
-        p->method = SH_METHOD_FILTERED_REGRESSION;
-        return 1;
+        break;
     case 'h':
-        p->method = SH_METHOD_FILTERED_REGRESSION;
         p->modality = SH_MODALITY_SENSOR;
         p->rls.symmetric = 0;
-        return 1;
+        break;
     case 'i':
-        p->method = SH_METHOD_FILTERED_REGRESSION;
         p->rls.n = 2;
         p->rls.eta_0[0][1] = 3;
         p->prior.nominal = (sh_real)0.3;
         p->prior.B = (sh_real)0.2;
         p->prior.tau_coulomb = (sh_real)0.02;
         p->regression.drift = (sh_real)1e-3;
-        return 1;
+        break;
     default:
         return 0;
     }
+    return 1;
 }
 
 /* Returns 0 if it fails. */
 static int write_outputs(const sh_estimate *e, FILE *out)
 {
-    const double given[] = {
-        e->sigma,
-        e->tau_e,
-        e->tau_e_residual,
-        e->theta_dot,
-        e->phi,
-        e->setPoint,
-        e->a,
-        e->rho,
-        e->epsilon,
-        e->eta[0][0],
-        e->sigma_std,
-        e->D_theta_hat,
-        e->B_hat,
-        e->tau_coulomb_hat,
-        e->confident,
-        e->valid,
-    };
+    const double given[] = {e->sigma,
+                            e->tau_e,
+                            e->tau_e_residual,
+                            e->theta_dot,
+                            e->phi,
+                            e->setPoint,
+                            e->a,
+                            e->rho,
+                            e->epsilon,
+                            e->eta[0][0],
+                            e->sigma_std,
+                            e->D_theta_hat,
+                            e->B_hat,
+                            e->tau_coulomb_hat,
+                            e->confident,
+                            e->valid};
 
     return fwrite(given, sizeof given, 1, out) == 1;
 }

@@ -17,10 +17,8 @@ equation
   connect(plant.theta_measured_2, estimator.theta_2)
     annotation (Line(points={{2,13},{18,13},{18,12},{38,12}}, color={0,0,127}));
   connect(plant.q_measured, estimator.q) annotation (Line(points={{2,8},{18,8},{18,6},{38,6}}, color={0,0,127}));
-  connect(plant.tau_measured_1, estimator.tau_1)
-    annotation (Line(points={{2,3},{18,3},{18,0},{38,0}}, color={0,0,127}));
-  connect(plant.tau_measured_2, estimator.tau_2)
-    annotation (Line(points={{2,-2},{18,-2},{18,-6},{38,-6}}, color={0,0,127}));
+  connect(plant.tau_measured_1, estimator.tau_1) annotation (Line(points={{2,3},{18,3},{18,0},{38,0}}, color={0,0,127}));
+  connect(plant.tau_measured_2, estimator.tau_2) annotation (Line(points={{2,-2},{18,-2},{18,-6},{38,-6}}, color={0,0,127}));
   connect(plant.tau_e_measured_1, estimator.tau_e_sensor_1)
     annotation (Line(points={{2,-7},{16,-7},{16,-12},{38,-12}}, color={0,0,127}));
   connect(plant.tau_e_measured_2, estimator.tau_e_sensor_2)

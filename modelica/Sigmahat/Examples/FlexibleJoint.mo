@@ -9,7 +9,5 @@ equation
   plant.tau_ext = 0;
   annotation (
     experiment(StartTime=0, StopTime=15, Interval=0.001, Tolerance=1e-9),
-    Documentation(info="<html>
-<p>The stiffness <code>plant.sigma</code> is 150 N.m/rad without deformation and grows with it.</p>
-</html>"));
+    Documentation(info="<html><p>The stiffness <code>plant.sigma</code> is 150 N.m/rad without deformation and grows with it.</p></html>"));
 end FlexibleJoint;

@@ -13,12 +13,9 @@ equation
   connect(tau_c.y, plant.tau_c) annotation (Line(points={{-69,-10},{-56,-10},{-56,0},{-44,0}}, color={0,0,127}));
   plant.tau_ext = 0;
   connect(plant.theta_measured, estimator.theta) annotation (Line(points={{2,16},{36,16}}, color={0,0,127}));
-  connect(plant.q_measured, estimator.q)
-    annotation (Line(points={{2,10},{18,10},{18,8},{36,8}}, color={0,0,127}));
-  connect(plant.theta_c_measured, estimator.theta_c)
-    annotation (Line(points={{2,4},{18,4},{18,0},{36,0}}, color={0,0,127}));
-  connect(plant.tau_measured, estimator.tau)
-    annotation (Line(points={{2,-2},{18,-2},{18,-8},{36,-8}}, color={0,0,127}));
+  connect(plant.q_measured, estimator.q) annotation (Line(points={{2,10},{18,10},{18,8},{36,8}}, color={0,0,127}));
+  connect(plant.theta_c_measured, estimator.theta_c) annotation (Line(points={{2,4},{18,4},{18,0},{36,0}}, color={0,0,127}));
+  connect(plant.tau_measured, estimator.tau) annotation (Line(points={{2,-2},{18,-2},{18,-8},{36,-8}}, color={0,0,127}));
   connect(plant.tau_e_measured, estimator.tau_e_sensor)
     annotation (Line(points={{2,-8},{14,-8},{14,-16},{36,-16}}, color={0,0,127}));
   error = (estimator.sigma - plant.sigma)/plant.sigma;

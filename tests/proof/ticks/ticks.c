@@ -71,12 +71,13 @@ static void use_everything(sh_parameters *p)
     p->residual.K_I = 50;
 }
 
-static void report(const char *name, uint32_t per_loop)
+static void report(int method, uint32_t per_loop)
 {
     sh_violation violation;
     uint32_t longest = 0;
     int k;
 
+    parameters.method = method;
     if (sh_parameters_check(&parameters, &violation)) {
         printf("%s: expected %s\n", violation.name, violation.range);
         return;
@@ -89,19 +90,9 @@ static void report(const char *name, uint32_t per_loop)
         now = counts(tick);
         longest = now > longest ? now : longest;
     }
-    printf("%s %d %d %d %.0f\n", name, parameters.rls.n, parameters.rls.m,
-           parameters.method == SH_METHOD_FILTERED_REGRESSION
-               ? estimator.method.regression.columns.size
-               : 0,
+    printf("%d %d %d %d %.0f\n", method, parameters.rls.n, parameters.rls.m,
+           method == SH_METHOD_PAPER2011 ? 0 : estimator.method.regression.columns.size,
            200000.0 * longest / per_loop);
-}
-
-static void report_both(uint32_t per_loop)
-{
-    parameters.method = SH_METHOD_PAPER2011;
-    report("paper2011", per_loop);
-    parameters.method = SH_METHOD_FILTERED_REGRESSION;
-    report("filtered_regression", per_loop);
 }
 
 int main(void)
@@ -111,8 +102,10 @@ int main(void)
     hardware_start_clock();
     per_loop = counts(loop);
     sh_parameters_default(&parameters);
-    report_both(per_loop);
+    report(SH_METHOD_PAPER2011, per_loop);
+    report(SH_METHOD_FILTERED_REGRESSION, per_loop);
     use_everything(&parameters);
-    report_both(per_loop);
+    report(SH_METHOD_PAPER2011, per_loop);
+    report(SH_METHOD_FILTERED_REGRESSION, per_loop);
     return 0;
 }
