@@ -166,8 +166,7 @@ def _contradictions(seen: View) -> Iterator[Finding]:
 
 
 _AWAS = ("motor.B", "motor.D_theta", "motor.gamma")
-_SAME = 0.01
-"""Two gear ratios count as equal up to this relative difference."""
+_SAME = 0.01  # two gear ratios count as equal up to this relative difference
 
 
 def gears(configuration: Configuration, every: Mapping[str, Value]) -> Iterator[Finding]:

@@ -13,8 +13,7 @@ from sigmahat.logs.configuration import Port
 from sigmahat.logs.log import Array
 from sigmahat.logs.units import factor
 
-_LOOKED_AT = 20_000
-"""About how many values are searched for the step of an encoder."""
+_LOOKED_AT = 20_000  # about how many values are searched for the step of an encoder
 _FINER = 1.5  # a configured step that differs by more than this factor is wrong
 _FLAT = 3  # consecutive samples at an end of the range
 _OFTEN = 0.01  # fraction of all samples

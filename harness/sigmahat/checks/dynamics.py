@@ -27,8 +27,7 @@ from sigmahat.logs.configuration import Port
 from sigmahat.logs.units import factor
 
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
-_STD = 3.0
-"""A prior contradicts the log beyond this number of standard deviations."""
+_STD = 3.0  # a prior contradicts the log beyond this number of standard deviations
 
 
 def dynamics(seen: View, here: Relation) -> Iterator[Finding]:

@@ -7,8 +7,7 @@ from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import Any
 
-Proposal = float | bool | str
-"""A value of a key, as it stands in the configuration."""
+Proposal = float | bool | str  # a value of a key, as it stands in the configuration
 
 
 class Severity(Enum):

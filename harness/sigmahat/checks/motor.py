@@ -31,8 +31,7 @@ from sigmahat.identification.regression import (
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
 
-LINEAR = "eta[0,0]"
-"""The column of a linear spring."""
+LINEAR = "eta[0,0]"  # the column of a linear spring
 _HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Coulomb friction
 _SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a joint
 _ORDERS = 3
@@ -47,14 +46,10 @@ alone is not enough: with unmodelled friction, nearly every change is significan
 class Fitted:
     """What a fit to the pieces of a log shows."""
 
-    form: Form
-    """Orders and filters."""
-    fit: Fit
-    """Fit with a polynomial of these orders."""
-    linear: Fit
-    """Fit with a linear spring."""
-    spring: Spring
-    """The polynomial."""
+    form: Form  # orders and filters
+    fit: Fit  # fit with a polynomial of these orders
+    linear: Fit  # fit with a linear spring
+    spring: Spring  # the polynomial
 
     @property
     def error(self) -> float:
@@ -82,24 +77,18 @@ def fitted(seen: View, pieces: Sequence[Signals]) -> Fitted | None:
 class Delay:
     """How late the torque is."""
 
-    value: float
-    """[s]"""
-    half_width: float
-    """Half of the 95 % interval [s]."""
-    fit: Fit
-    """Fit of the motor equation with the torque shifted by the delay."""
+    value: float  # [s]
+    half_width: float  # half of the 95 % interval [s]
+    fit: Fit  # fit of the motor equation with the torque shifted by the delay
 
 
 @dataclass(frozen=True)
 class GearError:
     """The configured gear ratio of the motor's encoder, compared with the motion."""
 
-    value: float
-    """Configured gear ratio divided by the right gear ratio [1]."""
-    half_width: float
-    """Half of the 95 % interval [1]."""
-    fit: Fit
-    """Fit of the motor equation with a corrected theta."""
+    value: float  # configured gear ratio divided by the right gear ratio [1]
+    half_width: float  # half of the 95 % interval [1]
+    fit: Fit  # fit of the motor equation with a corrected theta
 
 
 def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Delay | None:

@@ -105,10 +105,8 @@ class Relation:
     """The motion of q and theta after the errors found are corrected."""
 
     findings: Sequence[Finding]
-    pieces: Sequence[Signals]
-    """As View.pieces, with the scales that were proposed."""
-    fitted: Fitted | None
-    """The motor equation of these pieces."""
+    pieces: Sequence[Signals]  # as View.pieces, with the scales that were proposed
+    fitted: Fitted | None  # the motor equation of these pieces
 
 
 def relation(seen: View) -> Relation:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from threading import Thread
 from typing import TYPE_CHECKING
 
 import click
@@ -12,7 +13,7 @@ from sigmahat.commands import common
 
 if TYPE_CHECKING:
     from sigmahat.live.session import Session
-    from sigmahat.live.watch import Counted
+    from sigmahat.live.watch import Inbox
 
 
 @click.command()
@@ -79,8 +80,7 @@ def live(
     from sigmahat.files.output import created_folder
     from sigmahat.live.endpoints import Endpoints
     from sigmahat.live.session import Session
-    from sigmahat.live.sources import Inbox, start
-    from sigmahat.live.watch import watch
+    from sigmahat.live.watch import Inbox, terminal, watch
 
     common.need_fmu("StiffnessEstimator")
     out = out or Path("sigmahat-results", f"{config.stem}-live")
@@ -91,14 +91,12 @@ def live(
         opened = ends.source(source, titles) if replay is None else ends.replay(replay)
         sinks = [ends.sink(each) for each in targets]
         if not common.is_quiet():
-            from sigmahat.live.terminal import Terminal
-
             name = source if replay is None else f"the log {replay}"
             click.echo(common.printable(_greeting(session, name, targets, host)), err=True)
-            sinks.append(Terminal())
-        start(opened, inbox)
-        counted = watch(session, inbox, sinks)
-    values = _counts(session, counted, inbox.dropped)
+            sinks.append(terminal())
+        Thread(target=opened, args=[inbox], daemon=True).start()
+        watch(session, inbox, sinks)
+    values = _counts(session, inbox)
     counts = [f"{count} {what}" for what, count in values.items() if count or what == "read"]
     lines = [f"messages: {', '.join(counts)}"]
     if session.recordings:
@@ -133,12 +131,12 @@ def _greeting(session: Session, source: str, targets: Sequence[str], host: str) 
     return "\n".join(lines)
 
 
-def _counts(session: Session, counted: Counted, dropped: int) -> dict[str, int]:
+def _counts(session: Session, inbox: Inbox) -> dict[str, int]:
     clocks, joints = session.clocks.values(), session.joints
     return {
-        "read": counted.messages,
-        "not readable": counted.wrong,
-        "lost in this program": dropped,
+        "read": inbox.read,
+        "not readable": inbox.wrong,
+        "lost in this program": inbox.dropped,
         "missing": sum(each.lost for each in clocks),
         "double": sum(each.double for each in clocks),
         "late": sum(each.late for each in clocks),

@@ -118,8 +118,7 @@ class Column:
     name: str
     meaning: Meaning
     facts: Facts
-    clock: str | None
-    """The column with the times of this column; None without times."""
+    clock: str | None  # the column with the times of this column; None without times
     window: Array
     """Unwrapped values in the part with most motion, at the same times for all columns [size: n];
     empty if the column has no numbers."""
@@ -146,16 +145,12 @@ class Columns:
     """All columns of a log."""
 
     signals: Sequence[Column]
-    clocks: Mapping[str, str]
-    """Units of the columns of times, by name."""
-    facts: Mapping[str, Facts]
-    """Facts of all columns, by name."""
+    clocks: Mapping[str, str]  # units of the columns of times, by name
+    facts: Mapping[str, Facts]  # facts of all columns, by name
     intervals: Mapping[str | None, float]
     """Usual time between rows [s], by clock; by None for columns without a clock."""
-    gaps: Mapping[str | None, float | None]
-    """As `lost_rows`, by clock."""
-    window_T: float
-    """Time between the samples of the windows [s]."""
+    gaps: Mapping[str | None, float | None]  # as `lost_rows`, by clock
+    window_T: float  # time between the samples of the windows [s]
 
 
 def read_columns(log: Log) -> Columns:

@@ -23,22 +23,17 @@ class Facts:
     """Facts of a column, from its values."""
 
     samples: int
-    low: float = np.nan
-    """Smallest value; nan if there is no number."""
-    high: float = np.nan
-    """Largest value; nan if there is no number."""
+    low: float = np.nan  # smallest value; nan if there is no number
+    high: float = np.nan  # largest value; nan if there is no number
     integer: bool = False
     """Whether all values are whole numbers, with more than a few distinct values."""
-    varies: bool = False
-    """Whether the column has more than a few distinct values."""
-    increasing: float = 0.0
-    """Fraction of the steps that increase [1]."""
+    varies: bool = False  # whether the column has more than a few distinct values
+    increasing: float = 0.0  # fraction of the steps that increase [1]
     step: float = np.inf
     """Distance between neighbouring values of a quantised column; inf if it is not quantised."""
     wrap: float | None = None
     """Period after which a counter starts again; None if the column is no such counter."""
-    text: bool = False
-    """Whether the column contains something other than numbers."""
+    text: bool = False  # whether the column contains something other than numbers
 
 
 def look_at(log: Log, name: str) -> tuple[Facts, Array]:

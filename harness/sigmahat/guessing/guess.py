@@ -73,31 +73,24 @@ class Seen:
 
     name: str
     samples: int
-    low: float
-    """Smallest value; nan if the column has no numbers."""
-    high: float
-    """Largest value; nan if the column has no numbers."""
-    what: str
-    """In a few words: the port, or why the column has no port."""
+    low: float  # smallest value; nan if the column has no numbers
+    high: float  # largest value; nan if the column has no numbers
+    what: str  # in a few words: the port, or why the column has no port
 
 
 @dataclass(frozen=True)
 class JointGuess:
     """All guesses for one joint of a log."""
 
-    name: str
-    """Name of the joint in the columns; empty if no column names a joint."""
+    name: str  # name of the joint in the columns; empty if no column names a joint
     time: str | None
     """The time column of ports without their own time column; None if rows are T apart."""
     time_unit: str
-    T: float
-    """Usual time between rows [s]."""
+    T: float  # usual time between rows [s]
     longest_gap: float | None
     """Longest gap because of single lost rows [s]; None if no rows are lost."""
-    ports: Mapping[str, PortGuess]
-    """Guesses of the ports that have a column, in the order of PORTS."""
-    columns: Sequence[Seen]
-    """All columns of the log, including columns of other joints."""
+    ports: Mapping[str, PortGuess]  # guesses of the ports that have a column, in the order of PORTS
+    columns: Sequence[Seen]  # all columns of the log, including columns of other joints
 
 
 def guess(log: Log) -> dict[str, JointGuess]:

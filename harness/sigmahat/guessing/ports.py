@@ -30,25 +30,17 @@ class PortGuess:
     """The column of a port, as the keys of a configuration describe it."""
 
     column: str
-    why: str
-    """Why this column."""
+    why: str  # why this column
     low: float
-    high: float
-    """Range of its values."""
-    unit: str | None
-    """None if the unit cannot be guessed: then the user has to fill in `scale`."""
+    high: float  # range of its values
+    unit: str | None  # None if the unit cannot be guessed: then the user has to fill in `scale`
     wrap: float | None
     """Period of a counter that starts again, in the unit of the column; None without a period."""
-    time: str | None
-    """The time column of the port, if it differs from the time column of the joint."""
-    notes: Mapping[str, str]
-    """What to know or to check, by key."""
-    sign: int = 1
-    """1 or -1."""
-    zero: float = 0.0
-    """Zero of the port, in the unit of the column."""
-    gear_ratio: float | None = 1.0
-    """None if the user has to fill in the gear ratio."""
+    time: str | None  # the time column of the port, if it differs from the time column of the joint
+    notes: Mapping[str, str]  # what to know or to check, by key
+    sign: int = 1  # 1 or -1
+    zero: float = 0.0  # zero of the port, in the unit of the column
+    gear_ratio: float | None = 1.0  # None if the user has to fill in the gear ratio
     moves: float | None = None
     """For theta: approximate ratio of its motion to the motion of the link; None if not known.
 

@@ -28,8 +28,7 @@ class Line:
     slope: float
     offset: float
     correlation: float
-    rest: float
-    """Standard deviation of the residual, relative to y."""
+    rest: float  # standard deviation of the residual, relative to y
 
 
 def line(x: Array, y: Array) -> Line:
@@ -91,10 +90,8 @@ def scale_of_derivative(x: Array, v: Array, T: float) -> float | None:
 class Drive:
     """Relation between a torque and the motion of two positions, by the motor equation (3)."""
 
-    explained: float
-    """Explained fraction of the variance of the torque [1]."""
-    sign: int
-    """1 if the torque drives the motion, -1 if its sign is reversed, 0: not sure."""
+    explained: float  # explained fraction of the variance of the torque [1]
+    sign: int  # 1 if the torque drives the motion, -1 if its sign is reversed, 0: not sure
 
 
 def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:

@@ -43,8 +43,7 @@ class Roles:
     """The columns of a joint."""
 
     ports: Mapping[str, Role]
-    drive: Drive
-    """Relation between the torque and the motion."""
+    drive: Drive  # relation between the torque and the motion
 
     @property
     def is_complete(self) -> bool:

@@ -30,28 +30,18 @@ _TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 class Meaning:
     """Meaning of a name. A field is None if the name has no such word."""
 
-    quantity: str | None
-    """time, index, position, velocity, acceleration, torque, current, or other."""
-    side: str | None
-    """motor, link, setting (what sets the stiffness), or sensor (of the torque)."""
-    suggested: str | None
-    """motor or link, from a word that only suggests this side."""
-    unit: str | None
-    """Unit, as in configurations."""
-    speed: str | None
-    """Unit of a velocity: rad for rad/s, or turn/min."""
-    reference: bool
-    """Whether the signal is a reference, not a measurement."""
-    computed: bool
-    """Whether the signal is an estimate, or the truth of a simulation."""
-    joints: tuple[str, ...]
-    """Words that are names of joints."""
-    rest: tuple[str, ...]
-    """Unknown words and numbers, and words that are names of joints."""
+    quantity: str | None  # time, index, position, velocity, acceleration, torque, current, or other
+    side: str | None  # motor, link, setting (what sets the stiffness), or sensor (of the torque)
+    suggested: str | None  # motor or link, from a word that only suggests this side
+    unit: str | None  # unit, as in configurations
+    speed: str | None  # unit of a velocity: rad for rad/s, or turn/min
+    reference: bool  # whether the signal is a reference, not a measurement
+    computed: bool  # whether the signal is an estimate, or the truth of a simulation
+    joints: tuple[str, ...]  # words that are names of joints
+    rest: tuple[str, ...]  # unknown words and numbers, and words that are names of joints
 
 
-_Entry = Mapping[str, str]
-"""Meanings of a word in the vocabulary, by section."""
+_Entry = Mapping[str, str]  # meanings of a word in the vocabulary, by section
 
 
 def meaning(name: str) -> Meaning:
@@ -120,10 +110,8 @@ def _plain(text: str) -> str:
 class _Unit:
     """The unit in a name; all fields are None for a name without a unit."""
 
-    name: str | None = None
-    """A unit of a port."""
-    foreign: str | None = None
-    """The quantity, for a unit that no port has."""
+    name: str | None = None  # a unit of a port
+    foreign: str | None = None  # the quantity, for a unit that no port has
     speed: str | None = None
 
 

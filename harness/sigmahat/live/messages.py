@@ -16,8 +16,7 @@ from typing import Any
 Columns = Mapping[str, int | float]
 """Numbers by the name of their column; nan where a value is missing."""
 
-LONGEST = 1 << 16
-"""Bytes of a message."""
+LONGEST = 1 << 16  # bytes of a message
 _DEEPEST = 8
 _LARGEST = 2**63
 _SHOWN = 60

@@ -26,8 +26,7 @@ _COARSE = 0.02  # [s] sample period for the search of peaks
 _MARGIN = 0.97  # of the limits, for joints between the joints that are tried
 _COMPARED, _PROMISED = 6, 20  # number of joints: to compare candidates, and to predict the result
 
-NOT_SHOWN = 1.0
-"""Largest ratio of half width to stiffness of a motion that shows the stiffness."""
+NOT_SHOWN = 1.0  # largest ratio of half width to stiffness of a motion that shows the stiffness
 
 
 @dataclass(frozen=True)
@@ -35,8 +34,7 @@ class Design:
     """A motion, and its expected results."""
 
     motion: Multisine
-    peaks: Limits
-    """Largest values of all joints that were tried."""
+    peaks: Limits  # largest values of all joints that were tried
     half_widths: Sequence[float]
     """Half widths of the stiffness in the middle of the data, divided by the stiffness, sorted."""
 

@@ -12,8 +12,7 @@ from sigmahat.files.tables import write_csv
 from sigmahat.motion.multisine import Multisine
 
 _ROS_PERIOD = 0.01  # [s]
-FILES = ("motion.csv", "motion.yaml", "motion.c")
-"""Names of the files."""
+FILES = ("motion.csv", "motion.yaml", "motion.c")  # names of the files
 
 
 def write(motion: Multisine, joint: str, start: float, T: float, folder: Path) -> None:

@@ -18,36 +18,24 @@ Rng = np.random.Generator
 class Limits:
     """Limits of the motion, at the gear output."""
 
-    angle: float
-    """Largest distance from the start position [rad]."""
-    velocity: float
-    """[rad/s]"""
-    torque: float
-    """Torque of the motor [N.m]."""
-    deformation: float
-    """[rad]"""
+    angle: float  # largest distance from the start position [rad]
+    velocity: float  # [rad/s]
+    torque: float  # torque of the motor [N.m]
+    deformation: float  # [rad]
 
 
 @dataclass(frozen=True)
 class Joint:
     """A joint; all values at the gear output. `Ranges` has the least and the largest values."""
 
-    k: float
-    """Stiffness [N.m/rad]."""
-    M: float
-    """Inertia of the link [kg.m2]."""
-    D_q: float
-    """Viscous friction of the link [N.m.s/rad]."""
-    weight: float
-    """Largest torque of the weight of the link [N.m]."""
-    angle: float
-    """Angle of the link at the start, 0 where the weight hangs down [rad]."""
-    B: float
-    """Inertia of the motor [kg.m2]."""
-    D_theta: float
-    """Viscous friction of the motor [N.m.s/rad]."""
-    tau_coulomb: float
-    """Coulomb friction of the motor [N.m]."""
+    k: float  # stiffness [N.m/rad]
+    M: float  # inertia of the link [kg.m2]
+    D_q: float  # viscous friction of the link [N.m.s/rad]
+    weight: float  # largest torque of the weight of the link [N.m]
+    angle: float  # angle of the link at the start, 0 where the weight hangs down [rad]
+    B: float  # inertia of the motor [kg.m2]
+    D_theta: float  # viscous friction of the motor [N.m.s/rad]
+    tau_coulomb: float  # Coulomb friction of the motor [N.m]
 
     @property
     def resonance(self) -> float:

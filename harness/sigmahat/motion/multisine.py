@@ -19,16 +19,11 @@ class Multisine:
     with s from 0 to 1: position, velocity, acceleration and jerk begin and end at 0.
     """
 
-    amplitudes: Sequence[float]
-    """[rad]"""
-    frequencies: Sequence[float]
-    """[Hz]"""
-    phases: Sequence[float]
-    """[rad]"""
-    duration: float
-    """[s]"""
-    ramp: float
-    """[s]"""
+    amplitudes: Sequence[float]  # [rad]
+    frequencies: Sequence[float]  # [Hz]
+    phases: Sequence[float]  # [rad]
+    duration: float  # [s]
+    ramp: float  # [s]
 
     def times(self, T: float) -> Array:
         """Times from the start to the end, T apart [s]."""

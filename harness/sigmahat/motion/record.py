@@ -19,8 +19,7 @@ from sigmahat.logs.log import LogError, LogInMemory
 from sigmahat.motion.joints import Joint
 from sigmahat.motion.multisine import Array, Multisine
 
-NOISE = 0.003
-"""Default noise of the torque: standard deviation divided by the limit of the torque."""
+NOISE = 0.003  # default noise of the torque: standard deviation divided by the limit of the torque
 
 
 @dataclass(frozen=True)
@@ -30,12 +29,9 @@ class Sensors:
     gear_ratio: float
     counts: tuple[float, float]
     """Counts of the encoders of motor and link, per turn at the gear output."""
-    torque_gain: float
-    """Relative standard deviation of the gain of the torque: prior.torque_gain."""
-    noise: float
-    """Noise of the torque of the motor at the gear output [N.m]."""
-    T: float
-    """Time between samples [s]."""
+    torque_gain: float  # relative standard deviation of the gain of the torque: prior.torque_gain
+    noise: float  # noise of the torque of the motor at the gear output [N.m]
+    T: float  # time between samples [s]
 
 
 def relative_half_width(joint: Joint, motion: Multisine, sensors: Sensors) -> float:

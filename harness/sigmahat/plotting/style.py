@@ -26,10 +26,8 @@ class Quantity:
     """A quantity that has an axis or a row."""
 
     words: str
-    math: str
-    """Symbol in the figures, for Matplotlib."""
-    plain: str
-    """Symbol in a page."""
+    math: str  # symbol in the figures, for Matplotlib
+    plain: str  # symbol in a page
     unit: str
 
 
@@ -79,8 +77,7 @@ def plain_text(text: str) -> str:
     return text.replace("N.m", "N·m")
 
 
-_OUTER = 0.5
-"""Percent of the values at either end."""
+_OUTER = 0.5  # percent of the values at either end
 _FURTHER = 0.5
 """Largest distance of shown values from the inner values, relative to the range of the latter."""
 

@@ -16,8 +16,7 @@ from sigmahat.logs.replay import gap, play, replay
 from sigmahat.logs.resampling import stretches
 from sigmahat.logs.sampling import Samples
 
-LOW = 2.0
-"""Frequency of the low pass [Hz]."""
+LOW = 2.0  # frequency of the low pass [Hz]
 _CHUNK = 1 << 16
 _SHORTEST = 2.0
 """Shortest stretch that is filtered: beyond both ends, the filter has no data [1/LOW]."""
