@@ -71,7 +71,6 @@ def _is_given(configuration: Configuration) -> bool:
 
 
 def _every(configuration: Configuration) -> dict[str, Value]:
-    """All parameters of the estimator."""
     fmu = installed("StiffnessEstimator")
     return fmu.parameters(parameters(fmu, configuration))
 
@@ -170,7 +169,6 @@ _SAME = 0.01  # two gear ratios count as equal up to this relative difference
 
 
 def gears(configuration: Configuration, every: Mapping[str, Value]) -> Iterator[Finding]:
-    """Compares motor.gamma with the gear ratios of the ports theta and tau."""
     gamma = abs(float(every["motor.gamma"]))
     for name in ("theta", "tau"):
         port = configuration.ports.get(name)

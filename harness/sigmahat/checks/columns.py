@@ -22,7 +22,6 @@ _PERIODS = (360.0, 2 * math.pi, *(2.0**k for k in range(8, 33)))
 
 
 def columns(seen: View) -> Iterator[Finding]:
-    """All checks of the recorded columns, for every port."""
     for name, port in seen.configuration.ports.items():
         if port.value is not None:
             continue

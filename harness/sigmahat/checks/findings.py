@@ -90,7 +90,6 @@ class Checked:
     """Time between ticks [s]."""
 
     def of(self, severity: Severity) -> Sequence[Finding]:
-        """Findings of one severity."""
         return [each for each in self.findings if each.severity is severity]
 
     @property
@@ -100,7 +99,6 @@ class Checked:
 
 
 def as_dict(checked: Checked) -> dict[str, Any]:
-    """For JSON."""
     return {
         "wrong": checked.is_wrong,
         "ticks": checked.ticks,

@@ -44,8 +44,6 @@ alone is not enough: with unmodelled friction, nearly every change is significan
 
 @dataclass(frozen=True)
 class Fitted:
-    """What a fit to the pieces of a log shows."""
-
     form: Form  # orders and filters
     fit: Fit  # fit with a polynomial of these orders
     linear: Fit  # fit with a linear spring
@@ -75,8 +73,6 @@ def fitted(seen: View, pieces: Sequence[Signals]) -> Fitted | None:
 
 @dataclass(frozen=True)
 class Delay:
-    """How late the torque is."""
-
     value: float  # [s]
     half_width: float  # half of the 95 % interval [s]
     fit: Fit  # fit of the motor equation with the torque shifted by the delay
@@ -142,12 +138,10 @@ def variants(form: Form) -> list[Form]:
 
 
 def with_form(seen: View, pieces: Sequence[Signals], form: Form) -> Fit:
-    """The fit with another form."""
     return fit(_equations(seen, pieces, form))
 
 
 def with_inertia(seen: View, pieces: Sequence[Signals], form: Form, B: float) -> Fit:
-    """The fit with a known inertia [kg.m2]."""
     return fit(_equations(seen, pieces, form).known("B", B))
 
 
@@ -172,7 +166,6 @@ def _band(seen: View, pieces: Sequence[Signals]) -> float:
 
 
 def with_all_powers(seen: View, pieces: Sequence[Signals], form: Form) -> Fit:
-    """The fit of a spring that need not be symmetric."""
     form = replace(form, n=2 * _ORDERS, symmetric=False)
     return fit(_chosen(seen, pieces, form)[1])
 

@@ -77,7 +77,6 @@ def _unlikely(name: str, change: Change, slope: float) -> float:
 
 
 def like(one: float, other: float) -> bool:
-    """Whether two positive factors may be the same."""
     return distance(one, other) < _LIKE
 
 

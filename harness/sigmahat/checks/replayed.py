@@ -42,7 +42,6 @@ def play(slave: Slave, seen: View) -> Outputs:
 
 
 def replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
-    """All findings of the replay."""
     yield from _range(seen, outputs)
     yield from _noise(seen)
     valid = outputs["valid"]

@@ -19,8 +19,6 @@ _MOST = 60_000
 
 @dataclass(frozen=True)
 class View:
-    """A log under a configuration, as the checks see it."""
-
     log: Log  # the log, for checks of effects that conversion and sampling would hide
     configuration: Configuration  # the configuration, as it is given
     every: Mapping[str, Value]  # all parameters of the estimator
@@ -31,17 +29,14 @@ class View:
 
     @property
     def T(self) -> float:
-        """Time between ticks [s]."""
         return self.samples.T
 
     @property
     def gamma(self) -> float:
-        """Gear ratio."""
         return float(self.every["motor.gamma"])
 
     @property
     def has_sensor(self) -> bool:
-        """Whether a sensor measures the torque."""
         return self.every["modality"] == "Sensor"
 
 

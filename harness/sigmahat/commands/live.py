@@ -17,19 +17,16 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("config", type=click.Path(path_type=Path, dir_okay=False))
-@click.option(
+@click.argument("config", type=common.FILE)
+@common.option(
     "--from",
     "source",
     default="udp:9870",
-    show_default=True,
     metavar="SOURCE",
     help="udp:PORT, one message per datagram; tcp:PORT or stdin, one message per line, as JSON or "
     "CSV. ros2: joint states, from the topics that the columns name.",
 )
-@click.option(
-    "--replay", type=click.Path(path_type=Path), help="This log instead, at its own pace."
-)
+@click.option("--replay", type=common.PATH, help="This log instead, at its own pace.")
 @click.option(
     "--to",
     "targets",
@@ -41,20 +38,15 @@ if TYPE_CHECKING:
 @click.option(
     "--columns", default="", metavar="A,B,...", help="Columns of CSV without a title line."
 )
-@click.option(
+@common.option(
     "--host",
     default="127.0.0.1",
-    show_default=True,
     help="Address of this computer to which others may connect; 0.0.0.0 means every address.",
 )
-@click.option(
-    "--out",
-    callback=common.folder,
-    help="Folder for the recording and what was learned.  [default: sigmahat-results/CONFIG-live]",
-)
+@common.out_option("Folder for the recording and what was learned.", "CONFIG-live")
 @click.option(
     "--start-from",
-    type=click.Path(path_type=Path),
+    type=common.PATH,
     help="Go on from what was learned before: a folder of results, or its state.json.",
 )
 @common.json_option

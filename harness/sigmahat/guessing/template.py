@@ -10,8 +10,7 @@ from itertools import accumulate
 import tomlkit
 from tomlkit.items import Item, Table
 
-from sigmahat.guessing.columns import likely_unit
-from sigmahat.guessing.facts import TURN
+from sigmahat.guessing.columns import TURN, likely_unit
 from sigmahat.guessing.guess import JointGuess, Seen
 from sigmahat.guessing.ports import PortGuess
 from sigmahat.logs.configuration import (
@@ -283,7 +282,6 @@ def _largest(port: PortGuess) -> float:
 
 
 def _encoder(port: PortGuess) -> tuple[int, str]:
-    """Counts in a turn of the joint, and why."""
     if not port.steps:
         return 0, "counts per turn; not quantised"
     gear = port.gear_ratio or port.moves or 1.0
@@ -317,6 +315,5 @@ def _add(table: Table, name: str, value: str | float, comment: str = "") -> None
 
 
 def _comment(item: Item, text: str) -> None:
-    """Adds a comment to the line of an item, at some distance."""
     item.comment(text)
     item.trivia.comment_ws = "   "

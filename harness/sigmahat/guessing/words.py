@@ -12,7 +12,7 @@ from typing import Any
 
 import tomlkit
 
-_ORDER = (*("other", "acceleration", "velocity", "position", "current", "torque", "time", "index"),)
+_ORDER = ("other", "acceleration", "velocity", "position", "current", "torque", "time", "index")
 """Quantities; in a name with several, the first in this order counts: "current position"."""
 _UNIT_OF = {
     **dict.fromkeys(("rad", "mrad", "deg", "turn"), "position"),
@@ -45,7 +45,6 @@ _Entry = Mapping[str, str]  # meanings of a word in the vocabulary, by section
 
 
 def meaning(name: str) -> Meaning:
-    """The meaning of the name of a column."""
     unit, tokens = _without_unit(name)
     entries: list[_Entry] = []
     rest: list[str] = []
@@ -70,16 +69,11 @@ def meaning(name: str) -> Meaning:
     elif quantity not in ("other", "velocity", "acceleration"):
         quantity = _UNIT_OF.get(unit.name or "", quantity)
     roles = {entry.get("role") for entry in entries}
+    side = _first("side", ("sensor", "setting", "motor", "link"), entries)
+    suggested = _first("suggests", ("motor", "link"), entries)
+    said = "reference" in roles, "computed" in roles
     return Meaning(
-        quantity=quantity,
-        side=_first("side", ("sensor", "setting", "motor", "link"), entries),
-        suggested=_first("suggests", ("motor", "link"), entries),
-        unit=unit.name,
-        speed=unit.speed,
-        reference="reference" in roles,
-        computed="computed" in roles,
-        joints=tuple(joints),
-        rest=tuple(rest),
+        quantity, side, suggested, unit.name, unit.speed, *said, tuple(joints), tuple(rest)
     )
 
 
@@ -212,14 +206,8 @@ def _vocabulary() -> _Vocabulary:
             for word in words:
                 entries.setdefault(word, {}).setdefault(section, kind)
     known = [word for word in entries if len(word) >= _AT_AN_END and " " not in word]
-    return _Vocabulary(
-        entries=entries,
-        units=_by_word(table["unit"]),
-        speeds=_by_word(table["speed"]),
-        foreign=_by_word(table["foreign"]),
-        longest_first=sorted(known, key=len)[::-1],
+    units, speeds, foreign = (
+        {word: kind for kind, words in table[section].items() for word in words}
+        for section in ("unit", "speed", "foreign")
     )
-
-
-def _by_word(section: Mapping[str, Sequence[str]]) -> dict[str, str]:
-    return {word: kind for kind, words in section.items() for word in words}
+    return _Vocabulary(entries, units, speeds, foreign, sorted(known, key=len)[::-1])

@@ -27,7 +27,6 @@ class Clock:
         self.restart()
 
     def restart(self) -> None:
-        """The next sample is the first one."""
         self.shift: int | None = None
         """Zero of the times: the first time, if it is an integer that a float64 does not hold,
         else 0; None before the first time."""

@@ -48,8 +48,6 @@ _USUAL_GAP = 3.0
 
 @dataclass(frozen=True)
 class Estimated:
-    """The outputs of a tick."""
-
     joint: str  # liveJoint.name
     t: float  # time of the tick, as the sender counts it [s]
     outputs: Mapping[str, Any]  # values of the outputs GIVEN
@@ -76,7 +74,6 @@ class LivePort:
         self.restart()
 
     def restart(self) -> None:
-        """The next sample is the first one."""
         self._before = -math.inf, math.nan
         self._next: deque[tuple[float, float]] = deque(maxlen=_MOST)
         self._last = math.nan

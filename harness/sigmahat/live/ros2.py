@@ -74,8 +74,6 @@ _Diagnostics = _type("diagnostic_msgs/DiagnosticArray", header=_Header, status=_
 
 
 class Ros2:
-    """Topics in one domain."""
-
     def __init__(self) -> None:
         """Joins the domain of ROS_DOMAIN_ID. Raises ValueError if this variable is no number."""
         text = os.environ.get("ROS_DOMAIN_ID") or "0"
@@ -146,7 +144,6 @@ class Ros2:
         return found
 
     def publish(self) -> Sink:
-        """Writes the estimates of each tick, and the doubts once a second."""
         estimates, diagnostics = (
             DataWriter(self._domain, Topic(self._domain, f"rt{name}", kind), qos=_WHOLE)
             for name, kind in ((ESTIMATES, _DynamicJointState), (DIAGNOSTICS, _Diagnostics))

@@ -62,7 +62,6 @@ class _Recording:
             self._flush()
 
     def close(self) -> None:
-        """Writes the remaining rows. Raises OSError if the file cannot be written."""
         self._flush()
         self._thread.shutdown()
         self._wait()
@@ -159,7 +158,6 @@ class Session:
         return found
 
     def close(self) -> list[Estimated]:
-        """Ends the recording and frees the estimators."""
         found = self._end_recording()
         for joint in self.joints:
             joint.slave.__exit__()

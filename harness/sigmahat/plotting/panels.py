@@ -52,7 +52,6 @@ class Curve:
 
     @property
     def high(self) -> NDArray[Any]:
-        """Upper ends of the intervals of means."""
         assert self.half is not None
         high: NDArray[Any] = self.y + self.half
         return high
@@ -60,8 +59,6 @@ class Curve:
 
 @dataclass(frozen=True)
 class Panel:
-    """A plot."""
-
     title: str
     x_label: str
     y_label: str

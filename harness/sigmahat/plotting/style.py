@@ -44,14 +44,12 @@ _DIGITS = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
 
 
 def math_axis(name: str) -> str:
-    """Label of an axis in a figure: words, symbol and unit."""
     quantity = QUANTITIES[name]
     unit = quantity.unit.replace(".", r"$\cdot$")
     return f"{quantity.words} ${quantity.math}$ [{unit}]"
 
 
 def plain_axis(name: str) -> str:
-    """Label of an axis in a page: words, symbol and unit."""
     quantity = QUANTITIES[name]
     return f"{quantity.words} {quantity.plain} [{plain_unit(quantity.unit)}]"
 
