@@ -11,7 +11,7 @@ from sigmahat.checks.columns import at_rest, columns
 from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.relation import distance, relation, slope_of
-from sigmahat.checks.replayed import Outputs, play, replayed
+from sigmahat.checks.replayed import play, replayed
 from sigmahat.checks.view import View, view
 from sigmahat.fmi.instance import FmuError, Slave, Value
 from sigmahat.fmi.opened import installed
@@ -41,9 +41,9 @@ def check(log: Log, configuration: Configuration) -> Checked:
     if not any(each.severity is Severity.WRONG for each in findings):
         # After a wrong value, the findings of the replay are only consequences of this value.
         findings += replayed(seen, outputs)
-    findings += rests_on(
-        configuration, every, fmu.parameters({}), _per_gain(outputs, every["method"])
-    )
+    is_regression = every["method"] == "FilteredRegression"
+    per_gain = float(outputs["sigma_per_gain"][-1]) if is_regression else 1.0
+    findings += rests_on(configuration, every, fmu.parameters({}), per_gain)
     order = list(Severity)
     findings.sort(key=lambda each: order.index(each.severity))
     return Checked(findings, len(seen.samples.values), seen.T)
@@ -103,12 +103,8 @@ def _swapped(seen: View) -> list[Finding]:
     slope = slope_of(other.pieces, other.T)
     if slope is None or distance(abs(slope), 1.0) > math.log(_ALIKE):
         return []
-    second = [("ports.q.column", theta.column)]
-    return [
-        Finding(
-            Kind.SLOPE, Severity.WRONG, "ports.theta.column", now, "", 1.0, q.column, second, "swap"
-        )
-    ]
+    key, second = "ports.theta.column", [("ports.q.column", theta.column)]
+    return [Finding(Kind.SLOPE, Severity.WRONG, key, now, "", 1.0, q.column, second, "swap")]
 
 
 def _tried(seen: View, finding: Finding) -> Finding:
@@ -134,11 +130,6 @@ def changed(configuration: Configuration, key: str, value: Any) -> Configuration
     port, _, name = name.partition(".")
     own = replace(configuration.ports[port], **{name: value})
     return replace(configuration, ports={**configuration.ports, port: own})
-
-
-def _per_gain(outputs: Outputs, method: object) -> float:
-    """Relative change of the stiffness per relative change of the gain of the torque."""
-    return float(outputs["sigma_per_gain"][-1]) if method == "FilteredRegression" else 1.0
 
 
 def _contradictions(seen: View) -> Iterator[Finding]:
@@ -175,12 +166,13 @@ def gears(configuration: Configuration, every: Mapping[str, Value]) -> Iterator[
         gear = abs(port.gear_ratio) if port else 1.0
         if gear == 1 or abs(gamma / gear - 1) < _SAME:
             continue
-        own = (f"ports.{name}.gear_ratio", gamma)
-        keys = [("motor.gamma", gear), own] if name == "theta" else [own, ("motor.gamma", gear)]
-        (key, proposed), other = keys
-        measured, expected = (gamma, gear) if name == "theta" else (gear, gamma)
+        keys = [("motor.gamma", gear), (f"ports.{name}.gear_ratio", gamma)]
+        if name == "tau":
+            keys.reverse()
+        (key, expected), (other, measured) = keys
+        others = [(other, measured)]
         yield Finding(
-            Kind.GEAR, Severity.WRONG, key, measured, "", expected, proposed, [other], name
+            Kind.GEAR, Severity.WRONG, key, measured, "", expected, expected, others, name
         )
 
 

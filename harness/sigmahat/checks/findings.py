@@ -104,12 +104,8 @@ def as_dict(checked: Checked) -> dict[str, Any]:
         "ticks": checked.ticks,
         "samplePeriod [s]": checked.T,
         "findings": [
-            {
-                **asdict(each),
-                "kind": each.kind.value,
-                "severity": each.severity.value,
-                "others": dict(each.others),
-            }
-            for each in checked.findings
+            asdict(f)
+            | {"kind": f.kind.value, "severity": f.severity.value, "others": dict(f.others)}
+            for f in checked.findings
         ],
     }

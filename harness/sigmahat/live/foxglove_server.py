@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +19,8 @@ def serve(address: tuple[str, int], joints: Sequence[LiveJoint]) -> Sink:
     """Starts the server. Raises RuntimeError if the address is not available."""
     foxglove.set_log_level("CRITICAL")  # no messages about viewers that disconnect
     foxglove.start_server(name="sigmahat", host=address[0], port=address[1])
-    channels = {
-        joint.name: foxglove.Channel(
-            f"/{joint.name}/estimate", schema=_schema(joint), message_encoding="json"
-        )
-        for joint in joints
-    }
+    channel = partial(foxglove.Channel, message_encoding="json")
+    channels = {j.name: channel(f"/{j.name}/estimate", schema=_schema(j)) for j in joints}
 
     def send(ticks: Sequence[Estimated]) -> None:
         for each in ticks:

@@ -94,10 +94,9 @@ class Session:
         self.clocks: dict[str, Clock] = {}  # clocks by time column; "" for the time of arrival
         self.joints: list[LiveJoint] = []
         for name in joints_of(self._document, config):
-            configuration, learned = read_configuration(config, name), None
-            if start_from is not None:
-                learned = read_learned(start_from / name if start_from.is_dir() else start_from)
-            self.joints.append(LiveJoint(configuration, self.clocks, learned))
+            state = start_from / name if start_from and start_from.is_dir() else start_from
+            learned = read_learned(state) if state else None
+            self.joints.append(LiveJoint(read_configuration(config, name), self.clocks, learned))
         ports = [port.port.column for joint in self.joints for port in joint.ports.values()]
         self.columns = [name for name in dict.fromkeys([*self.clocks, *ports]) if name]
         """Columns of the messages that are used."""
