@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from foreign_joint import GEAR, Motion, T, joint
-from sigmahat.guessing.columns import interval
-from sigmahat.guessing.facts import Facts, look_at
+from sigmahat.guessing.columns import Facts, interval, look_at
 from sigmahat.guessing.guess import JointGuess, guess
 from sigmahat.guessing.words import meaning
 from sigmahat.logs.log import LogInMemory

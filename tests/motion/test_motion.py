@@ -19,10 +19,8 @@ from sigmahat.identification.write import update
 from sigmahat.logs.configuration import checked_configuration, read_document
 from sigmahat.logs.log import LogError
 from sigmahat.motion import known
-from sigmahat.motion.design import design
-from sigmahat.motion.joints import Joint, Limits, Ranges, of_limits
-from sigmahat.motion.multisine import Multisine
-from sigmahat.motion.record import Sensors, _log, relative_half_width
+from sigmahat.motion.design import Sensors, _log, design, relative_half_width
+from sigmahat.motion.joints import Joint, Limits, Multisine, Ranges, of_limits
 
 LIMITS = Limits(angle=0.8, velocity=1.5, torque=60.0, deformation=0.03)
 OPTIONS = "--angle 0.8 --velocity 1.5 --torque 60 --deformation 0.03"

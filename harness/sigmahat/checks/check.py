@@ -7,21 +7,41 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from sigmahat.checks.columns import at_rest, columns
 from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.relation import distance, relation, slope_of
-from sigmahat.checks.replayed import Outputs, play, replayed
 from sigmahat.checks.view import View, view
 from sigmahat.fmi.instance import FmuError, Slave, Value
 from sigmahat.fmi.opened import installed
+from sigmahat.identification.noise import variance
 from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.data_sheet import absent, exact
 from sigmahat.logs.log import Log, LogError
-from sigmahat.logs.replay import parameters
+from sigmahat.logs.replay import parameters, replay
 
 _INERTIA = (Kind.INERTIA, Kind.TORQUE_SCALE)
+_MISFIT = 3.0  # of the model; unmodelled effects of real joints cause up to about 2
+_NOISE = 3.0  # ratio of standard deviations, measured to configured
+_LEARNED = 0.5
+_DOUBTED = 0.5  # fraction of the second half
+_ROOM = 1.2  # ratio of a proposed range to the largest value
+_WIDE = 5.0  # a range is too wide from this ratio to the largest value
+_TORQUE = 3.0  # ratio of torques, measured to configured
+
+Outputs = Mapping[str, np.ndarray[Any, Any]]
+_KEYS = {
+    "NotExcited": "ports.q.column",
+    "Misfit": "rls.n",
+    "OutOfRange": "range.phi",
+    "FrictionOutsidePrior": "motor.D_theta",
+    "InertiaOutsidePrior": "motor.B",
+    "NegativeStiffness": "ports.q.sign",
+    "Change": "rls.n",
+}
 
 
 def check(log: Log, configuration: Configuration) -> Checked:
@@ -37,13 +57,13 @@ def check(log: Log, configuration: Configuration) -> Checked:
     every = seen.every
     findings = _swapped(seen) or [_tried(seen, each) for each in _contradictions(seen)]
     with Slave(fmu, "check") as slave:
-        outputs = play(slave, seen)
+        outputs = _play(slave, seen)
     if not any(each.severity is Severity.WRONG for each in findings):
         # After a wrong value, the findings of the replay are only consequences of this value.
-        findings += replayed(seen, outputs)
-    findings += rests_on(
-        configuration, every, fmu.parameters({}), _per_gain(outputs, every["method"])
-    )
+        findings += _replayed(seen, outputs)
+    is_regression = every["method"] == "FilteredRegression"
+    per_gain = float(outputs["sigma_per_gain"][-1]) if is_regression else 1.0
+    findings += rests_on(configuration, every, fmu.parameters({}), per_gain)
     order = list(Severity)
     findings.sort(key=lambda each: order.index(each.severity))
     return Checked(findings, len(seen.samples.values), seen.T)
@@ -71,7 +91,6 @@ def _is_given(configuration: Configuration) -> bool:
 
 
 def _every(configuration: Configuration) -> dict[str, Value]:
-    """All parameters of the estimator."""
     fmu = installed("StiffnessEstimator")
     return fmu.parameters(parameters(fmu, configuration))
 
@@ -104,12 +123,8 @@ def _swapped(seen: View) -> list[Finding]:
     slope = slope_of(other.pieces, other.T)
     if slope is None or distance(abs(slope), 1.0) > math.log(_ALIKE):
         return []
-    second = [("ports.q.column", theta.column)]
-    return [
-        Finding(
-            Kind.SLOPE, Severity.WRONG, "ports.theta.column", now, "", 1.0, q.column, second, "swap"
-        )
-    ]
+    key, second = "ports.theta.column", [("ports.q.column", theta.column)]
+    return [Finding(Kind.SLOPE, Severity.WRONG, key, now, "", 1.0, q.column, second, "swap")]
 
 
 def _tried(seen: View, finding: Finding) -> Finding:
@@ -137,11 +152,6 @@ def changed(configuration: Configuration, key: str, value: Any) -> Configuration
     return replace(configuration, ports={**configuration.ports, port: own})
 
 
-def _per_gain(outputs: Outputs, method: object) -> float:
-    """Relative change of the stiffness per relative change of the gain of the torque."""
-    return float(outputs["sigma_per_gain"][-1]) if method == "FilteredRegression" else 1.0
-
-
 def _contradictions(seen: View) -> Iterator[Finding]:
     """What the log contradicts, without findings that only follow from another finding."""
     still = list(at_rest(seen))
@@ -166,24 +176,23 @@ def _contradictions(seen: View) -> Iterator[Finding]:
 
 
 _AWAS = ("motor.B", "motor.D_theta", "motor.gamma")
-_SAME = 0.01
-"""Two gear ratios count as equal up to this relative difference."""
+_SAME = 0.01  # two gear ratios count as equal up to this relative difference
 
 
 def gears(configuration: Configuration, every: Mapping[str, Value]) -> Iterator[Finding]:
-    """Compares motor.gamma with the gear ratios of the ports theta and tau."""
     gamma = abs(float(every["motor.gamma"]))
     for name in ("theta", "tau"):
         port = configuration.ports.get(name)
         gear = abs(port.gear_ratio) if port else 1.0
         if gear == 1 or abs(gamma / gear - 1) < _SAME:
             continue
-        own = (f"ports.{name}.gear_ratio", gamma)
-        keys = [("motor.gamma", gear), own] if name == "theta" else [own, ("motor.gamma", gear)]
-        (key, proposed), other = keys
-        measured, expected = (gamma, gear) if name == "theta" else (gear, gamma)
+        keys = [("motor.gamma", gear), (f"ports.{name}.gear_ratio", gamma)]
+        if name == "tau":
+            keys.reverse()
+        (key, expected), (other, measured) = keys
+        others = [(other, measured)]
         yield Finding(
-            Kind.GEAR, Severity.WRONG, key, measured, "", expected, proposed, [other], name
+            Kind.GEAR, Severity.WRONG, key, measured, "", expected, expected, others, name
         )
 
 
@@ -213,3 +222,64 @@ def rests_on(
         yield Finding(Kind.EXACT, Severity.RESTS_ON, f"prior.{name}", value, "", about=name)
     for name in absent(every):
         yield Finding(Kind.ABSENT, Severity.RESTS_ON, f"prior.{name}", 0.0, "", about=name)
+
+
+def _play(slave: Slave, seen: View) -> Outputs:
+    """Outputs of the estimator at the ticks of the view. Raises FmuError if the FMU refuses."""
+    start = parameters(slave.fmu, seen.configuration)
+    with slave.only_errors():  # the FMU's warnings are findings here
+        (outputs,) = replay(slave, seen.samples, start, len(seen.samples.values))
+    return outputs
+
+
+def _replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
+    """What the estimator itself reports when the log is replayed."""
+    yield from _range(seen, outputs)
+    yield from _noise(seen)
+    valid = outputs["valid"]
+    learned = float(np.mean(valid & (outputs["a"] > 0)))
+    if learned < _LEARNED:
+        yield Finding(Kind.LEARNED, Severity.NOTE, "time.longest_gap", learned, "", 1.0)
+    if seen.every["method"] == "FilteredRegression":
+        yield from _claims(outputs)
+
+
+def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:
+    every, known = seen.every, seen.configuration.parameters
+    is_regression = every["method"] == "FilteredRegression"
+    phi, given = float(np.max(np.abs(outputs["phi"]))), float(every["range.phi"])
+    # A value that identify will set is no finding before identify has run.
+    if is_regression and "range.phi" in known and not given / _WIDE < phi < given:
+        severity = Severity.WRONG if phi > _ROOM * given else Severity.NOTE
+        proposed = float(f"{_ROOM * phi:.3g}")
+        yield Finding(Kind.RANGE, severity, "range.phi", phi, "rad", given, proposed)
+    torque = max((float(np.max(np.abs(p.tau))) for p in seen.pieces), default=0.0)
+    torque, given, key = abs(seen.gamma) * torque, float(every["prior.tau_e"]), "prior.tau_e"
+    if is_regression and key in known and torque > _TORQUE * given > 0:
+        proposed = float(f"{_ROOM * torque:.3g}")
+        yield Finding(Kind.RANGE, Severity.WRONG, key, torque, "N.m", given, proposed)
+
+
+def _noise(seen: View) -> Iterator[Finding]:
+    """Noise of the torque: the lower limit of the prediction error."""
+    key = "noise.tau_e" if seen.has_sensor else "noise.tau"
+    if not seen.pieces or (seen.every["modality"] == "Model"):
+        return
+    times = abs(seen.gamma) if seen.has_sensor else 1.0
+    longest = max(seen.pieces, key=lambda piece: len(piece.tau))
+    noise, given = times * variance(longest.tau) ** 0.5, float(seen.every[key])
+    if given > 0 and noise > 0 and not 1 / _NOISE < noise / given < _NOISE:
+        proposed = float(f"{noise:.3g}")
+        yield Finding(Kind.NOISE, Severity.NOTE, key, noise, "N.m", given, proposed)
+
+
+def _claims(outputs: Outputs) -> Iterator[Finding]:
+    """Misfit of the model, and doubts that the estimator reports often."""
+    misfit = float(outputs["misfit"][-1])
+    if misfit > _MISFIT:
+        yield Finding(Kind.MISFIT, Severity.NOTE, "rls.n", misfit, "", 1.0)
+    doubts = outputs["doubt"][len(outputs["doubt"]) // 2 :]
+    for item, key in _KEYS.items():
+        share = float(np.mean(doubts == item))
+        if share > _DOUBTED and not (item == "Misfit" and misfit > _MISFIT):
+            yield Finding(Kind.DOUBT, Severity.NOTE, key, share, "", 0.0, about=item)

@@ -13,8 +13,7 @@ from sigmahat.logs.configuration import Port
 from sigmahat.logs.log import Array
 from sigmahat.logs.units import factor
 
-_LOOKED_AT = 20_000
-"""About how many values are searched for the step of an encoder."""
+_LOOKED_AT = 20_000  # about how many values are searched for the step of an encoder
 _FINER = 1.5  # a configured step that differs by more than this factor is wrong
 _FLAT = 3  # consecutive samples at an end of the range
 _OFTEN = 0.01  # fraction of all samples
@@ -23,7 +22,6 @@ _PERIODS = (360.0, 2 * math.pi, *(2.0**k for k in range(8, 33)))
 
 
 def columns(seen: View) -> Iterator[Finding]:
-    """All checks of the recorded columns, for every port."""
     for name, port in seen.configuration.ports.items():
         if port.value is not None:
             continue

@@ -7,18 +7,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from sigmahat.checks import motor
 from sigmahat.checks.findings import Finding, Kind, Severity
-from sigmahat.checks.motor import (
-    LINEAR,
-    Fitted,
-    delay,
-    explains,
-    gear_error,
-    variants,
-    with_all_powers,
-    with_form,
-    with_inertia,
-)
+from sigmahat.checks.motor import LINEAR, Fitted, explains, with_all_powers
 from sigmahat.checks.relation import Relation, gear_of
 from sigmahat.checks.view import View
 from sigmahat.identification.quantities import WIDE
@@ -27,8 +18,7 @@ from sigmahat.logs.configuration import Port
 from sigmahat.logs.units import factor
 
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
-_STD = 3.0
-"""A prior contradicts the log beyond this number of standard deviations."""
+_STD = 3.0  # a prior contradicts the log beyond this number of standard deviations
 
 
 def dynamics(seen: View, here: Relation) -> Iterator[Finding]:
@@ -63,16 +53,16 @@ def _sign(seen: View, found: Fitted) -> Finding | None:
     if not stiffness < -1:
         return None
     port = "tau_e_sensor" if seen.has_sensor else "tau"
-    motor = [np.sign(score[name]) for name in MOTOR if abs(score.get(name, 0.0)) > 1]
+    signs = [np.sign(score[name]) for name in MOTOR if abs(score.get(name, 0.0)) > 1]
     sigma = -seen.gamma * value[LINEAR] / found.spring.units[0]
-    if seen.has_sensor or (motor and sum(motor) < 0):
-        key, kind = f"ports.{port}.sign", Kind.SIGN
-        proposed = -seen.configuration.ports[port].sign
-        return Finding(kind, Severity.WRONG, key, sigma, "N.m/rad", None, proposed, about=port)
-    others = [("ports.q.gear_ratio", None), (f"ports.{port}.sign", None)]
-    key = "ports.theta.gear_ratio"
-    kind = Kind.STIFFNESS_SIGN
-    return Finding(kind, Severity.WRONG, key, sigma, "N.m/rad", None, None, others)
+    if seen.has_sensor or (signs and sum(signs) < 0):
+        key, proposed = f"ports.{port}.sign", -seen.configuration.ports[port].sign
+        return Finding(Kind.SIGN, Severity.WRONG, key, sigma, "N.m/rad", None, proposed, (), port)
+    key, others = (
+        "ports.theta.gear_ratio",
+        [("ports.q.gear_ratio", None), (f"ports.{port}.sign", None)],
+    )
+    return Finding(Kind.STIFFNESS_SIGN, Severity.WRONG, key, sigma, "N.m/rad", None, None, others)
 
 
 _LEAST_GEAR = 2e-3
@@ -85,7 +75,7 @@ def _gear(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | Non
     """A slightly wrong gear ratio, if its correction explains much of the torque."""
     if "theta" not in seen.configuration.ports:
         return None
-    error = gear_error(seen, pieces, found.form)
+    error = motor.gear_error(seen, pieces, found.form)
     if error is None or not abs(error.value - 1) > error.half_width + _LEAST_GEAR:
         return None
     # An asymmetric spring, or a wrong zero, must not explain the torque as well.
@@ -144,7 +134,7 @@ def _moved(port: Port, name: str, angle: float) -> float:
 
 def _late(seen: View, here: Relation, found: Fitted) -> Iterator[Finding]:
     """Delay of the torque with respect to the motion."""
-    late = delay(seen, here.pieces, found.form)
+    late = motor.delay(seen, here.pieces, found.form)
     if late is None:
         return
     least = abs(late.value) - late.half_width
@@ -188,7 +178,7 @@ def inertia(seen: View, pieces: Sequence[Signals], found: Fitted) -> Iterator[Fi
     B = _nearest(seen, pieces, found, given) if given > 0 else None
     if B is None or not _differs(B, given, _DIFFERENT):
         return
-    if not explains(with_inertia(seen, pieces, found.form, given), found.fit):
+    if not explains(motor.with_inertia(seen, pieces, found.form, given), found.fit):
         return
     B = found.linear.value["B"]
     unit, rounded = "kg.m2", float(f"{B:.3g}")
@@ -198,11 +188,9 @@ def inertia(seen: View, pieces: Sequence[Signals], found: Fitted) -> Iterator[Fi
     geared = [each for each in (gamma, 1 / gamma) if not _differs(B, each * given, _LIKE)]
     is_given = "motor.B" in seen.configuration.parameters
     if is_given and geared and gamma > _LIKE**2:
-        port = seen.configuration.ports["tau"]
-        proposed = float(f"{port.gear_ratio * geared[0]:.6g}")
-        kind, key = Kind.TORQUE_SCALE, "ports.tau.gear_ratio"
-        others = [("motor.B", rounded)]
-        yield Finding(kind, Severity.WRONG, key, B, unit, given, proposed, others)
+        gear = float(f"{seen.configuration.ports['tau'].gear_ratio * geared[0]:.6g}")
+        kind, key, others = Kind.TORQUE_SCALE, "ports.tau.gear_ratio", [("motor.B", rounded)]
+        yield Finding(kind, Severity.WRONG, key, B, unit, given, gear, others)
         return
     is_wrong = given == _AWAS or _differs(B, given, _LARGE)
     severity = Severity.WRONG if is_wrong else Severity.NOTE
@@ -216,7 +204,7 @@ def _nearest(seen: View, pieces: Sequence[Signals], found: Fitted, given: float)
     B, half = found.linear.value["B"], found.linear.half_width["B"]
     if not 0 < B - half < math.inf or not _differs(B, given, _DIFFERENT):
         return None
-    every = [with_form(seen, pieces, form).value["B"] for form in variants(found.form)]
+    every = [motor.with_form(seen, pieces, f).value["B"] for f in motor.variants(found.form)]
     every += [B - half, B + half]
     if not all(each > 0 for each in every):
         return None

@@ -7,8 +7,7 @@ from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import Any
 
-Proposal = float | bool | str
-"""A value of a key, as it stands in the configuration."""
+Proposal = float | bool | str  # a value of a key, as it stands in the configuration
 
 
 class Severity(Enum):
@@ -91,7 +90,6 @@ class Checked:
     """Time between ticks [s]."""
 
     def of(self, severity: Severity) -> Sequence[Finding]:
-        """Findings of one severity."""
         return [each for each in self.findings if each.severity is severity]
 
     @property
@@ -101,18 +99,13 @@ class Checked:
 
 
 def as_dict(checked: Checked) -> dict[str, Any]:
-    """For JSON."""
     return {
         "wrong": checked.is_wrong,
         "ticks": checked.ticks,
         "samplePeriod [s]": checked.T,
         "findings": [
-            {
-                **asdict(each),
-                "kind": each.kind.value,
-                "severity": each.severity.value,
-                "others": dict(each.others),
-            }
-            for each in checked.findings
+            asdict(f)
+            | {"kind": f.kind.value, "severity": f.severity.value, "others": dict(f.others)}
+            for f in checked.findings
         ],
     }

@@ -14,25 +14,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sigmahat.checks.view import View
+from sigmahat.identification import regression
 from sigmahat.identification.coherence import TorqueNoise, coherent_range
 from sigmahat.identification.noise import bandwidth, variance
-from sigmahat.identification.regression import (
-    EXTRA,
-    MOTOR,
-    Equations,
-    Fit,
-    Form,
-    Signals,
-    choose,
-    equations,
-    fit,
-    is_worse,
-)
+from sigmahat.identification.regression import EXTRA, MOTOR, Equations, Fit, Form, Signals, fit
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
 
-LINEAR = "eta[0,0]"
-"""The column of a linear spring."""
+LINEAR = "eta[0,0]"  # the column of a linear spring
 _HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Coulomb friction
 _SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a joint
 _ORDERS = 3
@@ -45,16 +34,10 @@ alone is not enough: with unmodelled friction, nearly every change is significan
 
 @dataclass(frozen=True)
 class Fitted:
-    """What a fit to the pieces of a log shows."""
-
-    form: Form
-    """Orders and filters."""
-    fit: Fit
-    """Fit with a polynomial of these orders."""
-    linear: Fit
-    """Fit with a linear spring."""
-    spring: Spring
-    """The polynomial."""
+    form: Form  # orders and filters
+    fit: Fit  # fit with a polynomial of these orders
+    linear: Fit  # fit with a linear spring
+    spring: Spring  # the polynomial
 
     @property
     def error(self) -> float:
@@ -79,31 +62,16 @@ def fitted(seen: View, pieces: Sequence[Signals]) -> Fitted | None:
 
 
 @dataclass(frozen=True)
-class Delay:
-    """How late the torque is."""
+class Corrected:
+    """A value that Newton's method has found."""
 
     value: float
-    """[s]"""
-    half_width: float
-    """Half of the 95 % interval [s]."""
-    fit: Fit
-    """Fit of the motor equation with the torque shifted by the delay."""
+    half_width: float  # half of the 95 % interval
+    fit: Fit  # fit of the motor equation with this value
 
 
-@dataclass(frozen=True)
-class GearError:
-    """The configured gear ratio of the motor's encoder, compared with the motion."""
-
-    value: float
-    """Configured gear ratio divided by the right gear ratio [1]."""
-    half_width: float
-    """Half of the 95 % interval [1]."""
-    fit: Fit
-    """Fit of the motor equation with a corrected theta."""
-
-
-def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Delay | None:
-    """How late the torque is; None if no value is found.
+def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Corrected | None:
+    """How late the torque is [s]; None if no value is found.
 
     Newton's method: each step shifts the torque by the delay found, so the coefficient of the slope
     tends to 0. So neither noise of the slope nor curvature of the torque biases the result.
@@ -117,11 +85,11 @@ def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Delay | None:
         late += step
         if not math.isfinite(late) or abs(late) > _LONGEST:
             return None
-    return Delay(late, half_width + abs(step), found) if math.isfinite(half_width) else None
+    return Corrected(late, half_width + abs(step), found) if math.isfinite(half_width) else None
 
 
-def gear_error(seen: View, pieces: Sequence[Signals], form: Form) -> GearError | None:
-    """Error of the gear ratio of theta; None if the motion does not determine this error.
+def gear_error(seen: View, pieces: Sequence[Signals], form: Form) -> Corrected | None:
+    """Configured gear ratio of theta divided by the right one; None if the log does not show it.
 
     With theta (1 + delta) for theta, phi becomes phi - delta theta. So the torque has a term in
     theta, which is a column here. Newton's method corrects theta until this term vanishes.
@@ -140,7 +108,7 @@ def gear_error(seen: View, pieces: Sequence[Signals], form: Form) -> GearError |
         whole *= 1 + step
         if not 0.5 < whole < 2:
             return None
-    return GearError(whole, half_width + abs(step), found)
+    return Corrected(whole, half_width + abs(step), found)
 
 
 def variants(form: Form) -> list[Form]:
@@ -153,50 +121,45 @@ def variants(form: Form) -> list[Form]:
 
 
 def with_form(seen: View, pieces: Sequence[Signals], form: Form) -> Fit:
-    """The fit with another form."""
     return fit(_equations(seen, pieces, form))
 
 
 def with_inertia(seen: View, pieces: Sequence[Signals], form: Form, B: float) -> Fit:
-    """The fit with a known inertia [kg.m2]."""
     return fit(_equations(seen, pieces, form).known("B", B))
 
 
 def explains(before: Fit, after: Fit) -> bool:
     """Whether a change explains much of the errors before the change."""
     less = float(np.sum(after.squares)) < _BETTER * float(np.sum(before.squares))
-    return less and is_worse(before, after)
+    return less and regression.is_worse(before, after)
 
 
 def _band(seen: View, pieces: Sequence[Signals]) -> float:
     """Low pass of the equations, as identify chooses it [Hz]."""
     longest, T = max(pieces, key=lambda piece: len(piece.theta)), seen.T
     counts, inertia = float(seen.every["encoder.theta"]), float(seen.every["motor.B"])
-    tau = variance(longest.tau)
     theta = variance(longest.theta, 2 * math.pi / counts if counts else 0.0)
-    inertia *= abs(seen.gamma)
-    f_0 = bandwidth(tau, theta, inertia, T)
+    noise = variance(longest.tau), theta, inertia * abs(seen.gamma), T
+    f_0 = bandwidth(*noise)
     if seen.has_sensor:
         return f_0
-    noise = TorqueNoise(tau, theta, inertia, T)
-    return min(f_0, coherent_range(longest, seen.gamma, f_0, noise))
+    return min(f_0, coherent_range(longest, seen.gamma, f_0, TorqueNoise(*noise)))
 
 
 def with_all_powers(seen: View, pieces: Sequence[Signals], form: Form) -> Fit:
-    """The fit of a spring that need not be symmetric."""
     form = replace(form, n=2 * _ORDERS, symmetric=False)
     return fit(_chosen(seen, pieces, form)[1])
 
 
 def _chosen(seen: View, pieces: Sequence[Signals], form: Form) -> tuple[Form, Equations]:
     """The form and its equations with the orders that predict best, up to those of `form`."""
-    (n, m), _ = choose(_equations(seen, pieces, form), form.n, form.m)
+    (n, m), _ = regression.choose(_equations(seen, pieces, form), form.n, form.m)
     form = replace(form, n=n, m=m)
     return form, _equations(seen, pieces, form)
 
 
 def _equations(seen: View, pieces: Sequence[Signals], form: Form) -> Equations:
-    every = equations(pieces, seen.T, seen.gamma, form)
+    every = regression.equations(pieces, seen.T, seen.gamma, form)
     if not seen.has_sensor:
         return every
     return every.only([name for name in every.names if name not in MOTOR])
@@ -206,8 +169,8 @@ def _with_column(
     seen: View, pieces: Sequence[Signals], form: Form, signals: Sequence[Array]
 ) -> Equations:
     """The equations with one more column, a signal for each piece."""
-    own = zip(pieces, signals, strict=True)
-    return _equations(seen, [replace(piece, extra=signal) for piece, signal in own], form)
+    own = [replace(p, extra=signal) for p, signal in zip(pieces, signals, strict=True)]
+    return _equations(seen, own, form)
 
 
 def _moved(tau: Array, ticks: float) -> Array:

@@ -71,16 +71,6 @@ def gear_of(theta: Port, slope: float) -> Change:
     return Change("ports.theta.gear_ratio", likely, slope, fits_any=True)
 
 
-def _unlikely(name: str, change: Change, slope: float) -> float:
-    """Sort key of a change: the change with the smallest key is tried first."""
-    return _ANY if change.fits_any else round(distance(_on_theta(name, change), slope), 1)
-
-
-def like(one: float, other: float) -> bool:
-    """Whether two positive factors may be the same."""
-    return distance(one, other) < _LIKE
-
-
 def distance(one: float, other: float) -> float:
     """Distance of two positive factors on a logarithmic scale [1]."""
     return abs(math.log(one / other))
@@ -105,10 +95,8 @@ class Relation:
     """The motion of q and theta after the errors found are corrected."""
 
     findings: Sequence[Finding]
-    pieces: Sequence[Signals]
-    """As View.pieces, with the scales that were proposed."""
-    fitted: Fitted | None
-    """The motor equation of these pieces."""
+    pieces: Sequence[Signals]  # as View.pieces, with the scales that were proposed
+    fitted: Fitted | None  # the motor equation of these pieces
 
 
 def relation(seen: View) -> Relation:
@@ -131,26 +119,28 @@ def _is_from_torque(ports: Mapping[str, Port]) -> bool:
 def _scale(seen: View, here: Relation, slope: float) -> Relation:
     if not abs(np.log(abs(slope))) > np.log(_DIFFERENT):
         return here
-    every: list[tuple[str, Change]] = [
-        ("theta", gear_of(seen.configuration.ports["theta"], abs(slope)))
-    ]
+    ports = seen.configuration.ports
+    every = [("theta", gear_of(ports["theta"], abs(slope)))]
     every += [
         (name, change)
         for name in PORTS
-        for change in changes(name, seen.configuration.ports[name], seen.gamma)
-        if like(_on_theta(name, change), abs(slope))
+        for change in changes(name, ports[name], seen.gamma)
+        if distance(_on_theta(name, change), abs(slope)) < _LIKE
     ]
-    every.sort(key=lambda each: _unlikely(each[0], each[1], abs(slope)))
+
+    def unlikely(each: tuple[str, Change]) -> float:
+        """The change with the smallest value is tried first."""
+        return _ANY if each[1].fits_any else round(distance(_on_theta(*each), abs(slope)), 1)
+
+    every.sort(key=unlikely)
     best: tuple[str, Change] | None = None
     found = here
     for name, change in every:
         repaired = [_scaled(piece, name, change.factor) for piece in here.pieces]
         after = fitted(seen, repaired)
-        is_next = (
-            _is_plausible(here.fitted, after, abs(slope))
-            if best is None
-            else _is_better(found.fitted, after)
-        )
+        is_next = _is_better(found.fitted, after)
+        if best is None:
+            is_next = _is_plausible(here.fitted, after, abs(slope))
         if is_next:
             best, found = (name, change), Relation((), repaired, after)
     if best is None:
@@ -238,10 +228,10 @@ def slope_of(pieces: Sequence[Signals], T: float) -> float | None:
     if not np.all(variances > 0):
         return None
     # If both are scaled to variance 1, the axis is the diagonal, whatever the units are.
-    if abs(np.corrcoef(both.T)[0, 1]) < _CORRELATED:
+    correlation = np.corrcoef(both.T)[0, 1]
+    if abs(correlation) < _CORRELATED:
         return None
-    sign = np.sign(np.corrcoef(both.T)[0, 1])
-    return float(sign * np.sqrt(variances[1] / variances[0]))
+    return float(np.sign(correlation) * np.sqrt(variances[1] / variances[0]))
 
 
 def _slow(motion: Array, T: float) -> Array:

@@ -35,10 +35,8 @@ def summary(checked: Checked, severities: Sequence[Severity] = tuple(Severity)) 
     """One screen, with findings of these severities."""
     lines = [] if checked.is_wrong else [nothing_found(checked)]
     for severity, title in TITLES.items():
-        if severity not in severities:
-            continue
-        found = checked.of(severity)
-        lines += [title, *(f"  {sentence(each)}" for each in found)] if found else []
+        if severity in severities and (found := checked.of(severity)):
+            lines += [title, *(f"  {sentence(each)}" for each in found)]
     return "\n".join(lines)
 
 
@@ -80,16 +78,8 @@ def _number(value: float | None, unit: str) -> str:
 
 def _what(f: Finding) -> str:
     """The sentence for the kind of the finding, with its values."""
-    template = _SENTENCES.get(f.kind, "")
-    if f.kind is Kind.SLOPE and f.about == "sign":
-        template = "q moves against theta"
-    elif f.kind is Kind.SLOPE and f.about == "swap":
-        template = (
-            "the columns of theta and q are swapped: the link would move {value:.4g} times as far"
-        )
-    elif f.kind is Kind.AT_REST:
-        template = _STILL[f.about]
-    elif f.kind is Kind.TORQUE_LAG and f.measured < 0:
+    template = _SPECIAL.get((f.kind, f.about)) or _SENTENCES[f.kind]
+    if f.kind is Kind.TORQUE_LAG and f.measured < 0:
         template = "the torque is {ms} earlier than the motion explains, or the spring is damped"
     return template.format(
         measured=_number(f.measured, f.unit),
@@ -108,15 +98,20 @@ def _what(f: Finding) -> str:
     )
 
 
-_STILL = {
-    "joint": "the joint is at rest throughout the {measured} of the log; record a joint that moves",
-    "q": "the link does not move while the motor does: its encoder is dead, or the column is "
-    "wrong. If the link is locked on purpose, write ports.q.value = 0 in place of the column",
-    "theta": "the motor does not move while the link does: its encoder is dead, or the column is "
-    "wrong",
+_SPECIAL = {
+    (Kind.SLOPE, "sign"): "q moves against theta",
+    (Kind.SLOPE, "swap"): "the columns of theta and q are swapped: the link would move "
+    "{value:.4g} times as far",
+    (Kind.AT_REST, "q"): "the link does not move while the motor does: its encoder is dead, or the "
+    "column is wrong. If the link is locked on purpose, write ports.q.value = 0 in place of the "
+    "column",
+    (Kind.AT_REST, "theta"): "the motor does not move while the link does: its encoder is dead, "
+    "or the column is wrong",
 }
 _INERTIA = "the log shows an inertia of {measured}, {ratio:.3g} times motor.B"
 _SENTENCES: Mapping[Kind, str] = {
+    Kind.AT_REST: "the joint is at rest throughout the {measured} of the log; record a joint that "
+    "moves",
     Kind.SLOPE: "q moves {value:.4g} times as far as theta, expected about 1",
     Kind.GEAR: "it is {value:g}, but {gear} is {given:g}",
     Kind.SIGN: "with this sign inertia, friction or stiffness are negative: the stiffness would be "

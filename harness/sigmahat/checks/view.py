@@ -19,33 +19,24 @@ _MOST = 60_000
 
 @dataclass(frozen=True)
 class View:
-    """A log under a configuration, as the checks see it."""
-
-    log: Log
-    """The log, for checks of effects that conversion and sampling would hide."""
-    configuration: Configuration
-    """The configuration, as it is given."""
-    every: Mapping[str, Value]
-    """All parameters of the estimator."""
-    samples: Samples
-    """At most 60000 ticks."""
+    log: Log  # the log, for checks of effects that conversion and sampling would hide
+    configuration: Configuration  # the configuration, as it is given
+    every: Mapping[str, Value]  # all parameters of the estimator
+    samples: Samples  # at most 60000 ticks
     pieces: Sequence[Signals]
     """Stretches without a gap in which theta, q and the torque of the modality are known. tau is
     the motor's torque, or the sensor's torque divided by the gear ratio, with the sign of tau."""
 
     @property
     def T(self) -> float:
-        """Time between ticks [s]."""
         return self.samples.T
 
     @property
     def gamma(self) -> float:
-        """Gear ratio."""
         return float(self.every["motor.gamma"])
 
     @property
     def has_sensor(self) -> bool:
-        """Whether a sensor measures the torque."""
         return self.every["modality"] == "Sensor"
 
 

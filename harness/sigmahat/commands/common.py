@@ -20,8 +20,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 if TYPE_CHECKING:
+    from sigmahat.logs.configuration import Configuration
+    from sigmahat.logs.log import Log
     from sigmahat.runs.scenario import Scenario
 
+FILE, PATH = click.Path(path_type=Path, dir_okay=False), click.Path(path_type=Path)
+COUNT = click.IntRange(min=1)
+option = partial(click.option, show_default=True)
 _Command = TypeVar("_Command", bound=Callable[..., object])
 _Result = TypeVar("_Result")
 _CALL = re.compile(r"^\w+: (?:fmi\w+: )?[Pp]arameter")
@@ -38,24 +43,40 @@ def _for_scripts(context: click.Context, parameter: click.Parameter, given: bool
         logger.setLevel(logging.ERROR)
 
 
-def log_argument(command: _Command) -> _Command:
-    """Gives a command the argument LOG."""
-    return click.argument("log", type=click.Path(path_type=Path))(command)
+log_argument = click.argument("log", type=PATH)
+joint_option = click.option(
+    "--joint",
+    metavar="NAME",
+    default="",
+    help="Only this joint of the configuration.  [default: every joint]",
+)
+force_option = click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
 
 
 def config_option(what: str) -> Callable[[_Command], _Command]:
-    """Gives a command the option --config; `what` describes the purpose of the file."""
-    return click.option(
-        "--config",
-        type=click.Path(path_type=Path, dir_okay=False),
-        help=f"{what}  [default: LOG with the suffix .toml, in this folder]",
-    )
+    text = f"{what}  [default: LOG with the suffix .toml, in this folder]"
+    return click.option("--config", type=FILE, help=text)
 
 
-def joint_option(command: _Command) -> _Command:
-    """Gives a command the option --joint."""
-    text = "Only this joint of the configuration.  [default: every joint]"
-    return click.option("--joint", metavar="NAME", default="", help=text)(command)
+def out_option(what: str, default: str) -> Callable[[_Command], _Command]:
+    """Gives a command the option --out, a folder; `default` is for people."""
+    text = f"{what}  [default: sigmahat-results/{default}]"
+    return click.option("--out", callback=_folder, help=text)
+
+
+def refuse_to_overwrite(path: Path, force: bool, option: str) -> None:
+    """Raises ClickException if a file exists, and the user does not force the command."""
+    if path.exists() and not force:
+        text = f"{path} exists; --force overwrites it, {option} names another file"
+        raise click.ClickException(text)
+
+
+def opened(log: Path, config: Path, joint: str) -> tuple[Log, Configuration]:
+    """A log, and the configuration of a joint. Raises LogError if a file cannot be read."""
+    from sigmahat.logs.configuration import read_configuration
+    from sigmahat.logs.readers.formats import open_log
+
+    return open_log(log), read_configuration(config, joint)
 
 
 def joints_of(log: Path, config: Path, joint: str) -> list[str]:
@@ -138,7 +159,7 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() or c in kept else repr(c)[1:-1] for c in text)
 
 
-def folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | None:
+def _folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | None:
     """Callback of an option: a folder to write into.
 
     An empty name is refused: a shell passes an empty name if a variable is not set.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     metavar="NAME",
     help="Only this joint of LOG, with its name in the columns.  [default: every joint]",
 )
-@click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
+@common.force_option
 @common.quiet_option
 def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None:
     """Write a configuration for LOG, to be checked and completed.
@@ -51,10 +51,7 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
         guessed = guess(opened)
         if joint is not None:
             guessed = {"": one_joint(opened, guessed, joint)}
-        if one.exists() and not force:
-            raise click.ClickException(
-                f"{one} exists; --force overwrites it, --config names another file"
-            )
+        common.refuse_to_overwrite(one, force, "--config")
         fmu = installed("StiffnessEstimator")
         motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
         write_whole(template.write(opened, guessed, motor), one)
@@ -62,7 +59,6 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
 
 
 def _text(log: Path, joints: Mapping[str, JointGuess], path: Path) -> str:
-    """The guessed values, and the next command."""
     lines = [line for joint in joints.values() for line in _guessed(joint)]
     text = path.read_text(encoding="utf-8")
     asked = sum("FILL IN" in line for line in text.splitlines() if not line.startswith("#"))
@@ -76,7 +72,6 @@ def _text(log: Path, joints: Mapping[str, JointGuess], path: Path) -> str:
 
 
 def _guessed(joint: JointGuess) -> Iterator[str]:
-    """Lines about one joint."""
     from sigmahat.guessing.template import period_of
 
     if joint.name:
@@ -156,10 +151,8 @@ def check(log: Path, config: Path | None, joint: str) -> int:
 
 def _checked(log: Path, config: Path, joint: str) -> Checked:
     from sigmahat.checks.check import check
-    from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.readers.formats import open_log
 
-    return check(open_log(log), read_configuration(config, joint))
+    return check(*common.opened(log, config, joint))
 
 
 @click.command()

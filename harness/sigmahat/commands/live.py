@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from threading import Thread
 from typing import TYPE_CHECKING
 
 import click
@@ -12,23 +13,20 @@ from sigmahat.commands import common
 
 if TYPE_CHECKING:
     from sigmahat.live.session import Session
-    from sigmahat.live.watch import Counted
+    from sigmahat.live.watch import Inbox
 
 
 @click.command()
-@click.argument("config", type=click.Path(path_type=Path, dir_okay=False))
-@click.option(
+@click.argument("config", type=common.FILE)
+@common.option(
     "--from",
     "source",
     default="udp:9870",
-    show_default=True,
     metavar="SOURCE",
     help="udp:PORT, one message per datagram; tcp:PORT or stdin, one message per line, as JSON or "
     "CSV. ros2: joint states, from the topics that the columns name.",
 )
-@click.option(
-    "--replay", type=click.Path(path_type=Path), help="This log instead, at its own pace."
-)
+@click.option("--replay", type=common.PATH, help="This log instead, at its own pace.")
 @click.option(
     "--to",
     "targets",
@@ -40,20 +38,15 @@ if TYPE_CHECKING:
 @click.option(
     "--columns", default="", metavar="A,B,...", help="Columns of CSV without a title line."
 )
-@click.option(
+@common.option(
     "--host",
     default="127.0.0.1",
-    show_default=True,
     help="Address of this computer to which others may connect; 0.0.0.0 means every address.",
 )
-@click.option(
-    "--out",
-    callback=common.folder,
-    help="Folder for the recording and what was learned.  [default: sigmahat-results/CONFIG-live]",
-)
+@common.out_option("Folder for the recording and what was learned.", "CONFIG-live")
 @click.option(
     "--start-from",
-    type=click.Path(path_type=Path),
+    type=common.PATH,
     help="Go on from what was learned before: a folder of results, or its state.json.",
 )
 @common.json_option
@@ -79,8 +72,7 @@ def live(
     from sigmahat.files.output import created_folder
     from sigmahat.live.endpoints import Endpoints
     from sigmahat.live.session import Session
-    from sigmahat.live.sources import Inbox, start
-    from sigmahat.live.watch import watch
+    from sigmahat.live.watch import Inbox, terminal, watch
 
     common.need_fmu("StiffnessEstimator")
     out = out or Path("sigmahat-results", f"{config.stem}-live")
@@ -91,14 +83,12 @@ def live(
         opened = ends.source(source, titles) if replay is None else ends.replay(replay)
         sinks = [ends.sink(each) for each in targets]
         if not common.is_quiet():
-            from sigmahat.live.terminal import Terminal
-
             name = source if replay is None else f"the log {replay}"
             click.echo(common.printable(_greeting(session, name, targets, host)), err=True)
-            sinks.append(Terminal())
-        start(opened, inbox)
-        counted = watch(session, inbox, sinks)
-    values = _counts(session, counted, inbox.dropped)
+            sinks.append(terminal())
+        Thread(target=opened, args=[inbox], daemon=True).start()
+        watch(session, inbox, sinks)
+    values = _counts(session, inbox)
     counts = [f"{count} {what}" for what, count in values.items() if count or what == "read"]
     lines = [f"messages: {', '.join(counts)}"]
     if session.recordings:
@@ -133,12 +123,12 @@ def _greeting(session: Session, source: str, targets: Sequence[str], host: str) 
     return "\n".join(lines)
 
 
-def _counts(session: Session, counted: Counted, dropped: int) -> dict[str, int]:
+def _counts(session: Session, inbox: Inbox) -> dict[str, int]:
     clocks, joints = session.clocks.values(), session.joints
     return {
-        "read": counted.messages,
-        "not readable": counted.wrong,
-        "lost in this program": dropped,
+        "read": inbox.read,
+        "not readable": inbox.wrong,
+        "lost in this program": inbox.dropped,
         "missing": sum(each.lost for each in clocks),
         "double": sum(each.double for each in clocks),
         "late": sum(each.late for each in clocks),

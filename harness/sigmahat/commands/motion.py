@@ -42,31 +42,20 @@ def _limit(name: str, text: str) -> click.Option:
         _limit("deformation", "Largest deformation of the transmission [rad]."),
     ]
 )
-@click.argument("config", required=False, type=click.Path(path_type=Path, dir_okay=False))
-@click.option(
-    "--seconds",
-    type=_Number(5, 600),
-    default=30.0,
-    show_default=True,
-    help="Duration of the motion.",
-)
-@click.option(
+@click.argument("config", required=False, type=common.FILE)
+@common.option("--seconds", type=_Number(5, 600), default=30.0, help="Duration of the motion.")
+@common.option(
     "--start",
     type=_Number(-1e6, 1e6),
     default=0.0,
-    show_default=True,
     help="Start position of the motor at the gear output [rad].",
 )
 @click.option(
     "--after",
-    type=click.Path(path_type=Path),
+    type=common.PATH,
     help="Use what this log shows of the joint; CONFIG is its configuration.",
 )
-@click.option(
-    "--out",
-    callback=common.folder,
-    help="Folder to write into.  [default: sigmahat-results/motion]",
-)
+@common.out_option("Folder to write into.", "motion")
 @click.option("--joint", metavar="NAME", default="", help="Which of several joints of CONFIG.")
 @common.json_option
 @common.quiet_option

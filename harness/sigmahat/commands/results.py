@@ -22,14 +22,10 @@ if TYPE_CHECKING:
 @click.command()
 @common.log_argument
 @common.config_option("File from `sigmahat init`.")
-@click.option(
-    "--out",
-    callback=common.folder,
-    help="Folder for table and figure.  [default: sigmahat-results/LOG]",
-)
+@common.out_option("Folder for table and figure.", "LOG")
 @click.option(
     "--start-from",
-    type=click.Path(path_type=Path),
+    type=common.PATH,
     help="Go on from what was learned before: the folder of another log, or its state.json.",
 )
 @click.option(
@@ -97,35 +93,24 @@ def _estimated(
     """Writes the files of a joint. Returns its estimate and the result of the checks."""
     from sigmahat.checks.check import check
     from sigmahat.checks.text import rows
-    from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.readers.formats import open_log
     from sigmahat.report.from_log import estimated
 
-    opened = open_log(log)
-    configuration = read_configuration(config, joint)
+    opened, configuration = common.opened(log, config, joint)
     # The figure needs this import, which can run meanwhile: the replay is mostly C code.
     Thread(target=_import, args=["matplotlib.figure"]).start()
     checked = check(opened, configuration)
     if start_from is not None and start_from.is_dir():
         start_from /= joint
+    ours = rows(checked), out / joint
     with common.progress("Replaying", 1000) as bar:
-        result = estimated(
-            opened,
-            configuration,
-            rows(checked),
-            out / joint,
-            bar.update,
-            start_from,
-            mcap=to == "mcap",
-        )
+        result = estimated(opened, configuration, *ours, bar.update, start_from, mcap=to == "mcap")
     return result, checked
 
 
-def _import(*modules: str) -> None:
-    """Imports modules in advance; a failure is raised again when a module is needed."""
+def _import(module: str) -> None:
+    """Imports a module in advance; a failure is raised again when the module is needed."""
     with suppress(ImportError):
-        for module in modules:
-            import_module(module)
+        import_module(module)
 
 
 @click.command()
@@ -134,12 +119,12 @@ def _import(*modules: str) -> None:
     "--with",
     "config",
     required=True,
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=common.FILE,
     help="Configuration with which `sigmahat estimate` learned from the first log.",
 )
 @click.option(
     "--start-from",
-    type=click.Path(path_type=Path),
+    type=common.PATH,
     help="What was learned: its folder, or state.json.  [default: sigmahat-results/CONFIG]",
 )
 @common.joint_option
@@ -167,13 +152,11 @@ def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> in
 
 
 def _validated(log: Path, config: Path, start_from: Path, joint: str) -> Validation:
-    from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.readers.formats import open_log
     from sigmahat.validation.validate import validate
 
     if start_from.is_dir():
         start_from /= joint
-    return validate(open_log(log), read_configuration(config, joint), start_from)
+    return validate(*common.opened(log, config, joint), start_from)
 
 
 _START_VALUES = {"ssv": ".ssv", "matlab": ".m", "modelica": ".mo"}
@@ -182,7 +165,7 @@ _SUFFIXES = {**_START_VALUES, **_MODELS}
 
 
 @click.command()
-@click.argument("sheet", type=click.Path(path_type=Path))
+@click.argument("sheet", type=common.PATH)
 @click.option(
     "--to",
     required=True,
@@ -192,10 +175,10 @@ _SUFFIXES = {**_START_VALUES, **_MODELS}
 )
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=common.FILE,
     help=f"File to write.  [default: SHEET with the suffix {', '.join(_SUFFIXES.values())}]",
 )
-@click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
+@common.force_option
 @common.quiet_option
 def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     """Write the data sheet of a joint as start values of the FMU, or as a joint for a simulator.
@@ -216,10 +199,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     path = out or FORMAT.path(sheet).with_suffix(_SUFFIXES[to])
     with common.errors_in_one_line(path, "--out FILE"):
         contents = FORMAT.read(sheet)
-        if path.exists() and not force:
-            raise click.ClickException(
-                f"{path} exists; --force overwrites it, --out names another file"
-            )
+        common.refuse_to_overwrite(path, force, "--out")
         if to in _MODELS:
             write_model(contents, to, path)
             text = f"The joint as two hinges is in {path.resolve()}; its link is a placeholder"
@@ -230,10 +210,10 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("folder", type=common.PATH)
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=common.FILE,
     help="File to write.  [default: report.html in FOLDER]",
 )
 @common.quiet_option

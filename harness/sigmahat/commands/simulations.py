@@ -11,36 +11,20 @@ from sigmahat.commands import common
 
 
 def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
-    """Scenarios, for the completion of the shell."""
     from sigmahat.paper.scenarios import SCENARIOS
 
     return [name for name in SCENARIOS if name.startswith(begin)]
 
 
 @click.command()
-@click.option(
-    "--scenario",
-    "name",
-    default="table1",
-    show_default=True,
-    shell_complete=_names,
-    help="What to run.",
+@common.option("--scenario", default="table1", shell_complete=_names, help="What to run.")
+@common.option(
+    "--seeds", default=1, type=common.COUNT, help="Number of runs, each with other noise."
 )
-@click.option(
-    "--seeds",
-    default=1,
-    show_default=True,
-    type=click.IntRange(min=1),
-    help="Number of runs, each with other noise.",
-)
-@click.option(
-    "--out",
-    callback=common.folder,
-    help="Folder for figures and CSV files.  [default: sigmahat-results/SCENARIO]",
-)
+@common.out_option("Folder for figures and CSV files.", "SCENARIO")
 @common.json_option
 @common.quiet_option
-def reproduce(name: str, seeds: int, out: Path | None) -> None:
+def reproduce(scenario: str, seeds: int, out: Path | None) -> None:
     """Run a scenario; print its table, draw its figures.
 
     \b
@@ -57,10 +41,10 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
     )
     from sigmahat.runs.metrics import MSREP_IN_WORDS
 
-    chosen = common.ready_scenario(name)
+    chosen = common.ready_scenario(scenario)
     if seeds > 1:
         import_module("scipy")  # intervals need scipy: report a missing package before the runs
-    out = out or Path("sigmahat-results", name)
+    out = out or Path("sigmahat-results", scenario)
     numbers = range(1, seeds + 1)
     with common.errors_in_one_line(out), output_folder(out) as folder:
         with common.progress("Running", progress_length(chosen, numbers)) as bar:
@@ -88,38 +72,26 @@ def reproduce(name: str, seeds: int, out: Path | None) -> None:
     help="FilteredRegression on joints with hysteresis, backlash, bad friction and sensors, ..., "
     "in place of both methods.",
 )
-@click.option(
+@common.option(
     "--seeds",
     default=5,
-    show_default=True,
-    type=click.IntRange(min=1),
+    type=common.COUNT,
     help="Number of runs of each joint, each with other noise.",
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    help="Processes to use.  [default: all cores]",
-)
-@click.option(
-    "--out",
-    default="sigmahat-results/compare",
-    show_default=True,
-    callback=common.folder,
-    help="Folder for figure and CSV file.",
-)
+@click.option("--jobs", type=common.COUNT, help="Processes to use.  [default: all cores]")
+@common.out_option("Folder for figure and CSV file.", "compare")
 @common.json_option
 @common.quiet_option
-def compare(misfits: bool, seeds: int, jobs: int | None, out: Path) -> None:
+def compare(misfits: bool, seeds: int, jobs: int | None, out: Path | None) -> None:
     """Compare the estimation methods on joints with wrong motor data.
 
     \b
     Example: sigmahat compare --seeds 20 --out compare
     """
-    (_misfits if misfits else _methods)(seeds, jobs, out)
+    (_misfits if misfits else _methods)(seeds, jobs, out or Path("sigmahat-results", "compare"))
 
 
 def _methods(seeds: int, jobs: int | None, out: Path) -> None:
-    """Compares both methods on joints with wrong motor data."""
     from sigmahat.compare.conditions import JOINTS, TRUE
     from sigmahat.compare.job import CALIBRATED, compare
     from sigmahat.compare.table import as_dicts, table, write
@@ -150,7 +122,6 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
 
 
 def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
-    """FilteredRegression on the catalogue of misfits."""
     from sigmahat.compare.misfits.conditions import CONDITIONS
     from sigmahat.compare.misfits.experiment import JOINTS
     from sigmahat.compare.misfits.job import ESTIMATOR, SETTLED, compare, pairs
@@ -209,11 +180,9 @@ def _listed(_: click.Context, __: click.Parameter, text: str | None) -> tuple[st
 
 
 @click.command()
-@click.argument("plan", required=False, type=click.Path(path_type=Path, dir_okay=False))
+@click.argument("plan", required=False, type=common.FILE)
 @click.option("--scenario", callback=_listed, help="One or more, a,b.  [default: table1]")
-@click.option(
-    "--seeds", type=click.IntRange(min=1), help="Number of runs of each setting.  [default: 1]"
-)
+@click.option("--seeds", type=common.COUNT, help="Number of runs of each setting.  [default: 1]")
 @click.option("--modality", callback=_listed, help="Estimators to run, a,b.  [default: all]")
 @click.option(
     "--set",
@@ -226,11 +195,7 @@ def _listed(_: click.Context, __: click.Parameter, text: str | None) -> tuple[st
 @click.option(
     "--scheduler", metavar="ADDRESS", help="Dask scheduler, tcp://host:port.  [default: all cores]"
 )
-@click.option(
-    "--out",
-    callback=common.folder,
-    help="Folder for table and figures.  [default: sigmahat-results/sweep]",
-)
+@common.out_option("Folder for table and figures.", "sweep")
 @common.json_option
 @common.quiet_option
 def sweep(

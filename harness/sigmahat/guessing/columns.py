@@ -1,4 +1,4 @@
-"""The columns of a log for the guess: names, values, times and the time between rows."""
+"""The columns of a log for the guess: names, values, steps, counters, and times of the rows."""
 
 from __future__ import annotations
 
@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sigmahat.guessing.facts import Facts, look_at
 from sigmahat.guessing.words import Meaning, meaning
 from sigmahat.logs.limits import check_together
-from sigmahat.logs.log import Array, Log
-from sigmahat.logs.units import seconds
+from sigmahat.logs.log import Array, Log, LogError
+from sigmahat.logs.units import seconds, unwrap
 
 _MOSTLY = 0.99  # least fraction of the steps of a clock that increase
 _EVEN = 0.05  # largest relative difference of a step from the usual step
@@ -21,6 +20,107 @@ _EPOCH = {"ns": 1e17, "us": 1e14, "ms": 1e11, "s": 1e8}  # from about 1973 on
 _FASTEST, _SLOWEST = 2e-5, 0.2  # usual time between rows of a log [s]
 FASTEST_ROWS, SLOWEST_ROWS = 2e-5, 0.05
 """Limits of the time between rows; outside, a stiffness can hardly be estimated [s]."""
+TURN = {"rad": 2 * np.pi, "mrad": 2000 * np.pi, "deg": 360.0, "turn": 1.0}
+"""A turn in units of angle."""
+_DISTINCT = 20000  # number of values that are searched for the step of an encoder
+_STATES = 8  # a column with fewer whole numbers is a state or a flag
+_FEWEST_COUNTS = 100  # of an encoder in a turn
+_JUMP = 0.5  # of the range: a larger step may be a counter that starts again
+_SEEN = 0.02  # largest relative difference between a jump and a known period
+
+
+@dataclass(frozen=True)
+class Facts:
+    samples: int
+    low: float = np.nan  # smallest value; nan if there is no number
+    high: float = np.nan  # largest value; nan if there is no number
+    integer: bool = False
+    """Whether all values are whole numbers, with more than a few distinct values."""
+    varies: bool = False  # whether the column has more than a few distinct values
+    increasing: float = 0.0  # fraction of the steps that increase [1]
+    step: float = np.inf
+    """Distance between neighbouring values of a quantised column; inf if it is not quantised."""
+    wrap: float | None = None
+    """Period after which a counter starts again; None if the column is no such counter."""
+    text: bool = False  # whether the column contains something other than numbers
+
+
+def look_at(log: Log, name: str) -> tuple[Facts, Array]:
+    """Facts of a column and its values, unwrapped; no values if the column contains text."""
+    try:
+        values = log.read(name)
+    except LogError:
+        return Facts(log.samples(name), text=True), np.empty(0)
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return Facts(len(values)), values
+    steps = np.diff(finite)
+    few = len(np.unique(finite[:_DISTINCT])) < min(_STATES, len(finite))
+    integer = not few and bool(np.all(finite == np.round(finite)))
+    wrap = None if few else _wrap(steps, float(np.ptp(finite)))
+    increasing = float(np.mean(steps > 0)) if len(steps) else 0.0
+    ends, step = (float(finite.min()), float(finite.max())), 1.0 if integer else _step(finite)
+    facts = Facts(len(values), *ends, integer, not few, increasing, step, wrap)
+    return facts, values if wrap is None else unwrap(values, wrap)[0]
+
+
+def counts_per_turn(facts: Facts, unit: str) -> int:
+    """Counts per turn of the encoder, from the steps of a column; 0 if too few for an encoder."""
+    counts = TURN[unit] / facts.step if unit in TURN else 0.0
+    return round(counts) if counts >= _FEWEST_COUNTS else 0
+
+
+def unit_of_steps(facts: Facts) -> str | None:
+    """Unit of an angle in which its steps are a usual part of a turn: 1/4096, 1/2000."""
+    for unit in ("deg", "rad", "turn"):
+        counts = TURN[unit] / facts.step
+        n = round(counts)
+        usual = n and (n & (n - 1) == 0 or n % 100 == 0)
+        if usual and n >= _FEWEST_COUNTS and abs(counts / n - 1) < 1e-5:
+            return unit
+    return None
+
+
+def _step(finite: Array) -> float:
+    """Step of a quantised column; inf if the column is not quantised."""
+    distinct = np.unique(finite[:_DISTINCT])
+    steps = np.diff(distinct)
+    steps = steps[steps > 1e-9 * max(np.ptp(distinct), 1e-300)] if len(steps) else steps
+    if len(steps) < 5:
+        return np.inf
+    step = float(np.median(steps[steps < 1.5 * steps.min()]))
+    ratio = steps / step
+    even = np.abs(ratio - np.round(ratio)) < 0.05
+    if np.mean(even) <= 0.95:
+        return np.inf
+    # Over many steps the last digits of the values matter less.
+    return float(np.sum(steps[even]) / np.sum(np.round(ratio[even])))
+
+
+def _wrap(steps: Array, span: float) -> float | None:
+    """Period of a counter that starts again: a power of two, a full turn, or a round number."""
+    size = np.abs(steps)
+    jumps = np.flatnonzero(size > _JUMP * span)
+    if span == 0 or not len(jumps):
+        return None
+    usual = float(np.quantile(size, 0.99 if len(jumps) < 0.01 * len(size) else 0.5))
+    if usual > 0.2 * size[jumps].min():
+        return None
+    inner = jumps[(jumps > 0) & (jumps < len(size) - 1)]
+    if not len(inner):
+        return None
+    # The motion continues during a jump: the jump and the expected step add up to a period.
+    coming = 0.5 * (steps[inner - 1] + steps[inner + 1])
+    coming[np.abs(coming) > 0.2 * span] = 0.0
+    period = float(np.median(np.abs(steps[inner] - coming)))
+    exact = [360.0, 2 * np.pi, 1.0, *(2.0**k for k in range(8, 33))]
+    best = min(exact, key=lambda each: abs(each / period - 1))
+    if abs(best / period - 1) < _SEEN:
+        return best
+    # Another period is accepted only if the motion continues during each jump.
+    noise = float(np.median(np.abs(np.diff(steps))))
+    on = -np.sign(steps[inner]) * coming > 3 * noise
+    return float(f"{period:.3g}") if len(inner) > 1 and on.all() else None
 
 
 def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:
@@ -113,13 +213,10 @@ _WINDOW = 20_000  # samples in which columns are compared
 
 @dataclass(frozen=True)
 class Column:
-    """One column that is not a clock."""
-
     name: str
     meaning: Meaning
     facts: Facts
-    clock: str | None
-    """The column with the times of this column; None without times."""
+    clock: str | None  # the column with the times of this column; None without times
     window: Array
     """Unwrapped values in the part with most motion, at the same times for all columns [size: n];
     empty if the column has no numbers."""
@@ -143,19 +240,13 @@ def lost_rows(times: Array, T: float) -> float | None:
 
 @dataclass(frozen=True)
 class Columns:
-    """All columns of a log."""
-
     signals: Sequence[Column]
-    clocks: Mapping[str, str]
-    """Units of the columns of times, by name."""
-    facts: Mapping[str, Facts]
-    """Facts of all columns, by name."""
+    clocks: Mapping[str, str]  # units of the columns of times, by name
+    facts: Mapping[str, Facts]  # facts of all columns, by name
     intervals: Mapping[str | None, float]
     """Usual time between rows [s], by clock; by None for columns without a clock."""
-    gaps: Mapping[str | None, float | None]
-    """As `lost_rows`, by clock."""
-    window_T: float
-    """Time between the samples of the windows [s]."""
+    gaps: Mapping[str | None, float | None]  # as `lost_rows`, by clock
+    window_T: float  # time between the samples of the windows [s]
 
 
 def read_columns(log: Log) -> Columns:
@@ -171,7 +262,8 @@ def read_columns(log: Log) -> Columns:
         for name in log.columns
         if is_clock(meanings[name], facts[name], values[name])
     }
-    units = _named(units, meanings)
+    named = {name: unit for name, unit in units.items() if meanings[name].quantity == "time"}
+    units = named or units
     times = {name: values[name] * seconds(unit) for name, unit in units.items()}
     intervals: dict[str | None, float] = {name: interval(t) for name, t in times.items()}
     intervals[None] = 1e-3
@@ -181,24 +273,9 @@ def read_columns(log: Log) -> Columns:
     signals = [name for name in log.columns if name not in units]
     moving = [name for name in signals if facts[name].varies]
     T = min((intervals[clocks[name]] for name in moving), default=1e-3)
-    windows = _windows(moving, values, clocks, times, T)
-    return Columns(
-        [
-            Column(name, meanings[name], facts[name], clocks[name], windows.get(name, np.empty(0)))
-            for name in signals
-        ],
-        units,
-        facts,
-        intervals,
-        gaps,
-        T,
-    )
-
-
-def _named(units: dict[str, str], meanings: Mapping[str, Meaning]) -> dict[str, str]:
-    """Only the clocks whose name means a time, if any; else all clocks."""
-    named = {name: unit for name, unit in units.items() if meanings[name].quantity == "time"}
-    return named or units
+    windows = dict.fromkeys(signals, np.empty(0)) | _windows(moving, values, clocks, times, T)
+    found = [Column(n, meanings[n], facts[n], clocks[n], windows[n]) for n in signals]
+    return Columns(found, units, facts, intervals, gaps, T)
 
 
 def _clock_of(column: str, log: Log, clocks: Sequence[str]) -> str | None:
@@ -209,13 +286,9 @@ def _clock_of(column: str, log: Log, clocks: Sequence[str]) -> str | None:
 
 def _common(one: str, other: str) -> int:
     """Number of first letters that both names share, up to the last separator."""
-    n = 0
-    for i, (a, b) in enumerate(zip(one, other, strict=False)):
-        if a != b:
-            break
-        if a in "/.":
-            n = i + 1
-    return n
+    same = [a == b for a, b in zip(one, other, strict=False)]
+    shared = one[: [*same, False].index(False)]
+    return 1 + max(shared.rfind("/"), shared.rfind("."))
 
 
 def _windows(

@@ -28,7 +28,8 @@ def joints_of_log(columns: Sequence[Column], T: float) -> dict[str, Roles]:
     T  time between the samples of the windows of the columns [s]
     """
     placed = [each for each in columns if each.meaning.quantity in _OF_A_JOINT]
-    for groups in (_groups(placed, _all_words(placed)), _groups(placed, _joint_words(placed))):
+    of_joints = {each.name: each.meaning.joints for each in placed}
+    for groups in (_groups(placed, _all_words(placed)), _groups(placed, of_joints)):
         found = {name: assign(group, T) for name, group in groups.items()}
         whole = {name: roles for name, roles in found.items() if name and roles.is_complete}
         if len(whole) > 1:
@@ -45,7 +46,6 @@ def joints_of_log(columns: Sequence[Column], T: float) -> dict[str, Roles]:
 def _groups(
     columns: Sequence[Column], words: Mapping[str, Sequence[str]]
 ) -> dict[str, list[Column]]:
-    """Columns by these words of their names."""
     groups: dict[str, list[Column]] = {}
     for column in columns:
         groups.setdefault("_".join(words[column.name]), []).append(column)
@@ -63,41 +63,26 @@ def _all_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
     }
 
 
-def _joint_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
-    return {each.name: each.meaning.joints for each in columns}
-
-
 @dataclass(frozen=True)
 class Seen:
-    """A column of the log, and the kind of signal that it seems to contain."""
-
     name: str
     samples: int
-    low: float
-    """Smallest value; nan if the column has no numbers."""
-    high: float
-    """Largest value; nan if the column has no numbers."""
-    what: str
-    """In a few words: the port, or why the column has no port."""
+    low: float  # smallest value; nan if the column has no numbers
+    high: float  # largest value; nan if the column has no numbers
+    what: str  # in a few words: the port, or why the column has no port
 
 
 @dataclass(frozen=True)
 class JointGuess:
-    """All guesses for one joint of a log."""
-
-    name: str
-    """Name of the joint in the columns; empty if no column names a joint."""
+    name: str  # name of the joint in the columns; empty if no column names a joint
     time: str | None
     """The time column of ports without their own time column; None if rows are T apart."""
     time_unit: str
-    T: float
-    """Usual time between rows [s]."""
+    T: float  # usual time between rows [s]
     longest_gap: float | None
     """Longest gap because of single lost rows [s]; None if no rows are lost."""
-    ports: Mapping[str, PortGuess]
-    """Guesses of the ports that have a column, in the order of PORTS."""
-    columns: Sequence[Seen]
-    """All columns of the log, including columns of other joints."""
+    ports: Mapping[str, PortGuess]  # guesses of the ports that have a column, in the order of PORTS
+    columns: Sequence[Seen]  # all columns of the log, including columns of other joints
 
 
 def guess(log: Log) -> dict[str, JointGuess]:
@@ -131,12 +116,8 @@ def guess_chosen(columns: Columns, names: Mapping[str, str | None]) -> dict[str,
 
     names  of columns, by port; columns that do not move are left out
     """
-    by_name = {each.name: each for each in columns.signals}
-    chosen = {
-        port: by_name[name]
-        for port, name in names.items()
-        if name in by_name and len(by_name[name].window)
-    }
+    moving = {each.name: each for each in columns.signals if len(each.window)}
+    chosen = {port: moving[name] for port, name in names.items() if name in moving}
     roles = chosen_roles(chosen, columns.window_T)
     clocks = [column.clock for column in chosen.values()]
     return guess_ports(roles, columns, next(iter(clocks), None))
@@ -144,33 +125,23 @@ def guess_chosen(columns: Columns, names: Mapping[str, str | None]) -> dict[str,
 
 def _joint(name: str, roles: Roles, columns: Columns, log: Log) -> JointGuess:
     clocks = {port: role.column.clock for port, role in roles.ports.items()}
-    main = next(
-        (clocks[port] for port in PORTS if port in clocks), next(iter(columns.clocks), None)
-    )
+    first = [clocks[port] for port in PORTS if port in clocks]
+    main = first[0] if first else next(iter(columns.clocks), None)
     ports = guess_ports(roles, columns, main)
     uses = {port.column: f"ports.{each}" for each, port in ports.items()}
-    uses |= dict.fromkeys(
-        (each for each in (main, *(p.time for p in ports.values())) if each), "time"
-    )
+    times = [main, *(port.time for port in ports.values())]
+    uses |= dict.fromkeys((each for each in times if each), "time")
     by_name = {each.name: each for each in columns.signals}
     seen = []
     for column, samples in log.columns.items():
         facts = columns.facts[column]
         other = _what(by_name[column]) if column in by_name else "another time"
         seen.append(Seen(column, samples, facts.low, facts.high, uses.get(column) or other))
-    return JointGuess(
-        name,
-        main,
-        columns.clocks.get(main or "", "s"),
-        columns.intervals[main],
-        columns.gaps[main],
-        ports,
-        seen,
-    )
+    unit = columns.clocks.get(main or "", "s")
+    return JointGuess(name, main, unit, columns.intervals[main], columns.gaps[main], ports, seen)
 
 
 def _what(column: Column) -> str:
-    """The likely meaning of a column without a port."""
     meaning, facts = column.meaning, column.facts
     if facts.text:
         return "text"

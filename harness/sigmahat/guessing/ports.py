@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from sigmahat.guessing.columns import Column, Columns
-from sigmahat.guessing.facts import TURN, counts_per_turn, unit_of_steps
+from sigmahat.guessing.columns import TURN, Column, Columns, counts_per_turn, unit_of_steps
 from sigmahat.guessing.relations import line, scale_of_derivative
 from sigmahat.guessing.roles import Role, Roles
 from sigmahat.logs.log import Array
@@ -30,25 +30,17 @@ class PortGuess:
     """The column of a port, as the keys of a configuration describe it."""
 
     column: str
-    why: str
-    """Why this column."""
+    why: str  # why this column
     low: float
-    high: float
-    """Range of its values."""
-    unit: str | None
-    """None if the unit cannot be guessed: then the user has to fill in `scale`."""
+    high: float  # range of its values
+    unit: str | None  # None if the unit cannot be guessed: then the user has to fill in `scale`
     wrap: float | None
     """Period of a counter that starts again, in the unit of the column; None without a period."""
-    time: str | None
-    """The time column of the port, if it differs from the time column of the joint."""
-    notes: Mapping[str, str]
-    """What to know or to check, by key."""
-    sign: int = 1
-    """1 or -1."""
-    zero: float = 0.0
-    """Zero of the port, in the unit of the column."""
-    gear_ratio: float | None = 1.0
-    """None if the user has to fill in the gear ratio."""
+    time: str | None  # the time column of the port, if it differs from the time column of the joint
+    notes: Mapping[str, str]  # what to know or to check, by key
+    sign: int = 1  # 1 or -1
+    zero: float = 0.0  # zero of the port, in the unit of the column
+    gear_ratio: float | None = 1.0  # None if the user has to fill in the gear ratio
     moves: float | None = None
     """For theta: approximate ratio of its motion to the motion of the link; None if not known.
 
@@ -59,23 +51,22 @@ class PortGuess:
     steps: int = 0
     """Steps of the values per turn, if the unit is not counts; 0 if the values have no steps."""
 
+    def noted(self, key: str, note: str, **changes: Any) -> PortGuess:
+        """The guess with a note to a key, and other changes."""
+        return replace(self, notes={**self.notes, key: note}, **changes)
+
 
 def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, PortGuess]:
     """The guess for every port that has a column.
 
     main  the time column of the joint
     """
-    ports = {
-        port: _plain(port, role, role.column.clock if role.column.clock != main else None)
-        for port, role in roles.ports.items()
-    }
-    theta, q = roles.ports.get("theta"), roles.ports.get("q")
-    for port in ("theta", "q"):
-        if port in ports:
-            unit = _angle(roles.ports[port].column, columns, port == "q")
-            ports[port] = _with_unit(ports[port], roles.ports[port].column, unit, port)
-    if theta and q:
-        ports |= _together(ports, theta.column, q.column)
+    ports = {port: _plain(port, role, main) for port, role in roles.ports.items()}
+    angles = {port: roles.ports[port].column for port in ("theta", "q") if port in ports}
+    for port, column in angles.items():
+        ports[port] = _with_unit(ports[port], column, _angle(column, columns, port == "q"), port)
+    if len(angles) == 2:
+        ports |= _together(ports, *angles.values())
     if "tau" in ports:
         ports["tau"] = _torque(ports["tau"], roles)
     if "tau_e_sensor" in ports:
@@ -83,7 +74,7 @@ def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, P
     return ports
 
 
-def _plain(port: str, role: Role, time: str | None) -> PortGuess:
+def _plain(port: str, role: Role, main: str | None) -> PortGuess:
     """A port whose unit is known only from the name of its column."""
     column = role.column
     facts, unit = column.facts, column.meaning.unit
@@ -94,6 +85,7 @@ def _plain(port: str, role: Role, time: str | None) -> PortGuess:
     wrap = facts.wrap if unit not in ("A", "mA", "N.m", "mN.m") else None
     if wrap is not None:
         notes["wrap"] = "CHECK: the column jumps by this value"
+    time = column.clock if column.clock != main else None
     return PortGuess(column.name, role.why, facts.low, facts.high, unit, wrap, time, notes)
 
 
@@ -136,21 +128,15 @@ def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> st
 
 
 def _with_unit(port: PortGuess, column: Column, found: tuple[str, str], name: str) -> PortGuess:
-    unit, how = found
-    notes = {**port.notes, **({"unit": how} if how else {})}
-    turn, facts = None, column.facts
-    if unit == "counts" and name == "q" and facts.wrap is not None:
-        least, most = _SINGLE_TURN
-        if least <= facts.wrap <= most:
-            turn = facts.wrap
-            notes["counts_per_turn"] = "CHECK: the counter starts again after this number"
-    return replace(
-        port,
-        unit=unit,
-        counts_per_turn=turn,
-        steps=counts_per_turn(facts, unit),
-        notes=notes,
-    )
+    (unit, how), wrap = found, column.facts.wrap
+    port = replace(port, unit=unit, steps=counts_per_turn(column.facts, unit))
+    if how:
+        port = port.noted("unit", how)
+    least, most = _SINGLE_TURN
+    if unit == "counts" and name == "q" and wrap is not None and least <= wrap <= most:
+        note = "CHECK: the counter starts again after this number"
+        port = port.noted("counts_per_turn", note, counts_per_turn=wrap)
+    return port
 
 
 def _together(ports: Mapping[str, PortGuess], motor: Column, link: Column) -> dict[str, PortGuess]:
@@ -166,18 +152,17 @@ def _together(ports: Mapping[str, PortGuess], motor: Column, link: Column) -> di
     theta = _gear(theta, q, 1 / abs(fitted.slope), fitted.rest)
     ratio = _ratio(theta, q)
     if fitted.slope < 0:
-        q = replace(q, sign=-1, notes={**q.notes, "sign": "it moves against the motor"})
+        q = q.noted("sign", "it moves against the motor", sign=-1)
     slope = math.copysign(ratio or abs(fitted.slope), fitted.slope)
     zeros = _zeros(motor.window, link.window, slope, fitted.rest * float(np.std(link.window)))
     if zeros is not None:
         note = "CHECK: mean of the column, as the zeros of both do not agree"
-        theta = replace(theta, zero=_short(zeros[0], motor), notes={**theta.notes, "zero": note})
-        q = replace(q, zero=_short(zeros[1], link), notes={**q.notes, "zero": note})
+        theta = theta.noted("zero", note, zero=_short(zeros[0], motor))
+        q = q.noted("zero", note, zero=_short(zeros[1], link))
     return {"theta": theta, "q": q}
 
 
 def _is_vague(port: PortGuess) -> bool:
-    """Whether the unit of a port is only a guess."""
     return port.notes.get("unit", "").startswith("CHECK")
 
 
@@ -190,8 +175,7 @@ def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess
         return port
     same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
     unit = same[0] if same else other.unit
-    how = "CHECK: by the other position, with which it moves"
-    return replace(port, unit=unit, notes={**port.notes, "unit": how})
+    return port.noted("unit", "CHECK: by the other position, with which it moves", unit=unit)
 
 
 def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGuess:
@@ -204,12 +188,13 @@ def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGues
         gear = slope * TURN[q.unit] / TURN[theta.unit]
         if 1 / _AFTER_GEAR < gear < _AFTER_GEAR:
             note = "it moves as far as the link, so it is measured after the gear"
-            return replace(theta, gear_ratio=1.0, notes={**theta.notes, "gear_ratio": note})
+            return theta.noted("gear_ratio", note, gear_ratio=1.0)
         whole = max(round(gear), 1)
         sure = rest < _STIFF and abs(gear / whole - 1) < _WHOLE
-        moves = f"the motor moves {gear:.4g} times as far as the link"
-        notes = {**theta.notes, "gear_ratio": f"{'CHECK' if sure else 'FILL IN'}: {moves}"}
-        return replace(theta, gear_ratio=float(whole) if sure else None, moves=gear, notes=notes)
+        note = f"the motor moves {gear:.4g} times as far as the link"
+        note = f"{'CHECK' if sure else 'FILL IN'}: {note}"
+        ratio = float(whole) if sure else None
+        return theta.noted("gear_ratio", note, gear_ratio=ratio, moves=gear)
     product = None
     note = "FILL IN: 1 if theta is measured after the gear"
     if q.unit in TURN:
@@ -218,8 +203,7 @@ def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGues
         product = slope * q.counts_per_turn
     if product is not None:
         note = f"FILL IN: gear_ratio times counts_per_turn is about {product:.4g}"
-    notes = {**theta.notes, "gear_ratio": note}
-    return replace(theta, gear_ratio=None, moves=product, notes=notes)
+    return theta.noted("gear_ratio", note, gear_ratio=None, moves=product)
 
 
 def _ratio(theta: PortGuess, q: PortGuess) -> float | None:
@@ -266,7 +250,6 @@ def _torque(port: PortGuess, roles: Roles) -> PortGuess:
 
 
 def _sensor(ports: Mapping[str, PortGuess], roles: Roles) -> PortGuess:
-    """The torque sensor: its unit, and its sign from the deformation."""
     port, column = ports["tau_e_sensor"], roles.ports["tau_e_sensor"].column
     notes = dict(port.notes)
     unit = port.unit if port.unit not in ("counts", "A", "mA") else None
@@ -277,7 +260,7 @@ def _sensor(ports: Mapping[str, PortGuess], roles: Roles) -> PortGuess:
     together = 0.0 if deformation is None else line(deformation, column.window).correlation
     if together > -_SURE:
         return port
-    return replace(port, sign=-1, notes={**notes, "sign": "opposite to the deformation"})
+    return port.noted("sign", "opposite to the deformation", sign=-1)
 
 
 def _deformation(ports: Mapping[str, PortGuess], roles: Roles) -> Array | None:

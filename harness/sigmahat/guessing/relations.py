@@ -28,8 +28,7 @@ class Line:
     slope: float
     offset: float
     correlation: float
-    rest: float
-    """Standard deviation of the residual, relative to y."""
+    rest: float  # standard deviation of the residual, relative to y
 
 
 def line(x: Array, y: Array) -> Line:
@@ -39,12 +38,8 @@ def line(x: Array, y: Array) -> Line:
     if xx == 0 or yy == 0:
         return Line(0.0, float(y.mean()), 0.0, 1.0)
     slope, correlation = xy / xx, xy / np.sqrt(xx * yy)
-    return Line(
-        slope,
-        float(y.mean() - slope * x.mean()),
-        correlation,
-        float(np.sqrt(max(1 - correlation**2, 0.0))),
-    )
+    rest = float(np.sqrt(max(1 - correlation**2, 0.0)))
+    return Line(slope, float(y.mean() - slope * x.mean()), correlation, rest)
 
 
 def is_copy(x: Array, y: Array) -> bool:
@@ -91,10 +86,8 @@ def scale_of_derivative(x: Array, v: Array, T: float) -> float | None:
 class Drive:
     """Relation between a torque and the motion of two positions, by the motor equation (3)."""
 
-    explained: float
-    """Explained fraction of the variance of the torque [1]."""
-    sign: int
-    """1 if the torque drives the motion, -1 if its sign is reversed, 0: not sure."""
+    explained: float  # explained fraction of the variance of the torque [1]
+    sign: int  # 1 if the torque drives the motion, -1 if its sign is reversed, 0: not sure
 
 
 def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
@@ -111,16 +104,9 @@ def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     fitted = line(x, y)
     behind = smooth(x - (y - fitted.offset) / fitted.slope) if fitted.slope else 0 * x[_INNER]
     velocity = smooth(x, T, 1)
-    parts = np.column_stack(
-        [
-            smooth(x, T, 2),
-            velocity,
-            np.tanh(velocity / (0.05 * np.abs(velocity).max() + 1e-300)),
-            x[_INNER] - x.mean(),
-            behind,
-            np.ones_like(velocity),
-        ]
-    )
+    coulomb = np.tanh(velocity / (0.05 * np.abs(velocity).max() + 1e-300))
+    position, one = x[_INNER] - x.mean(), np.ones_like(velocity)
+    parts = np.column_stack([smooth(x, T, 2), velocity, coulomb, position, behind, one])
     parts /= np.linalg.norm(parts, axis=0) + 1e-300
     torque = smooth(tau)
     factors = np.linalg.lstsq(parts, torque, rcond=1e-10)[0]

@@ -9,14 +9,8 @@ from itertools import permutations
 import numpy as np
 
 from sigmahat.guessing.columns import Column
-from sigmahat.guessing.relations import (
-    Drive,
-    derivatives,
-    drive,
-    is_copy,
-    line,
-    scale_of_derivative,
-)
+from sigmahat.guessing.relations import Drive, derivatives, drive, is_copy, line
+from sigmahat.guessing.relations import scale_of_derivative as scale_of
 
 # Points of a column as a candidate for a port.
 _SAID, _SUGGESTED, _QUANTITY = 4.0, 2.0, 1.0
@@ -32,23 +26,17 @@ _EXPLAINED = 0.5  # least fraction of a torque without a name that the motion ex
 
 @dataclass(frozen=True)
 class Role:
-    """A column as a port."""
-
     column: Column
     why: str
 
 
 @dataclass(frozen=True)
 class Roles:
-    """The columns of a joint."""
-
     ports: Mapping[str, Role]
-    drive: Drive
-    """Relation between the torque and the motion."""
+    drive: Drive  # relation between the torque and the motion
 
     @property
     def is_complete(self) -> bool:
-        """Whether the joint has both positions and a torque."""
         torque = "tau" in self.ports or "tau_e_sensor" in self.ports
         return torque and "theta" in self.ports and "q" in self.ports
 
@@ -74,8 +62,6 @@ def assign(columns: Sequence[Column], T: float) -> Roles:
 
 def _few(columns: list[Column]) -> list[Column]:
     """Columns to compare in pairs: columns with the most points of their names are kept."""
-    if len(columns) <= _MOST_COMPARED:
-        return columns
     kept = sorted(columns, key=_said, reverse=True)[:_MOST_COMPARED]
     names = {each.name for each in kept}
     return [each for each in columns if each.name in names]
@@ -112,12 +98,8 @@ def _swapped(ports: Mapping[str, Role]) -> dict[str, Role]:
     theta, q = ports["theta"].column, ports["q"].column
     if _points(theta, "motor") + _points(q, "link") > _points(q, "motor") + _points(theta, "link"):
         return {}
-    why = "explains the torque better as {}"
-    return {
-        **ports,
-        "theta": Role(q, why.format("the motor")),
-        "q": Role(theta, why.format("the link")),
-    }
+    why = "explains the torque better as the"
+    return {**ports, "theta": Role(q, f"{why} motor"), "q": Role(theta, f"{why} link")}
 
 
 def _drive(ports: Mapping[str, Role], T: float) -> Drive:
@@ -128,20 +110,14 @@ def _drive(ports: Mapping[str, Role], T: float) -> Drive:
 
 
 def _positions(columns: Sequence[Column], T: float) -> list[Column]:
-    """Columns that may be positions of motor or link."""
     named = [each for each in columns if each.meaning.quantity == "position"]
-    derived = derivatives([each.window for each in columns], T)
-    silent = [
-        each
-        for each, is_derivative in zip(columns, derived, strict=True)
-        if each.meaning.quantity is None and not is_derivative
-    ]
+    derived = zip(columns, derivatives([each.window for each in columns], T), strict=True)
+    silent = [each for each, is_one in derived if each.meaning.quantity is None and not is_one]
     every = [each for each in (*named, *silent) if each.meaning.unit != "mm"]
     return [each for each in every if each.meaning.side not in ("setting", "sensor")]
 
 
 def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
-    """The motor and the link."""
     if not columns:
         return {}
     if len(columns) == 1:
@@ -163,20 +139,16 @@ def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
         named = max(columns, key=lambda each: _points(each, "link"))
         return {"q": Role(named, "the only position that stands out")}
     how = f"moves like the other position ({correlation[best]:.3g})"
-    return {
-        port: Role(columns[place], _why(columns[place], how))
-        for port, place in zip(("theta", "q"), best, strict=True)
-    }
+    theta, q = (
+        Role(each, f"by its name; {how}" if each.meaning.side or each.meaning.suggested else how)
+        for each in (columns[place] for place in best)
+    )
+    return {"theta": theta, "q": q}
 
 
 def _is_larger(theta: Column, q: Column) -> bool:
     """Whether theta moves by larger numbers than q, as a motor before its gear."""
     return bool(abs(line(q.window, theta.window).slope) > 1.5)
-
-
-def _why(column: Column, how: str) -> str:
-    said = column.meaning.side or column.meaning.suggested
-    return f"by its name; {how}" if said else how
 
 
 def _side(column: Column, side: str) -> float:
@@ -240,21 +212,17 @@ def _silent_torque(
 ) -> dict[str, Role]:
     """The column without a name that the motion explains best."""
     theta, q = (ports[port].column.window for port in ("theta", "q"))
-    explained = {
-        each.name: drive(theta, q, each.window, T).explained
+    explained = [
+        (drive(theta, q, each.window, T).explained, each)
         for each in columns
         if each.meaning.quantity is None
         and abs(line(theta, each.window).correlation) < _SAME
-        and all(
-            scale_of_derivative(ports[port].column.window, each.window, T) is None
-            for port in ("theta", "q")
-        )
-    }
-    best = max(explained, key=lambda name: explained[name], default=None)
-    if best is None or explained[best] < _EXPLAINED:
+        and all(scale_of(angle, each.window, T) is None for angle in (theta, q))
+    ]
+    share, column = max(explained, key=lambda each: each[0], default=(0.0, None))
+    if column is None or share < _EXPLAINED:
         return {}
-    (column,) = (each for each in columns if each.name == best)
-    return {"tau": Role(column, f"the motion explains {100 * explained[best]:.3g} % of it")}
+    return {"tau": Role(column, f"the motion explains {100 * share:.3g} % of it")}
 
 
 def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, Role]:
@@ -272,13 +240,11 @@ def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, 
     lengths = [each for each in possible if each.meaning.unit == "mm"]
     if lengths:
         return {"theta_c": Role(lengths[0], "the only length, which sets the stiffness of a joint")}
+    motors = [each for each in possible if each.meaning.side == "motor"]
     second = [
-        each
-        for each in possible
-        if each.meaning.side == "motor"
-        and each.meaning.quantity == "position"
-        and not each.meaning.reference
-    ]
+        each for each in motors
+        if each.meaning.quantity == "position" and not each.meaning.reference
+    ]  # fmt: skip
     if len(second) == 1 and "theta" in ports:
         return {"theta_c": Role(second[0], "a second motor, which the link does not follow")}
     return {}
@@ -290,6 +256,5 @@ def _says_setting(column: Column) -> bool:
 
 
 def _follows(column: Column, ports: Mapping[str, Role]) -> bool:
-    """Whether a column moves like motor or link."""
     windows = [role.column.window for role in ports.values()]
     return any(abs(line(column.window, each).correlation) > _CLOSE for each in windows)

@@ -10,8 +10,7 @@ from itertools import accumulate
 import tomlkit
 from tomlkit.items import Item, Table
 
-from sigmahat.guessing.columns import likely_unit
-from sigmahat.guessing.facts import TURN
+from sigmahat.guessing.columns import TURN, likely_unit
 from sigmahat.guessing.guess import JointGuess, Seen
 from sigmahat.guessing.ports import PortGuess
 from sigmahat.logs.configuration import (
@@ -70,11 +69,10 @@ def write(log: Log, joints: Mapping[str, JointGuess], fmu_defaults: Mapping[str,
     head = _HEAD.format(log=log.path.name, joint=name and f", joint {name}", columns=columns)
     if len(joints) > 1:
         head += _OF_SEVERAL
-    documents = {
-        name: _document(guess, head, fmu_defaults) for name, guess in _with_one_gear(joints).items()
-    }
-    one = next(iter(documents.values()))
-    return tomlkit.dumps(together(documents) if len(documents) > 1 else one)
+    guesses = _with_one_gear(joints).items()
+    documents = {name: _document(guess, head, fmu_defaults) for name, guess in guesses}
+    (one, *others) = documents.values()
+    return tomlkit.dumps(together(documents) if others else one)
 
 
 def _with_one_gear(joints: Mapping[str, JointGuess]) -> Mapping[str, JointGuess]:
@@ -84,12 +82,8 @@ def _with_one_gear(joints: Mapping[str, JointGuess]) -> Mapping[str, JointGuess]
     if len(moves) < len(joints) or min(moves) <= 0 or max(moves) > _ALIKE * min(moves):
         return joints
     note = next(iter(motors.values())).notes["gear_ratio"]
-    for name, motor in motors.items():
-        motors[name] = replace(motor, notes={**motor.notes, "gear_ratio": note})
-    return {
-        name: replace(each, ports={**each.ports, "theta": motors[name]})
-        for name, each in joints.items()
-    }
+    noted = {name: motor.noted("gear_ratio", note) for name, motor in motors.items()}
+    return {n: replace(j, ports={**j.ports, "theta": noted[n]}) for n, j in joints.items()}
 
 
 def _document(
@@ -151,15 +145,13 @@ def _is_sensor(guess: JointGuess) -> bool:
 def _time(guess: JointGuess) -> Table:
     table = tomlkit.table()
     if guess.time is None:
-        table.add(
-            tomlkit.comment("no column looks like a time: rows are taken as samplePeriod apart")
-        )
+        _hint(table, "no column looks like a time: rows are taken as samplePeriod apart")
     else:
         table.add("column", guess.time)
         table.add("unit", guess.time_unit)
     shorter = "[s] interpolate over shorter gaps; else ticks are skipped"
     if guess.longest_gap is None:
-        table.add(tomlkit.comment(f"longest_gap = 0.01   # {shorter}"))
+        _hint(table, f"longest_gap = 0.01   # {shorter}")
     else:
         _add(table, "longest_gap", guess.longest_gap, f"{shorter}. Rows are lost in this log")
     table.add(tomlkit.nl())
@@ -180,18 +172,17 @@ def port_table(name: str, port: PortGuess) -> Table:
         _add(table, "time", port.time)
     if port.unit == "counts":
         fill_in = "FILL IN: of the encoder, after its four-fold evaluation"
-        comment = port.notes.get("counts_per_turn", fill_in)
-        _add(table, "counts_per_turn", port.counts_per_turn or 0, comment)
+        note = port.notes.get("counts_per_turn", fill_in)
+        _add(table, "counts_per_turn", port.counts_per_turn or 0, note)
     if name == "theta":
         check = "CHECK: ratio of the gear if the encoder is on the motor's shaft"
         _add(table, "gear_ratio", port.gear_ratio or 0, port.notes.get("gear_ratio", check))
     if name == "tau":
-        table.add(tomlkit.comment(f"gear_ratio = 1   # {port.notes['gear_ratio']}"))
+        _hint(table, f"gear_ratio = 1   # {port.notes['gear_ratio']}")
     if port.unit in ("A", "mA"):
         _add(table, "torque_constant", 0, "FILL IN: N.m/A, from the data sheet of the motor")
     if port.unit == "mm":
-        without = "mm_per_turn = 2.5   # not given: the set-point is the number of mm"
-        table.add(tomlkit.comment(without))
+        _hint(table, "mm_per_turn = 2.5   # not given: the set-point is the number of mm")
     if port.wrap is not None:
         _add(table, "wrap", port.wrap, port.notes.get("wrap", ""))
     _add(table, "sign", port.sign, port.notes.get("sign", ""))
@@ -206,8 +197,7 @@ def _empty_port(name: str) -> Table:
     _add(table, "column", FILL_IN, "no column looks like this port: choose from the list above")
     _add(table, "unit", PORTS[name])
     if name == "q":
-        locked = "value = 0   # in place of the column, if the link is locked on purpose"
-        table.add(tomlkit.comment(locked))
+        _hint(table, "value = 0   # in place of the column, if the link is locked on purpose")
     table.add(tomlkit.nl())
     return table
 
@@ -256,8 +246,7 @@ def _add_motor(table: Table, theta: PortGuess | None, defaults: Mapping[str, flo
     _add(table, "prior.tau_coulomb", ANY_COULOMB, WIDE_PRIOR)
     gain = "CHECK: how well is the gain of tau known, to 0.02, 0.05 or 0.1? No log shows it"
     _add(table, "prior.torque_gain", _GAIN, gain)
-    held = "torque.held = true   # if a drive holds each value of tau until the next one"
-    table.add(tomlkit.comment(held))
+    _hint(table, "torque.held = true   # if a drive holds each value of tau until the next one")
 
 
 def _add_ranges(table: Table, guess: JointGuess) -> None:
@@ -267,14 +256,15 @@ def _add_ranges(table: Table, guess: JointGuess) -> None:
         in_rad = 2 * math.pi / TURN[q.unit]
         _add(table, "range.phi", _largest(q) * in_rad, "[rad] largest deformation, with some room")
     else:
-        table.add(tomlkit.comment("range.phi = 0.3   # [rad] CHECK: the largest deformation"))
+        _hint(table, "range.phi = 0.3   # [rad] CHECK: the largest deformation")
     if sensor.unit in _TORQUES:
         largest = _largest(sensor) * _TORQUES[sensor.unit]
         _add(table, "prior.tau_e", largest, "[N.m] largest torque, with some room")
     else:
-        table.add(tomlkit.comment("prior.tau_e = 45   # [N.m] CHECK: the largest torque"))
-    noise = "noise.tau_e = 0.032   # [N.m] CHECK: standard deviation of the noise of the torque"
-    table.add(tomlkit.comment(noise))
+        _hint(table, "prior.tau_e = 45   # [N.m] CHECK: the largest torque")
+    _hint(
+        table, "noise.tau_e = 0.032   # [N.m] CHECK: standard deviation of the noise of the torque"
+    )
 
 
 def _largest(port: PortGuess) -> float:
@@ -283,7 +273,6 @@ def _largest(port: PortGuess) -> float:
 
 
 def _encoder(port: PortGuess) -> tuple[int, str]:
-    """Counts in a turn of the joint, and why."""
     if not port.steps:
         return 0, "counts per turn; not quantised"
     gear = port.gear_ratio or port.moves or 1.0
@@ -316,7 +305,10 @@ def _add(table: Table, name: str, value: str | float, comment: str = "") -> None
     table.append(tomlkit.key(name.split(".")), item)
 
 
+def _hint(table: Table, text: str) -> None:
+    table.add(tomlkit.comment(text))
+
+
 def _comment(item: Item, text: str) -> None:
-    """Adds a comment to the line of an item, at some distance."""
     item.comment(text)
     item.trivia.comment_ws = "   "

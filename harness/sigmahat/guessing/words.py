@@ -12,7 +12,7 @@ from typing import Any
 
 import tomlkit
 
-_ORDER = (*("other", "acceleration", "velocity", "position", "current", "torque", "time", "index"),)
+_ORDER = ("other", "acceleration", "velocity", "position", "current", "torque", "time", "index")
 """Quantities; in a name with several, the first in this order counts: "current position"."""
 _UNIT_OF = {
     **dict.fromkeys(("rad", "mrad", "deg", "turn"), "position"),
@@ -30,32 +30,21 @@ _TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 class Meaning:
     """Meaning of a name. A field is None if the name has no such word."""
 
-    quantity: str | None
-    """time, index, position, velocity, acceleration, torque, current, or other."""
-    side: str | None
-    """motor, link, setting (what sets the stiffness), or sensor (of the torque)."""
-    suggested: str | None
-    """motor or link, from a word that only suggests this side."""
-    unit: str | None
-    """Unit, as in configurations."""
-    speed: str | None
-    """Unit of a velocity: rad for rad/s, or turn/min."""
-    reference: bool
-    """Whether the signal is a reference, not a measurement."""
-    computed: bool
-    """Whether the signal is an estimate, or the truth of a simulation."""
-    joints: tuple[str, ...]
-    """Words that are names of joints."""
-    rest: tuple[str, ...]
-    """Unknown words and numbers, and words that are names of joints."""
+    quantity: str | None  # time, index, position, velocity, acceleration, torque, current, or other
+    side: str | None  # motor, link, setting (what sets the stiffness), or sensor (of the torque)
+    suggested: str | None  # motor or link, from a word that only suggests this side
+    unit: str | None  # unit, as in configurations
+    speed: str | None  # unit of a velocity: rad for rad/s, or turn/min
+    reference: bool  # whether the signal is a reference, not a measurement
+    computed: bool  # whether the signal is an estimate, or the truth of a simulation
+    joints: tuple[str, ...]  # words that are names of joints
+    rest: tuple[str, ...]  # unknown words and numbers, and words that are names of joints
 
 
-_Entry = Mapping[str, str]
-"""Meanings of a word in the vocabulary, by section."""
+_Entry = Mapping[str, str]  # meanings of a word in the vocabulary, by section
 
 
 def meaning(name: str) -> Meaning:
-    """The meaning of the name of a column."""
     unit, tokens = _without_unit(name)
     entries: list[_Entry] = []
     rest: list[str] = []
@@ -80,16 +69,11 @@ def meaning(name: str) -> Meaning:
     elif quantity not in ("other", "velocity", "acceleration"):
         quantity = _UNIT_OF.get(unit.name or "", quantity)
     roles = {entry.get("role") for entry in entries}
+    side = _first("side", ("sensor", "setting", "motor", "link"), entries)
+    suggested = _first("suggests", ("motor", "link"), entries)
+    said = "reference" in roles, "computed" in roles
     return Meaning(
-        quantity=quantity,
-        side=_first("side", ("sensor", "setting", "motor", "link"), entries),
-        suggested=_first("suggests", ("motor", "link"), entries),
-        unit=unit.name,
-        speed=unit.speed,
-        reference="reference" in roles,
-        computed="computed" in roles,
-        joints=tuple(joints),
-        rest=tuple(rest),
+        quantity, side, suggested, unit.name, unit.speed, *said, tuple(joints), tuple(rest)
     )
 
 
@@ -120,10 +104,8 @@ def _plain(text: str) -> str:
 class _Unit:
     """The unit in a name; all fields are None for a name without a unit."""
 
-    name: str | None = None
-    """A unit of a port."""
-    foreign: str | None = None
-    """The quantity, for a unit that no port has."""
+    name: str | None = None  # a unit of a port
+    foreign: str | None = None  # the quantity, for a unit that no port has
     speed: str | None = None
 
 
@@ -224,14 +206,8 @@ def _vocabulary() -> _Vocabulary:
             for word in words:
                 entries.setdefault(word, {}).setdefault(section, kind)
     known = [word for word in entries if len(word) >= _AT_AN_END and " " not in word]
-    return _Vocabulary(
-        entries=entries,
-        units=_by_word(table["unit"]),
-        speeds=_by_word(table["speed"]),
-        foreign=_by_word(table["foreign"]),
-        longest_first=sorted(known, key=len)[::-1],
+    units, speeds, foreign = (
+        {word: kind for kind, words in table[section].items() for word in words}
+        for section in ("unit", "speed", "foreign")
     )
-
-
-def _by_word(section: Mapping[str, Sequence[str]]) -> dict[str, str]:
-    return {word: kind for kind, words in section.items() for word in words}
+    return _Vocabulary(entries, units, speeds, foreign, sorted(known, key=len)[::-1])

@@ -6,8 +6,7 @@ import math
 
 from sigmahat.logs.log import EXACT
 
-_LATE = 1.0
-"""A sample that is late by less than this time was overtaken by other samples [s]."""
+_LATE = 1.0  # a sample that is late by less than this time was overtaken by other samples [s]
 LONGEST_PAUSE = 1.0
 """After a longer pause, a sample has a wrong time, or the sender has started again [s]."""
 _STARTED = 20
@@ -24,12 +23,10 @@ class Clock:
         self.seconds = seconds
         self.double = self.late = self.strays = self.lost = 0
         """Numbers of samples: with the previous time, late, far off in time, and missing."""
-        self.usual = 0.0
-        """Usual time between two samples [s]."""
+        self.usual = 0.0  # usual time between two samples [s]
         self.restart()
 
     def restart(self) -> None:
-        """The next sample is the first one."""
         self.shift: int | None = None
         """Zero of the times: the first time, if it is an integer that a float64 does not hold,
         else 0; None before the first time."""

@@ -1,23 +1,39 @@
-"""Sources and sinks by their names on the command line."""
+"""Sources and sinks by their names on the command line: UDP, TCP, standard input, or a log.
+
+A source reads in threads of its own, and puts the messages into an inbox.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import heapq
+import json
+import socket
+import sys
+import time
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import suppress
 from functools import cached_property, partial
+from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING
+from threading import Thread
+from typing import TYPE_CHECKING, BinaryIO
 
-from sigmahat.live import sinks, sources
-from sigmahat.live.messages import Decoder
+import numpy as np
+
+from sigmahat.live.joint import Estimated
+from sigmahat.live.messages import LONGEST, Columns, Decoder
 from sigmahat.live.session import Session
-from sigmahat.live.sinks import Sink
-from sigmahat.live.sources import Source
+from sigmahat.live.watch import Inbox, Sink, Source
+from sigmahat.logs.log import Log
 from sigmahat.logs.readers.formats import open_log
 
 if TYPE_CHECKING:
     from sigmahat.live.ros2 import Ros2
 
 _LOOPBACK, _FOXGLOVE = "127.0.0.1", "8765"
+_BUFFER = 1 << 22  # size of the receive buffer [bytes]
+_Address = tuple[str, int]
+_Decoders = Callable[[], Decoder]
 
 
 class Endpoints:
@@ -33,23 +49,23 @@ class Endpoints:
         lacking = [each for each in wanted if each not in titles] if titles else []
         if lacking:
             raise ValueError(f"--columns lacks {', '.join(lacking)}, which the configuration names")
-        decoder = partial(Decoder, wanted, titles)
+        decoders = partial(Decoder, wanted, titles)
         kind, _, port = name.partition(":")
         if name == "ros2":
             return self._ros2.joint_states(wanted)
         if name == "stdin":
-            return sources.stdin(decoder)
+            return partial(_read_stdin, decoders)
         if kind not in ("udp", "tcp"):
             raise ValueError(f"--from: expected udp:PORT, tcp:PORT, stdin or ros2, got {name!r}")
-        listen = sources.tcp if kind == "tcp" else sources.udp
+        listen = _tcp if kind == "tcp" else _udp
         try:
-            return listen((self._host, _address("--from", port)[1]), decoder)
+            return listen((self._host, _address("--from", port)[1]), decoders)
         except OSError as error:
             raise self._cannot_listen(name, error.strerror or error) from error
 
     def replay(self, log: Path) -> Source:
-        """The source for a recorded log."""
-        return sources.replay(open_log(log), self._session)
+        """The source for a recorded log. Raises LogError if the log lacks a column."""
+        return _replay(open_log(log), self._session)
 
     def sink(self, name: str) -> Sink:
         """The sink of this name; for Foxglove, the layout is also written."""
@@ -57,7 +73,7 @@ class Endpoints:
         if name == "ros2":
             return self._ros2.publish()
         if kind == "udp":
-            return sinks.udp(_address("--to", rest))
+            return _send_udp(_address("--to", rest))
         if kind != "foxglove":
             raise ValueError(
                 f"--to: expected udp:PORT, udp:HOST:PORT, foxglove[:PORT] or ros2, got {name!r}"
@@ -84,8 +100,113 @@ class Endpoints:
         )
 
 
-def _address(option: str, text: str) -> tuple[str, int]:
+def _address(option: str, text: str) -> _Address:
     host, _, port = text.rpartition(":")
     if not port.isdecimal() or not 0 < int(port[:9]) < 1 << 16:
         raise ValueError(f"{option}: expected a port from 1 to 65535, got {text!r}")
     return host or _LOOPBACK, int(port)
+
+
+def _udp(address: _Address, decoders: _Decoders) -> Source:
+    """A datagram is a message. Raises OSError if the address is not available."""
+    bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    bound.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
+    bound.bind(address)
+    columns = decoders().columns
+
+    def read(inbox: Inbox) -> None:
+        while True:
+            inbox.add(partial(columns, bound.recv(LONGEST + 1)), can_wait=False)
+
+    return read
+
+
+def _tcp(address: _Address, decoders: _Decoders) -> Source:
+    """A line is a message; any number of senders connect. Raises as _udp."""
+    server = socket.create_server(address)
+
+    def read(inbox: Inbox) -> None:
+        while True:
+            connection, _ = server.accept()
+            Thread(target=one, args=[inbox, connection], daemon=True).start()
+
+    def one(inbox: Inbox, connection: socket.socket) -> None:
+        with connection, connection.makefile("rb") as file:
+            _lines(file, inbox, decoders())
+
+    return read
+
+
+def _read_stdin(decoders: _Decoders, inbox: Inbox) -> None:
+    _lines(sys.stdin.buffer, inbox, decoders())
+    inbox.add(_no_more)
+
+
+def _no_more() -> None:
+    raise EOFError
+
+
+def _lines(file: BinaryIO, inbox: Inbox, decoder: Decoder) -> None:
+    """Puts each line of a file into the inbox; a line that is too long is cut off."""
+    with suppress(OSError):  # the connection is broken
+        while line := file.readline(LONGEST + 1):
+            inbox.add(partial(decoder.columns, line))
+            while len(line) > LONGEST and not line.endswith(b"\n"):
+                line = file.readline(LONGEST + 1)
+
+
+def _replay(log: Log, session: Session) -> Source:
+    """The used columns of a log, in real time."""
+    used: dict[str, tuple[float, list[str]]] = {}
+    for joint in session.joints:
+        for name, port in joint.ports.items():
+            time_column = joint.time_column(name)
+            # Rows without a time are a period of the estimator apart.
+            step = session.clocks[time_column].seconds if time_column else joint.T
+            columns = [port.port.column] if port.port.column else []
+            used.setdefault(time_column, (step, []))[1].extend(columns)
+    groups = [_rows(log, name, *each) for name, each in used.items()]
+
+    def read(inbox: Inbox) -> None:
+        begin, first = time.monotonic(), None
+        for t, columns in heapq.merge(*groups, key=lambda each: each[0]):
+            first = t if first is None else first
+            time.sleep(max(begin + t - first - time.monotonic(), 0.0))
+            inbox.add(partial(dict, columns), arrival=round(1e9 * t))
+        inbox.add(_no_more)
+
+    return read
+
+
+def _rows(
+    log: Log, time_column: str, period: float, columns: Collection[str]
+) -> Iterator[tuple[float, Columns]]:
+    """Times [s] and columns of the rows of a log that have a time.
+
+    period  time between rows without a time column; else unit of the time column [s]
+    """
+    values = {name: log.read(name) for name in columns}
+    if time_column:
+        values[time_column] = log.read(time_column)
+        times = values[time_column] * period
+    else:
+        times = period * np.arange(min(map(len, values.values())), dtype=np.float64)
+    rows = zip(times.tolist(), zip(*values.values(), strict=False), strict=False)
+    return ((t, dict(zip(values, map(float, row), strict=True))) for t, row in rows if t == t)
+
+
+def _send_udp(address: _Address) -> Sink:
+    """A datagram for each tick, as PlotJuggler reads it: {"timestamp": t, "elbow": {...}}.
+
+    A missing receiver is no error.
+    """
+    sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    sender.setblocking(False)
+
+    def send(ticks: Sequence[Estimated]) -> None:
+        for t, at_once in groupby(ticks, key=lambda each: each.t):
+            message = {"timestamp": t} | {each.joint: each.shown() for each in at_once}
+            with suppress(OSError):
+                sender.sendto(json.dumps(message).encode(), address)
+
+    return send

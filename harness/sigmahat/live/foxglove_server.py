@@ -4,34 +4,27 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import foxglove
 
 from sigmahat.fmi.json_schema import schema
-from sigmahat.live.joint import GIVEN, Estimated, LiveJoint
-from sigmahat.live.sinks import BANDED, Sink, shown
-
-LAYOUT = "foxglove-layout.json"
-"""Name of the file of the layout."""
+from sigmahat.live.joint import BANDED, GIVEN, Estimated, LiveJoint
+from sigmahat.live.watch import Sink
 
 
 def serve(address: tuple[str, int], joints: Sequence[LiveJoint]) -> Sink:
     """Starts the server. Raises RuntimeError if the address is not available."""
     foxglove.set_log_level("CRITICAL")  # no messages about viewers that disconnect
     foxglove.start_server(name="sigmahat", host=address[0], port=address[1])
-    channels = {
-        joint.name: foxglove.Channel(
-            f"/{joint.name}/estimate", schema=_schema(joint), message_encoding="json"
-        )
-        for joint in joints
-    }
+    channel = partial(foxglove.Channel, message_encoding="json")
+    channels = {j.name: channel(f"/{j.name}/estimate", schema=_schema(j)) for j in joints}
 
     def send(ticks: Sequence[Estimated]) -> None:
         for each in ticks:
-            stamp = max(round(1e9 * each.t), 0)
-            channels[each.joint].log(shown(each.outputs), log_time=stamp)
+            channels[each.joint].log(each.shown(), log_time=max(round(1e9 * each.t), 0))
 
     return send
 
@@ -62,11 +55,10 @@ def write_layout(joints: Sequence[LiveJoint], folder: Path) -> None:
         content = {"type": "split", "direction": "column", "items": items}
         tabs.append({"title": joint.name, "content": content})
     layout = {"version": 1, "content": {"type": "tabs", "selectedTabIndex": 0, "tabs": tabs}}
-    (folder / LAYOUT).write_text(json.dumps(layout), encoding="utf-8")
+    (folder / "foxglove-layout.json").write_text(json.dumps(layout), encoding="utf-8")
 
 
 def _plot(topic: str, name: str, title: str) -> dict[str, Any]:
-    """An output with its 95 % band."""
     paths = [{"value": f"{topic}.{name}", "label": name, "lineSize": 2}] + [
         {"value": f"{topic}.{name}_{end}", "label": label, "lineStyle": "dashed", "lineSize": 1}
         for end, label in (("low", "95 % from"), ("high", "to"))

@@ -14,10 +14,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from sigmahat.files.output import finite
 from sigmahat.fmi.instance import Slave
 from sigmahat.fmi.opened import installed
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop
+from sigmahat.joint.curve import NORMAL_95
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.live.clock import Clock
 from sigmahat.live.messages import Columns
@@ -32,8 +35,9 @@ from sigmahat.logs.units import scale, seconds
 OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfit", "change_age")
 """Real outputs that are sent to the sinks."""
 _FLAGS = ("confident", "valid")
-GIVEN = (*OUTPUTS, *_FLAGS, "doubt")
-"""All outputs that are sent to the sinks."""
+GIVEN = (*OUTPUTS, *_FLAGS, "doubt")  # all outputs that are sent to the sinks
+BANDED = ("sigma", "tau_e")
+"""Outputs whose 95 % intervals are sent, too: sigma_low and sigma_high, ..."""
 _PATIENCE = 0.2
 """Time that a tick waits for a port without samples while samples of other ports arrive [s]."""
 _WAITING, _MOST = 1000, 10_000
@@ -44,14 +48,18 @@ _USUAL_GAP = 3.0
 
 @dataclass(frozen=True)
 class Estimated:
-    """The outputs of a tick."""
+    joint: str  # liveJoint.name
+    t: float  # time of the tick, as the sender counts it [s]
+    outputs: Mapping[str, Any]  # values of the outputs GIVEN
 
-    joint: str
-    """LiveJoint.name."""
-    t: float
-    """Time of the tick, as the sender counts it [s]."""
-    outputs: Mapping[str, Any]
-    """Values of the outputs GIVEN."""
+    def shown(self) -> dict[str, Any]:
+        """Outputs and intervals for JSON, which has no nan and no infinity."""
+        values = dict(self.outputs)
+        for name in BANDED:
+            half = NORMAL_95 * values[f"{name}_std"]
+            values[f"{name}_low"], values[f"{name}_high"] = values[name] - half, values[name] + half
+        found: dict[str, Any] = finite(values)
+        return found
 
 
 class LivePort:
@@ -62,12 +70,10 @@ class LivePort:
         self.port, self._T = port, T
         self._longest = longest_gap * (1 + AT_TICK)
         self._scale = scale(name, port)
-        self.interpolated = 0
-        """Number of interpolated ticks."""
+        self.interpolated = 0  # number of interpolated ticks
         self.restart()
 
     def restart(self) -> None:
-        """The next sample is the first one."""
         self._before = -math.inf, math.nan
         self._next: deque[tuple[float, float]] = deque(maxlen=_MOST)
         self._last = math.nan
@@ -75,17 +81,15 @@ class LivePort:
 
     def add(self, t: float, value: float) -> None:
         """The next sample of the column; t is the time since the first tick [s]."""
-        period, port = self.port.wrap, self.port
+        period = self.port.wrap
         if not math.isfinite(value):
             return
         if period is not None:
             if self._last == self._last:
                 self._jumps -= round((value - self._last) / period)
             self._last = value
-            value = value + period * self._jumps
-        if self._scale != 1.0 or port.zero != 0.0:
-            value = (value - port.zero) * self._scale
-        self._next.append((t - port.delay if port.delay else t, value))
+            value += period * self._jumps
+        self._next.append((t - self.port.delay, (value - self.port.zero) * self._scale))
 
     def at(self, tick: int) -> float | None:
         """The value at a tick, nan without a value; None if the value depends on a later sample.
@@ -121,39 +125,32 @@ class LiveJoint:
         """
         fmu = installed("StiffnessEstimator")
         start = parameters(fmu, configuration)
-        self.configuration = configuration
+        self.configuration, ports = configuration, configuration.ports
         self.name = configuration.joint or "joint"
         """Name for people and topics; "joint" if the configuration names no joint."""
-        self.every = fmu.parameters(start)
-        """All parameters of the estimator."""
-        configuration.need_ports(str(self.every["modality"]))
-        self.T = float(self.every["samplePeriod"])
+        self._every = fmu.parameters(start)
+        configuration.need_ports(str(self._every["modality"]))
+        self.T = float(self._every["samplePeriod"])
         self.longest_gap = configuration.time.longest_gap or _USUAL_GAP * self.T
         """Longest gap over which values are interpolated [s]."""
-        self.ports = {
-            name: LivePort(name, port, self.T, self.longest_gap)
-            for name, port in configuration.ports.items()
-        }
-        if not any(port.column for port in configuration.ports.values()):
+        self.ports = {n: LivePort(n, p, self.T, self.longest_gap) for n, p in ports.items()}
+        if not any(port.column for port in ports.values()):
             raise LogError(
                 f"{configuration.path}: no port has a column; name columns of the messages"
             )
         unit = configuration.time.unit if configuration.time.column else "ns"
-        for name in ("", *self.ports):
+        for name in ("", *ports):
             clocks.setdefault(self.time_column(name), Clock(seconds(unit)))
         self._clocks = clocks
         self.slave = Slave(fmu, configuration.joint or "estimator").__enter__()
         self.slave.initialize(start)
-        self._t_0 = 0.0
-        self._logs: list[LearnedLog] = []
-        self.skipped_of_all = 0
-        """Ticks that were skipped, in all recordings."""
+        self._t_0, self._logs = 0.0, [*learned.logs] if learned else []
+        self.skipped_of_all = 0  # ticks that were skipped, in all recordings
         if learned is not None:
-            self._logs += learned.logs
-            self._t_0 = go_on(self.slave, learned, self.every, configuration.path)
-        self._values, self._times = np.zeros((1, len(self.ports))), np.zeros((1, 2))
+            self._t_0 = go_on(self.slave, learned, self._every, configuration.path)
+        self._values, self._times = np.zeros((1, len(ports))), np.zeros((1, 2))
         self._recorder, self._loop = Recorder(self.slave, ("a", *GIVEN), 1), SampleLoop()
-        self._loop.set_real(self.slave, fmu.references(self.ports, "input"), self._values)
+        self._loop.set_real(self.slave, fmu.references(ports, "input"), self._values)
         self._loop.step(self.slave, self._times)
         self._recorder.add_to(self._loop)
         self._begin()
@@ -190,10 +187,10 @@ class LiveJoint:
         own = self.ports[port].port.time if port else None
         return own or self.configuration.time.column or ""
 
-    def end(self, recording: Path, digest: str) -> Iterator[Estimated]:
-        """Yields the last ticks of a recording; the next sample begins another recording.
+    def end(self, recording: Path, digest: str, learned: Path) -> Iterator[Estimated]:
+        """Yields the last ticks of a recording, and writes what was learned.
 
-        recording, digest  the file, and its SHA-256
+        recording, digest  the file, and its SHA-256; learned  file to write
         """
         if self._start is not None:
             yield from self._run(self._start, is_end=True)
@@ -202,14 +199,11 @@ class LiveJoint:
         self._t_0 += self.T * self._ticks
         self.skipped_of_all += self._skipped
         self._begin()
+        write_learned(self.slave, self._every, self._logs, learned)
 
     def go_on(self) -> None:
         """After the end of a recording: the filters start again with the next sample."""
-        self._t_0 = gap(self.slave, self._t_0, self.every)
-
-    def write(self, path: Path) -> None:
-        """Writes what was learned, after the end of a recording."""
-        write_learned(self.slave, self.every, self._logs, path)
+        self._t_0 = gap(self.slave, self._t_0, self._every)
 
     def _run(self, start: float, is_end: bool) -> Iterator[Estimated]:
         clock = self._clocks[self.time_column("")]
@@ -235,8 +229,7 @@ class LiveJoint:
         outputs = self._recorder.row(0)
         t = start + self.T * self._ticks
         self._ticks += 1
-        for flag in _FLAGS:
-            outputs[flag] = bool(outputs[flag])
+        outputs |= {flag: bool(outputs[flag]) for flag in _FLAGS}
         self._skipped += not outputs["valid"]
         if outputs.pop("a") > 0 and outputs["valid"]:
             for name, used in self._used.items():
@@ -246,40 +239,37 @@ class LiveJoint:
 
 
 class _Counter:
-    """Corrects a counter by whole periods after gaps and at the start, as logs/sampling.py does
-    for a log.
-    """
+    """Corrects a counter by whole periods after gaps and at the start, as logs/sampling.py does."""
 
     def __init__(self, configuration: Configuration) -> None:
-        ports = configuration.ports
-        self._names, self._ports = tuple(ports), ports
+        self._ports = configuration.ports
         self._most = configuration.parameters.get("range.phi")
-        both = [n for n in ("theta", "q") if n in ports]
-        periods = [counter_period(n, ports[n]) for n in both]
-        own = int(np.argmin(periods))
-        self._column, self._other = (self._names.index(both[i]) for i in (own, own - 1))
-        self._period = periods[own] if len(periods) == 2 else math.inf
-        self._last: tuple[float, float] | None = None
+        both = [name for name in ("theta", "q") if name in self._ports]
+        periods = {name: counter_period(name, self._ports[name]) for name in both}
+        both.sort(key=periods.__getitem__)
+        self._both = [list(self._ports).index(name) for name in both]  # what is put right is first
+        self._period = periods[both[0]] if len(both) == 2 else math.inf
+        self._last: NDArray[Any] | None = None
         self._was_missing = False
         self._total = self._at_start = 0
 
-    def put_right(self, values: Any) -> None:
+    def put_right(self, values: NDArray[Any]) -> None:
         """values  of the ports at a tick, nan for a missing value; this array is changed"""
-        if not math.isfinite(self._period):
+        if self._period == math.inf:
             return
-        own, other = float(values[self._column]), float(values[self._other])
-        is_missing = not (math.isfinite(own) and math.isfinite(other))
-        if not is_missing:
-            if self._last is None and self._most is not None:
-                row = values.reshape(1, -1)
-                most = float(self._most)
-                _, self._at_start = turns_from(0.0, most, row, self._names, self._ports)
-            elif self._last is not None and self._was_missing:
-                step, other_step = own - self._last[0], other - self._last[1]
+        now = values[self._both]  # a copy
+        is_known = bool(np.isfinite(now).all())
+        if is_known:
+            if self._last is None:
+                if self._most is not None:
+                    row, most = values.reshape(1, -1), float(self._most)
+                    names = tuple(self._ports)
+                    _, self._at_start = turns_from(0.0, most, row, names, self._ports)
+            elif self._was_missing:
+                step, other_step = now - self._last
                 self._total += round((other_step - step) / self._period)
-            self._last = own, other
-        self._was_missing = is_missing
-        if self._total:
-            values[self._column] += self._total * self._period
-        if self._at_start:
-            values[self._column] += self._at_start * self._period
+            self._last = now
+        self._was_missing = not is_known
+        for periods in (self._total, self._at_start):
+            if periods:
+                values[self._both[0]] += periods * self._period

@@ -16,8 +16,7 @@ from typing import Any
 Columns = Mapping[str, int | float]
 """Numbers by the name of their column; nan where a value is missing."""
 
-LONGEST = 1 << 16
-"""Bytes of a message."""
+LONGEST = 1 << 16  # bytes of a message
 _DEEPEST = 8
 _LARGEST = 2**63
 _SHOWN = 60
@@ -60,9 +59,7 @@ class Decoder:
                 count = f"{len(self._csv)} cells" if self._csv else ""
                 expected = count or "first a line that names columns"
                 raise ValueError(f"expected {expected}, got {shown}")
-            values = [
-                (name, _parsed(each.strip())) for name, each in zip(self._csv, cells, strict=True)
-            ]
+            values = list(zip(self._csv, (_parsed(each.strip()) for each in cells), strict=True))
         found = {name: number(name, value) for name, value in values if name is not None}
         if not found:
             raise ValueError(f"expected one of {', '.join(self._wanted)}, got {shown}")
@@ -95,12 +92,8 @@ def _parsed(cell: str) -> int | float | str | None:
 
 def number(name: str, value: Any) -> int | float:
     """A value of a column; nan if it is not finite. Raises ValueError if it is no number."""
-    if value is None:
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return math.nan
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise ValueError(f"{name}: expected a number, got {str(value)[:_SHOWN]!r}")
-    if isinstance(value, float) and not math.isfinite(value):
-        return math.nan
-    if abs(value) >= _LARGEST:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or abs(value) >= _LARGEST:
         raise ValueError(f"{name}: expected a number, got {str(value)[:_SHOWN]!r}")
     return value

@@ -16,15 +16,8 @@ from functools import partial
 from itertools import groupby
 from typing import Any
 
-from cyclonedds.core import (
-    InstanceState,
-    Policy,
-    Qos,
-    ReadCondition,
-    SampleState,
-    ViewState,
-    WaitSet,
-)
+from cyclonedds import core
+from cyclonedds.core import Policy, Qos
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import make_idl_struct
 from cyclonedds.idl.types import byte, float64, int32, sequence, uint32
@@ -35,20 +28,15 @@ from cyclonedds.util import duration
 
 from sigmahat.live.joint import Estimated
 from sigmahat.live.messages import Columns, number
-from sigmahat.live.sinks import Sink
-from sigmahat.live.sources import Inbox, Source
+from sigmahat.live.watch import Inbox, Sink, Source
 
-ESTIMATES, DIAGNOSTICS = "/sigmahat/estimates", "/diagnostics"
-"""Topics that are written."""
+ESTIMATES, DIAGNOSTICS = "/sigmahat/estimates", "/diagnostics"  # topics that are written
 
 _COLUMN = re.compile(r"(?P<topic>/[\w/]+)\.(?:time|(?:position|velocity|effort)\[.+\])")
 _SECOND = 1_000_000_000
-_RARELY = 1.0
-"""Seconds between diagnostics."""
+_RARELY = 1.0  # [s] between diagnostics
 _OK, _WARN = 0, 1
-_LARGEST_DOMAIN = 232
-_AT_ONCE = 1000
-_MOST_JOINTS = 1000
+_LARGEST_DOMAIN, _MOST_JOINTS, _AT_ONCE = 232, 1000, 1000
 _INTERFACES = {
     "stiffness": "sigma",
     "stiffness_std": "sigma_std",
@@ -86,8 +74,6 @@ _Diagnostics = _type("diagnostic_msgs/DiagnosticArray", header=_Header, status=_
 
 
 class Ros2:
-    """Topics in one domain."""
-
     def __init__(self) -> None:
         """Joins the domain of ROS_DOMAIN_ID. Raises ValueError if this variable is no number."""
         text = os.environ.get("ROS_DOMAIN_ID") or "0"
@@ -117,9 +103,9 @@ class Ros2:
                 readers[name] = DataReader(self._domain, topic, qos=_ANY)
 
         def read(inbox: Inbox) -> None:
-            wake = WaitSet(self._domain)
-            state = SampleState.Any | ViewState.Any | InstanceState.Any
-            conditions = [ReadCondition(each, state) for each in readers.values()]
+            wake = core.WaitSet(self._domain)
+            state = core.SampleState.Any | core.ViewState.Any | core.InstanceState.Any
+            conditions = [core.ReadCondition(each, state) for each in readers.values()]
             for each in conditions:
                 wake.attach(each)
             while True:
@@ -158,7 +144,6 @@ class Ros2:
         return found
 
     def publish(self) -> Sink:
-        """Writes the estimates of each tick, and the doubts once a second."""
         estimates, diagnostics = (
             DataWriter(self._domain, Topic(self._domain, f"rt{name}", kind), qos=_WHOLE)
             for name, kind in ((ESTIMATES, _DynamicJointState), (DIAGNOSTICS, _Diagnostics))

@@ -7,22 +7,79 @@ continue with another recording, as `sigmahat estimate --start-from` does.
 from __future__ import annotations
 
 import copy
+import math
+from collections.abc import Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import datetime, timezone
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import tomlkit
+from numpy.typing import NDArray
 
 from sigmahat.files.output import sha256, write_whole
 from sigmahat.live.clock import Clock
 from sigmahat.live.joint import Estimated, LiveJoint
 from sigmahat.live.messages import Columns
-from sigmahat.live.recording import Recording
 from sigmahat.logs import joints as of_file
 from sigmahat.logs.configuration import joints_of, read_configuration, read_document
-from sigmahat.logs.learned import LEARNED, Learned, read_learned
+from sigmahat.logs.learned import LEARNED, read_learned
 
 ARRIVAL = "arrival"
 """Column of a recording for messages without a stamp: time of arrival [ns] since 1970."""
+_ROWS = 1 << 13  # rows of a row group: seconds of a log, which are written in milliseconds
+_MISSING = -(2**63)
+
+# With the first array, pyarrow imports an installed pandas. No sample should wait for this import.
+pa.array(np.empty(0))
+
+
+class _Recording:
+    """A Parquet file with a row for each message; what a message lacks is empty in its row."""
+
+    def __init__(self, path: Path, columns: Mapping[str, bool]) -> None:
+        """Makes the file, which is complete after close(). Raises OSError if it cannot be written.
+
+        columns  for each column, whether it has integers that a float64 does not hold
+        """
+        self.path = path
+        self._missing = {n: _MISSING if whole else math.nan for n, whole in columns.items()}
+        self._kinds = np.dtype([(n, "i8" if whole else "f8") for n, whole in columns.items()])
+        kinds = [(n, pa.int64() if whole else pa.float64()) for n, whole in columns.items()]
+        self._writer = pq.ParquetWriter(path, pa.schema(kinds))
+        self._thread = ThreadPoolExecutor(1)  # so that no sample waits for the disk
+        self._written: Future[None] | None = None
+        self._rows, self._table = 0, np.empty(_ROWS, self._kinds)
+
+    def add(self, row: Columns) -> None:
+        """Adds the next message. Raises OSError if an earlier message could not be written."""
+        self._table[self._rows] = tuple(row.get(n, none) for n, none in self._missing.items())
+        self._rows += 1
+        if self._rows == _ROWS:
+            self._flush()
+
+    def close(self) -> None:
+        self._flush()
+        self._thread.shutdown()
+        self._wait()
+        self._writer.close()
+
+    def _flush(self) -> None:
+        self._wait()
+        self._written = self._thread.submit(self._write, self._table[: self._rows])
+        self._rows, self._table = 0, np.empty(_ROWS, self._kinds)
+
+    def _wait(self) -> None:
+        if self._written is not None:
+            self._written.result()
+
+    def _write(self, table: NDArray[Any]) -> None:
+        columns = {n: np.ascontiguousarray(table[n]) for n in self._missing}
+        arrays = [pa.array(each, mask=each == self._missing[n]) for n, each in columns.items()]
+        self._writer.write_table(pa.Table.from_arrays(arrays, schema=self._writer.schema))
 
 
 class Session:
@@ -34,18 +91,17 @@ class Session:
         Raises LogError for settings that do not fit, FmuError if the FMU refuses a value.
         """
         self._document, self._out = read_document(config), out
-        self.clocks: dict[str, Clock] = {}
-        """Clocks by time column; "" for the time of arrival."""
-        self.joints = [
-            LiveJoint(read_configuration(config, name), self.clocks, _learned(start_from, name))
-            for name in joints_of(self._document, config)
-        ]
+        self.clocks: dict[str, Clock] = {}  # clocks by time column; "" for the time of arrival
+        self.joints: list[LiveJoint] = []
+        for name in joints_of(self._document, config):
+            state = start_from / name if start_from and start_from.is_dir() else start_from
+            learned = read_learned(state) if state else None
+            self.joints.append(LiveJoint(read_configuration(config, name), self.clocks, learned))
         ports = [port.port.column for joint in self.joints for port in joint.ports.values()]
         self.columns = [name for name in dict.fromkeys([*self.clocks, *ports]) if name]
         """Columns of the messages that are used."""
-        self.recordings: list[Path] = []
-        """Complete files of recordings."""
-        self._recording: Recording | None = None
+        self.recordings: list[Path] = []  # complete files of recordings
+        self._recording: _Recording | None = None
 
     def take(self, columns: Columns, arrival: int) -> list[Estimated]:
         """The ticks that a message makes possible, in the order of the joints.
@@ -71,16 +127,12 @@ class Session:
         if not times:
             return []
         if self._recording is None:
-            self._recording = self._begin_recording()
+            now = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H-%M-%S-%f")
+            kinds = {name or ARRIVAL: bool(clock.shift) for name, clock in self.clocks.items()}
+            kinds |= {name: False for name in self.columns if name not in kinds}
+            self._recording = _Recording(self._out / f"{now}.parquet", kinds)
         self._recording.add({**kept, ARRIVAL: arrival} if "" in times else kept)
-        found = (joint.take(columns, times) for joint in self.joints)
-        return [each for of_joint in found for each in of_joint]
-
-    def _begin_recording(self) -> Recording:
-        now = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H-%M-%S-%f")
-        kinds = {name or ARRIVAL: bool(clock.shift) for name, clock in self.clocks.items()}
-        kinds |= {name: False for name in self.columns if name not in kinds}
-        return Recording(self._out / f"{now}.parquet", kinds)
+        return [each for joint in self.joints for each in joint.take(columns, times)]
 
     def _end_recording(self) -> list[Estimated]:
         """Completes the recording, and writes what was learned. Returns the ticks that had to wait.
@@ -97,16 +149,14 @@ class Session:
         digest = sha256(path)
         found: list[Estimated] = []
         for joint in self.joints:
-            found += joint.end(path, digest)
             folder = self._out / joint.configuration.joint
             folder.mkdir(exist_ok=True)
-            joint.write(folder / LEARNED.file)
+            found += joint.end(path, digest, folder / LEARNED.file)
         for clock in self.clocks.values():
             clock.restart()
         return found
 
     def close(self) -> list[Estimated]:
-        """Ends the recording and frees the estimators."""
         found = self._end_recording()
         for joint in self.joints:
             joint.slave.__exit__()
@@ -123,9 +173,3 @@ class Session:
             for key, value in time.items():
                 of_file.set_item(section, ("time", key), tomlkit.item(value))
         return document
-
-
-def _learned(start_from: Path | None, joint: str) -> Learned | None:
-    if start_from is None:
-        return None
-    return read_learned(start_from / joint if start_from.is_dir() else start_from)

@@ -3,40 +3,62 @@
 from __future__ import annotations
 
 import logging
+import shutil
 import signal
+import sys
 import time
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Callable, Iterator, Sequence, Set
 from contextlib import contextmanager
-from dataclasses import dataclass
-from queue import Empty
+from queue import Empty, Full, Queue
 from types import FrameType
 
+import click
+
+from sigmahat.files.tables import aligned
+from sigmahat.joint.curve import NORMAL_95
+from sigmahat.live.joint import Estimated
+from sigmahat.live.messages import Columns
 from sigmahat.live.session import Session
-from sigmahat.live.sinks import Sink
-from sigmahat.live.sources import Inbox
 
 _log = logging.getLogger("sigmahat")
 _IDLE = 0.1  # [s] until a signal is seen
 _SILENT = 5.0  # [s] without a message until a warning
 _FIRST = 100  # number of messages until warnings about these messages
+_MOST = 20_000  # messages that wait
+_EVERY, _RARELY = 0.5, 10.0  # [s] between two updates in a terminal, and in other outputs
+
+Reader = Callable[[], Columns | None]
+"""Gives the columns of a message; None for a message without columns. Raises ValueError if the
+message is not readable, and EOFError after the last message."""
+Sink = Callable[[Sequence[Estimated]], None]  # sends the ticks of one message on
 
 
-@dataclass
-class Counted:
-    """Numbers of received messages."""
+class Inbox(Queue[tuple[int, Reader]]):
+    """Messages that wait, each with its time of arrival [ns] since 1970."""
 
-    messages: int = 0
-    """Messages that were read."""
-    wrong: int = 0
-    """Messages that could not be read."""
+    def __init__(self) -> None:
+        super().__init__(_MOST)
+        self.read = self.wrong = self.dropped = 0
+        """Numbers of messages: read, not readable, and lost because the inbox was full."""
+
+    def add(self, read: Reader, can_wait: bool = True, arrival: int | None = None) -> None:
+        """can_wait  whether the sender waits for a place; else the message may be lost"""
+        try:
+            self.put((time.time_ns() if arrival is None else arrival, read), can_wait)
+        except Full:
+            self.dropped += 1
 
 
-def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> Counted:
+Source = Callable[[Inbox], None]
+"""Puts messages into the inbox until the data end; UDP, TCP and ROS 2 do not end."""
+
+
+def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> None:
     """Estimates until the messages end, or until Ctrl-C or SIGTERM.
 
     A warning shows the first message that cannot be read; all such messages are counted.
     """
-    counted, seen = Counted(), set[str]()
+    seen = set[str]()
     silent_at = time.monotonic() + _SILENT
     with _stopped_by_signal() as stopped:
         while not stopped:
@@ -53,16 +75,16 @@ def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> Counted:
             except EOFError:
                 break
             except ValueError as error:
-                counted.wrong += 1
-                if counted.wrong == 1:
+                inbox.wrong += 1
+                if inbox.wrong == 1:
                     _log.warning("a message that cannot be read: %s; more are counted", error)
                 continue
-            counted.messages += 1
+            inbox.read += 1
             if columns is None:
                 continue
-            if counted.messages <= _FIRST:
+            if inbox.read <= _FIRST:
                 seen.update(columns)
-            if counted.messages == _FIRST:
+            if inbox.read == _FIRST:
                 _look(session, seen)
             if ticks := session.take(columns, arrival):
                 for send in sinks:
@@ -70,7 +92,6 @@ def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> Counted:
         last = session.close()
         for send in sinks:
             send(last)
-    return counted
 
 
 def _look(session: Session, seen: Set[str]) -> None:
@@ -102,3 +123,39 @@ def _stopped_by_signal() -> Iterator[list[int]]:
     finally:
         for each, handler in before.items():
             signal.signal(each, handler)
+
+
+def terminal() -> Sink:
+    """A line for each joint on stderr, with its last estimate; replaced in a terminal."""
+    last: dict[str, Estimated] = {}
+    is_terminal = sys.stderr.isatty()
+    shown_at, shown = time.monotonic(), 0
+
+    def show(ticks: Sequence[Estimated]) -> None:
+        nonlocal shown_at, shown
+        last.update({each.joint: each for each in ticks})
+        now = time.monotonic()
+        if not last or now - shown_at <= (_EVERY if is_terminal else _RARELY):
+            return
+        shown_at = now
+        lines = [line.rstrip() for line in aligned([_row(each) for each in last.values()])]
+        if is_terminal:
+            width = shutil.get_terminal_size().columns - 1
+            lines = [f"{line[:width]}\033[K" for line in lines]
+            lines[0] = (f"\033[{shown}F" if shown else "") + lines[0]
+        click.echo("\n".join(lines), err=True)
+        shown = len(lines)
+
+    return show
+
+
+def _row(last: Estimated) -> tuple[str, ...]:
+    outputs = last.outputs
+    doubt = outputs["doubt"]
+    return (
+        last.joint,
+        f"{last.t:.1f} s",
+        f"{outputs['sigma']:.4g} +- {NORMAL_95 * outputs['sigma_std']:.2g} N.m/rad",
+        f"{outputs['tau_e']:.3g} N.m at {outputs['phi']:.3g} rad",
+        "confident" if doubt == "None" else f"not confident ({doubt})",
+    )

@@ -1,17 +1,26 @@
-"""Finds the motion that shows the stiffness of a set of joints best, within common limits."""
+"""Finds the motion that shows the stiffness of a set of joints best, within common limits.
+
+The log of each motion is simulated, and evaluated by `identify` and `estimate`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 
 import numpy as np
+import tomlkit
 
-from sigmahat.logs.log import LogError
-from sigmahat.motion.joints import Joint, Limits, Ranges
-from sigmahat.motion.multisine import Multisine
-from sigmahat.motion.record import Sensors, relative_half_width
+from sigmahat.files.toml_file import set_dotted
+from sigmahat.identification.identify import identify
+from sigmahat.identification.write import update
+from sigmahat.joint.curve import stiffness_in_the_middle
+from sigmahat.logs.configuration import checked_configuration
+from sigmahat.logs.estimate import estimate
+from sigmahat.logs.log import LogError, LogInMemory
+from sigmahat.motion.joints import Array, Joint, Limits, Multisine, Ranges
 from sigmahat.runs.pool import spread
 
 _RATIOS = (1.0, 1.618, 2.713, 4.237)  # of the frequencies: no multiples of each other
@@ -23,20 +32,75 @@ _CYCLES = 2.0  # of the slowest sine, at least
 _RAMP = 0.15  # of the duration, at most
 _LONGEST_RAMP = 2.0  # [s]
 _COARSE = 0.02  # [s] sample period for the search of peaks
+_REST, _STEPS = 1e-6, 6
 _MARGIN = 0.97  # of the limits, for joints between the joints that are tried
 _COMPARED, _PROMISED = 6, 20  # number of joints: to compare candidates, and to predict the result
 
-NOT_SHOWN = 1.0
-"""Largest ratio of half width to stiffness of a motion that shows the stiffness."""
+NOT_SHOWN = 1.0  # largest ratio of half width to stiffness of a motion that shows the stiffness
+NOISE = 0.003  # default noise of the torque: standard deviation divided by the limit of the torque
+
+
+@dataclass(frozen=True)
+class Sensors:
+    gear_ratio: float
+    counts: tuple[float, float]
+    """Counts of the encoders of motor and link, per turn at the gear output."""
+    torque_gain: float  # relative standard deviation of the gain of the torque: prior.torque_gain
+    noise: float  # noise of the torque of the motor at the gear output [N.m]
+    T: float  # time between samples [s]
+
+
+def relative_half_width(joint: Joint, motion: Multisine, sensors: Sensors) -> float:
+    """Half of the 95 % interval of the stiffness in the middle, divided by the stiffness.
+
+    `identify` and `estimate` evaluate a simulated log. Infinite if they refuse this log.
+    """
+    log = _log(joint, motion, sensors)
+    document = tomlkit.document()
+    document["ports"] = {name: {"column": name} for name in ("theta", "q", "tau")}
+    document["parameters"] = parameters = tomlkit.table()
+    for name, value in {
+        "method": "FilteredRegression",
+        "motor.gamma": sensors.gear_ratio,
+        "samplePeriod": sensors.T,
+        "encoder.theta": sensors.counts[0],
+        "encoder.q": sensors.counts[1],
+        "prior.torque_gain": sensors.torque_gain,
+    }.items():
+        set_dotted(parameters, name, tomlkit.item(value))
+    configured = partial(checked_configuration, document, log.path)
+    try:
+        update(document, identify(log, configured()))
+        curve = estimate(log, configured()).curve
+    except LogError:
+        return float("inf")
+    if not curve.branches:
+        return float("inf")
+    _, sigma, interval = stiffness_in_the_middle(curve.branches[0])
+    assert interval is not None  # FilteredRegression gives an interval
+    return (interval[1] - interval[0]) / 2 / max(abs(sigma), 1e-300)
+
+
+def _log(joint: Joint, motion: Multisine, sensors: Sensors) -> LogInMemory:
+    theta, phi, torque = joint.move(motion, sensors.T)
+    noise = sensors.noise * np.random.default_rng(1).standard_normal(len(theta))
+    columns = {
+        "theta": _rounded(theta, sensors.counts[0]),
+        "q": _rounded(theta + phi, sensors.counts[1]),
+        "tau": (torque + noise) / sensors.gear_ratio,
+    }
+    return LogInMemory(Path("motion"), columns)
+
+
+def _rounded(angle: Array, counts: float) -> Array:
+    step = 2 * np.pi / counts if counts else 0.0
+    return step * np.round(angle / step) if step else angle
 
 
 @dataclass(frozen=True)
 class Design:
-    """A motion, and its expected results."""
-
     motion: Multisine
-    peaks: Limits
-    """Largest values of all joints that were tried."""
+    peaks: Limits  # largest values of all joints that were tried
     half_widths: Sequence[float]
     """Half widths of the stiffness in the middle of the data, divided by the stiffness, sorted."""
 
@@ -143,8 +207,7 @@ def _candidates(joints: Sequence[Joint], limits: Limits, duration: float) -> Ite
 def _within(motion: Multisine, joints: Sequence[Joint], limits: Limits) -> Multisine | None:
     """The motion as large as the limits allow; None if even a joint at rest exceeds the limits."""
     position, velocity, _ = motion.at(motion.times(_COARSE))
-    angle, speed = float(np.max(np.abs(position))), float(np.max(np.abs(velocity)))
-    scale = _MARGIN * min(limits.angle / angle, limits.velocity / speed)
+    scale = _MARGIN * min(limits.angle / _peak(position), limits.velocity / _peak(velocity))
     rest = _peaks(motion.scaled(_REST * scale), joints)
     room_of_torque = _MARGIN * limits.torque - rest.torque
     room_of_deformation = _MARGIN * limits.deformation - rest.deformation
@@ -162,17 +225,12 @@ def _within(motion: Multisine, joints: Sequence[Joint], limits: Limits) -> Multi
     return None
 
 
-_REST, _STEPS = 1e-6, 6
-
-
 def _peaks(motion: Multisine, joints: Sequence[Joint]) -> Limits:
-    """The largest angle, velocity, torque and deformation of any of the joints."""
     position, velocity, _ = motion.at(motion.times(_COARSE))
-    torque = deformation = 0.0
-    for joint in joints:
-        _, phi, tau = joint.move(motion, _COARSE)
-        torque = max(torque, float(np.max(np.abs(tau))))
-        deformation = max(deformation, float(np.max(np.abs(phi))))
-    return Limits(
-        float(np.max(np.abs(position))), float(np.max(np.abs(velocity))), torque, deformation
-    )
+    moved = [joint.move(motion, _COARSE) for joint in joints]
+    torque, deformation = max(_peak(tau) for *_, tau in moved), max(_peak(p) for _, p, _ in moved)
+    return Limits(_peak(position), _peak(velocity), torque, deformation)
+
+
+def _peak(signal: Array) -> float:
+    return float(np.max(np.abs(signal)))

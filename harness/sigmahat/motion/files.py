@@ -9,11 +9,10 @@ import numpy as np
 
 from sigmahat.files.output import write_whole
 from sigmahat.files.tables import write_csv
-from sigmahat.motion.multisine import Multisine
+from sigmahat.motion.joints import Multisine
 
 _ROS_PERIOD = 0.01  # [s]
-FILES = ("motion.csv", "motion.yaml", "motion.c")
-"""Names of the files."""
+FILES = ("motion.csv", "motion.yaml", "motion.c")  # names of the files
 
 
 def write(motion: Multisine, joint: str, start: float, T: float, folder: Path) -> None:

@@ -1,53 +1,80 @@
-"""Joints that a motion has to suit, from limits or from a log, and the motion of these joints."""
+"""A motion in closed form, the joints that it has to suit, and their response."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import signal
 
-from sigmahat.motion.multisine import Array, Multisine
+Array = NDArray[np.float64]
 
-Rng = np.random.Generator
+
+@dataclass(frozen=True)
+class Multisine:
+    """Position e(t) sum_i A_i sin(2 pi f_i t + p_i) of the motor at the gear output.
+
+    e rises from 0 to 1 in the ramp and falls again at the end, as s^4 (35 - 84 s + 70 s^2 - 20 s^3)
+    with s from 0 to 1: position, velocity, acceleration and jerk begin and end at 0.
+    """
+
+    amplitudes: Sequence[float]  # [rad]
+    frequencies: Sequence[float]  # [Hz]
+    phases: Sequence[float]  # [rad]
+    duration: float  # [s]
+    ramp: float  # [s]
+
+    def times(self, T: float) -> Array:
+        return T * np.arange(round(self.duration / T) + 1, dtype=np.float64)
+
+    def at(self, t: Array) -> tuple[Array, Array, Array]:
+        """Position [rad], velocity [rad/s] and acceleration [rad/s2]."""
+        w = 2 * np.pi * np.array(self.frequencies)[:, None]
+        A, angle = np.array(self.amplitudes)[:, None], w * t + np.array(self.phases)[:, None]
+        x, v = np.sum(A * np.sin(angle), axis=0), np.sum(A * w * np.cos(angle), axis=0)
+        a = -np.sum(A * w**2 * np.sin(angle), axis=0)
+        e, de, dde = self._envelope(t)
+        return e * x, de * x + e * v, dde * x + 2 * de * v + e * a
+
+    def _envelope(self, t: Array) -> tuple[Array, Array, Array]:
+        """The envelope e with its derivatives; the ramps do not overlap."""
+        rising = t < self.duration / 2
+        s = np.clip(np.where(rising, t, self.duration - t) / self.ramp, 0.0, 1.0)
+        slope = np.where(rising, 1.0, -1.0) / self.ramp
+        u = s * (1 - s)
+        e = s**4 * (35 - 84 * s + 70 * s**2 - 20 * s**3)
+        return e, 140 * u**3 * slope, 420 * u**2 * (1 - 2 * s) * slope**2
+
+    def scaled(self, factor: float) -> Multisine:
+        """The motion with amplitudes multiplied by a factor."""
+        return replace(self, amplitudes=[factor * A for A in self.amplitudes])
 
 
 @dataclass(frozen=True)
 class Limits:
     """Limits of the motion, at the gear output."""
 
-    angle: float
-    """Largest distance from the start position [rad]."""
-    velocity: float
-    """[rad/s]"""
-    torque: float
-    """Torque of the motor [N.m]."""
-    deformation: float
-    """[rad]"""
+    angle: float  # largest distance from the start position [rad]
+    velocity: float  # [rad/s]
+    torque: float  # torque of the motor [N.m]
+    deformation: float  # [rad]
 
 
 @dataclass(frozen=True)
 class Joint:
     """A joint; all values at the gear output. `Ranges` has the least and the largest values."""
 
-    k: float
-    """Stiffness [N.m/rad]."""
-    M: float
-    """Inertia of the link [kg.m2]."""
-    D_q: float
-    """Viscous friction of the link [N.m.s/rad]."""
-    weight: float
-    """Largest torque of the weight of the link [N.m]."""
-    angle: float
-    """Angle of the link at the start, 0 where the weight hangs down [rad]."""
-    B: float
-    """Inertia of the motor [kg.m2]."""
-    D_theta: float
-    """Viscous friction of the motor [N.m.s/rad]."""
-    tau_coulomb: float
-    """Coulomb friction of the motor [N.m]."""
+    k: float  # stiffness [N.m/rad]
+    M: float  # inertia of the link [kg.m2]
+    D_q: float  # viscous friction of the link [N.m.s/rad]
+    weight: float  # largest torque of the weight of the link [N.m]
+    angle: float  # angle of the link at the start, 0 where the weight hangs down [rad]
+    B: float  # inertia of the motor [kg.m2]
+    D_theta: float  # viscous friction of the motor [N.m.s/rad]
+    tau_coulomb: float  # Coulomb friction of the motor [N.m]
 
     @property
     def resonance(self) -> float:
@@ -89,11 +116,11 @@ class Ranges:
     low: Joint
     high: Joint
 
-    def draw(self, count: int, rng: Rng) -> Iterator[Joint]:
+    def draw(self, count: int, rng: np.random.Generator) -> Iterator[Joint]:
         for _ in range(count):
             yield Joint(**{f.name: self._drawn(f.name, rng) for f in fields(Joint)})
 
-    def _drawn(self, name: str, rng: Rng) -> float:
+    def _drawn(self, name: str, rng: np.random.Generator) -> float:
         low, high = getattr(self.low, name), getattr(self.high, name)
         if name == "angle" or low <= 0:
             return float(rng.uniform(low, high))
@@ -104,9 +131,8 @@ class Ranges:
         ends = {
             f.name: {getattr(self.low, f.name), getattr(self.high, f.name)} for f in fields(Joint)
         }
-        ends["angle"] = set(
-            np.linspace(self.low.angle, self.high.angle, 4, endpoint=False).tolist()
-        )
+        angles = np.linspace(self.low.angle, self.high.angle, 4, endpoint=False)
+        ends["angle"] = set(angles.tolist())
         for values in itertools.product(*ends.values()):
             yield Joint(*values)
 
@@ -117,13 +143,8 @@ def of_limits(limits: Limits) -> Ranges:
     speed_up = limits.torque / limits.velocity  # [N.m.s/rad] times the time to the full velocity
     low = Joint(k, 0.1 * speed_up, 0.0, 0.0, 0.0, 0.02 * speed_up, 0.0, 0.0)
     high = Joint(
-        k=4 * k,
-        M=0.4 * speed_up,
-        D_q=0.02 * speed_up,
-        weight=0.2 * limits.torque,
-        angle=2 * np.pi,
-        B=0.4 * speed_up,
-        D_theta=0.2 * speed_up,
-        tau_coulomb=0.1 * limits.torque,
-    )
+        k=4 * k, M=0.4 * speed_up, D_q=0.02 * speed_up,
+        weight=0.2 * limits.torque, angle=2 * np.pi,
+        B=0.4 * speed_up, D_theta=0.2 * speed_up, tau_coulomb=0.1 * limits.torque,
+    )  # fmt: skip
     return Ranges(low, high)

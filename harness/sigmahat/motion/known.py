@@ -13,8 +13,8 @@ from sigmahat.logs.estimate import Estimate, estimate
 from sigmahat.logs.log import Log, LogError
 from sigmahat.logs.replay import parameters
 from sigmahat.logs.sampling import sample
+from sigmahat.motion.design import NOISE, Sensors
 from sigmahat.motion.joints import Joint, Limits, Ranges
-from sigmahat.motion.record import NOISE, Sensors
 
 _COUNTS = 400_000.0  # per turn at the gear output, without a configuration
 _PERIOD = 1e-3  # [s]
@@ -29,16 +29,15 @@ def sensors(configuration: Configuration | None, limits: Limits) -> Sensors:
         return Sensors(1.0, (_COUNTS, _COUNTS), 0.02, noise, _PERIOD)
     fmu = installed("StiffnessEstimator")
     every = fmu.parameters(parameters(fmu, configuration))
-    gamma = float(every["motor.gamma"])
+    gamma, theta, q, gain, T = (
+        float(every[name])
+        for name in (
+            "motor.gamma", "encoder.theta", "encoder.q", "prior.torque_gain", "samplePeriod",
+        )
+    )  # fmt: skip
     if "noise.tau" in configuration.parameters:
         noise = abs(gamma) * float(every["noise.tau"])
-    return Sensors(
-        gear_ratio=gamma,
-        counts=(float(every["encoder.theta"]), float(every["encoder.q"])),
-        torque_gain=float(every["prior.torque_gain"]),
-        noise=noise,
-        T=float(every["samplePeriod"]) or _PERIOD,
-    )
+    return Sensors(gamma, (theta, q), gain, noise, T or _PERIOD)
 
 
 def of_log(log: Log, configuration: Configuration, start: float) -> Ranges:

@@ -53,7 +53,6 @@ def draw(axes: Axes, panel: Panel, columns: int = 3) -> None:
 
 
 def label_x(axes: Axes, panel: Panel) -> None:
-    """The label of the x axis, and the caption below."""
     axes.set_xlabel(f"{panel.x_label}\n{panel.caption}" if panel.caption else panel.x_label)
 
 

@@ -21,10 +21,8 @@ class Kind(Enum):
 
     LINE = "line"
     POINTS = "points"
-    MEANS = "means"
-    """Points with intervals, and a line through them."""
-    STEPS = "steps"
-    """y between edges x: one more edge than values."""
+    MEANS = "means"  # points with intervals, and a line through them
+    STEPS = "steps"  # y between edges x: one more edge than values
 
 
 @dataclass(frozen=True)
@@ -36,8 +34,7 @@ class Curve:
     x: NDArray[Any]
     y: NDArray[Any]
     kind: Kind = Kind.LINE
-    half: NDArray[Any] | None = None
-    """Half widths of the intervals of means."""
+    half: NDArray[Any] | None = None  # half widths of the intervals of means
     band: tuple[NDArray[Any], NDArray[Any]] | None = None
     """Lower and upper end of the intervals of a line."""
     within: NDArray[np.bool_] | None = None
@@ -55,7 +52,6 @@ class Curve:
 
     @property
     def high(self) -> NDArray[Any]:
-        """Upper ends of the intervals of means."""
         assert self.half is not None
         high: NDArray[Any] = self.y + self.half
         return high
@@ -63,17 +59,13 @@ class Curve:
 
 @dataclass(frozen=True)
 class Panel:
-    """A plot."""
-
     title: str
     x_label: str
     y_label: str
     curves: Sequence[Curve]
     x_log: bool = False
     y_log: bool = False
-    linked: bool = True
-    """Whether the x axis moves with the x axes of the other linked panels."""
-    caption: str = ""
-    """Text below the title."""
+    linked: bool = True  # whether the x axis moves with the x axes of the other linked panels
+    caption: str = ""  # text below the title
     y_range: tuple[float, float] | None = None
     """Limits of y that are shown at first, for estimates that jump before they converge."""

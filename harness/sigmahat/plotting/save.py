@@ -11,8 +11,7 @@ import matplotlib
 from matplotlib.figure import Figure
 from PIL import Image
 
-Source = TypeVar("Source")
-"""Data of a figure."""
+Source = TypeVar("Source")  # data of a figure
 
 _STYLE: Any = {
     "font.size": 9,

@@ -26,10 +26,8 @@ class Quantity:
     """A quantity that has an axis or a row."""
 
     words: str
-    math: str
-    """Symbol in the figures, for Matplotlib."""
-    plain: str
-    """Symbol in a page."""
+    math: str  # symbol in the figures, for Matplotlib
+    plain: str  # symbol in a page
     unit: str
 
 
@@ -46,14 +44,12 @@ _DIGITS = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
 
 
 def math_axis(name: str) -> str:
-    """Label of an axis in a figure: words, symbol and unit."""
     quantity = QUANTITIES[name]
     unit = quantity.unit.replace(".", r"$\cdot$")
     return f"{quantity.words} ${quantity.math}$ [{unit}]"
 
 
 def plain_axis(name: str) -> str:
-    """Label of an axis in a page: words, symbol and unit."""
     quantity = QUANTITIES[name]
     return f"{quantity.words} {quantity.plain} [{plain_unit(quantity.unit)}]"
 
@@ -79,8 +75,7 @@ def plain_text(text: str) -> str:
     return text.replace("N.m", "N·m")
 
 
-_OUTER = 0.5
-"""Percent of the values at either end."""
+_OUTER = 0.5  # percent of the values at either end
 _FURTHER = 0.5
 """Largest distance of shown values from the inner values, relative to the range of the latter."""
 

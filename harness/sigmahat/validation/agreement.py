@@ -16,8 +16,7 @@ from sigmahat.logs.replay import gap, play, replay
 from sigmahat.logs.resampling import stretches
 from sigmahat.logs.sampling import Samples
 
-LOW = 2.0
-"""Frequency of the low pass [Hz]."""
+LOW = 2.0  # frequency of the low pass [Hz]
 _CHUNK = 1 << 16
 _SHORTEST = 2.0
 """Shortest stretch that is filtered: beyond both ends, the filter has no data [1/LOW]."""
@@ -122,24 +121,20 @@ def agreement(
     difference = alone["sigma"] - before["sigma"]
     halves = [NORMAL_95 * each["sigma_std"] for each in (before, alone)]
     by_gain = [torque_gain * e["sigma_per_gain"] * np.abs(e["sigma"]) for e in (before, alone)]
-    own = [
-        np.maximum(e["sigma_std"] ** 2 - g**2, 0.0)
-        for e, g in zip((before, alone), by_gain, strict=True)
-    ]
+    both = zip((before, alone), by_gain, strict=True)
+    own = [np.maximum(e["sigma_std"] ** 2 - g**2, 0.0) for e, g in both]
     std = np.sqrt(own[0] + own[1] + (by_gain[1] - by_gain[0]) ** 2)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.where(difference == 0, 0.0, difference / std)
     z = float(np.sqrt(np.mean(ratio**2)))
-    says_nothing = any(
-        np.median(half - np.abs(each["sigma"])) >= 0
-        for half, each in zip(halves, (before, alone), strict=True)
+    pairs = list(zip(halves, (before, alone), strict=True))
+    says_nothing = any(np.median(half - np.abs(each["sigma"])) >= 0 for half, each in pairs)
+    first, second = (
+        (float(np.median(each["sigma"])), float(np.median(half))) for half, each in pairs
     )
-    return Agreement(
-        before=(float(np.median(before["sigma"])), float(np.median(halves[0]))),
-        alone=(float(np.median(alone["sigma"])), float(np.median(halves[1]))),
-        alone_in_before=float(np.mean(np.abs(difference) <= halves[0])),
-        before_in_alone=float(np.mean(np.abs(difference) <= halves[1])),
-        overlap=float(np.mean(np.abs(difference) <= halves[0] + halves[1])),
-        z=z,
-        agree=None if says_nothing else bool(z <= NORMAL_95),
+    widths = (*halves, halves[0] + halves[1])
+    alone_in_before, before_in_alone, overlap = (
+        float(np.mean(np.abs(difference) <= half)) for half in widths
     )
+    agree = None if says_nothing else bool(z <= NORMAL_95)
+    return Agreement(first, second, alone_in_before, before_in_alone, overlap, z, agree)

@@ -196,7 +196,6 @@ def _points(log: Log, samples: Samples) -> Array:
 
 
 def summary(result: Validation) -> str:
-    """The result as a text of one screen."""
     both = result.stiffness
     lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
     lines += [
