@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from controllers import HOST, REPOSITORY, TARGETS, Target, cross_build, replay, run
 from gate import need
-from reference_plant import table1_recording
+from reference_joints import table1_recording
 
 PAPER, REGRESSION = "abcdef", "ghi"
 """Configurations of replay.c, by method."""

@@ -18,7 +18,7 @@ from c_library import Array, Estimator, Library
 from c_regression import PLAIN
 from dense_regression import START, Oracle
 from oracle import RESIDUAL, SENSOR
-from reference_plant import table1_recording
+from reference_joints import table1_recording
 from regression_joint import GAMMA, Joint
 
 SHORT = Joint(duration=1.5, tau_coulomb=0.02)

@@ -25,7 +25,7 @@ from oracle import (
     SENSOR,
     STANDARD,
 )
-from reference_plant import table1_recording
+from reference_joints import table1_recording
 
 MODALITIES = (RESIDUAL, SENSOR, MODEL)
 FILTERS = (MODIFIED_KALMAN, KALMAN, FINITE_DIFFERENCE)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import base64
+import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.csv
 from numpy.typing import NDArray
 from selenium.webdriver.support.ui import WebDriverWait
 
@@ -36,6 +39,13 @@ for (const [name, value] of Object.entries(arguments[0])) {
   field.dispatchEvent(new Event("change", { bubbles: true }));
 }
 """
+
+
+def csv(columns: Mapping[str, NDArray[np.float64]]) -> str:
+    """A CSV file to drop on the page."""
+    text = io.BytesIO()
+    pyarrow.csv.write_csv(pa.table(dict(columns)), text)
+    return text.getvalue().decode()
 
 
 class LivePage:

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 import sigmahat
-from live_page import LivePage, live_page
-from log_files import csv
+from live_page import LivePage, csv, live_page
 from recorded_logs import awas_log
 from sigmahat.fmi.instance import Value
 

@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from live_page import LivePage, live_page
-from log_files import csv, good
+from live_page import LivePage, csv, live_page
 from recorded_logs import Array
 
 
@@ -18,6 +17,12 @@ from recorded_logs import Array
 def page(site: Path) -> Iterator[LivePage]:
     with live_page(site / "live") as page:
         yield page
+
+
+def good() -> dict[str, Array]:
+    """Columns of a log without a fault."""
+    t = 0.001 * np.arange(200)
+    return {"time": t, "theta": np.sin(t), "q": 1.002 * np.sin(t), "tau": 0.05 * np.cos(t)}
 
 
 _NAMES = "t,theta,q,tau\n"

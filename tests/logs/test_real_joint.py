@@ -1,4 +1,4 @@
-"""The torque and the stiffness of a real joint, estimated from its log by the FMU.
+"""The torque and the stiffness of a real joint, estimated from its log.
 
 The requirements were chosen after a first look at the data: see docs/real-joint.md.
 """
@@ -6,15 +6,12 @@ The requirements were chosen after a first look at the data: see docs/real-joint
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import real_joint
 from real_joint import SETTINGS, Fit, Log, M, N
-from sigmahat.fmi.instance import Fmu
 
 
 @pytest.fixture(scope="module")
@@ -29,19 +26,13 @@ def measured() -> list[Log]:
 
 
 @pytest.fixture(scope="module")
-def fmu(estimator_fmu: Path) -> Iterator[Fmu]:
-    with Fmu(estimator_fmu) as fmu:
-        yield fmu
+def general(measured: list[Log]) -> Fit:
+    return real_joint.replay(measured, symmetric=False)
 
 
 @pytest.fixture(scope="module")
-def general(fmu: Fmu, measured: list[Log]) -> Fit:
-    return real_joint.replay(fmu, measured, symmetric=False)
-
-
-@pytest.fixture(scope="module")
-def odd(fmu: Fmu, measured: list[Log]) -> Fit:
-    return real_joint.replay(fmu, measured, symmetric=True)
+def odd(measured: list[Log]) -> Fit:
+    return real_joint.replay(measured, symmetric=True)
 
 
 def test_the_general_basis_fits_the_torque(measured: list[Log], general: Fit) -> None:
@@ -86,10 +77,8 @@ def test_outputs_are_those_of_the_coefficients(
     assert fit.sigma == pytest.approx(fit.stiffness(last.setting, last.phi[-1]), rel=1e-9)
 
 
-def test_a_setting_left_out_is_predicted(
-    fmu: Fmu, measured: list[Log], general: Fit, odd: Fit
-) -> None:
-    left_out = real_joint.leave_one_out(fmu, measured)
+def test_a_setting_left_out_is_predicted(measured: list[Log], general: Fit, odd: Fit) -> None:
+    left_out = real_joint.leave_one_out(measured)
     print(real_joint.torque_table(measured, general, odd, left_out))
     assert list(left_out) == [10, 25, 33, 35]
     assert max(left_out.values()) <= 4.5
@@ -105,8 +94,8 @@ def test_stiffness_is_the_slope_of_the_measured_curve(
     assert real_joint.worst(measured, odd, real_joint.HALF_WIDTH) > 50.0
 
 
-def test_filtered_regression_is_no_worse(fmu: Fmu, measured: list[Log], general: Fit) -> None:
-    regression = real_joint.replay(fmu, measured, False, real_joint.SPRING_ALONE)
+def test_filtered_regression_is_no_worse(measured: list[Log], general: Fit) -> None:
+    regression = real_joint.replay(measured, False, real_joint.SPRING_ALONE)
     for log in measured:
         assert log.rms(regression) <= 1.001 * log.rms(general)
     assert real_joint.worst(measured, regression, real_joint.HALF_WIDTH) <= real_joint.worst(
@@ -114,12 +103,10 @@ def test_filtered_regression_is_no_worse(fmu: Fmu, measured: list[Log], general:
     )
 
 
-def test_filtered_regression_claims_what_it_knows(
-    fmu: Fmu, measured: list[Log], general: Fit
-) -> None:
+def test_filtered_regression_claims_what_it_knows(measured: list[Log], general: Fit) -> None:
     """The joint has hysteresis of several N.m. With the columns for misfits the torque is hardly
     worse, and the interval contains the slope of the mean curve."""
-    regression = real_joint.replay(fmu, measured, False, real_joint.FILTERED_REGRESSION)
+    regression = real_joint.replay(measured, False, real_joint.FILTERED_REGRESSION)
     for log in measured:
         assert log.rms(regression) <= 1.3 * log.rms(general)
-    assert real_joint.coverage(fmu, measured, real_joint.FILTERED_REGRESSION) >= 90.0
+    assert real_joint.coverage(measured, real_joint.FILTERED_REGRESSION) >= 90.0
