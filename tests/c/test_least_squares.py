@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import oracle
-from c_library import Array, Library, covariance
-from c_real import compile_library
+from c_library import Array, Library, compile_library, covariance
 from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
 from reference_joints import table1_recording
 

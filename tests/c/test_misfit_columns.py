@@ -12,10 +12,8 @@ from scipy import signal
 
 from c_library import Estimator, Library
 from c_regression import PLAIN, coefficients, covariance
-from misfit_joint import SETTINGS, STIFFNESS, MisfitJoint
-from regression_joint import Joint
+from regression_joint import SETTINGS, STIFFNESS, Joint, MisfitJoint, T
 
-T = 1e-3
 GAP, HYSTERESIS = 3, 4
 
 

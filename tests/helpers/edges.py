@@ -10,7 +10,8 @@ from xml.etree.ElementTree import Element
 import numpy as np
 from hypothesis import strategies as st
 
-from c_library import MEASUREMENTS, REPOSITORY, Array
+from c_library import MEASUREMENTS, Array
+from c_sources import REPOSITORY
 from sigmahat.export.templates import items, render, variables
 
 LARGEST = 1e12

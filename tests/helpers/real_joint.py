@@ -160,17 +160,17 @@ def logs(path: Path) -> list[Log]:
 
 def play(
     played: Sequence[Log], symmetric: bool, method: Mapping[str, Value], record: Sequence[str] = ()
-) -> tuple[sigmahat.Estimator, Mapping[str, Array]]:
+) -> tuple[sigmahat.Estimator, dict[str, Array]]:
     """An estimator after logs, one after another, and what it recorded [size: samples]."""
     start = {**PARAMETERS, **method, "rls.symmetric": symmetric}
-    estimator = sigmahat.Estimator(start, record or ("sigma",))
+    estimator = sigmahat.Estimator(start, record)
     columns = estimator.run(
         theta=np.concatenate([log.theta for log in played]),
         q=np.concatenate([log.q for log in played]),
         theta_c=np.concatenate([np.full(len(log.q), float(log.setting)) for log in played]),
         tau_e_sensor=np.concatenate([log.torque for log in played]),
     )
-    return estimator, columns
+    return estimator, {name: columns[name] for name in record}
 
 
 def replay(played: Sequence[Log], symmetric: bool, method: Mapping[str, Value] = PAPER2011) -> Fit:

@@ -51,11 +51,11 @@ USERS = {
         ("kinematic_kalman", "parameters", "torque_basis", "torque_residual"),
         ("stiffness_estimator",),
     ),
-    "filtered_regression": ("prior", "stiffness_estimator", *_REGRESSION),
+    "filtered_regression": ("stiffness_estimator", *_REGRESSION),
     "least_squares": ("stiffness_estimator", "evaluate"),
     "method": ("stiffness_estimator", "filtered_regression"),
-    "paper2011": ("prior", "stiffness_estimator", "evaluate"),
-    "stiffness_estimator": ("prior", "filtered_regression", "evaluate"),
+    "paper2011": ("stiffness_estimator", "evaluate"),
+    "stiffness_estimator": ("filtered_regression", "evaluate"),
     "ud_factor": ("least_squares", "stiffness_estimator"),
 }
 PYTEST = ("-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", "-m", "not slow")
