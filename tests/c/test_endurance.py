@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from c_library import Array, Estimator, Library, load
-from c_real import LONG, compile_library
+from c_library import LONG, Array, Estimator, Library, compile_library, load
 
 T, COUNT, GAMMA = 1e-3, 2 * np.pi / 40000, 50.0
 PIECES, PIECE = 10, 10_000  # of the input, which is then repeated

@@ -13,7 +13,7 @@ import c_library
 from c_library import Estimator, Library
 from c_regression import covariance
 from oracle import MODEL, RESIDUAL, SENSOR
-from reference_plant import table1_recording
+from reference_joints import table1_recording
 from regression_joint import GAMMA, Joint, T
 
 PAPER2011, FILTERED_REGRESSION = 1, 2

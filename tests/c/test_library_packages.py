@@ -7,13 +7,15 @@ import re
 import shlex
 import shutil
 import subprocess
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from c_library import Estimator, load
 from gate import need, need_of_environment
-from reference_plant import table1_recording
+from reference_joints import table1_recording
 
 REPOSITORY = Path(__file__).parents[2]
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
@@ -58,10 +60,11 @@ def run(*command: str | Path, **environment: str) -> str:
     done = subprocess.run(
         [str(part) for part in command],
         env={**os.environ, **environment},
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
         text=True,
     )
-    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.returncode == 0, done.stdout
     return done.stdout
 
 
@@ -121,13 +124,13 @@ def test_pkg_config_describes_the_installed_library(
     check(tmp_path / "consumer", build, size)
 
 
-@pytest.mark.parametrize("real", [("double", 8), ("float", 4)], ids=["double", "float"])
-@pytest.mark.parametrize("c, cpp", [("gcc", "g++"), ("clang", "clang++")])
+@pytest.mark.parametrize(
+    ("c", "cpp", "name", "size"), [("gcc", "g++", "double", 8), ("clang", "clang++", "float", 4)]
+)
 def test_the_pair_of_files_works_in_c_and_cpp(
-    c: str, cpp: str, real: tuple[str, int], build: Path, tmp_path: Path
+    c: str, cpp: str, name: str, size: int, build: Path, tmp_path: Path
 ) -> None:
     """The files compile alone and without a warning, and the header can be used in C and C++."""
-    name, size = real
     flags = ["-O2", "-ffp-contract=off", *WARNINGS, f"-DSH_REAL={name}"]
     if name == "float":
         flags += ["-Wdouble-promotion", "-Wfloat-conversion"]
@@ -146,64 +149,32 @@ def test_the_pair_of_files_works_in_c_and_cpp(
         check(program, build, size)
 
 
-@pytest.mark.parametrize("size", ["SH_REAL=float", "SH_MAX_N=4", "SH_MAX_M=1", "SH_MAX_COLUMNS=21"])
 @pytest.mark.parametrize(("compiler", "file"), [("cc", "main.c"), ("c++", "main.cpp")])
 def test_a_program_of_other_sizes_than_the_library_does_not_link(
-    size: str, compiler: str, file: str, build: Path, tmp_path: Path
+    compiler: str, file: str, build: Path, tmp_path: Path
 ) -> None:
     """The linker names the function with the sizes that the program expects."""
-    sources = build / "amalgamation"
-    run(need("cc"), "-c", sources / "sigmahat.c", "-o", tmp_path / "sigmahat.o")
+    sources, library = build / "amalgamation", tmp_path / "sigmahat.o"
+    run(need("cc"), "-c", sources / "sigmahat.c", "-o", library)
     (tmp_path / file).write_text(PROGRAM.format(header="sigmahat.h"))
-    command = [need(compiler), f"-D{size}", f"-I{sources}", str(tmp_path / file)]
-    done = subprocess.run(
-        [*command, tmp_path / "sigmahat.o", "-lm", "-o", tmp_path / "program"],
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode != 0
-    (name,) = set(re.findall(r"\bsh_estimator_start\w+", done.stderr))
-    assert f"_{size.partition('=')[2]}" in name
-
-
-class Conan:
-    """Conan of the environment, with a cache of its own that is empty."""
-
-    def __init__(self, build: Path, home: Path) -> None:
-        self._program = need_of_environment("conan")
-        self._environment = {
-            **os.environ,
-            "CONAN_HOME": str(home),
-            "PATH": f"{build / 'venv' / 'bin'}{os.pathsep}{os.environ['PATH']}",  # Ninja
-            "TMP": str(home),
-            "TMPDIR": str(home),
-        }
-        self.run("profile", "detect")
-
-    def run(self, *arguments: str) -> tuple[int, str]:
-        """Runs a command. Returns its exit code, and what it printed."""
+    for size in ("SH_REAL=float", "SH_MAX_N=4", "SH_MAX_M=1", "SH_MAX_COLUMNS=21"):
+        command = [need(compiler), f"-D{size}", f"-I{sources}", str(tmp_path / file), str(library)]
         done = subprocess.run(
-            [self._program, *arguments],
-            env=self._environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
+            [*command, "-lm", "-o", tmp_path / "program"], capture_output=True, text=True
         )
-        return done.returncode, done.stdout
-
-    def create(self, *options: str) -> tuple[int, str]:
-        """Makes the package, with these options of the recipe, and runs its program."""
-        given = [part for option in options for part in ("-o", f"sigmahat/*:{option}")]
-        return self.run(
-            *("create", str(REPOSITORY / "c"), "--no-remote", *given),
-            *("-c", "tools.cmake.cmaketoolchain:generator=Ninja"),
-            *("-c", "tools.cmake.cmake_layout:test_folder=$TMP"),
-        )
+        assert done.returncode != 0
+        (name,) = set(re.findall(r"\bsh_estimator_start\w+", done.stderr))
+        assert f"_{size.partition('=')[2]}" in name
 
 
 @pytest.fixture(scope="module")
-def conan(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Conan:
-    return Conan(build, tmp_path_factory.mktemp("conan"))
+def conan(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., str]:
+    """Conan of the environment, with a cache of its own that is empty."""
+    program, home = need_of_environment("conan"), str(tmp_path_factory.mktemp("conan"))
+    path = f"{build / 'venv' / 'bin'}{os.pathsep}{os.environ['PATH']}"  # for Ninja
+    places = {"CONAN_HOME": home, "PATH": path, "TMP": home, "TMPDIR": home}
+    run(program, "profile", "detect", **places)
+    return partial(run, program, **places)
 
 
 @pytest.mark.parametrize(
@@ -215,10 +186,15 @@ def conan(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Conan:
     ids=["double", "float, small"],
 )
 def test_conan_creates_the_package_and_its_program_runs(
-    options: tuple[str, ...], number: int, least: int, most: int, conan: Conan
+    options: tuple[str, ...], number: int, least: int, most: int, conan: Callable[..., str]
 ) -> None:
-    code, text = conan.create(*options)
-    assert code == 0, text
+    """With these options of the recipe."""
+    text = conan(
+        *("create", REPOSITORY / "c", "--no-remote"),
+        *(part for option in options for part in ("-o", f"sigmahat/*:{option}")),
+        *("-c", "tools.cmake.cmaketoolchain:generator=Ninja"),
+        *("-c", "tools.cmake.cmake_layout:test_folder=$TMP"),
+    )
     printed = re.search(r"sigma = (\S+) N.m/rad; a number has (\d+) bytes, an instance (\d+)", text)
     assert printed, text
     assert float(printed[1]) == pytest.approx(150.0, rel=1e-4)

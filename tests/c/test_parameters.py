@@ -10,7 +10,8 @@ from typing import Any
 import fmpy
 import pytest
 
-from c_library import REPOSITORY, Library
+from c_library import Library
+from c_sources import REPOSITORY
 from sigmahat.export import c_variables
 
 

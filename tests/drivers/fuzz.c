@@ -1,13 +1,12 @@
 /* Sequences of FMI calls with arguments of any kind, for libFuzzer, linked with one FMU.
  *
- * The bytes of the fuzzer choose the calls, one after the other, until there are no more bytes. The
- * sanitizers look for undefined behaviour and leaks. This program checks that a refused step does
- * not change the time, that an accepted one ends where it should, that a restored state gives the
- * same step bit for bit, that damaged states and wrong GUIDs are refused, and that the logger
- * receives valid arguments.
+ * The bytes of the fuzzer choose the calls, one after the other, until there are no more bytes. Most
+ * arguments are valid, because else no sequence would get past its first calls. The sanitizers look
+ * for undefined behaviour and leaks. This program checks that a refused step does not change the
+ * time, that an accepted one ends where it should, that a restored state gives the same step bit for
+ * bit, that damaged states and wrong GUIDs are refused, and that the logger receives valid arguments.
  */
-#include "fuzz.h"
-
+#include <float.h>
 #include <locale.h>
 #include <math.h>
 #include <stdlib.h>
@@ -15,19 +14,283 @@
 
 #include "drive.h"
 #include "fmi_calls.h"
+#include "model.h"
 
-enum { MAX_TICKS = 50 };
+enum { SLOTS = 3, MAX_REFERENCES = 6, TEXT = 16, MAX_TICKS = 50 };
+enum { CHECKSUM = 120 }; /* its place in a serialised state, behind the rest of the header */
+
+typedef struct {
+    const uint8_t *next, *end; /* the remaining bytes of the fuzzer */
+    void *instance;
+    void *states[SLOTS];
+    double stop_times[SLOTS]; /* of the states */
+    double time;              /* next communication point */
+    double stop_time;         /* infinite if there is none */
+    double longest_step;      /* of all steps so far */
+    int forged;               /* 1: a forged state was taken; its stop time is unknown */
+} sequence;
 
 int LLVMFuzzerInitialize(int *argc, char ***argv);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-void check_message(int status, const char *category, const char *message)
+/* The next byte; 0 when there are no more bytes. */
+static unsigned byte(sequence *s)
+{
+    return s->next < s->end ? *s->next++ : 0;
+}
+
+static unsigned below(sequence *s, unsigned n)
+{
+    return byte(s) % n;
+}
+
+/* 1 in one of n cases; 0 when there are no more bytes. */
+static int seldom(sequence *s, unsigned n)
+{
+    return byte(s) % n == n - 1;
+}
+
+static uint64_t bits(sequence *s)
+{
+    uint64_t all = 0;
+    int i;
+
+    for (i = 0; i < 8; ++i) {
+        all = all << 8 | byte(s);
+    }
+    return all;
+}
+
+/* Mostly about as large as `size`, sometimes any number. */
+static double some_real(sequence *s, double size)
+{
+    static const double ODD[] = {0.0,  -0.0,     1.0,     -1.0,    NAN,    INFINITY,
+                                 1e12, -1e13,    DBL_MAX, DBL_MIN, 5e-324, -INFINITY,
+                                 1e-9, -DBL_MAX, 1e300,   1e-300};
+    const unsigned choice = byte(s);
+    uint64_t pattern;
+    double value;
+
+    if (choice < 16) {
+        return ODD[choice];
+    }
+    if (choice == 16) {
+        pattern = bits(s);
+        memcpy(&value, &pattern, sizeof value);
+        return value;
+    }
+    value = (size != 0.0 ? size : 1.0) * ((double)byte(s) + 1.0) / 128.0;
+    return choice < 64 ? -value : value;
+}
+
+static int some_integer(sequence *s)
+{
+    static const int ODD[] = {INT32_MAX, INT32_MIN, -1, 0, 100};
+
+    return seldom(s, 8) ? ODD[below(s, 5)] : 1 + (int)below(s, 3);
+}
+
+/* Up to TEXT - 1 bytes of any kind, or NULL. */
+static const char *some_text(sequence *s, char *text)
+{
+    size_t i, length = below(s, TEXT + 1);
+
+    if (length == TEXT) {
+        return NULL;
+    }
+    for (i = 0; i < length; ++i) {
+        text[i] = (char)byte(s);
+    }
+    text[length] = '\0';
+    return text;
+}
+
+/* Up to MAX_REFERENCES value references, mostly of the types (bits SH_TYPE_*) and of the roles
+ * first to last.
+ */
+static size_t some_references(sequence *s, uint32_t *references, unsigned types, sh_role first,
+                              sh_role last)
+{
+    const size_t n = below(s, MAX_REFERENCES + 1);
+    size_t i, k;
+
+    for (i = 0; i < n; ++i) {
+        references[i] = (byte(s) << 1 | (byte(s) & 1)) % (unsigned)sh_fmu_model.count;
+        for (k = 0; k < sh_fmu_model.count; ++k) {
+            const sh_variable *variable = &sh_fmu_model.variables[references[i]];
+            if (((unsigned)variable->type & types) && variable->role >= first &&
+                variable->role <= last) {
+                break;
+            }
+            references[i] = (uint32_t)((references[i] + 1) % sh_fmu_model.count);
+        }
+        if (seldom(s, 128)) {
+            references[i] = (uint32_t)bits(s);
+        }
+    }
+    return n;
+}
+
+/* Memory of exactly this size, so that a sanitizer sees what goes beyond; at least 1 byte. */
+static void *memory(size_t size)
+{
+    void *allocated = malloc(size > 0 ? size : 1);
+
+    check(allocated != NULL, "out of memory");
+    return allocated;
+}
+
+static void check_message(int status, const char *category, const char *message)
 {
     check(status >= SH_OK && status <= SH_ERROR, "the logger got a status that is none");
     check(category != NULL && strncmp(category, "log", 3) == 0,
           "the logger got a strange category");
     check(message != NULL && message[0] != '\0', "the logger got no message");
     check(mbstowcs(NULL, message, 0) != (size_t)-1, "the logger got a message that is not UTF-8");
+}
+
+#if SH_FMI == 2
+#include "fuzz_fmi2.h"
+#else
+#include "fuzz_fmi3.h"
+#endif
+
+/* Writes the right checksum, as anybody can who has the sources: FNV-1a over all bytes but its own. */
+static void sign(uint8_t *bytes, size_t size)
+{
+    uint64_t hash = UINT64_C(14695981039346656037);
+    size_t i;
+
+    memset(bytes + CHECKSUM, 0, sizeof hash);
+    for (i = 0; i < size; ++i) {
+        hash = (hash ^ bytes[i]) * UINT64_C(1099511628211);
+    }
+    memcpy(bytes + CHECKSUM, &hash, sizeof hash);
+}
+
+/* Changes some numbers of a state, so that only what they mean can show it. */
+static void forge(sequence *s, uint8_t *bytes, size_t size)
+{
+    static const double REALS[] = {NAN, INFINITY, -INFINITY, -1.0, 1e300, -1e300, 5e-324, 0.0};
+    unsigned changes;
+
+    for (changes = 1 + below(s, 4); changes > 0; --changes) {
+        /* The first part has more choices than the rest, which is mostly large matrices. */
+        const size_t place = bits(s) % (below(s, 2) ? size : 4096) % size & ~(size_t)3;
+        const double real = REALS[below(s, sizeof REALS / sizeof REALS[0])];
+        const int integer = below(s, 2) ? (int)below(s, 80) - 8 : some_integer(s);
+        const int is_real = place % 8 == 0 && below(s, 2) && place + sizeof real <= size;
+
+        memcpy(bytes + place, is_real ? (const void *)&real : (const void *)&integer,
+               is_real ? sizeof real : sizeof integer);
+    }
+    sign(bytes, size);
+}
+
+/* Lets the instance go on from a forged state, if it is taken. */
+static void use_forged(sequence *s, void *state)
+{
+    size_t size = 0;
+    uint8_t *bytes;
+    void *copy = NULL;
+
+    if (fmi_state_size(s->instance, state, &size) != SH_OK) {
+        return;
+    }
+    bytes = memory(size);
+    check(fmi_serialize_state(s->instance, state, bytes, size) == SH_OK,
+          "a good state was not serialised");
+    forge(s, bytes, size);
+    if (fmi_deserialize_state(s->instance, bytes, size, &copy) == SH_OK) {
+        check(fmi_set_state(s->instance, copy) == SH_OK, "a state was taken, and then refused");
+        s->stop_time = INFINITY; /* the state may have another one, which nobody knows */
+        s->forged = 1;
+        s->time = fmi_time(s->instance, s->time);
+    }
+    fmi_free_state(s->instance, &copy);
+    free(bytes);
+}
+
+/* Serialises a state, maybe damages it, and reads it back. */
+static void serialise(sequence *s, void **state)
+{
+    void *copy = NULL;
+    sh_status status;
+    uint8_t *bytes;
+    size_t size = 0, length;
+    int damaged = 0;
+
+    if (fmi_state_size(s->instance, *state, &size) != SH_OK) {
+        return;
+    }
+    bytes = memory(size);
+    if (seldom(s, 16)) {
+        check(fmi_serialize_state(s->instance, *state, bytes, size - 1) == SH_ERROR,
+              "a state went into too little room");
+    }
+    check(fmi_serialize_state(s->instance, *state, bytes, size) == SH_OK,
+          "a good state was not serialised");
+    length = size;
+    if (below(s, 2)) {
+        const unsigned flip = byte(s);
+        bytes[bits(s) % size] ^= (uint8_t)flip;
+        damaged = flip != 0;
+    }
+    if (seldom(s, 4)) { /* truncated, in a block of exactly this size */
+        length = (below(s, 2) ? bits(s) : byte(s)) % size;
+        bytes = realloc(bytes, length > 0 ? length : 1);
+        check(bytes != NULL, "out of memory");
+    }
+    status = fmi_deserialize_state(s->instance, bytes, length, &copy);
+    check(status == SH_ERROR || (!damaged && length == size), "a spoilt state was taken");
+    if (status == SH_OK) {
+        fmi_free_state(s->instance, state);
+        *state = copy;
+    }
+    free(bytes);
+}
+
+static void restore(sequence *s, unsigned slot)
+{
+    unsigned char *block = s->states[slot];
+
+    if (block != NULL && seldom(s, 32)) {
+        unsigned char *place = block + below(s, 12); /* of what says whose state it is */
+        *place ^= 1;
+        check(fmi_set_state(s->instance, block) == SH_ERROR, "a foreign state was taken");
+        *place ^= 1;
+    }
+    if (fmi_set_state(s->instance, block) == SH_OK) {
+        s->stop_time = s->stop_times[slot];
+        s->time = fmi_time(s->instance, s->time);
+    }
+}
+
+/* Saves, restores, frees or serialises one of the states. */
+static void use_states(sequence *s)
+{
+    const unsigned slot = below(s, SLOTS);
+
+    switch (below(s, 7)) {
+    case 0:
+    case 1:
+        if (fmi_get_state(s->instance, &s->states[slot]) == SH_OK) {
+            s->stop_times[slot] = s->stop_time;
+        }
+        break;
+    case 2:
+        restore(s, slot);
+        break;
+    case 3:
+        fmi_free_state(s->instance, &s->states[slot]);
+        break;
+    case 4:
+    case 5:
+        use_forged(s, s->states[slot]);
+        break;
+    default:
+        serialise(s, &s->states[slot]);
+    }
 }
 
 static void set_reals(sequence *s, sh_role first, sh_role last)
@@ -44,6 +307,14 @@ static void set_reals(sequence *s, sh_role first, sh_role last)
     }
     fmi_set_reals(s->instance, seldom(s, 99) ? NULL : references, n, seldom(s, 99) ? NULL : values);
     free(values);
+}
+
+static void set_some_reals(sequence *s)
+{
+    const unsigned which = below(s, 4); /* mostly inputs */
+
+    set_reals(s, which == 0 ? SH_ROLE_TUNABLE : SH_ROLE_INPUT,
+              which < 2 ? SH_ROLE_TUNABLE : SH_ROLE_INPUT);
 }
 
 static void get_reals(sequence *s)
@@ -177,73 +448,56 @@ static void enter_initialization(sequence *s)
     }
 }
 
+static void terminate(sequence *s)
+{
+    fmi_terminate(s->instance);
+}
+
+static void exit_initialization(sequence *s)
+{
+    fmi_exit_initialization(s->instance);
+}
+
+static void some_integers(sequence *s)
+{
+    use_integers(s, (int)below(s, 2));
+}
+
+/* All calls up to the first step. */
+static void initialize(sequence *s)
+{
+    reset(s);
+    set_reals(s, SH_ROLE_GUESS, SH_ROLE_TUNABLE);
+    use_integers(s, 1);
+    enter_initialization(s);
+    fmi_exit_initialization(s->instance);
+}
+
 static void call(sequence *s)
 {
-    switch (below(s, 32)) {
-    case 0:
-        reset(s);
-        break;
-    case 1:
-        fmi_terminate(s->instance);
-        break;
-    case 2:
-        choose_categories(s);
-        break;
-    case 3:
-    case 4:
-    case 5:
-    case 20:
-    case 21:
-    case 22:
-        call_of_this_version(s);
-        break;
-    case 6:
-        enter_initialization(s);
-        break;
-    case 7:
-        fmi_exit_initialization(s->instance);
-        break;
-    case 8: /* all calls up to the first step */
-        reset(s);
-        set_reals(s, SH_ROLE_GUESS, SH_ROLE_TUNABLE);
-        set_integers(s);
-        enter_initialization(s);
-        fmi_exit_initialization(s->instance);
-        break;
-    case 9:
-    case 10:
-        set_reals(s, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
-        break;
-    case 11:
-    case 12:
-        set_reals(s, SH_ROLE_TUNABLE, SH_ROLE_TUNABLE);
-        break;
-    case 13:
-        set_integers(s);
-        break;
-    case 14:
-        get_reals(s);
-        break;
-    case 15:
-        get_integers(s);
-        break;
-    case 16:
-    case 17:
-    case 18:
-        use_states(s);
-        break;
-    case 19:
-        step_twice(s);
-        break;
-    case 23:
-    case 24:
-    case 25:
-    case 26:
-        set_reals(s, SH_ROLE_INPUT, SH_ROLE_INPUT);
-        break;
-    default:
-        some_step(s);
+    static const struct {
+        unsigned end; /* of its share, of 32 */
+        void (*call)(sequence *);
+    } CALLS[] = {{1, reset},
+                 {2, terminate},
+                 {3, choose_categories},
+                 {4, enter_initialization},
+                 {5, exit_initialization},
+                 {6, initialize},
+                 {8, some_integers},
+                 {9, get_reals},
+                 {10, step_twice},
+                 {13, use_states},
+                 {21, set_some_reals},
+                 {27, call_of_this_version},
+                 {32, some_step}};
+    const unsigned choice = below(s, 32);
+    size_t i = 0;
+
+    while (choice >= CALLS[i].end) {
+        ++i;
     }
+    CALLS[i].call(s);
 }
 
 int LLVMFuzzerInitialize(int *argc, char ***argv)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+import tempfile
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -14,11 +15,15 @@ import cffi
 import numpy as np
 from numpy.typing import NDArray
 
-from c_sources import FOLDERS, HEADERS
+from c_sources import FOLDERS, HEADERS, REPOSITORY, SOURCES
 from gate import need
 
 Array = NDArray[np.float64]
-REPOSITORY = Path(__file__).resolve().parents[2]
+DRIVERS = REPOSITORY / "tests" / "drivers"
+FILE = f"libsigmahat_test_driver{'.dylib' if sys.platform == 'darwin' else '.so'}"
+REALS = ("double", "float")
+LONG = "_Float64x"
+"""long double, for which glibc has functions by this name."""
 _WITHOUT_DECLARATIONS = ("constants.h", "real_math.h", "pair.h", "scalar_product.h")
 """Headers with nothing but macros and inline functions. They include those of the C library, which
 cffi cannot read."""
@@ -53,10 +58,9 @@ class Library:
     def __init__(self, build: Path, real: str = "double") -> None:
         self.ffi, self.real = cffi.FFI(), real
         own = (header for header in HEADERS if header.name not in _WITHOUT_DECLARATIONS)
-        text = declarations(*own, REPOSITORY / "tests" / "drivers" / "run.h")
+        text = declarations(*own, DRIVERS / "run.h")
         self.ffi.cdef("typedef long double _Float64x;" + text.replace("double", real))
-        suffix = ".dylib" if sys.platform == "darwin" else ".so"
-        self.lib: Any = self.ffi.dlopen(str(build / f"libsigmahat_test_driver{suffix}"))
+        self.lib: Any = self.ffi.dlopen(str(build / FILE))
 
     def new(self, struct: str, **values: Any) -> Any:
         """A new struct with the given fields; all others are zero."""
@@ -111,6 +115,26 @@ class Library:
             self.ffi.string(text).decode() for text in (violation.name, violation.range)
         )
         return name, violation.value, allowed
+
+
+@cache
+def compile_library(parent: Path, real: str, *flags: str) -> Library:
+    """The library with `real`, one of REALS or LONG, compiled in a new folder of `parent`.
+
+    In plain C, as a controller compiles it.
+    """
+    folder = Path(tempfile.mkdtemp(dir=parent))
+    subprocess.run(
+        [
+            *(need("cc"), "-std=gnu99", "-O1", "-ffp-contract=off", "-fPIC", "-shared", *flags),
+            *("-D_GNU_SOURCE", f"-DSH_FOR_{LONG}(a,b)=a##f64x", f"-DSH_IS_{LONG}=0"),
+            *(f"-DSH_REAL={real}", f"-I{DRIVERS}", *(f"-I{each}" for each in FOLDERS)),
+            *map(str, [*SOURCES, DRIVERS / "run.c"]),
+            *("-lm", "-o", str(folder / FILE)),
+        ],
+        check=True,
+    )
+    return Library(folder, real)
 
 
 def covariance(P: Any) -> Array:

@@ -53,10 +53,7 @@ def compile_driver(
     """
     program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{version}_{fmu}"
     folders = [*FOLDERS, FMU_SOURCES, FMU_SOURCES / "shell", build / "fmu" / fmu]
-    names = [driver, "drive"]
-    if driver == "fuzz":
-        names += ["fuzz_arguments", "fuzz_states", f"fuzz_{version}"]
-    files = [*(DRIVERS / f"{name}.c" for name in names), *sources(fmu, build, version)]
+    files = [*(DRIVERS / f"{name}.c" for name in (driver, "drive")), *sources(fmu, build, version)]
     command = [
         # -gdwarf-4: valgrind cannot read newer debug information
         *(compiler, "-gdwarf-4", "-O1", "-ffp-contract=off", *flags, f"-DSH_FMI={version[-1]}"),

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -21,13 +22,18 @@ KNEES = (0.0, -0.35, 0.35)
 SENSOR = 2
 
 
+@cache
+def discrete(order: int, w: float, T: float, method: str) -> tuple[Array, Array]:
+    system = [w**3] + [0.0] * order, np.poly([-w] * 3)
+    b, a, _ = signal.cont2discrete(system, T, method=method)
+    return b.ravel(), a
+
+
 def through(x: Array, order: int, w: float, T: float, held: bool = False) -> Array:
     """x filtered by s^order w^3 / (s + w)^3, from zero: x linear between samples, or held."""
 
     def response(u: Array, method: str) -> Array:
-        system = [w**3] + [0.0] * order, np.poly([-w] * 3)
-        b, a, _ = signal.cont2discrete(system, T, method=method)
-        return np.asarray(signal.lfilter(b.ravel(), a, u, axis=0))
+        return np.asarray(signal.lfilter(*discrete(order, w, T, method), u, axis=0))
 
     if held:
         return response(x, "zoh")

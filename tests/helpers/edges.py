@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 from xml.etree.ElementTree import Element
 
 import numpy as np
 from hypothesis import strategies as st
 
-from c_library import MEASUREMENTS, REPOSITORY, Array
+from c_library import MEASUREMENTS, Array
+from c_sources import REPOSITORY
 from sigmahat.export.templates import items, render, variables
 
 LARGEST = 1e12
@@ -88,37 +89,23 @@ def parameters(draw: st.DrawFn, method: int, real: str) -> dict[str, Any]:
     return values
 
 
-def _rest(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
-    return np.full(len(k), amplitude if rng.random() < 0.5 else 0.0)
+_KINDS = ("motion", "motion", "rest", "counts", "ramp", "glitches", "edges")
 
 
-def _motion(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
+def _signal(kind: str, rng: np.random.Generator, k: Array, amplitude: float) -> Array:
+    if kind == "rest":
+        return np.full(len(k), amplitude if rng.random() < 0.5 else 0.0)
+    if kind == "ramp":
+        return amplitude * k
+    if kind == "edges":
+        edges = np.array([0.0, LARGEST, -LARGEST, amplitude, 1.0, *SUBNORMAL])
+        return np.asarray(rng.choice(edges, len(k)), dtype=np.float64)
     noise = 10.0 ** rng.uniform(-6, 0) * rng.uniform(-1, 1, len(k))
-    wave = amplitude * (np.sin(k * 10.0 ** rng.uniform(-2, 0.5)) + noise)
-    return np.asarray(wave, dtype=np.float64)
-
-
-def _counts(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
-    count = 2 * np.pi / 40000
-    return np.asarray(np.round(_motion(rng, k, amplitude) / count) * count, dtype=np.float64)
-
-
-def _ramp(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
-    return amplitude * k
-
-
-def _glitches(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
-    return np.where(rng.random(len(k)) < 0.02, amplitude, _motion(rng, k, 1.0))
-
-
-def _edges(rng: np.random.Generator, k: Array, amplitude: float) -> Array:
-    edges = np.array([0.0, LARGEST, -LARGEST, amplitude, 1.0, *SUBNORMAL])
-    return np.asarray(rng.choice(edges, len(k)), dtype=np.float64)
-
-
-_SIGNALS: tuple[Callable[[np.random.Generator, Array, float], Array], ...] = (
-    *(_motion, _motion, _rest, _counts, _ramp, _glitches, _edges),
-)
+    wave = np.sin(k * 10.0 ** rng.uniform(-2, 0.5)) + noise
+    if kind == "glitches":
+        return np.where(rng.random(len(k)) < 0.02, amplitude, wave)
+    count = 2 * np.pi / 40000 if kind == "counts" else 0.0
+    return np.round(amplitude * wave / count) * count if count else np.asarray(amplitude * wave)
 
 
 @st.composite
@@ -129,7 +116,7 @@ def measurements(draw: st.DrawFn) -> Array:
     z = np.empty((len(k), len(MEASUREMENTS)))
     for i in range(len(MEASUREMENTS)):
         amplitude = draw(st.one_of(magnitudes(1e-3, 1e3), magnitudes(1e-12, LARGEST)))
-        z[:, i] = draw(st.sampled_from(_SIGNALS))(rng, k, amplitude)
+        z[:, i] = _signal(draw(st.sampled_from(_KINDS)), rng, k, amplitude)
     if draw(st.booleans()):  # the link follows the motor
         z[:, 1] = z[:, 0] * (1 + 10.0 ** rng.uniform(-6, 0))
     z = np.clip(z, -LARGEST, LARGEST)

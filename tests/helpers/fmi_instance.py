@@ -223,19 +223,14 @@ class Instance(_Instance):
         reference, orders = self.references([name]), (ctypes.c_int * 1)(order)
         return self.call("SetRealInputDerivatives", reference, SIZE(1), orders, (REAL * 1)(value))
 
-    def setup(
+    def enter(
         self, start: float = 0.0, stop: float | None = None, tolerance: float | None = None
     ) -> int:
-        return self.call(
+        status = self.call(
             "SetupExperiment",
             *(int(tolerance is not None), REAL(tolerance or 0), REAL(start)),
             *(int(stop is not None), REAL(stop or 0)),
         )
-
-    def enter(
-        self, start: float = 0.0, stop: float | None = None, tolerance: float | None = None
-    ) -> int:
-        status = self.setup(start, stop, tolerance)
         return status if status != OK else self.call("EnterInitializationMode")
 
     def step(self, t: float, h: float) -> int:

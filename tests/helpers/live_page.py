@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import base64
+import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.csv
 from numpy.typing import NDArray
-from selenium.webdriver.support.ui import WebDriverWait
 
 from browser import Page, opened
 
-_LONGEST = 60.0  # [s] for all that the page computes
 _DROP = """
 const data = new DataTransfer();
 data.items.add(new File([arguments[1]], arguments[0]));
@@ -36,6 +37,13 @@ for (const [name, value] of Object.entries(arguments[0])) {
   field.dispatchEvent(new Event("change", { bubbles: true }));
 }
 """
+
+
+def csv(columns: Mapping[str, NDArray[np.float64]]) -> str:
+    """A CSV file to drop on the page."""
+    text = io.BytesIO()
+    pyarrow.csv.write_csv(pa.table(dict(columns)), text)
+    return text.getvalue().decode()
 
 
 class LivePage:
@@ -95,7 +103,7 @@ class LivePage:
 
     def until(self, is_so: Callable[[], object]) -> None:
         """Waits until something is so."""
-        WebDriverWait(self.page.driver, _LONGEST, poll_frequency=0.05).until(lambda _: is_so())
+        self.page.until(is_so)
 
 
 @contextmanager

@@ -6,7 +6,6 @@ import json
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -65,22 +64,6 @@ def addons() -> Path:
     missing("misra.py of cppcheck", "apt-get install cppcheck")
 
 
-def dump(
-    tree: Path, sources: Iterable[Path], folders: Iterable[Path], macros: Sequence[str]
-) -> None:
-    """Writes what cppcheck knows of each source beside the source, into FILE.dump."""
-    subprocess.run(
-        [
-            *(need("cppcheck"), "--dump", "--quiet", "--std=c99"),
-            *(f"-D{macro}" for macro in macros),
-            *(f"-I{folder}" for folder in folders),
-            *map(str, sources),
-        ],
-        cwd=tree,
-        check=True,
-    )
-
-
 def ask(tree: Path, pattern: str, *script: str | Path) -> set[Finding]:
     """The findings in files of c/ and fmu_src/ that the program prints for all files `pattern`."""
     files = sorted(str(file.relative_to(tree)) for file in tree.rglob(pattern))
@@ -101,31 +84,23 @@ def ask(tree: Path, pattern: str, *script: str | Path) -> set[Finding]:
     return found
 
 
-def addon_findings(tree: Path) -> set[Finding]:
-    """The findings in each file that has a dump, and in all files together."""
-    in_files = ask(tree, "*.dump", "-c", PROGRAM, addons())
-    return in_files | ask(tree, "*.ctu-info", addons() / "misra.py")
-
-
-def findings_of(
-    macros: Sequence[str], names: Sequence[str], tree: Path, build: Path
-) -> set[Finding]:
-    """The findings in one configuration. `tree` is a new folder for what cppcheck writes."""
-    groups: dict[Path, list[Path]] = {}
-    for name in names:
-        shutil.copytree(REPOSITORY / name, tree / name)
-        for source in sorted((REPOSITORY / name).rglob("*.c")):
-            group = groups.setdefault(c_sources.generated(source, build), [])
-            group.append(source.relative_to(REPOSITORY))
-    folders = [folder.relative_to(REPOSITORY) for folder in FOLDERS]
-    for generated, sources in groups.items():
-        dump(tree, sources, [*folders, generated, FMI_HEADERS], macros)
-    return addon_findings(tree)
-
-
 def findings(folder: Path, build: Path) -> set[Finding]:
     """The findings in all configurations. `folder` is for files that nobody needs later."""
     found = set()
     for index, (macros, names) in enumerate(CONFIGURATIONS):
-        found |= findings_of(macros, names, folder / str(index), build)
+        tree = folder / str(index)
+        groups: dict[Path, list[str]] = {}  # by the folder of generated code
+        for name in names:
+            shutil.copytree(REPOSITORY / name, tree / name)
+            for source in sorted((REPOSITORY / name).rglob("*.c")):
+                group = groups.setdefault(c_sources.generated(source, build), [])
+                group.append(str(source.relative_to(REPOSITORY)))
+        headers = [each.relative_to(REPOSITORY) for each in FOLDERS]
+        for generated, sources in groups.items():  # writes FILE.dump beside each source
+            command = [need("cppcheck"), "--dump", "--quiet", "--std=c99"]
+            command += [f"-D{macro}" for macro in macros]
+            command += [f"-I{each}" for each in (*headers, generated, FMI_HEADERS)]
+            subprocess.run([*command, *sources], cwd=tree, check=True)
+        found |= ask(tree, "*.dump", "-c", PROGRAM, addons())
+        found |= ask(tree, "*.ctu-info", addons() / "misra.py")  # in all files together
     return found

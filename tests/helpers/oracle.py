@@ -24,14 +24,7 @@ Value = float | int
 Parameters = Mapping[str, Value]
 
 DIGITS = 60
-
-
-def bits(digits: int) -> int:
-    """Number of bits for a number of decimal digits."""
-    return math.ceil(digits / math.log10(2))
-
-
-gmpy2.get_context().precision = bits(DIGITS)
+gmpy2.get_context().precision = math.ceil(DIGITS / math.log10(2))  # bits
 
 MODIFIED_KALMAN, KALMAN, FINITE_DIFFERENCE = 1, 2, 3
 NORMALIZED, AS_PRINTED = 1, 2
@@ -41,36 +34,15 @@ RESIDUAL, SENSOR, MODEL = 1, 2, 3
 
 # Start values of the FMU, from sections VI.A and VI.B.
 DEFAULTS: Parameters = {
-    "samplePeriod": 1e-3,
-    "modality": RESIDUAL,
-    "deformation": RAW,
-    "motor.B": 2.3e-5,
-    "motor.D_theta": 1e-3,
-    "motor.gamma": 50.0,
-    "residual.K_I": 300.0,
-    "filter.kind": MODIFIED_KALMAN,
-    "filter.weighting": NORMALIZED,
-    "filter.V_a": 3e9,
-    "filter.V_max": 10.0,
-    "filter.V_min": 0.1,
-    "filter.alpha": 6.0,
-    "filter.R": 10.0,
-    "filter.P_0": 1.0,
-    "encoder.theta": 40000.0,
-    "encoder.q": 40000.0,
-    "encoder.theta_c": 1024.0,
-    "setPoint.offset": 100.0,
-    "setPoint.scale": -0.0025 / (2 * math.pi) * 1000,
-    "rls.kind": ENHANCED,
-    "rls.symmetric": 1,
-    "rls.n": 6,
-    "rls.m": 3,
-    "rls.P_0": 1e20,
-    "rls.c": 1e-20,
-    "rls.a": 0.1,
-    "model.k_s": 14220.0,
-    "model.r_0": 0.1,
-    "model.b": 0.0025 / (2 * math.pi),
+    **{"samplePeriod": 1e-3, "modality": RESIDUAL, "deformation": RAW, "residual.K_I": 300.0},
+    **{"motor.B": 2.3e-5, "motor.D_theta": 1e-3, "motor.gamma": 50.0},
+    **{"filter.kind": MODIFIED_KALMAN, "filter.weighting": NORMALIZED, "filter.V_a": 3e9},
+    **{"filter.V_max": 10.0, "filter.V_min": 0.1, "filter.alpha": 6.0, "filter.R": 10.0},
+    **{"filter.P_0": 1.0, "encoder.theta": 40000.0, "encoder.q": 40000.0},
+    **{"encoder.theta_c": 1024.0, "setPoint.offset": 100.0},
+    **{"setPoint.scale": -0.0025 / (2 * math.pi) * 1000, "rls.kind": ENHANCED},
+    **{"rls.symmetric": 1, "rls.n": 6, "rls.m": 3, "rls.P_0": 1e20, "rls.c": 1e-20, "rls.a": 0.1},
+    **{"model.k_s": 14220.0, "model.r_0": 0.1, "model.b": 0.0025 / (2 * math.pi)},
 }
 
 
@@ -173,26 +145,21 @@ def least_squares(
     F       [size: ticks x parameters]
     y       [size: ticks x columns], independent right-hand sides that share one P
     """
-    factor = gmpy2.mpfr(factor)
+    c = gmpy2.mpfr(factor)
     P = gmpy2.mpfr(P_0) * np.eye(F.shape[1], dtype=int)
     eta = np.repeat(exact(eta_0)[:, None], y.shape[1], axis=1)
-    etas, epsilons, rhos, stability = [], [], [], []
+    ticks = []
     for F_k, y_k in zip(F, y, strict=True):
         epsilon = y_k - F_k @ eta
         PF = P @ F_k
         rho = F_k @ PF
         K = PF / (1 + rho)
-        if kind == ENHANCED:
-            a = (factor + factor * rho) / (1 + factor * rho)
-        else:
-            a = factor if kind == CONSTANT_FACTOR else gmpy2.mpfr(1)
+        a = {ENHANCED: (c + c * rho) / (1 + c * rho), STANDARD: gmpy2.mpfr(1)}.get(kind, c)
         eta = eta + a * np.outer(K, epsilon)
         P = P - a * np.outer(K, PF)
-        etas.append(eta)
-        epsilons.append(epsilon)
-        rhos.append(rho)
-        stability.append(a)
-    return Regression(np.array(etas), np.array(epsilons), np.array(rhos), np.array(stability), P)
+        ticks.append((eta, epsilon, rho, a))
+    etas, epsilons, rhos, factors = zip(*ticks, strict=True)
+    return Regression(np.array(etas), np.array(epsilons), np.array(rhos), np.array(factors), P)
 
 
 def solve(matrix: Exact, right: Exact) -> Exact:
@@ -257,7 +224,7 @@ def estimator(
     n, m = int(p["rls.n"]), int(p["rls.m"])
     set_point = p["setPoint.offset"] + p["setPoint.scale"] * exact(theta_c)
     phi = exact(q) - exact(theta)
-    velocities, residuals, torques = [], [], []
+    signals: list[tuple[Exact, Exact, Exact]] = []  # velocity, residual, torque
     filters: dict[tuple[Value, ...], tuple[Exact, Exact, Exact]] = {}
     for variant in variants:
         v = {**p, **variant}
@@ -276,22 +243,19 @@ def estimator(
             torque = v["model.k_s"] * r**2 * sine  # (28)
         if v["deformation"] == FILTERED:
             phi = velocity_filter(v, q, v["encoder.q"])[0] - x
-        velocities.append(x_dot)
-        residuals.append(residual)
-        torques.append(torque)
+        signals.append((x_dot, residual, torque))
 
     F, dF = basis(n, m, set_point, phi, int(p["rls.symmetric"]))
     factor = p["rls.a"] if p["rls.kind"] == CONSTANT_FACTOR else p["rls.c"]
     flat = np.zeros(n * m) if eta_0 is None else eta_0.T.ravel()
-    regression = least_squares(
-        int(p["rls.kind"]), factor, p["rls.P_0"], flat, F, np.array(torques).T
-    )
+    torques = np.array([torque for _, _, torque in signals]).T
+    regression = least_squares(int(p["rls.kind"]), factor, p["rls.P_0"], flat, F, torques)
     return [
         Estimate(
             sigma=rounded((dF * regression.eta[:, :, i]).sum(axis=1)),
             tau_e=rounded((F * regression.eta[:, :, i]).sum(axis=1)),
-            tau_e_residual=rounded(residuals[i]),
-            theta_dot=rounded(velocities[i]),
+            tau_e_residual=rounded(residual),
+            theta_dot=rounded(velocity),
             phi=rounded(phi),
             setPoint=rounded(set_point),
             a=rounded(regression.a),
@@ -299,5 +263,5 @@ def estimator(
             epsilon=rounded(regression.epsilon[:, i]),
             eta=rounded(regression.eta[:, :, i]).reshape(-1, m, n).transpose(0, 2, 1),
         )
-        for i in range(len(variants))
+        for i, (velocity, residual, _) in enumerate(signals)
     ]

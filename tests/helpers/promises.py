@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
-from c_library import Array, Library
-from c_real import REALS, compile_library
+from c_library import REALS, Array, Library, compile_library
 
 EPSILON = {"double": 2.0**-53, "float": 2.0**-24}
 """Unit roundoff."""

@@ -1,4 +1,4 @@
-"""A real variable-stiffness joint, replayed through the estimator FMU.
+"""A real variable-stiffness joint, replayed through the estimator.
 
     python tests/helpers/real_joint.py FIGURE.png
 
@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 import sigmahat
 from misfit_priors import WITHOUT_MISFITS
 from shared_data import data_folder
-from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
+from sigmahat.fmi.instance import Value
 
 Array = NDArray[np.float64]
 
@@ -32,16 +31,9 @@ SAMPLE_PERIOD = 1.2e-3  # [s]
 DYNAMOMETER = 218 * 180 / math.pi  # its stiffness [N.m/rad]
 N, M = 6, 3
 PARAMETERS: dict[str, Value] = {
-    "samplePeriod": SAMPLE_PERIOD,
-    "modality": "Sensor",
-    "encoder.theta": 0.0,
-    "encoder.q": 0.0,
-    "encoder.theta_c": 0.0,
-    "setPoint.offset": 0.0,
-    "setPoint.scale": 1.0,
-    "rls.n": N,
-    "rls.m": M,
-    "rls.P_0": 1e32,
+    **{"samplePeriod": SAMPLE_PERIOD, "modality": "Sensor", "rls.n": N, "rls.m": M},
+    **{"encoder.theta": 0.0, "encoder.q": 0.0, "encoder.theta_c": 0.0},
+    **{"setPoint.offset": 0.0, "setPoint.scale": 1.0, "rls.P_0": 1e32},
 }
 PAPER2011: dict[str, Value] = {}
 FILTERED_REGRESSION: dict[str, Value] = {
@@ -56,11 +48,7 @@ FILTERED_REGRESSION: dict[str, Value] = {
     # The six logs take 86 s.
     "regression.memory": 100.0,
 }
-SPRING_ALONE: dict[str, Value] = {
-    **FILTERED_REGRESSION,
-    **WITHOUT_MISFITS,
-    "regression.memory": 0.0,
-}
+SPRING_ALONE = {**FILTERED_REGRESSION, **WITHOUT_MISFITS, "regression.memory": 0.0}
 """FilteredRegression without the columns for misfits, and without their effect."""
 BIN = 5e-3  # width over which the measured curve is averaged [rad]
 POINTS = (-0.1, 0.1)  # where the stiffness is compared [rad]
@@ -129,7 +117,7 @@ class Fit:
     """Coefficients [size: N x M]."""
     tau_e: float
     sigma: float
-    """Outputs of the FMU at the last sample [N.m], [N.m/rad]."""
+    """Outputs at the last sample [N.m], [N.m/rad]."""
 
     def torque(self, setting: float, phi: Array) -> Array:
         """Torque of the polynomial [N.m]."""
@@ -170,59 +158,34 @@ def logs(path: Path) -> list[Log]:
     return found
 
 
-INPUTS = ("theta", "q", "theta_c", "tau_e_sensor")
-
-
-def samples(played: Sequence[Log]) -> Array:
-    """INPUTS of all samples of the logs, one after another [size: samples x 4]."""
-    columns = [
-        np.concatenate([log.theta for log in played]),
-        np.concatenate([log.q for log in played]),
-        np.concatenate([np.full(len(log.q), float(log.setting)) for log in played]),
-        np.concatenate([log.torque for log in played]),
-    ]
-    return np.column_stack(columns)
-
-
 def play(
-    slave: Slave, rows: Array, start: Mapping[str, Value], record: Sequence[str] = ()
-) -> dict[str, Array]:
-    """Initialises the estimator and runs a tick for each row of INPUTS.
-
-    Returns the recorded outputs [size: rows].
-    """
-    slave.initialize({**PARAMETERS, **start})
-    t = SAMPLE_PERIOD * np.arange(len(rows), dtype=np.float64)
-    recorder, loop = Recorder(slave, record, len(rows)), SampleLoop()
-    loop.set_real(slave, slave.fmu.references(list(INPUTS), "input"), rows)
-    loop.step(slave, step_times(t, SAMPLE_PERIOD))
-    recorder.add_to(loop)
-    loop.run(0, len(rows))
-    return recorder.columns()
+    played: Sequence[Log], symmetric: bool, method: Mapping[str, Value], record: Sequence[str] = ()
+) -> tuple[sigmahat.Estimator, dict[str, Array]]:
+    """An estimator after logs, one after another, and what it recorded [size: samples]."""
+    start = {**PARAMETERS, **method, "rls.symmetric": symmetric}
+    estimator = sigmahat.Estimator(start, record)
+    columns = estimator.run(
+        theta=np.concatenate([log.theta for log in played]),
+        q=np.concatenate([log.q for log in played]),
+        theta_c=np.concatenate([np.full(len(log.q), float(log.setting)) for log in played]),
+        tau_e_sensor=np.concatenate([log.torque for log in played]),
+    )
+    return estimator, {name: columns[name] for name in record}
 
 
-def replay(
-    fmu: Fmu, played: Sequence[Log], symmetric: bool, method: Mapping[str, Value] = PAPER2011
-) -> Fit:
-    """Replays logs, one after another, through a new instance of the estimator."""
-    with Slave(fmu, "real joint") as slave:
-        play(slave, samples(played), {**method, "rls.symmetric": symmetric})
-        coefficients = [f"eta[{i},{j}]" for i in range(N) for j in range(M)]
-        end = Recorder(slave, [*coefficients, "tau_e", "sigma"], 1)
-        end.sample(0)
-        values = {name: float(column[0]) for name, column in end.columns().items()}
-    eta = np.array([values[name] for name in coefficients]).reshape(N, M)
-    return Fit(symmetric, eta, values["tau_e"], values["sigma"])
+def replay(played: Sequence[Log], symmetric: bool, method: Mapping[str, Value] = PAPER2011) -> Fit:
+    """Replays logs, one after another, through a new estimator."""
+    estimator, _ = play(played, symmetric, method)
+    tau_e, sigma = (float(estimator.output(name)) for name in ("tau_e", "sigma"))
+    return Fit(symmetric, estimator.eta, tau_e, sigma)
 
 
-def coverage(fmu: Fmu, measured: Sequence[Log], method: Mapping[str, Value]) -> float:
+def coverage(measured: Sequence[Log], method: Mapping[str, Value]) -> float:
     """Share of the points every 0.01 rad at which the slope of the mean curve, within 0.02 rad, is
     within 1.96 sigma_std of the estimate, when the logs are replayed a second time [%]."""
-    rows = samples([*measured, *measured])
-    with Slave(fmu, "real joint") as slave:
-        start = {**method, "rls.symmetric": False}
-        columns = play(slave, rows, start, ["sigma", "sigma_std", "phi"])
-        found = {name: column[len(rows) // 2 :] for name, column in columns.items()}
+    names = ("sigma", "sigma_std", "phi")
+    _, columns = play([*measured, *measured], False, method, names)
+    found = {name: columns[name][len(columns[name]) // 2 :] for name in names}
     inside, first = [], 0
     for log in measured:
         part = {name: c[first : first + len(log.q)] for name, c in found.items()}
@@ -235,10 +198,10 @@ def coverage(fmu: Fmu, measured: Sequence[Log], method: Mapping[str, Value]) -> 
     return 100 * float(np.mean(inside))
 
 
-def leave_one_out(fmu: Fmu, measured: Sequence[Log]) -> dict[int, float]:
+def leave_one_out(measured: Sequence[Log]) -> dict[int, float]:
     """RMS [%] of the torque at each setting but the outer two, with a fit to the other five."""
     return {
-        log.setting: log.rms(replay(fmu, [each for each in measured if each is not log], False))
+        log.setting: log.rms(replay([each for each in measured if each is not log], False))
         for log in measured[1:-1]
     }
 
@@ -317,10 +280,8 @@ def draw(measured: Sequence[Log], general: Fit, odd: Fit) -> Figure:
 def main(figure: str) -> None:
     """Prints the tables and draws the figure."""
     measured = logs(folder())
-    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
-        general, odd = (replay(fmu, measured, symmetric) for symmetric in (False, True))
-        left_out = leave_one_out(fmu, measured)
-    print(torque_table(measured, general, odd, left_out))
+    general, odd = (replay(measured, symmetric) for symmetric in (False, True))
+    print(torque_table(measured, general, odd, leave_one_out(measured)))
     print(stiffness_table(measured, general, odd))
     draw(measured, general, odd).savefig(figure, dpi=100)
 

@@ -1,14 +1,18 @@
-"""A joint with one motor and one with two, solved by scipy: what their plants are held to.
+"""Joints solved by scipy: what the plants and the estimator are held to.
 
-Written from (2) and (3), and sharing nothing with the plants that are generated to C. Parameters
-go by the names of the FMUs, whose start values stand here a second time.
+The AwAS, (5) with (28)-(31), and a pair with a motor on each side. They are written from the paper
+and share nothing with the plants that are generated to C. Parameters go by the names of the FMUs,
+whose start values stand here a second time.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,19 +24,54 @@ Derivative = Callable[..., Array]
 Parameters = Mapping[str, float]
 
 COULOMB_VELOCITY = 0.02  # rad/s, where tanh replaces the step of the sign
-
+SCREW, K_S = 0.0025 / (2 * math.pi), 14220.0  # of the AwAS [m/rad, N/m]
 _MOTOR = {"B": 2.3e-5, "D_theta": 1e-3, "gamma": 50.0, "tau_coulomb": 0.0}
-PAIR: Parameters = {
-    "link.M": 0.02,
-    "link.D_q": 0.05,
-    "link.mgl": 0.5,
-    "link.tau_coulomb": 0.0,
-    **{f"motor_{i}.{name}": value for i in (1, 2) for name, value in _MOTOR.items()},
-    "spring_1.k": 0.0026,
-    "spring_1.a": 8.9995,
-    "spring_2.k": 0.0011,
-    "spring_2.a": 8.9989,
+_LEVER_MOTOR = {"B": 1.29e-7, "D_theta": 0.0141, "gamma": 23.0, "tau_coulomb": 0.0}
+AWAS: Parameters = {
+    **{"link.M": 0.1, "link.D_q": 0.15, "link.mgl": 0.0, "link.tau_coulomb": 0.0},
+    **{f"motor.{name}": value for name, value in _MOTOR.items()},
+    **{f"motor_c.{name}": value for name, value in _LEVER_MOTOR.items()},
 }
+PAIR: Parameters = {
+    **{"link.M": 0.02, "link.D_q": 0.05, "link.mgl": 0.5, "link.tau_coulomb": 0.0},
+    **{f"motor_{i}.{name}": value for i in (1, 2) for name, value in _MOTOR.items()},
+    **{"spring_1.k": 0.0026, "spring_1.a": 8.9995, "spring_2.k": 0.0011, "spring_2.a": 8.9989},
+}
+
+
+def lever_arm(theta_c: Array | float) -> Array:
+    """r of the AwAS, (30) [m]."""
+    return np.asarray(0.1 - SCREW * theta_c)
+
+
+def flexibility_torque(r: Array, phi: Array) -> Array:
+    """tau_e of the AwAS, (28) [N.m]."""
+    return np.asarray(K_S * r**2 * np.sin(2 * phi))
+
+
+def stiffness(r: Array, phi: Array) -> Array:
+    """sigma of the AwAS, (29) [N.m/rad]."""
+    return np.asarray(2 * K_S * r**2 * np.cos(2 * phi))
+
+
+def awas(changed: Parameters) -> Derivative:
+    """Equations of the AwAS, but for these parameters as it starts.
+
+    State (q, theta, theta_c and their velocities), torques (tau, tau_c, tau_ext).
+    """
+    p = {**AWAS, **changed}
+
+    def derivative(state: Array, tau: float, tau_c: float, tau_ext: float) -> Array:
+        q, theta, theta_c, q_dot, theta_dot, theta_c_dot = state
+        r = 0.1 - SCREW * theta_c
+        tau_e = K_S * r**2 * math.sin(2 * (q - theta))
+        psi_e = -2 * K_S * SCREW * r * math.sin(q - theta) ** 2  # (31)
+        link = _link(p, q, q_dot, tau_e, tau_ext)
+        motor = _motor(p, "motor", theta_dot, tau, tau_e)
+        lever = _motor(p, "motor_c", theta_c_dot, tau_c, -psi_e)
+        return np.array([q_dot, theta_dot, theta_c_dot, link, motor, lever])
+
+    return derivative
 
 
 def pair(changed: Parameters) -> Derivative:
@@ -46,37 +85,12 @@ def pair(changed: Parameters) -> Derivative:
         q, theta_1, theta_2, q_dot, theta_dot_1, theta_dot_2 = state
         tau_e_1 = p["spring_1.k"] * math.sinh(p["spring_1.a"] * (q - theta_1))
         tau_e_2 = p["spring_2.k"] * math.sinh(p["spring_2.a"] * (q - theta_2))
-        return np.array(
-            [
-                q_dot,
-                theta_dot_1,
-                theta_dot_2,
-                _link(p, q, q_dot, tau_e_1 + tau_e_2, tau_ext),
-                _motor(p, "motor_1", theta_dot_1, tau_1, tau_e_1),
-                _motor(p, "motor_2", theta_dot_2, tau_2, tau_e_2),
-            ]
-        )
+        link = _link(p, q, q_dot, tau_e_1 + tau_e_2, tau_ext)
+        motor_1 = _motor(p, "motor_1", theta_dot_1, tau_1, tau_e_1)
+        motor_2 = _motor(p, "motor_2", theta_dot_2, tau_2, tau_e_2)
+        return np.array([q_dot, theta_dot_1, theta_dot_2, link, motor_1, motor_2])
 
     return derivative
-
-
-def solve(derivative: Derivative, h: float, torques: Array, initial: Array) -> Array:
-    """States [size: steps + 1 x states] under torques linear between the rows given every h [s]."""
-    states = [initial]
-    for begin, end in pairwise(torques):
-        slope = (end - begin) / h
-        solution = solve_ivp(
-            lambda t, x, begin=begin, slope=slope: derivative(x, *(begin + slope * t)),
-            (0.0, h),
-            states[-1],
-            method="Radau",
-            rtol=1e-10,
-            atol=1e-14,
-        )
-        if not solution.success:
-            raise RuntimeError(f"the reference could not be solved: {solution.message}")
-        states.append(solution.y[:, -1])
-    return np.array(states)
 
 
 def _link(p: Parameters, q: float, q_dot: float, tau_e: float, tau_ext: float) -> float:
@@ -91,3 +105,94 @@ def _motor(p: Parameters, motor: str, theta_dot: float, tau: float, tau_e: float
     B, D_theta, gamma, tau_coulomb = (p[f"{motor}.{name}"] for name in _MOTOR)
     coulomb = tau_coulomb * math.tanh(theta_dot / COULOMB_VELOCITY)
     return (tau - coulomb - D_theta * gamma * theta_dot + tau_e / gamma) / (B * gamma)
+
+
+def solution(
+    derivative: Derivative,
+    torques: Callable[[float], Any],
+    initial: Array,
+    duration: float,
+) -> Callable[[Array | float], Array]:
+    """States as a function of time, up to `duration` [s]: times [size: p] -> [size: states x p]."""
+    solved = solve_ivp(
+        lambda t, x: derivative(x, *torques(t)),
+        (0.0, duration),
+        initial,
+        method="Radau",
+        dense_output=True,
+        rtol=1e-10,
+        atol=1e-14,
+    )
+    if not solved.success:
+        raise RuntimeError(f"the reference could not be solved: {solved.message}")
+    states: Callable[[Array | float], Array] = solved.sol
+    return states
+
+
+def solve(derivative: Derivative, h: float, torques: Array, initial: Array) -> Array:
+    """States [size: steps + 1 x states] under torques linear between the rows given every h [s]."""
+
+    def between(begin: Array, end: Array, t: float) -> Array:
+        return begin + (end - begin) * (t / h)
+
+    states = [initial]
+    for rows in pairwise(torques):
+        states.append(solution(derivative, partial(between, *rows), states[-1], h)(h))
+    return np.array(states)
+
+
+def round_to_counts(angle: Array, counts: float) -> Array:
+    """Reading of an encoder with `counts` per turn: the nearest count [rad]. 0: no quantisation."""
+    count = 2 * math.pi / counts if counts else 0.0
+    return np.round(angle / count) * count if count else angle
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Measurements and true signals of a run, each [size: p], sampled at k T."""
+
+    theta: Array  # measured
+    q: Array
+    theta_c: Array
+    tau: Array
+    tau_e_sensor: Array
+    true_tau_e: Array
+    true_sigma: Array
+
+    def measurements(self) -> Array:
+        """[size: p x 5] in the order theta, q, theta_c, tau, tau_e_sensor."""
+        return np.column_stack([self.theta, self.q, self.theta_c, self.tau, self.tau_e_sensor])
+
+
+def paper_tau(t: Array | float) -> Array:
+    """Torque of the principal motor in section VI.B [N.m]."""
+    return np.asarray(0.3 * np.sin(0.2 * math.pi * t))
+
+
+def paper_tau_c(t: Array | float) -> Array:
+    """Torque of the secondary motor in section VI.B [N.m]."""
+    return np.asarray(8.0 * np.sin(0.2 * math.pi * t))
+
+
+@cache
+def table1_recording() -> Recording:
+    """Measurements of the run of Table I, 15001 samples at 1 kHz: r(0) = 70 mm, at rest.
+
+    With the encoders of the paper and the noise (32), (33).
+    """
+    at_rest = np.array([0.0, 0.0, 0.030 / SCREW, 0.0, 0.0, 0.0])
+    states = solution(awas({}), lambda t: (paper_tau(t), paper_tau_c(t), 0.0), at_rest, 15.0)
+    t = 1e-3 * np.arange(15001, dtype=np.float64)
+    q, theta, theta_c, *_ = states(t)
+    noise = np.random.default_rng(1)
+    r = lever_arm(theta_c)
+    tau_e = flexibility_torque(r, q - theta)
+    return Recording(
+        theta=round_to_counts(theta, 40000),
+        q=round_to_counts(q, 40000),
+        theta_c=round_to_counts(theta_c, 1024),
+        tau=paper_tau(t) + noise.normal(0.0, math.sqrt(1e-5), len(t)),
+        tau_e_sensor=tau_e + noise.normal(0.0, math.sqrt(1e-3), len(t)),
+        true_tau_e=tau_e,
+        true_sigma=stiffness(r, q - theta),
+    )

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.csv
 import pytest
 
 import sigmahat
-from live_page import LivePage, live_page
+from live_page import LivePage, csv, live_page
 from recorded_logs import Array, awas_log
 from sigmahat.fmi.instance import Value
 
@@ -27,13 +24,6 @@ _CURVES = """
 return Object.fromEntries(log.run.curves().flatMap((curve, i) => Object.entries(curve)
   .map(([name, values]) => [`${name} ${i}`, values.length ? values : [values]])));
 """
-
-
-def csv(columns: Mapping[str, Array]) -> str:
-    """A CSV file."""
-    text = io.BytesIO()
-    pa.csv.write_csv(pa.table(dict(columns)), text)
-    return text.getvalue().decode()
 
 
 def good() -> dict[str, Array]:

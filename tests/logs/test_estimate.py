@@ -24,7 +24,6 @@ from recorded_logs import (
     write_log,
 )
 from sigmahat.cli import main
-from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import Recording
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.engine import run
@@ -243,7 +242,7 @@ def test_paper2011_makes_no_claim_and_has_no_band_in_the_figure(
             assert set(doubt.to_pylist()) == {"NoClaim"}
 
 
-def test_the_real_joint(estimator_fmu: Path, shell: Shell) -> None:
+def test_the_real_joint(shell: Shell) -> None:
     """The configuration in the documentation gives what the replay in real_joint.py does."""
     try:
         data = real_joint.folder()
@@ -253,8 +252,7 @@ def test_the_real_joint(estimator_fmu: Path, shell: Shell) -> None:
     (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     (configuration,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
     subprocess.run([sys.executable, "-c", program, str(data)], check=True)
-    with Fmu(estimator_fmu) as fmu:
-        expected = real_joint.replay(fmu, real_joint.logs(data), symmetric=False)
+    expected = real_joint.replay(real_joint.logs(data), symmetric=False)
     table = estimated(shell, Path("desr.csv"), configuration)
     assert table[SIGMA].to_numpy()[-1] == pytest.approx(expected.sigma, rel=1e-12)
     assert table["estimate.tau_e [N.m]"].to_numpy()[-1] == pytest.approx(expected.tau_e, rel=1e-12)

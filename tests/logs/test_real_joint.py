@@ -1,4 +1,4 @@
-"""The torque and the stiffness of a real joint, estimated from its log by the FMU.
+"""The torque and the stiffness of a real joint, estimated from its log.
 
 The requirements were chosen after a first look at the data: see docs/real-joint.md.
 """
@@ -6,8 +6,6 @@ The requirements were chosen after a first look at the data: see docs/real-joint
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +13,7 @@ import pytest
 import real_joint
 from real_joint import SETTINGS, Fit, Log, M, N
 from sigmahat.checks.check import check
-from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.fmi.instance import Value
 from sigmahat.logs.configuration import Configuration, Port, Time
 from sigmahat.logs.readers.formats import open_log
 
@@ -38,19 +36,13 @@ def measured(data: Path) -> Logs:
 
 
 @pytest.fixture(scope="module")
-def fmu(estimator_fmu: Path) -> Iterator[Fmu]:
-    with Fmu(estimator_fmu) as fmu:
-        yield fmu
+def general(measured: Logs) -> Fit:
+    return real_joint.replay(measured, symmetric=False)
 
 
 @pytest.fixture(scope="module")
-def general(fmu: Fmu, measured: Logs) -> Fit:
-    return real_joint.replay(fmu, measured, symmetric=False)
-
-
-@pytest.fixture(scope="module")
-def odd(fmu: Fmu, measured: Logs) -> Fit:
-    return real_joint.replay(fmu, measured, symmetric=True)
+def odd(measured: Logs) -> Fit:
+    return real_joint.replay(measured, symmetric=True)
 
 
 def test_the_general_basis_fits_the_torque_the_odd_one_does_not(
@@ -85,8 +77,8 @@ def test_outputs_are_those_of_the_coefficients(measured: Logs, general: Fit, odd
         assert fit.sigma == pytest.approx(fit.stiffness(last.setting, last.phi[-1]), rel=1e-9)
 
 
-def test_a_setting_left_out_is_predicted(fmu: Fmu, measured: Logs, general: Fit, odd: Fit) -> None:
-    left_out = real_joint.leave_one_out(fmu, measured)
+def test_a_setting_left_out_is_predicted(measured: Logs, general: Fit, odd: Fit) -> None:
+    left_out = real_joint.leave_one_out(measured)
     print(real_joint.torque_table(measured, general, odd, left_out))
     assert list(left_out) == [10, 25, 33, 35]
     assert max(left_out.values()) <= 4.5
@@ -102,8 +94,8 @@ def test_stiffness_is_the_slope_of_the_measured_curve(
     assert real_joint.worst(measured, odd, real_joint.HALF_WIDTH) > 50.0
 
 
-def test_filtered_regression_is_no_worse(fmu: Fmu, measured: Logs, general: Fit) -> None:
-    regression = real_joint.replay(fmu, measured, False, real_joint.SPRING_ALONE)
+def test_filtered_regression_is_no_worse(measured: Logs, general: Fit) -> None:
+    regression = real_joint.replay(measured, False, real_joint.SPRING_ALONE)
     for log in measured:
         assert log.rms(regression) <= 1.001 * log.rms(general)
     worst, of_general = (
@@ -112,13 +104,13 @@ def test_filtered_regression_is_no_worse(fmu: Fmu, measured: Logs, general: Fit)
     assert worst <= of_general
 
 
-def test_filtered_regression_claims_what_it_knows(fmu: Fmu, measured: Logs, general: Fit) -> None:
+def test_filtered_regression_claims_what_it_knows(measured: Logs, general: Fit) -> None:
     """The joint has hysteresis of several N.m. With the columns for misfits the torque is hardly
     worse, and the interval contains the slope of the mean curve."""
-    regression = real_joint.replay(fmu, measured, False, real_joint.FILTERED_REGRESSION)
+    regression = real_joint.replay(measured, False, real_joint.FILTERED_REGRESSION)
     for log in measured:
         assert log.rms(regression) <= 1.3 * log.rms(general)
-    assert real_joint.coverage(fmu, measured, real_joint.FILTERED_REGRESSION) >= 90.0
+    assert real_joint.coverage(measured, real_joint.FILTERED_REGRESSION) >= 90.0
 
 
 def test_check_finds_nothing_wrong_in_a_right_setup(data: Path) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 import reference_joints
 from plant_runs import QUIET, Array, relative_error, run_plant, times
-from reference_plant import round_to_counts
+from reference_joints import round_to_counts
 
 INPUTS = ("tau_1", "tau_2", "tau_ext")
 STATES = ("q", "theta_1", "theta_2", "q_dot", "theta_dot_1", "theta_dot_2")

@@ -11,8 +11,18 @@ import pytest
 
 from fmi_instance import ERROR, OK, Instance
 from plant_runs import QUIET, STATES, relative_error, run_awas, sinusoids, times
-from reference_joints import solve as solve_in_steps
-from reference_plant import SCREW, Awas, paper_tau, paper_tau_c, round_to_counts, solve
+from reference_joints import (
+    SCREW,
+    awas,
+    flexibility_torque,
+    lever_arm,
+    paper_tau,
+    paper_tau_c,
+    round_to_counts,
+    solution,
+    solve,
+    stiffness,
+)
 
 RETRACTED = 0.030 / SCREW  # theta_c for a lever arm of 70 mm
 AT_REST = np.array([0.0, 0.0, RETRACTED, 0.0, 0.0, 0.0])
@@ -22,20 +32,19 @@ def test_table1_is_the_solution_of_the_equations() -> None:
     h = 1e-3
     # A sinusoid interpolated linearly is smaller by (w h)^2 / 12, but for a ripple of mean zero.
     share = 1 - (0.2 * math.pi * h) ** 2 / 12
-    solution = solve(
-        Awas(), lambda t: share * paper_tau(t), lambda t: share * paper_tau_c(t), AT_REST, 15.0
+    states = solution(
+        awas({}), lambda t: (share * paper_tau(t), share * paper_tau_c(t), 0.0), AT_REST, 15.0
     )
     t = times(h, 15.0)
     run = run_awas(h, sinusoids(t, (0.3, 0.1), (8.0, 0.1), (0.0, 0.0)))
-    assert relative_error(run, solution(t).T).max() < 1e-7
+    assert relative_error(run, states(t).T).max() < 1e-7
 
 
 def test_friction_gravity_and_external_torque_enter_as_in_the_equations() -> None:
     h = 1e-2
-    plant = Awas(link_mgl=1.0, link_tau_coulomb=0.05, motor_tau_coulomb=0.02)
     start = {"link.mgl": 1.0, "link.tau_coulomb": 0.05, "motor.tau_coulomb": 0.02}
     torques = sinusoids(times(h, 0.4), (0.3, 2.0), (8.0, 3.0), (5.0, 1.1))
-    reference = solve_in_steps(plant.derivative, h, torques, AT_REST)
+    reference = solve(awas(start), h, torques, AT_REST)
     assert relative_error(run_awas(h, torques, start), reference).max() < 1e-7
 
 
@@ -45,20 +54,19 @@ def test_held_torques_are_held() -> None:
     run = run_awas(h, torques, QUIET, [*STATES, "tau_measured"], held=True)
     reference = [AT_REST]
     for held in torques[:-1]:
-        piece = solve_in_steps(Awas().derivative, h, np.array([held, held]), reference[-1])
+        piece = solve(awas({}), h, np.array([held, held]), reference[-1])
         reference.append(piece[1])
     assert relative_error(run, np.array(reference)).max() < 1e-8
     np.testing.assert_array_equal(run["tau_measured"][1:], torques[:-1, 0])
 
 
 def test_outputs_are_those_of_the_state() -> None:
-    plant = Awas()
     torques = sinusoids(times(1e-3, 0.5), (0.5, 3.0), (8.0, 1.0), (2.0, 5.0))
     outputs = ["phi", "r", "tau_e", "sigma", "tau_e_measured", "tau_measured"]
     run = run_awas(1e-3, torques, QUIET, [*STATES, *outputs])
-    phi, r = run["q"] - run["theta"], plant.lever_arm(run["theta_c"])
-    tau_e = plant.flexibility_torque(r, phi)
-    expected = (phi, r, tau_e, plant.stiffness(r, phi), tau_e, torques[:, 0])
+    phi, r = run["q"] - run["theta"], lever_arm(run["theta_c"])
+    tau_e = flexibility_torque(r, phi)
+    expected = (phi, r, tau_e, stiffness(r, phi), tau_e, torques[:, 0])
     for name, value in zip(outputs, expected, strict=True):
         np.testing.assert_allclose(run[name], value, rtol=1e-12, atol=1e-14, err_msg=name)
 

@@ -10,7 +10,7 @@ import pytest
 
 import reference_joints
 from plant_runs import QUIET, Array, relative_error, run_plant, slope, times
-from reference_plant import round_to_counts
+from reference_joints import round_to_counts
 
 INPUTS = ("tau", "tau_ext", "r", "D_theta_change", "tau_coulomb_change")
 STATES = ("q", "theta", "q_dot", "theta_dot")

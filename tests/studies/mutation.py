@@ -39,39 +39,28 @@ LIMIT = 0.5
 REQUIRED = 0.9  # share of the mutants that the tests have to notice
 # For each file, the tests of other files that use it. They are run besides its own tests.
 _REGRESSION = ("regression_oracle", "filtered_regression", "misfit_columns", "evaluate")
+_OF_REGRESSION = (
+    *("columns", "information", "misfit", "motion_sign", "noise", "posterior", "refit", "signals"),
+    "state_variable_filter",
+)
 USERS = {
-    "change": (),
-    "columns": _REGRESSION,
-    "estimator_check": (),
-    "filtered_regression": ("prior", "stiffness_estimator", *_REGRESSION),
-    "filtered_regression_check": ("estimator_check",),
-    "information": _REGRESSION,
-    "kinematic_kalman": ("stiffness_estimator",),
+    **dict.fromkeys(_OF_REGRESSION, _REGRESSION),
+    **dict.fromkeys(("change", "estimator_check"), ()),
+    **dict.fromkeys(("filtered_regression_check", "paper2011_check"), ("estimator_check",)),
+    **dict.fromkeys(
+        ("kinematic_kalman", "parameters", "torque_basis", "torque_residual"),
+        ("stiffness_estimator",),
+    ),
+    "filtered_regression": ("stiffness_estimator", *_REGRESSION),
     "least_squares": ("stiffness_estimator", "evaluate"),
     "method": ("stiffness_estimator", "filtered_regression"),
-    "misfit": _REGRESSION,
-    "motion_sign": _REGRESSION,
-    "noise": _REGRESSION,
-    "paper2011": ("prior", "stiffness_estimator", "evaluate"),
-    "paper2011_check": ("estimator_check",),
-    "parameters": ("stiffness_estimator",),
-    "posterior": _REGRESSION,
-    "refit": _REGRESSION,
-    "signals": _REGRESSION,
-    "state_variable_filter": _REGRESSION,
-    "stiffness_estimator": ("prior", "filtered_regression", "evaluate"),
-    "torque_basis": ("stiffness_estimator",),
-    "torque_residual": ("stiffness_estimator",),
+    "paper2011": ("stiffness_estimator", "evaluate"),
+    "stiffness_estimator": ("filtered_regression", "evaluate"),
     "ud_factor": ("least_squares", "stiffness_estimator"),
 }
 PYTEST = ("-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", "-m", "not slow")
 FLAGS = (
-    "-std=gnu99",
-    "-O1",
-    "-ffp-contract=off",
-    "-fPIC",
-    "-w",
-    "-fsanitize=bounds",
+    *("-std=gnu99", "-O1", "-ffp-contract=off", "-fPIC", "-w", "-fsanitize=bounds"),
     "-fsanitize-undefined-trap-on-error",
     *sorted({f"-I{header.parent}" for header in LIBRARY.rglob("*.h")}),
 )
@@ -95,21 +84,10 @@ TOKEN = re.compile(
 
 # Equivalent mutants: file, changed code, why no test can notice the change.
 EQUIVALENT: tuple[tuple[str, str, str], ...] = (
-    (
-        "method.c",
-        "return p->method >= 1 &&",
-        "there is no method 0, and its place in the table is NULL",
-    ),
-    (
-        "motion_sign.c",
-        "const sh_real way = change >= 0 ? 1 : -1;",
-        "it is not used if the change is zero",
-    ),
-    (
-        "state_variable_filter.c",
-        "sh_fabs(behind[1]) <= SMALL",
-        "the value is never exactly 1e-30",
-    ),
+    ("method.c", "return p->method >= 1 &&", "there is no method 0; in the table it is NULL"),
+    ("motion_sign.c", "way = change >= 0 ? 1 : -1;", "it is not used if the change is zero"),
+    ("state_variable_filter.c", "sh_fabs(behind[1]) <= SMALL", "it is never exactly 1e-30"),
+    ("ud_factor.c", "if (j <= size) { g[j] = D[j] * f[j];", "D behind the last entry is zero"),
     *(
         ("ud_factor.c", code, "what it sets behind the last one is not used")
         for code in (
@@ -118,11 +96,6 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
             "if (j <= size) { multiply_two(P, F, j, last, f);",
             "for (j = 0; j <= size; ++j) { const sh_real beta",
         )
-    ),
-    (
-        "ud_factor.c",
-        "if (j <= size) { g[j] = D[j] * f[j];",
-        "D behind the last entry is zero",
     ),
 )
 
@@ -148,16 +121,12 @@ class Mutant:
 
     def makes(self, code: str) -> bool:
         """Whether the change has produced this code, which may have several lines."""
-        before, after = SOURCES[self.file].read_text(), self.text()
-        return count(after, code) > count(before, code)
+        texts = (" ".join(text.split()) for text in (SOURCES[self.file].read_text(), self.text()))
+        before, after = (text.count(code) for text in texts)
+        return after > before
 
     def __str__(self) -> str:
         return f"{self.file}: {self.old!r} -> {self.new!r}: {self.line()}"
-
-
-def count(text: str, code: str) -> int:
-    """How often a text contains this code, with any indentation."""
-    return " ".join(text.split()).count(" ".join(code.split()))
 
 
 def wrong(kind: str | None, token: str) -> tuple[str, ...]:
@@ -184,8 +153,8 @@ def candidates(file: Path, seed: str) -> list[tuple[Mutant, ...]]:
 class Bench:
     """Compiles mutants and links each with the object files of the unchanged sources."""
 
-    def __init__(self, folder: Path, compiler: str = "gcc") -> None:
-        self.folder, self.compiler = folder, compiler
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
         run = TESTS / "drivers" / "run.c"
         self.objects: dict[str, Path] = {}
         for file in (*SOURCES.values(), run):
@@ -194,12 +163,12 @@ class Bench:
                 raise RuntimeError(f"{file} does not compile")
 
     def compile(self, source: Path, target: Path) -> bool:
-        command = [self.compiler, *FLAGS, "-c", str(source), "-o", str(target)]
+        command = ["gcc", *FLAGS, "-c", str(source), "-o", str(target)]
         return subprocess.run(command, capture_output=True).returncode == 0
 
     def link(self, tree: Path, objects: Mapping[str, Path]) -> Path:
         library = tree / "libsigmahat_test_driver.so"
-        command = [self.compiler, "-shared", *map(str, objects.values()), "-lm", "-o", str(library)]
+        command = ["gcc", "-shared", *map(str, objects.values()), "-lm", "-o", str(library)]
         subprocess.run(command, check=True)
         return tree
 
@@ -287,32 +256,11 @@ def mutants(bench: Bench, file: str, number: int, seed: str) -> Iterator[tuple[M
                 break
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """The mutants by result of the tests."""
-
-    killed: list[Mutant]
-    equivalent: list[Mutant]
-    survived: list[Mutant]
-
-    def add(self, mutant: Mutant, passed: bool) -> None:
-        if not passed:
-            self.killed.append(mutant)
-        elif any(mutant.file == file and mutant.makes(code) for file, code, _ in EQUIVALENT):
-            self.equivalent.append(mutant)
-        else:
-            self.survived.append(mutant)
-            print(f"survived: {mutant}", flush=True)
-
-    def share(self) -> float:
-        """Share of the killed mutants among those that are not equivalent."""
-        return len(self.killed) / (len(self.killed) + len(self.survived))
-
-
-def run(folder: Path, number: int = NUMBER, seed: str = SEED) -> Outcome:
+def run(folder: Path, number: int, seed: str) -> Counter[str]:
     """Makes at least `number` mutants in a temporary folder and runs the tests with each.
 
-    Raises RuntimeError if the tests do not pass with the code as it is.
+    Returns how many were killed, survived, or are equivalent. Raises RuntimeError if the tests do
+    not pass with the code as it is.
     """
     bench = Bench(folder)
     files = sorted({path for source in shares(number) for path in files_for(source)})
@@ -324,13 +272,18 @@ def run(folder: Path, number: int = NUMBER, seed: str = SEED) -> Outcome:
     if not finished({start_tests(unchanged, files): unchanged})[1]:
         raise RuntimeError("the tests fail without any change")
     limit = math.ceil(LIMIT * (children_seconds() - before))
-    outcome = Outcome([], [], [])
+    outcome: Counter[str] = Counter()
     running: dict[int, Path] = {}
     tested: dict[int, Mutant] = {}
 
     def wait() -> None:
         child, passed = finished(running)
-        outcome.add(tested[child], passed)
+        mutant = tested[child]
+        same = any(mutant.file == file and mutant.makes(code) for file, code, _ in EQUIVALENT)
+        result = "killed" if not passed else "equivalent" if same else "survived"
+        outcome[result] += 1
+        if passed:
+            print(f"{result}: {mutant}", flush=True)
 
     for file, share in shares(number).items():
         for mutant, tree in mutants(bench, file, share, seed):
@@ -347,13 +300,10 @@ def main() -> int:
     number, seed = (*sys.argv[1:], *(str(NUMBER), SEED)[len(sys.argv) - 1 :])
     with tempfile.TemporaryDirectory() as folder:
         outcome = run(Path(folder), int(number), seed)
-    for mutant in outcome.equivalent:
-        print(f"equivalent: {mutant}")
-    print(
-        f"killed {len(outcome.killed)}, survived {len(outcome.survived)}, "
-        f"equivalent {len(outcome.equivalent)}: {100.0 * outcome.share():.1f} % killed"
-    )
-    return int(outcome.share() < REQUIRED)
+    share = outcome["killed"] / (outcome["killed"] + outcome["survived"])
+    counts = ", ".join(f"{name} {outcome[name]}" for name in ("killed", "survived", "equivalent"))
+    print(f"{counts}: {100 * share:.1f} % killed")
+    return int(share < REQUIRED)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,4 @@
 /* What only FMI 3.0 has: modes of an importer, integers of any size, numbers of values, results of a step. */
-#include <stdlib.h>
-#include <string.h>
-
-#include "drive.h"
-#include "fmi3Functions.h"
-#include "fmi_calls.h"
-#include "fuzz.h"
 
 static int environment; /* that of the importer */
 
@@ -26,7 +19,7 @@ static void *instance_of(sequence *s, const char *name, const char *token, fmi3B
         (how & 8) != 0, NULL, intermediate_variables, &environment, how & 16 ? NULL : logger, NULL);
 }
 
-void *some_instance(sequence *s)
+static void *some_instance(sequence *s)
 {
     const char *const token = sh_fmu_model.guid;
     char text[TEXT];
@@ -56,66 +49,36 @@ static fmi3Int64 some_int64(sequence *s)
     return seldom(s, 8) ? ODD[below(s, 5)] : some_integer(s);
 }
 
-static void set_enumerations(sequence *s)
-{
-    uint32_t references[MAX_REFERENCES];
-    fmi3Int64 values[MAX_REFERENCES];
-    const size_t n =
-        some_references(s, references, SH_TYPE_ENUMERATION,
-                        seldom(s, 16) ? SH_ROLE_INPUT : SH_ROLE_FIXED, SH_ROLE_TUNABLE);
-    size_t i;
-
-    for (i = 0; i < n; ++i) {
-        values[i] = some_int64(s);
-    }
-    if (fmi3SetInt64(s->instance, references, n, values, n) != fmi3OK) {
-        return;
-    }
-    for (i = 0; i < n; ++i) {
-        check(values[i] >= 1 && (double)values[i] <= sh_fmu_model.variables[references[i]].max,
-              "an enumeration was set to a value that it has not");
-    }
-}
-
-void set_integers(sequence *s)
-{
-    uint32_t references[MAX_REFERENCES];
-    fmi3Int32 ints[MAX_REFERENCES];
-    fmi3Boolean booleans[MAX_REFERENCES];
-    const sh_type type = below(s, 2) ? SH_TYPE_BOOLEAN : SH_TYPE_INTEGER;
-    size_t n, i;
-
-    if (below(s, 2)) {
-        set_enumerations(s);
-        return;
-    }
-    n = some_references(s, references, type, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
-    for (i = 0; i < n; ++i) {
-        ints[i] = some_integer(s);
-        booleans[i] = ints[i] > 1;
-    }
-    if (type == SH_TYPE_BOOLEAN) {
-        fmi3SetBoolean(s->instance, references, n, booleans, n);
-    } else {
-        fmi3SetInt32(s->instance, references, n, ints, n);
-    }
-}
-
-void get_integers(sequence *s)
+static void use_integers(sequence *s, int sets)
 {
     uint32_t references[MAX_REFERENCES];
     fmi3Int64 int64s[MAX_REFERENCES];
     fmi3Int32 int32s[MAX_REFERENCES];
     fmi3Boolean booleans[MAX_REFERENCES];
     const unsigned type = 1u << (1 + below(s, 3)); /* of SH_TYPE_* */
-    const size_t n = some_references(s, references, type, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
+    const sh_role first =
+        type == SH_TYPE_ENUMERATION && !seldom(s, 16) ? SH_ROLE_FIXED : SH_ROLE_INPUT;
+    const size_t n = some_references(s, references, type, first, SH_ROLE_TUNABLE);
+    size_t i;
 
-    if (type == SH_TYPE_INTEGER) {
-        fmi3GetInt32(s->instance, references, n, int32s, n);
-    } else if (type == SH_TYPE_ENUMERATION) {
+    for (i = 0; i < n; ++i) {
+        int64s[i] = some_int64(s);
+        int32s[i] = some_integer(s);
+        booleans[i] = int32s[i] > 1;
+    }
+    if (type == SH_TYPE_BOOLEAN) {
+        sets ? fmi3SetBoolean(s->instance, references, n, booleans, n)
+             : fmi3GetBoolean(s->instance, references, n, booleans, n);
+    } else if (type == SH_TYPE_INTEGER) {
+        sets ? fmi3SetInt32(s->instance, references, n, int32s, n)
+             : fmi3GetInt32(s->instance, references, n, int32s, n);
+    } else if (!sets) {
         fmi3GetInt64(s->instance, references, n, int64s, n);
-    } else {
-        fmi3GetBoolean(s->instance, references, n, booleans, n);
+    } else if (fmi3SetInt64(s->instance, references, n, int64s, n) == fmi3OK) {
+        for (i = 0; i < n; ++i) {
+            check(int64s[i] >= 1 && (double)int64s[i] <= sh_fmu_model.variables[references[i]].max,
+                  "an enumeration was set to a value that it has not");
+        }
     }
 }
 
@@ -161,11 +124,7 @@ static void step_without_results(sequence *s)
           "a step was made whose results have no place");
 }
 
-void call_of_this_version(sequence *s)
+static void call_of_this_version(sequence *s)
 {
-    if (seldom(s, 8)) {
-        step_without_results(s);
-    } else {
-        use_values(s);
-    }
+    (seldom(s, 8) ? step_without_results : use_values)(s);
 }

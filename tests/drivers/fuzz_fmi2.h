@@ -1,11 +1,4 @@
 /* What only FMI 2.0 has: memory from the importer, derivatives of inputs, status of a step. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "drive.h"
-#include "fmi2Functions.h"
-#include "fuzz.h"
 
 static int allocations_left; /* until the allocator of the importer fails */
 
@@ -30,7 +23,7 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
     }
 }
 
-void *some_instance(sequence *s)
+static void *some_instance(sequence *s)
 {
     const unsigned how = byte(s);
     fmi2CallbackFunctions callbacks = {NULL, NULL, NULL, NULL, &allocations_left};
@@ -55,40 +48,26 @@ void *some_instance(sequence *s)
                            how & 8 ? fmi2True : fmi2False);
 }
 
-void set_integers(sequence *s)
+static void use_integers(sequence *s, int sets)
 {
     uint32_t references[MAX_REFERENCES];
     int values[MAX_REFERENCES];
+    fmi2String strings[MAX_REFERENCES] = {0};
+    const int boolean = (int)below(s, 2);
     const unsigned types =
-        below(s, 2) ? SH_TYPE_BOOLEAN : (unsigned)SH_TYPE_INTEGER | SH_TYPE_ENUMERATION;
+        boolean ? SH_TYPE_BOOLEAN : (unsigned)SH_TYPE_INTEGER | SH_TYPE_ENUMERATION;
     const size_t n = some_references(s, references, types, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
     size_t i;
 
     for (i = 0; i < n; ++i) {
         values[i] = some_integer(s);
     }
-    if (types == SH_TYPE_BOOLEAN) {
-        fmi2SetBoolean(s->instance, references, n, values);
+    if (sets) {
+        (boolean ? fmi2SetBoolean : fmi2SetInteger)(s->instance, references, n, values);
     } else {
-        fmi2SetInteger(s->instance, references, n, values);
+        (boolean ? fmi2GetBoolean : fmi2GetInteger)(s->instance, references, n, values);
     }
-}
-
-void get_integers(sequence *s)
-{
-    uint32_t references[MAX_REFERENCES];
-    int values[MAX_REFERENCES];
-    fmi2String strings[MAX_REFERENCES] = {0};
-    const unsigned types =
-        below(s, 2) ? SH_TYPE_BOOLEAN : (unsigned)SH_TYPE_INTEGER | SH_TYPE_ENUMERATION;
-    const size_t n = some_references(s, references, types, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
-
-    if (types == SH_TYPE_BOOLEAN) {
-        fmi2GetBoolean(s->instance, references, n, values);
-    } else {
-        fmi2GetInteger(s->instance, references, n, values);
-    }
-    if (seldom(s, 16)) {
+    if (seldom(s, 32)) {
         fmi2GetString(s->instance, references, n, strings);
         fmi2SetString(s->instance, references, n, strings);
     }
@@ -152,19 +131,11 @@ static void call_what_is_not_provided(sequence *s)
     fmi2CancelStep(s->instance);
 }
 
-void call_of_this_version(sequence *s)
+static void call_of_this_version(sequence *s)
 {
-    switch (below(s, 6)) {
-    case 0:
-        ask_for_the_status(s);
-        break;
-    case 1:
-        set_up(s);
-        break;
-    case 2:
-        call_what_is_not_provided(s);
-        break;
-    default:
-        set_derivatives(s);
-    }
+    static void (*const CALLS[])(sequence *) = {ask_for_the_status,        set_up,
+                                                call_what_is_not_provided, set_derivatives,
+                                                set_derivatives,           set_derivatives};
+
+    CALLS[below(s, sizeof CALLS / sizeof CALLS[0])](s);
 }
