@@ -6,6 +6,7 @@ The requirements were chosen after a first look at the data: see docs/real-joint
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
