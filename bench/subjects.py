@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 SIZES = (3, 6, 18, 40)
 JOINTS = 30
-P_0 = 1e3  # as BENCH_P_0 in subjects.h
+P_0 = 1e3
 METHODS = ("Paper2011", "FilteredRegression", "FilteredRegression, 21 columns")
 MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 MEASURED = [f"{name}_measured" for name in ("theta", "q", "theta_c", "tau", "tau_e")]
@@ -98,7 +98,7 @@ class Compiled:
 
     def __init__(self, library: Library, make: str, size: int) -> None:
         self._library, self._make, self._size = library, make, size
-        self._state = ctypes.c_void_p(library.start(make, size))
+        self._state = ctypes.c_void_p(library.start(make, size, ctypes.c_double(P_0)))
         self._run = library.function(f"{make}_run")
 
     @property

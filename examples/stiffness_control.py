@@ -24,7 +24,6 @@ from numpy.typing import NDArray
 
 import sigmahat
 
-FILTERED_REGRESSION = 2  # item of the parameter `method`
 T, DURATION = 1e-3, 45.0  # [s]
 K_S, R_0, LEAD = 14220.0, 0.1, 0.0025 / (2 * math.pi)  # data sheet [N/m, m, m/rad]
 START = 2.0  # until then the lever arm rests and the estimate settles [s]
@@ -32,45 +31,33 @@ GAIN = 20.0  # tau_c for an error of one in the square root of the stiffness
 LARGEST = 8.0  # of tau_c, as in the paper [N.m]: up to some 50 N.m/rad in a second
 
 
-class Slave:
-    """One FMU, its variables by name."""
+class Plant:
+    """AwasPlant.fmu, its variables by name."""
 
-    def __init__(
-        self, name: str, integers: Mapping[str, int] | None = None, **start: float
-    ) -> None:
-        path = str(sigmahat.fmu(name))
+    def __init__(self, start: Mapping[str, float]) -> None:
+        path = str(sigmahat.fmu("AwasPlant"))
         description: Any = fmpy.read_model_description(path)
         self._references = {v.name: v.valueReference for v in description.modelVariables}
         self._folder = fmpy.extract(path)
         self._fmu: Any = fmpy.instantiate_fmu(self._folder, description, "CoSimulation")
         self._fmu.setupExperiment(startTime=0.0)
-        self.set(**start)
-        for parameter, value in (integers or {}).items():
-            self._fmu.setInteger([self._references[parameter]], [value])
+        self._set(start)
         self._fmu.enterInitializationMode()
         self._fmu.exitInitializationMode()
 
-    def set(self, **values: float) -> None:
-        """Sets variables; in their names "__" stands for a dot."""
-        references = [self._references[name.replace("__", ".")] for name in values]
-        self._fmu.setReal(references, list(values.values()))
-
-    def set_derivative(self, name: str, slope: float) -> None:
-        """Makes an input linear over the next step."""
-        self._fmu.setRealInputDerivatives([self._references[name]], [1], [slope])
+    def _set(self, values: Mapping[str, float]) -> None:
+        self._fmu.setReal([self._references[name] for name in values], list(values.values()))
 
     def get(self, *names: str) -> list[float]:
         """Values of variables."""
         values: list[float] = self._fmu.getReal([self._references[name] for name in names])
         return values
 
-    def is_true(self, name: str) -> bool:
-        """Value of a Boolean variable."""
-        (value,) = self._fmu.getBoolean([self._references[name]])
-        return bool(value)
-
-    def step(self, t: float) -> None:
-        """From t to t + T."""
+    def step(self, t: float, tau_c: float) -> None:
+        """From t to t + T; the torque of the principal motor is linear, the other one constant."""
+        self._set({"tau": torque(t), "tau_c": tau_c})
+        slope = (torque(t + T) - torque(t)) / T
+        self._fmu.setRealInputDerivatives([self._references["tau"]], [1], [slope])
         self._fmu.doStep(t, T)
 
     def close(self) -> None:
@@ -94,10 +81,10 @@ def torque(t: float) -> float:
 
 def run(with_estimate: bool) -> NDArray[np.float64]:
     """One run; columns t [s], wanted, true and estimated stiffness [N.m/rad], tau_c [N.m]."""
-    plant = Slave("AwasPlant", spring__k_s=0.85 * K_S, initial__theta_c=0.0)
+    plant = Plant({"spring.k_s": 0.85 * K_S, "initial.theta_c": 0.0})
     # The torque is exact here, but for noise: no gain error.
-    estimator = Slave(
-        "StiffnessEstimator", {"method": FILTERED_REGRESSION, "rls.n": 3}, prior__torque_gain=0.0
+    estimator = sigmahat.Estimator(
+        {"method": "FilteredRegression", "rls.n": 3, "prior.torque_gain": 0.0}
     )
     correction = 1.0  # of the data sheet, by the last estimate that was confident
     rows = []
@@ -106,12 +93,11 @@ def run(with_estimate: bool) -> NDArray[np.float64]:
         theta, q, theta_c, tau, true = plant.get(
             "theta_measured", "q_measured", "theta_c_measured", "tau_measured", "sigma"
         )
-        estimator.set(theta=theta, q=q, theta_c=theta_c, tau=tau)
-        estimator.step(t)  # the tick at t
-        (estimated,) = estimator.get("sigma")
+        found = estimator.tick(theta, q, tau, theta_c)
+        estimated = float(found["sigma"])
 
         nominal = 2 * K_S * (R_0 - LEAD * theta_c) ** 2 * math.cos(2 * (q - theta))  # (29)
-        if estimator.is_true("confident"):
+        if found["confident"]:
             correction = estimated / nominal
         used = correction * nominal if with_estimate else nominal
         # The square root of the stiffness is linear in the lever arm, and the velocity of the
@@ -123,11 +109,8 @@ def run(with_estimate: bool) -> NDArray[np.float64]:
             tau_c = min(max(-GAIN * error, -LARGEST), LARGEST)
         rows.append((t, wanted(t), true, estimated, tau_c))
 
-        plant.set(tau=torque(t), tau_c=tau_c)
-        plant.set_derivative("tau", (torque(t + T) - torque(t)) / T)
-        plant.step(t)
+        plant.step(t, tau_c)
     plant.close()
-    estimator.close()
     return np.array(rows)
 
 

@@ -52,26 +52,3 @@ class Estimate:
     std: Array  # standard deviation [N.m/rad]; NaN: the method gives none
     confident: NDArray[np.bool_]
     seconds: float  # wall time of the estimation
-
-
-def encoder_std(counts: int) -> float:
-    """Standard deviation of the rounding error of an encoder [rad]; 0 if it does not round."""
-    return 2 * np.pi / counts / np.sqrt(12) if counts else 0.0
-
-
-CONFIDENT = 0.1
-"""A rival is confident while its standard deviation is below this share of a positive stiffness, as
-FilteredRegression is at most."""
-
-
-def with_interval(log: JointLog, stiffness: Array, std: Array, seconds: float) -> Estimate:
-    """The estimate of a rival that gives a standard deviation.
-
-    What is known of the gain of the torque is added to it: the stiffness is proportional to it.
-
-    stiffness, std  at every sample [N.m/rad]
-    seconds         wall time
-    """
-    std = np.hypot(std, log.known.relative_std_gain * stiffness)
-    confident = np.isfinite(stiffness) & np.isfinite(std) & (std < CONFIDENT * stiffness)
-    return Estimate(stiffness, std, confident, seconds)

@@ -7,31 +7,22 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 
-from rivals.joints.catalogue import KINDS, make
+from rivals.draw import KINDS
 from rivals.methods import METHODS
-from rivals.score import Result, judge, write_results
-from rivals.table import page
+from rivals.score import RESULT, Result, judge, page
+from rivals.simulation import make
+from sigmahat.files.tables import write_csv
 
 
 def run_joint(methods: Sequence[str], joint: tuple[str, int]) -> list[Result]:
     """Results of the methods on the joint of this kind and seed."""
     log = make(*joint)
     return [judge(name, METHODS[name], log) for name in methods]
-
-
-def run(joints: Iterable[tuple[str, int]], methods: Sequence[str], jobs: int) -> list[Result]:
-    """Results of the methods on all joints, in this order, in so many processes."""
-    every: list[Result] = []
-    with ProcessPoolExecutor(jobs) as pool:
-        for results in pool.map(partial(run_joint, methods), joints):
-            every += results
-            print(results[0].kind, results[0].seed, file=sys.stderr, flush=True)
-    return every
 
 
 def main() -> None:
@@ -51,10 +42,15 @@ def main() -> None:
     arguments = parser.parse_args()
     first, last = arguments.seeds
     joints = [(kind, seed) for kind in arguments.kinds for seed in range(first, last + 1)]
-    results = run(joints, arguments.methods, arguments.jobs)
+    results: list[Result] = []
+    with ProcessPoolExecutor(arguments.jobs) as pool:
+        for found in pool.map(partial(run_joint, arguments.methods), joints):
+            results += found
+            print(found[0]["kind"], found[0]["seed"], file=sys.stderr, flush=True)
     text = page(results)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    write_results(arguments.out / "rivals.csv", results)
+    rows = ([result.get(name) for name in RESULT] for result in results)
+    write_csv(arguments.out / "rivals.csv", RESULT, rows)
     (arguments.out / "rivals.md").write_text(text, encoding="utf-8")
     print(text)
 

@@ -1,17 +1,14 @@
-"""How right an estimate of a log and its interval are, and the file of all results."""
+"""How right an estimate of a log and its interval are, and the table of all results."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
-from functools import partial
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from rivals.records import Array, Estimate, JointLog
-from sigmahat.files.tables import write_csv
 
 SETTLED = 2.0
 """An estimate is judged from this time on [s]."""
@@ -21,28 +18,25 @@ QUANTILE = 1.96
 """The interval is the estimate and this many standard deviations to both sides."""
 WRONG = 0.2
 """Relative error above which a confident estimate is wrong."""
+SCORES = ("error", "width", "coverage", "interval_score", "confident", "wrong")
+RESULT = ("kind", "seed", "method", "seconds", "remark", *SCORES)
+"""Names in the result of a method on a log."""
+HEAD = (
+    *("joint", "method", "estimates", "error %", "interval width %", "coverage %"),
+    *("interval score %", "lowest score %", "time s", "confident %", "confident and wrong %"),
+)
+
+Result = dict[str, Any]
+"""By RESULT: kind, seed and method; wall time [s], nan if the method failed, and why; SCORES if it
+did not."""
 
 
-@dataclass(frozen=True)
-class Score:
-    """All in percent: of the true stiffness, or of the instants after SETTLED."""
+def score(log: JointLog, estimate: Estimate) -> dict[str, float]:
+    """The score of an estimate [%]: of the true stiffness, or of the instants after SETTLED.
 
-    error: float
-    """Root mean square."""
-    width: float
-    """Mean width of the intervals; nan without them, as are coverage and interval score."""
-    coverage: float
-    """Share of instants whose interval holds the truth."""
-    interval_score: float
-    """Mean interval score of Winkler."""
-    confident: float
-    """Share of instants that are confident."""
-    wrong: float
-    """Share of instants that are confident with an error above WRONG."""
-
-
-def score(log: JointLog, estimate: Estimate) -> Score:
-    """The score of an estimate.
+    Root mean square of the error; mean width of the intervals, share of instants whose interval
+    holds the truth and mean interval score, nan without intervals; share of instants that are
+    confident, and confident with an error above WRONG.
 
     Instants at which the true stiffness is not positive are left out: the spring is not engaged.
     Raises ValueError if none is left, or if the estimate is not finite at one of them.
@@ -57,16 +51,13 @@ def score(log: JointLog, estimate: Estimate) -> Score:
         raise ValueError(f"not finite at {np.count_nonzero(~np.isfinite(found))} instants")
     error = np.abs(found / true - 1)
     low, high = found - QUANTILE * std, found + QUANTILE * std
-    has_intervals = bool(np.isfinite(std).any())
-    coverage = np.mean((low <= true) & (true <= high)) if has_intervals else math.nan
-    return Score(
-        error=100 * float(np.sqrt(np.mean(error**2))),
-        width=100 * float(np.mean((high - low) / true)),
-        coverage=100 * float(coverage),
-        interval_score=100 * float(np.mean(winkler(true, low, high) / true)),
-        confident=100 * float(np.mean(confident)),
-        wrong=100 * float(np.mean(confident & (error > WRONG))),
+    holds = np.mean((low <= true) & (true <= high)) if np.isfinite(std).any() else math.nan
+    values = (
+        *(np.sqrt(np.mean(error**2)), np.mean((high - low) / true), holds),
+        *(np.mean(winkler(true, low, high) / true), np.mean(confident)),
+        np.mean(confident & (error > WRONG)),
     )
+    return {name: 100 * float(value) for name, value in zip(SCORES, values, strict=True)}
 
 
 def winkler(true: Array, low: Array, high: Array) -> Array:
@@ -80,43 +71,52 @@ def winkler(true: Array, low: Array, high: Array) -> Array:
     return high - low + 2 / (1 - INTERVAL) * outside
 
 
-@dataclass(frozen=True)
-class Result:
-    """One method on one log."""
-
-    kind: str
-    seed: int
-    method: str
-    seconds: float
-    """Wall time; nan if the method failed."""
-    score: Score | None
-    """None if the method has no estimate."""
-    remark: str
-    """Why it has none."""
-
-
 def judge(method: str, estimate: Callable[[JointLog], Estimate], log: JointLog) -> Result:
-    """Result of a method on a log. A method that raises an exception has none."""
-    result = partial(Result, log.kind, log.seed, method)
+    """Result of a method on a log. A method that raises an exception has no score."""
+    result = {"kind": log.kind, "seed": log.seed, "method": method}
     try:
         found = estimate(log)
-        return result(found.seconds, score(log, found), "")
+        return {**result, "seconds": found.seconds, "remark": "", **score(log, found)}
     except Exception as error:  # whatever a rival raises is a row of the table
-        return result(math.nan, None, f"{type(error).__name__}: {error}")
+        return {**result, "seconds": math.nan, "remark": f"{type(error).__name__}: {error}"}
 
 
-def write_results(path: Path, results: Sequence[Result]) -> None:
-    """Writes a row a result; fields of a score that is not there are empty."""
-    scores = [field.name for field in fields(Score)]
-    of_result = [field.name for field in fields(Result) if field.name != "score"]
-    write_csv(
-        path,
-        [*of_result, *scores],
-        (
-            [
-                *(getattr(result, name) for name in of_result),
-                *(getattr(result.score, name, None) for name in scores),
-            ]
-            for result in results
-        ),
-    )
+def page(results: Sequence[Result]) -> str:
+    """The table as Markdown: a row for each kind of joint and method."""
+    lines = [
+        "Error (root mean square), interval width, interval score and time are medians over the "
+        "logs, the others means. The interval is that of 95 %. *Lowest score*: the share of the "
+        "logs on which the interval score of this method is the lowest. `rivals.csv` has every "
+        "log, and why an estimate is missing.",
+        "",
+        *("| " + " | ".join(cells) + " |" for cells in (HEAD, ["---"] * len(HEAD))),
+    ]
+    for kind, method in dict.fromkeys((r["kind"], r["method"]) for r in results):
+        cells = _cells([r for r in results if r["kind"] == kind], method)
+        lines.append(f"| {kind} | {method} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def _cells(results: Sequence[Result], method: str) -> list[str]:
+    """The cells of a method, from the results of all methods on one kind of joint."""
+    own = [r for r in results if r["method"] == method]
+    scored = [r for r in own if "error" in r]
+
+    def cell(name: str, over: str, digits: int = 3) -> str:
+        values = [r[name] for r in scored if not math.isnan(r[name])]
+        return f"{getattr(np, over)(values):.{digits}g}" if values else "-"
+
+    lowest = 100 * list(best(results).values()).count(method) / len(own)
+    return [
+        f"{len(scored)} of {len(own)}",
+        *(cell("error", "median"), cell("width", "median"), cell("coverage", "mean")),
+        *(cell("interval_score", "median"), f"{lowest:.3g}", cell("seconds", "median", 2)),
+        *(cell("confident", "mean"), cell("wrong", "mean")),
+    ]
+
+
+def best(results: Sequence[Result]) -> dict[tuple[str, int], str]:
+    """The method with the lowest interval score, by kind and seed."""
+    scored = [r for r in results if not math.isnan(r.get("interval_score", math.nan))]
+    scored.sort(key=lambda r: (r["interval_score"], r["method"]), reverse=True)
+    return {(r["kind"], r["seed"]): r["method"] for r in scored}  # the last one stays

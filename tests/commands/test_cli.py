@@ -17,25 +17,22 @@ import pytest
 
 from command_line import one_line
 from gate import need
-from sigmahat.cli import cli, main
+from in_process import command
+from sigmahat.cli import cli
 from sigmahat.fmi import installed
 from sigmahat.paper.scenarios import SCENARIOS
 
 COMMAND = [sys.executable, "-m", "sigmahat"]
 
 
-def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([*COMMAND, *arguments], cwd=cwd, capture_output=True, text=True)
-
-
 def refused(*arguments: str, cwd: Path) -> str:
     """Runs a command that must fail with one line, and returns that line."""
-    return one_line(run(*arguments, cwd=cwd))
+    return one_line(command(*arguments, cwd=cwd))
 
 
 @pytest.mark.slow("a whole reproduction with its figures")
 def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> None:
-    done = run("reproduce", cwd=tmp_path)
+    done = subprocess.run([*COMMAND, "reproduce"], cwd=tmp_path, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     out = tmp_path / "sigmahat-results" / "table1"
     assert str(out) in done.stdout
@@ -47,7 +44,7 @@ def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> Non
 
 
 def test_scenarios_are_listed_one_a_line(tmp_path: Path) -> None:
-    done = run("scenarios", cwd=tmp_path)
+    done = command("scenarios", cwd=tmp_path)
     lines = done.stdout.splitlines()
     assert [line.split()[0] for line in lines] == list(SCENARIOS)
     for line, scenario in zip(lines, SCENARIOS.values(), strict=True):
@@ -56,20 +53,20 @@ def test_scenarios_are_listed_one_a_line(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["", *sorted(cli.commands)])
 def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
-    done = run(*name.split(), "--help", cwd=tmp_path)
+    done = command(*name.split(), "--help", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     help_ = (cli.commands[name] if name else cli).help or ""
     (example,) = re.findall(r"Example: sigmahat (.*?)(?:\n\n|$)", help_, re.DOTALL)
     assert f"Example: sigmahat {example.split()[0]}" in done.stdout
-    command, *arguments = example.split()
-    assert command == name or not name
-    with cli.commands[command].make_context(command, arguments):
+    first, *arguments = example.split()
+    assert first == name or not name
+    with cli.commands[first].make_context(first, arguments):
         pass
 
 
 @pytest.mark.slow("a whole reproduction with its figures")
 def test_json_of_reproduce_is_its_table(tmp_path: Path) -> None:
-    done = run("reproduce", "--scenario", "single-linear", "--json", cwd=tmp_path)
+    done = command("reproduce", "--scenario", "single-linear", "--json", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     printed = json.loads(done.stdout)
     assert (printed["scenario"], printed["seeds"]) == ("single-linear", [1])
@@ -79,32 +76,29 @@ def test_json_of_reproduce_is_its_table(tmp_path: Path) -> None:
     assert as_text == rows
 
 
-@pytest.mark.parametrize(
-    ("words", "expected"),
-    [
-        ("sigmahat rep", {"report", "reproduce"}),
-        ("sigmahat sweep --sc", {"--scenario", "--scheduler"}),
-        ("sigmahat reproduce --se", {"--seeds"}),
-        ("sigmahat reproduce --scenario as", {name for name in SCENARIOS if name[:2] == "as"}),
-    ],
-)
-def test_bash_completes(words: str, expected: set[str], tmp_path: Path) -> None:
+def test_bash_completes(tmp_path: Path) -> None:
     """With the line that the page says belongs into .bashrc."""
     bash = need("bash")
     page = (Path(__file__).parents[2] / "docs" / "start.md").read_text(encoding="utf-8")
     (line,) = re.findall(r"`(eval [^`]*bash_source[^`]*)`", page)
-    script = f"{line}\nCOMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n"
-    script += '_sigmahat_completion sigmahat; printf "%s\\n" "${COMPREPLY[@]}"'
+    expected = {
+        "sigmahat rep": {"report", "reproduce"},
+        "sigmahat sweep --sc": {"--scenario", "--scheduler"},
+        "sigmahat reproduce --scenario as": {name for name in SCENARIOS if name[:2] == "as"},
+    }
+    for words in expected:
+        line += f"\nCOMPREPLY=(); COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n"
+        line += '_sigmahat_completion sigmahat; echo "${COMPREPLY[@]}"'
     programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     done = subprocess.run(
-        [bash, "-c", script],
+        [bash, "-c", line],
         cwd=tmp_path,
         env={**os.environ, "PATH": programs},
         capture_output=True,
         text=True,
     )
     assert (done.returncode, done.stderr) == (0, "")
-    assert set(done.stdout.split()) == expected
+    assert [set(each.split()) for each in done.stdout.splitlines()] == [*expected.values()]
 
 
 def test_help_imports_nothing_slow() -> None:
@@ -125,10 +119,10 @@ def test_unknown_scenario(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("command", "seeds"), [("reproduce", "0"), ("reproduce", "two"), ("compare", "1.5")]
+    ("name", "seeds"), [("reproduce", "0"), ("reproduce", "two"), ("compare", "1.5")]
 )
-def test_bad_number_of_seeds(command: str, seeds: str, tmp_path: Path) -> None:
-    assert "--seeds" in refused(command, "--seeds", seeds, cwd=tmp_path)
+def test_bad_number_of_seeds(name: str, seeds: str, tmp_path: Path) -> None:
+    assert "--seeds" in refused(name, "--seeds", seeds, cwd=tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -165,42 +159,34 @@ def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
     assert "cannot write /proc/sigmahat" in line
 
 
-@pytest.mark.parametrize("command", ["reproduce", "compare", "compare --misfits"])
+@pytest.mark.parametrize("name", ["reproduce", "compare", "compare --misfits"])
 @pytest.mark.parametrize("compiler", [None, "/usr/bin/cc"])
 def test_fmus_not_built(
-    command: str,
-    compiler: str | None,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    name: str, compiler: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def missing(name: str) -> Path:
         raise FileNotFoundError(name)
 
     monkeypatch.setattr(installed, "fmu", missing)
     monkeypatch.setattr(shutil, "which", lambda name: compiler)
-    assert main([*command.split(), "--out", str(tmp_path / "out")]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
+    line = refused(*name.split(), "--out", "out", cwd=tmp_path)
     assert "cmake --workflow --preset build" in line
     assert ("install a C compiler" in line) == (compiler is None)
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(
-    ("command", "seeds", "delay"),
-    [
-        *(("reproduce", "1", 0.2), ("reproduce", "100", 0.0), ("reproduce", "100", 1.0)),
-        ("compare", "100", 3.5),
-    ],
+    ("name", "seeds", "delay"),
+    [("reproduce", "1", 0.2), ("reproduce", "100", 1.0), ("compare", "100", 3.5)],
 )
-def test_interrupt(command: str, seeds: str, delay: float, tmp_path: Path) -> None:
+def test_interrupt(name: str, seeds: str, delay: float, tmp_path: Path) -> None:
     """Ctrl-C reaches the whole process group, at any time after the start of Python."""
     started = (
         "import sys, sigmahat.cli as c; run = c.cli.main; "
         "c.cli.main = lambda *a, **k: print(flush=True) or run(*a, **k); sys.exit(c.main())"
     )
     process = subprocess.Popen(
-        [sys.executable, "-c", started, command, "--seeds", seeds],
+        [sys.executable, "-c", started, name, "--seeds", seeds],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

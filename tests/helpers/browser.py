@@ -44,6 +44,12 @@ class Page:
     def __init__(self, driver: Chrome) -> None:
         self.driver = driver
 
+    def show(self, file: Path | str) -> None:
+        """Opens a file or an address instead, and waits until its plots are drawn."""
+        self.complaints(), self.requests()
+        self.driver.get(file if isinstance(file, str) else file.as_uri())
+        self.driver.execute_async_script(_IDLE)
+
     def run(self, script: str, *arguments: object) -> Any:
         """Runs a script that ends with return. Returns its value."""
         return self.driver.execute_script(script, *arguments)
@@ -92,8 +98,8 @@ def opened(file: Path | str, width: int = 1400, dark: bool = False) -> Iterator[
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         command("Emulation.setEmulatedMedia", {"features": [scheme]})
         chrome.set_script_timeout(60)
-        chrome.get(file if isinstance(file, str) else file.as_uri())
-        chrome.execute_async_script(_IDLE)
-        yield Page(chrome)
+        page = Page(chrome)
+        page.show(file)
+        yield page
     finally:
         chrome.quit()

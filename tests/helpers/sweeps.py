@@ -1,4 +1,4 @@
-"""Sweeps as a user starts them."""
+"""Sweeps as a user starts them, in this process or in one of their own."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from command_line import one_line
+from in_process import command
 
 COMMAND = [sys.executable, "-m", "sigmahat", "sweep"]
 QUICK = ["--modality", "RESIDUAL"]
@@ -16,10 +17,8 @@ QUICK = ["--modality", "RESIDUAL"]
 
 
 def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """Runs a sweep to its end, and ends one that hangs."""
-    return subprocess.run(
-        [*COMMAND, *arguments], cwd=cwd, capture_output=True, text=True, timeout=600
-    )
+    """Runs a sweep to its end, in this process."""
+    return command("sweep", *arguments, cwd=cwd)
 
 
 def start(arguments: Sequence[str], cwd: Path) -> subprocess.Popen[str]:

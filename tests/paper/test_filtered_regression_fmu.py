@@ -64,9 +64,9 @@ def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
     assert max(found) <= 5.0
 
 
-@pytest.mark.parametrize("period", [1e-3, 1e-4])
-@pytest.mark.parametrize("velocity", [0.3, 2.4])
-@pytest.mark.parametrize("friction", [0.0, 0.02])
+@pytest.mark.parametrize(
+    ("period", "velocity", "friction"), [(1e-3, 0.3, 0.0), (1e-3, 2.4, 0.02), (1e-4, 2.4, 0.0)]
+)
 def test_motor_that_turns_at_the_start(
     c: Library, period: float, velocity: float, friction: float
 ) -> None:

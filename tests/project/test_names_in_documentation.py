@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,7 @@ NOT_OURS = re.compile(
 """Places of names, files of FMUs and of users, and the parameter rls.c."""
 
 
+@cache
 def tracked() -> list[str]:
     command = [need("git"), "-C", str(REPOSITORY), "ls-files"]
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
@@ -31,9 +33,8 @@ def tracked() -> list[str]:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))
 def test_every_file_exists(page: Path) -> None:
-    files = tracked()
-    named = {name for name in FILE.findall(page.read_text(encoding="utf-8"))}
-    known = {name for name in named for file in files if f"/{file}".endswith(f"/{name}")}
+    named = set(FILE.findall(page.read_text(encoding="utf-8")))
+    known = {name for name in named for file in tracked() if f"/{file}".endswith(f"/{name}")}
     assert {name for name in named - known if not NOT_OURS.search(name)} == set()
 
 

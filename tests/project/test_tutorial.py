@@ -6,14 +6,13 @@ import importlib.util
 import json
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from in_process import command
 from recorded_logs import read_estimate
 
 REPOSITORY = Path(__file__).parents[2]
@@ -22,12 +21,10 @@ PAGE = (REPOSITORY / "docs" / "tutorial.md").read_text(encoding="utf-8")
 pytestmark = pytest.mark.slow("the commands of the page run on a log of 20 s")
 
 
-def sigmahat(command: list[str], folder: Path) -> str:
-    done = subprocess.run(
-        [sys.executable, "-m", "sigmahat", *command], cwd=folder, capture_output=True, text=True
-    )
+def sigmahat(arguments: list[str], folder: Path) -> str:
+    done = command(*arguments, cwd=folder)
     assert done.returncode == 0, done.stderr
-    return done.stdout
+    return str(done.stdout)
 
 
 @pytest.fixture(scope="module")
@@ -48,17 +45,19 @@ def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     return results
 
 
-def recording(path: Path) -> Any:
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The program that made the log, the log that it makes, and the recording of the joint."""
     spec = importlib.util.spec_from_file_location("record", FILES / "record.py")
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.JOINT, module.record(path)
+    log = tmp_path_factory.mktemp("again") / "knee.csv"
+    return module.JOINT, log, module.record(log)
 
 
-def test_the_log_can_be_made_again_to_the_byte(tmp_path: Path) -> None:
-    recording(tmp_path / "knee.csv")
-    assert (tmp_path / "knee.csv").read_bytes() == (FILES / "knee.csv").read_bytes()
+def test_the_log_can_be_made_again_to_the_byte(recording: Any) -> None:
+    assert recording[1].read_bytes() == (FILES / "knee.csv").read_bytes()
 
 
 def test_the_configuration_of_the_page_is_the_one_that_comes_with_the_log() -> None:
@@ -84,8 +83,8 @@ def test_the_motor_is_identified_as_the_page_says(name: str, printed: dict[str, 
     assert half_width == float(f"{(high - low) / 2:.2g}")
 
 
-def test_the_true_values_are_those_of_the_joint(printed: dict[str, Any], tmp_path: Path) -> None:
-    joint, made = recording(tmp_path / "knee.csv")
+def test_the_true_values_are_those_of_the_joint(printed: dict[str, Any], recording: Any) -> None:
+    joint, _, made = recording
     for name in ("B", "D_theta", "tau_coulomb"):
         assert f"| {joint[f'motor.{name}']:g} |" in PAGE
     sigma = made.plant["sigma"][len(made.t) // 2 :]

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import csv
 import html
-import subprocess
-import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -16,7 +14,8 @@ import pyarrow.parquet
 import pytest
 from selenium.webdriver.common.by import By
 
-from browser import DATA, ROWS, opened
+from browser import DATA, ROWS, Page, opened
+from in_process import command
 from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
 from sigmahat.logs.time_panels import reduce
 
@@ -26,25 +25,20 @@ const {canvas, ctx} = view.canvas_view.primary;
 const picture = ctx.getImageData(0, 0, canvas.width, canvas.height).data;
 """
 CHANGED = f"""{PICTURE}
-const before = window.before;
+const before = window.before ?? [];
 window.before = picture;
-return before?.length === picture.length ? picture.filter((x, i) => x !== before[i]).length : 0;
+return before.length === picture.length && picture.some((x, i) => x !== before[i]);
 """
-"""How much of the picture of a plot has changed since this was last asked."""
+"""Whether the picture of a plot has changed since this was last asked."""
 SHOW = """
 const [plot, shown, done] = arguments;
 for (const box of document.querySelectorAll(`[data-trace^="trace-${plot}-"]`))
-  if (box.checked !== (shown === box.dataset.trace)) box.click();
+  if (box.checked !== shown.includes(box.dataset.trace)) box.click();
 requestAnimationFrame(() => setTimeout(done, 50));
 """
-"""Switches all traces of a plot off but one."""
+"""Switches all traces of a plot off but these."""
+TRACES = "return [...document.querySelectorAll('.plots input')].map(box => box.dataset.trace)"
 RANGES = "return Bokeh.documents[0].roots().map(p => [p.x_range.start, p.x_range.end]);"
-
-
-def command(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "sigmahat", *arguments], cwd=cwd, capture_output=True, text=True
-    )
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +56,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
                 "reproduction": ("reproduce",),
                 "log": ("estimate", "knee.parquet"),
                 "sweep": (
-                    "sweep", "--modality", "RESIDUAL,SENSOR", "--seeds", "4", "--set",
+                    "sweep", "--modality", "RESIDUAL,SENSOR", "--seeds", "2", "--set",
                     "estimator.motor.D_theta=0.9e-3,1e-3", "--set", "plant.link.M=normal(0.1,0.01)",
                 ),
             }[kind], "--out", "out", cwd=cwd,
@@ -76,67 +70,76 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     return make
 
 
+@pytest.fixture(scope="module")
+def page() -> Iterator[Page]:
+    """A browser for all reports."""
+    with opened("about:blank") as page:
+        yield page
+
+
 @pytest.mark.parametrize(("kind", "plots"), [("reproduction", 7), ("log", 7), ("sweep", 4)])
 @pytest.mark.slow("a browser draws the report")
 def test_the_file_alone_shows_every_plot(
-    kind: str, plots: int, results: Callable[[str], Path], tmp_path: Path
+    kind: str, plots: int, results: Callable[[str], Path], page: Page, tmp_path: Path
 ) -> None:
     file = results(kind) / "report.html"
     assert file.stat().st_size < 5_000_000
     alone = tmp_path / "moved.html"
     alone.write_bytes(file.read_bytes())
-    with opened(alone) as page:
-        assert page.complaints() == []
-        assert page.requests() == [alone.as_uri()]
-        assert len(page.run(RANGES)) == plots
-        boxes = page.driver.find_elements(By.CSS_SELECTOR, ".plots input")
-        for box in boxes:
-            trace = str(box.get_attribute("data-trace"))
-            plot = int(trace.split("-")[1])
-            for shown in ("", trace):
-                page.driver.execute_async_script(SHOW, plot, shown)
-                changed = page.run(CHANGED, plot)
-            assert changed > 0, trace
-        assert page.complaints() == []
+    page.show(alone)
+    assert page.complaints() == []
+    assert page.requests() == [alone.as_uri()]
+    assert len(page.run(RANGES)) == plots
+    traces = page.run(TRACES)
+    for plot in range(plots):
+        shown = []
+        for trace in [None, *(t for t in traces if t.startswith(f"trace-{plot}-"))]:
+            shown.append(trace)
+            page.driver.execute_async_script(SHOW, plot, shown)
+            changed = page.run(CHANGED, plot)
+            assert changed or trace is None, trace
+    assert page.complaints() == []
 
 
-def test_the_plots_have_the_numbers_of_the_files(results: Callable[[str], Path]) -> None:
+def test_the_plots_have_the_numbers_of_the_files(
+    results: Callable[[str], Path], page: Page
+) -> None:
     folder = results("reproduction")
     table = pa.csv.read_csv(folder / "SENSOR.csv")
-    with opened(folder / "report.html") as page:
-        time = np.array(page.run(DATA, "trace-0-2", "x"))
-        sigma = np.array(page.run(DATA, "trace-0-2", "trace-0-2"))
-        label = page.run("""
-            return document.querySelector('[data-trace="trace-0-2"]').parentElement.innerText""")
+    page.show(folder / "report.html")
+    time = np.array(page.run(DATA, "trace-0-2", "x"))
+    sigma = np.array(page.run(DATA, "trace-0-2", "trace-0-2"))
+    label = page.run("""
+        return document.querySelector('[data-trace="trace-0-2"]').parentElement.innerText""")
     assert label.strip() == "SENSOR"
     assert np.array_equal(time, table["t [s]"].to_numpy())
     assert np.array_equal(sigma, table["sigma [N.m/rad]"].to_numpy().astype(np.float32))
 
 
-def test_a_log_has_the_numbers_of_its_table(results: Callable[[str], Path]) -> None:
+def test_a_log_has_the_numbers_of_its_table(results: Callable[[str], Path], page: Page) -> None:
     folder = results("log")
     table = read_estimate(folder)
     sigma = table["estimate.sigma [N.m/rad]"].to_numpy()
     later = sigma[len(sigma) // 2 :]
     rms = np.sqrt(np.mean(later**2))
     cells = [f"{x:.4g}" for x in (sigma[-1], later.min(), later.max(), rms)]
-    with opened(folder / "report.html") as page:
-        rows = page.run(ROWS, "Outputs of the estimator")
-        assert rows[0].split() == ["\u03c3", "[N·m/rad]", *cells]
-        assert page.run(ROWS, "Doubt")[-1].split() == ["NoClaim", "100"]
-        drawn = np.array(page.run(DATA, "trace-2-0", "trace-2-0"))
+    page.show(folder / "report.html")
+    rows = page.run(ROWS, "Outputs of the estimator")
+    assert rows[0].split() == ["\u03c3", "[N·m/rad]", *cells]
+    assert page.run(ROWS, "Doubt")[-1].split() == ["NoClaim", "100"]
+    drawn = np.array(page.run(DATA, "trace-2-0", "trace-2-0"))
     assert np.array_equal(drawn, sigma.astype(np.float32))
 
 
-def test_a_sweep_has_the_numbers_of_its_summary(results: Callable[[str], Path]) -> None:
+def test_a_sweep_has_the_numbers_of_its_summary(results: Callable[[str], Path], page: Page) -> None:
     folder = results("sweep")
     with (folder / "summary.csv").open() as file:
         summary = list(csv.DictReader(file))
     table = pa.parquet.read_table(folder / "sweep.parquet").to_pylist()
-    with opened(folder / "report.html") as page:
-        rows = [r.text for r in page.driver.find_elements(By.CSS_SELECTOR, "tbody tr")]
-        masses = page.run(DATA, "trace-3-1", "x")
-        errors = page.run(DATA, "trace-3-1", "trace-3-1")
+    page.show(folder / "report.html")
+    rows = [r.text for r in page.driver.find_elements(By.CSS_SELECTOR, "tbody tr")]
+    masses = page.run(DATA, "trace-3-1", "x")
+    errors = page.run(DATA, "trace-3-1", "trace-3-1")
     assert len(rows) == len(summary) == 4
     for row, each in zip(rows, summary, strict=True):
         assert each["estimation"] in row

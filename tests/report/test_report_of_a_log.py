@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from browser import DATA, ROWS, opened
+from browser import DATA, ROWS, Page, opened
 from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.cli import main
 from sigmahat.joint.curve import CURVE
@@ -45,31 +46,35 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_the_band_is_that_of_the_file(folder: Path) -> None:
+@pytest.fixture(scope="module")
+def page(folder: Path) -> Iterator[Page]:
+    with opened(folder / "out" / "report.html") as page:
+        yield page
+
+
+def test_the_band_is_that_of_the_file(folder: Path, page: Page) -> None:
     table = pa.csv.read_csv(folder / "out" / CURVE)
     first = table["setPoint [1]"].to_numpy() == table["setPoint [1]"].to_numpy()[0]
-    with opened(folder / "out" / "report.html") as page:
-        for plot, name in enumerate(("tau_e [N.m]", "sigma [N.m/rad]")):
-            quantity, unit = name.split(" ")
-            trace = f"trace-{plot}-0"
-            for key, column in (
-                (trace, name),
-                (f"{trace}-low", f"{quantity} low {unit}"),
-                (f"{trace}-high", f"{quantity} high {unit}"),
-            ):
-                drawn = np.array(page.run(DATA, trace, key))
-                assert np.array_equal(drawn, table[column].to_numpy()[first])
+    for plot, name in enumerate(("tau_e [N.m]", "sigma [N.m/rad]")):
+        quantity, unit = name.split(" ")
+        trace = f"trace-{plot}-0"
+        for key, column in (
+            (trace, name),
+            (f"{trace}-low", f"{quantity} low {unit}"),
+            (f"{trace}-high", f"{quantity} high {unit}"),
+        ):
+            drawn = np.array(page.run(DATA, trace, key))
+            assert np.array_equal(drawn, table[column].to_numpy()[first])
 
 
-def test_ticks_notes_parameters_and_findings(folder: Path) -> None:
+def test_ticks_notes_parameters_and_findings(folder: Path, page: Page) -> None:
     answer = json.loads((folder / "answer.json").read_text())
     sheet = json.loads((folder / "out" / "joint.json").read_text())
     assert answer["skipped"] == 201
-    with opened(folder / "out" / "report.html") as page:
-        text = page.run("return document.body.textContent")
-        parameters = page.run(ROWS, "Joint and motor")
-        findings = page.run(ROWS, "Checks")
-        every = page.run(ROWS, "Parameters of the estimator")
+    text = page.run("return document.body.textContent")
+    parameters = page.run(ROWS, "Joint and motor")
+    findings = page.run(ROWS, "Checks")
+    every = page.run(ROWS, "Parameters of the estimator")
     assert f"201 of {answer['ticks']} ticks of 0.001 s skipped" in text
     for note in answer["notes"]:
         assert note in text
@@ -82,12 +87,11 @@ def test_ticks_notes_parameters_and_findings(folder: Path) -> None:
     assert not any("eta_0" in row for row in every)
 
 
-def test_a_spike_after_a_gap_does_not_set_a_scale(folder: Path) -> None:
-    with opened(folder / "out" / "report.html") as page:
-        ranges = page.run("""
-            return Bokeh.documents[0].roots().map(p =>
-              [p.below[0].axis_label, p.left[0].axis_label,
-               p.x_range.start, p.x_range.end, p.y_range.start, p.y_range.end]);""")
+def test_a_spike_after_a_gap_does_not_set_a_scale(page: Page) -> None:
+    ranges = page.run("""
+        return Bokeh.documents[0].roots().map(p =>
+          [p.below[0].axis_label, p.left[0].axis_label,
+           p.x_range.start, p.x_range.end, p.y_range.start, p.y_range.end]);""")
     deformation = [r for r in ranges if r[1].startswith("deformation")]
     assert len(deformation) == 1
     assert max(map(abs, deformation[0][4:])) < 0.3 < SPIKE

@@ -5,67 +5,85 @@ The seeds of the comparison stay unused here: these are others.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from functools import cache
 from importlib.util import find_spec
-from typing import Any
 
 import numpy as np
 import pytest
 
-from rivals.joints import catalogue
-from rivals.joints.logs import log
-from rivals.joints.parameters import Tendons
-from rivals.joints.simulation import SAMPLE_PERIOD, Run, count
-from rivals.joints.simulation import run as simulate
+from rivals.draw import KINDS, SAMPLE_PERIOD, drawn
+from rivals.joint import Friction, Joint, Tendons
 from rivals.records import Array
+from rivals.simulation import Run, log
+from rivals.simulation import run as simulate
 
 SECONDS = 4.0  # of a run here
 SEED = 1
+V, M, E = 0.3, 2.0, -3.0  # velocity, torque of the motor, torque from outside
+S = math.exp(-((0.3 / 0.5) ** 1.5))
+# Each written out on its own from the publication.
+PUBLISHED = {
+    "M1": (Friction(0.1), 0.1),
+    "M2": (Friction(0.1, 0.2, 0.5, 1.5), 0.1 + S * 0.2),
+    "M3": (Friction(0.1, 0, 0.5, 1.5, 0.05, 0.05), 0.1 + 0.05 * 5),
+    "M4": (
+        Friction(0.1, 0.2, 0.5, 1.5, 0.05, 0.05, 0.04, 0.04),
+        0.1 + 0.05 * 5 + S * (0.2 + 0.04 * 5),
+    ),
+    "M5": (
+        Friction(0.1, 0.2, 0.5, 1.5, 0.05, 0.03, 0.04, 0.02),
+        0.1 + 0.19 + S * (0.2 + 0.14),
+    ),
+    "M6": (
+        Friction(0.1, 0.2, 0.5, 1.5, 0.05, 0.03, 0.04, 0.02, 0.006, 0.007),
+        0.1 + 0.19 + S * (0.2 + 0.14 + 0.006 * 4),
+    ),
+}
 
 
-@pytest.fixture(scope="module", autouse=True)
-def engine() -> None:
-    """Skips where MuJoCo is missing. It is too large for every run of the tests."""
-    if find_spec("mujoco") is None:
-        pytest.skip("MuJoCo is not installed; to install it: cmake --workflow --preset rivals")
+@pytest.mark.parametrize("model", PUBLISHED)
+def test_friction_is_as_published(model: str) -> None:
+    friction, expected = PUBLISHED[model]
+    assert friction.budget(V, M, E) == pytest.approx(expected)
+    assert friction.budget(-V, -M, -E) == pytest.approx(expected)
 
 
-def shortened(kind: str, seed: int = SEED) -> Any:
+@cache
+def ran(kind: str) -> tuple[Joint, Run]:
     """A joint, and the first seconds of what its drives do."""
-    joint, samples = catalogue.drawn(kind, seed), round(SECONDS / SAMPLE_PERIOD)
-    drives = [
+    if find_spec("mujoco") is None:  # too large for every run of the tests
+        pytest.skip("MuJoCo is not installed; to install it: cmake --workflow --preset rivals")
+    joint, samples = drawn(kind, SEED), round(SECONDS / SAMPLE_PERIOD)
+    drives = tuple(
         replace(each, feed_forward=each.feed_forward[:samples], reference=each.reference[:samples])
         for each in joint.drives
-    ]
-    return replace(joint, drives=tuple(drives))
-
-
-@pytest.fixture(scope="module", params=catalogue.KINDS)
-def joint(request: pytest.FixtureRequest) -> Any:
-    return shortened(request.param)
-
-
-@pytest.fixture(scope="module")
-def run(joint: Any) -> Run:
-    return simulate(joint)
+    )
+    joint = replace(joint, drives=drives)
+    return joint, simulate(joint)
 
 
 def rms(x: Array) -> float:
     return float(np.sqrt(np.mean(x**2)))
 
 
-def test_the_motor_obeys_its_equation(joint: Any, run: Run) -> None:
+@pytest.mark.slow("a joint is simulated")
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_motor_obeys_its_equation(kind: str) -> None:
     """B g^2 theta'' + D g^2 theta' = g tau + friction + tau_e + damper, all on the motor."""
-    motor, x = joint.motors[joint.observed], run.signals
+    joint, x = ran(kind)
+    motor = joint.motors[joint.observed]
     left = motor.inertia * x["theta_ddot"] + motor.D * motor.gear**2 * x["theta_dot"]
-    right = motor.gear * run.torque + x["friction"] + x["tau_e"] + x["damper"]
+    right = motor.gear * x["torque"] + x["friction"] + x["tau_e"] + x["damper"]
     # The flange of an elbow moves with the arm.
     assert rms(left - right) < 2e-3 * rms(right - x["tau_e"])
 
 
-def test_the_true_stiffness_is_the_slope_of_the_torque(run: Run) -> None:
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_true_stiffness_is_the_slope_of_the_torque(kind: str) -> None:
     """Along the run: d tau_e = stiffness d phi; a stiffness motor turns slowly."""
-    x = run.signals
+    _, x = ran(kind)
     d_phi, d_tau = np.diff(x["phi"]), np.diff(x["tau_e"])
     error = d_tau - (x["stiffness"][1:] + x["stiffness"][:-1]) / 2 * d_phi
     assert rms(error) < 2e-2 * rms(d_tau)
@@ -87,8 +105,8 @@ def pulled(tendons: Tendons, phi: Array, theta_c: Array) -> Array:
 
 
 def test_the_tendons_pull_as_their_geometry_says() -> None:
-    joint = shortened("variable_stiffness")
-    x = simulate(joint).signals
+    joint, x = ran("variable_stiffness")
+    assert joint.tendons
     step = 1e-5
     torques = [pulled(joint.tendons, x["phi"] + shift, x["theta_c"]) for shift in (-step, 0, step)]
     np.testing.assert_allclose(x["tau_e"], torques[1], atol=1e-6 * np.abs(torques[1]).max())
@@ -97,17 +115,20 @@ def test_the_tendons_pull_as_their_geometry_says() -> None:
     assert np.ptp(x["stiffness"]) > 0.05 * x["stiffness"].mean()
 
 
-def test_a_log_is_what_the_instruments_make_of_the_run(joint: Any, run: Run) -> None:
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_log_is_what_the_instruments_make_of_the_run(kind: str) -> None:
+    joint, x = ran(kind)
     motor, tools = joint.motors[joint.observed], joint.instruments[joint.observed]
-    x, made = run.signals, log("a kind", SEED, run, joint, np.random.default_rng(SEED))
+    made = log(kind, SEED, x, joint, np.random.default_rng(SEED))
     known = made.known
     for read, true, counts in (
         (made.theta, x["theta"], known.counts_theta),
         (made.q, x["theta"] + x["phi"], known.counts_q),
     ):
-        assert np.abs(read - true).max() <= count(counts) / 2 * (1 + 1e-9)
-        np.testing.assert_allclose(read / count(counts), np.round(read / count(counts)), atol=1e-6)
-    noise = made.tau - tools.gain * (run.command if tools.commanded else run.late)
+        count = 2 * math.pi / counts
+        assert np.abs(read - true).max() <= count / 2 * (1 + 1e-9)
+        np.testing.assert_allclose(read / count, np.round(read / count), atol=1e-6)
+    noise = made.tau - tools.gain * x["command" if tools.commanded else "late"]
     assert np.std(noise) == pytest.approx(known.noise_tau, rel=0.06)
     assert known.range_phi >= np.abs(x["phi"]).max()
     assert known.range_tau_e >= np.abs(made.tau_e).max()

@@ -35,17 +35,23 @@ def background(*arguments: str, cwd: Path) -> Iterator[subprocess.Popen[bytes]]:
         process.wait()
 
 
-@pytest.fixture
-def scheduler(tmp_path: Path) -> Iterator[subprocess.Popen[bytes]]:
-    """One without workers."""
-    with background("scheduler", "--port", "0", *HERE, cwd=tmp_path) as process:
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of the cluster."""
+    return tmp_path_factory.mktemp("cluster")
+
+
+@pytest.fixture(scope="module")
+def scheduler(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """One for all tests, without workers. The last test ends it."""
+    with background("scheduler", "--port", "0", *HERE, cwd=folder) as process:
         yield process
 
 
-@pytest.fixture
-def address(scheduler: subprocess.Popen[bytes], tmp_path: Path) -> str:
+@pytest.fixture(scope="module")
+def address(scheduler: subprocess.Popen[bytes], folder: Path) -> str:
     """Of the scheduler, once it is there."""
-    file = tmp_path / "scheduler.json"
+    file = folder / "scheduler.json"
     deadline = time.monotonic() + 300
     while not file.exists() or not file.read_text():
         assert scheduler.poll() is None
@@ -69,29 +75,6 @@ def wait_for_workers(address: str, count: int) -> None:
         client.wait_for_workers(count, timeout=300)
 
 
-@pytest.mark.slow("a cluster of processes is started")
-def test_one_of_two_workers_killed(address: str, tmp_path: Path) -> None:
-    arguments = [*QUICK, "--seeds", "24"]
-    with worker(tmp_path, "one") as one, worker(tmp_path, "two", runs=2):
-        wait_for_workers(address, 2)
-        process = start([*arguments, "--scheduler", address, "--out", "cluster"], tmp_path)
-        # WHEN a worker is killed while both have work
-        path = tmp_path / "cluster" / "runs.jsonl"
-        wait_for_records(path, 6, process)
-        one.kill()
-        done_before = len(records(path))
-        output, errors = process.communicate(timeout=600)
-    assert (process.returncode, errors) == (0, "")
-    assert 6 <= done_before < 24
-    # THEN every run is there once, as without a cluster
-    seeds = [json.loads(line)["seed"] for line in records(path)]
-    assert sorted(seeds) == list(range(1, 25))
-    here = run(*arguments, "--out", "here", cwd=tmp_path)
-    assert here.stdout.splitlines()[:-1] == output.splitlines()[:-1]
-    for name in ("sweep.parquet", "summary.csv", "distributions.svg"):
-        assert (tmp_path / "cluster" / name).read_bytes() == (tmp_path / "here" / name).read_bytes()
-
-
 @pytest.mark.slow("the sweep waits for a slow scheduler, and for workers, before it gives up")
 def test_a_scheduler_that_is_slow_and_without_workers(
     scheduler: subprocess.Popen[bytes], address: str, tmp_path: Path
@@ -110,12 +93,36 @@ def test_a_scheduler_that_is_slow_and_without_workers(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow("a cluster of processes is started")
+def test_one_of_two_workers_killed(address: str, folder: Path, tmp_path: Path) -> None:
+    arguments = [*QUICK, "--seeds", "16"]
+    with worker(folder, "one") as one, worker(folder, "two", runs=2):
+        wait_for_workers(address, 2)
+        process = start([*arguments, "--scheduler", address, "--out", "cluster"], tmp_path)
+        # WHEN a worker is killed while both have work
+        path = tmp_path / "cluster" / "runs.jsonl"
+        wait_for_records(path, 3, process)
+        one.kill()
+        done_before = len(records(path))
+        output, errors = process.communicate(timeout=600)
+    assert (process.returncode, errors) == (0, "")
+    assert 3 <= done_before < 16
+    # THEN every run is there once, as without a cluster
+    seeds = [json.loads(line)["seed"] for line in records(path)]
+    assert sorted(seeds) == list(range(1, 17))
+    here = run(*arguments, "--out", "here", cwd=tmp_path)
+    assert here.stdout.splitlines()[:-1] == output.splitlines()[:-1]
+    for name in ("sweep.parquet", "summary.csv", "distributions.svg"):
+        assert (tmp_path / "cluster" / name).read_bytes() == (tmp_path / "here" / name).read_bytes()
+
+
+@pytest.mark.slow("a cluster of processes is started")
 def test_the_scheduler_is_lost(
-    scheduler: subprocess.Popen[bytes], address: str, tmp_path: Path
+    scheduler: subprocess.Popen[bytes], address: str, folder: Path, tmp_path: Path
 ) -> None:
     arguments = [*QUICK, "--seeds", "200", "--out", "out"]
     path = tmp_path / "out" / "runs.jsonl"
-    with worker(tmp_path, "one"):
+    with worker(folder, "three"):
         wait_for_workers(address, 1)
         process = start([*arguments, "--scheduler", address], tmp_path)
         wait_for_records(path, 3, process)

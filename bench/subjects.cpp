@@ -1,6 +1,4 @@
 // The few lines one would write with Eigen.
-#include "subjects.h"
-
 #include <Eigen/Dense>
 
 namespace {
@@ -14,11 +12,15 @@ public:
 
 template <int size> class Eigens final : public Recursion {
     using Vector = Eigen::Matrix<double, size, 1>;
-    Eigen::Matrix<double, size, size> P = BENCH_P_0 * Eigen::Matrix<double, size, size>::Identity();
+    Eigen::Matrix<double, size, size> P;
     Vector estimate = Vector::Zero();
 
 public:
     EIGEN_MAKE_ALIGNED_OPERATOR_NEW
+
+    explicit Eigens(double P_0) : P(P_0 * Eigen::Matrix<double, size, size>::Identity())
+    {
+    }
 
     void run(const double *F, const double *y, int samples) override
     {
@@ -39,17 +41,19 @@ public:
 
 } // namespace
 
-void *eigen_start(int size)
+extern "C" {
+
+void *eigen_start(int size, double P_0)
 {
     switch (size) {
     case 3:
-        return new Eigens<3>;
+        return new Eigens<3>(P_0);
     case 6:
-        return new Eigens<6>;
+        return new Eigens<6>(P_0);
     case 18:
-        return new Eigens<18>;
+        return new Eigens<18>(P_0);
     case 40:
-        return new Eigens<40>;
+        return new Eigens<40>(P_0);
     default:
         return nullptr;
     }
@@ -64,3 +68,5 @@ void eigen_eta(const void *rls, double *eta)
 {
     static_cast<const Recursion *>(rls)->eta(eta);
 }
+
+} // extern "C"

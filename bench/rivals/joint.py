@@ -1,22 +1,61 @@
-"""What a joint is made of. `draw.py` draws the values, the engines build what they say."""
+"""What a joint is made of. `draw.py` draws the values, `simulation.py` builds what they say."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-from rivals.joints.excitation import Drive
-from rivals.joints.friction import Friction
 from rivals.records import Array
 
-FLANGE = 0.002
-"""Share of a motor's inertia that is a body behind its gear, the rest is armature. An engine needs
-a body there; its acceleration is that of the flange in space, and it has no weight."""
+
+@dataclass(frozen=True)
+class Friction:
+    """Dry friction of servo actuators, all torques on the motor's axis [N.m].
+
+    The models M1 to M6 of M. Duclusaud, G. Passault, V. Padois, O. Ly, "Extended Friction Models
+    for the Physics Simulation of Servo Actuators", Proc. IEEE ICRA 2025, 12091-12097, arXiv
+    2410.08650. Written from the formulas; no code of theirs is used. With v the velocity behind the
+    gear, tau_m the torque of the motor and tau_e what acts on it from outside, the friction is
+
+        M1  K_v |v| + K_c
+        M2  M1 + s K_cs                                       s = exp(-|v / v_s|^alpha)
+        M3  M1 + K_l |tau_m - tau_e|
+        M4  M1 + K_l |tau_m - tau_e| + s (K_cs + K_ls |tau_m - tau_e|)
+        M5  M1 + |K_m tau_m - K_e tau_e| + s (K_cs + |K_ms tau_m - K_es tau_e|)
+        M6  M5 + s Q ,   Q = K_eq tau_e^2 if |tau_m| > |tau_e|, else K_mq tau_m^2
+
+    M6 contains the others: K_m = K_e = K_l and K_ms = K_es = K_ls give M4, and what a model does
+    not have is zero. The part with K_v is the damping of a joint, which the engine has itself.
+    """
+
+    K_c: float  # [N.m]
+    K_cs: float = 0.0  # [N.m]
+    v_s: float = 1.0  # behind the gear [rad/s]
+    alpha: float = 1.0
+    K_m: float = 0.0
+    K_e: float = 0.0
+    K_ms: float = 0.0
+    K_es: float = 0.0
+    K_mq: float = 0.0  # [1/N.m]
+    K_eq: float = 0.0  # [1/N.m]
+
+    @property
+    def at_rest(self) -> float:
+        """What resists at rest without load [N.m]."""
+        return self.K_c + self.K_cs
+
+    def budget(self, v: float, tau_m: float, tau_e: float) -> float:
+        """Largest torque [N.m] of dry friction at the velocity v behind the gear [rad/s]."""
+        backdriven = abs(tau_e) >= abs(tau_m)
+        slow = self.K_cs + abs(self.K_ms * tau_m - self.K_es * tau_e)
+        slow += self.K_mq * tau_m * tau_m if backdriven else self.K_eq * tau_e * tau_e
+        dry = self.K_c + abs(self.K_m * tau_m - self.K_e * tau_e)
+        return dry + slow * math.exp(-(abs(v / self.v_s) ** self.alpha))
 
 
 @dataclass(frozen=True)
 class Motor:
-    """A motor with its gear. All but the last two is on the motor's axis."""
+    """A motor with its gear. All but the last is on the motor's axis."""
 
     gear: float
     B: float  # all inertia that moves with the motor [kg.m2]
@@ -89,6 +128,20 @@ class Link:
 
 
 @dataclass(frozen=True)
+class Drive:
+    """Command of a motor: u = feed_forward + kp (reference - theta) - kd theta', within +-peak.
+
+    theta is what the encoder reads, theta' its difference through a low pass of the first order.
+    """
+
+    feed_forward: Array  # [N.m] at every sample
+    reference: Array  # [rad] at every sample
+    kp: float  # [N.m/rad]
+    kd: float  # [N.m.s/rad]
+    peak: float  # [N.m]
+
+
+@dataclass(frozen=True)
 class Instruments:
     """Current loop, encoders and log."""
 
@@ -114,36 +167,20 @@ class Sheet:
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """Motors, links, drives and instruments: one of each but for an arm, which has two."""
+    """Motors, links, drives and instruments: one of each but for an arm, which has two.
+
+    An arm has two links in a vertical plane, a motor and a spring in each joint, and a floor.
+    """
 
     motors: tuple[Motor, ...]
     links: tuple[Link, ...]
-    gravity: float  # 0 where the axis is vertical [m/s2]
     drives: tuple[Drive, ...]
     instruments: tuple[Instruments, ...]
     sheet: Sheet
+    gravity: float  # 0 where the axis is vertical [m/s2]
+    springs: tuple[Spring, ...] = ()  # one a motor, or none beside tendons
+    tendons: Tendons | None = None
+    theta_c: Array | None = None  # where the stiffness motor shall be at every sample [rad]
+    floor: float | None = None  # of an arm, height against the first axis [m]
+    start: tuple[float, ...] = (0.0,)  # angles of the motors [rad]
     observed: int = 0  # the joint in the log; of an arm 0 is the shoulder, 1 the elbow
-
-
-@dataclass(frozen=True, kw_only=True)
-class SeriesElastic(Joint):
-    """A spring between motor and link."""
-
-    springs: tuple[Spring, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class VariableStiffness(Joint):
-    """Two tendons between motor and link, and a second motor that moves the slider."""
-
-    tendons: Tendons
-    theta_c: Array  # where the stiffness motor shall be at every sample [rad]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Arm(SeriesElastic):
-    """Two links in a vertical plane, a motor and a spring in each joint, and a floor."""
-
-    tip: float  # radius of the sphere at the end [m]
-    floor: float  # height against the first axis [m]
-    start: tuple[float, ...]  # angles of the motors [rad]

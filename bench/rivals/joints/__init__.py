@@ -1,1 +1,0 @@
-"""Joints in a physics engine that we did not write: MuJoCo."""

@@ -1,0 +1,229 @@
+"""The methods that are compared, by name: those of this package, and least squares.
+
+All share the spring: its torque is a linear combination of given functions, the odd cubic
+polynomial in the deformation, because an owner does not know whether a spring hardens. Where the
+stiffness is variable, its coefficients are quadratic in the position of the stiffness motor.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import signal
+
+import sigmahat
+from rivals.records import Array, Estimate, JointLog, Known
+from sigmahat.fmi.instance import Value
+
+CONFIDENT = 0.1
+"""Least squares is confident while its standard deviation is below this share of a positive
+stiffness, as FilteredRegression is at most."""
+P_0 = 1e20
+"""Initial covariance of Paper2011, as in the paper."""
+SAMPLE = 1e7
+"""What a sample at the range of the deformation counts there, the start being 1."""
+ORDER = 4
+"""Of the Butterworth filter."""
+DYNAMICS = 0.99
+"""Share of the power of the motor velocity below the frequency of the dynamics."""
+EDGE = 5
+"""Rows that are dropped at both ends, where filters without lag have no past or no future."""
+INERTIA, VISCOUS, COULOMB, OFFSET, SPRING = 0, 1, 2, 3, 4
+"""Columns of least squares; those of the spring are the last ones."""
+
+
+@dataclass(frozen=True)
+class _Spring:
+    """tau_e = sum of c_ij x^(2i+1)/(2i+1) l^j with x, l over their ranges; i below n, j below m.
+
+    The range of the stiffness motor is its travel in this log: an owner knows it.
+    """
+
+    log: JointLog
+
+    n = 2
+
+    @property
+    def m(self) -> int:
+        return 3 if self.log.theta_c.any() else 1
+
+    @property
+    def range_theta_c(self) -> float:
+        return float(np.abs(self.log.theta_c).max()) or 1.0
+
+    def torque(self, phi: Array) -> Array:
+        """The functions [size: samples x n m]. A coefficient is a torque [N.m]."""
+        x = phi / self.log.known.range_phi
+        return self._products([x ** (2 * i + 1) / (2 * i + 1) for i in range(self.n)])
+
+    def slope(self, phi: Array) -> Array:
+        """Their derivatives with respect to the deformation [size: samples x n m], [1/rad]."""
+        x = phi / self.log.known.range_phi
+        return self._products([x ** (2 * i) / self.log.known.range_phi for i in range(self.n)])
+
+    def _products(self, of_phi: list[Array]) -> Array:
+        r = self.log.theta_c / self.range_theta_c
+        return np.column_stack([p * r**j for p in of_phi for j in range(self.m)])
+
+
+def _filtered_regression(log: JointLog) -> Estimate:
+    """On line: the estimate at each sample is from those up to it.
+
+    Parameters are as docs/filtered-regression.md advises: what the data sheet says becomes ranges,
+    priors and noise, and all else keeps its start value.
+    """
+    known = log.known
+    return _on_line(
+        log,
+        {
+            "method": "FilteredRegression",
+            "range.phi": known.range_phi,
+            "range.setPoint": _Spring(log).range_theta_c,
+            "prior.tau_e": known.range_tau_e,
+            "prior.B": known.relative_std_B,
+            "prior.D_theta": known.relative_std_D_theta,
+            "prior.tau_coulomb": known.tau_coulomb,
+            "prior.torque_gain": known.relative_std_gain,
+        },
+    )
+
+
+def _paper2011(log: JointLog) -> Estimate:
+    """On line, without a standard deviation, and never confident.
+
+    F. Flacco, A. De Luca, I. Sardellitti, N. G. Tsagarakis, "Robust estimation of variable
+    stiffness in flexible joints", Proc. IEEE/RSJ IROS 2011: residual (6), (8), kinematic Kalman
+    filter (9) to (11), recursive least squares (14), (27). Its own parameters are those of the
+    paper, which are the start values of the FMU, but for c of (27): with it the start P(0) counts
+    as 1/(c P(0)) in units of the squares of the columns. The paper's columns go up to (100 mm)^2
+    times 0.3 rad, so that a single sample counts 1e7 times as much as the start; c is such that a
+    sample at the range of the deformation does so here, too.
+    """
+    c = SAMPLE / (P_0 * log.known.range_phi**2)
+    found = _on_line(log, {"method": "Paper2011", "rls.P_0": P_0, "rls.c": c})
+    nothing = np.full(len(log.theta), np.nan)
+    return Estimate(found.stiffness, nothing, np.zeros(len(nothing), bool), found.seconds)
+
+
+def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
+    """What the estimator of this package says. `start` has the parameters of the method."""
+    known, spring = log.known, _Spring(log)
+    estimator = sigmahat.Estimator(
+        {
+            "samplePeriod": log.sample_period,
+            "motor.gamma": known.gamma,
+            "motor.B": known.B,
+            "motor.D_theta": known.D_theta,
+            "encoder.theta": float(known.counts_theta),
+            "encoder.q": float(known.counts_q),
+            "setPoint.offset": 0.0,
+            "setPoint.scale": 1.0,
+            "rls.n": spring.n,
+            "rls.m": spring.m,
+            "noise.tau": known.noise_tau,
+            **start,
+        },
+        ("sigma", "sigma_std", "confident"),
+    )
+    begin = time.perf_counter()
+    found = estimator.run(log.theta, log.q, log.tau, log.theta_c)
+    seconds = time.perf_counter() - begin
+    return Estimate(found["sigma"], found["sigma_std"], found["confident"], seconds)
+
+
+def _least_squares(log: JointLog) -> Estimate:
+    """Ordinary least squares of the motor equation off line, IDIM-LS: the estimate of the whole
+    log, the same at every sample but for the deformation.
+
+        g^2 B theta'' + g^2 D theta' + g tau_c sign(theta') + offset - tau_e(phi) = g tau
+
+    M. Gautier, "Dynamic identification of robots with power model", Proc. IEEE ICRA 1997,
+    1922-1927; W. Khalil and E. Dombre, "Modeling, Identification and Control of Robots", Hermes
+    Penton 2002, chapter 12: the variance of the error is from the residual, and the covariance from
+    it and the information. The data sheet's inertia and viscous friction take part as two more rows
+    with their own standard deviations, as a priori values do in M. Gautier and G. Venture,
+    "Identification of standard dynamic parameters of robots with positive definite inertia matrix",
+    Proc. IEEE/RSJ IROS 2013. What is known of the gain of the torque is added to the standard
+    deviation, as the stiffness is proportional to it.
+
+    Filters follow Gautier, and A. Janot, P.-O. Vandanjon, M. Gautier, "A generic instrumental
+    variable approach for industrial robot identification", IEEE Trans. Control Systems Technology
+    22(1):132-145, 2014, section II: a Butterworth filter without lag with a corner at 10 times the
+    frequency of the dynamics, central differences, and a low pass without lag (Chebyshev, order 8)
+    at twice the frequency of the dynamics, through which both sides of the equation pass before
+    most samples are dropped ("parallel decimation").
+    """
+    begin = time.perf_counter()
+    X, y, slope = _regression(log)
+    beta, covariance = _solve(X, y, log.known)
+    stiffness = slope @ beta[SPRING:]
+    variance = np.sum((slope @ covariance[SPRING:, SPRING:]) * slope, axis=1)
+    std = np.hypot(np.sqrt(np.maximum(variance, 0.0)), log.known.relative_std_gain * stiffness)
+    confident = np.isfinite(stiffness) & np.isfinite(std) & (std < CONFIDENT * stiffness)
+    return Estimate(stiffness, std, confident, time.perf_counter() - begin)
+
+
+def _regression(log: JointLog) -> tuple[Array, Array, Array]:
+    """X and y of the rows y = X beta + error of a log, beta = (B, D, tau_c, offset, coefficients of
+    the spring); and the slope of the functions of the spring [size: samples x coefficients].
+
+    Raises ValueError if the motor does not move.
+    """
+    T, g, spring, f = log.sample_period, log.known.gamma, _Spring(log), _dynamics(log)
+    corner = min(10 * f * 2 * T, 0.8)
+    butterworth = signal.butter(ORDER, corner, output="sos")
+    theta, q = (signal.sosfiltfilt(butterworth, x) for x in (log.theta, log.q))
+    theta_dot, phi = np.gradient(theta, T), q - theta
+    columns = (
+        *(g**2 * np.gradient(theta_dot, T), g**2 * theta_dot, g * np.sign(theta_dot)),
+        *(np.ones(len(theta)), -spring.torque(phi), g * log.tau),
+    )
+    keep = max(int(0.8 / (2 * f * 2 * T)), 1)  # the low pass of a decimation is at 0.8 of Nyquist
+    chebyshev = signal.cheby1(8, 0.05, 0.8 / keep, output="sos")
+    rows = signal.sosfiltfilt(chebyshev, np.column_stack(columns), axis=0)[::keep][EDGE:-EDGE]
+    return rows[:, :-1], rows[:, -1], spring.slope(phi)
+
+
+def _dynamics(log: JointLog) -> float:
+    """The frequency of the dynamics [Hz]. Raises ValueError if the motor does not move."""
+    T, counts = log.sample_period, log.known.counts_theta
+    segment = min(len(log.theta), round(8 / T))
+    f, density = signal.welch(log.theta, 1 / T, nperseg=segment, detrend="linear")
+    std = 2 * np.pi / counts / np.sqrt(12) if counts else 0.0  # of the rounding of the encoder
+    rounding = 2 * T * std**2  # white, one-sided density
+    power = (2 * np.pi * f) ** 2 * np.where(density > 4 * rounding, density, 0.0)
+    if not power.sum() > 0:
+        raise ValueError("the motor does not move")
+    share = np.cumsum(power) / power.sum()
+    return float(f[np.searchsorted(share, DYNAMICS)])
+
+
+def _solve(X: Array, y: Array, known: Known) -> tuple[Array, Array]:
+    """Coefficients and covariance. The variance of the rows is that of their residual."""
+    scale = np.sqrt(np.mean(X**2, axis=0))
+    X = X / scale
+    mean, information = np.zeros(len(scale)), np.zeros(len(scale))  # of the data sheet
+    for column, value, relative in (
+        (INERTIA, known.B, known.relative_std_B),
+        (VISCOUS, known.D_theta, known.relative_std_D_theta),
+    ):
+        mean[column] = value * scale[column]
+        if value and relative:
+            information[column] = (relative * value * scale[column]) ** -2
+    beta = np.linalg.lstsq(X, y)[0]
+    for _ in range(2):  # the first time the residual is that without the rows of the data sheet
+        residual = y - X @ beta
+        variance = residual @ residual / (len(y) - len(beta))
+        precision = X.T @ X / variance + np.diag(information)
+        beta = np.linalg.solve(precision, X.T @ y / variance + information * mean)
+    return beta / scale, np.linalg.inv(precision) / np.outer(scale, scale)
+
+
+METHODS: dict[str, Callable[[JointLog], Estimate]] = {
+    "FilteredRegression": _filtered_regression,
+    "Paper2011": _paper2011,
+    "least_squares": _least_squares,
+}
