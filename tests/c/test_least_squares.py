@@ -180,7 +180,7 @@ def test_the_prediction_uses_the_rounding_error_of_the_estimate(c: Library, size
         assert probe.innovation.epsilon == pytest.approx(-5e-9, rel=1e-9)
 
 
-@pytest.mark.parametrize("size", [1, 2, 3, 4, 5, 9, 18, 40])
+@pytest.mark.parametrize("size", [1, 2, 3, 4, 5, 7, 8, 9, 18, 40])
 def test_pairs_and_plain_c_give_the_same_digits(c: Library, plain: Library, size: int) -> None:
     random = np.random.default_rng(size)
     recursions = [Recursion(each, STANDARD, 1.0, 1e3, np.zeros(size)) for each in (c, plain)]

@@ -60,7 +60,7 @@ class Page:
         While the page draws something anew, it is gone, or there twice.
         """
         drawing = (StaleElementReferenceException, JavascriptException)
-        return WebDriverWait(self.driver, 90.0, 0.05, drawing).until(lambda _: is_so(), what)
+        return WebDriverWait(self.driver, 90.0, 0.1, drawing).until(lambda _: is_so(), what)
 
     def complaints(self) -> list[str]:
         """Errors and warnings on the console since the last call."""

@@ -15,7 +15,6 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 LONGEST = 5.0
@@ -31,13 +30,11 @@ _FILES = 1 << 30  # bytes of a file that is written
 class Done:
     """How a command ended."""
 
-    status: int
-    """Exit status; negative: the number of the signal that ended it."""
+    status: int  # of the exit; negative: the number of the signal that ended it
     out: str
     err: str
     seconds: float
-    megabytes: float
-    """Peak of the memory in RAM."""
+    megabytes: float  # peak of the memory in RAM
 
     def complaint(self) -> str | None:
         """What the command did that no file may make it do; None if all is well."""
@@ -71,12 +68,7 @@ class Confined:
     def __enter__(self) -> Confined:
         return self
 
-    def __exit__(
-        self,
-        _kind: type[BaseException] | None,
-        _error: BaseException | None,
-        _trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._process.communicate()
 
 

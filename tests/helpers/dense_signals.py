@@ -230,39 +230,27 @@ class Filtered:
     def column(self, i: int) -> Array:
         """What does not depend on the estimate; LOAD, DELAY, SIN_M, and COS_M are set later."""
         kind, _, prior = self.columns[i]
-        friction = np.append(self.sign[1:], 0.0)
-        zero = np.zeros(len(self.y))
-        if kind in ("LOAD", "DELAY", "SIN_M", "COS_M"):
-            return zero
+        sign = np.append(self.sign[1:], 0.0)
+        of_motor: dict[str, Callable[[], Array]] = {
+            "REVERSAL": lambda: abs(self.gamma) * self.filtered(sign, 1, True),
+            "COULOMB": lambda: -abs(self.gamma) * self.as_if_smooth(sign),
+            "DRIVE": lambda: -self.as_if_smooth(sign),  # times the torque, which is of the mean
+            "VISCOUS": lambda: -self.viscous,
+            "INERTIA": lambda: -self.inertial,
+        }
+        if kind in ("LOAD", "DELAY", "SIN_M", "COS_M") or (kind in of_motor and self.measured):
+            return np.zeros(len(self.y))
+        if kind in of_motor:
+            return prior * of_motor[kind]()
         if kind == "NOMINAL":
             return prior * self.nominal
         if kind == "DAMPING":
             return self.filtered(self.F[:, i] - self.F[0, i], 1)
-        if kind == "VISCOUS":
-            return -prior * self.viscous
-        if kind == "INERTIA":
-            return -prior * self.inertial
-        if kind == "REVERSAL":
-            return (
-                zero
-                if self.measured
-                else prior * abs(self.gamma) * self.filtered(friction, 1, True)
-            )
-        if kind == "COULOMB":
-            if self.measured:
-                return zero
-            column: Array = -prior * abs(self.gamma) * self.friction()
-            return column
-        if kind == "DRIVE":  # without the torque, which is that of the mean
-            return zero if self.measured else -prior * self.friction()
         return self.filtered(self.F[:, i], 0)
 
-    def friction(self) -> Array:
-        """The sign of the motion, as if it were smooth."""
-        sign = np.append(self.sign[1:], 0.0)
-        smooth: Array = self.filtered(sign, 0, True)
-        smooth = smooth + self.T**2 / 12 * self.filtered(sign, 2, True)
-        return smooth
+    def as_if_smooth(self, sign: Array) -> Array:
+        held: Array = self.filtered(sign, 0, True) + self.T**2 / 12 * self.filtered(sign, 2, True)
+        return held
 
     def torque_derivatives(self) -> tuple[Array, Array]:
         return self.filtered(self.torque, 1, self.held), self.filtered(self.torque, 2, self.held)

@@ -1,19 +1,31 @@
-"""Parameters and measurements at the edges of what is allowed, for hypothesis."""
+"""What the tests of the numerical promises share: docs/proof/promises.md.
+
+Parameters and measurements are at the edges of what is allowed. SIGMAHAT_PROMISES=100 runs a
+hundred times as many examples.
+"""
 
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
 
 import numpy as np
+import pytest
+from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
-from c_library import MEASUREMENTS, Array
+from c_library import MEASUREMENTS, REALS, Array, Library, compile_library
 from c_sources import REPOSITORY
 from sigmahat.export.templates import items, render, variables
 
+EPSILON = {"double": 2.0**-53, "float": 2.0**-24}
+"""Unit roundoff."""
+SMALLEST = {"double": 5e-324, "float": 1.4e-45}
+"""Smallest subnormal number."""
 LARGEST = 1e12
 """Largest magnitude of a measurement, and of most parameters of docs/proof/promises.md."""
 SUBNORMAL = (4.9e-324, 1e-310, 1e-45, 1e-40)  # the last two in single precision
@@ -122,3 +134,28 @@ def measurements(draw: st.DrawFn) -> Array:
     z = np.clip(z, -LARGEST, LARGEST)
     z[rng.random(len(k)) < 0.01, rng.integers(0, 2)] = math.nan
     return z
+
+
+often = settings(
+    max_examples=40 * int(os.environ.get("SIGMAHAT_PROMISES", "1")),
+    deadline=None,
+    derandomize=True,
+    database=None,
+    suppress_health_check=list(HealthCheck),
+)
+
+
+@pytest.fixture(scope="module", params=REALS)
+def c(
+    request: pytest.FixtureRequest, build: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Library:
+    """The library in double, that of the build, and in single precision."""
+    if request.param == "double":
+        return Library(build)
+    return compile_library(tmp_path_factory.getbasetemp(), request.param)
+
+
+def reals(c: Library, values: Any) -> Array:
+    """An array of the library's type."""
+    with np.errstate(over="ignore"):  # to infinity, as C does
+        return np.ascontiguousarray(values, dtype="f8" if c.real == "double" else "f4")

@@ -26,15 +26,9 @@ class Analysis:
 
     alarms: tuple[str, ...]
     """Possible errors, and assertions and preconditions that it could not prove: place and text."""
-
-    proven: int
-    """Number of assertions and preconditions that it proved."""
-
-    coverage: int
-    """Share of the statements that it reached in the functions that it analysed [%]."""
-
-    text: str
-    """All that it printed."""
+    proven: int  # assertions and preconditions
+    coverage: int  # share of the statements that it reached in the functions that it analysed [%]
+    text: str  # all that it printed
 
 
 def analyse(
@@ -59,21 +53,9 @@ def analyse(
         *(() if before is None else ("-include", before)),
         "-U__SSE2__",  # vectors are no standard C: pair.h has the same in plain C
     ]
-    done = subprocess.run(
-        [
-            *(
-                need("frama-c"),
-                *OPTIONS,
-                "-main",
-                main,
-                f"-cpp-extra-args={' '.join(preprocessor)}",
-            ),
-            *options,
-            *map(str, sources),
-        ],
-        capture_output=True,
-        text=True,
-    )
+    command = [need("frama-c"), *OPTIONS, "-main", main]
+    command += [f"-cpp-extra-args={' '.join(preprocessor)}", *options, *map(str, sources)]
+    done = subprocess.run(command, capture_output=True, text=True)
     return read(done.stdout + done.stderr)
 
 

@@ -17,21 +17,19 @@ PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant", "RealJointP
 
 # Inputs of the FMUs as functions of time: measurements that excite all parameters, and torques.
 SIGNALS: dict[str, Callable[[float], float]] = {
+    **dict.fromkeys(("tau_e_sensor", "tau_e_sensor_1"), lambda t: 2 * math.sin(13 * t)),
+    **dict.fromkeys(("tau", "tau_1"), lambda t: 0.3 * math.cos(9 * t)),
     "theta": lambda t: 0.5 * math.sin(9 * t),
     "theta_1": lambda t: 0.5 * math.sin(9 * t) + 0.02,
     "theta_2": lambda t: 0.5 * math.sin(9 * t) - 0.02 * math.cos(5 * t),
     "q": lambda t: 0.5 * math.sin(9 * t) + 0.01 * math.sin(13 * t),
     "theta_c": lambda t: 20 * math.sin(3 * t),
-    "tau": lambda t: 0.3 * math.cos(9 * t),
-    "tau_1": lambda t: 0.3 * math.cos(9 * t),
     "tau_2": lambda t: 0.2 * math.cos(11 * t),
     "tau_c": lambda t: 8 * math.sin(3 * t),
     "tau_ext": lambda t: 0.1 * math.cos(7 * t),
     "r": lambda t: 0.07 + 0.01 * math.sin(3 * t),
     "D_theta_change": lambda t: -0.2 * t,
     "tau_coulomb_change": lambda t: 0.3 * t,
-    "tau_e_sensor": lambda t: 2 * math.sin(13 * t),
-    "tau_e_sensor_1": lambda t: 2 * math.sin(13 * t),
     "tau_e_sensor_2": lambda t: 1.5 * math.sin(12 * t),
 }
 

@@ -26,40 +26,28 @@ GRAVITY = 4.0  # torque of the link at 90 degrees [N.m]
 STIFFNESS = 260.0  # of the series elastic joint [N.m/rad]
 PER_LEVER = 5200.0  # of the spring of the other joint: stiffness over lever squared [N/m]
 _GAIN, _DAMPING = 900.0, 40.0  # of the controller, behind the gear [N.m/rad, N.m.s/rad]
-_MOTION = (
-    (0.45, 0.4),
-    (0.16, 1.3),
-    (0.05, 3.1),
-)  # amplitude [rad] and frequency [Hz] of its target
+_MOTION = ((0.45, 0.4), (0.16, 1.3), (0.05, 3.1))  # amplitude [rad], frequency [Hz] of its target
 
 
 @dataclass(frozen=True)
 class Motion:
     """What happened; all [size: samples], T apart."""
 
-    t: Array
-    """[s]"""
-    theta: Array
-    """Motor behind its gear [rad]."""
-    q: Array
-    """Link [rad]."""
-    velocity: Array
-    """Of the motor, behind its gear [rad/s]."""
-    target: Array
-    """Of the motor, behind its gear [rad]."""
-    tau: Array
-    """Of the motor, on its axis [N.m]."""
-    lever: Array
-    """[m]; 0 without one."""
-    tau_e: Array
-    """Torque of the spring, as the deformation q - theta gives it [N.m]."""
-    stiffness: Array
-    """[N.m/rad]"""
+    t: Array  # [s]
+    theta: Array  # motor behind its gear [rad]
+    q: Array  # link [rad]
+    velocity: Array  # of the motor, behind its gear [rad/s]
+    target: Array  # of the motor, behind its gear [rad]
+    tau: Array  # of the motor, on its axis [N.m]
+    lever: Array  # [m]; 0 without one
+    tau_e: Array  # of the spring, as the deformation q - theta gives it [N.m]
+    stiffness: Array  # [N.m/rad]
 
 
 def _target(t: Array | float) -> tuple[Array | float, Array | float]:
     waves = [(a, 2 * np.pi * f) for a, f in _MOTION]
-    return (sum(a * np.sin(w * t) for a, w in waves), sum(a * w * np.cos(w * t) for a, w in waves))
+    rate = sum(a * w * np.cos(w * t) for a, w in waves)
+    return sum(a * np.sin(w * t) for a, w in waves), rate
 
 
 def _lever(t: Array | float) -> Array | float:
@@ -88,17 +76,12 @@ def joint(has_lever: bool, seconds: float = 7.0, stiffer: float = 0.0) -> Motion
         f = float(spring(q - theta, t)[0])
         drive = float(torque(t, theta, omega)) - FRICTION * GEAR * omega
         drive -= COULOMB * np.tanh(omega / 0.005)
-        return [
-            omega,
-            (drive + f / GEAR) / (INERTIA * GEAR),
-            v,
-            (-f - 0.3 * v - GRAVITY * np.sin(q)) / LINK,
-        ]
+        load = (-f - 0.3 * v - GRAVITY * np.sin(q)) / LINK
+        return [omega, (drive + f / GEAR) / (INERTIA * GEAR), v, load]
 
     t = np.arange(0.0, seconds, T)
-    x = solve_ivp(
-        change, (0.0, seconds), [0.0] * 4, method="LSODA", t_eval=t, rtol=1e-8, atol=1e-10
-    ).y
+    span, accuracy = (0.0, seconds), {"rtol": 1e-8, "atol": 1e-10}
+    x = solve_ivp(change, span, [0.0] * 4, method="LSODA", t_eval=t, **accuracy).y
     f, stiffness = spring(x[2] - x[0], t)
     return Motion(
         t=t,

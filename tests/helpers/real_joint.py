@@ -59,12 +59,9 @@ HALF_WIDTH = 0.05  # of the window in which the slope is taken, see docs/real-jo
 class Log:
     """One setting of the joint; arrays of one size, a sample each."""
 
-    setting: int
-    """Position of the support [mm]."""
-    q: Array
-    """Angle of the dynamometer [rad]."""
-    torque: Array
-    """Torque of the transmission [N.m]."""
+    setting: int  # position of the support [mm]
+    q: Array  # angle of the dynamometer [rad]
+    torque: Array  # of the transmission [N.m]
 
     @property
     def theta(self) -> Array:
@@ -113,11 +110,9 @@ class Fit:
     """What the estimator has estimated at the end of a replay."""
 
     symmetric: bool
-    eta: Array
-    """Coefficients [size: N x M]."""
-    tau_e: float
-    sigma: float
-    """Outputs at the last sample [N.m], [N.m/rad]."""
+    eta: Array  # coefficients [size: N x M]
+    tau_e: float  # at the last sample [N.m]
+    sigma: float  # at the last sample [N.m/rad]
 
     def torque(self, setting: float, phi: Array) -> Array:
         """Torque of the polynomial [N.m]."""

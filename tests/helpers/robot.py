@@ -68,10 +68,8 @@ rls.m = 1
 class Estimated:
     """The estimate from the log of a run."""
 
-    runs: str
-    """One of RUNS, or "ab" for b after a."""
-    table: pa.Table
-    """What `sigmahat estimate` wrote for each sample of the last run."""
+    runs: str  # one of RUNS, or "ab" for b after a
+    table: pa.Table  # what `sigmahat estimate` wrote for each sample of the last run
 
     @property
     def stiffness(self) -> float:

@@ -59,14 +59,9 @@ def messages(samples: int, seed: int = 1) -> list[dict[str, float | int]]:
     acceleration = -7.2 * np.sin(3 * t) - 24.2 * np.sin(11 * t)
     torque = GEAR * (1e-3 * acceleration + 1e-2 * speed) + 400 * (theta - q) / GEAR
     torque += noise.normal(0, 3e-3, samples)
-    columns = {
-        "t": t,
-        "arm/motor": counts,
-        "arm/link[0]": 2.5 - np.degrees(q),
-        "arm/torque": torque,
-    }
-    rows = zip(*(each.tolist() for each in columns.values()), strict=True)
-    return [dict(zip(columns, row, strict=True)) for row in rows]
+    names = ("t", "arm/motor", "arm/link[0]", "arm/torque")
+    rows = np.column_stack([t, counts, 2.5 - np.degrees(q), torque]).tolist()
+    return [dict(zip(names, row, strict=True)) for row in rows]
 
 
 def free_port() -> int:

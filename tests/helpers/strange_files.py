@@ -22,15 +22,8 @@ CELLS = st.one_of(
     st.floats().map(repr), st.integers().map(str), st.sampled_from(["", "x", '"', "1e999", "\0"])
 )
 _KEYS = [
-    "column",
-    "unit",
-    "sign",
-    "zero",
-    "gear_ratio",
-    "counts_per_turn",
-    "scale",
-    "wrap",
-    "delay",
+    *("column", "unit", "sign", "zero", "gear_ratio"),
+    *("counts_per_turn", "scale", "wrap", "delay"),
 ]
 _UNITS = ["deg", "counts", "A", "9**9**9**9", "rad**99", "(" * 39, "N.m.s", "rad^-2", "1/0", ""]
 

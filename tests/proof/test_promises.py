@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from c_library import Array, Estimator, Library
-from edges import measurements, parameters
-from promises import c, often
+from edges import c, measurements, often, parameters
 
 __all__ = ["c"]  # a fixture
 

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from c_library import Array, Estimator, Library
 from c_regression import factors
-from edges import LARGEST, SUBNORMAL, magnitudes
-from promises import c, often, reals
+from edges import LARGEST, SUBNORMAL, c, magnitudes, often, reals
 
 __all__ = ["c"]  # a fixture
 

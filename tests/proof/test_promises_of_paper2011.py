@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from c_library import Array, Estimator, Library, covariance
-from edges import LARGEST, magnitudes
-from promises import EPSILON, SMALLEST, c, often, reals
+from edges import EPSILON, LARGEST, SMALLEST, c, magnitudes, often, reals
 
 __all__ = ["c"]  # a fixture
 
