@@ -35,8 +35,8 @@ def live(
 ) -> tuple[Session, list[Estimated]]:
     """Everything goes through a session; message of each number arrives at [ns]."""
     config, out = folder / "arm.toml", folder / "out"
-    config.write_text(text)
     out.mkdir(parents=True, exist_ok=True)
+    config.write_text(text)
     session = Session(config, out, start)
     ticks = [tick for i, each in enumerate(sent) for tick in session.take(each, arrived(i))]
     return session, ticks + session.close()
