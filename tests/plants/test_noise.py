@@ -17,7 +17,7 @@ from plant_runs import Array, run_awas
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.engine import run
 
-SAMPLES = 20_000
+SAMPLES = 25_000
 MASK = (1 << 64) - 1
 
 

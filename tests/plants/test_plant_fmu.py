@@ -173,8 +173,9 @@ def test_code_is_the_same_in_every_process(tmp_path: Path) -> None:
 def test_a_state_needs_its_derivative() -> None:
     plant = mass()
     plant.state("forgotten", start=0.0, scale=1.0)
+    parameters = ["mass", "initial.x", "variance"]
     with pytest.raises(ValueError, match="no derivative of state forgotten"):
-        plant_codegen.functions(plant, ["mass", "initial.x", "variance"], ["force"], ["x"])
+        plant_codegen.functions(plant, parameters, ["force"], ["x", "counted", "measured"])
 
 
 def test_declarations_that_contradict_each_other() -> None:
