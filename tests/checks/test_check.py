@@ -15,8 +15,7 @@ from sigmahat.checks.check import check
 from sigmahat.checks.findings import Checked, Kind, Severity
 from sigmahat.checks.text import sentence
 from sigmahat.cli import main
-from sigmahat.fmi.instance import Slave
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Slave, installed
 from sigmahat.joint.curve import stiffness_in_the_middle
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.job import Replay

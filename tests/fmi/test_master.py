@@ -16,9 +16,8 @@ import pytest
 
 import sigmahat
 from recordings import one_seed
-from sigmahat.fmi.instance import Fmu, FmuError
+from sigmahat.fmi.instance import Fmu, FmuError, opened
 from sigmahat.fmi.master import EstimatorFmu, Plant, simulate
-from sigmahat.fmi.opened import opened
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import T
 

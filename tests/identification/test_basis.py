@@ -13,8 +13,7 @@ from foreign_joint import GEAR, STIFFNESS, T, joint
 from recorded_logs import Array
 from sigmahat.checks.check import check
 from sigmahat.checks.findings import Kind
-from sigmahat.fmi.instance import Slave
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Slave, installed
 from sigmahat.identification.identify import identify
 from sigmahat.identification.write import write
 from sigmahat.joint.curve import Branch

@@ -9,8 +9,7 @@ import numpy as np
 
 from rivals.records import Array, Estimate, JointLog
 from rivals.spring import spring
-from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Slave, Value, installed
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 P_0 = 1e20

@@ -13,8 +13,7 @@ from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.relation import distance, relation, slope_of
 from sigmahat.checks.replayed import Outputs, play, replayed
 from sigmahat.checks.view import View, view
-from sigmahat.fmi.instance import FmuError, Slave, Value
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.data_sheet import absent, exact

@@ -10,8 +10,7 @@ import numpy as np
 from sigmahat.fmi.master import Recording
 from sigmahat.runs.engine import indices_by_comparison
 from sigmahat.runs.metrics import Indices
-from sigmahat.runs.scenario import Comparison, Scenario
-from sigmahat.runs.signals import signal_of, source_and_variable
+from sigmahat.runs.scenario import Comparison, Scenario, signal_of, source_and_variable
 
 CALIBRATED = 2.0
 """Time from which on sigma_std is compared with the error [s]."""

@@ -9,8 +9,7 @@ import numpy as np
 
 from sigmahat.guessing.facts import Facts, look_at
 from sigmahat.guessing.words import Meaning, meaning
-from sigmahat.logs.limits import check_together
-from sigmahat.logs.log import Array, Log
+from sigmahat.logs.log import Array, Log, check_together
 from sigmahat.logs.units import seconds
 
 _MOSTLY = 0.99  # least fraction of the steps of a clock that increase

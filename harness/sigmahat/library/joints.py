@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.fmi import native
-from sigmahat.fmi.instance import Value
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Value, installed
 
 INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 """Inputs in the order of the library."""

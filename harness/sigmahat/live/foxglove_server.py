@@ -9,7 +9,7 @@ from typing import Any
 
 import foxglove
 
-from sigmahat.fmi.json_schema import schema
+from sigmahat.fmi.series import schema
 from sigmahat.live.joint import GIVEN, Estimated, LiveJoint
 from sigmahat.live.sinks import BANDED, Sink, shown
 

@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from sigmahat.fmi.instance import Slave
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Slave, installed
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.live.clock import Clock
@@ -25,8 +24,7 @@ from sigmahat.logs.configuration import Configuration, Port
 from sigmahat.logs.learned import Learned, go_on, write_learned
 from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap, parameters
-from sigmahat.logs.resampling import AT_TICK
-from sigmahat.logs.sampling import counter_period, turns_from
+from sigmahat.logs.sampling import AT_TICK, counter_period, turns_from
 from sigmahat.logs.units import scale, seconds
 
 OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfit", "change_age")

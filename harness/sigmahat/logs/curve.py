@@ -9,7 +9,6 @@ import numpy as np
 
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
-from sigmahat.fmi.saved_state import restore, save
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import Branch, Curve, characteristic, nearest
 from sigmahat.joint.sheet import Polynomial
@@ -211,7 +210,7 @@ def _evaluated(
     ]
     with Slave(slave.fmu, "curve") as other:
         other.initialize(every)
-        t_0, T = restore(other, save(slave)), float(every["samplePeriod"])
+        t_0, T = other.restore(slave.saved()), float(every["samplePeriod"])
         return stiffness_at(other, ("theta", "q", "theta_c"), np.array(points), t_0, T)
 
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.files.output import sha256
-from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.opened import installed
+from sigmahat.files.tables import write_csv
+from sigmahat.fmi.instance import Slave, Value, installed
 from sigmahat.fmi.series import Series
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
@@ -21,6 +21,7 @@ from sigmahat.joint.curve import (
     Curve,
     curve_text,
     headline,
+    stiffness_in_the_middle,
     stiffness_points,
     write_curve,
 )
@@ -321,3 +322,24 @@ def _rests_on(result: Estimate) -> Iterator[str]:
         f"ranges: torque about {p['prior.tau_e']:.3g} N.m at range.phi = {p['range.phi']:.3g} rad, "
         f"range.setPoint = {p['range.setPoint']:.3g}"
     )
+
+
+JOINTS = "joints.csv"
+"""A table with rows for each joint of a log, besides the folders of the joints."""
+_TITLES = (
+    *("joint", "setPoint", "phi [rad]", "sigma [N.m/rad]", "sigma low [N.m/rad]"),
+    *("sigma high [N.m/rad]", "confident"),
+)
+
+
+def write_joints(found: Mapping[str, Estimate], folder: Path) -> None:
+    """Writes the stiffness of each joint in the middle of its data, for each setting."""
+    write_csv(folder / JOINTS, _TITLES, _rows(found))
+
+
+def _rows(found: Mapping[str, Estimate]) -> Iterator[list[Any]]:
+    for name, each in found.items():
+        for branch in each.curve.branches:
+            phi, sigma, interval = stiffness_in_the_middle(branch)
+            sure = "yes" if each.doubt_at_end == "None" else f"no: {each.doubt_at_end}"
+            yield [name, branch.set_point, phi, sigma, *(interval or (None, None)), sure]

@@ -16,7 +16,6 @@ from sigmahat.files.output import write_json
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.instance import FmuError, Slave, Value
 from sigmahat.fmi.sample_loop import Recorder
-from sigmahat.fmi.saved_state import restore, save
 from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Text
 from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap
@@ -64,7 +63,7 @@ def write_learned(
 ) -> None:
     """Writes what a slave has learned from logs; `every` has the parameters of the slave."""
     parameters = {n: v for n, v in every.items() if v or not n.startswith("rls.eta_0")}
-    state = base64.b64encode(save(slave)).decode()
+    state = base64.b64encode(slave.saved()).decode()
     contents = _File(
         format=LEARNED.name,
         version=LEARNED.version,
@@ -111,7 +110,7 @@ def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configurat
             f"{_AGAIN}"
         )
     try:
-        t_0 = restore(slave, learned.state)
+        t_0 = slave.restore(learned.state)
     except FmuError as error:
         raise LogError(f"{learned.path}: damaged: {error}; {_AGAIN}") from error
     _compare(learned, _parameters(slave), every, configuration)

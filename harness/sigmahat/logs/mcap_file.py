@@ -18,7 +18,7 @@ from mcap.writer import Writer
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Fmu
-from sigmahat.fmi.json_schema import schema
+from sigmahat.fmi.series import schema
 
 MCAP = "estimate.mcap"
 """Name of the file in the folder of results."""

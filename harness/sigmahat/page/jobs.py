@@ -10,8 +10,7 @@ from pathlib import Path
 
 import tomlkit
 
-from sigmahat.fmi.instance import FmuError, Slave
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import FmuError, Slave, installed
 from sigmahat.guessing import template
 from sigmahat.guessing.columns import read_columns
 from sigmahat.guessing.guess import guess_chosen, guess_of

@@ -30,12 +30,12 @@ from sigmahat.joint.curve import (
 from sigmahat.joint.sheet import Sheet
 from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs.changes import detected
-from sigmahat.logs.curve_panels import curve_panels
+from sigmahat.logs.estimate import JOINTS
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
-from sigmahat.logs.several import JOINTS
-from sigmahat.logs.time_panels import (
+from sigmahat.logs.panels import (
     Estimate,
+    curve_panels,
     quantity_panels,
     reduce,
     sampling,

@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from sigmahat.logs.time_panels import (
+from sigmahat.logs.panels import (
     SIDES,
     Estimate,
     of_side,

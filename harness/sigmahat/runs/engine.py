@@ -10,13 +10,11 @@ from contextlib import closing
 from dataclasses import replace
 from typing import TypeVar
 
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.instance import Value, named
 from sigmahat.fmi.master import Recording, simulate
-from sigmahat.fmi.opened import named
 from sigmahat.runs.metrics import Indices, indices
 from sigmahat.runs.pool import spread
-from sigmahat.runs.scenario import Scenario
-from sigmahat.runs.signals import signal_of
+from sigmahat.runs.scenario import Scenario, signal_of
 
 Progress = Callable[[int], object]
 Result = TypeVar("Result")

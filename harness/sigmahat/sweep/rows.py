@@ -7,10 +7,9 @@ from collections.abc import Mapping
 from dataclasses import astuple
 from typing import Any
 
-from sigmahat.fmi.instance import Value
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Value, installed
 from sigmahat.runs.metrics import INDICES, Indices
-from sigmahat.runs.signals import PLANT, source_and_variable
+from sigmahat.runs.scenario import PLANT, source_and_variable
 from sigmahat.sweep.plan import Outcome, Plan
 from sigmahat.sweep.preparation import ALL, models, parameters_by_owner, reduced
 from sigmahat.sweep.table import (

@@ -13,8 +13,7 @@ from sigmahat.compare.misfits.experiment import Experiment, draw
 from sigmahat.compare.misfits.joints import JOINTS, Joint
 from sigmahat.compare.misfits.motion import Motion, run
 from sigmahat.compare.misfits.score import SETTLED, Score, score
-from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Slave, Value, installed
 from sigmahat.logs.replay import replay
 from sigmahat.logs.sampling import Samples
 from sigmahat.runs.engine import Progress, run_all

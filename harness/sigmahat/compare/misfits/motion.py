@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.compare.misfits.experiment import DRIFT_TIME, Control, Drive, Experiment
-from sigmahat.fmi.instance import Slave
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Slave, installed
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 Array = NDArray[np.float64]

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sigmahat.logs.limits import check_columns
-from sigmahat.logs.log import Log, LogError
+from sigmahat.logs.log import Log, LogError, check_columns
 
 _PACKED = (
     (b"\x1f\x8b", "compressed with gzip", "unpack it: gunzip --keep {}"),

@@ -20,8 +20,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.logs.limits import check_bytes, check_columns, check_numbers
-from sigmahat.logs.log import LogError, LogInMemory
+from sigmahat.logs.log import LogError, LogInMemory, check_bytes, check_columns, check_numbers
 
 _MATRIX, _COMPRESSED = 14, 15
 _KINDS = {*range(1, 8), 9, 12, 13, _MATRIX, 16, 17, 18}  # numbers, matrices, text

@@ -15,11 +15,13 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from sigmahat.logs.limits import MOST_TEXT, check_columns, check_numbers
 from sigmahat.logs.log import (
+    MOST_TEXT,
     Array,
     Log,
     LogError,
+    check_columns,
+    check_numbers,
     first_text,
     fits_float64,
     holds_text,

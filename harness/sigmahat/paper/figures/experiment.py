@@ -22,7 +22,7 @@ from sigmahat.paper.figures.panels import (
 )
 from sigmahat.paper.figures.simulation import deformation_panel
 from sigmahat.plotting.style import GREEN
-from sigmahat.runs.signals import nominal_awas
+from sigmahat.runs.scenario import nominal_awas
 
 _NOMINAL: dict[str, Any] = {"color": "black", "linewidth": 0.8, "label": "nominal"}
 
