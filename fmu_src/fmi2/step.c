@@ -36,53 +36,35 @@ static fmi2Status no_status(fmi2Component c, const char *function)
     return fmi2Discard;
 }
 
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *value)
-{
-    (void)s;
-    (void)value;
-    return no_status(c, "fmi2GetStatus");
-}
-
-fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value)
-{
-    sh_instance *instance;
-
-    if (s != fmi2LastSuccessfulTime) {
-        return no_status(c, "fmi2GetRealStatus");
+#define NO_STATUS(Kind, type)                                                                      \
+    fmi2Status fmi2Get##Kind(fmi2Component c, const fmi2StatusKind s, type *value)                 \
+    {                                                                                              \
+        (void)s;                                                                                   \
+        (void)value;                                                                               \
+        return no_status(c, "fmi2Get" #Kind);                                                      \
     }
-    instance = sh_enter(c, SH_STEP | SH_TERMINATED, "fmi2GetRealStatus");
-    if (instance == NULL || !sh_has(instance, value, "fmi2GetRealStatus", "value")) {
-        return fmi2Error;
+
+NO_STATUS(Status, fmi2Status)
+NO_STATUS(IntegerStatus, fmi2Integer)
+NO_STATUS(StringStatus, fmi2String)
+
+/* The one status of a type that this FMU knows. It never asks to stop. */
+#define STATUS(Type, known, now)                                                                   \
+    fmi2Status fmi2Get##Type##Status(fmi2Component c, const fmi2StatusKind s, fmi2##Type *value)   \
+    {                                                                                              \
+        static const char function[] = "fmi2Get" #Type "Status";                                   \
+        sh_instance *instance;                                                                     \
+                                                                                                   \
+        if (s != (known)) {                                                                        \
+            return no_status(c, function);                                                         \
+        }                                                                                          \
+        instance = sh_enter(c, SH_STEP | SH_TERMINATED, function);                                 \
+        if (instance == NULL || !sh_has(instance, value, function, "value")) {                     \
+            return fmi2Error;                                                                      \
+        }                                                                                          \
+        *value = (now);                                                                            \
+        return fmi2OK;                                                                             \
     }
-    *value = instance->time;
-    return fmi2OK;
-}
 
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Integer *value)
-{
-    (void)s;
-    (void)value;
-    return no_status(c, "fmi2GetIntegerStatus");
-}
-
-fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value)
-{
-    sh_instance *instance;
-
-    if (s != fmi2Terminated) {
-        return no_status(c, "fmi2GetBooleanStatus");
-    }
-    instance = sh_enter(c, SH_STEP | SH_TERMINATED, "fmi2GetBooleanStatus");
-    if (instance == NULL || !sh_has(instance, value, "fmi2GetBooleanStatus", "value")) {
-        return fmi2Error;
-    }
-    *value = fmi2False; /* the FMU never asks to stop */
-    return fmi2OK;
-}
-
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String *value)
-{
-    (void)s;
-    (void)value;
-    return no_status(c, "fmi2GetStringStatus");
-}
+STATUS(Real, fmi2LastSuccessfulTime, instance->time)
+STATUS(Boolean, fmi2Terminated, fmi2False)
