@@ -170,7 +170,7 @@ class Steps:
         if slopes:
             self._loop.set_slopes(slave, references, np.diff(u, axis=0, append=u[-1:]) / T)
         self._loop.step(slave, self._times)
-        self._loop.get_real(slave, fmu.references(outputs), self.outputs)
+        self._loop.get(slave, "Real", fmu.references(outputs), self.outputs)
 
     def run(self) -> None:
         """Makes a step for each row, from where the last one ended."""

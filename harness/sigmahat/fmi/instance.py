@@ -39,11 +39,9 @@ with interrupts_wait():  # FMPy needs lxml; a Ctrl-C during this import would be
 # first two FMUs at the same time could fail, or end the process.
 _etree.XMLSchema(_etree.XML('<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"/>'))
 
-Value = float | int | bool | str
-"""Value of a variable. An enumeration takes the name of its item."""
+Value = float | int | bool | str  # of a variable. An enumeration takes the name of its item.
 
-_TOO_LARGE = 2**31
-"""Smallest positive integer that does not fit an Integer of FMI."""
+_TOO_LARGE = 2**31  # smallest positive integer that does not fit an Integer of FMI
 
 _log = logging.getLogger("sigmahat")
 
@@ -264,13 +262,10 @@ class Slave:
         self.call(self.functions.fmi2SetupExperiment, 0, 0.0, 0.0, 0, 0.0)
         for name, number in numbers.items():
             variable = self.fmu.variables[name]
-            setter, kind = {
-                "Real": (self.functions.fmi2SetReal, fmi2.fmi2Real),
-                "Integer": (self.functions.fmi2SetInteger, fmi2.fmi2Integer),
-                "Enumeration": (self.functions.fmi2SetInteger, fmi2.fmi2Integer),
-                "Boolean": (self.functions.fmi2SetBoolean, fmi2.fmi2Boolean),
-            }[variable.type]
-            self.call(setter, value_references([variable]), 1, (kind * 1)(number))
+            kind = "Integer" if variable.type == "Enumeration" else variable.type
+            value = (getattr(fmi2, f"fmi2{kind}") * 1)(number)
+            setter = getattr(self.functions, f"fmi2Set{kind}")
+            self.call(setter, value_references([variable]), 1, value)
         self.call(self.functions.fmi2EnterInitializationMode)
         self.call(self.functions.fmi2ExitInitializationMode)
 

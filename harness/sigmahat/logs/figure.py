@@ -1,7 +1,5 @@
 """The figure of a replay: the curve, and stiffness, torque, deformation, set-point over time."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -23,8 +23,7 @@ from sigmahat.logs.configuration import PORTS, Configuration, Port, Time
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.units import convert, factor, seconds, unwrap
 
-AT_TICK = 1e-3
-"""Largest distance of a sample from its tick, in periods."""
+AT_TICK = 1e-3  # largest distance of a sample from its tick, in periods
 _USUAL_INTERVALS = 3.0
 _MOST_TICKS = 5_000_000
 _MOST_TICKS_OF_MANY_ROWS = 20  # per row: the memory for the ticks goes with the size of the log
@@ -36,16 +35,11 @@ _LONG_AGO = 1e6  # [s] A time that is larger counts from 1970, or from the start
 class Samples:
     """A log at the ticks of the estimator."""
 
-    T: float
-    """Time between ticks [s]."""
-    names: Sequence[str]
-    """Ports."""
-    values: Array
-    """[size: ticks x ports], nan where there is no value."""
-    tick_of_row: NDArray[np.int32]
-    """Last tick at or before each row of the log."""
-    notes: Sequence[str]
-    """What had to be done to the samples, in sentences."""
+    T: float  # time between ticks [s]
+    names: Sequence[str]  # ports
+    values: Array  # [size: ticks x ports], nan where there is no value
+    tick_of_row: NDArray[np.int32]  # last tick at or before each row of the log
+    notes: Sequence[str]  # what had to be done to the samples, in sentences
 
 
 _Asked = tuple[dict[str, Port], Time, float]
@@ -210,18 +204,13 @@ def _notes(name: str, resampled: Resampled, T: float) -> Iterator[str]:
 class Resampled:
     """A column at the ticks, and statistics of its samples."""
 
-    values: Array
-    """Values [size: ticks], nan at ticks without a value."""
-    interval: float
-    """Usual time between two samples [s]."""
-    even: bool
-    """Whether nearly every tick has a sample."""
-    interpolated: int = 0
-    """Number of interpolated ticks."""
+    values: Array  # values [size: ticks], nan at ticks without a value
+    interval: float  # usual time between two samples [s]
+    even: bool  # whether nearly every tick has a sample
+    interpolated: int = 0  # number of interpolated ticks
     between: int = 0
     """Number of samples between ticks, before the first tick, and after the last tick."""
-    missing: int = 0
-    """Number of samples without a time or a value."""
+    missing: int = 0  # number of samples without a time or a value
 
 
 def at_ticks(
@@ -278,8 +267,7 @@ def stretches(mask: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
 
 
-_LARGEST = 1e12
-"""SH_LARGEST_MEASUREMENT of sigmahat.h."""
+_LARGEST = 1e12  # SH_LARGEST_MEASUREMENT of sigmahat.h
 
 
 def refused(values: Array) -> NDArray[np.bool_]:

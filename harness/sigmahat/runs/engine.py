@@ -3,8 +3,6 @@
 A command makes its jobs from `run` and `measured`, and gives them to `run_all`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import replace
@@ -18,10 +16,8 @@ from sigmahat.runs.scenario import Scenario, signal_of
 
 Progress = Callable[[int], object]
 Result = TypeVar("Result")
-SEED = "noise.seed"
-"""Parameter of every plant."""
-SAMPLE_PERIOD = "noise.samplePeriod"
-"""Parameter of the plants with noise that this version makes."""
+SEED = "noise.seed"  # parameter of every plant
+SAMPLE_PERIOD = "noise.samplePeriod"  # parameter of the plants with noise that this version makes
 
 
 def run(

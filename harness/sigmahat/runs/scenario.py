@@ -1,7 +1,5 @@
 """Scenarios as plain data: a plant, its inputs, estimators, and comparisons of their signals."""
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,8 +11,7 @@ from numpy.typing import NDArray
 
 from sigmahat.fmi.master import EstimatorFmu, Plant, Recording
 
-T = 1e-3
-"""Sampling time of the paper [s], section VI.B."""
+T = 1e-3  # sampling time of the paper [s], section VI.B
 
 
 @dataclass(frozen=True)
@@ -98,10 +95,8 @@ class Scenario:
         return round(self.duration / self.T)
 
 
-MOTION = ("phi", "theta_c")
-"""Variables of the plant that have to be recorded."""
-MODEL = "MODEL"
-"""The estimator whose parameters model.* are the nominal data."""
+MOTION = ("phi", "theta_c")  # variables of the plant that have to be recorded
+MODEL = "MODEL"  # the estimator whose parameters model.* are the nominal data
 
 
 def nominal_awas(recording: Recording) -> dict[str, NDArray[np.float64]]:

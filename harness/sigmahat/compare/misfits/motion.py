@@ -142,7 +142,7 @@ def _step(
     recorder, angles = Recorder(plant, _RECORD, len(t)), np.empty(2)
     read, step = SampleLoop(), SampleLoop()
     recorder.add_to(read)
-    read.get_real(plant, plant.fmu.references(_RECORD[:2], "output"), angles)
+    read.get(plant, "Real", plant.fmu.references(_RECORD[:2], "output"), angles)
     step.set_real(plant, inputs, table)
     step.set_slopes(plant, inputs, slopes)
     step.step(plant, step_times(t[:-1], h))

@@ -1,7 +1,5 @@
 """Opens a log. Its format is found from the contents of the file, not from its name."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from sigmahat.logs.log import Log, LogError, check_columns
@@ -21,7 +19,7 @@ def open_log(path: str | Path) -> Log:
 
     Only the file itself is read, or the files in the folder of the bag, but no files outside to
     which they refer. Raises LogError if the file is missing, empty, damaged, or of another format,
-    and if the file holds more than limits.py allows.
+    and if the file holds more than a log may (log.py).
     """
     path = Path(path)
     if path.is_dir():
