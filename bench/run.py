@@ -10,7 +10,7 @@ import numpy as np
 
 import subjects
 from report import Times, table
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import installed
 from subjects import Array, Library, Subject
 
 ROUNDS = 101

@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import sigmahat
-from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.instance import Fmu, Slave, installed
 from sigmahat.fmi.master import simulate
-from sigmahat.fmi.opened import installed
 from sigmahat.fmi.sample_loop import SampleLoop, step_times
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.scenario import Sine, T
@@ -171,7 +170,7 @@ class Steps:
         if slopes:
             self._loop.set_slopes(slave, references, np.diff(u, axis=0, append=u[-1:]) / T)
         self._loop.step(slave, self._times)
-        self._loop.get_real(slave, fmu.references(outputs), self.outputs)
+        self._loop.get(slave, "Real", fmu.references(outputs), self.outputs)
 
     def run(self) -> None:
         """Makes a step for each row, from where the last one ended."""

@@ -1,7 +1,6 @@
 # The library of the Python package: the loop over samples, and the estimator over arrays. It is
 # called with ctypes, so it is of a platform but of no Python.
 add_library(sigmahat_native MODULE harness/native/sample_loop.c harness/native/joints.c
-            harness/native/version.c
             ${PROJECT_BINARY_DIR}/fmu/StiffnessEstimator/variables.h)
 get_target_property(library_folders sigmahat_c INCLUDE_DIRECTORIES)
 set(SIGMAHAT_NATIVE_INCLUDES ${PROJECT_BINARY_DIR}/fmu/StiffnessEstimator

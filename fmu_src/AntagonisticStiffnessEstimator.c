@@ -116,15 +116,4 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     return status;
 }
 
-const sh_model sh_fmu_model = {
-    .identifier = SH_IDENTIFIER,
-    .guid = SH_GUID,
-    .size = sizeof(AntagonisticStiffnessEstimator),
-    .variables = VARIABLES,
-    .count = sizeof VARIABLES / sizeof VARIABLES[0],
-    .derivative_offset = SH_ESTIMATOR_DERIVATIVE_OFFSET,
-    .check = check,
-    .initialize = initialize,
-    .is_state = is_state,
-    .step = step,
-};
+SH_DEFINE_MODEL(AntagonisticStiffnessEstimator, SH_ESTIMATOR_DERIVATIVE_OFFSET, check);

@@ -29,15 +29,4 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     return sh_estimator_fmu_step(model, t, h, "", log);
 }
 
-const sh_model sh_fmu_model = {
-    .identifier = SH_IDENTIFIER,
-    .guid = SH_GUID,
-    .size = sizeof(sh_estimator_fmu),
-    .variables = VARIABLES,
-    .count = sizeof VARIABLES / sizeof VARIABLES[0],
-    .derivative_offset = SH_ESTIMATOR_DERIVATIVE_OFFSET,
-    .check = check,
-    .initialize = initialize,
-    .is_state = is_state,
-    .step = step,
-};
+SH_DEFINE_MODEL(sh_estimator_fmu, SH_ESTIMATOR_DERIVATIVE_OFFSET, check);

@@ -69,4 +69,20 @@ typedef struct {
 
 extern const sh_model sh_fmu_model;
 
+/* Defines it, from variables.h and the functions initialize, is_state and step of the including file.
+ */
+#define SH_DEFINE_MODEL(Struct, offset_of_derivatives, check_or_null)                              \
+    const sh_model sh_fmu_model = {                                                                \
+        .identifier = SH_IDENTIFIER,                                                               \
+        .guid = SH_GUID,                                                                           \
+        .size = sizeof(Struct),                                                                    \
+        .variables = VARIABLES,                                                                    \
+        .count = sizeof VARIABLES / sizeof VARIABLES[0],                                           \
+        .derivative_offset = (offset_of_derivatives),                                              \
+        .check = (check_or_null),                                                                  \
+        .initialize = initialize,                                                                  \
+        .is_state = is_state,                                                                      \
+        .step = step,                                                                              \
+    }
+
 #endif

@@ -157,15 +157,4 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     return SH_OK;
 }
 
-const sh_model sh_fmu_model = {
-    .identifier = SH_IDENTIFIER,
-    .guid = SH_GUID,
-    .size = sizeof(sh_plant),
-    .variables = VARIABLES,
-    .count = sizeof VARIABLES / sizeof VARIABLES[0],
-    .derivative_offset = offsetof(sh_plant, du) - offsetof(sh_plant, u),
-    .check = NULL,
-    .initialize = initialize,
-    .is_state = is_state,
-    .step = step,
-};
+SH_DEFINE_MODEL(sh_plant, offsetof(sh_plant, du) - offsetof(sh_plant, u), NULL);

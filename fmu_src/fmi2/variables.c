@@ -16,85 +16,33 @@ const char *sh_type_name(sh_type type)
 }
 
 /* A call of an importer with one value for each reference. */
-static sh_access call(fmi2Component c, const char *function, unsigned types, sh_values values,
-                      const fmi2ValueReference vr[], size_t nvr)
-{
-    const sh_access access = {c, function, types, values, 0, vr, nvr, nvr};
+#define CALL(function, types, type_of_values)                                                      \
+    const sh_access access = {c, function, types, type_of_values, 0, vr, nvr, nvr}
 
-    return access;
-}
+#define ACCESS(Type, TYPES, VALUES)                                                                \
+    fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,           \
+                             fmi2##Type value[])                                                   \
+    {                                                                                              \
+        CALL("fmi2Get" #Type, TYPES, VALUES);                                                      \
+        return (fmi2Status)sh_get(&access, (void *)value);                                         \
+    }                                                                                              \
+    fmi2Status fmi2Set##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,           \
+                             const fmi2##Type value[])                                             \
+    {                                                                                              \
+        CALL("fmi2Set" #Type, TYPES, VALUES);                                                      \
+        return (fmi2Status)sh_set(&access, (const void *)value);                                   \
+    }
 
-fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
-{
-    const sh_access access = call(c, "fmi2GetReal", SH_TYPE_REAL, SH_DOUBLES, vr, nvr);
-
-    return (fmi2Status)sh_get(&access, value);
-}
-
-fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                          fmi2Integer value[])
-{
-    const sh_access access =
-        call(c, "fmi2GetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, SH_INTS, vr, nvr);
-
-    return (fmi2Status)sh_get(&access, value);
-}
-
-fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                          fmi2Boolean value[])
-{
-    const sh_access access = call(c, "fmi2GetBoolean", SH_TYPE_BOOLEAN, SH_INTS, vr, nvr);
-
-    return (fmi2Status)sh_get(&access, value);
-}
-
-fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                       const fmi2Real value[])
-{
-    const sh_access access = call(c, "fmi2SetReal", SH_TYPE_REAL, SH_DOUBLES, vr, nvr);
-
-    return (fmi2Status)sh_set(&access, value);
-}
-
-fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                          const fmi2Integer value[])
-{
-    const sh_access access =
-        call(c, "fmi2SetInteger", SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, SH_INTS, vr, nvr);
-
-    return (fmi2Status)sh_set(&access, value);
-}
-
-fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                          const fmi2Boolean value[])
-{
-    const sh_access access = call(c, "fmi2SetBoolean", SH_TYPE_BOOLEAN, SH_INTS, vr, nvr);
-
-    return (fmi2Status)sh_set(&access, value);
-}
-
-/* No FMU of this project has a variable of type String: any reference is an error. */
-fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                         fmi2String value[])
-{
-    const sh_access access = call(c, "fmi2GetString", 0, SH_BYTES, vr, nvr);
-
-    return (fmi2Status)sh_get(&access, (void *)value);
-}
-
-fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                         const fmi2String value[])
-{
-    const sh_access access = call(c, "fmi2SetString", 0, SH_BYTES, vr, nvr);
-
-    return (fmi2Status)sh_set(&access, (const void *)value);
-}
+ACCESS(Real, SH_TYPE_REAL, SH_DOUBLES)
+ACCESS(Integer, SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, SH_INTS)
+ACCESS(Boolean, SH_TYPE_BOOLEAN, SH_INTS)
+ACCESS(String, 0,
+       SH_BYTES) /* no FMU of this project has such a variable: any reference is an error */
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                        const fmi2Integer order[], const fmi2Real value[])
 {
-    const sh_access access =
-        call(c, "fmi2SetRealInputDerivatives", SH_TYPE_REAL, SH_DOUBLES, vr, nvr);
+    CALL("fmi2SetRealInputDerivatives", SH_TYPE_REAL, SH_DOUBLES);
     sh_instance *instance = sh_begin_set(&access, value);
     const sh_variable *variables = sh_fmu_model.variables;
     size_t i;

@@ -37,3 +37,8 @@ size_t sh_sample_loop(const sh_call *calls, size_t count, size_t first, size_t e
     }
     return count;
 }
+
+int sh_native_interface(void)
+{
+    return 2;
+}

@@ -39,4 +39,9 @@ typedef struct {
  */
 SH_EXPORT size_t sh_sample_loop(const sh_call *calls, size_t count, size_t first, size_t end);
 
+/* A number that is raised with every change of a function or struct of this library that Python
+ * knows. The same number is in harness/sigmahat/fmi/native.py.
+ */
+SH_EXPORT int sh_native_interface(void);
+
 #endif

@@ -20,9 +20,8 @@ from fmpy import fmi2
 
 import sigmahat
 from recordings import one_seed
-from sigmahat.fmi.instance import Fmu, FmuError, Slave
+from sigmahat.fmi.instance import Fmu, FmuError, Slave, opened
 from sigmahat.fmi.master import EstimatorFmu, simulate
-from sigmahat.fmi.opened import opened
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import T
 

@@ -87,7 +87,7 @@ def test_calls_are_made_in_their_order_up_to_the_one_that_fails() -> None:
         times[3, 1] = -1.0
         loop.set_real(slave, fmu.references(["theta"], "input"), np.arange(5.0)[:, None])
         loop.step(slave, times)
-        loop.get_real(slave, fmu.references(["theta"]), table)
+        loop.get(slave, "Real", fmu.references(["theta"]), table)
         with pytest.raises(FmuError, match="fmi2DoStep"):
             loop.run(0, 5)
     assert table[:, 0].tolist() == [0.0, 1.0, 2.0, 0.0, 0.0]

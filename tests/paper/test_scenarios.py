@@ -11,7 +11,7 @@ from recordings import eight_seeds, one_seed
 from sigmahat.paper.reproduction import Result, reproduce
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.metrics import mean_interval
-from sigmahat.runs.signals import nominal_awas
+from sigmahat.runs.scenario import nominal_awas
 
 
 def worst(result: Result, name: str, index: str) -> float:

@@ -17,7 +17,7 @@ from selenium.webdriver.common.by import By
 from browser import DATA, ROWS, Page, opened
 from in_process import command
 from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
-from sigmahat.logs.time_panels import reduce
+from sigmahat.logs.panels import reduce
 
 PICTURE = """
 const view = [...Object.values(Bokeh.index.roots ?? Bokeh.index)][arguments[0]];

@@ -14,8 +14,7 @@ from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.relation import distance, relation, slope_of
 from sigmahat.checks.view import View, view
-from sigmahat.fmi.instance import FmuError, Slave, Value
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.noise import variance
 from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import Configuration

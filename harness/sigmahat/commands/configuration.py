@@ -39,7 +39,7 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
     Example: sigmahat init knee.csv
     """
     from sigmahat.files.output import write_whole
-    from sigmahat.fmi.opened import installed
+    from sigmahat.fmi.instance import installed
     from sigmahat.guessing import template
     from sigmahat.guessing.guess import guess, one_joint
     from sigmahat.logs.readers.formats import open_log

@@ -59,8 +59,7 @@ def estimate(
     from sigmahat.checks.text import IN_LOG
     from sigmahat.checks.text import summary as of_checks
     from sigmahat.files.tables import aligned
-    from sigmahat.logs.estimate import summary
-    from sigmahat.logs.several import write_joints
+    from sigmahat.logs.estimate import summary, write_joints
 
     common.need_fmu("StiffnessEstimator")
     if to is not None:
@@ -190,7 +189,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     \b
     Example: sigmahat export sigmahat-results/knee --to mjcf
     """
-    from sigmahat.fmi.opened import installed
+    from sigmahat.fmi.instance import installed
     from sigmahat.joint import parameter_file
     from sigmahat.joint.robot_model import write_model
     from sigmahat.joint.sheet import FORMAT

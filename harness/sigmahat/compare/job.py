@@ -12,8 +12,7 @@ from sigmahat.compare.conditions import METHODS, Case, Joint, comparison_name
 from sigmahat.fmi.master import Recording
 from sigmahat.runs.engine import Progress, indices_by_comparison, measured, run_all
 from sigmahat.runs.metrics import INDICES, Index, Indices
-from sigmahat.runs.scenario import Comparison, Scenario
-from sigmahat.runs.signals import signal_of, source_and_variable
+from sigmahat.runs.scenario import Comparison, Scenario, signal_of, source_and_variable
 
 CALIBRATED = 2.0
 """Time from which on sigma_std is compared with the error [s]."""

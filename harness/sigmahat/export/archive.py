@@ -30,6 +30,12 @@ def write(fmu: Path, contents: Mapping[str, Path | bytes]) -> None:
             archive.writestr(entry, data[name])
 
 
+def files_in(folder: Path) -> dict[str, Path | bytes]:
+    """The files in a folder, at any depth, by their names in it."""
+    files = (file for file in folder.rglob("*") if file.is_file())
+    return {file.relative_to(folder).as_posix(): file for file in files}
+
+
 def pack(
     fmu: Path,
     sources: Iterable[Path],
@@ -49,16 +55,15 @@ def pack(
     files = description.with_headers(description.for_version(sources, fmi))
     contents: dict[str, Path | bytes] = {
         "documentation/licenses/license.txt": licence,
-        **{f.relative_to(shown).as_posix(): f for f in shown.rglob("*") if f.is_file()},
+        **files_in(shown),
         **{f"sources/{f.name}": f for f in files},
     }
     platform = fmpy.platform if fmi == 2 else fmpy.platform_tuple
     contents[f"binaries/{platform}/{binary.name}"] = binary
-    if fmi == 2:
-        contents["modelDescription.xml"] = described / "modelDescription.xml"
-    else:
-        contents["modelDescription.xml"] = described / "fmi3/modelDescription.xml"
-        contents["sources/buildDescription.xml"] = described / "fmi3/buildDescription.xml"
-        icons = "terminalsAndIcons/terminalsAndIcons.xml"
-        contents[icons] = described / "fmi3/terminalsAndIcons.xml"
+    folder = described if fmi == 2 else described / "fmi3"
+    contents["modelDescription.xml"] = folder / "modelDescription.xml"
+    if fmi == 3:
+        contents["sources/buildDescription.xml"] = folder / "buildDescription.xml"
+        icons = "terminalsAndIcons.xml"
+        contents[f"terminalsAndIcons/{icons}"] = folder / icons
     write(fmu, contents)

@@ -4,8 +4,6 @@ The bill depends on the files of the release alone, so the same release gives th
 bill has no time, and its serial number is computed from the files.
 """
 
-from __future__ import annotations
-
 import hashlib
 import re
 from collections.abc import Iterable
@@ -26,9 +24,7 @@ from packageurl import PackageURL
 
 NAME = "sigmahat.cdx.json"
 _BUILD_TOOLS = ("ziglang", "scikit-build-core", "wheel", "casadi", "cyclonedx-python-lib")
-_HEADERS = "FMI headers"
-_CASADI = "equations that CasADi wrote as C"
-_OWN = "C sources of sigmahat"
+_ARCHIVES = (".fmu", ".ssp", ".zip", ".whl", ".gz")
 _BSD_2 = "BSD-2-Clause"
 
 
@@ -41,20 +37,18 @@ def write(out: Path, release: Path, version: str) -> None:
     product = _component("sigmahat", version, ComponentType.FRAMEWORK, _BSD_2, "pkg:pypi/sigmahat")
     bom = Bom(metadata=BomMetaData(component=product))
     bom.metadata.tools = ToolRepository(components=map(_tool, _BUILD_TOOLS))
-    headers = _component(_HEADERS, None, ComponentType.LIBRARY, _BSD_2)
-    headers.properties.add(
-        Property(name="sigmahat:from", value=f"fmpy {installed_version('fmpy')}")
-    )
-    own = _component(_OWN, version, ComponentType.LIBRARY, _BSD_2)
-    equations = _component(_CASADI, version, ComponentType.LIBRARY, _BSD_2)
+    headers = _component("FMI headers", None, ComponentType.LIBRARY, _BSD_2)
+    source = Property(name="sigmahat:from", value=f"fmpy {installed_version('fmpy')}")
+    headers.properties.add(source)
+    own = _component("C sources of sigmahat", version, ComponentType.LIBRARY, _BSD_2)
+    casadi = "equations that CasADi wrote as C"
+    equations = _component(casadi, version, ComponentType.LIBRARY, _BSD_2)
     packages = list(_packages(files))
     for each in (headers, own, equations, *packages):
         bom.components.add(each)
-    made = []
-    for file in files:
-        entry = _file(file, release)
+    made = [_file(file, release) for file in files]
+    for file, entry in zip(files, made, strict=True):
         bom.components.add(entry)
-        made.append(entry)
         bom.register_dependency(entry, _contents(file, own, headers, equations, packages))
     bom.register_dependency(product, made)
     digest = hashlib.sha256("".join(map(_sha256, files)).encode()).hexdigest()
@@ -64,15 +58,8 @@ def write(out: Path, release: Path, version: str) -> None:
     out.write_text(text + "\n", encoding="utf-8")
 
 
-_ARCHIVES = (".fmu", ".ssp", ".zip", ".whl", ".gz")
-
-
 def _component(
-    name: str,
-    version: str | None,
-    kind: ComponentType,
-    licence: str | None,
-    purl: str | None = None,
+    name: str, version: str | None, kind: ComponentType, licence: str | None, purl: str = ""
 ) -> Component:
     return Component(
         name=name,
@@ -124,11 +111,7 @@ def _packages(files: Iterable[Path]) -> Iterable[Component]:
 
 
 def _contents(
-    file: Path,
-    own: Component,
-    headers: Component,
-    equations: Component,
-    packages: list[Component],
+    file: Path, own: Component, headers: Component, equations: Component, packages: list[Component]
 ) -> list[Component]:
     """What a file contains, and the packages that a wheel requires."""
     if file.suffix == ".zip":

@@ -13,13 +13,6 @@ SEED, SAMPLE_PERIOD = "noise.seed", "noise.samplePeriod"
 _OWN_FIELDS = {SEED: "seed", SAMPLE_PERIOD: "samplePeriod"}  # of sh_plant
 _SIGNAL = re.compile(r"signal\.(\w+)\.(amplitude|frequency)")
 
-_TYPES = {
-    "Real": "SH_TYPE_REAL",
-    "Integer": "SH_TYPE_INTEGER",
-    "Enumeration": "SH_TYPE_ENUMERATION",
-    "Boolean": "SH_TYPE_BOOLEAN",
-}
-
 
 def _field(variable: Element, name: str) -> str:
     part = {"input": "input", "output": "output", "parameter": "parameters"}
@@ -79,27 +72,20 @@ def is_of_every_plant(parameter: str) -> bool:
     return parameter in _OWN_FIELDS or _SIGNAL.fullmatch(parameter) is not None
 
 
-STORAGE: dict[str, Callable[[Element], dict[str, str]]] = {
-    "struct": storage_in_struct,
-    "sides": storage_in_sides,
-    "arrays": storage_in_arrays,
-}
+STORAGE: dict[str, Callable[[Element], dict[str, str]]]
+STORAGE = {"struct": storage_in_struct, "sides": storage_in_sides, "arrays": storage_in_arrays}
 """How the C struct of an FMU holds its variables."""
+
+
+_BOOLEAN = {"true": "1", "false": "0"}
 
 
 def _role(variable: Element) -> str:
     causality = variable.attrib["causality"]
-    if causality == "input":
-        return "SH_ROLE_INPUT"
-    if causality == "output":
-        return "SH_ROLE_GUESS" if variable[0].get("start") is not None else "SH_ROLE_OUTPUT"
-    fixed = variable.attrib["variability"] == "fixed"
-    return "SH_ROLE_FIXED" if fixed else "SH_ROLE_TUNABLE"
-
-
-def _start(kind: Element) -> str:
-    start = kind.get("start", "0")
-    return {"true": "1", "false": "0"}.get(start, start)
+    if causality == "output" and variable[0].get("start") is not None:
+        return "SH_ROLE_GUESS"
+    kind = variable.attrib["variability"] if causality == "parameter" else causality
+    return f"SH_ROLE_{kind.upper()}"  # the variability of a parameter is fixed or tunable
 
 
 def _limits(root: Element, kind: Element) -> tuple[str, str]:
@@ -121,27 +107,25 @@ def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> st
     rows = []
     for variable in variables(root):
         kind, name = variable[0], variable.attrib["name"]
+        start = _BOOLEAN.get(kind.get("start", ""), kind.get("start", "0"))
         low, high = _limits(root, kind)
         rows.append(
             f'    {{"{name}", offsetof({struct}, {places[name]}), '
-            f"{_TYPES[kind.tag]}, {_role(variable)}, {_start(kind)}, {low}, {high}}},"
+            f"SH_TYPE_{kind.tag.upper()}, {_role(variable)}, {start}, {low}, {high}}},"
         )
-    return "\n".join(
-        [
-            "/* Generated from the model description; do not edit. */",
-            f'#define SH_IDENTIFIER "{identifier}"',
-            f'#define SH_GUID "{guid}"',
-            "",
-            "static const sh_variable VARIABLES[] = {",
-            *rows,
-            "};",
-            "",
-        ]
-    )
+    table = "\n".join(rows)
+    return f"""\
+/* Generated from the model description; do not edit. */
+#define SH_IDENTIFIER "{identifier}"
+#define SH_GUID "{guid}"
+
+static const sh_variable VARIABLES[] = {{
+{table}
+}};
+"""
 
 
-_LARGEST = {"rls.n": "SH_MAX_N", "rls.m": "SH_MAX_M"}
-"""Sizes that can be given to the compiler."""
+_LARGEST = {"rls.n": "SH_MAX_N", "rls.m": "SH_MAX_M"}  # sizes that can be given to the compiler
 
 
 def parameter_table(template: Path) -> str:
@@ -155,21 +139,19 @@ def parameter_table(template: Path) -> str:
         if variable.attrib["causality"] == "parameter" and "[" not in variable.attrib["name"]:
             macro = "REAL" if variable[0].tag == "Real" else "INTEGER"
             rows[macro].append(f"    {macro}({', '.join(_row(root, variable))})")
-    return "\n".join(
-        [
-            "/* Generated from modelDescription/ by the target parameter_table; do not edit.",
-            " * A row: place in sh_parameters, start, least and largest value, range in words.",
-            " */",
-            "static const real_parameter REALS[] = {",
-            *rows["REAL"],
-            "};",
-            "",
-            "static const integer_parameter INTEGERS[] = {",
-            *rows["INTEGER"],
-            "};",
-            "",
-        ]
-    )
+    reals, integers = map("\n".join, rows.values())
+    return f"""\
+/* Generated from modelDescription/ by the target parameter_table; do not edit.
+ * A row: place in sh_parameters, start, least and largest value, range in words.
+ */
+static const real_parameter REALS[] = {{
+{reals}
+}};
+
+static const integer_parameter INTEGERS[] = {{
+{integers}
+}};
+"""
 
 
 def write_parameters(template: Path, out: Path) -> None:
@@ -181,7 +163,7 @@ def _row(root: Element, variable: Element) -> tuple[str, ...]:
     name, kind = variable.attrib["name"], variable[0]
     start, low, high = kind.attrib["start"], kind.get("min"), kind.get("max")
     if kind.tag == "Boolean":
-        return name, {"false": "0", "true": "1"}[start], "0", "1", '"0 or 1"'
+        return name, _BOOLEAN[start], "0", "1", '"0 or 1"'
     if kind.tag == "Enumeration":
         words = [f"{item['value']} ({item['name']})" for item in items(root, kind)]
         allowed = f"{', '.join(words[:-1])} or {words[-1]}"

@@ -35,8 +35,7 @@ CODE = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-s")
 FLAGS = (*CODE, "-fPIC", "-shared")
 
 
-HEADERS = Path(fmpy.__file__).parent / "c-code"
-"""Folder of the header files of FMI."""
+HEADERS = Path(fmpy.__file__).parent / "c-code"  # folder of the header files of FMI
 
 
 def compile_files(target: str, arguments: Iterable[str | Path], cache: Path, cwd: Path) -> None:
@@ -57,12 +56,9 @@ def compile_files(target: str, arguments: Iterable[str | Path], cache: Path, cwd
 def source_files(folder: Path) -> list[Path]:
     """The C files of an unpacked FMU."""
     # FMPy reads the SourceFiles of FMI 2.0 as a build configuration of FMI 3.0.
-    listed = _description(folder).buildConfigurations[0].sourceFileSets[0].sourceFiles
+    described: Any = fmpy.read_model_description(str(folder))
+    listed = described.buildConfigurations[0].sourceFileSets[0].sourceFiles
     return [folder / "sources" / source for source in listed]
-
-
-def _description(folder: Path) -> Any:
-    return fmpy.read_model_description(str(folder))
 
 
 def compile_binary(folder: Path, platform: str, cache: Path) -> None:
@@ -70,14 +66,9 @@ def compile_binary(folder: Path, platform: str, cache: Path) -> None:
 
     ``cache`` and errors as ``compile_files``.
     """
-    name = _description(folder).coSimulation.modelIdentifier
-    compile_shared(
-        source_files(folder),
-        [folder / "sources"],
-        folder / "binaries" / platform / name,
-        platform,
-        cache,
-    )
+    name = fmpy.read_model_description(str(folder)).coSimulation.modelIdentifier
+    out = folder / "binaries" / platform / name
+    compile_shared(source_files(folder), [folder / "sources"], out, platform, cache)
 
 
 def compile_shared(
@@ -90,18 +81,14 @@ def compile_shared(
     target, extension = {**PLATFORMS, **PLATFORMS_3}[platform]
     library = out.with_name(out.name + extension)
     with TemporaryDirectory() as scratch:
-        compile_files(
-            target,
-            [
-                *FLAGS,
-                *(f"-I{folder.resolve()}" for folder in (*includes, HEADERS)),
-                *(source.resolve() for source in sources),
-                # Without a folder: a library of macOS stores the name given to the linker.
-                *("-lm", "-o", library.name),
-            ],
-            cache,
-            Path(scratch),
-        )
+        arguments: list[str | Path] = [
+            *FLAGS,
+            *(f"-I{folder.resolve()}" for folder in (*includes, HEADERS)),
+            *(source.resolve() for source in sources),
+            # Without a folder: a library of macOS stores the name given to the linker.
+            *("-lm", "-o", library.name),
+        ]
+        compile_files(target, arguments, cache, Path(scratch))
         library.parent.mkdir(parents=True, exist_ok=True)
         shutil.move(Path(scratch) / library.name, library)
     return library
@@ -115,7 +102,7 @@ def release(fmu: Path, out: Path, cache: Path) -> None:
     with TemporaryDirectory() as unpacked:
         folder = Path(fmpy.extract(str(fmu), unzipdir=unpacked))
         shutil.rmtree(folder / "binaries")
-        for platform in PLATFORMS_3 if _description(folder).fmiVersion == "3.0" else PLATFORMS:
+        version = fmpy.read_model_description(str(folder)).fmiVersion
+        for platform in PLATFORMS_3 if version == "3.0" else PLATFORMS:
             compile_binary(folder, platform, cache)
-        files = [f for f in folder.rglob("*") if f.is_file()]
-        archive.write(out, {f.relative_to(folder).as_posix(): f for f in files})
+        archive.write(out, archive.files_in(folder))

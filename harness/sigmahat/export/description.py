@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
-from xml.etree.ElementTree import Element
+from xml.etree.ElementTree import Element, SubElement
 
 from sigmahat.export.c_variables import STORAGE, c_table
 from sigmahat.export.templates import render, variables
@@ -22,23 +22,22 @@ def _add_model_structure(root: Element) -> None:
     At a communication point no output depends on an input: both estimators and plants compute
     outputs in fmi2DoStep alone.
     """
-    structure = ElementTree.SubElement(root, "ModelStructure")
-    listed = ElementTree.SubElement(structure, "Outputs")
-    unknowns = ElementTree.SubElement(structure, "InitialUnknowns")
+    structure = SubElement(root, "ModelStructure")
+    listed = SubElement(structure, "Outputs")
+    unknowns = SubElement(structure, "InitialUnknowns")
     indices = {v.attrib["name"]: i for i, v in enumerate(variables(root), start=1)}
     for variable in variables(root):
         if variable.attrib["causality"] != "output":
             continue
         index = str(indices[variable.attrib["name"]])
         known = sorted(indices[name] for name in variable.attrib.pop("depends").split())
-        ElementTree.SubElement(listed, "Unknown", index=index, dependencies="")
-        ElementTree.SubElement(
-            unknowns,
-            "Unknown",
-            index=index,
-            dependencies=" ".join(map(str, known)),
-            dependenciesKind=" ".join(["dependent"] * len(known)),
-        )
+        SubElement(listed, "Unknown", index=index, dependencies="")
+        SubElement(unknowns, "Unknown", {"index": index, **_dependencies(known)})
+
+
+def _dependencies(known: Sequence[int]) -> dict[str, str]:
+    kinds = " ".join(["dependent"] * len(known))
+    return {"dependencies": " ".join(map(str, known)), "dependenciesKind": kinds}
 
 
 def _add_display_units(root: Element) -> None:
@@ -82,20 +81,8 @@ def complete(root: Element) -> str:
     return guid
 
 
-def _add_source_files(root: Element, names: Iterable[str]) -> None:
-    """The files of ``sources/`` that an importer has to compile."""
-    listed = ElementTree.SubElement(root.findall("CoSimulation")[0], "SourceFiles")
-    for name in names:
-        ElementTree.SubElement(listed, "File", name=name)
-
-
 def write(
-    template: Path,
-    out: Path,
-    version: str,
-    struct: str,
-    storage: str,
-    sources: Iterable[Path],
+    template: Path, out: Path, version: str, struct: str, storage: str, sources: Iterable[Path]
 ) -> None:
     """Write ``modelDescription.xml`` and ``variables.h`` of a template into a folder.
 
@@ -108,18 +95,18 @@ def write(
     out.mkdir(parents=True, exist_ok=True)
     root = render(template, version)
     sources = list(sources)
-    _add_source_files(root, file_names(for_version(sources, 2)))
+    listed = SubElement(root.findall("CoSimulation")[0], "SourceFiles")
+    for name in file_names(for_version(sources, 2)):
+        SubElement(listed, "File", name=name)
     guid = complete(root)
     table = c_table(root, struct, STORAGE[storage](root), guid)
     (out / "variables.h").write_text(table, encoding="utf-8")
     _write_xml(root, out / "modelDescription.xml")
     names = file_names(for_version(sources, 3))
-    described = build_description(template.stem, names)
     (out / "fmi3").mkdir(exist_ok=True)
     _write_xml(for_fmi3(root), out / "fmi3/modelDescription.xml")
-    _write_xml(described, out / "fmi3/buildDescription.xml")
-    shown = terminals_and_icons(root)
-    _write_xml(shown, out / "fmi3/terminalsAndIcons.xml")
+    _write_xml(build_description(template.stem, names), out / "fmi3/buildDescription.xml")
+    _write_xml(terminals_and_icons(root), out / "fmi3/terminalsAndIcons.xml")
 
 
 def _write_xml(root: Element, file: Path) -> None:
@@ -164,20 +151,19 @@ def for_fmi3(root: Element) -> Element:
     made = Element("fmiModelDescription", {**root.attrib, "fmiVersion": "3.0"})
     made.set("instantiationToken", made.attrib.pop("guid"))
     (identifier,) = (e.attrib["modelIdentifier"] for e in root.findall("CoSimulation"))
-    ElementTree.SubElement(
-        made,
-        "CoSimulation",
-        modelIdentifier=identifier,
-        canGetAndSetFMUState="true",
-        canSerializeFMUState="true",
-        canHandleVariableCommunicationStepSize="true",
-    )
+    able = ("GetAndSetFMUState", "SerializeFMUState", "HandleVariableCommunicationStepSize")
+    can = {f"can{what}": "true" for what in able}
+    SubElement(made, "CoSimulation", {"modelIdentifier": identifier, **can})
     for part in ("UnitDefinitions", "TypeDefinitions", "LogCategories", "DefaultExperiment"):
         made.extend(map(copy.deepcopy, root.findall(part)))
-    for definition in made.findall("TypeDefinitions"):
-        _convert_types(definition)
+    for definitions in made.findall("TypeDefinitions"):
+        for simple in list(definitions):
+            converted = SubElement(definitions, "EnumerationType", simple.attrib)
+            converted.extend(simple.findall("Enumeration/Item"))
+            definitions.remove(simple)
     for units in made.findall("UnitDefinitions"):
-        _add_second(units)
+        if units.find("Unit[@name='s']") is None:  # the unit of time, which no variable has
+            SubElement(SubElement(units, "Unit", name="s"), "BaseUnit", s="1")
     for categories in made.findall("LogCategories"):  # FMI 3.0 has no requests for status
         categories.remove(categories.findall("Category[@name='logStatusDiscard']")[0])
     made.append(_model_variables(root))
@@ -186,35 +172,15 @@ def for_fmi3(root: Element) -> Element:
     return made
 
 
-def _convert_types(definitions: Element) -> None:
-    for simple in list(definitions):
-        converted = ElementTree.SubElement(definitions, "EnumerationType", simple.attrib)
-        converted.extend(simple.findall("Enumeration/Item"))
-        definitions.remove(simple)
-
-
-def _add_second(units: Element) -> None:
-    """Adds the unit of time, for FMUs whose variables do not use this unit."""
-    if units.find("Unit[@name='s']") is None:
-        ElementTree.SubElement(ElementTree.SubElement(units, "Unit", name="s"), "BaseUnit", s="1")
-
-
 def _model_variables(root: Element) -> Element:
     made = Element("ModelVariables")
     listed = variables(root)
     for variable in listed:
         kind = variable[0]
-        ElementTree.SubElement(made, _TYPES[kind.tag], {**variable.attrib, **kind.attrib})
-    ElementTree.SubElement(
-        made,
-        "Float64",
-        name="time",
-        valueReference=str(len(listed)),
-        causality="independent",
-        variability="continuous",
-        unit="s",
-        description="Simulation time",
-    )
+        SubElement(made, _TYPES[kind.tag], {**variable.attrib, **kind.attrib})
+    about = {"name": "time", "valueReference": str(len(listed)), "causality": "independent"}
+    about |= {"variability": "continuous", "unit": "s", "description": "Simulation time"}
+    SubElement(made, "Float64", about)
     return made
 
 
@@ -223,26 +189,20 @@ def _model_structure(root: Element) -> Element:
     made = Element("ModelStructure")
     for part, tag in (("Outputs", "Output"), ("InitialUnknowns", "InitialUnknown")):
         for unknown in root.findall(f"ModelStructure/{part}/Unknown"):
-            known = [str(int(i) - 1) for i in unknown.attrib["dependencies"].split()]
-            ElementTree.SubElement(
-                made,
-                tag,
-                valueReference=str(int(unknown.attrib["index"]) - 1),
-                dependencies=" ".join(known),
-                dependenciesKind=" ".join(["dependent"] * len(known)),
-            )
+            known = [int(i) - 1 for i in unknown.attrib["dependencies"].split()]
+            reference = str(int(unknown.attrib["index"]) - 1)
+            SubElement(made, tag, {"valueReference": reference, **_dependencies(known)})
     return made
 
 
 def build_description(identifier: str, sources: Sequence[str]) -> Element:
     """``sources/buildDescription.xml``: the C files that an importer has to compile."""
     root = Element("fmiBuildDescription", fmiVersion="3.0")
-    configuration = ElementTree.SubElement(
-        root, "BuildConfiguration", modelIdentifier=identifier, description="C99"
-    )
-    files = ElementTree.SubElement(configuration, "SourceFileSet", language="C99")
+    about = {"modelIdentifier": identifier, "description": "C99"}
+    configuration = SubElement(root, "BuildConfiguration", about)
+    files = SubElement(configuration, "SourceFileSet", language="C99")
     for source in sources:
-        ElementTree.SubElement(files, "SourceFile", name=source)
+        SubElement(files, "SourceFile", name=source)
     ElementTree.indent(root)
     return root
 
@@ -255,29 +215,19 @@ def terminals_and_icons(root: Element) -> Element:
     terminals connects plant and estimator in one step.
     """
     made = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
-    shown = ElementTree.SubElement(made, "GraphicalRepresentation")
+    shown = SubElement(made, "GraphicalRepresentation")
     corners = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
-    ElementTree.SubElement(shown, "CoordinateSystem", corners, suggestedScalingFactorTo_mm="0.1")
-    ElementTree.SubElement(shown, "Icon", corners)
+    SubElement(shown, "CoordinateSystem", corners, suggestedScalingFactorTo_mm="0.1")
+    SubElement(shown, "Icon", corners)
     members = dict(_measurements(root))
     if members:
-        listed = ElementTree.SubElement(made, "Terminals")
-        terminal = ElementTree.SubElement(
-            listed,
-            "Terminal",
-            name="measurements",
-            matchingRule="bus",
-            terminalKind="org.sigmahat.measurements",
-            description="Measured positions and torques of the joint",
-        )
+        about = {"name": "measurements", "matchingRule": "bus"}
+        about["terminalKind"] = "org.sigmahat.measurements"
+        about["description"] = "Measured positions and torques of the joint"
+        terminal = SubElement(SubElement(made, "Terminals"), "Terminal", about)
         for name, member in members.items():
-            ElementTree.SubElement(
-                terminal,
-                "TerminalMemberVariable",
-                variableName=name,
-                memberName=member,
-                variableKind="signal",
-            )
+            about = {"variableName": name, "memberName": member, "variableKind": "signal"}
+            SubElement(terminal, "TerminalMemberVariable", about)
     ElementTree.indent(made)
     return made
 

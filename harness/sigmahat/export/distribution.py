@@ -1,7 +1,5 @@
 """Files for pip: a wheel for each platform, and the source distribution."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

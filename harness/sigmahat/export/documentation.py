@@ -5,8 +5,6 @@ variables of the template of the model description. The icons are drawings in
 ``modelDescription/icons``: a PNG of 256 x 256 pixels, which importers show, and an equal SVG.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -25,21 +25,14 @@ class Variable:
     """A variable of an FMU, as the package declares it. An array is one variable."""
 
     causality: str
-    in_c: str
-    """Name in the FMU, and place in the structs of the library."""
-    group: str
-    """Record that contains the variable; "" for no record."""
-    name: str
-    """Name in its record."""
-    kind: str
-    """Real, Integer, Boolean or Enumeration."""
+    in_c: str  # name in the FMU, and place in the structs of the library
+    group: str  # record that contains the variable; "" for no record
+    name: str  # name in its record
+    kind: str  # Real, Integer, Boolean or Enumeration
     type: str
-    size: str
-    """ "[8, 5]" for an array, else ""."""
-    start: str
-    """Start value, "" without a start value."""
-    limits: tuple[str, ...]
-    """Modifiers such as "min=0"."""
+    size: str  # "[8, 5]" for an array, else ""
+    start: str  # start value, "" without a start value
+    limits: tuple[str, ...]  # modifiers such as "min=0"
     nominal: str
     unit: str
     description: str

@@ -3,8 +3,6 @@
 ``python -m sigmahat.export.plant_codegen AwasPlant FOLDER``
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Sequence
 from importlib import import_module
@@ -163,33 +161,31 @@ def write(
     )
     for function in generated:
         generator.add(function)
-    sizes = {
-        "PARAMETERS": len(parameters),
-        "INPUTS": len(inputs),
-        "OUTPUTS": len(outputs),
-        "STATES": len(plant.states),
-        "NORMALS": len(plant.normals),
-        "FACTORS": by_name["sh_plant_factorize"].numel_out(0),
-    }
+    factors = by_name["sh_plant_factorize"].numel_out(0)
     scales = ", ".join(repr(state.scale) for state in plant.states.values())
-    header = [
-        f"/* Generated from the equations of {plant.name}; do not edit. */",
-        "#ifndef SH_PLANT_FUNCTIONS_H",
-        "#define SH_PLANT_FUNCTIONS_H",
-        "",
-        *(f"#define SH_PLANT_{name} {size}" for name, size in sizes.items()),
-        f"#define SH_PLANT_SCALES {{{scales}}} /* of the states */",
-        "",
-        *(
-            f"int {name}(const double **arg, double **res, int *iw, double *w, int mem);"
-            for name in by_name
-        ),
-        "",
-        "#endif",
-        "",
-    ]
+    declared = "\n".join(
+        f"int {name}(const double **arg, double **res, int *iw, double *w, int mem);"
+        for name in by_name
+    )
+    header = f"""\
+/* Generated from the equations of {plant.name}; do not edit. */
+#ifndef SH_PLANT_FUNCTIONS_H
+#define SH_PLANT_FUNCTIONS_H
+
+#define SH_PLANT_PARAMETERS {len(parameters)}
+#define SH_PLANT_INPUTS {len(inputs)}
+#define SH_PLANT_OUTPUTS {len(outputs)}
+#define SH_PLANT_STATES {len(plant.states)}
+#define SH_PLANT_NORMALS {len(plant.normals)}
+#define SH_PLANT_FACTORS {factors}
+#define SH_PLANT_SCALES {{{scales}}} /* of the states */
+
+{declared}
+
+#endif
+"""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "plant_functions.h").write_text("\n".join(header), encoding="utf-8")
+    (folder / "plant_functions.h").write_text(header, encoding="utf-8")
     (folder / "plant_functions.c").write_text(_QUIET + generator.dump(), encoding="utf-8")
 
 

@@ -4,8 +4,6 @@ All parts that do not depend on the equations are taken from ``AwasPlant.fmu`` a
 So only sigmahat with its extra ``plants`` and a C compiler are needed.
 """
 
-from __future__ import annotations
-
 import os
 import shlex
 import shutil
@@ -114,16 +112,17 @@ def _list_variables(
         variability = "fixed" if name in fixed else "tunable"
         add(name, "parameter", variability=variability, initial="exact")
     if plant.normals:
-        seed = ElementTree.SubElement(listed, "ScalarVariable", name=SEED, causality="parameter")
-        text = "Seed of the noise: one seed is one sequence of samples"
-        seed.attrib |= {"variability": "fixed", "initial": "exact", "description": text}
-        ElementTree.SubElement(seed, "Integer", start="1")
-        period = ElementTree.SubElement(
-            listed, "ScalarVariable", name=SAMPLE_PERIOD, causality="parameter"
-        )
-        text = "Time between two samples of the noise, which is held in between"
-        period.attrib |= {"variability": "fixed", "initial": "exact", "description": text}
-        ElementTree.SubElement(period, "Real", unit="s", start="1e-3", min="1e-9")
+        listed.extend(ElementTree.fromstring(_NOISE))
+
+
+_NOISE = f"""<ModelVariables>
+<ScalarVariable name="{SEED}" causality="parameter" variability="fixed" initial="exact"
+ description="Seed of the noise: one seed is one sequence of samples">
+<Integer start="1"/></ScalarVariable>
+<ScalarVariable name="{SAMPLE_PERIOD}" causality="parameter" variability="fixed" initial="exact"
+ description="Time between two samples of the noise, which is held in between">
+<Real unit="s" start="1e-3" min="1e-9"/></ScalarVariable>
+</ModelVariables>"""
 
 
 def _depends(plant: PlantEquations) -> dict[str, list[str]]:
@@ -204,8 +203,7 @@ def write_plant_fmu(
         place = folder / "binaries" / fmpy.platform
         place.mkdir(parents=True)
         compile_folder(sources, place / f"{plant.name}{fmpy.sharedLibraryExtension}")
-        files = [file for file in folder.rglob("*") if file.is_file()]
-        archive.write(Path(fmu), {file.relative_to(folder).as_posix(): file for file in files})
+        archive.write(Path(fmu), archive.files_in(folder))
 
 
 def _write_description(

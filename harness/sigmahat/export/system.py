@@ -3,8 +3,6 @@
 The scenario ``table1`` with the estimator RESIDUAL gives the connections and parameters.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -54,13 +52,8 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
             ("plant", of_plant, {**table1.plant.start, **_torques(table1)}),
             ("estimator", of_estimator, residual.start),
         ):
-            parameters = _parameters(fmu, start)
-            add(
-                f"resources/{element}.ssv",
-                "parameters.ssv",
-                element=element,
-                parameters=parameters,
-            )
+            more = {"element": element, "parameters": _parameters(fmu, start)}
+            add(f"resources/{element}.ssv", "parameters.ssv", **more)
         archive.write(ssp, contents)
 
 
@@ -73,10 +66,8 @@ def _torques(table1: Scenario) -> dict[str, Value]:
     for name, signal in table1.plant.inputs.items():
         if not isinstance(signal, Sine) or signal.phase:
             raise ValueError(f"{name}: expected a sine without a phase, the scenario has {signal}")
-        start |= {
-            f"signal.{name}.amplitude": signal.amplitude,
-            f"signal.{name}.frequency": signal.frequency,
-        }
+        for part in ("amplitude", "frequency"):
+            start[f"signal.{name}.{part}"] = getattr(signal, part)
     return start
 
 
@@ -107,13 +98,7 @@ def _parameters(fmu: Fmu, start: Mapping[str, Value]) -> list[dict[str, Any]]:
                     f"{fmu.name}.{name}: the SSP keeps {own[name]}, but the scenario has {value}"
                 )
         elif not name.startswith("rls.eta_0"):
-            boolean = variable.type == "Boolean"
-            listed.append(
-                {
-                    "name": name,
-                    "type": variable.type,
-                    "value": str(bool(value)).lower() if boolean else repr(value),
-                    "unit": variable.unit,
-                }
-            )
+            text = str(bool(value)).lower() if variable.type == "Boolean" else repr(value)
+            about = {"name": name, "type": variable.type, "value": text, "unit": variable.unit}
+            listed.append(about)
     return listed

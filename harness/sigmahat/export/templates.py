@@ -13,8 +13,7 @@ from xml.etree.ElementTree import Element
 
 import jinja2
 
-UNITS = Path(__file__).with_name("units.xml")
-"""All units that a variable may have."""
+UNITS = Path(__file__).with_name("units.xml")  # all units that a variable may have
 
 
 def render(template: Path, version: str) -> Element:

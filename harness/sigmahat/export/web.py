@@ -5,8 +5,6 @@ the logger of the page. They are part of a script, because a page that was opene
 read other files.
 """
 
-from __future__ import annotations
-
 import base64
 import json
 import shutil
@@ -23,29 +21,15 @@ from sigmahat.logs.configuration import ANOTHER_ROBOT, ANY_COULOMB
 from sigmahat.paper.scenarios import scenario
 
 FUNCTIONS = (
-    "fmi2Instantiate",
-    "fmi2SetupExperiment",
-    "fmi2EnterInitializationMode",
-    "fmi2ExitInitializationMode",
-    "fmi2DoStep",
-    "fmi2GetReal",
-    "fmi2GetInteger",
-    "fmi2GetBoolean",
-    "fmi2SetReal",
-    "fmi2SetInteger",
-    "fmi2SetBoolean",
-    "fmi2SetRealInputDerivatives",
-    "page_callbacks",
-    "malloc",
-    "free",
+    *("fmi2Instantiate", "fmi2SetupExperiment", "fmi2EnterInitializationMode"),
+    *("fmi2ExitInitializationMode", "fmi2DoStep", "fmi2GetReal", "fmi2GetInteger"),
+    *("fmi2GetBoolean", "fmi2SetReal", "fmi2SetInteger", "fmi2SetBoolean"),
+    *("fmi2SetRealInputDerivatives", "page_callbacks", "malloc", "free"),
 )
 """Functions that the page calls."""
 _TARGET, _KIND = "wasm32-wasi", "-mexec-model=reactor"
-_UNKNOWN = {
-    "prior.B": ANOTHER_ROBOT,
-    "prior.D_theta": ANOTHER_ROBOT,
-    "prior.tau_coulomb": ANY_COULOMB,
-}
+_UNKNOWN = {f"prior.{name}": ANOTHER_ROBOT for name in ("B", "D_theta")}
+_UNKNOWN["prior.tau_coulomb"] = ANY_COULOMB
 """Parameters that `sigmahat init` writes for a log whose motor is not known."""
 _SHOWN = ("type", "unit", "start", "description")
 
@@ -90,18 +74,14 @@ def compile_wasm(folder: Path, callbacks: Path, cache: Path) -> bytes:
     """
     with TemporaryDirectory() as scratch:
         binary = Path(scratch) / "fmu.wasm"
-        cross_compiler.compile_files(
-            _TARGET,
-            [
-                *(_KIND, *cross_compiler.CODE),
-                *(f"-I{each.resolve()}" for each in (folder / "sources", cross_compiler.HEADERS)),
-                *(source.resolve() for source in cross_compiler.source_files(folder)),
-                *(callbacks.resolve(), "-lm", "-o", binary),
-                *(f"-Wl,--export={name}" for name in FUNCTIONS),
-            ],
-            cache,
-            Path(scratch),
-        )
+        arguments: list[str | Path] = [
+            *(_KIND, *cross_compiler.CODE),
+            *(f"-I{each.resolve()}" for each in (folder / "sources", cross_compiler.HEADERS)),
+            *(source.resolve() for source in cross_compiler.source_files(folder)),
+            *(callbacks.resolve(), "-lm", "-o", binary),
+            *(f"-Wl,--export={name}" for name in FUNCTIONS),
+        ]
+        cross_compiler.compile_files(_TARGET, arguments, cache, Path(scratch))
         return binary.read_bytes()
 
 

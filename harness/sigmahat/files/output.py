@@ -1,7 +1,5 @@
 """Output of a command: folders and files that are complete or do not exist, and their SHA-256."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math

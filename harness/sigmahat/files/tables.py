@@ -39,8 +39,7 @@ class NumericColumn:
     """A column of numbers."""
 
     unit: str | None
-    values: NDArray[Any]
-    """One value for each row."""
+    values: NDArray[Any]  # one value for each row
 
 
 def numeric_columns(table: pa.Table) -> dict[str, NumericColumn]:

@@ -1,7 +1,5 @@
 """TOML files: the configuration of a log, the plan of a sweep."""
 
-from __future__ import annotations
-
 import errno
 import sys
 from collections.abc import Iterator, Mapping, MutableMapping

@@ -1,7 +1,5 @@
 """Installed parts of this package: its FMUs, its version, and optional packages."""
 
-from __future__ import annotations
-
 import re
 import shlex
 import sys

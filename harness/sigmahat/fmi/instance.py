@@ -1,13 +1,15 @@
-"""One FMU in a co-simulation: variables by name on top of FMPy's FMI 2.0 calls."""
+"""FMUs and their instances in a co-simulation, by names on top of FMPy's FMI 2.0 calls."""
 
 from __future__ import annotations
 
 import logging
+import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
-from ctypes import byref
+from ctypes import byref, c_size_t
+from functools import lru_cache
 from importlib import import_module
 from multiprocessing.util import Finalize, is_exiting
 from pathlib import Path
@@ -21,6 +23,7 @@ import numpy as np
 from fmpy import fmi2
 from numpy.typing import NDArray
 
+from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.interrupts import interrupts_wait
 from sigmahat.fmi.unknown_name import unknown
 
@@ -36,11 +39,9 @@ with interrupts_wait():  # FMPy needs lxml; a Ctrl-C during this import would be
 # first two FMUs at the same time could fail, or end the process.
 _etree.XMLSchema(_etree.XML('<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"/>'))
 
-Value = float | int | bool | str
-"""Value of a variable. An enumeration takes the name of its item."""
+Value = float | int | bool | str  # of a variable. An enumeration takes the name of its item.
 
-_TOO_LARGE = 2**31
-"""Smallest positive integer that does not fit an Integer of FMI."""
+_TOO_LARGE = 2**31  # smallest positive integer that does not fit an Integer of FMI
 
 _log = logging.getLogger("sigmahat")
 
@@ -173,6 +174,41 @@ def _shown(value: object) -> str:
         return "a number with too many digits"
 
 
+def installed(name: str) -> Fmu:
+    """An FMU of this installation. Raises FileNotFoundError if no FMU has this name."""
+    return opened(installed_fmu(name))
+
+
+def named(fmu: str) -> Fmu:
+    """An FMU of this installation by its name, or the FMU at a path that ends in .fmu.
+
+    Raises what `installed` and `opened` do.
+    """
+    path = Path(fmu)
+    return opened(path) if path.suffix.lower() == ".fmu" else installed(fmu)
+
+
+def opened(path: Path) -> Fmu:
+    """An FMU, unpacked until the process ends. Raises what Fmu does.
+
+    The FMU is unpacked again if the file has changed since the last call, or if the FMU allows one
+    instance per process only. Such an FMU may need its library loaded again.
+    """
+    status = path.stat()
+    fmu = _opened(path.resolve(), status.st_mtime_ns, status.st_size)
+    once = fmu.description.coSimulation.canBeInstantiatedOnlyOncePerProcess
+    return Fmu(path) if once else fmu
+
+
+@lru_cache(maxsize=32)
+def _opened(path: Path, _changed: int, _size: int) -> Fmu:
+    return Fmu(path)
+
+
+if hasattr(os, "register_at_fork"):  # the folders belong to the parent process
+    os.register_at_fork(after_in_child=_opened.cache_clear)
+
+
 class Slave:
     """One instance of an FMU, in the state "instantiated" at first.
 
@@ -226,13 +262,10 @@ class Slave:
         self.call(self.functions.fmi2SetupExperiment, 0, 0.0, 0.0, 0, 0.0)
         for name, number in numbers.items():
             variable = self.fmu.variables[name]
-            setter, kind = {
-                "Real": (self.functions.fmi2SetReal, fmi2.fmi2Real),
-                "Integer": (self.functions.fmi2SetInteger, fmi2.fmi2Integer),
-                "Enumeration": (self.functions.fmi2SetInteger, fmi2.fmi2Integer),
-                "Boolean": (self.functions.fmi2SetBoolean, fmi2.fmi2Boolean),
-            }[variable.type]
-            self.call(setter, value_references([variable]), 1, (kind * 1)(number))
+            kind = "Integer" if variable.type == "Enumeration" else variable.type
+            value = (getattr(fmi2, f"fmi2{kind}") * 1)(number)
+            setter = getattr(self.functions, f"fmi2Set{kind}")
+            self.call(setter, value_references([variable]), 1, value)
         self.call(self.functions.fmi2EnterInitializationMode)
         self.call(self.functions.fmi2ExitInitializationMode)
 
@@ -243,6 +276,41 @@ class Slave:
         self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, category)
         yield
         self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2False, 0, None)
+
+    def saved(self) -> bytes:
+        """The state: parameters, inputs, outputs, time, and all that the FMU has learned."""
+        fmi = self.functions
+        with self._state() as state:
+            self.call(fmi.fmi2GetFMUstate, byref(state))
+            size = c_size_t()
+            self.call(fmi.fmi2SerializedFMUstateSize, state, byref(size))
+            saved = (fmi2.fmi2Byte * size.value)()
+            self.call(fmi.fmi2SerializeFMUstate, state, saved, size)
+            return bytes(saved)
+
+    def restore(self, saved: bytes) -> float:
+        """Takes a state that was saved, and returns its time [s].
+
+        Raises FmuError, whose message says what is wrong, for bytes that are no state of this FMU.
+        """
+        fmi = self.functions
+        with self._state() as state:
+            block = (fmi2.fmi2Byte * len(saved)).from_buffer_copy(saved)
+            self.call(fmi.fmi2DeSerializeFMUstate, block, len(saved), byref(state))
+            self.call(fmi.fmi2SetFMUstate, state)
+        time = fmi2.fmi2Real()
+        self.call(fmi.fmi2GetRealStatus, fmi2.fmi2LastSuccessfulTime, byref(time))
+        return float(time.value)
+
+    @contextmanager
+    def _state(self) -> Iterator[Any]:
+        """A pointer to a state, whose memory is freed at the end of the block."""
+        state = fmi2.fmi2FMUstate()
+        try:
+            yield state
+        finally:
+            if state:
+                self.functions.fmi2FreeFMUstate(self.component, byref(state))
 
     def take_message(self, status: int, text: str) -> None:
         """Logs a warning, and keeps the text of an error for the exception."""

@@ -1,7 +1,5 @@
 """Delays Ctrl-C where a signal would be lost, or would leave work half done."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Iterator

@@ -4,8 +4,6 @@ At every t_k = k T the estimators get the outputs of the plant at t_k, and run t
 plant makes a step to t_k+1, with inputs that are linear during the step.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -15,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.opened import named
+from sigmahat.fmi.instance import Slave, Value, named
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 from sigmahat.fmi.series import Series
 
@@ -148,7 +145,7 @@ def _values(inputs: Mapping[str, Signal], t: NDArray[np.float64]) -> NDArray[np.
 def _connect(loop: SampleLoop, plant: Slave, slave: Slave, connections: Mapping[str, str]) -> None:
     """Passes outputs of the plant to inputs of a slave."""
     wires = np.empty(len(connections))
-    loop.get_real(plant, plant.fmu.references(connections.values(), "output"), wires)
+    loop.get(plant, "Real", plant.fmu.references(connections.values(), "output"), wires)
     loop.set_real(slave, slave.fmu.references(connections.keys(), "input"), wires)
 
 

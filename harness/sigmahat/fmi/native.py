@@ -3,8 +3,6 @@
 Python calls the library with ctypes, so that other threads of Python can run meanwhile.
 """
 
-from __future__ import annotations
-
 import ctypes
 import logging
 from functools import lru_cache
@@ -14,7 +12,7 @@ import fmpy
 
 from sigmahat.fmi.installed import folder
 
-_INTERFACE = 2  # as in harness/native/version.c
+_INTERFACE = 2  # as in harness/native/sample_loop.c
 _POINTER, _SIZE, _NUMBER = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint
 _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sh_sample_loop": (_SIZE, [_POINTER, *[_SIZE] * 3]),

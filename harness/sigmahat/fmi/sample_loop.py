@@ -85,20 +85,12 @@ class SampleLoop:
         """Makes a step; step_times() gives the table."""
         self._add(_DO_STEP, slave, slave.functions.fmi2DoStep, None, None, times)
 
-    def get_real(self, slave: Slave, references: Any, table: NDArray[np.float64]) -> None:
-        """Gets Real variables."""
+    def get(self, slave: Slave, kind: str, references: Any, table: NDArray[Any]) -> None:
+        """Gets variables of a kind: "Real"; "Integer", also for enumerations; or "Boolean"."""
         if len(references):
-            self._add(_GET_REAL, slave, slave.functions.fmi2GetReal, references, None, table)
-
-    def get_integer(self, slave: Slave, references: Any, table: NDArray[np.int32]) -> None:
-        """Gets Integer or Enumeration variables."""
-        if len(references):
-            self._add(_GET_INTEGER, slave, slave.functions.fmi2GetInteger, references, None, table)
-
-    def get_boolean(self, slave: Slave, references: Any, table: NDArray[np.int32]) -> None:
-        """Gets Boolean variables."""
-        if len(references):
-            self._add(_GET_INTEGER, slave, slave.functions.fmi2GetBoolean, references, None, table)
+            number = _GET_REAL if kind == "Real" else _GET_INTEGER
+            get = getattr(slave.functions, f"fmi2Get{kind}")
+            self._add(number, slave, get, references, None, table)
 
     def extend(self, other: SampleLoop) -> None:
         """Adds the calls of another loop."""
@@ -157,11 +149,10 @@ def _run_in_python(calls: list[_Call], first: int, end: int) -> int:
             component = call.slave.component
             if call.kind == _DO_STEP:
                 status = call.function(component, row[0], row[1], fmi2.fmi2True)
-            elif call.kind == _SET_SLOPES:
-                count = len(call.references)
-                status = call.function(component, call.references, count, call.orders, row)
             else:
-                status = call.function(component, call.references, len(call.references), row)
+                orders = [call.orders] if call.kind == _SET_SLOPES else []
+                count = len(call.references)
+                status = call.function(component, call.references, count, *orders, row)
             if status > fmi2.fmi2Warning:
                 return place
     return len(calls)
@@ -171,7 +162,7 @@ def _address(array: Any) -> int | None:
     return None if array is None else ctypes.addressof(array)
 
 
-_KINDS = {"Real": "real", "Integer": "integer", "Enumeration": "integer", "Boolean": "boolean"}
+_KINDS = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}
 """Which function gets a variable, by its type."""
 
 
@@ -188,7 +179,7 @@ class Recorder:
                 raise ValueError(f"{slave.fmu.name}.{v.name}: a {v.type} cannot be recorded")
         for kind in dict.fromkeys(_KINDS.values()):
             group = [v for v in variables if _KINDS[v.type] == kind]
-            dtype = np.float64 if kind == "real" else np.int32
+            dtype = np.float64 if kind == "Real" else np.int32
             self._tables[kind] = group, np.empty((samples, len(group)), dtype)
         self._items = {
             v.name: slave.fmu.items(v.name) for v in variables if v.type == "Enumeration"
@@ -197,13 +188,8 @@ class Recorder:
 
     def add_to(self, loop: SampleLoop) -> None:
         """From now on the loop writes a row for each of its samples."""
-        for kind, get in (
-            ("real", loop.get_real),
-            ("integer", loop.get_integer),
-            ("boolean", loop.get_boolean),
-        ):
-            group, table = self._tables[kind]
-            get(self.slave, value_references(group), table)
+        for kind, (group, table) in self._tables.items():
+            loop.get(self.slave, kind, value_references(group), table)
 
     def sample(self, k: int) -> None:
         """Writes row k at once. Raises FmuError if the FMU refuses."""
@@ -225,11 +211,10 @@ class Recorder:
         names of its items.
         """
         fmu = self.slave.fmu
-        columns = {}
+        columns: dict[str, NDArray[Any]] = {}
         for group, table in self._tables.values():
             for i, v in enumerate(group):
                 values = np.ascontiguousarray(table[:, i])
-                columns[v.name] = (
-                    fmu.item_names(v.name, values) if v.type == "Enumeration" else values
-                )
+                is_item = v.type == "Enumeration"
+                columns[v.name] = fmu.item_names(v.name, values) if is_item else values
         return columns

@@ -1,8 +1,8 @@
-"""Time series of the variables of an FMU, also as tables of other libraries."""
+"""Time series of the variables of an FMU, as tables of other libraries, and their JSON schema."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -78,3 +78,17 @@ class Series:
                 about["unit"] = self.units[name]
             found[name] = (("joint", "t")[-values.ndim :], values, about)
         return found
+
+
+_KINDS = {"Real": "number", "Boolean": "boolean", "Enumeration": "string"}
+
+
+def schema(fmu: Fmu, names: Iterable[str]) -> dict[str, Any]:
+    """Schema of a message with these outputs; an enumeration is the name of its item."""
+    properties = {}
+    for name in names:
+        variable = fmu.variable(name, "output")
+        unit = f" [{variable.unit}]" if variable.unit else ""
+        described = f"{variable.description or name}{unit}"
+        properties[name] = {"type": _KINDS[variable.type], "description": described}
+    return {"type": "object", "title": "estimate", "properties": properties}

@@ -1,7 +1,5 @@
 """The error message for a name that does not exist."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from difflib import get_close_matches
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sigmahat.guessing.words import Meaning, meaning
-from sigmahat.logs.limits import check_together
-from sigmahat.logs.log import Array, Log, LogError
+from sigmahat.logs.log import Array, Log, LogError, check_together
 from sigmahat.logs.units import seconds, unwrap
 
 _MOSTLY = 0.99  # least fraction of the steps of a clock that increase

@@ -12,8 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Fmu, Slave, Value, installed
 from sigmahat.identification.coherence import TorqueNoise, coherent_range
 from sigmahat.identification.motor import KnownInertia, fit_motor
 from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
@@ -22,8 +21,7 @@ from sigmahat.identification.regression import Signals, shortest, signals_of
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.replay import parameters, replay
-from sigmahat.logs.resampling import stretches
-from sigmahat.logs.sampling import Samples, sample
+from sigmahat.logs.sampling import Samples, sample, stretches
 
 _LONGEST = 600.0  # [s] of a log that are used
 _FEWEST = 1000  # samples of the longest stretch that are left if the motor moves slowly

@@ -31,8 +31,7 @@ from sigmahat.fmi.instance import Value
 from sigmahat.identification.noise import SETTLED, low_pass
 from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.logs.log import Array
-from sigmahat.logs.resampling import stretches
-from sigmahat.logs.sampling import Samples
+from sigmahat.logs.sampling import Samples, stretches
 
 MOTOR = ("B", "D_theta", "tau_coulomb")
 """Names of the first columns, which describe the motor."""

@@ -13,7 +13,7 @@ from tomlkit.items import Item
 
 from sigmahat.files import toml_file
 from sigmahat.files.output import write_whole
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import installed
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import MOTOR
 from sigmahat.logs import joints

@@ -11,11 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.fmi import native
-from sigmahat.fmi.instance import Value
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Value, installed
 
-INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
-"""Inputs in the order of the library."""
+INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")  # inputs in the order of the library
 
 _CACHE_LINE = 64  # [bytes]
 _LARGEST_INTEGER = 2**31 - 1
@@ -100,9 +98,8 @@ class Joints:
 
     def value(self, name: str) -> NDArray[Any]:
         """The value of a variable now, [size: joints]."""
-        variable = self.fmu.variable(name)
-        dtype = np.float64 if variable.type == "Real" else np.int32
-        first = int(self._library.sh_joint_place(variable.valueReference))
+        dtype = self._dtype(name)
+        first = int(self._library.sh_joint_place(self.fmu.variable(name).valueReference))
         place = self.memory[:, first : first + np.dtype(dtype).itemsize]
         values = np.ascontiguousarray(place).view(dtype)[:, 0]
         return self.named(name, values)
@@ -154,12 +151,8 @@ class Joints:
         exist as long as the function is called.
         """
         joints, samples = next(each.shape for each in inputs if each is not None)
-        places = (Output * len(outputs))(
-            *(
-                Output(self.fmu.variable(n).valueReference, v.ctypes.data)
-                for n, v in outputs.items()
-            )
-        )
+        each_output = ((self.fmu.variable(n).valueReference, v) for n, v in outputs.items())
+        places = (Output * len(outputs))(*(Output(n, v.ctypes.data) for n, v in each_output))
         of_joints = (self._address(joint), joints, self.stride, samples)
         arrays = (*(None if each is None else each.ctypes.data for each in inputs), places)
         run, count = self._library.sh_joints_run, len(places)

@@ -10,7 +10,7 @@ from typing import Any
 
 import foxglove
 
-from sigmahat.fmi.json_schema import schema
+from sigmahat.fmi.series import schema
 from sigmahat.live.joint import BANDED, GIVEN, Estimated, LiveJoint
 from sigmahat.live.watch import Sink
 

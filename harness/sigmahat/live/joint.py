@@ -1,6 +1,6 @@
 """One joint on line: its samples at the ticks, its estimator, and the logs of this estimator.
 
-Samples are moved to the ticks as in logs/resampling.py. Units and counters are converted as in
+Samples are moved to the ticks as in logs/sampling.py. Units and counters are converted as in
 logs/sampling.py.
 """
 
@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.files.output import finite
-from sigmahat.fmi.instance import Slave
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Slave, installed
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop
 from sigmahat.joint.curve import NORMAL_95
 from sigmahat.joint.stored import LearnedLog
@@ -28,8 +27,7 @@ from sigmahat.logs.configuration import Configuration, Port
 from sigmahat.logs.learned import Learned, go_on, write_learned
 from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap, parameters
-from sigmahat.logs.resampling import AT_TICK
-from sigmahat.logs.sampling import counter_period, turns_from
+from sigmahat.logs.sampling import AT_TICK, counter_period, turns_from
 from sigmahat.logs.units import scale, seconds
 
 OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfit", "change_age")

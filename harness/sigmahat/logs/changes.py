@@ -1,7 +1,5 @@
 """Changes of the stiffness that the estimator detected: when, and how large."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -18,8 +16,7 @@ from sigmahat.joint.sheet import powers_of_phi
 class StiffnessChange:
     """A change, and its size at the deformation and set-point at which it was detected."""
 
-    t: float
-    """Time since the start of the log [s]."""
+    t: float  # time since the start of the log [s]
     relative: float | None
     """Relative difference between the last confident estimates before this change and before the
     next change [1]; None without both estimates."""

@@ -19,8 +19,6 @@ joints.py says how one file configures several joints.
 The file is TOML, because people can read it and tomlkit keeps its comments when identify writes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -165,8 +163,7 @@ class _File:
     ports: dict[Annotated[str, AfterValidator(_port_name)], Port]
     time: Time = field(default_factory=Time)
     parameters: dict[str, Any] = field(default_factory=dict)
-    identified: Any = None
-    """Results of identify, for people to read."""
+    identified: Any = None  # results of identify, for people to read
 
 
 def read_configuration(path: str | Path, joint: str = "") -> Configuration:

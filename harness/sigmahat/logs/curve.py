@@ -1,15 +1,13 @@
 """Computes the curve from an estimator: ranges of the data, torque and stiffness in the ranges."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
-from sigmahat.fmi.saved_state import restore, save
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import Branch, Curve, characteristic, nearest
 from sigmahat.joint.sheet import Polynomial
@@ -52,10 +50,8 @@ def stiffness_at(
     return recorder.columns()
 
 
-_FAMILY = 5
-"""Set-points of a curve whose set-point moves."""
-_MOST_LEVELS = 7
-"""Set-points of a curve whose set-point takes a few values."""
+_FAMILY = 5  # set-points of a curve whose set-point moves
+_MOST_LEVELS = 7  # set-points of a curve whose set-point takes a few values
 _GAP = 0.05
 """Fraction of the range of the set-point: values further apart belong to different levels."""
 _OUTER = 0.1
@@ -66,10 +62,8 @@ _OUTER = 0.1
 class Reach:
     """The range of the data at a set-point."""
 
-    set_point: float
-    """[1]"""
-    phi: Range
-    """Range of the deformation that was measured at this set-point [rad]."""
+    set_point: float  # [1]
+    phi: Range  # range of the deformation that was measured at this set-point [rad]
 
 
 def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: bool) -> list[Reach]:
@@ -80,7 +74,10 @@ def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: boo
 
     one_curve  whether the curve is equal at all set-points
     """
-    values = _inner(points.set_point)
+    values = points.set_point
+    if len(values):  # without the outermost
+        least, most = _range(values)
+        values = values[(values >= least) & (values <= most)]
     low = min([values.min(initial=np.inf), *(b.set_point[0] for b in before if b.set_point)])
     high = max([values.max(initial=-np.inf), *(b.set_point[1] for b in before if b.set_point)])
     if low > high:
@@ -105,15 +102,6 @@ def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: boo
     return found
 
 
-def _inner(values: Array) -> Array:
-    """Values without the outermost values."""
-    if not len(values):
-        return values
-    low, high = _range(values)
-    inner: Array = values[(values >= low) & (values <= high)]
-    return inner
-
-
 def _range(values: Array) -> Range:
     low, high = np.percentile(values, [_OUTER, 100 - _OUTER]).tolist()
     return low, high
@@ -133,8 +121,7 @@ def _settings(values: Array, low: float, high: float, one_curve: bool) -> list[f
     return evenly
 
 
-_WITHIN = 41
-"""Number of points of a branch in the range of the data."""
+_WITHIN = 41  # number of points of a branch in the range of the data
 _BEYOND, _BEYOND_POINTS = 0.2, 8
 """Part shown outside of either end, relative to the range, and the number of its points."""
 
@@ -155,25 +142,18 @@ def curve(
     polynomial = sheet.polynomial(start_values(slave, every), *covered)
     reach = reaches(points, logs[:-1], not polynomial.is_of_set_point)
     grids = [_grid(each, polynomial) for each in reach]
+    rows: list[Any]
     if every["method"] == "FilteredRegression" and grids:
         found = _evaluated(slave, every, reach, grids)
         polynomial = sheet.with_knees(polynomial, found["phi"], found["setPoint"], found["sigma"])
-        return Curve(polynomial, list(_branches(reach, grids, found)))
-    branches = []
-    for each, phi in zip(reach, grids, strict=True):
-        tau_e, sigma = polynomial.at(phi, each.set_point)
-        branches.append(Branch(each.set_point, each.phi, phi, tau_e, None, sigma, None))
-    return Curve(polynomial, branches)
-
-
-def _branches(
-    reach: Sequence[Reach], grids: Sequence[Array], found: Mapping[str, Array]
-) -> Iterator[Branch]:
-    ends = np.cumsum([len(grid) for grid in grids])[:-1]
-    names = ("tau_e", "tau_e_std", "sigma", "sigma_std")
-    rows = zip(*(np.split(found[name], ends) for name in names), strict=True)
-    for each, phi, values in zip(reach, grids, rows, strict=True):
-        yield Branch(each.set_point, each.phi, phi, *values)
+        ends = np.cumsum([len(grid) for grid in grids])[:-1]
+        rows = [np.split(found[name], ends) for name in _OUTPUTS[:4]]
+    else:
+        pairs = [polynomial.at(phi, r.set_point) for r, phi in zip(reach, grids, strict=True)]
+        nothing = [None] * len(pairs)
+        rows = [[pair[0] for pair in pairs], nothing, [pair[1] for pair in pairs], nothing]
+    each = zip(reach, grids, *rows, strict=True)
+    return Curve(polynomial, [Branch(r.set_point, r.phi, *values) for r, *values in each])
 
 
 def _union(ranges: Sequence[Range | None]) -> Range | None:
@@ -211,7 +191,7 @@ def _evaluated(
     ]
     with Slave(slave.fmu, "curve") as other:
         other.initialize(every)
-        t_0, T = restore(other, save(slave)), float(every["samplePeriod"])
+        t_0, T = other.restore(slave.saved()), float(every["samplePeriod"])
         return stiffness_at(other, ("theta", "q", "theta_c"), np.array(points), t_0, T)
 
 
@@ -219,9 +199,6 @@ def _evaluated(
 class Answer:
     """The result of a replay."""
 
-    curve: Curve
-    """Torque and stiffness against the deformation."""
-    points: MeasuredPoints
-    """Measured points of the curve."""
-    doubt: str
-    """Item of the output doubt at the end."""
+    curve: Curve  # torque and stiffness against the deformation
+    points: MeasuredPoints  # measured points of the curve
+    doubt: str  # item of the output doubt at the end

@@ -1,7 +1,5 @@
 """The data sheet of the joint, from an estimator at the end of a replay."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -40,12 +38,8 @@ def priors(p: Mapping[str, Value]) -> dict[str, float]:
     tau_e, phi = float(p["prior.tau_e"]), float(p["range.phi"])
     # Friction by load has two parts: by the torque of the spring, and by the torque of the motor.
     by_load = math.sqrt(2) if p["prior.tau_coulomb"] else 1.0
-    per_unit = {
-        "bias": tau_e,
-        "damping": tau_e / phi,
-        "hysteresis": tau_e,
-        "load_friction": by_load,
-    }
+    per_unit = {"bias": tau_e, "damping": tau_e / phi, "hysteresis": tau_e}
+    per_unit["load_friction"] = by_load
     return {name: float(p[f"prior.{name}"]) * per_unit.get(name, 1.0) for name in UNITS}
 
 
@@ -81,7 +75,9 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
         units=sheet.UNITS,
         fmu=FmuId.of(slave.fmu),
         logs=replay.logs,
-        configuration=_source(configuration),
+        configuration=sheet.Source(
+            str(configuration), sha256(configuration) if configuration.is_file() else None
+        ),
         method=replay.method,
         modality=str(every["modality"]),
         at_the_end=_point(last, claims),
@@ -102,10 +98,6 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
     )
 
 
-def _source(path: Path) -> sheet.Source:
-    return sheet.Source(str(path), sha256(path) if path.is_file() else None)
-
-
 def _point(outputs: Mapping[str, float], claims: bool) -> sheet.Stiffness:
     sigma, half = outputs["sigma"], NORMAL_95 * outputs["sigma_std"]
     interval = (sigma - half, sigma + half) if claims else None
@@ -117,12 +109,9 @@ def _points(curve: Curve) -> list[sheet.Stiffness]:
     found = []
     for branch in curve.branches:
         low, high = branch.stiffness_interval() or (branch.sigma, branch.sigma)
-        rows = zip(branch.phi, branch.sigma, low, high, strict=True)
-        for (phi, sigma, least, most), shown in zip(rows, branch.within, strict=True):
-            if shown:
-                interval = float(least), float(most)
-                point = sheet.Stiffness(float(phi), branch.set_point, float(sigma), interval)
-                found.append(point)
+        columns = (each[branch.within].tolist() for each in (branch.phi, branch.sigma, low, high))
+        for phi, sigma, *interval in zip(*columns, strict=True):
+            found.append(sheet.Stiffness(phi, branch.set_point, sigma, (interval[0], interval[1])))
     return found
 
 
@@ -149,9 +138,8 @@ def _parameters(
     for name, unit in MOTOR.items():
         value = float(every[f"motor.{name}"])
         std = value * float(every[f"prior.{name}"]) if measured else 0.0
-        found[name] = _with_interval(
-            last[f"{name}_hat"], unit, value, std, identified.get(name) if std else None
-        )
+        known = identified.get(name) if std else None
+        found[name] = _with_interval(last[f"{name}_hat"], unit, value, std, known)
     if not claims:
         return found
     stds = {"tau_coulomb": float(every["prior.tau_coulomb"]) if measured else 0.0}
@@ -182,11 +170,9 @@ def _identified(configuration: Path) -> dict[str, Range]:
     rows: Any = toml_file.read(configuration).unwrap().get("identified", {})
     found = {}
     for name, row in rows.items() if isinstance(rows, dict) else ():
-        if not isinstance(row, dict):
-            continue
-        value, half = row.get("value"), row.get("half_width")
-        if not (isinstance(value, float) and isinstance(half, float)):  # "cannot tell"
-            continue
-        if math.isfinite(value) and math.isfinite(half):
-            found[name] = (value - half, value + half)
+        keys = ("value", "half_width") if isinstance(row, dict) else ()
+        pair: list[Any] = [row.get(key) for key in keys]
+        # A text stands for "cannot tell".
+        if pair and all(isinstance(each, float) and math.isfinite(each) for each in pair):
+            found[name] = (pair[0] - pair[1], pair[0] + pair[1])
     return found

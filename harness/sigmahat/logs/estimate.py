@@ -1,19 +1,17 @@
 """The job of `sigmahat estimate`: replays a log, writes its results, and shows them as text."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.files.output import sha256
-from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.opened import installed
+from sigmahat.files.output import sha256, write_json
+from sigmahat.files.tables import write_csv
+from sigmahat.fmi.instance import Slave, Value, installed
 from sigmahat.fmi.series import Series
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
@@ -21,6 +19,7 @@ from sigmahat.joint.curve import (
     Curve,
     curve_text,
     headline,
+    stiffness_in_the_middle,
     stiffness_points,
     write_curve,
 )
@@ -32,7 +31,7 @@ from sigmahat.logs.job import Replay
 from sigmahat.logs.learned import LEARNED, read_learned, write_learned
 from sigmahat.logs.log import Log
 from sigmahat.logs.measured import POINTS, write_points
-from sigmahat.logs.output import REPLAYED, EstimateWriter, write_replayed
+from sigmahat.logs.output import REPLAYED, EstimateWriter, Replayed
 from sigmahat.logs.replay import OUTPUTS, coefficients
 
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
@@ -153,14 +152,11 @@ def estimate(
         if folder is None:
             kept: list[Mapping[str, NDArray[Any]]] = []
             replay.run(kept.append, progress)
-            return replace(_result(replay, replay.answer().curve), series=_series(replay, kept))
+            values = {name: np.concatenate([each[name] for each in kept]) for name in kept[0]}
+            t = replay.samples.T * np.arange(len(replay.samples.values), dtype=np.float64)
+            series = Series.of(slave.fmu, values, replay.every, t)
+            return replace(_result(replay, replay.answer().curve), series=series)
         return _written(replay, Path(folder), progress, mcap)
-
-
-def _series(replay: Replay, kept: Sequence[Mapping[str, NDArray[Any]]]) -> Series:
-    values = {name: np.concatenate([each[name] for each in kept]) for name in kept[0]}
-    t = replay.samples.T * np.arange(len(replay.samples.values), dtype=np.float64)
-    return Series.of(replay.slave.fmu, values, replay.every, t)
 
 
 def _written(
@@ -184,11 +180,9 @@ def _written(
     result = _result(replay, answered.curve)
     write_curve(answered.curve, folder / CURVE)
     write_points(answered.points, folder / POINTS)
-    changed = [each.in_words for each in result.changes]
-    notes = [*result.notes, *changed]
-    write_replayed(
-        replay.log.path, result.ticks, result.skipped, result.T, notes, folder / REPLAYED.file
-    )
+    notes = [*result.notes, *(each.in_words for each in result.changes)]
+    about = (str(result.log), result.ticks, result.skipped, result.T, notes)
+    write_json(asdict(Replayed(REPLAYED.name, REPLAYED.version, *about)), folder / REPLAYED.file)
     _save_figure(replay, answered, folder)
     return result
 
@@ -231,8 +225,7 @@ def _save_figure(replay: Replay, answered: Answer, folder: Path) -> None:
     save(lambda source: draw(*source), (replay, answered), folder / "estimate")
 
 
-_NEGLIGIBLE = 0.1
-"""Fraction of the standard deviation of a prior: smaller estimates are not shown."""
+_NEGLIGIBLE = 0.1  # fraction of the standard deviation of a prior: smaller estimates are not shown
 _WORDS = {
     "tau_coulomb": "Coulomb friction",
     "load_friction": "load friction",
@@ -243,6 +236,9 @@ _WORDS = {
 def summary(result: Estimate) -> str:
     """The result as a text of one screen."""
     p = result.parameters
+    std = "for which the method gives no standard deviation"
+    if p["method"] == "FilteredRegression":
+        std = f"standard deviation {result.sigma_std:.2g} N.m/rad"
     lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
     lines += [
         f"method {p['method']}, modality {p['modality']}, T = {result.T:g} s, "
@@ -252,7 +248,7 @@ def summary(result: Estimate) -> str:
         f"gamma = {p['motor.gamma']:g}",
         "",
         *_second_half(result),
-        f"at the end: sigma = {result.sigma:.6g} N.m/rad, {_uncertainty(result)}; "
+        f"at the end: sigma = {result.sigma:.6g} N.m/rad, {std}; "
         f"{result.skipped} of {result.ticks} ticks skipped",
     ]
     lines += curve_text(result.curve)
@@ -278,20 +274,12 @@ def _second_half(result: Estimate) -> Iterator[str]:
         yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time{why}"
 
 
-def _uncertainty(result: Estimate) -> str:
-    if result.parameters["method"] == "FilteredRegression":
-        return f"standard deviation {result.sigma_std:.2g} N.m/rad"
-    return "for which the method gives no standard deviation"
-
-
 def _found(result: Estimate) -> Iterator[str]:
     """Other estimates of FilteredRegression, unless an estimate is negligible."""
-    B, D_theta, tau_coulomb = (
-        result.motor[name] for name in ("B_hat", "D_theta_hat", "tau_coulomb_hat")
-    )
+    motor = result.motor
     yield (
-        f"motor data found: B = {B:.4g} kg.m2, D_theta = {D_theta:.4g} N.m.s/rad, "
-        f"Coulomb friction {tau_coulomb:.3g} N.m"
+        f"motor data found: B = {motor['B_hat']:.4g} kg.m2, D_theta = "
+        f"{motor['D_theta_hat']:.4g} N.m.s/rad, Coulomb friction {motor['tau_coulomb_hat']:.3g} N.m"
     )
     others = [
         f"{_WORDS.get(name, name)} {value:.3g} {UNITS[name]}".rstrip()
@@ -321,3 +309,22 @@ def _rests_on(result: Estimate) -> Iterator[str]:
         f"ranges: torque about {p['prior.tau_e']:.3g} N.m at range.phi = {p['range.phi']:.3g} rad, "
         f"range.setPoint = {p['range.setPoint']:.3g}"
     )
+
+
+JOINTS = "joints.csv"
+"""A table with rows for each joint of a log, besides the folders of the joints."""
+_TITLES = (
+    *("joint", "setPoint", "phi [rad]", "sigma [N.m/rad]", "sigma low [N.m/rad]"),
+    *("sigma high [N.m/rad]", "confident"),
+)
+
+
+def write_joints(found: Mapping[str, Estimate], folder: Path) -> None:
+    """Writes the stiffness of each joint in the middle of its data, for each setting."""
+    rows = []
+    for name, each in found.items():
+        sure = "yes" if each.doubt_at_end == "None" else f"no: {each.doubt_at_end}"
+        for branch in each.curve.branches:
+            phi, sigma, interval = stiffness_in_the_middle(branch)
+            rows.append([name, branch.set_point, phi, sigma, *(interval or (None, None)), sure])
+    write_csv(folder / JOINTS, _TITLES, rows)

@@ -1,7 +1,5 @@
 """The figure of a replay: the curve, and stiffness, torque, deformation, set-point over time."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,12 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sigmahat.logs.curve import Answer
-from sigmahat.logs.curve_panels import curve_panels
 from sigmahat.logs.job import DRAWN, Replay
 from sigmahat.logs.log import Array
-from sigmahat.logs.resampling import stretches
-from sigmahat.logs.sampling import Samples, refused
-from sigmahat.logs.time_panels import Estimate, Reduced, quantity_panels, stiffness_panels
+from sigmahat.logs.panels import Estimate, Reduced, curve_panels, quantity_panels, stiffness_panels
+from sigmahat.logs.sampling import Samples, refused, stretches
 from sigmahat.plotting.figure import draw as draw_panel
 from sigmahat.plotting.figure import label_x
 from sigmahat.plotting.panels import Panel

@@ -1,7 +1,5 @@
 """A log that is replayed through one estimator: its steps, and the statistics of its outputs."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -9,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from sigmahat.fmi.instance import Slave
-from sigmahat.joint.stored import LearnedLog
+from sigmahat.joint.stored import LearnedLog, Range
 from sigmahat.logs.changes import Changes
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import Answer, curve
@@ -22,7 +20,13 @@ from sigmahat.logs.sampling import sample
 _BUCKETS = 4000
 _OPERATION = ("phi", "setPoint")
 _POINTS = 20_000
+_NOTHING = (np.inf, -np.inf)  # range of no value
 DRAWN = ("sigma", "sigma_std", "tau_e", "tau_e_residual", "phi", "setPoint")
+
+
+def _wider(known: Range, values: Array) -> Range:
+    """The range of what is known and of further values."""
+    return min(known[0], float(values.min())), max(known[1], float(values.max()))
 
 
 class ReplayStatistics:
@@ -40,25 +44,20 @@ class ReplayStatistics:
         self.ticks = self._later = self.skipped = 0
         self._doubts: Counter[str] = Counter()
         self._squares = 0.0
-        self._low = {name: np.inf for name in DRAWN}
-        self._high = {name: -np.inf for name in DRAWN}
+        self._later_range = dict.fromkeys(DRAWN, _NOTHING)
         self._stride = -(-ticks // _POINTS)
         self._points: dict[str, list[np.ndarray[Any, Any]]] = {name: [] for name in NEEDED}
         self._used: dict[str, tuple[float, float]] = {}
-        self.last: dict[str, float] = {}
-        """Real outputs of the last tick."""
-        self.last_doubt = ""
-        """Item of the output doubt at the last tick."""
+        self.last: dict[str, float] = {}  # Real outputs of the last tick
+        self.last_doubt = ""  # item of the output doubt at the last tick
 
     def add(self, outputs: Mapping[str, np.ndarray[Any, Any]]) -> None:
         """Adds the outputs of the next ticks."""
         count = len(outputs["valid"])
+        starts = np.arange(0, count, self.bucket)
         for name in DRAWN:
-            values = outputs[name]
-            starts = np.arange(0, count, self.bucket)
-            low = np.minimum.reduceat(values, starts)
-            high = np.maximum.reduceat(values, starts)
-            self._parts[name].append(np.column_stack([low, high]))
+            ends = [each.reduceat(outputs[name], starts) for each in (np.minimum, np.maximum)]
+            self._parts[name].append(np.column_stack(ends))
         first = max(0, self._half - self.ticks)
         if first < count:
             valid = outputs["valid"][first:]
@@ -66,8 +65,7 @@ class ReplayStatistics:
             self._later += int(np.count_nonzero(valid))
             self._doubts.update(outputs["doubt"][first:].tolist())
             for name in DRAWN:
-                self._low[name] = min(self._low[name], float(outputs[name][first:].min()))
-                self._high[name] = max(self._high[name], float(outputs[name][first:].max()))
+                self._later_range[name] = _wider(self._later_range[name], outputs[name][first:])
         shown = spread(self.ticks, count, self._stride)
         for name in NEEDED:
             self._points[name].append(outputs[name][shown])
@@ -77,9 +75,7 @@ class ReplayStatistics:
         self.last_doubt = str(outputs["doubt"][-1])
         learning = outputs["valid"] & (outputs["a"] > 0)
         for name in _OPERATION if learning.any() else ():
-            used = outputs[name][learning]
-            least, most = self._used.get(name, (np.inf, -np.inf))
-            self._used[name] = min(least, float(used.min())), max(most, float(used.max()))
+            self._used[name] = _wider(self._used.get(name, _NOTHING), outputs[name][learning])
 
     def ends(self, name: str) -> Array:
         """Minimum and maximum in each interval, [size: intervals x 2]."""
@@ -87,7 +83,7 @@ class ReplayStatistics:
 
     def later(self, name: str) -> tuple[float, float]:
         """Minimum and maximum in the second half of the log."""
-        return self._low[name], self._high[name]
+        return self._later_range[name]
 
     def used(self, name: str) -> tuple[float, float] | None:
         """Least and largest phi or setPoint at the samples that the regression used, if any."""
@@ -117,11 +113,7 @@ class Replay:
     """Replays every row of a log once through an estimator."""
 
     def __init__(
-        self,
-        slave: Slave,
-        log: Log,
-        configuration: Configuration,
-        learned: Learned | None = None,
+        self, slave: Slave, log: Log, configuration: Configuration, learned: Learned | None = None
     ) -> None:
         """Initialises the slave, gives it the learned state, and samples the log.
 
@@ -129,8 +121,7 @@ class Replay:
         """
         start = parameters(slave.fmu, configuration)
         self.slave, self.log, self.configuration = slave, log, configuration
-        self.every = slave.fmu.parameters(start)
-        """All parameters of the estimator."""
+        self.every = slave.fmu.parameters(start)  # all parameters of the estimator
         configuration.need_ports(str(self.every["modality"]))
         slave.initialize(start)
         # Before the log is read, because the learned state may not fit.

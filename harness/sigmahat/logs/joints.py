@@ -9,8 +9,6 @@
 A configuration of one joint has no section [joints], and its joint has the name "".
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, MutableMapping
 from typing import Any
@@ -21,8 +19,7 @@ from tomlkit.items import Item, Table
 
 from sigmahat.files import toml_file
 
-JOINTS = "joints"
-"""Name of the section."""
+JOINTS = "joints"  # name of the section
 Place = tuple[str, ...]
 """Sections and key of a value: ("ports", "q", "unit"), ("parameters", "motor.B")."""
 

@@ -4,8 +4,6 @@ The JSON file has the identity of the FMU, the logs, and the state of the FMU fr
 fmi2SerializeFMUstate, in base64. The state contains the parameters of the estimator.
 """
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -16,7 +14,6 @@ from sigmahat.files.output import write_json
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.instance import FmuError, Slave, Value
 from sigmahat.fmi.sample_loop import Recorder
-from sigmahat.fmi.saved_state import restore, save
 from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Text
 from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap
@@ -29,14 +26,10 @@ _OTHER = f"a learned state contains its parameters: use these parameters, or {_A
 class Learned:
     """The contents of the file."""
 
-    path: Path
-    """Path of the file."""
-    fmu: FmuId
-    """Identity of the FMU of the state."""
-    logs: Sequence[LearnedLog]
-    """Logs from which the FMU has learned, in this order."""
-    state: bytes
-    """State of the FMU."""
+    path: Path  # path of the file
+    fmu: FmuId  # identity of the FMU of the state
+    logs: Sequence[LearnedLog]  # logs from which the FMU has learned, in this order
+    state: bytes  # state of the FMU
 
 
 @dataclass(frozen=True)
@@ -55,16 +48,13 @@ class _File:
     state: Text
 
 
-LEARNED = Format("state.json", "sigmahat learned state", 1, _File)
-"""Format of the file."""
+LEARNED = Format("state.json", "sigmahat learned state", 1, _File)  # format of the file
 
 
 def write_learned(
     slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], path: Path
 ) -> None:
     """Writes what a slave has learned from logs; `every` has the parameters of the slave."""
-    parameters = {n: v for n, v in every.items() if v or not n.startswith("rls.eta_0")}
-    state = base64.b64encode(save(slave)).decode()
     contents = _File(
         format=LEARNED.name,
         version=LEARNED.version,
@@ -72,8 +62,8 @@ def write_learned(
         fmu=FmuId.of(slave.fmu),
         method=str(every["method"]),
         logs=list(logs),
-        parameters=parameters,
-        state=state,
+        parameters={n: v for n, v in every.items() if v or not n.startswith("rls.eta_0")},
+        state=base64.b64encode(slave.saved()).decode(),
     )
     write_json(asdict(contents), path)
 
@@ -104,22 +94,16 @@ def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configurat
     Returns the present time of the slave [s]. Raises LogError if the state is of another FMU,
     is damaged, or was learned with other parameters.
     """
-    ours = FmuId.of(slave.fmu)
-    if learned.fmu != ours:
-        raise LogError(
-            f"{learned.path}: learned by {_describe(learned.fmu)}, expected {_describe(ours)}; "
-            f"{_AGAIN}"
-        )
+    theirs, ours = learned.fmu, FmuId.of(slave.fmu)
+    if theirs != ours:
+        told, wanted = (f"{f.name}.fmu {f.version} ({f.guid})" for f in (theirs, ours))
+        raise LogError(f"{learned.path}: learned by {told}, expected {wanted}; {_AGAIN}")
     try:
-        t_0 = restore(slave, learned.state)
+        t_0 = slave.restore(learned.state)
     except FmuError as error:
         raise LogError(f"{learned.path}: damaged: {error}; {_AGAIN}") from error
     _compare(learned, _parameters(slave), every, configuration)
     return gap(slave, t_0, every)
-
-
-def _describe(fmu: FmuId) -> str:
-    return f"{fmu.name}.fmu {fmu.version} ({fmu.guid})"
 
 
 def _parameters(slave: Slave) -> dict[str, Value]:

@@ -4,8 +4,6 @@ One topic, `/estimate`, with a message for each tick: JSON with a schema that ha
 description of each field. Times count from the start of the log.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -18,10 +16,9 @@ from mcap.writer import Writer
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Fmu
-from sigmahat.fmi.json_schema import schema
+from sigmahat.fmi.series import schema
 
-MCAP = "estimate.mcap"
-"""Name of the file in the folder of results."""
+MCAP = "estimate.mcap"  # name of the file in the folder of results
 _TOPIC = "/estimate"
 
 Outputs = Mapping[str, NDArray[Any]]
@@ -36,31 +33,23 @@ def mcap_file(path: Path, fmu: Fmu, T: float) -> Iterator[Callable[[Outputs], No
     with path.open("wb") as file:
         writer = Writer(file)
         writer.start(library="sigmahat")
-        yield _Messages(writer, fmu, T).add
+        ticks, channel = 0, -1
+
+        def add(outputs: Outputs) -> None:
+            nonlocal ticks, channel
+            if not ticks:
+                data = json.dumps(schema(fmu, outputs)).encode()
+                described = writer.register_schema("estimate", "jsonschema", data)
+                channel = writer.register_channel(_TOPIC, "json", described)
+            columns = [_with_null(values) for values in outputs.values()]
+            for row in zip(*columns, strict=True):
+                stamp = round(1e9 * T * ticks)
+                data = json.dumps(dict(zip(outputs, row, strict=True))).encode()
+                writer.add_message(channel, stamp, data, stamp)
+                ticks += 1
+
+        yield add
         writer.finish()  # type: ignore[no-untyped-call]
-
-
-class _Messages:
-    """The ticks that were written so far."""
-
-    def __init__(self, writer: Writer, fmu: Fmu, T: float) -> None:
-        self._writer, self._fmu, self._T, self._ticks = writer, fmu, T, 0
-        self._channel: int | None = None
-
-    def add(self, outputs: Outputs) -> None:
-        if self._channel is None:
-            self._channel = self._registered(outputs)
-        columns = [_with_null(values) for values in outputs.values()]
-        for row in zip(*columns, strict=True):
-            stamp = round(1e9 * self._T * self._ticks)
-            data = json.dumps(dict(zip(outputs, row, strict=True))).encode()
-            self._writer.add_message(self._channel, stamp, data, stamp)
-            self._ticks += 1
-
-    def _registered(self, outputs: Outputs) -> int:
-        data = json.dumps(schema(self._fmu, outputs)).encode()
-        described = self._writer.register_schema("estimate", "jsonschema", data)
-        return self._writer.register_channel(_TOPIC, "json", described)
 
 
 def _with_null(values: NDArray[Any]) -> list[Any]:

@@ -1,7 +1,5 @@
 """Measured points: torque against deformation, as an estimator computes them, and their file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,20 +14,16 @@ from sigmahat.logs.log import Array
 NEEDED = ("phi", "setPoint", "tau_e", "tau_e_residual", "epsilon", "a", "valid", "confident")
 """Outputs of the estimator from which points are computed."""
 _GOLDEN = 0.6180339887498949
-_POINTS = 3000
-"""Approximate number of points that are shown."""
+_POINTS = 3000  # approximate number of points that are shown
 
 
 @dataclass(frozen=True)
 class MeasuredPoints:
     """Arrays of one size."""
 
-    phi: Array
-    """Deformation [rad]"""
-    set_point: Array
-    """[1]"""
-    tau_e: Array
-    """Flexibility torque [N.m]"""
+    phi: Array  # deformation [rad]
+    set_point: Array  # [1]
+    tau_e: Array  # flexibility torque [N.m]
 
 
 def points_of(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPoints:
@@ -72,8 +66,7 @@ def spread(first: int, count: int, stride: int) -> NDArray[np.intp]:
     return found[(found >= 0) & (found < count)]
 
 
-POINTS = "estimate.points.csv"
-"""Name of the file in the folder of results."""
+POINTS = "estimate.points.csv"  # name of the file in the folder of results
 _UNITS = {"setPoint": "1", "phi": "rad", "tau_e": "N.m"}
 
 

@@ -11,13 +11,12 @@ columns of the log are unchanged. Times are float64, because times of hours need
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager
 from copy import copy
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -28,7 +27,6 @@ import pyarrow.parquet
 from numpy.typing import NDArray
 
 from sigmahat.files import tables
-from sigmahat.files.output import write_json
 from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs.log import Log, LogError
 from sigmahat.logs.readers.tables import CsvLog, ParquetLog
@@ -40,8 +38,7 @@ _PREFIX = "estimate."
 _REPEATED = 2  # from this number of rows per distinct value on, a dictionary is shorter
 _TIME = "t"
 _TIMES = (_TIME, "change_age")
-DOUBT = "doubt"
-"""The output that is text."""
+DOUBT = "doubt"  # the output that is text
 
 
 class EstimateWriter(AbstractContextManager["EstimateWriter"]):
@@ -98,18 +95,9 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
             return {"write_options": options}
         split = [name for name in first.column_names if _is_smooth(first[name])]
         others = [name for name in first.column_names if name not in split]
-        return {
-            "compression": "zstd",
-            "use_byte_stream_split": split,
-            "use_dictionary": others,
-        }
+        return {"compression": "zstd", "use_byte_stream_split": split, "use_dictionary": others}
 
-    def __exit__(
-        self,
-        _kind: type[BaseException] | None,
-        error: BaseException | None,
-        _trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, _kind: object, error: BaseException | None, _trace: object) -> None:
         try:
             if error is None:
                 self._finish()
@@ -176,8 +164,7 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
             raise LogError(f"{path}: {what}; run `sigmahat estimate` again") from error
         titles = [title for title in self._log.columns if title.startswith(_PREFIX)]
         names = [tables.name_and_unit(title.removeprefix(_PREFIX)) for title in titles]
-        self.units = dict(names)
-        """Unit of each output, None for flags."""
+        self.units = dict(names)  # unit of each output, None for flags
         self._titles = dict(zip(self.units, titles, strict=True))
         if not self.units.keys() >= {_TIME, "sigma", "valid"}:
             raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
@@ -223,25 +210,11 @@ class Replayed:
 
     format: Text
     version: int
-    log: Text
-    """Path of the log, as given by the user."""
-    ticks: int
-    """Number of ticks of the estimator in the log."""
-    skipped: int
-    """Ticks without an estimate: a measurement was missing."""
-    T: float
-    """Time between ticks [s]."""
-    notes: list[Text]
-    """Sentences about the processing of the samples of the log."""
+    log: Text  # path of the log, as given by the user
+    ticks: int  # number of ticks of the estimator in the log
+    skipped: int  # ticks without an estimate: a measurement was missing
+    T: float  # time between ticks [s]
+    notes: list[Text]  # sentences about the processing of the samples of the log
 
 
-REPLAYED = Format("estimate.json", "sigmahat estimate", 1, Replayed)
-"""Format of the file."""
-
-
-def write_replayed(
-    log: Path, ticks: int, skipped: int, T: float, notes: Sequence[str], path: Path
-) -> None:
-    """Writes the file; the values are as in Replayed."""
-    contents = Replayed(REPLAYED.name, REPLAYED.version, str(log), ticks, skipped, T, list(notes))
-    write_json(asdict(contents), path)
+REPLAYED = Format("estimate.json", "sigmahat estimate", 1, Replayed)  # format of the file

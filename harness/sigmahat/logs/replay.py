@@ -1,7 +1,5 @@
 """Replays the samples of a log through the estimator FMU, tick by tick."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -18,37 +16,15 @@ from sigmahat.logs.sampling import Samples
 from sigmahat.logs.units import counts_per_turn
 
 OUTPUTS = (
-    "sigma",
-    "tau_e",
-    "tau_e_residual",
-    "theta_dot",
-    "phi",
-    "setPoint",
-    "a",
-    "rho",
-    "epsilon",
-    "sigma_std",
-    "tau_e_std",
-    "D_theta_hat",
-    "B_hat",
-    "tau_coulomb_hat",
-    "misfit",
-    "bias_hat",
-    "damping_hat",
-    "load_friction_hat",
-    "eccentric_hat",
-    "delay_hat",
-    "hysteresis_hat",
-    "change_age",
-    "sigma_per_gain",
+    *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),
+    *("sigma_std", "tau_e_std", "D_theta_hat", "B_hat", "tau_coulomb_hat", "misfit", "bias_hat"),
+    *("damping_hat", "load_friction_hat", "eccentric_hat", "delay_hat", "hysteresis_hat"),
+    *("change_age", "sigma_per_gain"),
 )
 """Real outputs that are recorded."""
-FLAGS = ("confident", "valid")
-"""Boolean outputs that are recorded."""
-_LONGEST_GAP = 1_000_000
-"""Most samples that `gap` takes out."""
-_REASON = "doubt"
-"""Output that is an enumeration; the names of its items are recorded."""
+FLAGS = ("confident", "valid")  # Boolean outputs that are recorded
+_LONGEST_GAP = 1_000_000  # most samples that `gap` takes out
+_REASON = "doubt"  # output that is an enumeration; the names of its items are recorded
 
 
 def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:

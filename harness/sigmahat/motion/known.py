@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import installed
 from sigmahat.identification.noise import low_pass
 from sigmahat.identification.regression import signals_of
 from sigmahat.joint.curve import stiffness_in_the_middle

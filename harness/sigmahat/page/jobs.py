@@ -12,8 +12,7 @@ import numpy as np
 import tomlkit
 from numpy.typing import NDArray
 
-from sigmahat.fmi.instance import FmuError, Slave
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import FmuError, Slave, installed
 from sigmahat.guessing import template
 from sigmahat.guessing.columns import read_columns
 from sigmahat.guessing.guess import guess_chosen, guess_of

@@ -139,7 +139,7 @@ class ResultPanel:
 
     def _panels(self) -> list[UIElement]:
         from sigmahat.joint.curve import curve_text
-        from sigmahat.logs.curve_panels import curve_panels
+        from sigmahat.logs.panels import curve_panels
         from sigmahat.report.plots import plots
 
         assert self._setup.answer is not None

@@ -1,7 +1,5 @@
 """A plant as equations, which a user writes, and from which C code is generated."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ with the names that all plants use. In a joint with several motors, `side` is th
 names of a motor: "_1" gives `theta_1`, `motor_1.B` and `tau_measured_1`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import casadi as ca

@@ -32,12 +32,18 @@ from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs import estimate as estimation
 from sigmahat.logs.changes import detected
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve_panels import curve_panels
+from sigmahat.logs.estimate import JOINTS
 from sigmahat.logs.log import Log
 from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
-from sigmahat.logs.several import JOINTS
-from sigmahat.logs.time_panels import Estimate, quantity_panels, reduce, sampling, stiffness_panels
+from sigmahat.logs.panels import (
+    Estimate,
+    curve_panels,
+    quantity_panels,
+    reduce,
+    sampling,
+    stiffness_panels,
+)
 from sigmahat.plotting.panels import Panel
 from sigmahat.plotting.style import plain_text, plain_title, plain_unit
 from sigmahat.report.contents import Contents, TextTable, number, of_file

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.logs.time_panels import (
+from sigmahat.logs.panels import (
     SIDES,
     Estimate,
     of_side,

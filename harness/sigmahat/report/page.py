@@ -13,7 +13,7 @@ from bokeh.resources import Resources
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from sigmahat.files.tables import read_csv
-from sigmahat.logs.several import JOINTS
+from sigmahat.logs.estimate import JOINTS
 from sigmahat.paper.reproduction import TABLE
 from sigmahat.report.contents import Contents, TextTable, of_file
 from sigmahat.report.from_log import from_joints, from_log

@@ -3,27 +3,21 @@
 A command makes its jobs from `run` and `measured`, and gives them to `run_all`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import replace
 from typing import TypeVar
 
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.instance import Value, named
 from sigmahat.fmi.master import Recording, simulate
-from sigmahat.fmi.opened import named
 from sigmahat.runs.metrics import Indices, indices
 from sigmahat.runs.pool import spread
-from sigmahat.runs.scenario import Scenario
-from sigmahat.runs.signals import signal_of
+from sigmahat.runs.scenario import Scenario, signal_of
 
 Progress = Callable[[int], object]
 Result = TypeVar("Result")
-SEED = "noise.seed"
-"""Parameter of every plant."""
-SAMPLE_PERIOD = "noise.samplePeriod"
-"""Parameter of the plants with noise that this version makes."""
+SEED = "noise.seed"  # parameter of every plant
+SAMPLE_PERIOD = "noise.samplePeriod"  # parameter of the plants with noise that this version makes
 
 
 def run(

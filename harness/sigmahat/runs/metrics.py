@@ -1,7 +1,5 @@
 """Performance indices of a stiffness estimate, their descriptions, and their mean over seeds."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -37,13 +35,10 @@ class Indices:
 class Index:
     """Description of a performance index."""
 
-    field: str
-    """Field of Indices."""
-    symbol: str
-    """Symbol in the paper."""
+    field: str  # field of Indices
+    symbol: str  # symbol in the paper
     unit: str
-    settled: bool
-    """Whether the index leaves the start-up out."""
+    settled: bool  # whether the index leaves the start-up out
 
     def when(self, settled: float) -> str:
         """The part of a run that the index covers, in words; settled: end of the start-up [s]."""
@@ -113,9 +108,8 @@ def indices(
 
     Raises ValueError for other shapes and values that are not finite.
     """
-    true, estimated, scale = _equal_shapes(
-        sigma, estimate, sigma if relative_to is None else relative_to
-    )
+    given = sigma if relative_to is None else relative_to
+    true, estimated, scale = _equal_shapes(sigma, estimate, given)
     values = []
     for part in (slice(None), t >= settled):
         arguments = true[part], estimated[part], scale[part]
@@ -147,9 +141,8 @@ def mean_interval(values: Sequence[float]) -> tuple[float, float]:
 def _relative(
     sigma: ArrayLike, estimate: ArrayLike, relative_to: ArrayLike | None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    true, estimated, scale = _equal_shapes(
-        sigma, estimate, sigma if relative_to is None else relative_to
-    )
+    scale = sigma if relative_to is None else relative_to
+    true, estimated, scale = _equal_shapes(sigma, estimate, scale)
     if not np.all(scale):
         raise ValueError("relative error: expected a true stiffness that is nowhere zero")
     return true / scale, estimated / scale

@@ -20,12 +20,11 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from sigmahat.files.output import created_folder, output_folder
-from sigmahat.fmi.instance import Value
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Value, installed
 from sigmahat.runs.engine import Progress
 from sigmahat.runs.metrics import INDICES, Indices
 from sigmahat.runs.pool import WorkersLostError, spread
-from sigmahat.runs.signals import PLANT, source_and_variable
+from sigmahat.runs.scenario import PLANT, source_and_variable
 from sigmahat.sweep.cluster import spread_on_cluster
 from sigmahat.sweep.plan import Outcome, Plan
 from sigmahat.sweep.preparation import (

@@ -9,15 +9,13 @@ from dataclasses import asdict, replace
 from functools import lru_cache
 
 from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import FmuError, Slave, Value
+from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.fmi.master import EstimatorFmu, Plant
-from sigmahat.fmi.opened import installed
 from sigmahat.fmi.unknown_name import unknown
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.engine import SEED, indices_by_comparison, measured
 from sigmahat.runs.pool import WorkerError
-from sigmahat.runs.scenario import Scenario
-from sigmahat.runs.signals import PLANT, to_record
+from sigmahat.runs.scenario import PLANT, Scenario, to_record
 from sigmahat.sweep.plan import Outcome, Plan, Run
 
 ALL = "estimator"

@@ -13,8 +13,7 @@ from sigmahat.identification.noise import low_pass
 from sigmahat.joint.curve import NORMAL_95
 from sigmahat.logs.log import Array
 from sigmahat.logs.replay import gap, play, replay
-from sigmahat.logs.resampling import stretches
-from sigmahat.logs.sampling import Samples
+from sigmahat.logs.sampling import Samples, stretches
 
 LOW = 2.0  # frequency of the low pass [Hz]
 _CHUNK = 1 << 16

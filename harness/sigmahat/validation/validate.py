@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from sigmahat.files.output import sha256
-from sigmahat.fmi.instance import Slave
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Slave, installed
 from sigmahat.joint import sheet
 from sigmahat.joint.start_values import as_fixed_curve, start_values
 from sigmahat.joint.stored import LearnedLog

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from sigmahat.compare.misfits.conditions import CONDITIONS, Condition
 from sigmahat.compare.misfits.experiment import JOINTS, Experiment, Joint, draw
 from sigmahat.compare.misfits.motion import Motion, run
-from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Slave, Value, installed
 from sigmahat.logs.replay import replay
 from sigmahat.logs.sampling import Samples
 from sigmahat.runs.engine import Progress, run_all

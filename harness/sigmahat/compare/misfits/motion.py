@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.compare.misfits.experiment import DRIFT_TIME, Control, Drive, Experiment
-from sigmahat.fmi.instance import Slave
-from sigmahat.fmi.opened import installed
+from sigmahat.fmi.instance import Slave, installed
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 Array = NDArray[np.float64]
@@ -140,7 +139,7 @@ def _step(
     recorder, angles = Recorder(plant, _RECORD, len(t)), np.empty(2)
     read, step = SampleLoop(), SampleLoop()
     recorder.add_to(read)
-    read.get_real(plant, plant.fmu.references(_RECORD[:2], "output"), angles)
+    read.get(plant, "Real", plant.fmu.references(_RECORD[:2], "output"), angles)
     step.set_real(plant, inputs, table)
     step.set_slopes(plant, inputs, slopes)
     step.step(plant, step_times(t[:-1], h))

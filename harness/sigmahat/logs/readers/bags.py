@@ -6,8 +6,6 @@ topic are a column too, "/joint_states.time", in seconds since the beginning of 
 from the headers of the messages, or without headers from the recording.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,11 +1,8 @@
 """Opens a log. Its format is found from the contents of the file, not from its name."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
-from sigmahat.logs.limits import check_columns
-from sigmahat.logs.log import Log, LogError
+from sigmahat.logs.log import Log, LogError, check_columns
 
 _PACKED = (
     (b"\x1f\x8b", "compressed with gzip", "unpack it: gunzip --keep {}"),
@@ -22,7 +19,7 @@ def open_log(path: str | Path) -> Log:
 
     Only the file itself is read, or the files in the folder of the bag, but no files outside to
     which they refer. Raises LogError if the file is missing, empty, damaged, or of another format,
-    and if the file holds more than limits.py allows.
+    and if the file holds more than a log may (log.py).
     """
     path = Path(path)
     if path.is_dir():

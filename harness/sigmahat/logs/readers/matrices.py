@@ -9,19 +9,17 @@ of 128 bytes, each variable has a tag of two integers, kind and number of bytes,
 A variable is a sequence of such elements again.
 """
 
-from __future__ import annotations
-
 import struct
 import zlib
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.logs.limits import check_bytes, check_columns, check_numbers
-from sigmahat.logs.log import LogError, LogInMemory
+from sigmahat.logs.log import LogError, LogInMemory, check_bytes, check_columns, check_numbers
 
 _MATRIX, _COMPRESSED = 14, 15
 _KINDS = {*range(1, 8), 9, 12, 13, _MATRIX, 16, 17, 18}  # numbers, matrices, text
@@ -139,8 +137,8 @@ def read_mat(path: Path) -> LogInMemory:
         variables = scipy.io.loadmat(path, struct_as_record=False)
     except Exception as error:  # any: for a damaged file scipy raises many kinds
         raise LogError(f"{path}: damaged MAT file ({error}); save it again") from error
-    own = {name: value for name, value in variables.items() if not name.startswith("__")}
-    return _log(path, (each for name, value in own.items() for each in _fields(path, name, value)))
+    own = (_fields(path, *each) for each in variables.items() if not each[0].startswith("__"))
+    return _log(path, chain.from_iterable(own))
 
 
 def _fields(path: Path, name: str, value: Any) -> Named:
@@ -207,13 +205,11 @@ def _columns(path: Path, name: str, array: Any) -> Named:
     check_numbers(path, max(array.shape))
     check_bytes(path, array.size * array.dtype.itemsize)
     values = np.asarray(array[...])
-    if values.ndim == 2 and values.shape[0] < values.shape[1]:  # as in version 7.3
-        values = values.T
-    if values.ndim == 1 or values.shape[1] == 1:
+    if values.ndim == 1 or min(values.shape) == 1:
         yield name, values.reshape(-1)
-    else:
-        for j in range(values.shape[1]):
-            yield f"{name}[{j}]", values[:, j]
+        return
+    for j, column in enumerate(values if values.shape[0] < values.shape[1] else values.T):
+        yield f"{name}[{j}]", column
 
 
 def _log(path: Path, columns: Named) -> LogInMemory:

@@ -1,7 +1,5 @@
 """CSV and Parquet files."""
 
-from __future__ import annotations
-
 import weakref
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,11 +13,13 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from sigmahat.logs.limits import MOST_TEXT, check_columns, check_numbers
 from sigmahat.logs.log import (
+    MOST_TEXT,
     Array,
     Log,
     LogError,
+    check_columns,
+    check_numbers,
     first_text,
     fits_float64,
     holds_text,
@@ -100,15 +100,11 @@ class ParquetLog(Log):
 class Dialect:
     """Format of a text file with a table."""
 
-    names: Sequence[str]
-    """Names of the columns; with a row of units, name and unit."""
-    delimiter: str
-    """Character between the columns."""
-    decimal: str
-    """Point or comma in numbers."""
+    names: Sequence[str]  # names of the columns; with a row of units, name and unit
+    delimiter: str  # character between the columns
+    decimal: str  # point or comma in numbers
     encoding: str
-    head: int
-    """Lines before the first row."""
+    head: int  # lines before the first row
 
 
 class CsvLog(Log):
@@ -122,8 +118,7 @@ class CsvLog(Log):
 
     def __init__(self, path: Path) -> None:
         """Raises LogError for a file that is no such table."""
-        self.dialect = dialect(path)
-        """Format of the file."""
+        self.dialect = dialect(path)  # format of the file
         names = self._names = list(self.dialect.names)
         self._cut: list[int] = []
         self._parse = pa.csv.ParseOptions(

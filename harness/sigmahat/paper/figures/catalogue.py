@@ -28,7 +28,7 @@ from sigmahat.paper.figures.panels import (
     window,
 )
 from sigmahat.plotting.style import BLUE, GREEN, SKY, VERMILION
-from sigmahat.runs.signals import nominal_awas
+from sigmahat.runs.scenario import nominal_awas
 
 _HELD: dict[str, Any] = {"color": SKY, "drawstyle": "steps-post"}
 _NOMINAL: dict[str, Any] = {"color": "black", "linewidth": 0.8, "label": "nominal"}

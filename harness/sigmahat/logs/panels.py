@@ -1,22 +1,20 @@
-"""Panels over time: stiffness with its error, and the quantities that it is computed from."""
+"""Panels of a replay: the curve, and over time the stiffness and what it is computed from."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.joint import curve as joint
 from sigmahat.joint.curve import NORMAL_95
+from sigmahat.logs.measured import MeasuredPoints
 from sigmahat.plotting.panels import COLORS, TRUE, Curve, Panel
-from sigmahat.plotting.style import limits, plain_axis, with_margin
+from sigmahat.plotting.style import QUANTITIES, around, limits, plain_axis, with_margin
 
-BUDGET = 400_000
-"""Values of all signals together; as 4 bytes in base64 they are 2 MB of a report."""
-_MOST = 20_000
-"""Values of a signal; a browser takes seconds to draw longer lines."""
+BUDGET = 400_000  # values of all signals together; as 4 bytes in base64 they are 2 MB of a report
+_MOST = 20_000  # values of a signal; a browser takes seconds to draw longer lines
 
 
 @dataclass(frozen=True)
@@ -24,12 +22,10 @@ class Reduced:
     """Signals at common times."""
 
     t: NDArray[np.float64]
-    signals: Mapping[str, NDArray[Any]]
-    """Signals, with the shape of t."""
+    signals: Mapping[str, NDArray[Any]]  # signals, with the shape of t
     bucket: int
     """Number of samples from which minimum and maximum are kept; 1: every sample is kept."""
-    every: tuple[float, float]
-    """Between these times every sample is kept."""
+    every: tuple[float, float]  # between these times every sample is kept
 
 
 def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = BUDGET) -> Reduced:
@@ -47,21 +43,15 @@ def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = B
     first = (len(t) - rows // 2) // 2
     last = first + rows // 2
     bucket = -(-(len(t) - rows // 2) * 2 // (rows - rows // 2))
-    parts = [_starts(0, first, bucket), _starts(last, len(t), bucket)]
+    parts = [np.arange(0, first, bucket), np.arange(last, len(t), bucket)]
     times = [_twice(t, starts) for starts in parts]
     reduced = {}
     for name, values in signals.items():
         x = np.asarray(values, dtype=np.float32)
-        before, after = (
-            _extremes(x, starts, end) for starts, end in zip(parts, (first, len(t)), strict=True)
-        )
+        before, after = _extremes(x, parts[0], first), _extremes(x, parts[1], len(t))
         reduced[name] = np.concatenate([before, x[first:last], after])
     common = np.concatenate([times[0], t[first:last], times[1]])
     return Reduced(common, reduced, bucket, (float(t[first]), float(t[last - 1])))
-
-
-def _starts(first: int, end: int, bucket: int) -> NDArray[np.intp]:
-    return np.arange(first, end, bucket)
 
 
 def _twice(t: NDArray[np.float64], starts: NDArray[np.intp]) -> NDArray[np.float64]:
@@ -103,70 +93,36 @@ class Estimate:
     """Names of its signals by variable, sigma, sigma_1, sigma_2."""
 
 
-@dataclass(frozen=True)
-class _Signal:
-    """A curve of a panel, if its variable was recorded."""
+_QUANTITIES: Mapping[tuple[str, str], Mapping[str, str]] = {
+    ("Flexibility torque", plain_axis("tau_e")): {
+        "tau_e_residual{}": "by the motor data",
+        "plant.tau_e_measured{}": "sensor",
+        "plant.tau_e{}": "true",
+        "tau_e{}": "fitted, f(θ_c, φ)",
+    },
+    ("Deformation", plain_axis("phi")): {
+        "plant.phi{}": "true",
+        "phi{}": "as the estimator sees it",
+    },
+    ("Motor velocity", plain_axis("theta_dot")): {
+        "plant.theta_dot{}": "true",
+        "theta_dot{}": "filtered",
+    },
+    ("Positions as measured", "position [rad]"): {
+        "plant.theta_measured{}": "motor, θ",
+        "plant.q_measured": "link, q",
+    },
+    ("Misfit of the model", "misfit [1]"): {"misfit{}": "1 where the model holds"},
+    ("Set-point", plain_axis("setPoint")): {"setPoint{}": "set-point of the regression"},
+}
+"""Labels of signals by variable, {} being the side of a pair, for each panel by title and axis.
 
-    variable: str
-    """{} stands for the side of an antagonistic pair."""
-    label: str
-    true: bool = False
+Noisy signals are first, because they would hide other signals.
+"""
 
 
-@dataclass(frozen=True)
-class _Quantity:
-    """A panel with signals. Noisy signals are first, because they would hide other signals."""
-
-    title: str
-    axis: str
-    signals: Sequence[_Signal]
-    of_an_estimator: bool = True
-    """Whether an estimator computes the signals; else they are measured, for all estimators."""
-
-
-_QUANTITIES = (
-    _Quantity(
-        "Flexibility torque",
-        plain_axis("tau_e"),
-        [
-            _Signal("tau_e_residual{}", "by the motor data"),
-            _Signal("plant.tau_e_measured{}", "sensor"),
-            _Signal("plant.tau_e{}", "true", true=True),
-            _Signal("tau_e{}", "fitted, f(θ_c, φ)"),
-        ],
-    ),
-    _Quantity(
-        "Deformation",
-        plain_axis("phi"),
-        [
-            _Signal("plant.phi{}", "true", true=True),
-            _Signal("phi{}", "as the estimator sees it"),
-        ],
-    ),
-    _Quantity(
-        "Motor velocity",
-        plain_axis("theta_dot"),
-        [
-            _Signal("plant.theta_dot{}", "true", true=True),
-            _Signal("theta_dot{}", "filtered"),
-        ],
-    ),
-    _Quantity(
-        "Positions as measured",
-        "position [rad]",
-        [
-            _Signal("plant.theta_measured{}", "motor, θ"),
-            _Signal("plant.q_measured", "link, q"),
-        ],
-        of_an_estimator=False,
-    ),
-    _Quantity(
-        "Misfit of the model", "misfit [1]", [_Signal("misfit{}", "1 where the model holds")]
-    ),
-    _Quantity(
-        "Set-point", plain_axis("setPoint"), [_Signal("setPoint{}", "set-point of the regression")]
-    ),
-)
+def _is_true(variable: str) -> bool:
+    return variable.startswith("plant.") and "_measured" not in variable
 
 
 def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterator[Panel]:
@@ -224,13 +180,14 @@ def _with_band(shown: tuple[float, float], lines: Sequence[Curve]) -> tuple[floa
 
 def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
     """Panels of all other quantities; titles name the estimator, unless `estimator` is empty."""
-    for quantity in _QUANTITIES:
-        whose = f", {estimator}" if estimator and quantity.of_an_estimator else ""
-        for side in _sides(quantity, reduced):
-            curves = _curves(quantity, side, reduced)
+    for (title, axis), labels in _QUANTITIES.items():
+        measured = all("_measured" in variable for variable in labels)  # for all estimators
+        whose = f", {estimator}" if estimator and not measured else ""
+        for side in _sides(labels, reduced):
+            curves = _curves(labels, side, reduced)
             if curves:
-                title = f"{quantity.title}{of_side(side)}{whose}"
-                yield Panel(title, _TIME, quantity.axis, curves, y_range=_every(curves))
+                full = f"{title}{of_side(side)}{whose}"
+                yield Panel(full, _TIME, axis, curves, y_range=_every(curves))
 
 
 def sampling(reduced: Reduced) -> list[str]:
@@ -249,31 +206,24 @@ def of_side(side: str) -> str:
     return f" of side {side[1:]}" if side else ""
 
 
-def _sides(quantity: _Quantity, reduced: Reduced) -> list[str]:
+def _sides(variables: Iterable[str], reduced: Reduced) -> Iterable[str]:
     """The sides with a recorded signal, in the order of the signals."""
-    return list(
-        dict.fromkeys(
-            side
-            for signal in quantity.signals
-            if "{}" in signal.variable
-            for side in SIDES
-            if signal.variable.format(side) in reduced.signals
-        )
-    )
+    of_sides = ((each, side) for each in variables if "{}" in each for side in SIDES)
+    return dict.fromkeys(side for each, side in of_sides if each.format(side) in reduced.signals)
 
 
-def _curves(quantity: _Quantity, side: str, reduced: Reduced) -> list[Curve]:
+def _curves(labels: Mapping[str, str], side: str, reduced: Reduced) -> list[Curve]:
     curves = []
     colors = iter(COLORS)
-    for signal in quantity.signals:
-        values = reduced.signals.get(signal.variable.format(side))
+    for variable, label in labels.items():
+        values = reduced.signals.get(variable.format(side))
         if values is None:
             continue
-        if signal.true:
-            curves.append(Curve(signal.label, TRUE, reduced.t, values, width=_WIDE))
+        if _is_true(variable):
+            curves.append(Curve(label, TRUE, reduced.t, values, width=_WIDE))
         # A constant signal was not connected: no sensor, no set-point.
         elif np.nanmin(values) != np.nanmax(values):
-            curves.append(Curve(signal.label, next(colors), reduced.t, values, width=1.1))
+            curves.append(Curve(label, next(colors), reduced.t, values, width=1.1))
     return curves
 
 
@@ -298,3 +248,44 @@ def _range(values: NDArray[Any]) -> tuple[float, float]:
         return 0.0, 1.0
     low, high = np.percentile(finite, [_OUTER, 100 - _OUTER]).tolist()
     return with_margin(low, high, 0.2)
+
+
+def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
+    """The torque with the measured points, and the stiffness; no panels without data."""
+    if not curve.branches:
+        return
+    settings = [branch.set_point for branch in curve.branches]
+    of_branch = joint.nearest(settings, points.set_point)
+    torques, stiffnesses = [], []
+    for i, branch in enumerate(curve.branches):
+        own = of_branch == i
+        label = f"set-point {branch.set_point:.3g}" if len(settings) > 1 else "estimate"
+        color = COLORS[i % len(COLORS)]
+        behind = points.phi[own], points.tau_e[own]
+        line = Curve(label, color, branch.phi, branch.sigma, within=branch.within, width=2.0)
+        stiffnesses.append(replace(line, band=branch.stiffness_interval()))
+        band = branch.torque_interval()
+        torques.append(replace(line, y=branch.tau_e, band=band, behind=behind))
+    for name, curves in (("tau_e", torques), ("sigma", stiffnesses)):
+        words = QUANTITIES[name].words.capitalize()
+        parts = ["points: measured"] if name == "tau_e" else []
+        parts += ["band: 95 %"] if curve.claims else []
+        yield Panel(
+            f"{words} against deformation",
+            plain_axis("phi"),
+            plain_axis(name),
+            curves,
+            linked=False,
+            caption="; ".join([*parts, "faded: outside of the data"]),
+            y_range=_scale(curves),
+        )
+
+
+def _scale(curves: list[Curve]) -> tuple[float, float] | None:
+    """Range of the axis: the range of the data, without single points that are far off."""
+    shown = []
+    for each in curves:
+        shown += [values[each.within] for values in (each.y, *(each.band or ()))]
+        if each.behind is not None and len(each.behind[1]):
+            shown.append(np.array(limits(each.behind[1])))
+    return around(shown, 0.1)
