@@ -216,17 +216,19 @@ def test_what_was_learned_is_gone_on_with(tmp_path: Path) -> None:
         (["--columns", "t,x"], "--columns lacks arm/motor"),
         (["--host", "203.0.113.1"], "cannot listen at 203.0.113.1, udp:9870:"),
         (["--replay", "none.csv"], "none.csv: No such file or directory"),
+        (["--replay", "short.csv"], "short.csv: unknown column 'arm/motor'"),
         (["--start-from", "none"], "none: No such file or directory; name the folder"),
     ],
 )
 def test_wrong_arguments_are_said(
-    options: list[str], expected: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    config = tmp_path / "arm.toml"
-    config.write_text(CONFIGURATION)
-    out = tmp_path / "out"
-    assert expected in refused(capsys, "live", str(config), "--out", str(out), *options)
-    assert not out.exists()
+    options: list[str], expected: str, tmp_path: Path, capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    Path("arm.toml").write_text(CONFIGURATION)
+    Path("short.csv").write_text("t,x\n0,1\n1,2\n")
+    assert expected in refused(capsys, "live", "arm.toml", "--out", "out", *options)
+    assert not Path("out").exists()
 
 
 def test_a_port_in_use_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
