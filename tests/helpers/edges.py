@@ -137,7 +137,7 @@ def measurements(draw: st.DrawFn) -> Array:
 
 
 often = settings(
-    max_examples=40 * int(os.environ.get("SIGMAHAT_PROMISES", "1")),
+    max_examples=20 * int(os.environ.get("SIGMAHAT_PROMISES", "1")),
     deadline=None,
     derandomize=True,
     database=None,

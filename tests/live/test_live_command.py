@@ -160,11 +160,13 @@ def test_a_replayed_log_takes_its_time(tmp_path: Path) -> None:
         ("--columns t,x", "--columns lacks arm/motor"),
         ("--host 203.0.113.1", "cannot listen at 203.0.113.1, udp:9870:"),
         ("--replay none.csv", "none.csv: No such file or directory"),
+        ("--replay short.csv", "short.csv: unknown column 'arm/motor'"),
         ("--start-from none", "none: No such file or directory; name the folder"),
     ],
 )
 def test_wrong_arguments_are_said(options: str, expected: str, shell: Shell) -> None:
     Path("arm.toml").write_text(CONFIGURATION)
+    Path("short.csv").write_text("t,x\n0,1\n1,2\n")
     assert expected in shell.refused(f"live arm.toml --out out {options}")
     assert not Path("out").exists()
 

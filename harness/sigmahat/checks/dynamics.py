@@ -15,7 +15,7 @@ from sigmahat.checks.view import View
 from sigmahat.identification.quantities import WIDE
 from sigmahat.identification.regression import MOTOR, Signals
 from sigmahat.logs.configuration import Port
-from sigmahat.logs.units import factor
+from sigmahat.logs.units import scale
 
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _STD = 3.0  # a prior contradicts the log beyond this number of standard deviations
@@ -82,26 +82,21 @@ def _gear(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | Non
     others = min(found.error, float(np.sum(with_all_powers(seen, pieces, found.form).squares)))
     if not float(np.sum(error.fit.squares)) < _MUCH * others:
         return None
-    change = gear_of(seen.configuration.ports["theta"], error.value)
-    slope = 1 / error.value
+    change, slope = gear_of(seen.configuration.ports["theta"], error.value), 1 / error.value
     return Finding(Kind.SLOPE, Severity.WRONG, change.key, slope, "", 1.0, change.value)
 
 
 def _zero(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | None:
     """A wrong zero of the deformation. The zero matters only for an odd polynomial."""
-    if not found.form.symmetric:
-        return None
-    zero = found.spring.zero(found.fit, pieces)
+    zero = found.spring.zero(found.fit, pieces) if found.form.symmetric else math.nan
     if not math.isfinite(zero):
         return None
     covered = max(float(np.max(p.phi)) for p in pieces) - min(float(np.min(p.phi)) for p in pieces)
     half_width = found.spring.half_width(found.fit, zero, pieces)
     if not (half_width < _MATTERS * covered and abs(zero) > max(half_width, _MATTERS * covered)):
         return None
-    ports = seen.configuration.ports
-    keys = [("ports.q.zero", _moved(ports["q"], "q", zero))]
-    if "theta" in ports:
-        keys.append(("ports.theta.zero", _moved(ports["theta"], "theta", -zero)))
+    ports, moves = seen.configuration.ports, {"q": zero, "theta": -zero}
+    keys = [(f"ports.{n}.zero", _moved(ports[n], n, m)) for n, m in moves.items() if n in ports]
     # A zero within the deformations of the log is only a note, because identify sets this zero.
     is_wrong = abs(zero) > covered / 2 and _is_more_than_bias(seen, found, zero)
     severity = Severity.WRONG if is_wrong else Severity.NOTE
@@ -128,8 +123,7 @@ def _is_more_than_bias(seen: View, found: Fitted, zero: float) -> bool:
 
 def _moved(port: Port, name: str, angle: float) -> float:
     """The zero of a port, so that its values become smaller by an angle [rad]."""
-    per_unit = port.sign * factor(name, port) / port.gear_ratio
-    return float(f"{port.zero + angle / per_unit:.6g}")
+    return float(f"{port.zero + angle / scale(name, port):.6g}")
 
 
 def _late(seen: View, here: Relation, found: Fitted) -> Iterator[Finding]:

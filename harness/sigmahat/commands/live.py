@@ -90,17 +90,11 @@ def live(
         watch(session, inbox, sinks)
     values = _counts(session, inbox)
     counts = [f"{count} {what}" for what, count in values.items() if count or what == "read"]
-    lines = [f"messages: {', '.join(counts)}"]
-    if session.recordings:
-        lines += [f"What was learned is in {out.resolve()}; the recording is read by"]
-        lines += [
-            f"sigmahat estimate {each} --config {each.with_suffix('.toml')}"
-            for each in session.recordings
-        ]
-    else:
-        lines += ["Nothing was recorded"]
-    files = [str(each) for each in session.recordings]
-    common.answer("\n".join(lines), {"messages": values, "recordings": files})
+    files = session.recordings
+    learned = f"What was learned is in {out.resolve()}; the recording is read by"
+    lines = [f"messages: {', '.join(counts)}", learned if files else "Nothing was recorded"]
+    lines += [f"sigmahat estimate {each} --config {each.with_suffix('.toml')}" for each in files]
+    common.answer("\n".join(lines), {"messages": values, "recordings": [str(f) for f in files]})
 
 
 def _greeting(session: Session, source: str, targets: Sequence[str], host: str) -> str:

@@ -30,7 +30,6 @@ _SEEN = 0.02  # largest relative difference between a jump and a known period
 
 @dataclass(frozen=True)
 class Facts:
-    samples: int
     low: float = np.nan  # smallest value; nan if there is no number
     high: float = np.nan  # largest value; nan if there is no number
     integer: bool = False
@@ -49,17 +48,17 @@ def look_at(log: Log, name: str) -> tuple[Facts, Array]:
     try:
         values = log.read(name)
     except LogError:
-        return Facts(log.samples(name), text=True), np.empty(0)
+        return Facts(text=True), np.empty(0)
     finite = values[np.isfinite(values)]
     if not len(finite):
-        return Facts(len(values)), values
+        return Facts(), values
     steps = np.diff(finite)
     few = len(np.unique(finite[:_DISTINCT])) < min(_STATES, len(finite))
     integer = not few and bool(np.all(finite == np.round(finite)))
     wrap = None if few else _wrap(steps, float(np.ptp(finite)))
     increasing = float(np.mean(steps > 0)) if len(steps) else 0.0
     ends, step = (float(finite.min()), float(finite.max())), 1.0 if integer else _step(finite)
-    facts = Facts(len(values), *ends, integer, not few, increasing, step, wrap)
+    facts = Facts(*ends, integer, not few, increasing, step, wrap)
     return facts, values if wrap is None else unwrap(values, wrap)[0]
 
 

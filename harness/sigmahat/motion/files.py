@@ -33,12 +33,8 @@ def write(motion: Multisine, joint: str, start: float, T: float, folder: Path) -
 
 def _ros(motion: Multisine, joint: str, start: float) -> str:
     """A trajectory_msgs/JointTrajectory, as `ros2 topic pub` and controllers read it."""
-    t = motion.times(_ROS_PERIOD)
-    lines = [
-        "# trajectory_msgs/msg/JointTrajectory",
-        f"joint_names: [{json.dumps(joint)}]",
-        "points:",
-    ]
+    t, name = motion.times(_ROS_PERIOD), json.dumps(joint)
+    lines = ["# trajectory_msgs/msg/JointTrajectory", f"joint_names: [{name}]", "points:"]
     for now, *point in zip(t.tolist(), *(each.tolist() for each in motion.at(t)), strict=True):
         point[0] += start
         values = zip(("positions", "velocities", "accelerations"), point, strict=True)
