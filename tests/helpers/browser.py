@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from selenium.common.exceptions import JavascriptException, StaleElementReferenceException
 from selenium.webdriver import Chrome, ChromeOptions
 from selenium.webdriver.chrome.service import Service
-from selenium.webdriver.support.ui import WebDriverWait
 
 from gate import need
 
@@ -53,14 +51,6 @@ class Page:
     def run(self, script: str, *arguments: object) -> Any:
         """Runs a script that ends with return. Returns its value."""
         return self.driver.execute_script(script, *arguments)
-
-    def until(self, is_so: Callable[[], Any], what: str = "") -> Any:
-        """Waits until something is so, and returns it.
-
-        While the page draws something anew, it is gone, or there twice.
-        """
-        drawing = (StaleElementReferenceException, JavascriptException)
-        return WebDriverWait(self.driver, 90.0, 0.1, drawing).until(lambda _: is_so(), what)
 
     def complaints(self) -> list[str]:
         """Errors and warnings on the console since the last call."""

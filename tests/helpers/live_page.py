@@ -12,9 +12,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 from numpy.typing import NDArray
+from selenium.webdriver.support.ui import WebDriverWait
 
 from browser import Page, opened
 
+_LONGEST = 60.0  # [s] for all that the page computes
 _DROP = """
 const data = new DataTransfer();
 data.items.add(new File([arguments[1]], arguments[0]));
@@ -103,7 +105,7 @@ class LivePage:
 
     def until(self, is_so: Callable[[], object]) -> None:
         """Waits until something is so."""
-        self.page.until(is_so)
+        WebDriverWait(self.page.driver, _LONGEST, poll_frequency=0.05).until(lambda _: is_so())
 
 
 @contextmanager

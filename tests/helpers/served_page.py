@@ -10,8 +10,8 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
+from selenium.common.exceptions import JavascriptException, StaleElementReferenceException
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 from selenium.webdriver.support.ui import Select
@@ -82,8 +82,15 @@ class Hand:
 
     def find(self, name: str) -> WebElement:
         """The input or button of a name, as soon as it is there."""
-        element: WebElement = self.until(lambda: self.page.run(_FIND, name), name)
-        return element
+        found: list[WebElement] = []
+
+        def is_there() -> bool:
+            element = self.page.run(_FIND, name)
+            found[:] = [element] if isinstance(element, WebElement) else []
+            return bool(found)
+
+        self.until(is_there, name)
+        return found[0]
 
     def value(self, name: str) -> str:
         """What an input shows."""
@@ -128,6 +135,15 @@ class Hand:
         """Waits until the page says something."""
         self.until(lambda: words in self.text(), words)
 
-    def until(self, is_so: Callable[[], object], what: str) -> Any:
+    def _now(self, is_so: Callable[[], bool]) -> bool:
+        try:
+            return is_so()
+        except (StaleElementReferenceException, JavascriptException):
+            return False  # the page is drawing it anew: it is gone, or there twice, for a moment
+
+    def until(self, is_so: Callable[[], bool], what: str) -> None:
         """Waits until something is so."""
-        return self.page.until(is_so, f"{what!r} is not in the page")
+        end = time.monotonic() + _LONGEST
+        while not self._now(is_so):
+            assert time.monotonic() < end, f"{what!r} is not in: {self.text()}"
+            time.sleep(0.1)
