@@ -25,12 +25,7 @@ void sh_change_start(sh_regression_state *state)
  */
 static void forget_spring(const sh_columns *columns, sh_information *a)
 {
-    int count = 0;
-
-    while (count < columns->size && sh_column_is(&columns->column[count], SH_IS_SPRING)) {
-        count += 1;
-    }
-    sh_information_restart(a, count, SH_LEAST_INFORMATION);
+    sh_information_restart(a, columns->spring, SH_LEAST_INFORMATION);
 }
 
 /* Hypothesis 1 begins now. */
@@ -39,8 +34,7 @@ static void begin(sh_regression_state *state)
     const sh_blocks *blocks = &state->blocks;
     sh_change *change = &state->change;
 
-    sh_information_copy(&change->changed,
-                        state->friction_drifts ? &blocks->drifting : &blocks->constant);
+    change->changed = state->friction_drifts ? blocks->drifting : blocks->constant;
     forget_spring(&state->columns, &change->changed);
     change->evidence = change->blocks = 0;
 }
@@ -51,8 +45,7 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     sh_blocks *blocks = &state->blocks;
     sh_change *change = &state->change;
 
-    sh_information_copy(&blocks->constant, &change->changed);
-    sh_information_copy(&blocks->drifting, &change->changed);
+    blocks->constant = blocks->drifting = change->changed;
     sh_information_start(&blocks->recent, state->columns.size, 1);
     blocks->recent_count = 0;
     forget_spring(&state->columns, &state->data);

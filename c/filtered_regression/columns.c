@@ -20,9 +20,9 @@
  * To add a kind of column: its row in sh_column_kinds, and its line in list_columns.
  */
 #include <stddef.h>
-#include <string.h>
 
 #include "constants.h"
+#include "information.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 #include "torque_basis.h"
@@ -57,38 +57,31 @@ enum { ONE, TAU_E, K_0, TAU_C };
 
 #define PRIOR(member) (int)offsetof(sh_parameters, prior.member)
 #define CURVE (SH_IS_SPRING | SH_IS_CURVE)
+#define POWER (CURVE | SH_IS_POWER)
 #define MOTOR (SH_IS_MOTOR | SH_IS_EQUATION)
 
 /* The signal of a column is in signal_of, its entry in the row in entry_of. */
 const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
-    [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, SH_SIGNAL_LINEAR, SH_OF_CURVE, 0,
-                         CURVE | SH_IS_EQUATION},
-    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), ONE, SH_SIGNAL_NONE, SH_OF_NOMINAL, 0,
-                           CURVE | SH_IS_EQUATION},
-    [SH_COLUMN_BIAS] = {PRIOR(bias), TAU_E, SH_SIGNAL_LINEAR, SH_OF_BIAS, 0, 0},
-    [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, SH_SIGNAL_STEADY, SH_OF_DAMPING, 0, 0},
-    [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, SH_OF_SIN_Q, 0, 0},
-    [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, SH_OF_COS_Q, 0, 0},
-    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, SH_SIGNAL_MEAN, SH_OF_LOAD_FRICTION, 0,
-                        SH_IS_MOTOR},
-    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, SH_SIGNAL_NONE, SH_OF_LOAD_FRICTION, 0,
-                         SH_IS_MOTOR | SH_IS_DRIVE},
-    [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, SH_SIGNAL_NONE, SH_OF_DELAY, 0, 0},
-    [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, SH_SIGNAL_NONE, SH_OF_NOTHING, 0, SH_IS_MOTOR},
-    [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_CURVE, 1, CURVE},
-    [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_CURVE, 2, CURVE},
-    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 3, SH_IS_SPRING},
-    [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, SH_SIGNAL_LINEAR, SH_OF_HYSTERESIS, 4, 0},
-    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 6, CURVE},
-    [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, SH_OF_NOTHING, 5,
-                         SH_IS_MOTOR},
-    [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, SH_OF_NOTHING, 5,
-                         SH_IS_MOTOR},
-    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, SH_SIGNAL_NONE, SH_OF_VISCOUS, 0,
-                           MOTOR | SH_IS_FRICTION},
-    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, SH_SIGNAL_NONE, SH_OF_COULOMB, 0,
-                           MOTOR | SH_IS_FRICTION | SH_IS_COULOMB},
-    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, SH_SIGNAL_NONE, SH_OF_INERTIA, 0, MOTOR | SH_IS_INERTIA},
+    [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, SH_SIGNAL_LINEAR, 0, POWER | SH_IS_EQUATION},
+    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), ONE, SH_SIGNAL_NONE, 0, CURVE | SH_IS_EQUATION},
+    [SH_COLUMN_BIAS] = {PRIOR(bias), TAU_E, SH_SIGNAL_LINEAR, 0, 0},
+    [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, SH_SIGNAL_STEADY, 0, 0},
+    [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, 0, 0},
+    [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, 0, 0},
+    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, SH_SIGNAL_MEAN, 0, SH_IS_MOTOR},
+    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
+    [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, SH_SIGNAL_NONE, 0, 0},
+    [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
+    [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 1, POWER},
+    [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 2, POWER},
+    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, 3, SH_IS_SPRING},
+    [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, SH_SIGNAL_LINEAR, 4, 0},
+    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 6, CURVE},
+    [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, 5, SH_IS_MOTOR},
+    [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, 5, SH_IS_MOTOR},
+    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, SH_SIGNAL_NONE, 0, MOTOR | SH_IS_FRICTION},
+    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, SH_SIGNAL_NONE, 0, MOTOR | SH_IS_FRICTION},
+    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, SH_SIGNAL_NONE, 0, MOTOR},
 };
 
 /* Half width of a dead zone or an element of hysteresis over range.phi; 0: of another column [1]. */
@@ -145,7 +138,7 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
     if (!(column.prior > 0)) {
         return;
     }
-    if (sh_column_kinds[kind].quantity == SH_OF_CURVE) {
+    if (sh_column_is(&column, SH_IS_POWER)) {
         column.unit = unit_of_power(p, i, j);
     }
     if (list->column != NULL) {
@@ -220,15 +213,15 @@ int sh_columns_count(const sh_parameters *p)
 void sh_columns_start(sh_columns *columns, const sh_parameters *p)
 {
     column_list list = {columns->column, 0};
-    int i, j;
+    int i;
 
     list_columns(p, &list);
     columns->size = sh_columns_count(p);
     columns->has_nominal = sh_has_nominal_curve(p);
-    for (i = 0; i < p->rls.n; ++i) {
-        for (j = 0; j < p->rls.m; ++j) {
-            columns->nominal[i][j] = p->rls.eta_0[i][j] / unit_of_power(p, i, j);
-        }
+    columns->spring = 0;
+    /*@ loop unroll SH_MAX_COLUMNS; */
+    for (i = 0; i < columns->size; ++i) {
+        columns->spring += sh_column_is(&columns->column[i], SH_IS_SPRING);
     }
 }
 
@@ -318,14 +311,18 @@ static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real se
     }
 }
 
-static void set_nominal(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p)
+/* Torque and stiffness of the curve rls.eta_0, (21) and (23). */
+static void set_nominal(sh_joint_point *point, const sh_parameters *p, sh_real set_point)
 {
+    const int n = p->rls.n, m = p->rls.m;
+    sh_real F[SH_MAX_BASIS], dF[SH_MAX_BASIS];
     int i, j;
 
-    for (i = 0; i < p->rls.n && columns->has_nominal; ++i) {
-        for (j = 0; j < p->rls.m; ++j) {
-            point->tau_nominal += columns->nominal[i][j] * point->power[i] * point->l[j];
-            point->sigma_nominal += columns->nominal[i][j] * point->slope[i] * point->l[j];
+    sh_torque_basis(p->rls.symmetric, n, m, set_point, point->phi, F, dF);
+    for (i = 0; i < n; ++i) {
+        for (j = 0; j < m; ++j) {
+            point->tau_nominal += p->rls.eta_0[i][j] * F[j * n + i];
+            point->sigma_nominal += p->rls.eta_0[i][j] * dF[j * n + i];
         }
     }
 }
@@ -336,13 +333,15 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
 {
     int i;
 
-    (void)memset(point, 0, sizeof *point);
     point->theta = theta;
     point->q = q;
     point->phi = phi;
     point->stop = stop;
+    point->tau_nominal = point->sigma_nominal = 0;
     set_powers(point, p, set_point);
-    set_nominal(point, columns, p);
+    if (columns->has_nominal) {
+        set_nominal(point, p, set_point);
+    }
     for (i = 0; i < columns->size; ++i) {
         sh_real slope = 0;
 
@@ -362,15 +361,7 @@ void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change
 
 sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta)
 {
-    sh_real torque = at->tau_nominal;
-    int i;
-
-    for (i = 0; i < columns->size; ++i) {
-        if (sh_column_is(&columns->column[i], SH_IS_SPRING)) {
-            torque += at->F[i] * beta[i];
-        }
-    }
-    return torque;
+    return at->tau_nominal + sh_sum_of_products(at->F, beta, columns->spring);
 }
 
 /* ---- the row ----------------------------------------------------------------------------- */
@@ -502,7 +493,7 @@ sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_n
 
     left->information = left->gain = 0;
     for (i = 0; i < size && sh_square(torque) > 0; ++i) {
-        if (sh_column_is(&state->columns.column[i], SH_IS_DRIVE)) {
+        if (state->columns.column[i].kind == SH_COLUMN_DRIVE) {
             const sh_real slope = x[i] / torque;
             const sh_real nu = noise_of_torque(noise, slope * state->beta[i], epsilon);
             const sh_real entry = x[i] * sh_fabs(1 - nu / torque);

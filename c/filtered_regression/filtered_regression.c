@@ -63,19 +63,15 @@ static sh_combination evaluate_at(const sh_regression_state *state, const sh_par
                                   const sh_joint_point *at, sh_point *point)
 {
     const sh_columns *columns = &state->columns;
-    sh_real F[SH_MAX_COLUMNS] = {0}; /* of the spring alone */
-    sh_combination torque, stiffness;
-    sh_real attenuated;
-    int i;
+    const sh_posterior *posterior = &state->posterior;
+    const sh_combination torque =
+        sh_posterior_combine(posterior, p->prior.B, at->F, columns->spring);
+    const sh_combination stiffness =
+        sh_posterior_combine(posterior, p->prior.B, at->dF, columns->spring);
+    const sh_real attenuated = attenuation(state, &stiffness);
 
-    for (i = 0; i < columns->size; ++i) {
-        F[i] = sh_column_is(&columns->column[i], SH_IS_SPRING) ? at->F[i] : 0;
-    }
-    torque = sh_posterior_combine(&state->posterior, p->prior.B, F);
-    stiffness = sh_posterior_combine(&state->posterior, p->prior.B, at->dF);
     point->tau_e = at->tau_nominal + torque.value[SH_RIGHT_Y];
     point->sigma = at->sigma_nominal + stiffness.value[SH_RIGHT_Y];
-    attenuated = attenuation(state, &stiffness);
     point->sigma_std = std_deviation(p, &stiffness, attenuated * point->sigma);
     point->tau_e_std = std_deviation(p, &torque, attenuated * point->tau_e);
     return stiffness;
@@ -94,7 +90,7 @@ static void evaluate_filtered_regression(const sh_estimator *estimator, const sh
 
 /* ---- report ------------------------------------------------------------------------------- */
 
-/* Sets the coefficients eta, and adds up the coefficients of each other quantity, SH_OF_*, in sum. */
+/* Sets the coefficients eta, and adds up the coefficients of each kind of column [size: SH_COLUMN_KINDS]. */
 static void read_coefficients(const sh_regression_state *state, const sh_parameters *p,
                               const sh_joint_point *at, sh_real *sum, sh_estimate *estimate)
 {
@@ -103,19 +99,19 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     for (i = 0; i < state->columns.size; ++i) {
         const sh_column *column = &state->columns.column[i];
         const sh_real value = column->prior * state->beta[i];
-        const int quantity = sh_column_kinds[column->kind].quantity;
 
-        if (quantity == SH_OF_CURVE) {
+        if (sh_column_is(column, SH_IS_POWER)) {
             estimate->eta[column->i][column->j] =
                 sh_limited(value * column->unit, SH_LARGEST_OUTPUT);
         }
-        sum[quantity] +=
-            quantity == SH_OF_DAMPING ? value * sh_limited(at->l[column->j], SH_LARGE) : value;
+        sum[column->kind] += column->kind == SH_COLUMN_DAMPING
+                                 ? value * sh_limited(at->l[column->j], SH_LARGE)
+                                 : value;
     }
     for (i = 0; i < p->rls.n && state->columns.has_nominal; ++i) {
         for (j = 0; j < p->rls.m; ++j) {
             estimate->eta[i][j] = (p->prior.tau_e > 0 ? estimate->eta[i][j] : 0) +
-                                  (1 + sum[SH_OF_NOMINAL]) * p->rls.eta_0[i][j];
+                                  (1 + sum[SH_COLUMN_NOMINAL]) * p->rls.eta_0[i][j];
         }
     }
 }
@@ -132,10 +128,10 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p, co
     if (sh_fabs(estimate->phi) > largest_deformation_filtered_regression(p)) {
         doubt = SH_DOUBT_OUT_OF_RANGE;
     }
-    if (sh_fabs(sum[SH_OF_VISCOUS]) > SH_OUTSIDE_PRIOR * p->prior.D_theta) {
+    if (sh_fabs(sum[SH_COLUMN_VISCOUS]) > SH_OUTSIDE_PRIOR * p->prior.D_theta) {
         doubt = SH_DOUBT_FRICTION;
     }
-    if (sh_fabs(sum[SH_OF_INERTIA]) > SH_OUTSIDE_PRIOR * p->prior.B) {
+    if (sh_fabs(sum[SH_COLUMN_INERTIA]) > SH_OUTSIDE_PRIOR * p->prior.B) {
         doubt = SH_DOUBT_INERTIA;
     }
     if (estimate->sigma < 0) {
@@ -153,24 +149,24 @@ static void report_coefficients(const sh_regression_state *state, const sh_param
                                 sh_estimate *estimate)
 {
     const sh_real K_0 = p->prior.tau_e / p->range.phi, sigma = sh_fabs(estimate->sigma);
-    sh_real sum[SH_QUANTITIES] = {0};
+    sh_real sum[SH_COLUMN_KINDS] = {0};
 
     read_coefficients(state, p, at, sum, estimate);
     estimate->sigma_per_gain =
         sigma > 0 ? sh_limited(stiffness->value[SH_RIGHT_GAIN] / sigma, SH_LARGEST_OUTPUT) : 0;
-    estimate->D_theta_hat = p->motor.D_theta * (1 + sum[SH_OF_VISCOUS]);
-    estimate->B_hat = p->motor.B * (1 + sum[SH_OF_INERTIA]);
-    estimate->tau_coulomb_hat = sum[SH_OF_COULOMB];
-    estimate->bias_hat = sum[SH_OF_BIAS];
-    estimate->damping_hat = sum[SH_OF_DAMPING];
-    estimate->load_friction_hat = sum[SH_OF_LOAD_FRICTION];
+    estimate->D_theta_hat = p->motor.D_theta * (1 + sum[SH_COLUMN_VISCOUS]);
+    estimate->B_hat = p->motor.B * (1 + sum[SH_COLUMN_INERTIA]);
+    estimate->tau_coulomb_hat = sum[SH_COLUMN_COULOMB];
+    estimate->bias_hat = sum[SH_COLUMN_BIAS];
+    estimate->damping_hat = sum[SH_COLUMN_DAMPING];
+    estimate->load_friction_hat = sum[SH_COLUMN_LOAD] + sum[SH_COLUMN_DRIVE];
     estimate->eccentric_hat =
         K_0 > 0
-            ? sh_limited(sh_sqrt(sh_square(sum[SH_OF_SIN_Q]) + sh_square(sum[SH_OF_COS_Q])) / K_0,
+            ? sh_limited(sh_sqrt(sh_square(sum[SH_COLUMN_SIN_Q]) + sh_square(sum[SH_COLUMN_COS_Q])) / K_0,
                          SH_LARGEST_OUTPUT)
             : 0;
-    estimate->delay_hat = sum[SH_OF_DELAY];
-    estimate->hysteresis_hat = sum[SH_OF_HYSTERESIS];
+    estimate->delay_hat = sum[SH_COLUMN_DELAY];
+    estimate->hysteresis_hat = sum[SH_COLUMN_HYSTERESIS];
     estimate->change_age = state->history.change_age;
     estimate->misfit = sh_sqrt(sh_fmax(1, state->misfit));
     estimate->doubt = doubt_of(state, p, sum, estimate);
@@ -337,7 +333,7 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
     state->noise.information += sh_limited(left->information * w, SH_LARGE);
     state->noise.gain += sh_limited(left->gain * w, SH_LARGE);
     state->rounding += sh_limited(sh_noise_of_deformation(&state->signals) * w, SH_LARGE);
-    if (now->inertia < 0) {
+    if (!(p->prior.B > 0)) {
         return;
     }
     Q = sh_limited(SH_SPREAD_OF_SQUARE * sh_square(N / p->prior.B), SH_LARGE);

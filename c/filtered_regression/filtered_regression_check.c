@@ -20,6 +20,9 @@ static int are_columns(const sh_columns *columns, const sh_parameters *p)
     }
     (void)memset(&started, 0, sizeof started);
     sh_columns_start(&started, p);
+    if (columns->spring != started.spring) {
+        return 0;
+    }
     /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < SH_MAX_COLUMNS; ++i) { /* those behind are zero */
         if (columns->column[i].kind != started.column[i].kind ||
@@ -58,27 +61,6 @@ static int is_choice(const sh_regression_state *state, const sh_posterior *poste
         if (posterior->column[i] < 0 || posterior->column[i] >= state->columns.size) {
             return 0;
         }
-    }
-    return 1;
-}
-
-/* A posterior knows where two of its columns are. */
-static int knows_motor(const sh_regression_state *state, const sh_posterior *posterior)
-{
-    int coulomb = -1, inertia = -1, i;
-
-    for (i = 0; i < posterior->information.size; ++i) {
-        const sh_column *column = &state->columns.column[posterior->column[i]];
-
-        if (sh_column_is(column, SH_IS_COULOMB)) {
-            coulomb = i;
-        }
-        if (sh_column_is(column, SH_IS_INERTIA)) {
-            inertia = i;
-        }
-    }
-    if (posterior->coulomb != coulomb || posterior->inertia != inertia) {
-        return 0;
     }
     return 1;
 }
@@ -127,9 +109,7 @@ int sh_filtered_regression_check_state(const sh_estimator *estimator, const sh_p
 
     if (state->modality < SH_MODALITY_RESIDUAL || state->modality > SH_MODALITY_MODEL ||
         !are_columns(&state->columns, p) || !are_data(state) ||
-        !is_choice(state, &state->posterior) || !knows_motor(state, &state->posterior) ||
-        !is_choice(state, &state->refit.posterior) ||
-        !knows_motor(state, &state->refit.posterior) ||
+        !is_choice(state, &state->posterior) || !is_choice(state, &state->refit.posterior) ||
         !is_refit(&state->refit, state->columns.size) || !are_rows(state) || !are_flags(state)) {
         return 1;
     }

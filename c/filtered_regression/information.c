@@ -70,16 +70,6 @@ void sh_information_restart(sh_information *a, int count, sh_real precision)
     }
 }
 
-void sh_information_copy(sh_information *to, const sh_information *from)
-{
-    const int size = from->size;
-
-    to->size = size;
-    to->squares = from->squares;
-    (void)memcpy(to->D, from->D, sizeof(sh_real) * (size_t)size);
-    (void)memcpy(to->U, from->U, sizeof(sh_real) * (size_t)row_offset(size, size));
-}
-
 /* Combines a row of U with a sample. What is left of the sample stays in x, for the next row. */
 static void combine(sh_real *restrict row, sh_real *restrict x, int count, sh_real xi, sh_real gain)
 {
@@ -119,8 +109,7 @@ sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
     return w;
 }
 
-/* Sum of products, in four parts that do not wait for each other. */
-static sh_real sum_of_products(const sh_real *a, const sh_real *b, int count)
+sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count)
 {
     sh_real sum[4] = {0, 0, 0, 0};
     int k;
@@ -149,7 +138,7 @@ void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_r
         const int count = size - 1 - i;
 
         row -= count + SH_RIGHT_SIDES;
-        beta[i] = row[count + SH_RIGHT_Y] - sum_of_products(row, beta + i + 1, count);
+        beta[i] = row[count + SH_RIGHT_Y] - sh_sum_of_products(row, beta + i + 1, count);
     }
 }
 
@@ -177,17 +166,13 @@ static void add_row(sh_combination *sum, sh_real v, sh_real D, const sh_real *z)
 
 /* v = U'^-1 c: c' beta = v' z, and its variance is the sum of v_i^2 / D_i. */
 sh_combination sh_information_combine(const sh_information *a, const sh_last_row *last,
-                                      const sh_real *c)
+                                      sh_real *v)
 {
     const int size = a->size;
     const sh_real *row = a->U;
     sh_combination sum = {{0, 0}, 0};
-    sh_real v[SH_MAX_COLUMNS] = {0};
     int i;
 
-    for (i = 0; i < size; ++i) {
-        v[i] = c[i];
-    }
     for (i = 0; i < size - 1; ++i) {
         const int count = size - 1 - i;
 
@@ -211,7 +196,7 @@ sh_real sh_information_squares(const sh_information *a, const sh_real *beta)
     for (i = 0; i < size; ++i) {
         const int count = size - 1 - i;
         const sh_real error =
-            row[count + SH_RIGHT_Y] - beta[i] - sum_of_products(row, beta + i + 1, count);
+            row[count + SH_RIGHT_Y] - beta[i] - sh_sum_of_products(row, beta + i + 1, count);
 
         sum += a->D[i] * error * error;
         row += count + SH_RIGHT_SIDES;
@@ -241,7 +226,7 @@ sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
 
     for (i = 0; i < size; ++i) { /* row = v' U' D [U, U z] */
         const int count = size - 1 - i;
-        const sh_real along = v[i] + sum_of_products(of_U, v + i + 1, count);
+        const sh_real along = v[i] + sh_sum_of_products(of_U, v + i + 1, count);
         const sh_real scaled = a->D[i] * along;
 
         row[i] += scaled;

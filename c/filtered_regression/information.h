@@ -33,9 +33,6 @@ void sh_information_start(sh_information *a, int size, sh_real precision);
  */
 void sh_information_restart(sh_information *a, int count, sh_real precision);
 
-/* to = from, as far as it is used. */
-void sh_information_copy(sh_information *to, const sh_information *from);
-
 /* Takes a sample.
  *
  * x  [size: size + SH_RIGHT_SIDES] regressor, then the right-hand sides. It is overwritten: afterwards the
@@ -78,9 +75,11 @@ typedef struct {
     sh_real variance;              /* c' (U' D U)^-1 c */
 } sh_combination;
 
-/* The combination c [size: size], with another last row. */
-sh_combination sh_information_combine(const sh_information *a, const sh_last_row *last,
-                                      const sh_real *c);
+/* The combination c [size: size], which is overwritten, with another last row. */
+sh_combination sh_information_combine(const sh_information *a, const sh_last_row *last, sh_real *c);
+
+/* a' b [size: count], in four sums that do not wait for each other. */
+sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count);
 
 /* Weighted sum of squares of y - x' beta over all samples, and of the first precision. */
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta);

@@ -25,17 +25,16 @@ static sh_real inertial_noise(const sh_signals *signals, const sh_parameters *p)
 /* gamma^2 (tau_C^2 + P_CC) u_f^2: variance of the friction whose sign is unknown [(N.m)2] */
 static sh_real friction_variance(const sh_regression_state *state, const sh_parameters *p)
 {
-    const sh_posterior *posterior = &state->posterior;
     const sh_real u_f = sh_state_variable_filter_output(&state->signals.filter[SH_FILTER_UNKNOWN]);
+    const int size = state->columns.size, C = size - (p->prior.B > 0 ? 2 : 1);
     sh_real c[SH_MAX_COLUMNS] = {0}, tau_C;
-    int C;
 
-    if (posterior->coulomb < 0 || !(sh_fabs(u_f) > 0)) {
+    if (!(p->prior.tau_coulomb > 0) || C < 0 || !(sh_fabs(u_f) > 0)) {
         return 0;
     }
-    C = posterior->column[posterior->coulomb];
     c[C] = 1;
-    tau_C = sh_square(state->beta[C]) + sh_posterior_combine(posterior, p->prior.B, c).variance;
+    tau_C = sh_square(state->beta[C]) +
+            sh_posterior_combine(&state->posterior, p->prior.B, c, size).variance;
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * tau_C;
 }
 
@@ -119,7 +118,7 @@ sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameter
                   V = state->row.rough +
                       SH_ROUNDING_IS_NOT_WHITE * moved * sh_square(signals->count) / 12;
 
-    if (sh_is_measured(p) || state->posterior.inertia < 0) {
+    if (sh_is_measured(p)) {
         return 0;
     }
     return sh_square(p->prior.B) * inertial_noise(signals, p) * V;
@@ -139,7 +138,7 @@ int sh_noise_contradicts_rest(const sh_regression_state *state, const sh_paramet
         epsilon -= x[i] * state->beta[i];
         c[i] = sh_column_is(&state->columns.column[i], SH_IS_EQUATION) ? x[i] : 0;
     }
-    variance = sh_posterior_combine(&state->posterior, p->prior.B, c).variance +
+    variance = sh_posterior_combine(&state->posterior, p->prior.B, c, size).variance +
                torque_noise(&state->signals, p) +
                inertial_noise(&state->signals, p) * sh_square(state->signals.count) / 12 +
                friction_variance(state, p);

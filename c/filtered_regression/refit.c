@@ -40,9 +40,9 @@ static int is_tried(const sh_regression_state *state, const sh_parameters *p, in
  */
 static int place_of(const sh_column *column)
 {
-    return sh_column_is(column, SH_IS_DRIVE | SH_IS_FRICTION | SH_IS_INERTIA) ? 2
-           : sh_column_is(column, SH_IS_SPRING)                               ? 1
-                                                                              : 0;
+    return column->kind >= SH_COLUMN_VISCOUS || column->kind == SH_COLUMN_DRIVE ? 2
+           : sh_column_is(column, SH_IS_SPRING)                                  ? 1
+                                                                                 : 0;
 }
 
 /* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */
@@ -76,13 +76,14 @@ static void start_refit(sh_regression_state *state, const sh_parameters *p)
     sh_refit *refit = &state->refit;
     const sh_real noise = sh_fmax(sh_fmax(1, state->misfit), state->history.excess_mean);
     const sh_real weight = 1 / (refit->trial == 0 ? state->variance_factor : noise);
-    int chosen[SH_MAX_COLUMNS] = {0};
-    const int size = choose_columns(state, p, chosen);
+    const int size = choose_columns(state, p, refit->posterior.column);
 
-    sh_posterior_start(&refit->posterior, &state->columns, chosen, size, weight);
+    sh_information_start(&refit->posterior.information, size, 1);
+    refit->posterior.weight = weight;
+    refit->posterior.removed = 0;
     refit->posterior.surplus = state->surplus * weight;
     refit->posterior.spread = state->spread * weight * weight;
-    sh_information_copy(&refit->frozen, &state->data);
+    refit->frozen = state->data;
     refit->row = 0;
 }
 
@@ -90,7 +91,7 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p)
 {
     state->variance_factor = state->misfit = 1;
     start_refit(state, p);
-    sh_posterior_copy(&state->posterior, &state->refit.posterior);
+    state->posterior = state->refit.posterior;
 }
 
 /* The next group that can be tried, 0 if there is none. */
@@ -151,11 +152,11 @@ static void remove_noise(sh_regression_state *state, const sh_parameters *p)
     sh_posterior *posterior = &state->posterior;
     int i;
 
-    if (posterior->inertia >= 0) {
+    if (p->prior.B > 0) {
         sh_posterior_remove(posterior, 0, p->prior.B);
     }
     for (i = 0; i < posterior->information.size; ++i) {
-        if (sh_column_is(&state->columns.column[posterior->column[i]], SH_IS_DRIVE)) {
+        if (state->columns.column[posterior->column[i]].kind == SH_COLUMN_DRIVE) {
             sh_posterior_remove_noise(posterior, p->prior.B, i, &state->noise);
         }
     }
@@ -170,7 +171,7 @@ static void end_refit(sh_regression_state *state, const sh_parameters *p)
     if (was_trial) {
         decide_about_group(state);
     } else {
-        sh_posterior_copy(&state->posterior, &refit->posterior);
+        state->posterior = refit->posterior;
         state->change.following = 0;
         remove_noise(state, p);
         sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);

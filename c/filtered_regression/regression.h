@@ -62,30 +62,10 @@ enum {
 enum {
     SH_IS_SPRING = 1,   /* a part of the torque of the spring */
     SH_IS_CURVE = 2,    /* a part of its smooth curve, which has a slope */
-    SH_IS_EQUATION = 4, /* a term of the equation of motion (columns.c), not an additional effect */
-    SH_IS_MOTOR = 8,    /* 0 where the torque of the spring is measured or modelled */
-    SH_IS_FRICTION = 16, /* friction of the motor that may drift */
-    SH_IS_COULOMB = 32,  /* tau_C */
-    SH_IS_INERTIA = 64,  /* b */
-    SH_IS_DRIVE = 128    /* friction by the torque of the motor */
-};
-
-/* Which quantity of the joint a coefficient is, or contributes to. */
-enum {
-    SH_OF_CURVE,
-    SH_OF_NOMINAL,
-    SH_OF_BIAS,
-    SH_OF_DAMPING,
-    SH_OF_SIN_Q,
-    SH_OF_COS_Q,
-    SH_OF_LOAD_FRICTION,
-    SH_OF_DELAY,
-    SH_OF_HYSTERESIS,
-    SH_OF_VISCOUS,
-    SH_OF_COULOMB,
-    SH_OF_INERTIA,
-    SH_OF_NOTHING,
-    SH_QUANTITIES
+    SH_IS_POWER = 4,    /* a power of the deformation: its coefficient is an eta */
+    SH_IS_EQUATION = 8, /* a term of the equation of motion, not an additional effect */
+    SH_IS_MOTOR = 16,   /* 0 where the torque of the spring is measured or modelled */
+    SH_IS_FRICTION = 32 /* friction of the motor that may drift */
 };
 
 /* How the filter of a column takes its signal. */
@@ -113,12 +93,11 @@ void sh_columns_start(sh_columns *columns, const sh_parameters *p);
 
 /* A kind of column. */
 typedef struct {
-    int prior;    /* offset of its std deviation in sh_parameters */
-    int unit;     /* in which that is given, see columns.c */
-    int signal;   /* SH_SIGNAL_* */
-    int quantity; /* SH_OF_*: what its coefficient is */
-    int group;    /* 0: always used */
-    unsigned is;  /* SH_IS_*, added up */
+    int prior;   /* offset of its std deviation in sh_parameters */
+    int unit;    /* in which that is given, see columns.c */
+    int signal;  /* SH_SIGNAL_* */
+    int group;   /* 0: always used */
+    unsigned is; /* SH_IS_*, added up */
 } sh_column_kind;
 
 extern const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS];
