@@ -20,6 +20,7 @@
  * To add a kind of column: its row in sh_column_kinds, and its line in list_columns.
  */
 #include <stddef.h>
+#include <string.h>
 
 #include "constants.h"
 #include "information.h"
@@ -315,7 +316,7 @@ static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real se
 static void set_nominal(sh_joint_point *point, const sh_parameters *p, sh_real set_point)
 {
     const int n = p->rls.n, m = p->rls.m;
-    sh_real F[SH_MAX_BASIS], dF[SH_MAX_BASIS];
+    sh_real F[SH_MAX_BASIS] = {0}, dF[SH_MAX_BASIS] = {0};
     int i, j;
 
     sh_torque_basis(p->rls.symmetric, n, m, set_point, point->phi, F, dF);
@@ -333,11 +334,11 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
 {
     int i;
 
+    (void)memset(point, 0, sizeof *point);
     point->theta = theta;
     point->q = q;
     point->phi = phi;
     point->stop = stop;
-    point->tau_nominal = point->sigma_nominal = 0;
     set_powers(point, p, set_point);
     if (columns->has_nominal) {
         set_nominal(point, p, set_point);

@@ -142,48 +142,48 @@ void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_r
     }
 }
 
-/* x -= factor row */
-static void subtract(sh_real *restrict x, const sh_real *restrict row, int count, sh_real factor)
+/* a -= a_i row, b -= b_i row */
+static void subtract(sh_real *restrict a, sh_real *restrict b, const sh_real *restrict row, int count,
+                     sh_real a_i, sh_real b_i)
 {
     int k;
 
     for (k = 0; k < count; ++k) {
-        x[k] -= factor * row[k];
+        a[k] -= a_i * row[k];
+        b[k] -= b_i * row[k];
     }
 }
 
-/* Adds the part of one row, with the entry v of U'^-1 c. v^2 / D is computed also where v^2 overflows: in
- * single precision D can be as large.
- */
+/* Adds the part of one row, with the entry v of U'^-1 c. */
 static void add_row(sh_combination *sum, sh_real v, sh_real D, const sh_real *z)
 {
-    const sh_real square = v * v;
-
-    sum->variance += square <= SH_LARGEST_OUTPUT ? square / D : v / D * v;
+    sum->variance += v / D * v; /* in single precision, v^2 may overflow where D is as large */
     sum->value[SH_RIGHT_GAIN] += v * z[SH_RIGHT_GAIN];
     sum->value[SH_RIGHT_Y] += v * z[SH_RIGHT_Y];
 }
 
 /* v = U'^-1 c: c' beta = v' z, and its variance is the sum of v_i^2 / D_i. */
-sh_combination sh_information_combine(const sh_information *a, const sh_last_row *last,
-                                      sh_real *v)
+void sh_information_combine(const sh_information *a, const sh_last_row *last, sh_real *first,
+                            sh_real *second, sh_combination *found)
 {
     const int size = a->size;
     const sh_real *row = a->U;
-    sh_combination sum = {{0, 0}, 0};
+    const sh_combination none = {{0, 0}, 0};
     int i;
 
-    for (i = 0; i < size - 1; ++i) {
+    found[0] = found[1] = none;
+    for (i = 0; i < size; ++i) {
         const int count = size - 1 - i;
+        const sh_real *z = i < size - 1 ? row + count : last->z;
+        const sh_real D = i < size - 1 ? a->D[i] : last->D;
 
-        if (sh_fabs(v[i]) > 0) {
-            subtract(v + i + 1, row, count, v[i]);
-            add_row(&sum, v[i], a->D[i], row + count);
+        if (sh_fabs(first[i]) > 0 || sh_fabs(second[i]) > 0) {
+            subtract(first + i + 1, second + i + 1, row, count, first[i], second[i]);
+            add_row(&found[0], first[i], D, z);
+            add_row(&found[1], second[i], D, z);
         }
         row += count + SH_RIGHT_SIDES;
     }
-    add_row(&sum, v[i], last->D, last->z);
-    return sum;
 }
 
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta)

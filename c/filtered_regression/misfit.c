@@ -123,7 +123,7 @@ void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
     sh_blocks *blocks = &state->blocks;
     sh_real variance, error;
 
-    if (blocks->rows < blocks->length) {
+    if (step < 0 || step > 3 || blocks->rows < blocks->length) {
         return;
     }
     variance = variance_of(state, p);

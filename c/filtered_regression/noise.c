@@ -34,7 +34,7 @@ static sh_real friction_variance(const sh_regression_state *state, const sh_para
     }
     c[C] = 1;
     tau_C = sh_square(state->beta[C]) +
-            sh_posterior_combine(&state->posterior, p->prior.B, c, size).variance;
+            sh_posterior_variance(&state->posterior, p->prior.B, c, size);
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * tau_C;
 }
 
@@ -127,18 +127,22 @@ sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameter
 /* epsilon^2 > 25 (x' P x + N_tau + N_theta + gamma^2 (tau_C^2 + P_CC) u_f^2), where x contains only the
  * columns of the equation: a bias, or another thing that a joint may have, would hide a slow motion.
  */
-int sh_noise_contradicts_rest(const sh_regression_state *state, const sh_parameters *p,
-                              const sh_real *x)
+int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p)
 {
     const int size = state->columns.size;
-    sh_real c[SH_MAX_COLUMNS] = {0}, epsilon = x[size + SH_RIGHT_Y], variance;
+    const sh_real *x = state->row.x;
+    const sh_real epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, state->beta, size);
+    sh_real c[SH_MAX_COLUMNS] = {0}, variance;
     int i;
 
+    if (sh_is_measured(p) || !(state->history.starting > 0)) {
+        return 0;
+    }
+    state->history.starting -= (sh_real)state->signals.decimation * p->samplePeriod;
     for (i = 0; i < size; ++i) {
-        epsilon -= x[i] * state->beta[i];
         c[i] = sh_column_is(&state->columns.column[i], SH_IS_EQUATION) ? x[i] : 0;
     }
-    variance = sh_posterior_combine(&state->posterior, p->prior.B, c, size).variance +
+    variance = sh_posterior_variance(&state->posterior, p->prior.B, c, size) +
                torque_noise(&state->signals, p) +
                inertial_noise(&state->signals, p) * sh_square(state->signals.count) / 12 +
                friction_variance(state, p);

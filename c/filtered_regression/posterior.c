@@ -69,13 +69,13 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     const sh_last_row last = weighed_last(posterior, prior_B);
     const sh_real all = noise->information * posterior->weight;
     const int size = posterior->information.size;
-    sh_real unit[SH_MAX_COLUMNS] = {0}, row[SH_MAX_ROW] = {0};
+    sh_real unit[2][SH_MAX_COLUMNS] = {{0}}, row[SH_MAX_ROW] = {0};
     sh_real G = noise->gain * posterior->weight, D, N, I, Q, lost, less;
-    sh_combination found;
+    sh_combination found[2];
 
-    unit[i] = row[i] = 1;
-    found = sh_information_combine(&posterior->information, &last, unit);
-    D = 1 / found.variance;
+    unit[0][i] = row[i] = 1;
+    sh_information_combine(&posterior->information, &last, unit[0], unit[1], found);
+    D = 1 / found[0].variance;
     if (!(all > 0) || !(D > 1) || !(D <= SH_LARGE)) {
         return;
     }
@@ -88,8 +88,8 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     if (!(less > 0)) {
         return;
     }
-    row[size + SH_RIGHT_GAIN] = (G + lost * (D * found.value[SH_RIGHT_GAIN] - G)) / less;
-    row[size + SH_RIGHT_Y] = lost * D * found.value[SH_RIGHT_Y] / less;
+    row[size + SH_RIGHT_GAIN] = (G + lost * (D * found[0].value[SH_RIGHT_GAIN] - G)) / less;
+    row[size + SH_RIGHT_Y] = lost * D * found[0].value[SH_RIGHT_Y] / less;
     (void)sh_information_take(&posterior->information, row, -less);
 }
 
@@ -108,15 +108,27 @@ void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_re
     }
 }
 
-sh_combination sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B,
-                                    const sh_real *c, int count)
+void sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B, const sh_real *first,
+                          const sh_real *second, int count, sh_combination *found)
 {
     const sh_last_row last = weighed_last(posterior, prior_B);
-    sh_real own[SH_MAX_COLUMNS] = {0};
+    sh_real own[2][SH_MAX_COLUMNS] = {{0}};
     int i;
 
     for (i = 0; i < posterior->information.size; ++i) {
-        own[i] = posterior->column[i] < count ? c[posterior->column[i]] : 0;
+        const int of_data = posterior->column[i];
+
+        own[0][i] = of_data < count ? first[of_data] : 0;
+        own[1][i] = of_data < count ? second[of_data] : 0;
     }
-    return sh_information_combine(&posterior->information, &last, own);
+    sh_information_combine(&posterior->information, &last, own[0], own[1], found);
+}
+
+sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,
+                              int count)
+{
+    sh_combination found[2];
+
+    sh_posterior_combine(posterior, prior_B, c, c, count, found);
+    return found[0].variance;
 }

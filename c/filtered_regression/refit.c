@@ -198,9 +198,17 @@ void sh_refit_restart(sh_regression_state *state, const sh_parameters *p)
     start_refit(state, p);
 }
 
-int sh_refit_pauses(const sh_regression_state *state)
+void sh_refit_take(sh_regression_state *state)
 {
-    return state->refit.row > state->columns.size + 2;
+    const sh_row *row = &state->row;
+    const sh_real duration = (sh_real)state->signals.decimation * state->signals.design.T;
+    sh_refit *refit = &state->refit;
+
+    if (refit->row <= state->columns.size + 2) { /* else it pauses */
+        (void)sh_posterior_take(&refit->posterior, row->x, state->columns.size, row->w);
+    }
+    refit->time += duration;
+    refit->pause += duration;
 }
 
 /* What a refit needs beside the rows is spread over ticks, too. */

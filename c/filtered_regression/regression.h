@@ -157,6 +157,9 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
 /* Lets the estimate wait until the filters have settled. */
 void sh_signals_unsettle(sh_signals *signals, sh_history *history);
 
+/* Lets time T [s] pass. Returns whether the filters have settled. */
+int sh_signals_settle(sh_history *history, sh_real T);
+
 /* Takes a sample into the history and into all filters. Sets where the joint is. */
 void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
                      sh_real set_point, sh_joint_point *at);
@@ -180,9 +183,8 @@ sh_real sh_noise_of_deformation(const sh_signals *signals);
 /* Detail 7: R times the information about b in the last row that is only rounding [(N.m)2]. */
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
 
-/* Detail 12: whether the row x [size: SH_MAX_ROW] shows that the motor was not at rest at the start. */
-int sh_noise_contradicts_rest(const sh_regression_state *state, const sh_parameters *p,
-                              const sh_real *x);
+/* Detail 12: whether the last row, one of the first ones, shows that the motor was not at rest at the start. */
+int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p);
 
 /* ---- misfit.c ---------------------------------------------------------------------------- */
 
@@ -191,7 +193,7 @@ void sh_blocks_start(sh_regression_state *state);
 /* Detail 8: takes the last row into the present block. */
 void sh_blocks_take(sh_regression_state *state);
 
-/* Step 0..3 of what a block does that is full: one regression a step takes its mean row. */
+/* Step 0..3 of what a block does that is full: one regression a step takes its mean row. Nothing else. */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step);
 
 /* Leaves out the samples of the present block: they are not in sequence with the next one. */
@@ -229,8 +231,8 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 /* Starts the refit again, not as a trial: the data contain a change of the spring. */
 void sh_refit_restart(sh_regression_state *state, const sh_parameters *p);
 
-/* Whether no refit is under way. */
-int sh_refit_pauses(const sh_regression_state *state);
+/* Takes the last row, if a refit is under way. */
+void sh_refit_take(sh_regression_state *state);
 
 /* Detail 6: takes (K + 1) / 2 rows of the data of all samples, or does the next step at the end of a refit. */
 void sh_refit_advance(sh_regression_state *state, const sh_parameters *p);

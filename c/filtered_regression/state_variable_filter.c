@@ -69,13 +69,18 @@ void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
     filter->input = mean;
 }
 
-void sh_state_variable_filter_add(sh_state_variable_filter *sum,
-                                  const sh_state_variable_filter *filter, sh_real share)
+void sh_state_variable_filter_add(sh_state_variable_filter *restrict sum,
+                                  const sh_state_variable_filter *restrict filter, int count,
+                                  sh_real share)
 {
-    sum->input += share * filter->input;
-    sum->behind[0] += share * filter->behind[0];
-    sum->behind[1] += share * filter->behind[1];
-    sum->behind[2] += share * filter->behind[2];
+    int i;
+
+    for (i = 0; i < count; ++i) {
+        sum[i].input += share * filter[i].input;
+        sum[i].behind[0] += share * filter[i].behind[0];
+        sum[i].behind[1] += share * filter[i].behind[1];
+        sum[i].behind[2] += share * filter[i].behind[2];
+    }
 }
 
 sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter)

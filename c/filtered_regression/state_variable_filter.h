@@ -39,9 +39,10 @@ void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_fi
 void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
                                         const sh_filter_design *design, sh_real mean);
 
-/* sum += share filter: the outputs of a mean of states are the means of the outputs. */
-void sh_state_variable_filter_add(sh_state_variable_filter *sum,
-                                  const sh_state_variable_filter *filter, sh_real share);
+/* sum += share filter [size: count]: the outputs of a mean of states are the means of the outputs. */
+void sh_state_variable_filter_add(sh_state_variable_filter *restrict sum,
+                                  const sh_state_variable_filter *restrict filter, int count,
+                                  sh_real share);
 
 /* The filtered signal. */
 sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter);

@@ -46,10 +46,13 @@ class Information:
         if side == Y:
             self.c.lib.sh_information_solve(self.a, last, self.c.pointer(beta))
             return beta
-        of_each = [
-            self.c.lib.sh_information_combine(self.a, last, self.c.pointer(unit)).value[side]
-            for unit in np.eye(self.size)
-        ]
+        of_each = []
+        for unit in np.eye(self.size):
+            first, second = self.c.pointer(unit), self.c.pointer(2 * unit)
+            found = self.c.new("sh_combination[2]")
+            self.c.lib.sh_information_combine(self.a, last, first, second, found)
+            of_each.append(found[0].value[side])
+            assert found[1].value[side] == pytest.approx(2 * of_each[-1])
         return np.array(of_each)
 
     def check(self, rel: float = 1e-9) -> None:
