@@ -4,7 +4,6 @@
 #include "constants.h"
 #include "information.h"
 #include "method.h"
-#include "posterior.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 

@@ -143,8 +143,8 @@ void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_r
 }
 
 /* a -= a_i row, b -= b_i row */
-static void subtract(sh_real *restrict a, sh_real *restrict b, const sh_real *restrict row, int count,
-                     sh_real a_i, sh_real b_i)
+static void subtract(sh_real *restrict a, sh_real *restrict b, const sh_real *restrict row,
+                     int count, sh_real a_i, sh_real b_i)
 {
     int k;
 

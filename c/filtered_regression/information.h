@@ -1,18 +1,11 @@
-/* Least squares in the information form, without square roots (detail 5).
+/* Least squares in the information form, without square roots (detail 5): sum of w x x' = U' D U over samples
+ * y = x' beta of weight w, U unit upper triangular, and the right-hand sides as U z. A sample is taken in
+ * O(size^2), and no parameter needs a prior (Gentleman 1974, Algorithm AS 75, Applied Statistics 23:448-454;
+ * Miller 1992, AS 274).
  *
- * The samples of a regression y = x' beta, each of weight w, are kept as
- *
- *     sum of w x x' = U' D U ,  U unit upper triangular,
- *
- * and the right-hand sides as U z. A sample is taken in O(size^2), and no parameter needs a prior
- * (Gentleman 1974, Algorithm AS 75, Applied Statistics 23:448-454; Miller 1992, AS 274).
- *
- * D[i] is the information about parameter i if those before it are estimated too and those after it
- * are exact. So to leave out the last parameters is to leave out the last columns. To scale the
- * weights of all samples is to scale D.
- *
- * Every entry of D must start above 0. If other columns make up a column exactly, its entry of D would
- * consist of rounding errors only, and the division by it would destroy U.
+ * D[i] is the information about parameter i if those before it are estimated too and those after it are exact.
+ * Every entry of D must start above 0: if other columns make up a column exactly, it would else consist of
+ * rounding errors, and the division by it would destroy U.
  */
 #ifndef SH_INFORMATION_H
 #define SH_INFORMATION_H

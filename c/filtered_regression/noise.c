@@ -1,6 +1,5 @@
 /* The variance of a row, and what of it is only noise. */
 #include "constants.h"
-#include "posterior.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 
@@ -33,8 +32,8 @@ static sh_real friction_variance(const sh_regression_state *state, const sh_para
         return 0;
     }
     c[C] = 1;
-    tau_C = sh_square(state->beta[C]) +
-            sh_posterior_variance(&state->posterior, p->prior.B, c, size);
+    tau_C =
+        sh_square(state->beta[C]) + sh_posterior_variance(&state->posterior, p->prior.B, c, size);
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * tau_C;
 }
 

@@ -1,4 +1,3 @@
-#include "posterior.h"
 
 #include "constants.h"
 #include "regression.h"

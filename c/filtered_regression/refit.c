@@ -1,15 +1,9 @@
-/* Refits: how the misfit, and the choice of columns, act on past samples in bounded time; detail 6.
- *
- * The data of all samples are a triangular matrix of n rows. A row with its weight is a sample for
- * another triangle. So a new posterior is computed beside the present one: with each new row of K samples
- * it takes that row, and (K + 1) / 2 rows of a copy of the data, weighted by the misfit. After n rows it
- * replaces the present one. No tick takes more than O(K n^2).
- *
- * Every second refit is a trial of a group of columns, and its estimate is not used.
+/* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of the
+ * data with its weight is a sample for another triangle: so a new posterior is computed beside the present one,
+ * from some rows of a copy of the data with each new row. Every second refit is a trial of a group of columns, and
+ * its estimate is not used.
  */
 #include "constants.h"
-#include "information.h"
-#include "posterior.h"
 #include "regression.h"
 
 static int is_distinct(const sh_regression_state *state, const sh_parameters *p, int i)
@@ -35,14 +29,14 @@ static int is_tried(const sh_regression_state *state, const sh_parameters *p, in
     return group != 0 && group == state->refit.trial && is_distinct(state, p, i);
 }
 
-/* Which columns stand behind others: those of the spring, whose variances then need few rows of U, and
- * behind them those of the motor, whose information is changed or whose variance is used.
+/* Columns of the spring stand behind others: their variances then need few rows of U. Behind them stand those of
+ * the motor, whose information is changed or whose variance is used.
  */
 static int place_of(const sh_column *column)
 {
     return column->kind >= SH_COLUMN_VISCOUS || column->kind == SH_COLUMN_DRIVE ? 2
-           : sh_column_is(column, SH_IS_SPRING)                                  ? 1
-                                                                                 : 0;
+           : sh_column_is(column, SH_IS_SPRING)                                 ? 1
+                                                                                : 0;
 }
 
 /* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */

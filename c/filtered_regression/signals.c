@@ -1,7 +1,6 @@
 /* The filters: all signals of the regression pass the same H. */
 #include "constants.h"
 #include "method.h"
-#include "motion_sign.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 
@@ -42,8 +41,11 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
     signals->count_q = sh_encoder_count(p->encoder.q);
     signals->design = sh_state_variable_filter_design(sh_regression_bandwidth(p), p->samplePeriod);
     signals->decimation = sh_regression_decimation(p);
-    sh_state_variable_filter_noise(&signals->design, signals->decimation, &signals->gain,
+    sh_state_variable_filter_noise(&signals->design, 1, signals->decimation, &signals->gain,
                                    &signals->gain_second);
+    signals->gain /=
+        (sh_real)signals->decimation; /* a mean of K samples has 1/K of their variance */
+    signals->gain_second /= (sh_real)signals->decimation;
     history->starting = SH_FORGOTTEN / signals->design.w;
     history->excess = history->excess_mean = 1;
     history->phi_min = SH_LARGE; /* no deformation yet */

@@ -104,7 +104,7 @@ def test_the_noise_of_the_filter_is_finite_at_every_bandwidth(
     pointer = c.new("sh_filter_design")
     pointer[0] = design
     gains = [c.ffi.new("sh_real *") for _ in range(2)]
-    c.lib.sh_state_variable_filter_noise(pointer, 8, *gains)
+    c.lib.sh_state_variable_filter_noise(pointer, 1.0, 8, *gains)
     assert all(0 <= gain[0] < math.inf for gain in gains)
 
 
