@@ -82,22 +82,16 @@ static int is_refit(const sh_refit *refit, int size)
     return 1;
 }
 
-/* Where the next row and the last one stand. */
-static int are_rows(const sh_regression_state *state)
+/* Where the rows stand, and flags. */
+static int are_numbers(const sh_regression_state *state)
 {
-    if (state->signals.decimation < 1 || state->signals.decimation > SH_LARGEST_DECIMATION ||
+    if (state->modality < SH_MODALITY_RESIDUAL || state->modality > SH_MODALITY_MODEL ||
+        state->signals.decimation < 1 || state->signals.decimation > SH_LARGEST_DECIMATION ||
         state->mean.samples < 0 || state->mean.samples >= state->signals.decimation ||
-        state->row.step < 0 || state->row.step > SH_ROW_STEPS) {
-        return 0;
-    }
-    return 1;
-}
-
-static int are_flags(const sh_regression_state *state)
-{
-    if (state->signals.begun < 0 || state->signals.begun > 1 || state->friction_drifts < 0 ||
-        state->friction_drifts > 1 || state->stiffness_known < 0 || state->stiffness_known > 1 ||
-        state->change.following < 0 || state->change.following > 1) {
+        state->row.step < 0 || state->row.step > SH_ROW_STEPS || state->signals.begun < 0 ||
+        state->signals.begun > 1 || state->friction_drifts < 0 || state->friction_drifts > 1 ||
+        state->stiffness_known < 0 || state->stiffness_known > 1 || state->change.following < 0 ||
+        state->change.following > 1) {
         return 0;
     }
     return 1;
@@ -107,10 +101,9 @@ int sh_filtered_regression_check_state(const sh_estimator *estimator, const sh_p
 {
     const sh_regression_state *state = &estimator->method.regression;
 
-    if (state->modality < SH_MODALITY_RESIDUAL || state->modality > SH_MODALITY_MODEL ||
-        !are_columns(&state->columns, p) || !are_data(state) ||
+    if (!are_numbers(state) || !are_columns(&state->columns, p) || !are_data(state) ||
         !is_choice(state, &state->posterior) || !is_choice(state, &state->refit.posterior) ||
-        !is_refit(&state->refit, state->columns.size) || !are_rows(state) || !are_flags(state)) {
+        !is_refit(&state->refit, state->columns.size)) {
         return 1;
     }
     return 0;

@@ -25,16 +25,6 @@ sh_real sh_information_sample(const sh_information *a, int i, sh_real *x)
     return a->D[i];
 }
 
-void sh_information_right_side(const sh_information *a, int right, sh_real *z)
-{
-    const int size = a->size;
-    int i;
-
-    for (i = 0; i < size; ++i) {
-        z[i] = a->U[row_offset(size, i) + size - 1 - i + right];
-    }
-}
-
 sh_last_row sh_information_last(const sh_information *a)
 {
     const sh_real *z = a->U + row_offset(a->size, a->size - 1);

@@ -48,9 +48,6 @@ sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
  */
 sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
 
-/* The entries of U z in row i of a side, SH_RIGHT_*, for all rows: z [size: size]. */
-void sh_information_right_side(const sh_information *a, int right, sh_real *z);
-
 /* The last row: the information about the last parameter, and its right-hand sides. */
 typedef struct {
     sh_real D, z[SH_RIGHT_SIDES];

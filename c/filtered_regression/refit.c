@@ -12,31 +12,24 @@ static int is_distinct(const sh_regression_state *state, const sh_parameters *p,
                                  state->history.phi_max);
 }
 
-/* Whether column i is used, and not one of the trial. */
-static int is_used(const sh_regression_state *state, const sh_parameters *p, int i)
-{
-    const int group = sh_column_kinds[state->columns.column[i].kind].group;
-
-    return group == 0 ||
-           (group != state->refit.trial && state->refit.used[group] && is_distinct(state, p, i));
-}
-
-/* Column i is tried: its group stands behind all columns that are used. */
-static int is_tried(const sh_regression_state *state, const sh_parameters *p, int i)
-{
-    const int group = sh_column_kinds[state->columns.column[i].kind].group;
-
-    return group != 0 && group == state->refit.trial && is_distinct(state, p, i);
-}
-
-/* Columns of the spring stand behind others: their variances then need few rows of U. Behind them stand those of
- * the motor, whose information is changed or whose variance is used.
+/* Where column i stands; -1 if it is not used. Columns of the spring stand behind others: their variances then need
+ * few rows of U. Behind them stand those of the motor, whose information is changed or whose variance is used, and
+ * at the end the group that is tried.
  */
-static int place_of(const sh_column *column)
+static int place_of(const sh_regression_state *state, const sh_parameters *p, int i)
 {
-    return column->kind >= SH_COLUMN_VISCOUS || column->kind == SH_COLUMN_DRIVE ? 2
-           : sh_column_is(column, SH_IS_SPRING)                                 ? 1
-                                                                                : 0;
+    const sh_column *column = &state->columns.column[i];
+    const sh_refit *refit = &state->refit;
+    const int group = sh_column_kinds[column->kind].group;
+
+    if (group != 0 &&
+        (!is_distinct(state, p, i) || (group != refit->trial && !refit->used[group]))) {
+        return -1;
+    }
+    return group != 0 && group == refit->trial                                    ? 3
+           : column->kind >= SH_COLUMN_VISCOUS || column->kind == SH_COLUMN_DRIVE ? 2
+           : sh_column_is(column, SH_IS_SPRING)                                   ? 1
+                                                                                  : 0;
 }
 
 /* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */
@@ -44,19 +37,13 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
 {
     int size = 0, place, i;
 
-    /*@ loop unroll 3; */
-    for (place = 0; place < 3; ++place) {
+    /*@ loop unroll 4; */
+    for (place = 0; place < 4; ++place) {
         /*@ loop unroll SH_MAX_COLUMNS; */
         for (i = 0; i < state->columns.size; ++i) {
-            if (size < state->columns.size && place == place_of(&state->columns.column[i]) &&
-                is_used(state, p, i)) {
+            if (size < state->columns.size && place == place_of(state, p, i)) {
                 chosen[size++] = i;
             }
-        }
-    }
-    for (i = 0; i < state->columns.size && size < state->columns.size; ++i) {
-        if (is_tried(state, p, i)) {
-            chosen[size++] = i;
         }
     }
     return size;
@@ -111,15 +98,16 @@ static sh_real gain_of_evidence(const sh_regression_state *state)
 {
     const sh_posterior *posterior = &state->refit.posterior;
     const sh_information *a = &posterior->information;
-    sh_real z[SH_MAX_COLUMNS] = {0}, gain = 0;
+    sh_real row[SH_MAX_ROW] = {0}, gain = 0;
     int i;
 
-    sh_information_right_side(a, SH_RIGHT_Y, z);
     for (i = 0; i < a->size; ++i) {
         const sh_column *column = &state->columns.column[posterior->column[i]];
 
         if (sh_column_kinds[column->kind].group == state->refit.trial) {
-            gain += (a->D[i] * z[i] * z[i] - sh_log(a->D[i])) / 2;
+            const sh_real D = sh_information_sample(a, i, row), z = row[a->size + SH_RIGHT_Y];
+
+            gain += (D * z * z - sh_log(D)) / 2;
         }
     }
     return gain;

@@ -29,7 +29,7 @@ UNROLLED = ("-eva-min-loop-unroll", str(MAX_COLUMNS + 6))
 
 TRIANGLES = (
     *("sh_information_take", "sh_information_start", "sh_information_restart"),
-    *("sh_information_sample", "sh_information_right_side", "sh_information_last"),
+    *("sh_information_sample", "sh_information_last"),
     *("sh_information_set_last", "sh_information_solve", "sh_information_combine"),
     *(
         "sh_information_squares",
@@ -45,7 +45,7 @@ TRIANGLES = (
 APART = (
     *("-eva-split-return", "full", "-eva-slevel-function"),
     "restored:9999,sh_estimator_check:9999,sh_filtered_regression_check_state:9999,are_columns:99,"
-    "are_data:30,is_choice:1000,is_refit:60,are_flags:30",
+    "are_data:30,is_choice:1000,is_refit:60,are_numbers:30",
 )
 
 

@@ -44,12 +44,6 @@ void sh_information_restart(sh_information *a, int count, sh_real precision);
 sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires right == SH_RIGHT_GAIN || right == SH_RIGHT_Y;
-    assigns z[0 .. SH_MAX_COLUMNS - 1] \from *a;
-*/
-void sh_information_right_side(const sh_information *a, int right, sh_real *z);
-
-/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     assigns \result \from *a;
 */
 sh_last_row sh_information_last(const sh_information *a);

@@ -34,8 +34,6 @@ void columns(void)
     sh_information_solve(&a, &last, v);
     sh_information_combine(&a, &last, c, v, found);
     sh_information_set_last(&a, &last);
-    sh_information_right_side(&a, SH_RIGHT_GAIN, v);
-    sh_information_right_side(&a, SH_RIGHT_Y, v);
     for (i = 0; i < SH_MAX_COLUMNS; ++i) {
         sh_information_sample(&a, i, x);
     }
