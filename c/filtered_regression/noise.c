@@ -113,14 +113,10 @@ sh_real sh_noise_of_deformation(const sh_signals *signals)
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p)
 {
     const sh_signals *signals = &state->signals;
-    const sh_real moved = state->row.moved,
-                  V = state->row.rough +
-                      SH_ROUNDING_IS_NOT_WHITE * moved * sh_square(signals->count) / 12;
+    const sh_real V = state->row.rough +
+                      SH_ROUNDING_IS_NOT_WHITE * state->row.moved * sh_square(signals->count) / 12;
 
-    if (sh_is_measured(p)) {
-        return 0;
-    }
-    return sh_square(p->prior.B) * inertial_noise(signals, p) * V;
+    return sh_is_measured(p) ? 0 : sh_square(p->prior.B) * inertial_noise(signals, p) * V;
 }
 
 /* epsilon^2 > 25 (x' P x + N_tau + N_theta + gamma^2 (tau_C^2 + P_CC) u_f^2), where x contains only the
@@ -130,14 +126,14 @@ int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p
 {
     const int size = state->columns.size;
     const sh_real *x = state->row.x;
-    const sh_real epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, state->beta, size);
-    sh_real c[SH_MAX_COLUMNS] = {0}, variance;
+    sh_real c[SH_MAX_COLUMNS] = {0}, epsilon, variance;
     int i;
 
     if (sh_is_measured(p) || !(state->history.starting > 0)) {
         return 0;
     }
     state->history.starting -= (sh_real)state->signals.decimation * p->samplePeriod;
+    epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, state->beta, size);
     for (i = 0; i < size; ++i) {
         c[i] = sh_column_is(&state->columns.column[i], SH_IS_EQUATION) ? x[i] : 0;
     }

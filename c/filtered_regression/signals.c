@@ -43,8 +43,7 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
     signals->decimation = sh_regression_decimation(p);
     sh_state_variable_filter_noise(&signals->design, 1, signals->decimation, &signals->gain,
                                    &signals->gain_second);
-    signals->gain /=
-        (sh_real)signals->decimation; /* a mean of K samples has 1/K of their variance */
+    signals->gain /= (sh_real)signals->decimation; /* of a mean of K samples */
     signals->gain_second /= (sh_real)signals->decimation;
     history->starting = SH_FORGOTTEN / signals->design.w;
     history->excess = history->excess_mean = 1;
@@ -87,17 +86,16 @@ static void begin_filters(sh_regression_state *state, const sh_joint_point *at, 
     sh_state_variable_filter *filter = signals->filter;
     int i;
 
-    sh_state_variable_filter_start(&filter[SH_FILTER_THETA], at->theta);
-    sh_state_variable_filter_begin(&filter[SH_FILTER_TORQUE], torque);
-    sh_state_variable_filter_begin(&filter[SH_FILTER_NOMINAL], at->tau_nominal);
-    sh_state_variable_filter_start(&filter[SH_FILTER_SIGN], 0);
-    sh_state_variable_filter_start(&filter[SH_FILTER_UNKNOWN], 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_THETA], at->theta, at->theta);
+    sh_state_variable_filter_start(&filter[SH_FILTER_TORQUE], torque, 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_NOMINAL], at->tau_nominal, 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_SIGN], 0, 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_UNKNOWN], 0, 0);
     for (i = 0; i < state->columns.size; ++i) {
-        if (sh_column_kinds[state->columns.column[i].kind].signal == SH_SIGNAL_LINEAR) {
-            sh_state_variable_filter_begin(&filter[SH_FILTER_COLUMN + i], at->F[i]);
-        } else {
-            sh_state_variable_filter_start(&filter[SH_FILTER_COLUMN + i], at->F[i]);
-        }
+        const int signal = sh_column_kinds[state->columns.column[i].kind].signal;
+
+        sh_state_variable_filter_start(&filter[SH_FILTER_COLUMN + i], at->F[i],
+                                       signal == SH_SIGNAL_LINEAR ? 0 : at->F[i]);
     }
     sh_motion_sign_start(&signals->motion, at->theta);
     for (i = 0; i < 5; ++i) {

@@ -21,16 +21,10 @@ sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T)
     return design;
 }
 
-void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x)
+void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x, sh_real before)
 {
     filter->input = x;
-    filter->behind[0] = filter->behind[1] = filter->behind[2] = 0;
-}
-
-void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x)
-{
-    filter->input = x;
-    filter->behind[0] = filter->behind[1] = filter->behind[2] = x;
+    filter->behind[0] = filter->behind[1] = filter->behind[2] = x - before;
 }
 
 /* Advances by T. In the steady state of a ramp, the output of stage i is i + 1 times lag behind the
@@ -108,7 +102,7 @@ void sh_state_variable_filter_noise(const sh_filter_design *design, sh_real rows
     sh_real energy = 0;
     int k;
 
-    sh_state_variable_filter_start(&filter, 0);
+    sh_state_variable_filter_start(&filter, 0, 0);
     *gain = *gain_second = 0;
     for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < last; ++k) { /* decayed after 60 / w */
         const sh_real row = (sh_real)(k / K), h = row < rows ? sh_window(row, rows) : 0;

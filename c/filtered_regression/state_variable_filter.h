@@ -15,11 +15,8 @@
  */
 sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T);
 
-/* Starts the filter as if the signal had always been x: no transient. */
-void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x);
-
-/* Starts the filter at rest for a signal that was zero until now and jumps to x. */
-void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x);
+/* Starts the filter for a signal that has always been `before` and jumps to x now. */
+void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x, sh_real before);
 
 /* Advances the filter by T, in which the signal went linearly to x. */
 void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_filter_design *design,
