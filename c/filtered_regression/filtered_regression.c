@@ -54,16 +54,16 @@ static sh_combination evaluate_at(const sh_regression_state *state, const sh_par
                                   const sh_joint_point *at, sh_point *point)
 {
     const sh_posterior *posterior = &state->posterior;
-    sh_combination found[2]; /* torque and stiffness */
-    sh_real share;
+    const sh_combinations found =
+        sh_posterior_combine(posterior, p->prior.B, at->F, at->dF, state->columns.spring);
+    const sh_combination *torque = &found.first, *stiffness = &found.second;
+    const sh_real share = state->rounding * posterior->weight * stiffness->variance;
 
-    sh_posterior_combine(posterior, p->prior.B, at->F, at->dF, state->columns.spring, found);
-    share = state->rounding * posterior->weight * found[1].variance;
-    point->tau_e = at->tau_nominal + found[0].value[SH_RIGHT_Y];
-    point->sigma = at->sigma_nominal + found[1].value[SH_RIGHT_Y];
-    point->tau_e_std = std_deviation(p, &found[0], share * point->tau_e);
-    point->sigma_std = std_deviation(p, &found[1], share * point->sigma);
-    return found[1];
+    point->tau_e = at->tau_nominal + torque->value[SH_RIGHT_Y];
+    point->sigma = at->sigma_nominal + stiffness->value[SH_RIGHT_Y];
+    point->tau_e_std = std_deviation(p, torque, share * point->tau_e);
+    point->sigma_std = std_deviation(p, stiffness, share * point->sigma);
+    return *stiffness;
 }
 
 static void evaluate_filtered_regression(const sh_estimator *estimator, const sh_parameters *p,

@@ -153,15 +153,14 @@ static void add_row(sh_combination *sum, sh_real v, sh_real D, const sh_real *z)
 }
 
 /* v = U'^-1 c: c' beta = v' z, and its variance is the sum of v_i^2 / D_i. */
-void sh_information_combine(const sh_information *a, const sh_last_row *last, sh_real *first,
-                            sh_real *second, sh_combination *found)
+sh_combinations sh_information_combine(const sh_information *a, const sh_last_row *last,
+                                       sh_real *first, sh_real *second)
 {
     const int size = a->size;
     const sh_real *row = a->U;
-    const sh_combination none = {{0, 0}, 0};
+    sh_combinations found = {{{0, 0}, 0}, {{0, 0}, 0}};
     int i;
 
-    found[0] = found[1] = none;
     for (i = 0; i < size; ++i) {
         const int count = size - 1 - i;
         const sh_real *z = i < size - 1 ? row + count : last->z;
@@ -169,11 +168,12 @@ void sh_information_combine(const sh_information *a, const sh_last_row *last, sh
 
         if (sh_fabs(first[i]) > 0 || sh_fabs(second[i]) > 0) {
             subtract(first + i + 1, second + i + 1, row, count, first[i], second[i]);
-            add_row(&found[0], first[i], D, z);
-            add_row(&found[1], second[i], D, z);
+            add_row(&found.first, first[i], D, z);
+            add_row(&found.second, second[i], D, z);
         }
         row += count + SH_RIGHT_SIDES;
     }
+    return found;
 }
 
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta)

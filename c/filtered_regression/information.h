@@ -65,9 +65,13 @@ typedef struct {
     sh_real variance;              /* c' (U' D U)^-1 c */
 } sh_combination;
 
-/* Two combinations [size: size], which are overwritten, with another last row; found [size: 2]. */
-void sh_information_combine(const sh_information *a, const sh_last_row *last, sh_real *first,
-                            sh_real *second, sh_combination *found);
+typedef struct {
+    sh_combination first, second;
+} sh_combinations;
+
+/* Two combinations [size: size], which are overwritten, with another last row. */
+sh_combinations sh_information_combine(const sh_information *a, const sh_last_row *last,
+                                       sh_real *first, sh_real *second);
 
 /* a' b [size: count], in four sums that do not wait for each other. */
 sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count);

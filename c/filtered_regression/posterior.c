@@ -70,11 +70,11 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     const int size = posterior->information.size;
     sh_real unit[2][SH_MAX_COLUMNS] = {{0}}, row[SH_MAX_ROW] = {0};
     sh_real G = noise->gain * posterior->weight, D, N, I, Q, lost, less;
-    sh_combination found[2];
+    sh_combination found;
 
     unit[0][i] = row[i] = 1;
-    sh_information_combine(&posterior->information, &last, unit[0], unit[1], found);
-    D = 1 / found[0].variance;
+    found = sh_information_combine(&posterior->information, &last, unit[0], unit[1]).first;
+    D = 1 / found.variance;
     if (!(all > 0) || !(D > 1) || !(D <= SH_LARGE)) {
         return;
     }
@@ -87,8 +87,8 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     if (!(less > 0)) {
         return;
     }
-    row[size + SH_RIGHT_GAIN] = (G + lost * (D * found[0].value[SH_RIGHT_GAIN] - G)) / less;
-    row[size + SH_RIGHT_Y] = lost * D * found[0].value[SH_RIGHT_Y] / less;
+    row[size + SH_RIGHT_GAIN] = (G + lost * (D * found.value[SH_RIGHT_GAIN] - G)) / less;
+    row[size + SH_RIGHT_Y] = lost * D * found.value[SH_RIGHT_Y] / less;
     (void)sh_information_take(&posterior->information, row, -less);
 }
 
@@ -107,8 +107,8 @@ void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_re
     }
 }
 
-void sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B, const sh_real *first,
-                          const sh_real *second, int count, sh_combination *found)
+sh_combinations sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B,
+                                     const sh_real *first, const sh_real *second, int count)
 {
     const sh_last_row last = weighed_last(posterior, prior_B);
     sh_real own[2][SH_MAX_COLUMNS] = {{0}};
@@ -120,14 +120,11 @@ void sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B, const 
         own[0][i] = of_data < count ? first[of_data] : 0;
         own[1][i] = of_data < count ? second[of_data] : 0;
     }
-    sh_information_combine(&posterior->information, &last, own[0], own[1], found);
+    return sh_information_combine(&posterior->information, &last, own[0], own[1]);
 }
 
 sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,
                               int count)
 {
-    sh_combination found[2];
-
-    sh_posterior_combine(posterior, prior_B, c, c, count, found);
-    return found[0].variance;
+    return sh_posterior_combine(posterior, prior_B, c, c, count).first.variance;
 }

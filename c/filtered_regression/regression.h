@@ -210,9 +210,9 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
 /* The estimate beta [size: size] of all columns; 0 for those that are not used. */
 void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta, int size);
 
-/* Two combinations [size: count] of the coefficients of the first columns of the data; found [size: 2]. */
-void sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B, const sh_real *first,
-                          const sh_real *second, int count, sh_combination *found);
+/* Two combinations [size: count] of the coefficients of the first columns of the data. */
+sh_combinations sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B,
+                                     const sh_real *first, const sh_real *second, int count);
 
 /* Variance of one of them. */
 sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,

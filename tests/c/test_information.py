@@ -48,11 +48,11 @@ class Information:
             return beta
         of_each = []
         for unit in np.eye(self.size):
-            first, second = self.c.pointer(unit), self.c.pointer(2 * unit)
-            found = self.c.new("sh_combination[2]")
-            self.c.lib.sh_information_combine(self.a, last, first, second, found)
-            of_each.append(found[0].value[side])
-            assert found[1].value[side] == pytest.approx(2 * of_each[-1])
+            twice = 2 * unit
+            first, second = self.c.pointer(unit), self.c.pointer(twice)
+            found = self.c.lib.sh_information_combine(self.a, last, first, second)
+            of_each.append(found.first.value[side])
+            assert found.second.value[side] == pytest.approx(2 * of_each[-1])
         return np.array(of_each)
 
     def check(self, rel: float = 1e-9) -> None:

@@ -61,12 +61,11 @@ void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_r
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \initialized(first + (0 .. a->size - 1));
     requires \initialized(second + (0 .. a->size - 1));
-    assigns found[0 .. 1], first[0 .. SH_MAX_COLUMNS - 1], second[0 .. SH_MAX_COLUMNS - 1]
+    assigns \result, first[0 .. SH_MAX_COLUMNS - 1], second[0 .. SH_MAX_COLUMNS - 1]
             \from *a, *last, first[0 .. SH_MAX_COLUMNS - 1], second[0 .. SH_MAX_COLUMNS - 1];
-    ensures \initialized(&found[0 .. 1]);
 */
-void sh_information_combine(const sh_information *a, const sh_last_row *last, sh_real *first,
-                            sh_real *second, sh_combination *found);
+sh_combinations sh_information_combine(const sh_information *a, const sh_last_row *last,
+                                       sh_real *first, sh_real *second);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \initialized(beta + (0 .. a->size - 1));

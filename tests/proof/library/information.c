@@ -17,7 +17,6 @@ static void any_vectors(void)
 void columns(void)
 {
     sh_information a, b;
-    sh_combination found[2];
     sh_last_row last;
     int i;
 
@@ -32,7 +31,7 @@ void columns(void)
     sh_information_drift(&a, v, any_real());
     last = sh_information_last(&a);
     sh_information_solve(&a, &last, v);
-    sh_information_combine(&a, &last, c, v, found);
+    sh_information_combine(&a, &last, c, v);
     sh_information_set_last(&a, &last);
     for (i = 0; i < SH_MAX_COLUMNS; ++i) {
         sh_information_sample(&a, i, x);
