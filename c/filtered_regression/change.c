@@ -1,8 +1,9 @@
-/* A stiffness that changes (detail 15): two hypotheses predict each block, and the estimate follows the better one.
+/* A stiffness that changes (detail 15): two hypotheses predict each block, and the estimate follows the better
+ * one.
  *
  *     0  the joint is as before: the information of all blocks
- *     1  the spring has changed since t: the same at t, but nothing is known about the columns of the spring, which
- *        are the first ones. What the data say about motor and friction is in the rows behind.
+ *     1  the spring has changed since t: the same at t, but nothing is known about its columns, which are the
+ *        first ones. What the data say about motor and friction is in the rows behind.
  */
 #include "constants.h"
 #include "regression.h"
@@ -55,8 +56,8 @@ static void watch_misfit(sh_change *change, sh_real misfit)
     change->usual_misfit += (sh_fmin(misfit, SH_SUDDEN_MISFIT * usual) - usual) / change->judged;
 }
 
-/* g = max(0, g + min(z_0 / l, 25) - 2 min(z_1 / l, 12.5) - 2), where z are squares of errors over their variances
- * and l >= 1 is their usual size: a misfit makes both hypotheses wrong all the time.
+/* g = max(0, g + min(z_0 / l, 25) - 2 min(z_1 / l, 12.5) - 2), where z are squares of errors over their
+ * variances and l >= 1 is their usual size: a misfit makes both hypotheses wrong all the time.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real changed)

@@ -4,11 +4,11 @@
  *       = F_f' eta - gamma^2 D_theta theta'_f d - gamma^2 B theta''_f b
  *         - |gamma| sign(theta')_f tau_C + further columns (point 6) ,
  *
- * each multiplied by the std deviation of its coefficient, so that all coefficients have the prior N(0, 1). Where
- * the torque of the spring is measured or modelled, y is that torque, and the columns of the motor are 0.
+ * each multiplied by the std deviation of its coefficient, so that all coefficients have the prior N(0, 1).
+ * Where the torque of the spring is measured or modelled, y is that torque, and the columns of the motor are 0.
  *
- * To add a kind of column: its row in sh_column_kinds, its line in list_columns, and its signal in signal_of or its
- * entry in entry_of.
+ * To add a kind of column: its row in sh_column_kinds, its line in list_columns, and its signal in signal_of or
+ * its entry in entry_of.
  */
 #include <stddef.h>
 #include <string.h>
@@ -217,8 +217,8 @@ void sh_columns_start(sh_columns *columns, const sh_parameters *p)
 
 /* ---- the signals of a sample ------------------------------------------------------------- */
 
-/* max(x - k, 0) for a knee k >= 0, min(x - k, 0) for k < 0; if the torque is symmetric, both. Sets the slope over
- * x.
+/* max(x - k, 0) for a knee k >= 0, min(x - k, 0) for k < 0; if the torque is symmetric, both. Sets the slope
+ * over x.
  */
 static sh_real beyond_knee(sh_real x, sh_real k, int symmetric, sh_real *slope)
 {
@@ -458,9 +458,9 @@ void sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
     }
 }
 
-/* nu = lambda epsilon / (1 - lambda c s'), s' = slope: noise of the torque. It is taken out of the column, and so
- * out of the prediction. What is left has the variance (1 - lambda) N_tau, and so much in common with the torque
- * in y.
+/* nu = lambda epsilon / (1 - lambda c s'), s' = slope: noise of the torque. It is taken out of the column, and
+ * so out of the prediction. What is left has the variance (1 - lambda) N_tau, and so much in common with the
+ * torque in y.
  */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
                                 sh_real epsilon, sh_real *x, sh_column_noise *left)

@@ -97,7 +97,8 @@
 #define SH_HAS_CHANGED ((sh_real)100)
 /* Largest evidence of one block [1]: one block alone, which may be a blow, is no change. */
 #define SH_LARGEST_EVIDENCE ((sh_real)25)
-/* Number of blocks of the usual error, and most that one counts, in usual errors [1]: a change is found before. */
+/* Number of blocks of the usual error, and most that one counts, in usual errors [1]: a change is found before.
+ */
 #define SH_LEVEL_BLOCKS ((sh_real)400)
 #define SH_LARGEST_LEVEL ((sh_real)9)
 /* Misfit over its usual value above which the estimate is in doubt, and number of blocks after which the usual
@@ -119,14 +120,16 @@
  */
 #define SH_REFIT_PAUSE ((sh_real)0.0201)
 /* Gain of the logarithm of the evidence from which a group is used: at first, and for each block [1]. So it
- * reduces the variance of the error by a tenth: rounding of a periodic motion is a small evidence for any column.
+ * reduces the variance of the error by a tenth: rounding of a periodic motion is a small evidence for any
+ * column.
  */
 #define SH_FIRST_GAIN ((sh_real)3)
 #define SH_GAIN_PER_BLOCK ((sh_real)0.05)
 
 /* ---- what is reported, filtered_regression.c --------------------------------------------- */
 
-/* Not confident where (|phi| / range.phi)^e is larger, e the highest power, but at least beyond the second [1]. */
+/* Not confident where (|phi| / range.phi)^e is larger, e the highest power, but at least beyond the second [1].
+ */
 #define SH_LARGEST_POWER ((sh_real)32)
 #define SH_LEAST_LIMIT ((sh_real)2)
 /* Std deviations of its prior beyond which a corrected motor parameter is doubted [1]. */

@@ -1,7 +1,7 @@
-/* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of the
- * data with its weight is a sample for another triangle: so a new posterior is computed beside the present one,
- * from some rows of a copy of the data with each new row. Every second refit is a trial of a group of columns, and
- * its estimate is not used.
+/* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of
+ * the data with its weight is a sample for another triangle: so a new posterior is computed beside the present
+ * one, from some rows of a copy of the data with each new row. Every second refit is a trial of a group of
+ * columns, and its estimate is not used.
  */
 #include "constants.h"
 #include "regression.h"
@@ -12,9 +12,9 @@ static int is_distinct(const sh_regression_state *state, const sh_parameters *p,
                                  state->history.phi_max);
 }
 
-/* Where column i stands; -1 if it is not used. Columns of the spring stand behind others: their variances then need
- * few rows of U. Behind them stand those of the motor, whose information is changed or whose variance is used, and
- * at the end the group that is tried.
+/* Where column i stands; -1 if it is not used. Columns of the spring stand behind others: their variances then
+ * need few rows of U. Behind them stand those of the motor, whose information is changed or whose variance is
+ * used, and at the end the group that is tried.
  */
 static int place_of(const sh_regression_state *state, const sh_parameters *p, int i)
 {

@@ -123,8 +123,8 @@ sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, c
 sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
                      const sh_state_variable_filter *filter);
 
-/* The row x [size: SH_MAX_ROW] at a state of the filters: columns, then right-hand sides, of which the last is y
- * less the torque of the nominal curve.
+/* The row x [size: SH_MAX_ROW] at a state of the filters: columns, then right-hand sides, of which the last is
+ * y less the torque of the nominal curve.
  */
 void sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
                     const sh_state_variable_filter *filter, sh_real *x);
@@ -225,7 +225,7 @@ void sh_blocks_start(sh_regression_state *state);
 /* Detail 8: takes the last row into the present block. */
 void sh_blocks_take(sh_regression_state *state);
 
-/* Step 0..3 of what a block does that is full: one regression a step takes its mean row. */
+/* Step 0..3 of what a full block does, nothing else: one regression a step takes its mean row. */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step);
 
 /* Leaves out the samples of the present block: they are not in sequence with the next one. */
