@@ -68,12 +68,12 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     const sh_last_row last = weighed_last(posterior, prior_B);
     const sh_real all = noise->information * posterior->weight;
     const int size = posterior->information.size;
-    sh_real unit[2][SH_MAX_COLUMNS] = {{0}}, row[SH_MAX_ROW] = {0};
+    sh_real unit[SH_MAX_COLUMNS] = {0}, none[SH_MAX_COLUMNS] = {0}, row[SH_MAX_ROW] = {0};
     sh_real G = noise->gain * posterior->weight, D, N, I, Q, lost, less;
     sh_combination found;
 
-    unit[0][i] = row[i] = 1;
-    found = sh_information_combine(&posterior->information, &last, unit[0], unit[1]).first;
+    unit[i] = row[i] = 1;
+    found = sh_information_combine(&posterior->information, &last, unit, none).first;
     D = 1 / found.variance;
     if (!(all > 0) || !(D > 1) || !(D <= SH_LARGE)) {
         return;
@@ -111,16 +111,16 @@ sh_combinations sh_posterior_combine(const sh_posterior *posterior, sh_real prio
                                      const sh_real *first, const sh_real *second, int count)
 {
     const sh_last_row last = weighed_last(posterior, prior_B);
-    sh_real own[2][SH_MAX_COLUMNS] = {{0}};
+    sh_real own_first[SH_MAX_COLUMNS] = {0}, own_second[SH_MAX_COLUMNS] = {0};
     int i;
 
     for (i = 0; i < posterior->information.size; ++i) {
         const int of_data = posterior->column[i];
 
-        own[0][i] = of_data < count ? first[of_data] : 0;
-        own[1][i] = of_data < count ? second[of_data] : 0;
+        own_first[i] = of_data < count ? first[of_data] : 0;
+        own_second[i] = of_data < count ? second[of_data] : 0;
     }
-    return sh_information_combine(&posterior->information, &last, own[0], own[1]);
+    return sh_information_combine(&posterior->information, &last, own_first, own_second);
 }
 
 sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,
