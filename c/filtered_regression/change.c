@@ -1,13 +1,11 @@
-/* A stiffness that changes (detail 15): two hypotheses predict each block of samples, and the estimate
- * follows the one that does so better.
+/* A stiffness that changes (detail 15): two hypotheses predict each block, and the estimate follows the better
+ * one.
  *
  *     0  the joint is as before: the information of all blocks
- *     1  the spring has changed since t: the same at t, but nothing is known about the columns of the spring
- *
- * Both know motor and friction equally well, so a change of the spring is no reason to learn them again.
+ *     1  the spring has changed since t: the same at t, but nothing is known about its columns, which are the
+ *        first ones. What the data say about motor and friction is in the rows behind.
  */
 #include "constants.h"
-#include "information.h"
 #include "regression.h"
 
 void sh_change_start(sh_regression_state *state)
@@ -20,28 +18,14 @@ void sh_change_start(sh_regression_state *state)
     state->history.change_age = -1;
 }
 
-/* Nothing is known any more about the columns of the spring, which are the first ones. What the data say about
- * the others if the spring is not known stays: it is in the rows behind (information.h).
- */
-static void forget_spring(const sh_columns *columns, sh_information *a)
-{
-    int count = 0;
-
-    while (count < columns->size && sh_column_is(&columns->column[count], SH_IS_SPRING)) {
-        count += 1;
-    }
-    sh_information_restart(a, count, SH_LEAST_INFORMATION);
-}
-
 /* Hypothesis 1 begins now. */
 static void begin(sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;
     sh_change *change = &state->change;
 
-    sh_information_copy(&change->changed,
-                        state->friction_drifts ? &blocks->drifting : &blocks->constant);
-    forget_spring(&state->columns, &change->changed);
+    change->changed = state->friction_drifts ? blocks->drifting : blocks->constant;
+    sh_information_restart(&change->changed, state->columns.spring, SH_LEAST_INFORMATION);
     change->evidence = change->blocks = 0;
 }
 
@@ -51,11 +35,10 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     sh_blocks *blocks = &state->blocks;
     sh_change *change = &state->change;
 
-    sh_information_copy(&blocks->constant, &change->changed);
-    sh_information_copy(&blocks->drifting, &change->changed);
+    blocks->constant = blocks->drifting = change->changed;
     sh_information_start(&blocks->recent, state->columns.size, 1);
     blocks->recent_count = 0;
-    forget_spring(&state->columns, &state->data);
+    sh_information_restart(&state->data, state->columns.spring, SH_LEAST_INFORMATION);
     state->rounding = 0;
     sh_refit_restart(state, p);
     change->following = 1;
@@ -73,8 +56,8 @@ static void watch_misfit(sh_change *change, sh_real misfit)
     change->usual_misfit += (sh_fmin(misfit, SH_SUDDEN_MISFIT * usual) - usual) / change->judged;
 }
 
-/* g = max(0, g + min(z_0 / l, 25) - 2 min(z_1 / l, 12.5) - 2), where z are squares of errors over their variances
- * and l >= 1 is their usual size: a misfit makes both hypotheses wrong all the time.
+/* g = max(0, g + min(z_0 / l, 25) - 2 min(z_1 / l, 12.5) - 2), where z are squares of errors over their
+ * variances and l >= 1 is their usual size: a misfit makes both hypotheses wrong all the time.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real changed)

@@ -1,23 +1,14 @@
-/* The columns of the regression, and the row of a sample.
- *
- * The equation of motion is that of the motor (3) with Coulomb friction, where the motor data B and D_theta
- * have the relative errors b and d, and tau_e > 0 for phi > 0:
- *
- *     gamma^2 B (1 + b) theta'' + gamma^2 D_theta (1 + d) theta' + |gamma| sign(theta') tau_C
- *         = gamma tau + tau_e(q - theta) .
- *
- * With all signals through the filter H (index f), and tau_e = F' eta of (21), it is the regression
+/* The columns of the regression, and the row of a sample:
  *
  *     y = gamma (B gamma theta''_f + D_theta gamma theta'_f - tau_f)
  *       = F_f' eta - gamma^2 D_theta theta'_f d - gamma^2 B theta''_f b
- *         - |gamma| sign(theta')_f tau_C .
+ *         - |gamma| sign(theta')_f tau_C + further columns (point 6) ,
  *
- * Where the torque of the spring is measured or modelled, y is that torque through H, and the columns
- * of the motor are 0. Real joints have more than this equation, so there are further columns (point 6). Every
- * column is multiplied by the std deviation of its coefficient: all coefficients beta have the prior
- * N(0, 1). With a prior of 0 there is no such column.
+ * each multiplied by the std deviation of its coefficient, so that all coefficients have the prior N(0, 1).
+ * Where the torque of the spring is measured or modelled, y is that torque, and the columns of the motor are 0.
  *
- * To add a kind of column: its row in sh_column_kinds, and its line in list_columns.
+ * To add a kind of column: its row in sh_column_kinds, its line in list_columns, and its signal in signal_of or
+ * its entry in entry_of.
  */
 #include <stddef.h>
 #include <string.h>
@@ -57,38 +48,31 @@ enum { ONE, TAU_E, K_0, TAU_C };
 
 #define PRIOR(member) (int)offsetof(sh_parameters, prior.member)
 #define CURVE (SH_IS_SPRING | SH_IS_CURVE)
+#define POWER (CURVE | SH_IS_POWER)
 #define MOTOR (SH_IS_MOTOR | SH_IS_EQUATION)
 
 /* The signal of a column is in signal_of, its entry in the row in entry_of. */
 const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
-    [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, SH_SIGNAL_LINEAR, SH_OF_CURVE, 0,
-                         CURVE | SH_IS_EQUATION},
-    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), ONE, SH_SIGNAL_NONE, SH_OF_NOMINAL, 0,
-                           CURVE | SH_IS_EQUATION},
-    [SH_COLUMN_BIAS] = {PRIOR(bias), TAU_E, SH_SIGNAL_LINEAR, SH_OF_BIAS, 0, 0},
-    [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, SH_SIGNAL_STEADY, SH_OF_DAMPING, 0, 0},
-    [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, SH_OF_SIN_Q, 0, 0},
-    [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, SH_OF_COS_Q, 0, 0},
-    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, SH_SIGNAL_MEAN, SH_OF_LOAD_FRICTION, 0,
-                        SH_IS_MOTOR},
-    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, SH_SIGNAL_NONE, SH_OF_LOAD_FRICTION, 0,
-                         SH_IS_MOTOR | SH_IS_DRIVE},
-    [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, SH_SIGNAL_NONE, SH_OF_DELAY, 0, 0},
-    [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, SH_SIGNAL_NONE, SH_OF_NOTHING, 0, SH_IS_MOTOR},
-    [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_CURVE, 1, CURVE},
-    [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_CURVE, 2, CURVE},
-    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 3, SH_IS_SPRING},
-    [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, SH_SIGNAL_LINEAR, SH_OF_HYSTERESIS, 4, 0},
-    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, SH_OF_NOTHING, 6, CURVE},
-    [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, SH_OF_NOTHING, 5,
-                         SH_IS_MOTOR},
-    [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, SH_OF_NOTHING, 5,
-                         SH_IS_MOTOR},
-    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, SH_SIGNAL_NONE, SH_OF_VISCOUS, 0,
-                           MOTOR | SH_IS_FRICTION},
-    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, SH_SIGNAL_NONE, SH_OF_COULOMB, 0,
-                           MOTOR | SH_IS_FRICTION | SH_IS_COULOMB},
-    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, SH_SIGNAL_NONE, SH_OF_INERTIA, 0, MOTOR | SH_IS_INERTIA},
+    [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, SH_SIGNAL_LINEAR, 0, POWER | SH_IS_EQUATION},
+    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), ONE, SH_SIGNAL_NONE, 0, CURVE | SH_IS_EQUATION},
+    [SH_COLUMN_BIAS] = {PRIOR(bias), TAU_E, SH_SIGNAL_LINEAR, 0, 0},
+    [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, SH_SIGNAL_STEADY, 0, 0},
+    [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, 0, 0},
+    [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, 0, 0},
+    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, SH_SIGNAL_MEAN, 0, SH_IS_MOTOR},
+    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
+    [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, SH_SIGNAL_NONE, 0, 0},
+    [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
+    [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 1, POWER},
+    [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 2, POWER},
+    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, 3, SH_IS_SPRING},
+    [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, SH_SIGNAL_LINEAR, 4, 0},
+    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 6, CURVE},
+    [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, 5, SH_IS_MOTOR},
+    [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, 5, SH_IS_MOTOR},
+    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, SH_SIGNAL_NONE, 0, MOTOR | SH_IS_FRICTION},
+    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, SH_SIGNAL_NONE, 0, MOTOR | SH_IS_FRICTION},
+    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, SH_SIGNAL_NONE, 0, MOTOR},
 };
 
 /* Half width of a dead zone or an element of hysteresis over range.phi; 0: of another column [1]. */
@@ -128,9 +112,8 @@ static sh_real unit_of_power(const sh_parameters *p, int i, int j)
     return sh_fmin(unit, SH_LARGEST_OUTPUT); /* single precision: phi^15 of a stiff joint */
 }
 
-/* Columns that are listed, or only counted. */
 typedef struct {
-    sh_column *column; /* NULL: counted */
+    sh_column *column; /* NULL: they are only counted */
     int size;
 } column_list;
 
@@ -145,7 +128,7 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
     if (!(column.prior > 0)) {
         return;
     }
-    if (sh_column_kinds[kind].quantity == SH_OF_CURVE) {
+    if (sh_column_is(&column, SH_IS_POWER)) {
         column.unit = unit_of_power(p, i, j);
     }
     if (list->column != NULL) {
@@ -220,27 +203,22 @@ int sh_columns_count(const sh_parameters *p)
 void sh_columns_start(sh_columns *columns, const sh_parameters *p)
 {
     column_list list = {columns->column, 0};
-    int i, j;
+    int i;
 
     list_columns(p, &list);
     columns->size = sh_columns_count(p);
     columns->has_nominal = sh_has_nominal_curve(p);
-    for (i = 0; i < p->rls.n; ++i) {
-        for (j = 0; j < p->rls.m; ++j) {
-            columns->nominal[i][j] = p->rls.eta_0[i][j] / unit_of_power(p, i, j);
-        }
+    columns->spring = 0;
+    /*@ loop unroll SH_MAX_COLUMNS; */
+    for (i = 0; i < columns->size; ++i) {
+        columns->spring += sh_column_is(&columns->column[i], SH_IS_SPRING);
     }
 }
 
 /* ---- the signals of a sample ------------------------------------------------------------- */
 
-static sh_real clip(sh_real x, sh_real limit)
-{
-    return sh_fmin(sh_fmax(x, -limit), limit);
-}
-
-/* max(x - k, 0) for a knee k >= 0, min(x - k, 0) for k < 0. If the torque is symmetric, what is beyond -k
- * is so, too. Sets the slope over x.
+/* max(x - k, 0) for a knee k >= 0, min(x - k, 0) for k < 0; if the torque is symmetric, both. Sets the slope
+ * over x.
  */
 static sh_real beyond_knee(sh_real x, sh_real k, int symmetric, sh_real *slope)
 {
@@ -278,9 +256,9 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
         return sh_sin(at->q);
     case SH_COLUMN_COS_Q:
         return sh_cos(at->q);
-    case SH_COLUMN_DEAD_ZONE: /* clip(x, h) / h without a slope: it does not count in sigma */
-        return clip(at->phi / p->range.phi, half_width(column)) / half_width(column);
-    case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- clip(z + dphi, h) */
+    case SH_COLUMN_DEAD_ZONE: /* sh_limited(x, h) / h without a slope: it does not count in sigma */
+        return sh_limited(at->phi / p->range.phi, half_width(column)) / half_width(column);
+    case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- sh_limited(z + dphi, h) */
         return at->stop[i % SH_WIDTHS] / (half_width(column) * p->range.phi);
     case SH_COLUMN_KNEE:
         beyond = beyond_knee(at->phi / p->range.phi, KNEES[i % SH_WIDTHS], p->rls.symmetric, slope);
@@ -318,14 +296,18 @@ static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real se
     }
 }
 
-static void set_nominal(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p)
+/* Torque and stiffness of the curve rls.eta_0, (21) and (23). */
+static void set_nominal(sh_joint_point *point, const sh_parameters *p, sh_real set_point)
 {
+    const int n = p->rls.n, m = p->rls.m;
+    sh_real F[SH_MAX_BASIS] = {0}, dF[SH_MAX_BASIS] = {0};
     int i, j;
 
-    for (i = 0; i < p->rls.n && columns->has_nominal; ++i) {
-        for (j = 0; j < p->rls.m; ++j) {
-            point->tau_nominal += columns->nominal[i][j] * point->power[i] * point->l[j];
-            point->sigma_nominal += columns->nominal[i][j] * point->slope[i] * point->l[j];
+    sh_torque_basis(p->rls.symmetric, n, m, set_point, point->phi, F, dF);
+    for (i = 0; i < n; ++i) {
+        for (j = 0; j < m; ++j) {
+            point->tau_nominal += p->rls.eta_0[i][j] * F[j * n + i];
+            point->sigma_nominal += p->rls.eta_0[i][j] * dF[j * n + i];
         }
     }
 }
@@ -342,7 +324,9 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
     point->phi = phi;
     point->stop = stop;
     set_powers(point, p, set_point);
-    set_nominal(point, columns, p);
+    if (columns->has_nominal) {
+        set_nominal(point, p, set_point);
+    }
     for (i = 0; i < columns->size; ++i) {
         sh_real slope = 0;
 
@@ -356,21 +340,13 @@ void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change
     int i;
 
     for (i = 0; i < SH_WIDTHS; ++i) {
-        stop[i] = clip(stop[i] + change, HYSTERESES[i] * p->range.phi);
+        stop[i] = sh_limited(stop[i] + change, HYSTERESES[i] * p->range.phi);
     }
 }
 
 sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta)
 {
-    sh_real torque = at->tau_nominal;
-    int i;
-
-    for (i = 0; i < columns->size; ++i) {
-        if (sh_column_is(&columns->column[i], SH_IS_SPRING)) {
-            torque += at->F[i] * beta[i];
-        }
-    }
-    return torque;
+    return at->tau_nominal + sh_sum_of_products(at->F, beta, columns->spring);
 }
 
 /* ---- the row ----------------------------------------------------------------------------- */
@@ -392,16 +368,21 @@ static sh_real torque_in_y(const sh_parameters *p, const sh_filter_design *desig
                              : -p->motor.gamma * as_if_smooth(tau, design);
 }
 
+/* gamma^2 (B theta'' + D_theta theta') of a filtered position */
+static sh_real motor_torque(const sh_parameters *p, const sh_filter_design *design,
+                            const sh_state_variable_filter *theta)
+{
+    return p->motor.gamma * p->motor.gamma *
+           (p->motor.B * sh_state_variable_filter_second(theta, design) +
+            p->motor.D_theta * sh_state_variable_filter_first(theta, design));
+}
+
 /* y = gamma^2 B theta''_f + gamma^2 D_theta theta'_f - gamma tau_f, or the torque of the spring */
 sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
                      const sh_state_variable_filter *filter)
 {
-    const sh_state_variable_filter *theta = &filter[SH_FILTER_THETA];
-    const sh_real motor = p->motor.B * sh_state_variable_filter_second(theta, design) +
-                          p->motor.D_theta * sh_state_variable_filter_first(theta, design);
-
     return torque_in_y(p, design, filter) +
-           (sh_is_measured(p) ? 0 : p->motor.gamma * p->motor.gamma * motor);
+           (sh_is_measured(p) ? 0 : motor_torque(p, design, &filter[SH_FILTER_THETA]));
 }
 
 /* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta; 0 while sigma is not
@@ -410,12 +391,8 @@ sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
 static sh_real encoder_error(const sh_regression_state *state, const sh_parameters *p,
                              const sh_state_variable_filter *S)
 {
-    const sh_motor_parameters *motor = &p->motor;
-    const sh_filter_design *design = &state->signals.design;
-    const sh_real inertial = motor->B * sh_state_variable_filter_second(S, design);
-    const sh_real viscous = motor->D_theta * sh_state_variable_filter_first(S, design);
     const sh_real error = state->sigma * sh_state_variable_filter_output(S) +
-                          motor->gamma * motor->gamma * (viscous + inertial);
+                          motor_torque(p, &state->signals.design, S);
 
     return state->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
 }
@@ -481,17 +458,10 @@ void sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
     }
 }
 
-/* The noise nu of the torque is the share lambda of the prediction error of the row without it. If nu is taken
- * out of the column of the motor's torque, the prediction x beta falls by c nu, so that
- *
- *     nu = lambda epsilon / (1 - lambda c) .
+/* nu = lambda epsilon / (1 - lambda c s'), s' = slope: noise of the torque. It is taken out of the column, and
+ * so out of the prediction. What is left has the variance (1 - lambda) N_tau, and so much in common with the
+ * torque in y.
  */
-static sh_real noise_of_torque(const sh_row_noise *noise, sh_real c, sh_real epsilon)
-{
-    return noise->share * epsilon / (1 - noise->share * clip(c, SH_LARGEST_RETURN));
-}
-
-/* What is left has the variance (1 - lambda) N_tau, and so much in common with the torque in y. */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
                                 sh_real epsilon, sh_real *x, sh_column_noise *left)
 {
@@ -502,9 +472,10 @@ sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_n
 
     left->information = left->gain = 0;
     for (i = 0; i < size && sh_square(torque) > 0; ++i) {
-        if (sh_column_is(&state->columns.column[i], SH_IS_DRIVE)) {
+        if (state->columns.column[i].kind == SH_COLUMN_DRIVE) {
             const sh_real slope = x[i] / torque;
-            const sh_real nu = noise_of_torque(noise, slope * state->beta[i], epsilon);
+            const sh_real c = sh_limited(slope * state->beta[i], SH_LARGEST_RETURN);
+            const sh_real nu = noise->share * epsilon / (1 - noise->share * c);
             const sh_real entry = x[i] * sh_fabs(1 - nu / torque);
 
             left->gain = (1 - noise->share) * noise->torque * slope;

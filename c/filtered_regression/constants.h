@@ -6,128 +6,84 @@
 
 /* ---- filters, signals.c ------------------------------------------------------------------ */
 
-/* Largest corner frequency over the one at which both noises of y are equal [1]. From 1 to 2 the
- * results hardly differ; above, the noise of y is not white.
- */
+/* Largest corner frequency over W_c of point 1 [1]: from 1 to 2 little differs; above, y has no white noise. */
 #define SH_LARGEST_CORNER ((sh_real)1.42)
-
-/* Time constants 1/w after which a filter has forgotten its start: 5e-4 of it are left [1]. */
+/* Time constants 1/w after which a filter has forgotten its start [1]: 5e-4 of it are left. */
 #define SH_FORGOTTEN ((sh_real)12)
-
-/* Change of phi in a sample, over the finer resolution, below which phi rests [1]. */
+/* Change of phi in a sample, over the finer resolution, below which phi rests [1]: less than a count. */
 #define SH_RESTS ((sh_real)0.25)
-
-/* Spacing of the rows over 1/w, and largest number of samples of a row [1]. */
+/* Spacing of the rows over 1/w, and largest number of samples of a row [1]: with half, the same results. */
 #define SH_ROW_SPACING ((sh_real)1.8)
 #define SH_LONGEST_ROW 8
-
 /* End of the range of regression.decimation [1]. */
 #define SH_LARGEST_DECIMATION 64
 
 /* ---- columns, columns.c ------------------------------------------------------------------ */
 
-/* Half widths of dead zones and of elements of hysteresis, over range.phi [1]: each four times the
- * one before, so that three of them come near any width.
- */
+/* Half widths over range.phi [1]: each four times the one before, so that three come near any width. */
 #define SH_DEAD_ZONES {(sh_real)0.01, (sh_real)0.04, (sh_real)0.16}
 #define SH_HYSTERESES {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08}
-
 /* Knees of the curve, over range.phi [1]. Others than 0.35 (0.25 or 0.45, or two on each side) give the
  * same errors. If the torque is symmetric, there is only the last one, on both sides.
  */
 #define SH_KNEES {(sh_real)0, -(sh_real)0.35, (sh_real)0.35}
-
-/* Share of the covered range from which such an element looks like the spring [1]. */
+/* Share of the covered range from which such a width looks like the spring [1]: with half, twice the error. */
 #define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
-
 /* Relative std deviation of sigma below which columns that need sigma have an effect [1]. */
 #define SH_KNOWN_STIFFNESS ((sh_real)0.2)
-
 /* Largest delay that the column of the delay corrects, in std deviations of its prior [1]. */
 #define SH_LARGEST_DELAY ((sh_real)3)
-
-/* Largest entry of a column of the motor encoder [N.m]. A stiffness that is wrong by many orders must
- * not make the row too large to be used: then the stiffness would never be corrected.
- */
+/* Largest entry of a column of the motor encoder [N.m]: a wrong stiffness must not make every row too large. */
 #define SH_LARGEST_ENCODER_ERROR SH_FOR(SH_REAL, 1e74, 1e14f)
 
 /* ---- weight of a sample, noise.c --------------------------------------------------------- */
 
-/* Share of the excess noise by which samples weigh less [1]. With 0.1 the interval of a stiff joint
- * with jitter holds the truth too rarely, with 1 the interval is too wide.
- */
+/* Share of the excess noise by which samples weigh less [1]: 0.1 covers jitter too rarely, 1 is too wide. */
 #define SH_EXCESS ((sh_real)0.3)
-
-/* Share of count^2/12 that fourth differences of rounding lack [1]: mean over motions of 1 to 100
- * counts in a sample.
- */
+/* Share of count^2/12 that fourth differences of rounding lack [1]: mean for 1 to 100 counts in a sample. */
 #define SH_ROUNDING_IS_NOT_WHITE ((sh_real)0.056)
-
 /* Time constants of the measured noise, and of the mean of its excess [s]. */
 #define SH_NOISE_TIME ((sh_real)0.1)
 #define SH_EXCESS_TIME ((sh_real)5)
-
 /* Std deviations by which the first samples may contradict a motor at rest [1]. */
 #define SH_AT_REST ((sh_real)5)
 
-/* ---- rounding in the column of the inertia, posterior.c ---------------------------------- */
+/* ---- noise in columns, columns.c and posterior.c ----------------------------------------- */
 
 /* Variance of the squared noise over the square of its mean [1]: the noise is correlated. */
 #define SH_SPREAD_OF_SQUARE ((sh_real)6)
-
 /* Relative error of the removed information [1]: rounding repeats with the motion. */
 #define SH_REMOVAL_ERROR ((sh_real)0.05)
-
-/* ---- noise in the column of the motor's torque, columns.c and posterior.c ------------------ */
-
-/* Largest share of the noise that the column returns to the prediction [1]: ten times the friction that
- * is expected.
- */
+/* Largest share of the noise that the motor's column returns [1]: ten times the friction that is expected. */
 #define SH_LARGEST_RETURN ((sh_real)0.5)
-
 /* Relative error of the variance of the torque's noise [1]: noise.tau is known to 10 %. */
 #define SH_TORQUE_NOISE_ERROR ((sh_real)0.2)
-
-/* Least share of the information that is left [1]: less would consist of rounding errors in single
- * precision.
- */
+/* Least share of the information that is left [1]: less would be rounding errors in single precision. */
 #define SH_LEAST_REST ((sh_real)1e-3)
 
 /* ---- misfit and forgetting, misfit.c ----------------------------------------------------- */
 
 /* Duration of a block [s]: several times 1/w, and short beside a motion. */
 #define SH_BLOCK ((sh_real)0.05)
-
-/* Least and largest number of rows of a block [1]; sh_blocks_start makes K steps for each. */
+/* Least and largest number of rows of a block [1]: sh_blocks_start makes K steps for each. */
 #define SH_SHORTEST_BLOCK ((sh_real)4)
 #define SH_LONGEST_BLOCK ((sh_real)100000)
-
 /* Number of blocks below which nothing is judged [1]. */
 #define SH_FIRST_BLOCKS ((sh_real)20)
-
-/* Number of blocks that count [1]: 100 s, so that a misfit that begins after hours is noticed as soon
- * as one that begins after a minute.
- */
+/* Number of blocks that count [1]: 100 s, so that a misfit that begins after hours is noticed soon. */
 #define SH_MOST_BLOCKS ((sh_real)2000)
-
 /* Std deviations beyond which a sum of squares is no chance [1]. */
 #define SH_CHANCE ((sh_real)3)
-
 /* Number of blocks up to which a misfit averages out; beyond it repeats with the motion [1]. */
 #define SH_REPEATS ((sh_real)5)
-
 /* Variance factor above which data are forgotten, and the doubt is a misfit [1]. */
 #define SH_CONTRADICTION ((sh_real)1.5)
-
 /* regression.memory over the time constant of the recent blocks [1]. */
 #define SH_RECENT ((sh_real)10)
-
-/* How much faster data are forgotten if the recent ones agree: the joint has changed [1]. */
+/* How much faster data are forgotten if the recent ones agree [1]: the joint has changed. */
 #define SH_FASTER ((sh_real)5)
-
 /* Process noise of friction that drifts, in variances of its prior [1/s]. */
 #define SH_FRICTION_DRIFT ((sh_real)1e-3)
-
 /* Residual of drifting over that of constant friction, below and above which friction drifts [1]. */
 #define SH_DRIFT_BEGINS ((sh_real)0.8)
 #define SH_DRIFT_ENDS ((sh_real)0.95)
@@ -139,69 +95,55 @@
  */
 #define SH_MAY_HAVE_CHANGED ((sh_real)20)
 #define SH_HAS_CHANGED ((sh_real)100)
-
 /* Largest evidence of one block [1]: one block alone, which may be a blow, is no change. */
 #define SH_LARGEST_EVIDENCE ((sh_real)25)
-
-/* Number of blocks over which the usual error is a mean, and most that one of them counts, in usual
- * errors [1]: 20 s, so that a change does not become usual before it is detected.
+/* Number of blocks of the usual error, and most that one counts, in usual errors [1]: a change is found before.
  */
 #define SH_LEVEL_BLOCKS ((sh_real)400)
 #define SH_LARGEST_LEVEL ((sh_real)9)
-
-/* Misfit over its usual value above which the estimate is in doubt, and number of blocks after which the
- * usual value is known [1]: 15 s. With 1.5, logs without a change are in doubt for 4 % of the time, with
- * 2 twice as many changes are not noticed for over 1 s.
+/* Misfit over its usual value above which the estimate is in doubt, and number of blocks after which the usual
+ * value is known [1]: 15 s. With 1.5, logs without a change are in doubt for 4 % of the time, with 2 twice as
+ * many changes are not noticed for over 1 s.
  */
 #define SH_SUDDEN_MISFIT ((sh_real)1.7)
 #define SH_USUAL_BLOCKS ((sh_real)300)
-
 /* Number of blocks after which a hypothesis ends that has no evidence, and any one [1]: 0.5 s and 4 s. */
 #define SH_SHORTEST_TEST ((sh_real)10)
 #define SH_LONGEST_TEST ((sh_real)80)
-
 /* Number of blocks from which a change can be seen [1]. */
 #define SH_SHORTEST_PAST ((sh_real)40)
 
-/* Pause between two refits, over the duration of the blocks that count [1]: in 2 % more time the estimate
- * can hardly change. No simple ratio of blocks and rows, so that no rounding error decides.
+/* ---- refits and choice of columns, refit.c ----------------------------------------------- */
+
+/* Pause between two refits, over the duration of the blocks that count [1]: in 2 % more time the estimate can
+ * hardly change. No simple ratio of blocks and rows, so that no rounding error decides.
  */
 #define SH_REFIT_PAUSE ((sh_real)0.0201)
-
-/* ---- choice of columns, refit.c ---------------------------------------------------------- */
-
-/* Gain of the logarithm of the evidence from which a group is used: at first, and for each block [1].
- * So it reduces the variance of the error by a tenth: rounding of a periodic motion repeats, and is a
- * small evidence for any column. The group is dropped below half of the second one.
+/* Gain of the logarithm of the evidence from which a group is used: at first, and for each block [1]. So it
+ * reduces the variance of the error by a tenth: rounding of a periodic motion is a small evidence for any
+ * column.
  */
 #define SH_FIRST_GAIN ((sh_real)3)
 #define SH_GAIN_PER_BLOCK ((sh_real)0.05)
 
 /* ---- what is reported, filtered_regression.c --------------------------------------------- */
 
-/* The estimate is not confident where (|phi| / range.phi)^e > SH_LARGEST_POWER for the highest power e, but
- * nowhere within SH_LEAST_LIMIT range.phi [1].
+/* Not confident where (|phi| / range.phi)^e is larger, e the highest power, but at least beyond the second [1].
  */
 #define SH_LARGEST_POWER ((sh_real)32)
 #define SH_LEAST_LIMIT ((sh_real)2)
-
 /* Std deviations of its prior beyond which a corrected motor parameter is doubted [1]. */
 #define SH_OUTSIDE_PRIOR ((sh_real)3)
 
 /* ---- limits of arithmetic ---------------------------------------------------------------- */
 
-/* Precision with which data begin, where a prior has 1: far less, but no rounding error [1]. */
+/* Precision with which data begin, where a prior has 1 [1]: far less, but no rounding error. */
 #define SH_LEAST_INFORMATION SH_FOR(SH_REAL, 1e-9, 1e-5f)
-
-/* One over a smaller entry of D would overflow; such an entry is not changed. */
+/* An entry of D that would be smaller is not changed [1]: one over it would overflow. */
 #define SH_SMALLEST_D SH_FOR(SH_REAL, 1e-300, 1e-37f)
-
-/* Largest factor by which one step may increase a variance. With more, what is left of D would
- * consist of rounding errors.
- */
+/* Largest factor by which a step may increase a variance [1]: else D consists of rounding errors. */
 #define SH_LARGEST_GROWTH SH_FOR(SH_REAL, 1e12, 1e6f)
-
-/* Steps of the loops over the response of a filter: over 60 time constants with the least w T, 1e-4. */
+/* Steps of the loop over the response of a filter: over 60 time constants with the least w T, 1e-4. */
 enum { SH_MOST_SAMPLES = 1000000 };
 
 #endif

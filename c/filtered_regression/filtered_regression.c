@@ -4,7 +4,6 @@
 #include "constants.h"
 #include "information.h"
 #include "method.h"
-#include "posterior.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 
@@ -38,22 +37,14 @@ static sh_real largest_deformation_filtered_regression(const sh_parameters *p)
 
 /* ---- torque and stiffness at a point ------------------------------------------------------ */
 
-/* Share by which the rounding of phi makes the stiffness too small: v sum V_phi / R, where v is its
- * variance, to first order and as if it were the same in all samples (point 5). The estimate is not
- * corrected by it, because slopes differ; it widens the interval.
+/* sqrt(c' P c + (s_g d(c' beta)/dg)^2 + (share c' beta)^2), with the gain g of the torque (point 8) and the
+ * share by which rounding makes the stiffness too small (point 5).
  */
-static sh_real attenuation(const sh_regression_state *state, const sh_combination *stiffness)
+static sh_real std_deviation(const sh_parameters *p, const sh_combination *c, sh_real too_small)
 {
-    return state->rounding * state->posterior.weight * stiffness->variance;
-}
-
-/* sqrt(c' P c + (s_g d(c' beta)/dg)^2 + (attenuation c' beta)^2) with the gain g of the torque, point 8 */
-static sh_real std_deviation(const sh_parameters *p, const sh_combination *found,
-                             sh_real attenuated)
-{
-    return sh_std_deviation(found->variance +
-                            sh_square(p->prior.torque_gain * found->value[SH_RIGHT_GAIN]) +
-                            sh_square(attenuated));
+    return sh_std_deviation(c->variance +
+                            sh_square(p->prior.torque_gain * c->value[SH_RIGHT_GAIN]) +
+                            sh_square(too_small));
 }
 
 /* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Returns how uncertain
@@ -62,23 +53,17 @@ static sh_real std_deviation(const sh_parameters *p, const sh_combination *found
 static sh_combination evaluate_at(const sh_regression_state *state, const sh_parameters *p,
                                   const sh_joint_point *at, sh_point *point)
 {
-    const sh_columns *columns = &state->columns;
-    sh_real F[SH_MAX_COLUMNS] = {0}; /* of the spring alone */
-    sh_combination torque, stiffness;
-    sh_real attenuated;
-    int i;
+    const sh_posterior *posterior = &state->posterior;
+    const sh_combinations found =
+        sh_posterior_combine(posterior, p->prior.B, at->F, at->dF, state->columns.spring);
+    const sh_combination *torque = &found.first, *stiffness = &found.second;
+    const sh_real share = state->rounding * posterior->weight * stiffness->variance;
 
-    for (i = 0; i < columns->size; ++i) {
-        F[i] = sh_column_is(&columns->column[i], SH_IS_SPRING) ? at->F[i] : 0;
-    }
-    torque = sh_posterior_combine(&state->posterior, p->prior.B, F);
-    stiffness = sh_posterior_combine(&state->posterior, p->prior.B, at->dF);
-    point->tau_e = at->tau_nominal + torque.value[SH_RIGHT_Y];
-    point->sigma = at->sigma_nominal + stiffness.value[SH_RIGHT_Y];
-    attenuated = attenuation(state, &stiffness);
-    point->sigma_std = std_deviation(p, &stiffness, attenuated * point->sigma);
-    point->tau_e_std = std_deviation(p, &torque, attenuated * point->tau_e);
-    return stiffness;
+    point->tau_e = at->tau_nominal + torque->value[SH_RIGHT_Y];
+    point->sigma = at->sigma_nominal + stiffness->value[SH_RIGHT_Y];
+    point->tau_e_std = std_deviation(p, torque, share * point->tau_e);
+    point->sigma_std = std_deviation(p, stiffness, share * point->sigma);
+    return *stiffness;
 }
 
 static void evaluate_filtered_regression(const sh_estimator *estimator, const sh_parameters *p,
@@ -94,7 +79,7 @@ static void evaluate_filtered_regression(const sh_estimator *estimator, const sh
 
 /* ---- report ------------------------------------------------------------------------------- */
 
-/* Sets the coefficients eta, and adds up the coefficients of each other quantity, SH_OF_*, in sum. */
+/* Sets the coefficients eta, and adds up those of each kind of column, sum [size: SH_COLUMN_KINDS]. */
 static void read_coefficients(const sh_regression_state *state, const sh_parameters *p,
                               const sh_joint_point *at, sh_real *sum, sh_estimate *estimate)
 {
@@ -102,20 +87,20 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
 
     for (i = 0; i < state->columns.size; ++i) {
         const sh_column *column = &state->columns.column[i];
-        const sh_real value = column->prior * state->beta[i];
-        const int quantity = sh_column_kinds[column->kind].quantity;
+        sh_real value = column->prior * state->beta[i];
 
-        if (quantity == SH_OF_CURVE) {
+        if (sh_column_is(column, SH_IS_POWER)) {
             estimate->eta[column->i][column->j] =
                 sh_limited(value * column->unit, SH_LARGEST_OUTPUT);
+        } else if (column->kind == SH_COLUMN_DAMPING) {
+            value *= sh_limited(at->l[column->j], SH_LARGE);
         }
-        sum[quantity] +=
-            quantity == SH_OF_DAMPING ? value * sh_limited(at->l[column->j], SH_LARGE) : value;
+        sum[column->kind] += value;
     }
     for (i = 0; i < p->rls.n && state->columns.has_nominal; ++i) {
         for (j = 0; j < p->rls.m; ++j) {
             estimate->eta[i][j] = (p->prior.tau_e > 0 ? estimate->eta[i][j] : 0) +
-                                  (1 + sum[SH_OF_NOMINAL]) * p->rls.eta_0[i][j];
+                                  (1 + sum[SH_COLUMN_NOMINAL]) * p->rls.eta_0[i][j];
         }
     }
 }
@@ -124,18 +109,19 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
 static int doubt_of(const sh_regression_state *state, const sh_parameters *p, const sh_real *sum,
                     const sh_estimate *estimate)
 {
+    const sh_real phi = sh_fabs(estimate->phi);
     int doubt = SH_DOUBT_NONE;
 
     if (!(estimate->sigma_std < p->limit.relative_std * sh_fabs(estimate->sigma))) {
         doubt = state->variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
     }
-    if (sh_fabs(estimate->phi) > largest_deformation_filtered_regression(p)) {
+    if (phi > SH_LEAST_LIMIT * p->range.phi && phi > largest_deformation_filtered_regression(p)) {
         doubt = SH_DOUBT_OUT_OF_RANGE;
     }
-    if (sh_fabs(sum[SH_OF_VISCOUS]) > SH_OUTSIDE_PRIOR * p->prior.D_theta) {
+    if (sh_fabs(sum[SH_COLUMN_VISCOUS]) > SH_OUTSIDE_PRIOR * p->prior.D_theta) {
         doubt = SH_DOUBT_FRICTION;
     }
-    if (sh_fabs(sum[SH_OF_INERTIA]) > SH_OUTSIDE_PRIOR * p->prior.B) {
+    if (sh_fabs(sum[SH_COLUMN_INERTIA]) > SH_OUTSIDE_PRIOR * p->prior.B) {
         doubt = SH_DOUBT_INERTIA;
     }
     if (estimate->sigma < 0) {
@@ -153,40 +139,38 @@ static void report_coefficients(const sh_regression_state *state, const sh_param
                                 sh_estimate *estimate)
 {
     const sh_real K_0 = p->prior.tau_e / p->range.phi, sigma = sh_fabs(estimate->sigma);
-    sh_real sum[SH_QUANTITIES] = {0};
+    sh_real sum[SH_COLUMN_KINDS] = {0}, turning;
 
     read_coefficients(state, p, at, sum, estimate);
+    turning = sh_sqrt(sh_square(sum[SH_COLUMN_SIN_Q]) + sh_square(sum[SH_COLUMN_COS_Q]));
     estimate->sigma_per_gain =
         sigma > 0 ? sh_limited(stiffness->value[SH_RIGHT_GAIN] / sigma, SH_LARGEST_OUTPUT) : 0;
-    estimate->D_theta_hat = p->motor.D_theta * (1 + sum[SH_OF_VISCOUS]);
-    estimate->B_hat = p->motor.B * (1 + sum[SH_OF_INERTIA]);
-    estimate->tau_coulomb_hat = sum[SH_OF_COULOMB];
-    estimate->bias_hat = sum[SH_OF_BIAS];
-    estimate->damping_hat = sum[SH_OF_DAMPING];
-    estimate->load_friction_hat = sum[SH_OF_LOAD_FRICTION];
-    estimate->eccentric_hat =
-        K_0 > 0
-            ? sh_limited(sh_sqrt(sh_square(sum[SH_OF_SIN_Q]) + sh_square(sum[SH_OF_COS_Q])) / K_0,
-                         SH_LARGEST_OUTPUT)
-            : 0;
-    estimate->delay_hat = sum[SH_OF_DELAY];
-    estimate->hysteresis_hat = sum[SH_OF_HYSTERESIS];
+    estimate->D_theta_hat = p->motor.D_theta * (1 + sum[SH_COLUMN_VISCOUS]);
+    estimate->B_hat = p->motor.B * (1 + sum[SH_COLUMN_INERTIA]);
+    estimate->tau_coulomb_hat = sum[SH_COLUMN_COULOMB];
+    estimate->bias_hat = sum[SH_COLUMN_BIAS];
+    estimate->damping_hat = sum[SH_COLUMN_DAMPING];
+    estimate->load_friction_hat = sum[SH_COLUMN_LOAD] + sum[SH_COLUMN_DRIVE];
+    estimate->eccentric_hat = K_0 > 0 ? sh_limited(turning / K_0, SH_LARGEST_OUTPUT) : 0;
+    estimate->delay_hat = sum[SH_COLUMN_DELAY];
+    estimate->hysteresis_hat = sum[SH_COLUMN_HYSTERESIS];
     estimate->change_age = state->history.change_age;
     estimate->misfit = sh_sqrt(sh_fmax(1, state->misfit));
     estimate->doubt = doubt_of(state, p, sum, estimate);
 }
 
-/* Computes the estimate, and sets all outputs but the innovation. Returns 0, and sets none, if torque or
- * stiffness overflow.
+/* Sets all outputs, and what the next row depends on. Returns 0, and sets none, if torque or stiffness
+ * overflow.
+ *
+ * settled  whether the filters have settled
  */
 static int report(sh_regression_state *state, const sh_parameters *p, const sh_joint_point *at,
-                  sh_real y, sh_real y_fit, sh_estimate *estimate)
+                  sh_real y, int settled, sh_estimate *estimate)
 {
-    const sh_real largest_delay = SH_LARGEST_DELAY * p->prior.delay;
+    const sh_signals *signals = &state->signals;
     sh_point point;
-    sh_combination stiffness;
+    const sh_combination stiffness = evaluate_at(state, p, at, &point);
 
-    stiffness = evaluate_at(state, p, at, &point);
     if (!isfinite(point.sigma) || !isfinite(point.tau_e) || !isfinite(stiffness.variance) ||
         !isfinite(stiffness.value[SH_RIGHT_GAIN])) {
         return 0;
@@ -197,19 +181,19 @@ static int report(sh_regression_state *state, const sh_parameters *p, const sh_j
     estimate->tau_e_std = point.tau_e_std;
     estimate->tau_e_residual = y;
     estimate->phi = at->phi;
-    estimate->theta_dot = sh_state_variable_filter_first(&state->signals.filter[SH_FILTER_THETA],
-                                                         &state->signals.design);
+    estimate->theta_dot =
+        sh_state_variable_filter_first(&signals->filter[SH_FILTER_THETA], &signals->design);
+    estimate->a = settled ? 1 : 0;
+    estimate->rho = state->row.rho;
+    estimate->epsilon = state->row.epsilon;
     report_coefficients(state, p, at, &stiffness, estimate);
-    /* What the next row depends on. */
     state->modality = p->modality;
-    state->y = y_fit;
+    state->y = y - estimate->epsilon;
     state->sigma = point.sigma;
-    state->delay = sh_fmin(sh_fmax(estimate->delay_hat, -largest_delay), largest_delay);
+    state->delay = sh_limited(estimate->delay_hat, SH_LARGEST_DELAY * p->prior.delay);
     state->stiffness_known = sh_sqrt(stiffness.variance) < SH_KNOWN_STIFFNESS * point.sigma;
     return 1;
 }
-
-/* ---- start -------------------------------------------------------------------------------- */
 
 /* Sets the uncertainty at phi = 0; torque and stiffness there are those of the curve rls.eta_0. */
 static void start_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
@@ -237,30 +221,13 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
 
 /* ---- tick --------------------------------------------------------------------------------- */
 
-static sh_real sum_of_squares(const sh_real *x, int size)
-{
-    sh_real sum = 0;
-    int i;
-
-    for (i = 0; i < size; ++i) {
-        sum += x[i] * x[i];
-    }
-    return sum;
-}
-
 /* 1 if the signals of a sample are so small that nothing overflows; 0 also if one is not a number. */
-static int are_acceptable(const sh_joint_point *at, sh_real y, int size)
+static int are_acceptable(const sh_joint_point *at, sh_real y, const sh_columns *columns)
 {
-    return sum_of_squares(at->F, size) <= SH_LARGE && sum_of_squares(at->dF, size) <= SH_LARGE &&
+    return sh_sum_of_products(at->F, at->F, columns->size) <= SH_LARGE &&
+           sh_sum_of_products(at->dF, at->dF, columns->spring) <= SH_LARGE &&
            sh_fabs(at->tau_nominal) <= SH_LARGE && sh_fabs(at->sigma_nominal) <= SH_LARGE &&
            sh_square(y) <= SH_LARGE;
-}
-
-/* Whether the filters have settled. */
-static int is_settled(sh_history *history, sh_real T)
-{
-    history->settling = sh_fmax(history->settling - T, 0);
-    return !(history->settling > 0);
 }
 
 /* Adds the states of the filters to those of the samples before. Returns 1 if a row is complete: then the mean
@@ -272,12 +239,10 @@ static int take_sample(sh_regression_state *state, const sh_parameters *p)
     const sh_real share = 1 / (sh_real)signals->decimation;
     sh_mean *mean = &state->mean;
     sh_row *row = &state->row;
-    int i;
 
     sh_noise_watch(&state->history, signals, p);
-    for (i = 0; i < SH_FILTER_COLUMN + state->columns.size; ++i) {
-        sh_state_variable_filter_add(&mean->filter[i], &signals->filter[i], share);
-    }
+    sh_state_variable_filter_add(mean->filter, signals->filter,
+                                 SH_FILTER_COLUMN + state->columns.size, share);
     mean->rough += sh_signals_roughness(signals) * share;
     mean->moved += sh_fabs(signals->theta_before[0] - signals->theta_before[1]) > 0 ? share : 0;
     mean->samples += 1;
@@ -291,24 +256,12 @@ static int take_sample(sh_regression_state *state, const sh_parameters *p)
     return 1;
 }
 
-/* Whether the row shows that the motor was not at rest at the start (detail 12). */
-static int has_moved_before(sh_regression_state *state, const sh_parameters *p)
-{
-    sh_history *history = &state->history;
-
-    if (sh_is_measured(p) || !(history->starting > 0)) {
-        return 0;
-    }
-    history->starting -= (sh_real)state->signals.decimation * p->samplePeriod;
-    return sh_noise_contradicts_rest(state, p, state->row.x);
-}
-
-/* Weight 1 / R of the row x; 0 if the numbers are too large. */
-static sh_real weight_of(const sh_row_noise *noise, const sh_real *x, int size)
+/* Weight 1 / R of the row x [size: count]; 0 if the numbers are too large. */
+static sh_real weight_of(const sh_row_noise *noise, const sh_real *x, int count)
 {
     const sh_real w = 1 / noise->R;
 
-    return w > 0 && w * sum_of_squares(x, size + SH_RIGHT_SIDES) <= SH_LARGE ? w : 0;
+    return w > 0 && w * sh_sum_of_products(x, x, count) <= SH_LARGE ? w : 0;
 }
 
 /* epsilon = y - x' beta. Its share that is noise of the torque is removed from the column of the
@@ -317,12 +270,9 @@ static sh_real weight_of(const sh_row_noise *noise, const sh_real *x, int size)
 static sh_real predict(const sh_regression_state *state, const sh_row_noise *noise, sh_real *x,
                        sh_column_noise *left)
 {
-    sh_real epsilon = x[state->columns.size + SH_RIGHT_Y];
-    int i;
+    const int size = state->columns.size;
+    const sh_real epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, state->beta, size);
 
-    for (i = 0; i < state->columns.size; ++i) {
-        epsilon -= x[i] * state->beta[i];
-    }
     return epsilon - sh_columns_remove_noise(state, noise, epsilon, x, left);
 }
 
@@ -337,7 +287,7 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
     state->noise.information += sh_limited(left->information * w, SH_LARGE);
     state->noise.gain += sh_limited(left->gain * w, SH_LARGE);
     state->rounding += sh_limited(sh_noise_of_deformation(&state->signals) * w, SH_LARGE);
-    if (now->inertia < 0) {
+    if (!(p->prior.B > 0)) {
         return;
     }
     Q = sh_limited(SH_SPREAD_OF_SQUARE * sh_square(N / p->prior.B), SH_LARGE);
@@ -350,18 +300,27 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
     sh_posterior_remove(now, N * now->weight, p->prior.B);
 }
 
-/* Takes the row into the estimate. Sets rho, the variance of the prediction over the one of the row. */
-static void update(sh_regression_state *state, const sh_parameters *p, const sh_column_noise *left)
+/* Takes a complete row, points 3 to 5 of the method. Returns 0 if its numbers are too large. */
+static int use_row(sh_regression_state *state, const sh_parameters *p)
 {
     const int size = state->columns.size;
+    const sh_row_noise noise = sh_noise_of_row(state, p);
     sh_row *row = &state->row;
-    const sh_real share =
-        sh_posterior_take(&state->posterior, row->x, size, row->w); /* 1 / (1 + rho) */
+    sh_column_noise left;
+    sh_real share; /* 1 / (1 + rho) */
 
+    row->w = weight_of(&noise, row->x, size + SH_RIGHT_SIDES); /* 3. Weigh it. */
+    row->lasting = noise.lasting;
+    if (!(row->w > 0)) {
+        return 0;
+    }
+    row->epsilon = predict(state, &noise, row->x, &left); /* 4. Predict and compare. */
+    share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 5. Update. */
     row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
-    update_noise(state, p, left, row->w);
+    update_noise(state, p, &left, row->w);
     sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, size);
     row->step = 0;
+    return 1;
 }
 
 /* What else a row changes. The steps are of similar length, so that they can be spread evenly: one triangular
@@ -370,34 +329,19 @@ static void update(sh_regression_state *state, const sh_parameters *p, const sh_
 static void take_step(sh_regression_state *state, const sh_parameters *p)
 {
     sh_row *row = &state->row;
-    const sh_real duration = (sh_real)state->signals.decimation * state->signals.design.T;
     sh_real x[SH_MAX_ROW] = {0};
 
-    switch (row->step) {
-    case 0: /* before the data: a refit that starts with a step below has this row from them */
-        if (!sh_refit_pauses(state)) {
-            (void)sh_posterior_take(&state->refit.posterior, row->x, state->columns.size, row->w);
-        }
-        state->refit.time += duration;
-        state->refit.pause += duration;
-        break;
-    case 1:
+    if (row->step == 0) { /* before the data: a refit that starts below has this row from them */
+        sh_refit_take(state);
+    } else if (row->step == 1) {
         (void)memcpy(x, row->x, sizeof x);
         (void)sh_information_take(&state->data, x, row->w);
-        break;
-    case 2:
+    } else if (row->step == 2) {
         sh_blocks_take(state);
-        sh_blocks_end(state, p, 0);
-        break;
-    case 3:
-    case 4:
-    case 5:
-        sh_blocks_end(state, p, row->step - 2);
-        break;
-    default:
+    } else if (row->step == SH_ROW_STEPS - 1) {
         sh_refit_advance(state, p);
-        break;
     }
+    sh_blocks_end(state, p, row->step - 2);
     row->step += 1;
 }
 
@@ -439,23 +383,6 @@ static int refuse(sh_regression_state *state, const sh_history *before)
     return 0;
 }
 
-/* Takes a complete row. Returns 0 if its numbers are too large. */
-static int use_row(sh_regression_state *state, const sh_parameters *p)
-{
-    sh_row *row = &state->row;
-    const sh_row_noise noise = sh_noise_of_row(state, p);
-    sh_column_noise left;
-
-    row->w = weight_of(&noise, row->x, state->columns.size); /* 3. Weigh it. */
-    row->lasting = noise.lasting;
-    if (!(row->w > 0)) {
-        return 0;
-    }
-    row->epsilon = predict(state, &noise, row->x, &left); /* 4. Predict and compare. */
-    update(state, p, &left);                              /* 5. Update. */
-    return 1;
-}
-
 static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
                                     const sh_measurement *z, sh_real set_point,
                                     sh_estimate *estimate)
@@ -474,12 +401,12 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     }
     sh_signals_take(state, p, z, set_point, &at); /* 1. Filter the signals. */
     y = sh_columns_y(p, &state->signals.design, state->signals.filter);
-    if (!are_acceptable(&at, y, state->columns.size)) {
+    if (!are_acceptable(&at, y, &state->columns)) {
         return refuse(state, &before);
     }
-    settled = is_settled(&state->history, p->samplePeriod);
+    settled = sh_signals_settle(&state->history, p->samplePeriod);
     complete = settled && take_sample(state, p); /* 2. Build a row of K samples. */
-    if (complete && has_moved_before(state, p)) {
+    if (complete && sh_noise_contradicts_rest(state, p)) {
         wait_until_settled(state);
         settled = complete = 0;
     }
@@ -492,13 +419,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     if (!settled) {
         state->row.epsilon = state->row.rho = 0;
     }
-    if (!report(state, p, &at, y, y - state->row.epsilon, estimate)) { /* 7. Report. */
-        return refuse(state, &before);
-    }
-    estimate->a = settled ? 1 : 0;
-    estimate->rho = state->row.rho;
-    estimate->epsilon = state->row.epsilon;
-    return 1;
+    return report(state, p, &at, y, settled, estimate) ? 1 : refuse(state, &before); /* 7. */
 }
 
 const sh_method sh_filtered_regression = {

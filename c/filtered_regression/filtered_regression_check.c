@@ -20,6 +20,9 @@ static int are_columns(const sh_columns *columns, const sh_parameters *p)
     }
     (void)memset(&started, 0, sizeof started);
     sh_columns_start(&started, p);
+    if (columns->spring != started.spring) {
+        return 0;
+    }
     /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < SH_MAX_COLUMNS; ++i) { /* those behind are zero */
         if (columns->column[i].kind != started.column[i].kind ||
@@ -62,27 +65,6 @@ static int is_choice(const sh_regression_state *state, const sh_posterior *poste
     return 1;
 }
 
-/* A posterior knows where two of its columns are. */
-static int knows_motor(const sh_regression_state *state, const sh_posterior *posterior)
-{
-    int coulomb = -1, inertia = -1, i;
-
-    for (i = 0; i < posterior->information.size; ++i) {
-        const sh_column *column = &state->columns.column[posterior->column[i]];
-
-        if (sh_column_is(column, SH_IS_COULOMB)) {
-            coulomb = i;
-        }
-        if (sh_column_is(column, SH_IS_INERTIA)) {
-            inertia = i;
-        }
-    }
-    if (posterior->coulomb != coulomb || posterior->inertia != inertia) {
-        return 0;
-    }
-    return 1;
-}
-
 /* Where the present refit stands: refit.c takes the rows of the data, and then three more steps. */
 static int is_refit(const sh_refit *refit, int size)
 {
@@ -100,22 +82,16 @@ static int is_refit(const sh_refit *refit, int size)
     return 1;
 }
 
-/* Where the next row and the last one stand. */
-static int are_rows(const sh_regression_state *state)
+/* Where the rows stand, and flags. */
+static int are_numbers(const sh_regression_state *state)
 {
-    if (state->signals.decimation < 1 || state->signals.decimation > SH_LARGEST_DECIMATION ||
+    if (state->modality < SH_MODALITY_RESIDUAL || state->modality > SH_MODALITY_MODEL ||
+        state->signals.decimation < 1 || state->signals.decimation > SH_LARGEST_DECIMATION ||
         state->mean.samples < 0 || state->mean.samples >= state->signals.decimation ||
-        state->row.step < 0 || state->row.step > SH_ROW_STEPS) {
-        return 0;
-    }
-    return 1;
-}
-
-static int are_flags(const sh_regression_state *state)
-{
-    if (state->signals.begun < 0 || state->signals.begun > 1 || state->friction_drifts < 0 ||
-        state->friction_drifts > 1 || state->stiffness_known < 0 || state->stiffness_known > 1 ||
-        state->change.following < 0 || state->change.following > 1) {
+        state->row.step < 0 || state->row.step > SH_ROW_STEPS || state->signals.begun < 0 ||
+        state->signals.begun > 1 || state->friction_drifts < 0 || state->friction_drifts > 1 ||
+        state->stiffness_known < 0 || state->stiffness_known > 1 || state->change.following < 0 ||
+        state->change.following > 1) {
         return 0;
     }
     return 1;
@@ -125,12 +101,9 @@ int sh_filtered_regression_check_state(const sh_estimator *estimator, const sh_p
 {
     const sh_regression_state *state = &estimator->method.regression;
 
-    if (state->modality < SH_MODALITY_RESIDUAL || state->modality > SH_MODALITY_MODEL ||
-        !are_columns(&state->columns, p) || !are_data(state) ||
-        !is_choice(state, &state->posterior) || !knows_motor(state, &state->posterior) ||
-        !is_choice(state, &state->refit.posterior) ||
-        !knows_motor(state, &state->refit.posterior) ||
-        !is_refit(&state->refit, state->columns.size) || !are_rows(state) || !are_flags(state)) {
+    if (!are_numbers(state) || !are_columns(&state->columns, p) || !are_data(state) ||
+        !is_choice(state, &state->posterior) || !is_choice(state, &state->refit.posterior) ||
+        !is_refit(&state->refit, state->columns.size)) {
         return 1;
     }
     return 0;

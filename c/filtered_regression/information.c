@@ -25,16 +25,6 @@ sh_real sh_information_sample(const sh_information *a, int i, sh_real *x)
     return a->D[i];
 }
 
-void sh_information_right_side(const sh_information *a, int right, sh_real *z)
-{
-    const int size = a->size;
-    int i;
-
-    for (i = 0; i < size; ++i) {
-        z[i] = a->U[row_offset(size, i) + size - 1 - i + right];
-    }
-}
-
 sh_last_row sh_information_last(const sh_information *a)
 {
     const sh_real *z = a->U + row_offset(a->size, a->size - 1);
@@ -68,16 +58,6 @@ void sh_information_restart(sh_information *a, int count, sh_real precision)
     for (i = 0; i < rows; ++i) {
         a->D[i] = precision;
     }
-}
-
-void sh_information_copy(sh_information *to, const sh_information *from)
-{
-    const int size = from->size;
-
-    to->size = size;
-    to->squares = from->squares;
-    (void)memcpy(to->D, from->D, sizeof(sh_real) * (size_t)size);
-    (void)memcpy(to->U, from->U, sizeof(sh_real) * (size_t)row_offset(size, size));
 }
 
 /* Combines a row of U with a sample. What is left of the sample stays in x, for the next row. */
@@ -119,8 +99,7 @@ sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
     return w;
 }
 
-/* Sum of products, in four parts that do not wait for each other. */
-static sh_real sum_of_products(const sh_real *a, const sh_real *b, int count)
+sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count)
 {
     sh_real sum[4] = {0, 0, 0, 0};
     int k;
@@ -149,56 +128,52 @@ void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_r
         const int count = size - 1 - i;
 
         row -= count + SH_RIGHT_SIDES;
-        beta[i] = row[count + SH_RIGHT_Y] - sum_of_products(row, beta + i + 1, count);
+        beta[i] = row[count + SH_RIGHT_Y] - sh_sum_of_products(row, beta + i + 1, count);
     }
 }
 
-/* x -= factor row */
-static void subtract(sh_real *restrict x, const sh_real *restrict row, int count, sh_real factor)
+/* a -= a_i row, b -= b_i row */
+static void subtract(sh_real *restrict a, sh_real *restrict b, const sh_real *restrict row,
+                     int count, sh_real a_i, sh_real b_i)
 {
     int k;
 
     for (k = 0; k < count; ++k) {
-        x[k] -= factor * row[k];
+        a[k] -= a_i * row[k];
+        b[k] -= b_i * row[k];
     }
 }
 
-/* Adds the part of one row, with the entry v of U'^-1 c. v^2 / D is computed also where v^2 overflows: in
- * single precision D can be as large.
- */
+/* Adds the part of one row, with the entry v of U'^-1 c. */
 static void add_row(sh_combination *sum, sh_real v, sh_real D, const sh_real *z)
 {
-    const sh_real square = v * v;
-
-    sum->variance += square <= SH_LARGEST_OUTPUT ? square / D : v / D * v;
+    sum->variance += v / D * v; /* in single precision, v^2 may overflow where D is as large */
     sum->value[SH_RIGHT_GAIN] += v * z[SH_RIGHT_GAIN];
     sum->value[SH_RIGHT_Y] += v * z[SH_RIGHT_Y];
 }
 
 /* v = U'^-1 c: c' beta = v' z, and its variance is the sum of v_i^2 / D_i. */
-sh_combination sh_information_combine(const sh_information *a, const sh_last_row *last,
-                                      const sh_real *c)
+sh_combinations sh_information_combine(const sh_information *a, const sh_last_row *last,
+                                       sh_real *first, sh_real *second)
 {
     const int size = a->size;
     const sh_real *row = a->U;
-    sh_combination sum = {{0, 0}, 0};
-    sh_real v[SH_MAX_COLUMNS] = {0};
+    sh_combinations found = {{{0, 0}, 0}, {{0, 0}, 0}};
     int i;
 
     for (i = 0; i < size; ++i) {
-        v[i] = c[i];
-    }
-    for (i = 0; i < size - 1; ++i) {
         const int count = size - 1 - i;
+        const sh_real *z = i < size - 1 ? row + count : last->z;
+        const sh_real D = i < size - 1 ? a->D[i] : last->D;
 
-        if (sh_fabs(v[i]) > 0) {
-            subtract(v + i + 1, row, count, v[i]);
-            add_row(&sum, v[i], a->D[i], row + count);
+        if (sh_fabs(first[i]) > 0 || sh_fabs(second[i]) > 0) {
+            subtract(first + i + 1, second + i + 1, row, count, first[i], second[i]);
+            add_row(&found.first, first[i], D, z);
+            add_row(&found.second, second[i], D, z);
         }
         row += count + SH_RIGHT_SIDES;
     }
-    add_row(&sum, v[i], last->D, last->z);
-    return sum;
+    return found;
 }
 
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta)
@@ -211,7 +186,7 @@ sh_real sh_information_squares(const sh_information *a, const sh_real *beta)
     for (i = 0; i < size; ++i) {
         const int count = size - 1 - i;
         const sh_real error =
-            row[count + SH_RIGHT_Y] - beta[i] - sum_of_products(row, beta + i + 1, count);
+            row[count + SH_RIGHT_Y] - beta[i] - sh_sum_of_products(row, beta + i + 1, count);
 
         sum += a->D[i] * error * error;
         row += count + SH_RIGHT_SIDES;
@@ -241,7 +216,7 @@ sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
 
     for (i = 0; i < size; ++i) { /* row = v' U' D [U, U z] */
         const int count = size - 1 - i;
-        const sh_real along = v[i] + sum_of_products(of_U, v + i + 1, count);
+        const sh_real along = v[i] + sh_sum_of_products(of_U, v + i + 1, count);
         const sh_real scaled = a->D[i] * along;
 
         row[i] += scaled;

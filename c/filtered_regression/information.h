@@ -1,18 +1,11 @@
-/* Least squares in the information form, without square roots (detail 5).
+/* Least squares in the information form, without square roots (detail 5): sum of w x x' = U' D U over samples
+ * y = x' beta of weight w, U unit upper triangular, and the right-hand sides as U z. A sample is taken in
+ * O(size^2), and no parameter needs a prior (Gentleman 1974, Algorithm AS 75, Applied Statistics 23:448-454;
+ * Miller 1992, AS 274).
  *
- * The samples of a regression y = x' beta, each of weight w, are kept as
- *
- *     sum of w x x' = U' D U ,  U unit upper triangular,
- *
- * and the right-hand sides as U z. A sample is taken in O(size^2), and no parameter needs a prior
- * (Gentleman 1974, Algorithm AS 75, Applied Statistics 23:448-454; Miller 1992, AS 274).
- *
- * D[i] is the information about parameter i if those before it are estimated too and those after it
- * are exact. So to leave out the last parameters is to leave out the last columns. To scale the
- * weights of all samples is to scale D.
- *
- * Every entry of D must start above 0. If other columns make up a column exactly, its entry of D would
- * consist of rounding errors only, and the division by it would destroy U.
+ * D[i] is the information about parameter i if those before it are estimated too and those after it are exact.
+ * Every entry of D must start above 0: if other columns make up a column exactly, it would else consist of
+ * rounding errors, and the division by it would destroy U.
  */
 #ifndef SH_INFORMATION_H
 #define SH_INFORMATION_H
@@ -32,9 +25,6 @@ void sh_information_start(sh_information *a, int size, sh_real precision);
  * count  number of first parameters, >= 0; all of them if it is larger than size
  */
 void sh_information_restart(sh_information *a, int count, sh_real precision);
-
-/* to = from, as far as it is used. */
-void sh_information_copy(sh_information *to, const sh_information *from);
 
 /* Takes a sample.
  *
@@ -58,9 +48,6 @@ sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
  */
 sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
 
-/* The entries of U z in row i of a side, SH_RIGHT_*, for all rows: z [size: size]. */
-void sh_information_right_side(const sh_information *a, int right, sh_real *z);
-
 /* The last row: the information about the last parameter, and its right-hand sides. */
 typedef struct {
     sh_real D, z[SH_RIGHT_SIDES];
@@ -78,9 +65,16 @@ typedef struct {
     sh_real variance;              /* c' (U' D U)^-1 c */
 } sh_combination;
 
-/* The combination c [size: size], with another last row. */
-sh_combination sh_information_combine(const sh_information *a, const sh_last_row *last,
-                                      const sh_real *c);
+typedef struct {
+    sh_combination first, second;
+} sh_combinations;
+
+/* Two combinations [size: size], which are overwritten, with another last row. */
+sh_combinations sh_information_combine(const sh_information *a, const sh_last_row *last,
+                                       sh_real *first, sh_real *second);
+
+/* a' b [size: count], in four sums that do not wait for each other. */
+sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count);
 
 /* Weighted sum of squares of y - x' beta over all samples, and of the first precision. */
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta);

@@ -2,48 +2,24 @@
  * forgotten.
  */
 #include "constants.h"
-#include "information.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 
 /* ---- blocks, detail 8 -------------------------------------------------------------------- */
 
-/* h = 16 x^2 (1 - x)^2 at row k of a block */
-static sh_real window(sh_real k, sh_real length)
-{
-    const sh_real x = (k + (sh_real)0.5) / length;
-
-    return 16 * sh_square(x * (1 - x));
-}
-
 void sh_blocks_start(sh_regression_state *state)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_filter_design *design = &state->signals.design;
-    const sh_real K = (sh_real)state->signals.decimation;
-    sh_state_variable_filter filter;
-    sh_real of_window = 0, output = 0, second = 0, samples;
-    int k;
+    const int K = state->signals.decimation;
 
     sh_information_start(&blocks->constant, state->columns.size, SH_LEAST_INFORMATION);
     sh_information_start(&blocks->drifting, state->columns.size, SH_LEAST_INFORMATION);
     sh_information_start(&blocks->recent, state->columns.size, 1);
-    blocks->length = sh_floor(SH_BLOCK / (K * design->T) + (sh_real)0.5);
+    blocks->length = sh_floor(SH_BLOCK / ((sh_real)K * design->T) + (sh_real)0.5);
     blocks->length = sh_fmin(sh_fmax(blocks->length, SH_SHORTEST_BLOCK), SH_LONGEST_BLOCK);
-    samples = blocks->length * K + sh_floor(30 / (design->w * design->T));
-    /* What H and s^2 H leave of white noise under the window: the energy of the filtered window. */
-    sh_state_variable_filter_start(&filter, 0);
-    for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < samples; ++k) {
-        const sh_real row = sh_floor((sh_real)k / K);
-        const sh_real h = row < blocks->length ? window(row, blocks->length) : 0;
-
-        sh_state_variable_filter_step(&filter, design, h);
-        of_window += sh_square(h);
-        output += sh_square(sh_state_variable_filter_output(&filter));
-        second += sh_square(sh_state_variable_filter_second(&filter, design));
-    }
-    blocks->energy = output / of_window;
-    blocks->energy_second = second / of_window;
+    sh_state_variable_filter_noise(design, blocks->length, K, &blocks->energy,
+                                   &blocks->energy_second);
 }
 
 void sh_blocks_interrupt(sh_blocks *blocks)
@@ -55,32 +31,6 @@ void sh_blocks_interrupt(sh_blocks *blocks)
     }
     blocks->rows = blocks->weight = blocks->weight_window = 0;
     blocks->window = blocks->window_square = blocks->independent = blocks->rounding = 0;
-}
-
-/* Takes the mean row of the block, sum h w x / sum h w. Returns the square of the error of its prediction over
- * the variance of this error.
- */
-static sh_real take_mean(const sh_blocks *blocks, sh_information *a, sh_real variance)
-{
-    sh_real mean[SH_MAX_ROW] = {0}, weight;
-    int i;
-
-    for (i = 0; i < a->size + SH_RIGHT_SIDES; ++i) {
-        mean[i] = blocks->sum[i] / blocks->weight;
-    }
-    weight = sh_information_take(a, mean, 1 / variance);
-    return sh_limited(weight * sh_square(mean[a->size + SH_RIGHT_Y]), SH_LARGE);
-}
-
-static int is_acceptable(const sh_blocks *blocks, int size, sh_real variance)
-{
-    sh_real squares = 0;
-    int i;
-
-    for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
-        squares += sh_square(blocks->sum[i] / blocks->weight);
-    }
-    return variance > 0 && squares / variance <= SH_LARGE; /* false if not a number */
 }
 
 static void forget_blocks(sh_blocks *blocks, sh_real factor)
@@ -118,36 +68,37 @@ static void count_block(sh_regression_state *state)
     }
 }
 
+/* Mean row sum h w x / sum h w. Each regression gives the square of the error of its prediction over the
+ * variance of this error.
+ */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
 {
     sh_blocks *blocks = &state->blocks;
-    sh_real variance, error;
+    sh_information *const regressions[] = {&blocks->constant, &blocks->drifting, &blocks->recent,
+                                           &state->change.changed};
+    const int count = state->columns.size + SH_RIGHT_SIDES;
+    sh_real mean[SH_MAX_ROW] = {0}, variance, error;
+    int i;
 
-    if (blocks->rows < blocks->length) {
+    if (step < 0 || step > 3 || blocks->rows < blocks->length) {
         return;
+    }
+    for (i = 0; i < count; ++i) {
+        mean[i] = blocks->sum[i] / blocks->weight;
     }
     variance = variance_of(state, p);
-    if (!is_acceptable(blocks, state->columns.size, variance)) {
-        sh_blocks_interrupt(blocks);
+    if (!(variance > 0 && sh_sum_of_products(mean, mean, count) / variance <= SH_LARGE)) {
+        sh_blocks_interrupt(blocks); /* also if not a number */
         return;
     }
-    switch (step) {
-    case 0:
-        blocks->error = take_mean(blocks, &blocks->constant, variance);
-        break;
-    case 1:
-        error = take_mean(blocks, &blocks->drifting, variance);
-        blocks->error = state->friction_drifts ? error : blocks->error;
-        break;
-    case 2:
-        (void)take_mean(blocks, &blocks->recent, variance);
-        break;
-    default:
-        error = take_mean(blocks, &state->change.changed, variance);
+    error = sh_information_take(regressions[step], mean, 1 / variance);
+    error = sh_limited(error * sh_square(mean[count - SH_RIGHT_SIDES + SH_RIGHT_Y]), SH_LARGE);
+    if (step == 0 || (step == 1 && state->friction_drifts)) {
+        blocks->error = error;
+    } else if (step == 3) {
         count_block(state);
         sh_change_judge(state, p, blocks->error, error);
         sh_blocks_interrupt(blocks);
-        break;
     }
 }
 
@@ -155,7 +106,7 @@ void sh_blocks_take(sh_regression_state *state)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_row *row = &state->row;
-    const sh_real h = window(blocks->rows, blocks->length), wh = row->w * h;
+    const sh_real h = sh_window(blocks->rows, blocks->length), wh = row->w * h;
     int i;
 
     for (i = 0; i < state->columns.size + SH_RIGHT_SIDES; ++i) {
@@ -187,15 +138,12 @@ static sh_real recent_misfit(const sh_regression_state *state, const sh_paramete
     const sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->recent_count;
     sh_real squares;
-    int i;
 
     if (N < SH_FIRST_BLOCKS || state->friction_drifts || p->regression.drift > 0) {
         return 0;
     }
-    squares = sh_information_squares(&blocks->recent, state->beta);
-    for (i = 0; i < state->columns.size; ++i) {
-        squares -= state->beta[i] * state->beta[i];
-    }
+    squares = sh_information_squares(&blocks->recent, state->beta) -
+              sh_sum_of_products(state->beta, state->beta, state->columns.size);
     return squares > chance(N) ? squares / N : 0;
 }
 

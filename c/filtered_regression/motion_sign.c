@@ -1,6 +1,8 @@
-#include "motion_sign.h"
-
+/* Direction in which a motor turns, from its encoder: Coulomb friction acts against it (point 3, detail 3). The
+ * sign of a filtered velocity would be late.
+ */
 #include "real_math.h"
+#include "regression.h"
 
 void sh_motion_sign_start(sh_motion_sign *motion, sh_real position)
 {

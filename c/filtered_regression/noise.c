@@ -1,6 +1,5 @@
 /* The variance of a row, and what of it is only noise. */
 #include "constants.h"
-#include "posterior.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 
@@ -25,17 +24,16 @@ static sh_real inertial_noise(const sh_signals *signals, const sh_parameters *p)
 /* gamma^2 (tau_C^2 + P_CC) u_f^2: variance of the friction whose sign is unknown [(N.m)2] */
 static sh_real friction_variance(const sh_regression_state *state, const sh_parameters *p)
 {
-    const sh_posterior *posterior = &state->posterior;
     const sh_real u_f = sh_state_variable_filter_output(&state->signals.filter[SH_FILTER_UNKNOWN]);
+    const int size = state->columns.size, C = size - (p->prior.B > 0 ? 2 : 1);
     sh_real c[SH_MAX_COLUMNS] = {0}, tau_C;
-    int C;
 
-    if (posterior->coulomb < 0 || !(sh_fabs(u_f) > 0)) {
+    if (!(p->prior.tau_coulomb > 0) || C < 0 || !(sh_fabs(u_f) > 0)) {
         return 0;
     }
-    C = posterior->column[posterior->coulomb];
     c[C] = 1;
-    tau_C = sh_square(state->beta[C]) + sh_posterior_combine(posterior, p->prior.B, c).variance;
+    tau_C =
+        sh_square(state->beta[C]) + sh_posterior_variance(&state->posterior, p->prior.B, c, size);
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * tau_C;
 }
 
@@ -115,31 +113,31 @@ sh_real sh_noise_of_deformation(const sh_signals *signals)
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p)
 {
     const sh_signals *signals = &state->signals;
-    const sh_real moved = state->row.moved,
-                  V = state->row.rough +
-                      SH_ROUNDING_IS_NOT_WHITE * moved * sh_square(signals->count) / 12;
+    const sh_real V = state->row.rough +
+                      SH_ROUNDING_IS_NOT_WHITE * state->row.moved * sh_square(signals->count) / 12;
 
-    if (sh_is_measured(p) || state->posterior.inertia < 0) {
-        return 0;
-    }
-    return sh_square(p->prior.B) * inertial_noise(signals, p) * V;
+    return sh_is_measured(p) ? 0 : sh_square(p->prior.B) * inertial_noise(signals, p) * V;
 }
 
 /* epsilon^2 > 25 (x' P x + N_tau + N_theta + gamma^2 (tau_C^2 + P_CC) u_f^2), where x contains only the
  * columns of the equation: a bias, or another thing that a joint may have, would hide a slow motion.
  */
-int sh_noise_contradicts_rest(const sh_regression_state *state, const sh_parameters *p,
-                              const sh_real *x)
+int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p)
 {
     const int size = state->columns.size;
-    sh_real c[SH_MAX_COLUMNS] = {0}, epsilon = x[size + SH_RIGHT_Y], variance;
+    const sh_real *x = state->row.x;
+    sh_real c[SH_MAX_COLUMNS] = {0}, epsilon, variance;
     int i;
 
+    if (sh_is_measured(p) || !(state->history.starting > 0)) {
+        return 0;
+    }
+    state->history.starting -= (sh_real)state->signals.decimation * p->samplePeriod;
+    epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, state->beta, size);
     for (i = 0; i < size; ++i) {
-        epsilon -= x[i] * state->beta[i];
         c[i] = sh_column_is(&state->columns.column[i], SH_IS_EQUATION) ? x[i] : 0;
     }
-    variance = sh_posterior_combine(&state->posterior, p->prior.B, c).variance +
+    variance = sh_posterior_variance(&state->posterior, p->prior.B, c, size) +
                torque_noise(&state->signals, p) +
                inertial_noise(&state->signals, p) * sh_square(state->signals.count) / 12 +
                friction_variance(state, p);

@@ -1,46 +1,6 @@
-#include "posterior.h"
 
 #include "constants.h"
 #include "regression.h"
-
-void sh_posterior_start(sh_posterior *posterior, const sh_columns *columns, const int *chosen,
-                        int size, sh_real weight)
-{
-    int i;
-
-    posterior->coulomb = posterior->inertia = -1;
-    /*@ loop unroll SH_MAX_COLUMNS; */
-    for (i = 0; i < size; ++i) {
-        const sh_column *column = &columns->column[chosen[i]];
-
-        posterior->column[i] = chosen[i];
-        if (sh_column_is(column, SH_IS_COULOMB)) {
-            posterior->coulomb = i;
-        }
-        if (sh_column_is(column, SH_IS_INERTIA)) {
-            posterior->inertia = i;
-        }
-    }
-    sh_information_start(&posterior->information, size, 1);
-    posterior->weight = weight;
-    posterior->surplus = posterior->removed = posterior->spread = 0;
-}
-
-void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
-{
-    int i;
-
-    sh_information_copy(&to->information, &from->information);
-    for (i = 0; i < from->information.size; ++i) {
-        to->column[i] = from->column[i];
-    }
-    to->coulomb = from->coulomb;
-    to->inertia = from->inertia;
-    to->weight = from->weight;
-    to->surplus = from->surplus;
-    to->removed = from->removed;
-    to->spread = from->spread;
-}
 
 sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w)
 {
@@ -59,19 +19,14 @@ sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, s
 }
 
 /* D_b -= N, and so for the right-hand sides s = D_b z: s_y += N / prior.B, because N is biased towards
- * b = -1, which is beta = -1 / prior.B.
+ * b = -1, which is beta = -1 / prior.B (detail 7).
  */
 void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B)
 {
-    const int b = posterior->inertia;
-    sh_last_row last;
+    sh_last_row last = sh_information_last(&posterior->information);
     sh_real N, left;
 
     posterior->surplus += information;
-    if (b < 0 || b != posterior->information.size - 1) {
-        return;
-    }
-    last = sh_information_last(&posterior->information);
     N = sh_fmin(posterior->surplus, last.D - 1); /* 1: the prior */
     if (!(N > 0)) {
         return;
@@ -86,14 +41,14 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
 }
 
 /* The last row with the weight that the data about b have after the removal:
- * D = 1 + I^2 / (I + N + Q), with I = D_b - 1 and Q = spread + (0.05 N / prior.B)^2.
+ * D = 1 + I^2 / (I + N + Q), with I = D_b - 1 and Q = spread + (0.05 N / prior.B)^2 (detail 7).
  */
 static sh_last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
 {
     sh_last_row last = sh_information_last(&posterior->information);
     const sh_real D = last.D, I = sh_fmax(D - 1, 0), N = posterior->removed;
 
-    if (posterior->inertia >= 0 && N > 0) {
+    if (N > 0) {
         const sh_real Q = posterior->spread + sh_square(SH_REMOVAL_ERROR / prior_B * N);
         const sh_real share = I / (I + N + Q);
 
@@ -104,10 +59,8 @@ static sh_last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
     return last;
 }
 
-/* D is the information about the coefficient if all others are estimated, N the part that is noise, and
- * I = D - 1 - N (1: the prior). The data have the equation I beta = s without bias. The variance of s is
- * I + N + Q, with Q = (0.2 G)^2, where G is the share of the noise of y that is left in the column. So the
- * data get the weight I^2 / (I + N + Q), by a sample of negative weight.
+/* D = 1 + I + N: information about the coefficient if all others are estimated, of which N is noise. The data
+ * get the weight I^2 / (I + N + Q), Q = (0.2 G)^2, by a sample of negative weight (detail 14).
  */
 void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
                                const sh_column_noise *noise)
@@ -115,11 +68,12 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     const sh_last_row last = weighed_last(posterior, prior_B);
     const sh_real all = noise->information * posterior->weight;
     const int size = posterior->information.size;
-    sh_real row[SH_MAX_ROW] = {0}, G = noise->gain * posterior->weight, D, N, I, Q, lost, less;
+    sh_real unit[SH_MAX_COLUMNS] = {0}, none[SH_MAX_COLUMNS] = {0}, row[SH_MAX_ROW] = {0};
+    sh_real G = noise->gain * posterior->weight, D, N, I, Q, lost, less;
     sh_combination found;
 
-    row[i] = 1;
-    found = sh_information_combine(&posterior->information, &last, row);
+    unit[i] = row[i] = 1;
+    found = sh_information_combine(&posterior->information, &last, unit, none).first;
     D = 1 / found.variance;
     if (!(all > 0) || !(D > 1) || !(D <= SH_LARGE)) {
         return;
@@ -153,15 +107,24 @@ void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_re
     }
 }
 
-sh_combination sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B,
-                                    const sh_real *c)
+sh_combinations sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B,
+                                     const sh_real *first, const sh_real *second, int count)
 {
     const sh_last_row last = weighed_last(posterior, prior_B);
-    sh_real own[SH_MAX_COLUMNS] = {0};
+    sh_real own_first[SH_MAX_COLUMNS] = {0}, own_second[SH_MAX_COLUMNS] = {0};
     int i;
 
     for (i = 0; i < posterior->information.size; ++i) {
-        own[i] = c[posterior->column[i]];
+        const int of_data = posterior->column[i];
+
+        own_first[i] = of_data < count ? first[of_data] : 0;
+        own_second[i] = of_data < count ? second[of_data] : 0;
     }
-    return sh_information_combine(&posterior->information, &last, own);
+    return sh_information_combine(&posterior->information, &last, own_first, own_second);
+}
+
+sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,
+                              int count)
+{
+    return sh_posterior_combine(posterior, prior_B, c, c, count).first.variance;
 }

@@ -1,15 +1,9 @@
-/* Refits: how the misfit, and the choice of columns, act on past samples in bounded time; detail 6.
- *
- * The data of all samples are a triangular matrix of n rows. A row with its weight is a sample for
- * another triangle. So a new posterior is computed beside the present one: with each new row of K samples
- * it takes that row, and (K + 1) / 2 rows of a copy of the data, weighted by the misfit. After n rows it
- * replaces the present one. No tick takes more than O(K n^2).
- *
- * Every second refit is a trial of a group of columns, and its estimate is not used.
+/* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of
+ * the data with its weight is a sample for another triangle: so a new posterior is computed beside the present
+ * one, from some rows of a copy of the data with each new row. Every second refit is a trial of a group of
+ * columns, and its estimate is not used.
  */
 #include "constants.h"
-#include "information.h"
-#include "posterior.h"
 #include "regression.h"
 
 static int is_distinct(const sh_regression_state *state, const sh_parameters *p, int i)
@@ -18,31 +12,24 @@ static int is_distinct(const sh_regression_state *state, const sh_parameters *p,
                                  state->history.phi_max);
 }
 
-/* Whether column i is used, and not one of the trial. */
-static int is_used(const sh_regression_state *state, const sh_parameters *p, int i)
-{
-    const int group = sh_column_kinds[state->columns.column[i].kind].group;
-
-    return group == 0 ||
-           (group != state->refit.trial && state->refit.used[group] && is_distinct(state, p, i));
-}
-
-/* Column i is tried: its group stands behind all columns that are used. */
-static int is_tried(const sh_regression_state *state, const sh_parameters *p, int i)
-{
-    const int group = sh_column_kinds[state->columns.column[i].kind].group;
-
-    return group != 0 && group == state->refit.trial && is_distinct(state, p, i);
-}
-
-/* Which columns stand behind others: those of the spring, whose variances then need few rows of U, and
- * behind them those of the motor, whose information is changed or whose variance is used.
+/* Where column i stands; -1 if it is not used. Columns of the spring stand behind others: their variances then
+ * need few rows of U. Behind them stand those of the motor, whose information is changed or whose variance is
+ * used, and at the end the group that is tried.
  */
-static int place_of(const sh_column *column)
+static int place_of(const sh_regression_state *state, const sh_parameters *p, int i)
 {
-    return sh_column_is(column, SH_IS_DRIVE | SH_IS_FRICTION | SH_IS_INERTIA) ? 2
-           : sh_column_is(column, SH_IS_SPRING)                               ? 1
-                                                                              : 0;
+    const sh_column *column = &state->columns.column[i];
+    const sh_refit *refit = &state->refit;
+    const int group = sh_column_kinds[column->kind].group;
+
+    if (group != 0 &&
+        (!is_distinct(state, p, i) || (group != refit->trial && !refit->used[group]))) {
+        return -1;
+    }
+    return group != 0 && group == refit->trial                                    ? 3
+           : column->kind >= SH_COLUMN_VISCOUS || column->kind == SH_COLUMN_DRIVE ? 2
+           : sh_column_is(column, SH_IS_SPRING)                                   ? 1
+                                                                                  : 0;
 }
 
 /* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */
@@ -50,19 +37,13 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
 {
     int size = 0, place, i;
 
-    /*@ loop unroll 3; */
-    for (place = 0; place < 3; ++place) {
+    /*@ loop unroll 4; */
+    for (place = 0; place < 4; ++place) {
         /*@ loop unroll SH_MAX_COLUMNS; */
         for (i = 0; i < state->columns.size; ++i) {
-            if (size < state->columns.size && place == place_of(&state->columns.column[i]) &&
-                is_used(state, p, i)) {
+            if (size < state->columns.size && place == place_of(state, p, i)) {
                 chosen[size++] = i;
             }
-        }
-    }
-    for (i = 0; i < state->columns.size && size < state->columns.size; ++i) {
-        if (is_tried(state, p, i)) {
-            chosen[size++] = i;
         }
     }
     return size;
@@ -76,13 +57,14 @@ static void start_refit(sh_regression_state *state, const sh_parameters *p)
     sh_refit *refit = &state->refit;
     const sh_real noise = sh_fmax(sh_fmax(1, state->misfit), state->history.excess_mean);
     const sh_real weight = 1 / (refit->trial == 0 ? state->variance_factor : noise);
-    int chosen[SH_MAX_COLUMNS] = {0};
-    const int size = choose_columns(state, p, chosen);
+    const int size = choose_columns(state, p, refit->posterior.column);
 
-    sh_posterior_start(&refit->posterior, &state->columns, chosen, size, weight);
+    sh_information_start(&refit->posterior.information, size, 1);
+    refit->posterior.weight = weight;
+    refit->posterior.removed = 0;
     refit->posterior.surplus = state->surplus * weight;
     refit->posterior.spread = state->spread * weight * weight;
-    sh_information_copy(&refit->frozen, &state->data);
+    refit->frozen = state->data;
     refit->row = 0;
 }
 
@@ -90,7 +72,7 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p)
 {
     state->variance_factor = state->misfit = 1;
     start_refit(state, p);
-    sh_posterior_copy(&state->posterior, &state->refit.posterior);
+    state->posterior = state->refit.posterior;
 }
 
 /* The next group that can be tried, 0 if there is none. */
@@ -116,15 +98,16 @@ static sh_real gain_of_evidence(const sh_regression_state *state)
 {
     const sh_posterior *posterior = &state->refit.posterior;
     const sh_information *a = &posterior->information;
-    sh_real z[SH_MAX_COLUMNS] = {0}, gain = 0;
+    sh_real row[SH_MAX_ROW] = {0}, gain = 0;
     int i;
 
-    sh_information_right_side(a, SH_RIGHT_Y, z);
     for (i = 0; i < a->size; ++i) {
         const sh_column *column = &state->columns.column[posterior->column[i]];
 
         if (sh_column_kinds[column->kind].group == state->refit.trial) {
-            gain += (a->D[i] * z[i] * z[i] - sh_log(a->D[i])) / 2;
+            const sh_real D = sh_information_sample(a, i, row), z = row[a->size + SH_RIGHT_Y];
+
+            gain += (D * z * z - sh_log(D)) / 2;
         }
     }
     return gain;
@@ -151,11 +134,11 @@ static void remove_noise(sh_regression_state *state, const sh_parameters *p)
     sh_posterior *posterior = &state->posterior;
     int i;
 
-    if (posterior->inertia >= 0) {
+    if (p->prior.B > 0) {
         sh_posterior_remove(posterior, 0, p->prior.B);
     }
     for (i = 0; i < posterior->information.size; ++i) {
-        if (sh_column_is(&state->columns.column[posterior->column[i]], SH_IS_DRIVE)) {
+        if (state->columns.column[posterior->column[i]].kind == SH_COLUMN_DRIVE) {
             sh_posterior_remove_noise(posterior, p->prior.B, i, &state->noise);
         }
     }
@@ -170,7 +153,7 @@ static void end_refit(sh_regression_state *state, const sh_parameters *p)
     if (was_trial) {
         decide_about_group(state);
     } else {
-        sh_posterior_copy(&state->posterior, &refit->posterior);
+        state->posterior = refit->posterior;
         state->change.following = 0;
         remove_noise(state, p);
         sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
@@ -197,9 +180,17 @@ void sh_refit_restart(sh_regression_state *state, const sh_parameters *p)
     start_refit(state, p);
 }
 
-int sh_refit_pauses(const sh_regression_state *state)
+void sh_refit_take(sh_regression_state *state)
 {
-    return state->refit.row > state->columns.size + 2;
+    const sh_row *row = &state->row;
+    const sh_real duration = (sh_real)state->signals.decimation * state->signals.design.T;
+    sh_refit *refit = &state->refit;
+
+    if (refit->row <= state->columns.size + 2) { /* else it pauses */
+        (void)sh_posterior_take(&refit->posterior, row->x, state->columns.size, row->w);
+    }
+    refit->time += duration;
+    refit->pause += duration;
 }
 
 /* What a refit needs beside the rows is spread over ticks, too. */

@@ -1,28 +1,25 @@
-/* The steps of a tick of the method FilteredRegression, in their order: signals.c filters the
- * signals, columns.c builds the row, noise.c weighs it, posterior.c updates the estimate, misfit.c,
- * change.c and refit.c see what no column explains. "Point" and "detail" with a number are those of
- * docs/filtered-regression.md.
+/* What the files of FilteredRegression give each other. "Point" and "detail" with a number are those of
+ * docs/filtered-regression.md, which has the derivations.
  */
 #ifndef SH_REGRESSION_H
 #define SH_REGRESSION_H
 
-#include "sigmahat.h"
+#include "information.h"
+
+enum { SH_ROW_STEPS = 7 }; /* in which a row changes what is behind the estimate */
 
 /* Where the joint is, and the signals of the columns there, before the filter. */
 typedef struct {
-    sh_real theta, q, phi;   /* positions and deformation [rad] */
-    sh_real power[SH_MAX_N]; /* (phi / range.phi)^e / e, where e belongs to number i [1] */
-    sh_real slope[SH_MAX_N]; /* and its derivative by phi [1/rad] */
-    sh_real l[SH_MAX_M];     /* (set-point / range.setPoint)^j [1] */
-    sh_real tau_nominal;     /* torque of the curve rls.eta_0 [N.m] */
-    sh_real sigma_nominal;   /* and its stiffness [N.m/rad] */
-    const sh_real *stop; /* [size: SH_WIDTHS] states of the stop operators of hysteresis [rad] */
+    sh_real theta, q, phi;      /* positions and deformation [rad] */
+    sh_real power[SH_MAX_N];    /* x^e / e, x = phi / range.phi, e of number i [1] */
+    sh_real slope[SH_MAX_N];    /* and its derivative by phi [1/rad] */
+    sh_real l[SH_MAX_M];        /* (set-point / range.setPoint)^j [1] */
+    sh_real tau_nominal;        /* torque of the curve rls.eta_0 [N.m] */
+    sh_real sigma_nominal;      /* and its stiffness [N.m/rad] */
+    const sh_real *stop;        /* [size: SH_WIDTHS] stop operators of hysteresis [rad] */
     sh_real F[SH_MAX_COLUMNS];  /* signals */
     sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
 } sh_joint_point;
-
-/* Steps in which a row changes what is behind the estimate. */
-enum { SH_ROW_STEPS = 7 };
 
 /* Variance of a row, whose inverse is its weight. */
 typedef struct {
@@ -52,9 +49,9 @@ enum {
     SH_COLUMN_KNEE,  /* a slope of the curve that changes at once */
     SH_COLUMN_SIN_M, /* motor encoder that is not centred */
     SH_COLUMN_COS_M,
-    SH_COLUMN_VISCOUS, /* d */
+    SH_COLUMN_VISCOUS, /* d. It and what follows stand last in a posterior */
     SH_COLUMN_COULOMB, /* tau_C */
-    SH_COLUMN_INERTIA, /* b. It is the last one, see posterior.h */
+    SH_COLUMN_INERTIA, /* b: the last column */
     SH_COLUMN_KINDS
 };
 
@@ -62,30 +59,10 @@ enum {
 enum {
     SH_IS_SPRING = 1,   /* a part of the torque of the spring */
     SH_IS_CURVE = 2,    /* a part of its smooth curve, which has a slope */
-    SH_IS_EQUATION = 4, /* a term of the equation of motion (columns.c), not an additional effect */
-    SH_IS_MOTOR = 8,    /* 0 where the torque of the spring is measured or modelled */
-    SH_IS_FRICTION = 16, /* friction of the motor that may drift */
-    SH_IS_COULOMB = 32,  /* tau_C */
-    SH_IS_INERTIA = 64,  /* b */
-    SH_IS_DRIVE = 128    /* friction by the torque of the motor */
-};
-
-/* Which quantity of the joint a coefficient is, or contributes to. */
-enum {
-    SH_OF_CURVE,
-    SH_OF_NOMINAL,
-    SH_OF_BIAS,
-    SH_OF_DAMPING,
-    SH_OF_SIN_Q,
-    SH_OF_COS_Q,
-    SH_OF_LOAD_FRICTION,
-    SH_OF_DELAY,
-    SH_OF_HYSTERESIS,
-    SH_OF_VISCOUS,
-    SH_OF_COULOMB,
-    SH_OF_INERTIA,
-    SH_OF_NOTHING,
-    SH_QUANTITIES
+    SH_IS_POWER = 4,    /* a power of the deformation: its coefficient is an eta */
+    SH_IS_EQUATION = 8, /* a term of the equation of motion, not an additional effect */
+    SH_IS_MOTOR = 16,   /* 0 where the torque of the spring is measured or modelled */
+    SH_IS_FRICTION = 32 /* friction of the motor that may drift */
 };
 
 /* How the filter of a column takes its signal. */
@@ -95,6 +72,22 @@ enum {
     SH_SIGNAL_STEADY, /* linear between samples; it begins as if it had been so before */
     SH_SIGNAL_MEAN    /* given by its mean over the sample */
 };
+
+typedef struct {
+    int prior;   /* offset of its std deviation in sh_parameters */
+    int unit;    /* in which that is given, see columns.c */
+    int signal;  /* SH_SIGNAL_* */
+    int group;   /* 0: always used */
+    unsigned is; /* SH_IS_*, added up */
+} sh_column_kind;
+
+extern const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS];
+
+/* Whether the column is one of SH_IS_*, which may be added up. */
+static inline int sh_column_is(const sh_column *column, unsigned what)
+{
+    return (sh_column_kinds[column->kind].is & what) != 0;
+}
 
 /* Whether the torque of the spring is measured or modelled, and not computed from the motor's. */
 int sh_is_measured(const sh_parameters *p);
@@ -110,24 +103,6 @@ int sh_columns_count(const sh_parameters *p);
 
 /* The columns for these parameters; there must not be more than SH_MAX_COLUMNS. */
 void sh_columns_start(sh_columns *columns, const sh_parameters *p);
-
-/* A kind of column. */
-typedef struct {
-    int prior;    /* offset of its std deviation in sh_parameters */
-    int unit;     /* in which that is given, see columns.c */
-    int signal;   /* SH_SIGNAL_* */
-    int quantity; /* SH_OF_*: what its coefficient is */
-    int group;    /* 0: always used */
-    unsigned is;  /* SH_IS_*, added up */
-} sh_column_kind;
-
-extern const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS];
-
-/* Whether the column is one of SH_IS_*, which may be added up. */
-static inline int sh_column_is(const sh_column *column, unsigned what)
-{
-    return (sh_column_kinds[column->kind].is & what) != 0;
-}
 
 /* Whether the column can be told from the spring after deformations of phi_min..phi_max [rad]. */
 int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_real phi_min,
@@ -148,19 +123,30 @@ sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, c
 sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
                      const sh_state_variable_filter *filter);
 
-/* The row x [size: SH_MAX_ROW] at a state of the filters [size: SH_MAX_FILTERS]: columns, then right-hand
- * sides. The last entry is y less the torque of the nominal curve.
+/* The row x [size: SH_MAX_ROW] at a state of the filters: columns, then right-hand sides, of which the last is
+ * y less the torque of the nominal curve.
  */
 void sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
                     const sh_state_variable_filter *filter, sh_real *x);
 
 /* Detail 14: removes from the column of the motor's torque in x the noise that y contains too, if the
- * prediction error of y is epsilon [N.m]. Sets the noise that is left, times R.
- *
- * Returns by how much the prediction of y grows [N.m].
+ * prediction error of y is epsilon [N.m]. Sets the noise that is left, times R. Returns by how much the
+ * prediction of y grows [N.m].
  */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
                                 sh_real epsilon, sh_real *x, sh_column_noise *left);
+
+/* ---- motion_sign.c: detail 3 ------------------------------------------------------------- */
+
+/* Starts at a position [rad]: the sign is unknown until the position changes. */
+void sh_motion_sign_start(sh_motion_sign *motion, sh_real position);
+
+/* Takes the next position [rad].
+ *
+ * count  smallest change that the encoder can show [rad], >= 0
+ * slow   velocity below which the sign counts as unknown, times the sample period [rad], > 0
+ */
+void sh_motion_sign_step(sh_motion_sign *motion, sh_real position, sh_real count, sh_real slow);
 
 /* ---- signals.c --------------------------------------------------------------------------- */
 
@@ -169,14 +155,17 @@ sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_n
  */
 sh_real sh_regression_bandwidth(const sh_parameters *p);
 
-/* Detail 16: number K of samples of a row, regression.decimation or, if that is 0, by the bandwidth. */
+/* Number K of samples of a row, detail 16. */
 int sh_regression_decimation(const sh_parameters *p);
 
-/* Designs the filters for columns that are known; they start with the next sample. */
+/* Designs the filters; they start with the next sample. */
 void sh_signals_start(sh_signals *signals, sh_history *history, const sh_parameters *p);
 
 /* Lets the estimate wait until the filters have settled. */
 void sh_signals_unsettle(sh_signals *signals, sh_history *history);
+
+/* Lets time T [s] pass. Returns whether the filters have settled. */
+int sh_signals_settle(sh_history *history, sh_real T);
 
 /* Takes a sample into the history and into all filters. Sets where the joint is. */
 void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
@@ -193,17 +182,41 @@ void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_par
 /* Detail 4: variance of a row, with the noise of theta as the last samples show it. */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);
 
-/* Variance of the rounding of phi in a row [rad2]. Divided by R it is information about sigma that is only
- * rounding.
+/* R times the information in a row that is only rounding: about sigma (point 5) [rad2], about b (detail 7)
+ * [(N.m)2].
  */
 sh_real sh_noise_of_deformation(const sh_signals *signals);
-
-/* Detail 7: R times the information about b in the last row that is only rounding [(N.m)2]. */
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
 
-/* Detail 12: whether the row x [size: SH_MAX_ROW] shows that the motor was not at rest at the start. */
-int sh_noise_contradicts_rest(const sh_regression_state *state, const sh_parameters *p,
-                              const sh_real *x);
+/* Detail 12: whether the last row, one of the first ones, shows that the motor was not at rest at the start. */
+int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p);
+
+/* ---- posterior.c: prior and data, which are weighted by the misfit ------------------------ */
+
+/* Takes a row x of all columns [size: size], then the right-hand sides, of the weight w times the weight of the
+ * posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction over the one of the row.
+ */
+sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w);
+
+/* Detail 7: adds information [1] about b that is only rounding, and removes as much as possible. b is the last
+ * column, and does not become less certain than its prior, prior_B > 0.
+ */
+void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B);
+
+/* Detail 14: the same for the noise of all samples in its column i. */
+void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
+                               const sh_column_noise *noise);
+
+/* The estimate beta [size: size] of all columns; 0 for those that are not used. */
+void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta, int size);
+
+/* Two combinations [size: count] of the coefficients of the first columns of the data. */
+sh_combinations sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B,
+                                     const sh_real *first, const sh_real *second, int count);
+
+/* Variance of one of them. */
+sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,
+                              int count);
 
 /* ---- misfit.c ---------------------------------------------------------------------------- */
 
@@ -212,7 +225,7 @@ void sh_blocks_start(sh_regression_state *state);
 /* Detail 8: takes the last row into the present block. */
 void sh_blocks_take(sh_regression_state *state);
 
-/* Step 0..3 of what a block does that is full: one regression a step takes its mean row. */
+/* Step 0..3 of what a full block does, nothing else: one regression a step takes its mean row. */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step);
 
 /* Leaves out the samples of the present block: they are not in sequence with the next one. */
@@ -229,12 +242,12 @@ void sh_friction_drift(sh_regression_state *state, sh_real time);
  */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time);
 
-/* ---- change.c ---------------------------------------------------------------------------- */
+/* ---- change.c: detail 15 ----------------------------------------------------------------- */
 
 void sh_change_start(sh_regression_state *state);
 
-/* Detail 15: compares the hypotheses by the squares of their errors over the variances in a block, as
- * before the block and as changed.
+/* Compares the hypotheses by the squares of their errors over the variances in a block: as before, and as
+ * changed.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real changed);
@@ -242,7 +255,7 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
 /* Whether the present estimate is in doubt. */
 int sh_change_is_likely(const sh_regression_state *state);
 
-/* ---- refit.c ----------------------------------------------------------------------------- */
+/* ---- refit.c: detail 6 ------------------------------------------------------------------- */
 
 /* Starts posterior and refit from the prior. */
 void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
@@ -250,10 +263,10 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 /* Starts the refit again, not as a trial: the data contain a change of the spring. */
 void sh_refit_restart(sh_regression_state *state, const sh_parameters *p);
 
-/* Whether no refit is under way. */
-int sh_refit_pauses(const sh_regression_state *state);
+/* Takes the last row, if a refit is under way. */
+void sh_refit_take(sh_regression_state *state);
 
-/* Detail 6: takes (K + 1) / 2 rows of the data of all samples, or does the next step at the end of a refit. */
+/* Takes (K + 1) / 2 rows of the data of all samples, or does the next step at the end of a refit. */
 void sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

@@ -1,7 +1,6 @@
 /* The filters: all signals of the regression pass the same H. */
 #include "constants.h"
 #include "method.h"
-#include "motion_sign.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 
@@ -42,8 +41,10 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
     signals->count_q = sh_encoder_count(p->encoder.q);
     signals->design = sh_state_variable_filter_design(sh_regression_bandwidth(p), p->samplePeriod);
     signals->decimation = sh_regression_decimation(p);
-    sh_state_variable_filter_noise(&signals->design, signals->decimation, &signals->gain,
+    sh_state_variable_filter_noise(&signals->design, 1, signals->decimation, &signals->gain,
                                    &signals->gain_second);
+    signals->gain /= (sh_real)signals->decimation; /* of a mean of K samples */
+    signals->gain_second /= (sh_real)signals->decimation;
     history->starting = SH_FORGOTTEN / signals->design.w;
     history->excess = history->excess_mean = 1;
     history->phi_min = SH_LARGE; /* no deformation yet */
@@ -54,6 +55,12 @@ void sh_signals_unsettle(sh_signals *signals, sh_history *history)
 {
     history->starting = 0;
     history->settling = SH_FORGOTTEN / signals->design.w;
+}
+
+int sh_signals_settle(sh_history *history, sh_real T)
+{
+    history->settling = sh_fmax(history->settling - T, 0);
+    return !(history->settling > 0);
 }
 
 /* The deformation of a sample: its range, hysteresis, and how long it rests. */
@@ -79,17 +86,16 @@ static void begin_filters(sh_regression_state *state, const sh_joint_point *at, 
     sh_state_variable_filter *filter = signals->filter;
     int i;
 
-    sh_state_variable_filter_start(&filter[SH_FILTER_THETA], at->theta);
-    sh_state_variable_filter_begin(&filter[SH_FILTER_TORQUE], torque);
-    sh_state_variable_filter_begin(&filter[SH_FILTER_NOMINAL], at->tau_nominal);
-    sh_state_variable_filter_start(&filter[SH_FILTER_SIGN], 0);
-    sh_state_variable_filter_start(&filter[SH_FILTER_UNKNOWN], 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_THETA], at->theta, at->theta);
+    sh_state_variable_filter_start(&filter[SH_FILTER_TORQUE], torque, 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_NOMINAL], at->tau_nominal, 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_SIGN], 0, 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_UNKNOWN], 0, 0);
     for (i = 0; i < state->columns.size; ++i) {
-        if (sh_column_kinds[state->columns.column[i].kind].signal == SH_SIGNAL_LINEAR) {
-            sh_state_variable_filter_begin(&filter[SH_FILTER_COLUMN + i], at->F[i]);
-        } else {
-            sh_state_variable_filter_start(&filter[SH_FILTER_COLUMN + i], at->F[i]);
-        }
+        const int signal = sh_column_kinds[state->columns.column[i].kind].signal;
+
+        sh_state_variable_filter_start(&filter[SH_FILTER_COLUMN + i], at->F[i],
+                                       signal == SH_SIGNAL_LINEAR ? 0 : at->F[i]);
     }
     sh_motion_sign_start(&signals->motion, at->theta);
     for (i = 0; i < 5; ++i) {

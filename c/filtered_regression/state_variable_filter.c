@@ -21,16 +21,10 @@ sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T)
     return design;
 }
 
-void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x)
+void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x, sh_real before)
 {
     filter->input = x;
-    filter->behind[0] = filter->behind[1] = filter->behind[2] = 0;
-}
-
-void sh_state_variable_filter_begin(sh_state_variable_filter *filter, sh_real x)
-{
-    filter->input = x;
-    filter->behind[0] = filter->behind[1] = filter->behind[2] = x;
+    filter->behind[0] = filter->behind[1] = filter->behind[2] = x - before;
 }
 
 /* Advances by T. In the steady state of a ramp, the output of stage i is i + 1 times lag behind the
@@ -69,13 +63,18 @@ void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
     filter->input = mean;
 }
 
-void sh_state_variable_filter_add(sh_state_variable_filter *sum,
-                                  const sh_state_variable_filter *filter, sh_real share)
+void sh_state_variable_filter_add(sh_state_variable_filter *restrict sum,
+                                  const sh_state_variable_filter *restrict filter, int count,
+                                  sh_real share)
 {
-    sum->input += share * filter->input;
-    sum->behind[0] += share * filter->behind[0];
-    sum->behind[1] += share * filter->behind[1];
-    sum->behind[2] += share * filter->behind[2];
+    int i;
+
+    for (i = 0; i < count; ++i) {
+        sum[i].input += share * filter[i].input;
+        sum[i].behind[0] += share * filter[i].behind[0];
+        sum[i].behind[1] += share * filter[i].behind[1];
+        sum[i].behind[2] += share * filter[i].behind[2];
+    }
 }
 
 sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter)
@@ -95,21 +94,24 @@ sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
     return design->w * design->w * (2 * filter->behind[1] - filter->behind[0] - filter->behind[2]);
 }
 
-void sh_state_variable_filter_noise(const sh_filter_design *design, int samples, sh_real *gain,
-                                    sh_real *gain_second)
+void sh_state_variable_filter_noise(const sh_filter_design *design, sh_real rows, int K,
+                                    sh_real *gain, sh_real *gain_second)
 {
-    /* The mean of the outputs is the output for the mean: the response to a pulse of the height
-     * 1 / samples, which has decayed after 60 time constants.
-     */
-    const sh_real last = (sh_real)samples + 3 + sh_floor(60 / (design->w * design->T));
+    const sh_real last = rows * (sh_real)K + 3 + sh_floor(60 / (design->w * design->T));
     sh_state_variable_filter filter;
+    sh_real energy = 0;
     int k;
 
-    sh_state_variable_filter_start(&filter, 0);
+    sh_state_variable_filter_start(&filter, 0, 0);
     *gain = *gain_second = 0;
-    for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < last; ++k) {
-        sh_state_variable_filter_step(&filter, design, k < samples ? 1 / (sh_real)samples : 0);
+    for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < last; ++k) { /* decayed after 60 / w */
+        const sh_real row = (sh_real)(k / K), h = row < rows ? sh_window(row, rows) : 0;
+
+        sh_state_variable_filter_step(&filter, design, h);
+        energy += sh_square(h);
         *gain += sh_square(sh_state_variable_filter_output(&filter));
         *gain_second += sh_square(sh_state_variable_filter_second(&filter, design));
     }
+    *gain /= energy;
+    *gain_second /= energy;
 }

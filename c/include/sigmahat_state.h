@@ -126,10 +126,9 @@ typedef struct {
 /* All columns. */
 typedef struct {
     int size;        /* number of columns */
+    int spring;      /* the first ones, so many, make up the torque of the spring */
     int has_nominal; /* 1: a curve rls.eta_0 is given */
     sh_column column[SH_MAX_COLUMNS];
-    sh_real nominal[SH_MAX_N]
-                   [SH_MAX_M]; /* coefficients of that curve, scaled as the columns [N.m] */
 } sh_columns;
 
 /* What the filters are of. */
@@ -201,7 +200,6 @@ typedef struct {
 typedef struct {
     sh_information information;
     int column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */
-    int coulomb, inertia;       /* places of these among its own, -1 if none */
     sh_real weight;             /* of the data, one over the variance factor of the misfit [1] */
     sh_real surplus;            /* information about b that is rounding, still contained [1] */
     sh_real removed;            /* removed so far [1] */

@@ -45,10 +45,13 @@ class Information:
         if side == Y:
             self.c.lib.sh_information_solve(self.a, last, self.c.pointer(beta))
             return beta
-        of_each = [
-            self.c.lib.sh_information_combine(self.a, last, self.c.pointer(unit)).value[side]
-            for unit in np.eye(self.size)
-        ]
+        of_each = []
+        for unit in np.eye(self.size):
+            twice = 2 * unit
+            first, second = self.c.pointer(unit), self.c.pointer(twice)
+            found = self.c.lib.sh_information_combine(self.a, last, first, second)
+            of_each.append(found.first.value[side])
+            assert found.second.value[side] == pytest.approx(2 * of_each[-1])
         return np.array(of_each)
 
     def check(self, rel: float = 1e-9) -> None:

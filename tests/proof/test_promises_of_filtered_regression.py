@@ -86,7 +86,7 @@ def test_motion_sign(c: Library, data: st.DataObject) -> None:
 
 @pytest.mark.parametrize("D", [2.0, 1e7, 1e9, 1e18, 1e25])
 def test_the_removal_of_rounding_leaves_the_prior(c: Library, D: float) -> None:
-    posterior = c.new("sh_posterior", inertia=0, weight=1.0)
+    posterior = c.new("sh_posterior", weight=1.0)
     c.lib.sh_information_start(c.ffi.addressof(posterior, "information"), 1, D)
     c.lib.sh_posterior_remove(posterior, 2 * D, 0.1)
     assert posterior.information.D[0] == 1
@@ -103,7 +103,7 @@ def test_the_noise_of_the_filter_is_finite_at_every_bandwidth(
     pointer = c.new("sh_filter_design")
     pointer[0] = design
     gains = [c.ffi.new("sh_real *") for _ in range(2)]
-    c.lib.sh_state_variable_filter_noise(pointer, 8, *gains)
+    c.lib.sh_state_variable_filter_noise(pointer, 1.0, 8, *gains)
     assert all(0 <= gain[0] < math.inf for gain in gains)
 
 
@@ -143,11 +143,12 @@ def test_a_stiffness_that_is_too_large_for_the_next_row_does_not_block_all_rows(
 
 
 def test_the_variance_of_a_direction_that_is_well_known_does_not_overflow(c: Library) -> None:
-    a, combination, last = c.new("sh_information"), reals(c, [1e20]), c.new("sh_last_row")
+    a, last = c.new("sh_information"), c.new("sh_last_row")
+    first, second = reals(c, [1e20]), reals(c, [1.0])
     c.lib.sh_information_start(a, 1, 1e30)
     last[0] = c.lib.sh_information_last(a)
-    found = c.lib.sh_information_combine(a, last, c.pointer(combination))
-    assert found.variance == pytest.approx(1e10)
+    found = c.lib.sh_information_combine(a, last, c.pointer(first), c.pointer(second))
+    assert found.first.variance == pytest.approx(1e10)
 
 
 def test_an_initial_curve_that_overflows_starts_with_finite_outputs(c: Library) -> None:

@@ -37,24 +37,11 @@ void sh_information_start(sh_information *a, int size, sh_real precision);
 */
 void sh_information_restart(sh_information *a, int count, sh_real precision);
 
-/*@ requires 1 <= from->size <= SH_MAX_COLUMNS;
-    assigns to->D[0 .. SH_MAX_COLUMNS - 1], to->U[0 .. SH_MAX_TRIANGLE - 1], to->squares \from *from;
-    assigns to->size \from from->size;
-    ensures to->size == from->size;
-*/
-void sh_information_copy(sh_information *to, const sh_information *from);
-
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires 0 <= i < SH_MAX_COLUMNS;
     assigns \result, x[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1] \from *a;
 */
 sh_real sh_information_sample(const sh_information *a, int i, sh_real *x);
-
-/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires right == SH_RIGHT_GAIN || right == SH_RIGHT_Y;
-    assigns z[0 .. SH_MAX_COLUMNS - 1] \from *a;
-*/
-void sh_information_right_side(const sh_information *a, int right, sh_real *z);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     assigns \result \from *a;
@@ -72,11 +59,13 @@ void sh_information_set_last(sh_information *a, const sh_last_row *last);
 void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires \initialized(c + (0 .. a->size - 1));
-    assigns \result \from *a, *last, c[0 .. SH_MAX_COLUMNS - 1];
+    requires \initialized(first + (0 .. a->size - 1));
+    requires \initialized(second + (0 .. a->size - 1));
+    assigns \result, first[0 .. SH_MAX_COLUMNS - 1], second[0 .. SH_MAX_COLUMNS - 1]
+            \from *a, *last, first[0 .. SH_MAX_COLUMNS - 1], second[0 .. SH_MAX_COLUMNS - 1];
 */
-sh_combination sh_information_combine(const sh_information *a, const sh_last_row *last,
-                                      const sh_real *c);
+sh_combinations sh_information_combine(const sh_information *a, const sh_last_row *last,
+                                       sh_real *first, sh_real *second);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \initialized(beta + (0 .. a->size - 1));

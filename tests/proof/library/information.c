@@ -31,14 +31,11 @@ void columns(void)
     sh_information_drift(&a, v, any_real());
     last = sh_information_last(&a);
     sh_information_solve(&a, &last, v);
-    sh_information_combine(&a, &last, c);
+    sh_information_combine(&a, &last, c, v);
     sh_information_set_last(&a, &last);
-    sh_information_right_side(&a, SH_RIGHT_GAIN, v);
-    sh_information_right_side(&a, SH_RIGHT_Y, v);
     for (i = 0; i < SH_MAX_COLUMNS; ++i) {
         sh_information_sample(&a, i, x);
     }
-    sh_information_copy(&b, &a);
     sh_information_start(&b, SH_MAX_COLUMNS, any_real());
     //@ assert guards: !\initialized(&a.guard_D[0]) && !\initialized(&a.guard_U[0]);
     //@ assert guards: !\initialized(&b.guard_D[0]) && !\initialized(&b.guard_U[0]);
