@@ -104,7 +104,7 @@ sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count)
     sh_real sum[4] = {0, 0, 0, 0};
     int k;
 
-    for (k = 0; k + 4 <= count; k += 4) {
+    for (k = 0; k < count - 3; k += 4) {
         sum[0] += a[k] * b[k];
         sum[1] += a[k + 1] * b[k + 1];
         sum[2] += a[k + 2] * b[k + 2];

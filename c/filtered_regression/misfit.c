@@ -74,10 +74,8 @@ static void count_block(sh_regression_state *state)
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
 {
     sh_blocks *blocks = &state->blocks;
-    sh_information *const regressions[] = {&blocks->constant, &blocks->drifting, &blocks->recent,
-                                           &state->change.changed};
     const int count = state->columns.size + SH_RIGHT_SIDES;
-    sh_real mean[SH_MAX_ROW] = {0}, variance, error;
+    sh_real mean[SH_MAX_ROW] = {0}, variance, w, error;
     int i;
 
     if (step < 0 || step > 3 || blocks->rows < blocks->length) {
@@ -91,7 +89,11 @@ void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
         sh_blocks_interrupt(blocks); /* also if not a number */
         return;
     }
-    error = sh_information_take(regressions[step], mean, 1 / variance);
+    w = 1 / variance; /* an analyser loses where a pointer to one of the four could write */
+    error = step == 0   ? sh_information_take(&blocks->constant, mean, w)
+            : step == 1 ? sh_information_take(&blocks->drifting, mean, w)
+            : step == 2 ? sh_information_take(&blocks->recent, mean, w)
+                        : sh_information_take(&state->change.changed, mean, w);
     error = sh_limited(error * sh_square(mean[count - SH_RIGHT_SIDES + SH_RIGHT_Y]), SH_LARGE);
     if (step == 0 || (step == 1 && state->friction_drifts)) {
         blocks->error = error;
