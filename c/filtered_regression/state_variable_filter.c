@@ -105,7 +105,8 @@ void sh_state_variable_filter_noise(const sh_filter_design *design, sh_real rows
     sh_state_variable_filter_start(&filter, 0, 0);
     *gain = *gain_second = 0;
     for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < last; ++k) { /* decayed after 60 / w */
-        const sh_real row = (sh_real)(k / K), h = row < rows ? sh_window(row, rows) : 0;
+        const int row = k / K;
+        const sh_real h = (sh_real)row < rows ? sh_window((sh_real)row, rows) : 0;
 
         sh_state_variable_filter_step(&filter, design, h);
         energy += sh_square(h);
