@@ -146,17 +146,17 @@ static fmi2Status no_status(fmi2Component c, const char *function)
     return fmi2Discard;
 }
 
-#define NO_STATUS(Kind, type)                                                                      \
-    fmi2Status fmi2Get##Kind(fmi2Component c, const fmi2StatusKind s, type *value)                 \
+#define NO_STATUS(Kind, Type)                                                                      \
+    fmi2Status fmi2Get##Kind(fmi2Component c, const fmi2StatusKind s, fmi2##Type *value)           \
     {                                                                                              \
         (void)s;                                                                                   \
         (void)value;                                                                               \
         return no_status(c, "fmi2Get" #Kind);                                                      \
     }
 
-NO_STATUS(Status, fmi2Status)
-NO_STATUS(IntegerStatus, fmi2Integer)
-NO_STATUS(StringStatus, fmi2String)
+NO_STATUS(Status, Status)
+NO_STATUS(IntegerStatus, Integer)
+NO_STATUS(StringStatus, String)
 
 /* The one status of a type that this FMU knows. It never asks to stop. */
 #define STATUS(Type, known, now)                                                                   \

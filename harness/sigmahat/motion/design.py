@@ -226,9 +226,9 @@ def _within(motion: Multisine, joints: Sequence[Joint], limits: Limits) -> Multi
 
 
 def _peaks(motion: Multisine, joints: Sequence[Joint]) -> Limits:
-    position, velocity, _ = motion.at(motion.times(_COARSE))
-    moved = [joint.move(motion, _COARSE) for joint in joints]
-    torque, deformation = max(_peak(tau) for *_, tau in moved), max(_peak(p) for _, p, _ in moved)
+    position, velocity, acceleration = motion.at(motion.times(_COARSE))
+    moved = [joint.respond(position, velocity, acceleration, _COARSE) for joint in joints]
+    deformation, torque = (max(map(_peak, each)) for each in zip(*moved, strict=True))
     return Limits(_peak(position), _peak(velocity), torque, deformation)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,24 +83,38 @@ class Joint:
         return float(np.sqrt(self.k / self.M)) / (2 * np.pi)
 
     def move(self, motion: Multisine, T: float) -> tuple[Array, Array, Array]:
-        """Motor [rad], deformation [rad] and torque of the motor [N.m] at k T.
+        """Motor [rad], deformation [rad] and torque of the motor [N.m] at k T."""
+        theta, velocity, acceleration = motion.at(motion.times(T))
+        return theta, *self.respond(theta, velocity, acceleration, T)
+
+    def respond(
+        self, theta: Array, velocity: Array, acceleration: Array, T: float
+    ) -> tuple[Array, Array]:
+        """Deformation [rad] and torque of the motor [N.m] for a motion of the motor at k T.
 
         The link is linear, (2), but the torque of the weight is taken at the angle of the motor.
         Inputs are linear between the samples, so the response is exact.
         """
-        theta, velocity, acceleration = motion.at(motion.times(T))
         load = self.M * acceleration + self.D_q * velocity
         load += self.weight * np.sin(self.angle + theta)
-        # M phi'' + (D_q + c) phi' + k phi = -load
-        c = _DAMPING * 2 * np.sqrt(self.k * self.M)
-        A = np.array([[0.0, 1.0], [-self.k / self.M, -(self.D_q + c) / self.M]])
-        b, C = np.array([[0.0], [1.0 / self.M]]), np.array([[1.0, 0.0]])
-        Ad, bd, Cd, dd, _ = signal.cont2discrete((A, b, C, np.zeros((1, 1))), T, "foh")
-        numerator, denominator = signal.ss2tf(Ad, bd, Cd, dd)
-        start = signal.lfilter_zi(numerator[0], denominator) * -load[0]
-        phi: Array = signal.lfilter(numerator[0], denominator, -load, zi=start)[0]
+        numerator, denominator, start = _response(self.k, self.M, self.D_q, T)
+        phi: Array = signal.lfilter(numerator, denominator, -load, zi=-load[0] * start)[0]
         friction = self.D_theta * velocity + self.tau_coulomb * np.tanh(velocity / _SLOW)
-        return theta, phi, self.B * acceleration + friction - self.k * phi
+        return phi, self.B * acceleration + friction - self.k * phi
+
+
+@lru_cache(maxsize=4096)
+def _response(k: float, M: float, D_q: float, T: float) -> tuple[Array, Array, Array]:
+    """Filter from -load to phi with M phi'' + (D_q + c) phi' + k phi = -load, and its steady state.
+
+    A search computes it for hundreds of joints, each with many motions.
+    """
+    c = _DAMPING * 2 * np.sqrt(k * M)
+    A = np.array([[0.0, 1.0], [-k / M, -(D_q + c) / M]])
+    b, C = np.array([[0.0], [1.0 / M]]), np.array([[1.0, 0.0]])
+    Ad, bd, Cd, dd, _ = signal.cont2discrete((A, b, C, np.zeros((1, 1))), T, "foh")
+    numerator, denominator = signal.ss2tf(Ad, bd, Cd, dd)
+    return numerator[0], denominator, signal.lfilter_zi(numerator[0], denominator)
 
 
 _DAMPING = 0.02  # damping ratio of the spring
