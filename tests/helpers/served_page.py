@@ -105,8 +105,10 @@ class Hand:
         Select(self.find(name)).select_by_visible_text(item)
 
     def presses(self, name: str) -> None:
-        """Presses a button, also while plots that are drawn above it move it."""
-        self.page.run("arguments[0].click()", self.find(name))
+        """Presses a button."""
+        button = self.find(name)
+        self.page.run("arguments[0].scrollIntoView({block: 'center'})", button)
+        button.click()
 
     def accepts(self, name: str) -> None:
         """Presses "accept" beside a finding until its value is in the input.

@@ -61,6 +61,7 @@ def test_from_an_empty_configuration_to_the_results(
             hand.accepts("ports.q.sign")
             other.until(lambda: other.value("ports.q.sign") == "+1", "the sign is right again")
             hand.types("motor.D_theta", "5e-4")
+            other.until(lambda: other.value("motor.D_theta") == "0.0005", "the edit has arrived")
             other.sees("nothing in 20.001 s of the log contradicts the configuration")
             other.sees("the stiffness as a curve")
             other.presses("write")
