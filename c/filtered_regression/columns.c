@@ -1,4 +1,12 @@
-/* The columns of the regression, and the row of a sample:
+/* The columns of the regression, and the row of a sample.
+ *
+ * The equation of motion is that of the motor (3) with Coulomb friction, where the motor data B and D_theta
+ * have the relative errors b and d, and tau_e > 0 for phi > 0:
+ *
+ *     gamma^2 B (1 + b) theta'' + gamma^2 D_theta (1 + d) theta' + |gamma| sign(theta') tau_C
+ *         = gamma tau + tau_e(q - theta) .
+ *
+ * With all signals through the filter H (index f), and tau_e = F' eta of (21), it is the regression
  *
  *     y = gamma (B gamma theta''_f + D_theta gamma theta'_f - tau_f)
  *       = F_f' eta - gamma^2 D_theta theta'_f d - gamma^2 B theta''_f b

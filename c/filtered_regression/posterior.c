@@ -1,4 +1,6 @@
-
+/* What is known of the coefficients: their prior, and the data weighted by the misfit. The noise in columns is
+ * removed from the information (details 7 and 14).
+ */
 #include "constants.h"
 #include "regression.h"
 
