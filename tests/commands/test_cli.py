@@ -15,9 +15,8 @@ from pathlib import Path
 
 import pytest
 
-from command_line import one_line
+from command_line import in_process, one_line
 from gate import need
-from in_process import command
 from sigmahat.cli import cli
 from sigmahat.fmi import installed
 from sigmahat.paper.scenarios import SCENARIOS
@@ -27,7 +26,7 @@ COMMAND = [sys.executable, "-m", "sigmahat"]
 
 def refused(*arguments: str, cwd: Path) -> str:
     """Runs a command that must fail with one line, and returns that line."""
-    return one_line(command(*arguments, cwd=cwd))
+    return one_line(in_process(*arguments, cwd=cwd))
 
 
 @pytest.mark.slow("a whole reproduction with its figures")
@@ -44,7 +43,7 @@ def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> Non
 
 
 def test_scenarios_are_listed_one_a_line(tmp_path: Path) -> None:
-    done = command("scenarios", cwd=tmp_path)
+    done = in_process("scenarios", cwd=tmp_path)
     lines = done.stdout.splitlines()
     assert [line.split()[0] for line in lines] == list(SCENARIOS)
     for line, scenario in zip(lines, SCENARIOS.values(), strict=True):
@@ -53,7 +52,7 @@ def test_scenarios_are_listed_one_a_line(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["", *sorted(cli.commands)])
 def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
-    done = command(*name.split(), "--help", cwd=tmp_path)
+    done = in_process(*name.split(), "--help", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     help_ = (cli.commands[name] if name else cli).help or ""
     (example,) = re.findall(r"Example: sigmahat (.*?)(?:\n\n|$)", help_, re.DOTALL)
@@ -66,7 +65,7 @@ def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.slow("a whole reproduction with its figures")
 def test_json_of_reproduce_is_its_table(tmp_path: Path) -> None:
-    done = command("reproduce", "--scenario", "single-linear", "--json", cwd=tmp_path)
+    done = in_process("reproduce", "--scenario", "single-linear", "--json", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     printed = json.loads(done.stdout)
     assert (printed["scenario"], printed["seeds"]) == ("single-linear", [1])

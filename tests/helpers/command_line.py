@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import json
 import shlex
 import subprocess
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -23,21 +24,27 @@ def one_line(done: subprocess.CompletedProcess[str]) -> str:
     return line
 
 
+def in_process(*arguments: str, cwd: Path = Path()) -> subprocess.CompletedProcess[str]:
+    """Runs a command in a folder, without a second start of Python."""
+    out, errors = io.StringIO(), io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(errors):
+        patch.chdir(cwd)
+        status = main([*arguments])
+    return subprocess.CompletedProcess(arguments, status, out.getvalue(), errors.getvalue())
+
+
 class Shell:
     """Runs commands without "sigmahat" before them; separates arguments as a shell does."""
 
-    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
-        self._capsys = capsys
-        self.err = ""
-        """What the last command printed there."""
+    err = ""
+    """What the last command printed there."""
 
     def run(self, command: str, status: int = 0) -> str:
         """What a command prints that must end with this status."""
-        self._capsys.readouterr()
-        found = main(shlex.split(command))
-        out, self.err = self._capsys.readouterr()
-        assert found == status, self.err
-        return out
+        done = in_process(*shlex.split(command))
+        self.err = done.stderr
+        assert done.returncode == status, done.stderr
+        return done.stdout
 
     def json(self, command: str, status: int = 0) -> Any:
         """The result of a command that gets --json."""
@@ -62,7 +69,7 @@ def working_in(folder: Path) -> Iterator[None]:
 
 
 @pytest.fixture
-def shell(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Iterator[Shell]:
+def shell(tmp_path: Path) -> Iterator[Shell]:
     """Commands in a folder of the test."""
     with working_in(tmp_path):
-        yield Shell(capsys)
+        yield Shell()

@@ -8,8 +8,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from command_line import one_line
-from in_process import command
+from command_line import in_process, one_line
 
 COMMAND = [sys.executable, "-m", "sigmahat", "sweep"]
 QUICK = ["--modality", "RESIDUAL"]
@@ -18,7 +17,7 @@ QUICK = ["--modality", "RESIDUAL"]
 
 def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     """Runs a sweep to its end, in this process."""
-    return command("sweep", *arguments, cwd=cwd)
+    return in_process("sweep", *arguments, cwd=cwd)
 
 
 def start(arguments: Sequence[str], cwd: Path) -> subprocess.Popen[str]:

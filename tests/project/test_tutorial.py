@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from in_process import command
+from command_line import in_process
 from recorded_logs import read_estimate
 
 REPOSITORY = Path(__file__).parents[2]
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.slow("the commands of the page run on a log of 20 s")
 
 
 def sigmahat(arguments: list[str], folder: Path) -> str:
-    done = command(*arguments, cwd=folder)
+    done = in_process(*arguments, cwd=folder)
     assert done.returncode == 0, done.stderr
     return str(done.stdout)
 

@@ -15,7 +15,7 @@ import pytest
 from selenium.webdriver.common.by import By
 
 from browser import DATA, ROWS, Page, opened
-from in_process import command
+from command_line import in_process
 from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
 from sigmahat.logs.panels import reduce
 
@@ -51,7 +51,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
         if kind == "log":
             write_log(awas_log(0.5, 0.1), cwd / "knee.parquet")
             (cwd / "knee.toml").write_text(CONFIGURATION)
-        done = command(
+        done = in_process(
             *{
                 "reproduction": ("reproduce",),
                 "log": ("estimate", "knee.parquet"),
@@ -62,7 +62,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
             }[kind], "--out", "out", cwd=cwd,
         )  # fmt: skip
         assert (done.returncode, done.stderr) == (0, "")
-        done = command("report", "out", cwd=cwd)
+        done = in_process("report", "out", cwd=cwd)
         assert (done.returncode, done.stderr) == (0, "")
         assert str(cwd / "out" / "report.html") in done.stdout
         return cwd / "out"
@@ -156,7 +156,7 @@ def test_names_are_not_taken_for_html(results: Callable[[str], Path], tmp_path: 
     folder = tmp_path / "<b>&"
     folder.mkdir()
     (folder / "sweep.parquet").write_bytes((results("sweep") / "sweep.parquet").read_bytes())
-    done = command("report", "<b>&", "--out", "r.html", "--quiet", cwd=tmp_path)
+    done = in_process("report", "<b>&", "--out", "r.html", "--quiet", cwd=tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     assert html.escape("Sweep: <b>&") in (tmp_path / "r.html").read_text()
 
@@ -207,7 +207,7 @@ def test_bad_input(files: dict[str, bytes] | None, words: str, tmp_path: Path) -
         (tmp_path / "in").mkdir()
         for name, content in files.items():
             (tmp_path / "in" / name).write_bytes(content)
-    done = command("report", "in", "--out", "r.html", cwd=tmp_path)
+    done = in_process("report", "in", "--out", "r.html", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     (line,) = done.stderr.splitlines()
     assert line.startswith("sigmahat: error: in")
