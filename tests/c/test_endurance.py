@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from c_library import LONG, Array, Estimator, Library, compile_library, load
+from regression_joint import Joint, T
 
-T, COUNT, GAMMA = 1e-3, 2 * np.pi / 40000, 50.0
 PIECES, PIECE = 10, 10_000  # of the input, which is then repeated
 BOUND = 1e-9
 OUTPUTS = (
@@ -23,19 +24,10 @@ def pieces(torque: float) -> list[Array]:
 
     torque  of one second in it, over the usual torque
     """
-    rng, t = np.random.default_rng(1), T * np.arange(PIECES * PIECE)
-    fast, slow, c = 2 * np.pi * 1.7137, 2 * np.pi * 0.31313, 60 * np.sin(2 * np.pi * 0.053113 * t)
-    theta = 0.2 * np.sin(fast * t) + 0.5 * np.sin(slow * t)
-    v = 0.2 * fast * np.cos(fast * t) + 0.5 * slow * np.cos(slow * t)
-    a = -0.2 * fast**2 * np.sin(fast * t) - 0.5 * slow**2 * np.sin(slow * t)
-    phi = 0.09 * np.sin(2 * np.pi * 0.7713 * t) + 0.06 * np.sin(2 * np.pi * 2.2917 * t)
-    tau_e = 14220 * (0.1 - 0.0025 / (2 * np.pi) * c) ** 2 * np.sin(2 * phi)
-    tau = GAMMA * (2.3e-5 * a + 1.1e-3 * v) + 0.02 * np.sign(v) - tau_e / GAMMA
-    z = np.column_stack([theta, theta + phi, c, tau, tau_e])
-    z[:, :3] = np.round(z[:, :3] / COUNT) * COUNT
-    z[:, 3:] += rng.uniform(-1, 1, (len(t), 2)) * (5e-3, 5e-2)
+    joint = Joint(frequency=0.7713, deformation=0.1, D_theta=1.1e-3, tau_coulomb=0.02)
+    z = replace(joint, duration=T * (PIECES * PIECE - 1)).measurements()
     z[40000:50000] = z[39999]  # rest
-    z[50000:60000, 0] = np.clip(z[50000:60000, 0], -0.25, 0.25)  # the encoder saturates
+    z[50000:60000, 0] = np.clip(z[50000:60000, 0], 0.3, 1.3)  # the encoder saturates
     z[60000:61000, 3:] *= torque
     z[80000:82000:100, 1] = np.nan  # samples are lost, and a second of them
     z[82000:83000, 3] = np.inf

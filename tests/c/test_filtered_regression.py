@@ -14,7 +14,7 @@ from c_library import Estimator, Library
 from c_regression import covariance
 from oracle import MODEL, RESIDUAL, SENSOR
 from reference_joints import table1_recording
-from regression_joint import GAMMA, Joint, T
+from regression_joint import GAMMA, Joint, T, at_rest
 
 PAPER2011, FILTERED_REGRESSION = 1, 2
 REGRESSION = {"method": FILTERED_REGRESSION, "rls.n": 3}
@@ -136,9 +136,7 @@ def test_the_estimate_follows_a_spring_that_ages_and_does_not_change_at_rest(c: 
     fixed = {**REGRESSION, "regression.memory": 0.0}
     assert error(Estimator(c, fixed).run(z), joint, 20.0) > 0.2
 
-    rest = z[-1:].repeat(1000, 0)
-    rest[:, 1] = rest[:, 0]
-    rest[:, 3] = 10**-2.5 * np.random.default_rng(1).normal(size=1000)
+    rest = at_rest(z)
     estimator.repeat(rest, 1000)
     before = estimator.estimate.sigma
     estimator.repeat(rest, 300_000)

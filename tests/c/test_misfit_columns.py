@@ -12,7 +12,7 @@ from scipy import signal
 
 from c_library import Estimator, Library
 from c_regression import PLAIN, coefficients, covariance
-from regression_joint import SETTINGS, STIFFNESS, Joint, MisfitJoint, T
+from regression_joint import SETTINGS, STIFFNESS, Joint, MisfitJoint, T, at_rest
 
 GAP, HYSTERESIS = 3, 4
 
@@ -72,7 +72,7 @@ def test_a_dead_zone_is_left_out_of_the_stiffness(c: Library) -> None:
     found = estimator.run(joint.measurements())
     assert estimator.state.method.regression.refit.used[GAP]
     late = slice(-3000, None)
-    engaged = np.abs(joint.phi[0][late]) > 8e-3
+    engaged = np.abs(joint.motion[3][late]) > 8e-3
     error = np.abs(found["sigma"][late] - STIFFNESS)[engaged]
     assert np.max(error) < 0.05 * STIFFNESS
     assert np.mean(error < 1.96 * found["sigma_std"][late][engaged]) > 0.85
@@ -240,13 +240,11 @@ def test_a_refused_sample_leaves_the_state_as_a_lost_one(
 
 
 def test_a_long_rest_changes_neither_the_estimate_nor_the_misfit(c: Library) -> None:
-    joint = MisfitJoint(load_friction=0.15, duration=4.0, stops=True)
-    z = joint.measurements()
+    z = MisfitJoint(load_friction=0.15, duration=4.0).measurements()
     z[:, 3] += 0.02 * np.sin(150 * z[:, 0])  # a misfit that no column explains
     estimator = Estimator(c, {**SETTINGS, "prior.B": 0.1})
     estimator.run(z)
-    rest = z[-1:].repeat(1000, 0)
-    rest[:, 3] += 3.2e-3 * np.random.default_rng(3).normal(size=1000)
+    rest = at_rest(z)
     assert estimator.repeat(rest, 1000) == 1000
     before = c.ffi.new("sh_estimate *", estimator.estimate[0])
     assert before.misfit > 1.2

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from c_library import Array, Library
+from reference_joints import round_to_counts
 
-COUNT = 2 * np.pi / 40000
+COUNTS = 40000.0
+COUNT = 2 * np.pi / COUNTS
 T = 1e-3
 SLOW = 0.05  # [rad/s]
 
@@ -29,13 +31,9 @@ def run(c: Library, positions: Array, count: float = COUNT) -> tuple[Array, Arra
     return signs, unknown
 
 
-def rounded(x: Array) -> Array:
-    return np.round(x / COUNT) * COUNT
-
-
 @pytest.mark.parametrize("velocity", [0.06, 0.3, -2.0, 40.0])
 def test_the_sign_of_steady_motion_is_known_between_counts(c: Library, velocity: float) -> None:
-    signs, unknown = run(c, rounded(velocity * T * steps(400)))
+    signs, unknown = run(c, round_to_counts(velocity * T * steps(400), COUNTS))
     assert np.all(signs[20:] == np.sign(velocity))
     assert np.all(unknown[20:] == 0)
 
@@ -44,14 +42,14 @@ def test_the_sign_is_unknown_at_rest(c: Library) -> None:
     """GIVEN a motor that stops, WHEN there has been no count for as long as one takes at the
     velocity `slow`, THEN the sign is unknown and 0."""
     x = 0.5 * T * np.minimum(steps(200), 100)
-    signs, unknown = run(c, rounded(x))
+    signs, unknown = run(c, round_to_counts(x, COUNTS))
     waiting = int(np.ceil(COUNT / (SLOW * T))) + 2
     assert np.all(unknown[100 + waiting :] == 1)
     assert np.all(signs[100 + waiting :] == 0)
 
 
 def test_the_sign_is_unknown_while_the_motor_creeps(c: Library) -> None:
-    _, unknown = run(c, rounded(0.02 * T * steps(500)))
+    _, unknown = run(c, round_to_counts(0.02 * T * steps(500), COUNTS))
     assert np.all(unknown == 1)
 
 
@@ -65,7 +63,7 @@ def test_the_sum_of_the_signs_over_a_reversal_is_right(
     turn = 0.1 + np.random.default_rng(seed).uniform(0, T)
     t = T * steps(201)
     offset = np.random.default_rng(seed + 100).uniform(0, COUNT)
-    signs, _ = run(c, rounded(acceleration / 2 * (t - turn) ** 2 + offset))
+    signs, _ = run(c, round_to_counts(acceleration / 2 * (t - turn) ** 2 + offset, COUNTS))
     true = 2 * np.clip((t[1:] - turn) / T, 0, 1) - 1
     assert abs(np.sum(signs[50:] - true[50:])) < 1.0
 

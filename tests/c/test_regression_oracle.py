@@ -120,28 +120,16 @@ NO_GAP = {"prior.gap": 0.0}
 NO_HYSTERESIS = {**NO_GAP, "prior.hysteresis": 0.0}
 
 
-def hysteresis() -> Array:
-    width, state, loop = 0.006, 0.0, np.zeros(len(PHI))
-    for k in range(1, len(PHI)):
-        state = np.clip(state + PHI[k] - PHI[k - 1], -width, width)
-        loop[k] = 2.0 * state / width
-    return loop
-
-
 def ripple_of_the_motor() -> Array:
     first, second = GEAR_VELOCITY * np.cos(GEAR_ANGLE), GAMMA * THETA_DDOT * np.cos(GEAR_ANGLE)
     second = second - GEAR_VELOCITY**2 * np.sin(GEAR_ANGLE)
     return 3e-4 * (GAMMA**2 * (1e-3 * first + 2.3e-5 * second) + 140.0 * np.sin(GEAR_ANGLE))
 
 
-def load_and_delay() -> Array:
-    late = 3e-3 * np.gradient(WIDE.measurements()[:, 3], WIDE.t)
-    return GAMMA * late - np.abs(WIDE.tau_e) * np.tanh(THETA_DOT / 0.02) * 0.15
-
-
-# Flexibility torque beyond the model [N.m], parameters, and the group that is then used.
-MISFITS: Mapping[str, tuple[Array, Mapping[str, float], int]] = {
-    "hysteresis": (hysteresis(), {}, HYSTERESIS),
+# Flexibility torque beyond the model [N.m], or misfits of the joint; parameters; and the group
+# that is then used.
+MISFITS: Mapping[str, tuple[Array | Mapping[str, float], Mapping[str, float], int]] = {
+    "hysteresis": ({"hysteresis": 2.0, "hysteresis_width": 0.006}, {}, HYSTERESIS),
     "dead zone": (-140.0 * np.clip(PHI, -0.012, 0.012), {}, GAP),
     "powers": (3e5 * PHI**5, {**NO_HYSTERESIS, "rls.n": 2, "range.phi": 0.1}, POWERS),
     "set-point": (PHI * 3e6 * (LEVER - 0.07) ** 3, {**NO_GAP, "rls.m": 2}, SET_POWER),
@@ -159,7 +147,7 @@ MISFITS: Mapping[str, tuple[Array, Mapping[str, float], int]] = {
     ),
     "cogging": (-GAMMA * 0.03 * np.sin(6 * GEAR_ANGLE), {"regression.memory": 2.0}, 0),
     "friction that warms up": (-(GAMMA**2) * 1e-3 * THETA_DOT * 0.3 * WIDE.t, {}, 0),
-    "load friction and delay": (load_and_delay(), {}, 0),
+    "load friction and delay": ({"load_friction": 0.15, "delay": 3e-3}, {}, 0),
 }
 DRIFTING = ("friction that warms up",)
 
@@ -167,9 +155,12 @@ DRIFTING = ("friction that warms up",)
 @pytest.mark.slow("dense matrices in extended precision")
 @pytest.mark.parametrize("name", MISFITS)
 def test_every_tick_of_a_joint_with_a_misfit(c: Library, name: str) -> None:
-    torque, values, group = MISFITS[name]
-    z = WIDE.measurements()
-    z[:, 3] -= torque / GAMMA
+    misfit, values, group = MISFITS[name]
+    if isinstance(misfit, Mapping):
+        z = replace(WIDE, **misfit).measurements()
+    else:
+        z = WIDE.measurements()
+        z[:, 3] -= misfit / GAMMA
     oracle, found = check(c, {**START, **values}, z)
     assert np.max(found["misfit"]) > 1.5
     assert oracle.friction_drifts == (name in DRIFTING)

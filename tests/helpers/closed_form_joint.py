@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from reference_joints import round_to_counts
+from regression_joint import D_THETA, GAMMA, B, T
 from rivals.records import Array, JointLog, Known
 
-T, DURATION = 1e-3, 12.0  # [s]
-GAMMA, B, D_THETA, TAU_COULOMB = 50.0, 2.3e-5, 1e-3, 0.01
 COUNTS = 1 << 18
-RANGE_PHI = 0.1
 LINEAR, CUBIC, OF_THETA_C = 140.0, 3000.0, 0.3
 """Stiffness [N.m/rad], coefficient of the cube of the deformation [N.m/rad3], and share by which
 the position of the stiffness motor [rad] changes the stiffness."""
@@ -26,18 +25,12 @@ def _cosines(t: Array, *terms: tuple[float, float]) -> tuple[Array, Array, Array
     return signal, first, second
 
 
-def closed_form_log(
-    kind: str,
-    noise_tau: float = 1e-3,
-    tau_coulomb: float = TAU_COULOMB,
-    counts: int = COUNTS,
-    seed: int = 1,
-) -> JointLog:
-    """A log of a joint with Coulomb friction; the data sheet's inertia and friction are true.
+def closed_form_log(kind: str, tau_coulomb: float = 0.01, seed: int = 1) -> JointLog:
+    """12 s of a joint with Coulomb friction; the inertia and friction of the data sheet are true.
 
     The stiffness is constant but for the kind variable_stiffness. The seed is that of the noise.
     """
-    t = T * np.arange(DURATION / T)
+    t = T * np.arange(12 / T)
     theta, theta_dot, theta_ddot = _cosines(t, (0.3, 0.31), (-0.15, 0.83), (0.06, 2.3))
     phi, _, _ = _cosines(t, (0.03, 0.45), (-0.03, 1.13), (0.015, 2.9))
     variable = kind == "variable_stiffness"
@@ -47,9 +40,7 @@ def closed_form_log(
     tau_e = share * (LINEAR * phi + cubic * phi**3)
     stiffness = share * (LINEAR + 3 * cubic * phi**2)
     tau = GAMMA * (B * theta_ddot + D_THETA * theta_dot) + tau_coulomb * np.sign(theta_dot)
-    tau = tau - tau_e / GAMMA + noise_tau * np.random.default_rng(seed).normal(size=len(t))
-    count = 2 * np.pi / counts if counts else 0.0
-    rounded = [np.round(x / count) * count if counts else x for x in (theta, theta + phi)]
+    tau = tau - tau_e / GAMMA + 1e-3 * np.random.default_rng(seed).normal(size=len(t))
     known = Known(
         gamma=GAMMA,
         B=B,
@@ -58,10 +49,11 @@ def closed_form_log(
         relative_std_D_theta=0.2,
         relative_std_gain=0.0,
         tau_coulomb=0.02,
-        noise_tau=max(noise_tau, 1e-6),
-        counts_theta=counts,
-        counts_q=counts,
-        range_phi=RANGE_PHI,
+        noise_tau=1e-3,
+        counts_theta=COUNTS,
+        counts_q=COUNTS,
+        range_phi=0.1,
         range_tau_e=20.0,
     )
-    return JointLog(kind, seed, T, rounded[0], rounded[1], tau, theta_c, tau_e, stiffness, known)
+    angles = (round_to_counts(angle, COUNTS) for angle in (theta, theta + phi))
+    return JointLog(kind, seed, T, *angles, tau, theta_c, tau_e, stiffness, known)

@@ -14,6 +14,7 @@ import numpy as np
 from scipy import signal
 
 from c_library import Array, Library
+from regression_joint import stop_operator
 
 Parameters = Mapping[str, Any]
 GAPS = (0.01, 0.04, 0.16)
@@ -120,14 +121,11 @@ TORQUE = (*CURVE, "DEAD_ZONE")
 
 def plays(phi: Array, runs: list[slice], range_phi: float) -> Array:
     """States of the stop operators [size: ticks x 3]. They do not move over a gap."""
-    widths = range_phi * np.array(PLAYS)
-    state, states = np.zeros(3), np.zeros((len(phi), 3))
+    inside = np.zeros(len(phi), dtype=bool)
     for run in runs:
-        for k in range(run.start, run.stop):
-            if k > run.start:
-                state = np.clip(state + phi[k] - phi[k - 1], -widths, widths)
-            states[k] = state
-    return states
+        inside[run.start + 1 : run.stop] = True
+    changes = np.where(inside, np.diff(phi, prepend=0.0), 0.0)
+    return np.column_stack([stop_operator(changes, range_phi * width) for width in PLAYS])
 
 
 class Inputs:
