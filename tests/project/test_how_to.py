@@ -132,7 +132,7 @@ def test_a_copy_without_enumerations_is_the_same_fmu(page: dict[str, Any], tmp_p
 
 def test_fmpy_page_gives_the_results_of_a_master_written_by_hand(page: dict[str, Any]) -> None:
     times = page["t"]
-    own = run(torques(times), linear=False, times=times)
+    own = run(torques(times), times)
     np.testing.assert_allclose(page["plant"]["sigma"], own["plant.sigma"], rtol=1e-9)
     # The outputs of the tick at t_k are available after the step.
     ticks = own["estimator.sigma"][:-1]

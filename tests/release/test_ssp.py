@@ -76,7 +76,7 @@ def result(ssp: Path) -> Any:
 def test_fmpy_passes_zeros_to_the_first_tick_and_is_else_exact(result: Any) -> None:
     """A master written from the rule of docs/how-to/fmpy.md gives identical results."""
     still = np.zeros((len(result), 2))
-    own = run(still, linear=False, times=result["time"], start=SIGNALS, zeros_first=True)
+    own = run(still, times=result["time"], start=SIGNALS, zeros_first=True)
     # FMPy records the outputs of the plant after the step with the time of its begin.
     np.testing.assert_array_equal(result["plant.sigma"][:-1], own["plant.sigma"][1:])
     np.testing.assert_array_equal(result["estimator.sigma"], own["estimator.sigma"])
