@@ -15,7 +15,7 @@ from typing import Any
 from lxml import etree
 
 from sigmahat.files.output import write_whole
-from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.fmi.instance import Fmu
 from sigmahat.joint.sheet import Sheet, origin
 
 _CURVE = "rls.eta_0["
@@ -28,25 +28,20 @@ _SSC, _SSV = (f"{{{namespace}}}" for namespace in _NAMESPACES.values())
 
 @dataclass(frozen=True)
 class _Start:
-    """A start value, and data of its variable from the FMU."""
+    """A start value, and its variable of the FMU."""
 
     name: str
-    type: str
-    """Real, Integer, Boolean or Enumeration."""
-    value: float | int
-    """An enumeration as the number of its item."""
-    item: str
-    """Item of an enumeration; else empty."""
-    unit: str
-    """Empty without a unit."""
-    description: str
-    own: bool
-    """Whether this value is the default of the FMU."""
+    variable: Any  # FMPy's description
+    value: float | int  # an enumeration as the number of its item
+    item: str  # item of an enumeration; else empty
+    is_default: bool  # whether the FMU starts with this value anyway
 
     @property
     def text(self) -> str:
         """The value, as all of the formats write it."""
-        return ("true" if self.value else "false") if self.type == "Boolean" else repr(self.value)
+        if self.variable.type == "Boolean":
+            return "true" if self.value else "false"
+        return repr(self.value)
 
 
 def write(sheet: Sheet, fmu: Fmu, kind: str, path: Path) -> None:
@@ -64,15 +59,7 @@ def _starts(sheet: Sheet, fmu: Fmu) -> Iterator[_Start]:
         variable = fmu.variable(name, "parameter")
         number = fmu.number(name, value)
         item = fmu.items(name)[int(number)] if variable.type == "Enumeration" else ""
-        yield _Start(
-            name,
-            variable.type,
-            number,
-            item,
-            variable.unit or "",
-            variable.description or "",
-            own[name] == (item or number),
-        )
+        yield _Start(name, variable, number, item, own[name] == (item or number))
 
 
 def _head(sheet: Sheet) -> Iterator[str]:
@@ -87,8 +74,9 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     Importers disagree on the form of Booleans and enumerations: they are written only if the
     default of the FMU differs.
     """
-    listed = [s for s in starts if s.type in ("Real", "Integer") or not s.own]
-    units = {s.unit for s in listed if s.unit}
+    numbers = ("Real", "Integer")
+    listed = [s for s in starts if s.variable.type in numbers or not s.is_default]
+    units = {s.variable.unit for s in listed}
     try:
         root = etree.Element(_SSV + "ParameterSet", name=name, version="1.0", nsmap=_NAMESPACES)
     except ValueError as error:
@@ -101,8 +89,8 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     parameters = etree.SubElement(root, _SSV + "Parameters")
     for s in listed:
         parameter = etree.SubElement(parameters, _SSV + "Parameter", name=s.name)
-        unit = {"unit": s.unit} if s.unit else {}
-        etree.SubElement(parameter, _SSV + s.type, value=s.item or s.text, **unit)
+        unit = {"unit": s.variable.unit} if s.variable.unit else {}
+        etree.SubElement(parameter, _SSV + s.variable.type, value=s.item or s.text, **unit)
     defined = etree.SubElement(root, _SSV + "Units")
     for unit in fmu.description.unitDefinitions:
         if unit.name in units:
@@ -127,63 +115,62 @@ def _matlab(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
         "%   rls.eta_0 is a matrix, whose indices begin with 1: rls.eta_0(i + 1, j + 1) is",
         "%   rls.eta_0[i,j] of the FMU. An enumeration is written as the number of its item.",
     ]
-    for s in starts:
-        if not s.name.startswith(_CURVE):
-            note = s.item or (f"[{s.unit}]" if s.unit else "")
-            lines.append(f"p.{s.name} = {s.text};" + (f" % {note}" if note else ""))
-    lines += [f"p.rls.eta_0 = {_matrix(_curve(starts))};", "end", ""]
+    single, curve = _divided(starts)
+    for s in single:
+        note = s.item or (f"[{s.variable.unit}]" if s.variable.unit else "")
+        lines.append(f"p.{s.name} = {s.text};" + (f" % {note}" if note else ""))
+    lines += [f"p.rls.eta_0 = {_matrix(curve)};", "end", ""]
     return "\n".join(lines)
 
 
 def _modelica(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     """A record: parameter motor.B is component motor.B; model, a word of Modelica, is 'model'."""
     _identifier(name)
-    groups: dict[str, list[_Start]] = {}
-    for s in starts:
-        group, _, _ = s.name.rpartition(".")
-        groups.setdefault("" if s.name.startswith(_CURVE) else group, []).append(s)
+    single, curve = _divided(starts)
+    groups: dict[str, list[str]] = {}
+    for s in single:
+        group = s.name.rpartition(".")[0]
+        groups.setdefault(group, []).append(_component(s))
+    size = f"{len(curve)}, {len(curve[0])}"
+    text = f'= {_matrix(curve)} "Initial estimate, the curve"'
+    groups["rls"].append(f"parameter Real eta_0[{size}] {text};")
     title = f"{sheet.fmu.name}: what was learned"
     lines = [f'record {name} "{title}"', *(f"  // {line}" for line in _head(sheet))]
     lines += [
         "  // rls.eta_0[i + 1, j + 1] is rls.eta_0[i,j] of the FMU, whose indices begin with 0.",
         "  // An enumeration is written as the number of its item.",
     ]
-    for group, members in groups.items():
-        members = [s for s in members if not s.name.startswith(_CURVE)]
-        indent = "    " if group else "  "
-        declared = [_component(s, indent) for s in members]
-        if group == "rls":
-            curve = _curve(starts)
-            size = f"{len(curve)}, {len(curve[0])}"
-            text = f'= {_matrix(curve)} "Initial estimate, the curve"'
-            declared.append(f"{indent}parameter Real eta_0[{size}] {text};")
+    for group, declared in groups.items():
         if not group:
-            lines += declared
+            lines += [f"  {each}" for each in declared]
             continue
         kind = f"{group[0].upper()}{group[1:]}Parameters"
         name_of = f"'{group}'" if group in _RESERVED else group  # such as 'model'
-        lines += [f"  record {kind}", *declared, f"  end {kind};", f"  {kind} {name_of};"]
+        components = [f"    {each}" for each in declared]
+        lines += [f"  record {kind}", *components, f"  end {kind};", f"  {kind} {name_of};"]
     return "\n".join([*lines, f"end {name};", ""])
 
 
-def _component(s: _Start, indent: str) -> str:
-    kind = "Integer" if s.type == "Enumeration" else s.type
-    unit = f'(unit="{s.unit}")' if s.unit else ""
-    text = f"{s.description}: {s.item}" if s.item else s.description
+def _component(s: _Start) -> str:
+    variable = s.variable
+    kind = "Integer" if variable.type == "Enumeration" else variable.type
+    unit = f'(unit="{variable.unit}")' if variable.unit else ""
+    text = f"{variable.description}: {s.item}" if s.item else variable.description
     text = text.replace("\\", "\\\\").replace('"', '\\"')
-    return f'{indent}parameter {kind} {s.name.rpartition(".")[2]}{unit} = {s.text} "{text}";'
+    return f'parameter {kind} {s.name.rpartition(".")[2]}{unit} = {s.text} "{text}";'
 
 
-def _curve(starts: list[_Start]) -> list[list[float]]:
-    """The matrix rls.eta_0."""
-    at: Mapping[tuple[int, int], Value] = {
-        (int(i), int(j)): s.value
-        for s in starts
-        if s.name.startswith(_CURVE)
-        for i, j in [s.name[len(_CURVE) : -1].split(",")]
-    }
-    n, m = (max(each[k] for each in at) + 1 for k in (0, 1))
-    return [[float(at[i, j]) for j in range(m)] for i in range(n)]
+def _divided(starts: list[_Start]) -> tuple[list[_Start], list[list[float]]]:
+    """Single start values, and the matrix rls.eta_0."""
+    single, curve = [], {}
+    for s in starts:
+        if s.name.startswith(_CURVE):
+            i, j = map(int, s.name[len(_CURVE) : -1].split(","))
+            curve[i, j] = float(s.value)
+        else:
+            single.append(s)
+    n, m = (max(each[k] for each in curve) + 1 for k in (0, 1))
+    return single, [[curve[i, j] for j in range(m)] for i in range(n)]
 
 
 def _matrix(rows: list[list[float]]) -> str:
