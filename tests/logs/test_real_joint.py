@@ -71,13 +71,6 @@ def test_the_recursion_ends_at_the_batch_fit(measured: Logs, general: Fit) -> No
         assert np.max(np.abs(difference)) < 1e-4 * span
 
 
-def test_outputs_are_those_of_the_coefficients(measured: Logs, general: Fit, odd: Fit) -> None:
-    last = measured[-1]
-    for fit in (general, odd):
-        assert fit.tau_e == pytest.approx(fit.torque(last.setting, last.phi[-1:])[0], rel=1e-9)
-        assert fit.sigma == pytest.approx(fit.stiffness(last.setting, last.phi[-1]), rel=1e-9)
-
-
 def test_a_setting_left_out_is_predicted(measured: Logs, general: Fit, odd: Fit) -> None:
     left_out = real_joint.leave_one_out(measured)
     print(real_joint.torque_table(measured, general, odd, left_out))

@@ -1,22 +1,7 @@
 """The configuration of a log: which column feeds which port, and the parameters of the estimator.
 
-    [time]
-    column = "t"            # left out: the rows are samplePeriod apart
-    unit = "s"
-    longest_gap = 0.05      # [s], see sampling.py
-
-    [ports.theta]           # also q, theta_c, tau, tau_e_sensor
-    column = "motor_counts"
-    unit = "counts"
-    counts_per_turn = 40000
-    sign = -1
-
-    [parameters]            # of the FMU, by their names in the FMU
-    motor.B = 2.3e-5
-
-joints.py says how one file configures several joints.
-
-The file is TOML, because people can read it and tomlkit keeps its comments when identify writes.
+docs/how-to-log.md has an example, and joints.py says how one file configures several joints. The
+file is TOML, because people can read it and tomlkit keeps its comments when identify writes.
 """
 
 from collections.abc import Mapping

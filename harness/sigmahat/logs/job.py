@@ -44,10 +44,12 @@ class ReplayStatistics:
         self.ticks = self._later = self.skipped = 0
         self._doubts: Counter[str] = Counter()
         self._squares = 0.0
-        self._later_range = dict.fromkeys(DRAWN, _NOTHING)
+        self.later = dict.fromkeys(DRAWN, _NOTHING)
+        """Minimum and maximum in the second half of the log, by output."""
+        self.used: dict[str, Range] = {}
+        """Range of phi and setPoint at the samples that the regression used, if any."""
         self._stride = -(-ticks // _POINTS)
         self._points: dict[str, list[np.ndarray[Any, Any]]] = {name: [] for name in NEEDED}
-        self._used: dict[str, tuple[float, float]] = {}
         self.last: dict[str, float] = {}  # Real outputs of the last tick
         self.last_doubt = ""  # item of the output doubt at the last tick
 
@@ -65,7 +67,7 @@ class ReplayStatistics:
             self._later += int(np.count_nonzero(valid))
             self._doubts.update(outputs["doubt"][first:].tolist())
             for name in DRAWN:
-                self._later_range[name] = _wider(self._later_range[name], outputs[name][first:])
+                self.later[name] = _wider(self.later[name], outputs[name][first:])
         shown = spread(self.ticks, count, self._stride)
         for name in NEEDED:
             self._points[name].append(outputs[name][shown])
@@ -75,19 +77,11 @@ class ReplayStatistics:
         self.last_doubt = str(outputs["doubt"][-1])
         learning = outputs["valid"] & (outputs["a"] > 0)
         for name in _OPERATION if learning.any() else ():
-            self._used[name] = _wider(self._used.get(name, _NOTHING), outputs[name][learning])
+            self.used[name] = _wider(self.used.get(name, _NOTHING), outputs[name][learning])
 
     def ends(self, name: str) -> Array:
         """Minimum and maximum in each interval, [size: intervals x 2]."""
         return np.concatenate(self._parts[name])
-
-    def later(self, name: str) -> tuple[float, float]:
-        """Minimum and maximum in the second half of the log."""
-        return self._later_range[name]
-
-    def used(self, name: str) -> tuple[float, float] | None:
-        """Least and largest phi or setPoint at the samples that the regression used, if any."""
-        return self._used.get(name)
 
     @property
     def spread_over_log(self) -> dict[str, np.ndarray[Any, Any]]:
@@ -161,7 +155,7 @@ class Replay:
             progress(1000 * now // ticks - 1000 * done // ticks)
             done = now
         self.t += self.samples.T * ticks
-        phi, set_point = statistics.used("phi"), statistics.used("setPoint")
+        phi, set_point = (statistics.used.get(name) for name in _OPERATION)
         file = str(self.log.path)
         self.logs.append(LearnedLog(file, digest, ticks, statistics.skipped, phi, set_point))
 

@@ -67,7 +67,7 @@ def together(joints: Mapping[str, tomlkit.TOMLDocument]) -> tomlkit.TOMLDocument
         place
         for place, item in values[0].items()
         if all(place in each and each[place] == item for each in values[1:])
-        and all(_comment(each[place]) == _comment(item) for each in values[1:])
+        and all(each[place].trivia.comment == item.trivia.comment for each in values[1:])
     }
     document = tomlkit.parse(tomlkit.dumps(first))
     for place in values[0].keys() - shared:
@@ -87,10 +87,6 @@ def section(document: tomlkit.TOMLDocument, name: str) -> MutableMapping[str, An
     """The table with the keys of a joint: its section, or the whole document for the joint ""."""
     found: MutableMapping[str, Any] = document
     return found[JOINTS][name] if name else found
-
-
-def _comment(item: Item) -> str:
-    return item.trivia.comment
 
 
 def items(document: tomlkit.TOMLDocument, joint: str = "") -> dict[Place, Item]:

@@ -5,16 +5,15 @@ description of each field. Times count from the start of the log.
 """
 
 import json
-import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from mcap.writer import Writer
 from numpy.typing import NDArray
 
+from sigmahat.files.output import finite
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.series import schema
 
@@ -41,7 +40,7 @@ def mcap_file(path: Path, fmu: Fmu, T: float) -> Iterator[Callable[[Outputs], No
                 data = json.dumps(schema(fmu, outputs)).encode()
                 described = writer.register_schema("estimate", "jsonschema", data)
                 channel = writer.register_channel(_TOPIC, "json", described)
-            columns = [_with_null(values) for values in outputs.values()]
+            columns = [finite(values.tolist()) for values in outputs.values()]
             for row in zip(*columns, strict=True):
                 stamp = round(1e9 * T * ticks)
                 data = json.dumps(dict(zip(outputs, row, strict=True))).encode()
@@ -50,11 +49,3 @@ def mcap_file(path: Path, fmu: Fmu, T: float) -> Iterator[Callable[[Outputs], No
 
         yield add
         writer.finish()  # type: ignore[no-untyped-call]
-
-
-def _with_null(values: NDArray[Any]) -> list[Any]:
-    """A column for JSON, which has no NaN and no infinity."""
-    column: list[Any] = values.tolist()
-    if values.dtype.kind == "f" and not np.isfinite(values).all():
-        return [each if math.isfinite(each) else None for each in column]
-    return column

@@ -308,22 +308,18 @@ def put_right(
     own = int(np.argmin(periods))  # the other counter starts again later, or never
     if not np.isfinite(periods[own]):
         return
-    column, period = both[own], periods[own]
-    moved: list[tuple[int, float]] = []
+    column, other, period = both[own], both[1 - own], periods[own]
     begins, ends = stretches(np.isfinite(values[:, both]).all(axis=1))
-    until, total = [*begins[1:], len(values)], 0
-    steps = [values[b] - values[e - 1] for e, b in zip(ends[:-1], begins[1:], strict=True)]
-    for i, step in enumerate(steps):
-        turns = round((step[both[1 - own]] - step[column]) / period)
-        total += turns
-        values[until[i] : until[i + 1], column] += total * period
-        if turns:
-            moved.append((turns, (ends[i] - 1) * T))
-    if moved:
-        turns, t = moved[0]
+    steps = values[begins[1:]] - values[ends[:-1] - 1]
+    turns = np.round((steps[:, other] - steps[:, column]) / period).astype(np.int64)
+    for begin, end, total in zip(begins[1:], [*begins[2:], None], np.cumsum(turns), strict=False):
+        values[begin:end, column] += total * period
+    moved = np.flatnonzero(turns)
+    if len(moved):
+        t = (ends[moved[0]] - 1) * T
         also = f" and during {len(moved) - 1} more" if len(moved) > 1 else ""
         yield (
-            f"{names[column]}: {turns:+d} periods of its counter during the gap after "
+            f"{names[column]}: {turns[moved[0]]:+d} periods of its counter during the gap after "
             f"{t:.6g} s{also}, by the motion of the other encoder"
         )
 

@@ -102,7 +102,7 @@ def _is(unit: str, kind: str) -> bool:
 def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> float:
     if unit == target:  # as usual; pint takes long to import
         return 1.0
-    if not _harmless(unit):
+    if len(unit) > _LONGEST or _TOWER.search(unit):  # pint would compute the power
         raise LogError(f"{where}: unknown unit {unit[:_LONGEST]!r}{_meant('', usual)}")
     import pint
 
@@ -115,11 +115,6 @@ def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> 
         ) from error
     except Exception as error:  # any: the parser of pint raises many kinds
         raise LogError(f"{where}: unknown unit {unit!r}{_meant(unit, usual)}") from error
-
-
-def _harmless(unit: str) -> bool:
-    """Whether pint, which computes powers of numbers, can read a unit in no time."""
-    return len(unit) <= _LONGEST and _TOWER.search(unit) is None
 
 
 def _meant(unit: str, usual: tuple[str, ...]) -> str:
