@@ -27,14 +27,10 @@ _LARGER = 4.0  # power of the deformation over what the noise of the torque expl
 class TorqueNoise:
     """White noise of torque and position, as a torque on the motor's axis."""
 
-    torque: float
-    """Variance [(N.m)2]."""
-    position: float
-    """Variance [rad2]."""
-    inertia: float
-    """Torque per acceleration, B gamma [kg.m2]."""
-    T: float
-    """Time between samples [s]."""
+    torque: float  # variance [(N.m)2]
+    position: float  # variance [rad2]
+    inertia: float  # torque per acceleration, B gamma [kg.m2]
+    T: float  # time between samples [s]
 
     def density(self, f: Array) -> Array:
         """Power spectral density, one-sided [(N.m)2/Hz], at the frequencies f [Hz]."""

@@ -49,10 +49,8 @@ _N, _M = 4, 4  # highest orders of the polynomial that are tried
 class KnownInertia:
     """What the configuration says about B."""
 
-    value: float
-    """[kg.m2]"""
-    std: float
-    """Standard deviation of its relative error, > 0."""
+    value: float  # [kg.m2]
+    std: float  # standard deviation of its relative error, > 0
 
 
 @dataclass(frozen=True)
@@ -63,10 +61,8 @@ class MotorFit:
     """B, D_theta and tau_coulomb, and the zero of the deformation where there is one."""
     gain: tuple[float, float]
     """Of the torque, if it was measured: value and half of the 95 % interval."""
-    polynomial: Form
-    """Orders and symmetry of the polynomial for the estimator."""
-    spring: float
-    """Largest torque of the spring in the log [N.m]."""
+    polynomial: Form  # orders and symmetry of the polynomial for the estimator
+    spring: float  # largest torque of the spring in the log [N.m]
 
     def torque_constant(self, nominal: float) -> Quantity:
         """K_t, if the pieces have the torque of a sensor and the current times a nominal K_t."""
@@ -147,8 +143,7 @@ class Variants:
     first: Fit
     others: Sequence[Fit]
     """With other filters, or the ends of the interval of a known inertia."""
-    frictions: Sequence[Fit]
-    """With other forms of friction."""
+    frictions: Sequence[Fit]  # with other forms of friction
 
 
 def _frictions(form: Form) -> list[Form]:

@@ -12,8 +12,7 @@ from sigmahat.logs.log import Array
 _WINDOWS = 40
 _LOWEST = 5.0  # [Hz]
 _HIGHEST = 0.1  # of the sampling frequency
-SETTLED = 8.0
-"""Periods of the low pass, after which it has forgotten a step to 1e-15."""
+SETTLED = 8.0  # periods of the low pass, after which it has forgotten a step to 1e-15
 
 
 def variance(values: Array, resolution: float = 0.0) -> float:

@@ -37,18 +37,15 @@ MOTOR = ("B", "D_theta", "tau_coulomb")
 """Names of the first columns, which describe the motor."""
 COULOMB_VELOCITY = 0.02
 """v_s, the velocity over which the friction changes its sign [rad/s]."""
-CONSTANT = "constant"
-"""Name of the column of c."""
-EXTRA = "extra"
-"""Name of the column of Signals.extra."""
+CONSTANT = "constant"  # name of the column of c
+EXTRA = "extra"  # name of the column of Signals.extra
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
 _WINDOW = 1 << 14  # rows that are filtered at a time, about
 _EDGE = 0.1  # [s] left out at both ends of a piece, where the filter has not settled
 
 _PARTS = 8  # of a log, of which each is predicted from the others
 
-_LEAST = 40
-"""Samples of a stretch: filters need some."""
+_LEAST = 40  # samples of a stretch: filters need some
 
 
 @dataclass(frozen=True)
@@ -73,26 +70,20 @@ class Signals:
 class Form:
     """What the equations contain, and the filters."""
 
-    f_0: float
-    """Low pass of both sides [Hz]."""
+    f_0: float  # low pass of both sides [Hz]
     wide: float
     """Low pass of the velocity in the Coulomb friction, which changes fast [Hz]."""
-    n: int = 1
-    """Order of the polynomial, as rls.n."""
-    m: int = 1
-    """As rls.m."""
-    symmetric: bool = True
-    """Only odd powers of the deformation, as rls.symmetric."""
-    coulomb_velocity: float = COULOMB_VELOCITY
-    """v_s [rad/s]."""
+    n: int = 1  # order of the polynomial, as rls.n
+    m: int = 1  # as rls.m
+    symmetric: bool = True  # only odd powers of the deformation, as rls.symmetric
+    coulomb_velocity: float = COULOMB_VELOCITY  # v_s [rad/s]
     load_friction: bool = False
     """Whether there is friction that is proportional to the magnitude of the deformation."""
     stribeck_velocity: float = 0.0
     """v, if friction is larger in slow motion [rad/s]; 0 if it is not. The additional part falls as
     exp(-|theta'/v|^delta) (Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30:1083-1138,
     1994)."""
-    stribeck_exponent: float = 2.0
-    """delta, usually 1 or 2."""
+    stribeck_exponent: float = 2.0  # delta, usually 1 or 2
 
     delay: bool = False
     """Whether the torque may be late: tau(t - delay) = tau(t) - delay tau'(t)."""
@@ -114,17 +105,13 @@ class Form:
 class Equations:
     """y = X p + error, with instruments Z; both halves of all pieces, summed over blocks."""
 
-    ZX: Array
-    """Z'X of each block, [size: blocks x columns x columns]."""
-    Zy: Array
-    """Z'y of each block, [size: blocks x columns]."""
+    ZX: Array  # Z'X of each block, [size: blocks x columns x columns]
+    Zy: Array  # Z'y of each block, [size: blocks x columns]
     R: Array
     """A factor of the squares of each block, R'R = [X y]'[X y], [size: blocks x any x columns + 1].
     So |y - X p| = |R [-p, 1]| without a difference of large numbers."""
-    rows: NDArray[np.int64]
-    """Number of equations in each block."""
-    names: Sequence[str]
-    """Names of the columns, see Form.names."""
+    rows: NDArray[np.int64]  # number of equations in each block
+    names: Sequence[str]  # names of the columns, see Form.names
     units: tuple[float, float]
     """What deformation and set-point are divided by in the polynomial [rad, 1]."""
 
@@ -199,14 +186,10 @@ def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> 
 class Rows:
     """Some of the equations of a piece, for even and odd samples."""
 
-    y: Array
-    """[size: 2 x rows]"""
-    X: Array
-    """[size: 2 x rows x columns]"""
-    Z: Array
-    """The same."""
-    place: NDArray[np.intp]
-    """Of the rows in the piece, without a gap."""
+    y: Array  # [size: 2 x rows]
+    X: Array  # [size: 2 x rows x columns]
+    Z: Array  # the same
+    place: NDArray[np.intp]  # of the rows in the piece, without a gap
 
 
 def rows(
@@ -376,12 +359,9 @@ class Fit:
     """Coefficients, and how certain they are; nan and inf where the data do not determine them."""
 
     value: dict[str, float]
-    covariance: Array
-    """[size: coefficients, coefficients], in their order."""
-    quantile: float
-    """Half a 95 % interval over the standard deviation."""
-    squares: Array
-    """Sum of the squared errors of each block, [size: blocks]."""
+    covariance: Array  # [size: coefficients, coefficients], in their order
+    quantile: float  # half a 95 % interval over the standard deviation
+    squares: Array  # sum of the squared errors of each block, [size: blocks]
 
     @property
     def half_width(self) -> dict[str, float]:
@@ -445,8 +425,7 @@ def left_out(e: Equations) -> Array:
     return np.array([e.errors(p)[i] / e.rows[i] for i, p in enumerate(fits)])
 
 
-Orders = tuple[int, int]
-"""n and m of (16), as in rls.n and rls.m."""
+Orders = tuple[int, int]  # n and m of (16), as in rls.n and rls.m
 
 
 def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, dict[Orders, Array]]:

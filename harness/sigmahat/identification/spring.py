@@ -18,8 +18,7 @@ class Spring:
     """Torque of the motor that balances the spring, as a polynomial of the fitted equations."""
 
     form: Form
-    units: tuple[float, float]
-    """As in Equations."""
+    units: tuple[float, float]  # as in Equations
 
     def zero(self, fit: Fit, pieces: Sequence[Signals]) -> float:
         """Deformation at which spring and constant torque cancel [rad]; nan if there is none.

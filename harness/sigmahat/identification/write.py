@@ -30,8 +30,7 @@ from sigmahat.logs.units import factor
 
 _ABOVE = 1.4
 """regression.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
-_ROOM = 1.2
-"""Ranges over the largest values of the log: another motion may go further."""
+_ROOM = 1.2  # ranges over the largest values of the log: another motion may go further
 _ERROR_OF_B = 0.15
 """Least relative prior of B: RMS of its error on joints whose friction or spring the regression has
 no columns for. There the error is up to five times the interval, which contains only chance."""

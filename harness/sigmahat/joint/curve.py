@@ -19,8 +19,7 @@ from sigmahat.joint.stored import Range
 
 Array = NDArray[np.float64]
 
-NORMAL_95 = 1.96
-"""Half the width of a 95 % interval divided by the standard deviation."""
+NORMAL_95 = 1.96  # half the width of a 95 % interval divided by the standard deviation
 _NEAR = 0.25
 """Points belong to a set-point up to this fraction of the distance to the next set-point."""
 
@@ -104,8 +103,7 @@ def nearest(settings: Sequence[float], set_points: Array) -> NDArray[np.intp]:
     return found
 
 
-CURVE = "estimate.curve.csv"
-"""Name of the file in the folder of results."""
+CURVE = "estimate.curve.csv"  # name of the file in the folder of results
 _UNITS = {
     "setPoint": "1",
     "phi": "rad",
@@ -195,8 +193,7 @@ FAMILY_HEAD = (
 )
 
 
-_MOST_SETTINGS = 4
-"""Largest number of set-points in a headline."""
+_MOST_SETTINGS = 4  # largest number of set-points in a headline
 
 
 def headline(curve: Curve, doubt: str) -> str:
@@ -245,8 +242,7 @@ def _in_one_line(branch: Branch) -> str:
     return text
 
 
-_CURVED = 0.01
-"""A smaller relative change of the stiffness is not printed."""
+_CURVED = 0.01  # a smaller relative change of the stiffness is not printed
 
 
 def curve_text(curve: Curve, polynomial: bool = True) -> list[str]:

@@ -25,22 +25,17 @@ UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "mi
 class Source:
     """A file from which the sheet was made."""
 
-    file: Text
-    """Path of the file."""
-    sha256: Text | None
-    """SHA-256 of the bytes; None if the file does not exist."""
+    file: Text  # path of the file
+    sha256: Text | None  # SHA-256 of the bytes; None if the file does not exist
 
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Stiffness:
     """The stiffness at a point."""
 
-    phi: float
-    """Deformation [rad]."""
-    set_point: float
-    """Set-point [1]."""
-    sigma: float
-    """Stiffness at this point [N.m/rad]."""
+    phi: float  # deformation [rad]
+    set_point: float  # set-point [1]
+    sigma: float  # stiffness at this point [N.m/rad]
     interval: Range | None
     """95 % interval [N.m/rad]; None if the method gives no interval."""
 
@@ -101,20 +96,16 @@ class RestsOn:
     """Relative standard deviation of the gain of the torque [1]; the intervals include it."""
     sigma_per_gain: float
     """Relative change of the stiffness per relative change of that gain [1]."""
-    exact: list[Text]
-    """Parameters that are taken as exact."""
-    absent: list[Text]
-    """Effects that are taken as absent."""
+    exact: list[Text]  # parameters that are taken as exact
+    absent: list[Text]  # effects that are taken as absent
 
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Check:
     """Outputs of the FMU with the start values, before any sample, to verify these values."""
 
-    sigma: float
-    """[N.m/rad]"""
-    tau_e: float
-    """[N.m]"""
+    sigma: float  # [N.m/rad]
+    tau_e: float  # [N.m]
 
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
@@ -123,24 +114,18 @@ class Sheet:
 
     format: Text
     version: int
-    sigmahat: Text
-    """Version of the package that wrote the file."""
+    sigmahat: Text  # version of the package that wrote the file
     units: dict[str, Text]
     """Units of the numbers with these keys in the file; an interval has the unit of its value."""
     fmu: FmuId
-    logs: list[LearnedLog]
-    """Logs from which the estimator has learned, in this order."""
+    logs: list[LearnedLog]  # logs from which the estimator has learned, in this order
     configuration: Source
     method: Text
     modality: Text
-    at_the_end: Stiffness
-    """The last estimate."""
-    confident: bool
-    """Whether the estimator was confident at the end."""
-    doubt: Text
-    """Why the estimator was not confident."""
-    misfit: float
-    """Misfit of the model; 1 if the model holds [1]."""
+    at_the_end: Stiffness  # the last estimate
+    confident: bool  # whether the estimator was confident at the end
+    doubt: Text  # why the estimator was not confident
+    misfit: float  # misfit of the model; 1 if the model holds [1]
     polynomial: Polynomial
     curve: list[Stiffness] | None
     """The stiffness in the range of the data; None if the method gives no interval."""
@@ -151,8 +136,7 @@ class Sheet:
     check: Check
 
 
-FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)
-"""Format of the file."""
+FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)  # format of the file
 
 
 def write(sheet: Sheet, path: Path) -> None:
@@ -196,10 +180,8 @@ def polynomial(
     )
 
 
-_MOST_POWERS = 8
-"""Largest rls.n of the FMU."""
-_SAME = 1e-6
-"""Relative difference of two stiffnesses by rounding."""
+_MOST_POWERS = 8  # largest rls.n of the FMU
+_SAME = 1e-6  # relative difference of two stiffnesses by rounding
 
 
 def with_knees(

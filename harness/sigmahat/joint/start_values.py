@@ -13,10 +13,8 @@ _NOT_IN_A_RUN = (
     "hysteresis",
 )
 """Priors of effects that do not differ from run to run."""
-_NONE = 1e-6
-"""Uncertainty of a curve: so small that the curve does not change."""
-_LARGEST = 1e12
-"""Largest prior that the FMU accepts."""
+_NONE = 1e-6  # uncertainty of a curve: so small that the curve does not change
+_LARGEST = 1e12  # largest prior that the FMU accepts
 
 
 def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:

@@ -13,8 +13,7 @@ from sigmahat.fmi.instance import Fmu
 
 NO_OTHER_KEYS = ConfigDict(extra="forbid")
 Text = Annotated[str, Strict()]
-Range = tuple[float, float]
-"""Least and largest value."""
+Range = tuple[float, float]  # least and largest value
 
 
 @dataclass(frozen=True)
@@ -23,18 +22,13 @@ class LearnedLog:
 
     __pydantic_config__ = NO_OTHER_KEYS
 
-    file: Text
-    """Path of the log, as given by the user."""
-    sha256: Text
-    """SHA-256 of the file; for a folder see files/output.py."""
-    ticks: int
-    """Number of ticks of the estimator in the log."""
-    skipped: int
-    """Ticks that were skipped."""
+    file: Text  # path of the log, as given by the user
+    sha256: Text  # SHA-256 of the file; for a folder see files/output.py
+    ticks: int  # number of ticks of the estimator in the log
+    skipped: int  # ticks that were skipped
     phi: Range | None
     """Deformation at the samples that the regression used [rad]; None without such samples."""
-    set_point: Range | None
-    """Set-point at these samples [1]; None without such samples."""
+    set_point: Range | None  # set-point at these samples [1]; None without such samples
 
 
 @dataclass(frozen=True)
@@ -61,12 +55,9 @@ _AGAIN = "run `sigmahat estimate` again"
 class Format(Generic[_Contents]):
     """A kind of file that `sigmahat estimate` writes into its folder."""
 
-    file: str
-    """Name of the file in the folder."""
-    name: str
-    """Value of the key "format" in the file."""
-    version: int
-    """Version of the format."""
+    file: str  # name of the file in the folder
+    name: str  # value of the key "format" in the file
+    version: int  # version of the format
     contents: type[_Contents]
     """A dataclass with the fields format and version, and all others of the file."""
 

@@ -24,18 +24,15 @@ class Quantity:
     interval: Range | None
     """95 % interval; None if the value is taken as exact, or the method gives no interval."""
     unit: str
-    interval_from: str
-    """"identify", "prior" or "estimate", or why no interval is given."""
+    interval_from: str  # "identify", "prior" or "estimate", or why no interval is given
 
 
 @dataclass(frozen=True)
 class Spring:
     """Torque of the spring: sum of stiffness[i] (phi - reference)^(i + 1)."""
 
-    reference: float
-    """Deformation without torque [rad]."""
-    stiffness: tuple[float, ...]
-    """[N.m/rad], [N.m/rad2] and so on."""
+    reference: float  # deformation without torque [rad]
+    stiffness: tuple[float, ...]  # [N.m/rad], [N.m/rad2] and so on
     error: float
     """Largest error of this torque relative to the largest torque, in the range of the data [1]."""
 
@@ -45,22 +42,16 @@ class TwoHinges:
     """Data of a joint for a simulator."""
 
     gear_ratio: float
-    rotor_inertia: float
-    """Inertia of the motor on its own axis [kg.m2]."""
-    armature: Quantity
-    """Inertia of the motor at the gear output."""
-    damping: Quantity
-    """Viscous friction of the motor at the gear output."""
-    frictionloss: Quantity
-    """Coulomb friction of the motor at the gear output."""
+    rotor_inertia: float  # inertia of the motor on its own axis [kg.m2]
+    armature: Quantity  # inertia of the motor at the gear output
+    damping: Quantity  # viscous friction of the motor at the gear output
+    frictionloss: Quantity  # Coulomb friction of the motor at the gear output
     spring: Spring
     spring_damping: Quantity
-    reach: Range
-    """Range of the measured deformation [rad]."""
+    reach: Range  # range of the measured deformation [rad]
     factor: Quantity
     """Factor of the whole stiffness: 1, with the relative interval of the estimate."""
-    absent: tuple[str, ...]
-    """Effects of the joint that two hinges do not have, in words."""
+    absent: tuple[str, ...]  # effects of the joint that two hinges do not have, in words
 
     def quantities(self, name: str) -> Iterator[tuple[str, Quantity]]:
         """Quantities that may have an interval, by the name of hinge and quantity."""
@@ -166,8 +157,7 @@ def _zero(torque: Polynomial, phi: np.ndarray[tuple[int], np.dtype[np.float64]])
     return float(real[np.argmin(np.abs(real - (phi[0] + phi[-1]) / 2))])
 
 
-_SHOWN = 0.01
-"""Fraction of the largest torque: a smaller effect is not listed."""
+_SHOWN = 0.01  # fraction of the largest torque: a smaller effect is not listed
 
 
 def _absent(sheet: Sheet, reach: Range) -> Iterator[str]:

@@ -33,8 +33,7 @@ TITLES: Mapping[str, str] = {
     "tau_e_sensor": "tau_e_sensor: torque sensor",
 }
 """Titles of the ports; ports that most joints have are first."""
-BY_SCALE = "factor"
-"""Choice in place of a unit: the port has a scale."""
+BY_SCALE = "factor"  # choice in place of a unit: the port has a scale
 
 
 @dataclass(frozen=True)

@@ -36,8 +36,7 @@ _DOUBLE_CLICK = 0.5  # [s] the second click of a double click does not confirm
 class Look:
     """A preview of a column."""
 
-    span: str
-    """Least and greatest value, or why the column has no values."""
+    span: str  # least and greatest value, or why the column has no values
     line: Sequence[tuple[float, float]]
     """Points of a small line in a box of 160 x 28, from its upper left corner."""
 
@@ -48,15 +47,13 @@ class Setup:
     def __init__(self, log: Log, path: Path) -> None:
         """Starts without a configuration, until start_from() or guessed() is called."""
         self.log = log
-        self.path = path
-        """The file to write."""
+        self.path = path  # the file to write
         self.document: tomlkit.TOMLDocument = tomlkit.document()
         self.is_edited = False
         """Whether the configuration has edits that are not written yet."""
         self.looks: Mapping[str, Look] = {}
         """Previews of the columns by name; empty until they are known."""
-        self.joint = ""
-        """Name of the joint that is shown."""
+        self.joint = ""  # name of the joint that is shown
         self.busy = "Looking at the columns ..."
         """The running computation, in words; empty without a computation."""
         self.problem = ""

@@ -26,10 +26,8 @@ class TextTable:
     rows: Sequence[Sequence[str]]
     words: Sequence[bool]
     """For each column, whether its cells are words, aligned to the left, and not numbers."""
-    note: str = ""
-    """Text below the table."""
-    folded: bool = False
-    """Whether only its title is shown at first."""
+    note: str = ""  # text below the table
+    folded: bool = False  # whether only its title is shown at first
 
 
 @dataclass(frozen=True)
@@ -37,18 +35,13 @@ class Contents:
     """All of a report."""
 
     title: str
-    lines: Sequence[str]
-    """Lines below the title."""
+    lines: Sequence[str]  # lines below the title
     tables: Sequence[TextTable]
     panels: Sequence[Panel]
-    headline: str = ""
-    """The result in one line, above all lines."""
-    answer: Sequence[Panel] = ()
-    """Panels above all other panels, and above the tables."""
-    notes: Sequence[str] = ()
-    """Sentences about the processing of the samples."""
-    pictures: Sequence[Path] = ()
-    """PNG files."""
+    headline: str = ""  # the result in one line, above all lines
+    answer: Sequence[Panel] = ()  # panels above all other panels, and above the tables
+    notes: Sequence[str] = ()  # sentences about the processing of the samples
+    pictures: Sequence[Path] = ()  # PNG files
     every: tuple[float, float] | None = None
     """Times between which every sample is drawn [s]; None: everywhere."""
     marks: Sequence[float] = ()
