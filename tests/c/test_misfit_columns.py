@@ -219,24 +219,7 @@ def test_a_deformation_far_beyond_the_range_is_a_doubt(c: Library, n: int, times
         assert (doubt == "OUT_OF_RANGE") == is_beyond
 
 
-# Bad samples
-
-
-@pytest.mark.parametrize("bad", [math.nan, math.inf, 1e12, -1e12])
-@pytest.mark.parametrize("column", [0, 1])
-def test_a_refused_sample_leaves_the_state_as_a_lost_one(
-    c: Library, column: int, bad: float
-) -> None:
-    """From the next sample on, everything is as if this one had been lost."""
-    z = Joint(duration=2.0, tau_coulomb=0.02).measurements()
-    z[1000, column] = bad
-    lost = z.copy()
-    lost[1000] = math.nan
-    values = {"method": 2, "rls.n": 3, "prior.B": 0.1}
-    found, want = Estimator(c, values).run(z), Estimator(c, values).run(lost)
-    assert found["valid"][1000] == 0
-    assert np.all(found["valid"][1001:])
-    assert found.tobytes() == want.tobytes()
+# Rest
 
 
 def test_a_long_rest_changes_neither_the_estimate_nor_the_misfit(c: Library) -> None:

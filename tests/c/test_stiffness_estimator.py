@@ -25,7 +25,7 @@ from oracle import (
     SENSOR,
     STANDARD,
 )
-from reference_joints import table1_recording
+from reference_joints import flexibility_torque, lever_arm, table1_recording
 
 MODALITIES = (RESIDUAL, SENSOR, MODEL)
 FILTERS = (MODIFIED_KALMAN, KALMAN, FINITE_DIFFERENCE)
@@ -34,6 +34,9 @@ RLS: dict[int, Mapping[str, float]] = {
     STANDARD: {"rls.kind": STANDARD, "rls.P_0": 1.0},
     CONSTANT_FACTOR: {"rls.kind": CONSTANT_FACTOR, "rls.P_0": 1.0},
 }
+
+
+REGRESSION = {"method": 2, "rls.n": 3, "prior.B": 0.1}
 
 
 def relative(estimates: np.ndarray[Any, Any], truth: Array) -> Array:
@@ -118,13 +121,6 @@ def test_paper2011_scales_P_with_the_noise(c: Library, kind: int) -> None:
     assert estimate.sigma_std == pytest.approx(want, rel=1e-12)
 
 
-def test_filtered_regression_scales_the_prior_with_the_ranges(c: Library) -> None:
-    values = {"method": 2, "setPoint.offset": 70.0}
-    r = 0.7  # set-point relative to range.setPoint
-    want = 45.0 / 0.3 * math.sqrt(1.0 + r**2 + r**4)
-    assert Estimator(c, values).estimate.sigma_std == pytest.approx(want, rel=1e-12)
-
-
 # The AwAS as a physical system
 
 
@@ -132,37 +128,30 @@ def test_modality_can_change_between_ticks(c: Library) -> None:
     # The regression continues with another torque
     z = table1_recording().measurements()[:600]
     estimator = Estimator(c, {"modality": MODEL})
-    first = estimator.run(z[:300])
+    estimator.run(z[:300])
     c.set(estimator.parameters, "modality", SENSOR)
     second = estimator.run(z[300:])
     # The same result is obtained from a sensor that shows the model's torque until the change
     mixed = z.copy()
-    model = first["epsilon"] + _fitted_before(first)
-    mixed[:300, 4] = model
+    theta, q, theta_c = z[:300, :3].T
+    mixed[:300, 4] = flexibility_torque(lever_arm(theta_c), q - theta)
     want = Estimator(c, {"modality": SENSOR}).run(mixed)
     assert second["sigma"] == pytest.approx(want["sigma"][300:], rel=1e-9)
     alone = Estimator(c, {"modality": MODEL}).run(z)
     assert not np.allclose(second["sigma"], alone["sigma"][300:], rtol=1e-6)
 
 
-def _fitted_before(estimates: np.ndarray[Any, Any]) -> Array:
-    """F(k)' eta(k-1), the predicted torque."""
-    phi, set_point = estimates["phi"], estimates["setPoint"]
-    eta = np.concatenate([np.zeros((1, 8, 5)), estimates["eta"][:-1]])
-    odd = phi[:, None] ** (2 * np.arange(8) + 1)
-    powers = set_point[:, None] ** np.arange(5)
-    fitted: Array = np.einsum("ki,kij,kj->k", odd, eta, powers)
-    return fitted
-
-
 # Samples that are not finite
 
 
+@pytest.mark.parametrize("values", [{}, REGRESSION], ids=["Paper2011", "FilteredRegression"])
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e300])
 @pytest.mark.parametrize("name", MEASUREMENTS)
-def test_a_bad_sample_is_skipped(c: Library, name: str, bad: float) -> None:
+def test_a_bad_sample_is_skipped(
+    c: Library, name: str, bad: float, values: Mapping[str, float]
+) -> None:
     z = table1_recording().measurements()
-    estimator = Estimator(c, {})
+    estimator = Estimator(c, values)
     estimator.run(z[:500])
     before = c.ffi.new("sh_estimate *", estimator.estimate[0])
     broken = z[500].copy()
@@ -175,23 +164,35 @@ def test_a_bad_sample_is_skipped(c: Library, name: str, bad: float) -> None:
     assert estimator.estimate.valid == 1
 
 
-@pytest.mark.parametrize("started", [0, 500])
+LARGEST = {**REGRESSION, "rls.n": 8, "rls.m": 5, "range.phi": 1e-6}
+
+
+@pytest.mark.parametrize(
+    ("values", "at"),
+    [
+        *(({"deformation": FILTERED}, at) for at in (1, 501)),
+        *((REGRESSION, at) for at in (1, 501, 540)),
+        *((LARGEST, at) for at in (503, 540)),
+    ],
+)
+@pytest.mark.parametrize("bad", [math.inf, 1e12, -1e12])
 @pytest.mark.parametrize("name", ["theta", "q"])
-def test_a_sample_that_would_overflow_changes_nothing(c: Library, name: str, started: int) -> None:
-    """GIVEN a finite sample whose powers overflow in the regression, after a gap or before the
-    first good sample, WHEN it is skipped, THEN filters, residual and regression are the same as
-    after a sample that is not finite."""
-    z = table1_recording().measurements()
-    states = []
-    for bad in (math.nan, 1e12):
-        estimator = Estimator(c, {"deformation": FILTERED})
-        estimator.run(z[:started])
-        estimator.tick([math.nan] * 5)
-        broken = z[started + 1].copy()
-        broken[MEASUREMENTS.index(name)] = bad
-        assert not estimator.tick(broken)
-        states.append(estimator.lasting())
-    assert states[0] == states[1]
+def test_a_refused_sample_leaves_the_state_as_a_lost_one(
+    c: Library, name: str, bad: float, values: Mapping[str, float], at: int
+) -> None:
+    """GIVEN a sample whose powers overflow in the regression, before the first good sample, after a
+    gap, while the filters settle or later, WHEN it is skipped, THEN all is as if it were lost."""
+    lost = table1_recording().measurements()[:1500]
+    lost[[0, 500, at]] = math.nan
+    refused = lost.copy()
+    refused[at] = 0.0
+    refused[at, MEASUREMENTS.index(name)] = bad
+    one, other = (Estimator(c, values) for _ in range(2))
+    found, want = one.run(refused), other.run(lost)
+    assert np.flatnonzero(found["valid"] == 0).tolist() == sorted({0, 500, at})
+    assert found.tobytes() == want.tobytes()
+    assert np.all(np.isfinite(found["sigma_std"]))
+    assert one.lasting() == other.lasting()
 
 
 def test_the_estimator_starts_with_the_first_good_sample(c: Library) -> None:
@@ -315,10 +316,13 @@ FILTERED_PHI = {"deformation": FILTERED, "encoder.q": 5000.0, "modality": SENSOR
     "changes",
     [
         {"filter.weighting": oracle.AS_PRINTED},
+        {"filter.weighting": oracle.AS_PRINTED, "encoder.theta": 0.0},
         {"encoder.theta": 0.0},
         {"rls.n": 1, "rls.m": 1},
         {"rls.n": 8, "rls.m": 5},
         {"samplePeriod": 2e-3, "residual.K_I": 100.0, "motor.gamma": -20.0},
+        {"samplePeriod": 1e-4, "residual.K_I": 10.0},
+        {"samplePeriod": 1e-2, "residual.K_I": 199.0},
         {"setPoint.offset": 0.0, "setPoint.scale": 0.01},
         {"rls.symmetric": 0},
         {"rls.symmetric": 0, "rls.n": 1, "rls.m": 1},
