@@ -48,7 +48,7 @@ def compile_driver(
 ) -> Path:
     """Compiles a program of drivers/ and an FMU, in a new folder inside `folder`.
 
-    driver   "threads", "cycles" or "fuzz"
+    driver   "instances", "instructions" or "fuzz"
     version  of FMI, "fmi2" or "fmi3"
     """
     program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{version}_{fmu}"

@@ -7,6 +7,8 @@ import platform
 import re
 import subprocess
 import sys
+from collections import defaultdict
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -18,37 +20,47 @@ from gate import need
 TABLE = Path(__file__).parent / "instructions.toml"
 FLAGS = ("-target", "x86_64-linux-musl", "-static", "-O3")  # the C library comes with the compiler
 MORE = 0.02  # so much more is a loss
-FEW, MANY = 300, 900  # rounds; what a start costs is in both
-METHODS = {"tick of Paper2011": "1", "tick of FilteredRegression": "2"}
+STEPS = 600  # of instructions.c
+PAPER2011, FILTERED_REGRESSION = "1", "2"
+ROW = r"^ *([\d,]+) \(.*?\) +\S+:(\w+)"  # of callgrind_annotate: instructions and function
 
 
-def counted(program: Path, subject: str) -> float:
-    totals = []
-    for rounds in (FEW, MANY):
-        valgrind = [need("valgrind"), "--tool=cachegrind", "--cache-sim=no"]
-        command = [*valgrind, "--cachegrind-out-file=/dev/null", str(program), subject, str(rounds)]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-        (total,) = re.findall(r"I +refs: +([\d,]+)", done.stderr)
-        totals.append(int(total.replace(",", "")))
-    return (totals[1] - totals[0]) / (MANY - FEW)
+def counted(program: Path, method: str) -> Mapping[str, float]:
+    """Instructions per step in each function, and in all that it calls."""
+    profile = program.with_name("profile")
+    valgrind = need("valgrind")
+    tool = [valgrind, "--tool=callgrind", f"--callgrind-out-file={profile}"]
+    subprocess.run([*tool, str(program), method], capture_output=True, check=True)
+    annotate = str(Path(valgrind).with_name("callgrind_annotate"))
+    command = [annotate, "--inclusive=yes", "--auto=no", "--threshold=100", str(profile)]
+    # In another folder than that of the sources, which it would list under two names.
+    listed = subprocess.run(command, cwd=program.parent, capture_output=True, text=True, check=True)
+    found: defaultdict[str, float] = defaultdict(float)
+    # A function has a row for its own file, and one for each header of its inline functions.
+    for total, function in re.findall(ROW, listed.stdout, re.M):
+        found[function] += int(total.replace(",", "")) / STEPS
+    return found
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64" or sys.platform != "linux", reason="for Linux")
-@pytest.mark.slow("valgrind executes each part thousands of times, a hundred times slower")
+@pytest.mark.slow("the programs are compiled with their C library, and run in valgrind")
 def test_nothing_needs_more_instructions(build: Path, tmp_path: Path) -> None:
     compiler = tmp_path / "cc"
     compiler.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m ziglang cc "$@"\n')
     compiler.chmod(0o755)
-    programs = {
-        fmu: compile_driver("instructions", fmu, "fmi2", build, tmp_path, str(compiler), flags)
-        for fmu, flags in (("StiffnessEstimator", FLAGS), ("AwasPlant", (*FLAGS, "-DSH_PLANT")))
+    estimator, plant = (
+        compile_driver("instructions", fmu, "fmi2", build, tmp_path, str(compiler), FLAGS)
+        for fmu in ("StiffnessEstimator", "AwasPlant")
+    )
+    paper, regression = (counted(estimator, m) for m in (PAPER2011, FILTERED_REGRESSION))
+    found = {
+        "least squares, 18 parameters": paper["sh_least_squares_update"],
+        "tick of Paper2011": paper["sh_estimator_tick"],
+        "tick of FilteredRegression": regression["sh_estimator_tick"],
+        "FMU, step in addition to the tick": paper["fmi2DoStep"] - paper["sh_estimator_tick"],
+        "AwasPlant, step": counted(plant, PAPER2011)["fmi2DoStep"],
     }
-    estimator = programs["StiffnessEstimator"]
-    found = {"least squares, 18 parameters": counted(estimator, "least_squares")}
-    found |= {name: counted(estimator, method) for name, method in METHODS.items()}
-    step = counted(estimator, "step")
-    found["FMU, step in addition to the tick"] = step - found["tick of Paper2011"]
-    found["AwasPlant, step"] = counted(programs["AwasPlant"], "step")
+    found |= {f"FMU, {f}": paper[f] for f in ("fmi2SetReal", "fmi2GetReal")}
     if os.environ.get("SIGMAHAT_COUNT"):
         comments = [line for line in TABLE.read_text().splitlines() if line.startswith("#")]
         rows = tomlkit.dumps({name: round(count) for name, count in found.items()})
