@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from recorded_logs import CONFIGURATION, Array, Columns, T, awas_log
-from sigmahat.identification.coherence import TorqueNoise, coherent_range
+from sigmahat.identification.coherence import coherent_range
 from sigmahat.identification.identify import identify
+from sigmahat.identification.noise import TorqueNoise
 from sigmahat.identification.quantities import Identified
 from sigmahat.identification.regression import Signals
 from sigmahat.identification.write import write
@@ -102,8 +103,10 @@ def test_the_prior_holds_what_encoders_read_at_different_times_show(
 
 @pytest.mark.parametrize(("noise_of_phi", "is_noise"), [(1e-7, False), (2e-3, True)])
 def test_a_noisy_deformation_limits_the_bandwidth(noise_of_phi: float, is_noise: bool) -> None:
-    noise = TorqueNoise(torque=9e-6, position=0.0, inertia=1e-3, T=T)
-    limit = coherent_range(motor(noise_of_phi), 50.0, 40.0, noise)
+    equal_at_40_Hz = 9e-6 / (1e-3 * (2 * np.pi * 40) ** 2) ** 2
+    noise = TorqueNoise(torque=9e-6, position=equal_at_40_Hz, inertia=1e-3, T=T)
+    assert noise.bandwidth == pytest.approx(40.0)
+    limit = coherent_range(motor(noise_of_phi), 50.0, noise)
     assert (limit < 6.0) if is_noise else limit == math.inf
 
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from sigmahat.checks.view import View
 from sigmahat.identification import regression
-from sigmahat.identification.coherence import TorqueNoise, coherent_range
-from sigmahat.identification.noise import bandwidth, variance
+from sigmahat.identification.coherence import coherent_range
+from sigmahat.identification.noise import TorqueNoise
 from sigmahat.identification.regression import EXTRA, MOTOR, Equations, Fit, Form, Signals, fit
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
@@ -136,14 +136,11 @@ def explains(before: Fit, after: Fit) -> bool:
 
 def _band(seen: View, pieces: Sequence[Signals]) -> float:
     """Low pass of the equations, as identify chooses it [Hz]."""
-    longest, T = max(pieces, key=lambda piece: len(piece.theta)), seen.T
-    counts, inertia = float(seen.every["encoder.theta"]), float(seen.every["motor.B"])
-    theta = variance(longest.theta, 2 * math.pi / counts if counts else 0.0)
-    noise = variance(longest.tau), theta, inertia * abs(seen.gamma), T
-    f_0 = bandwidth(*noise)
+    longest = max(pieces, key=lambda piece: len(piece.theta))
+    noise = TorqueNoise.of(longest.tau, longest.theta, seen.every, seen.T)
     if seen.has_sensor:
-        return f_0
-    return min(f_0, coherent_range(longest, seen.gamma, f_0, TorqueNoise(*noise)))
+        return noise.bandwidth
+    return min(noise.bandwidth, coherent_range(longest, seen.gamma, noise))
 
 
 def with_all_powers(seen: View, pieces: Sequence[Signals], form: Form) -> Fit:

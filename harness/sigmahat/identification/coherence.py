@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from sigmahat.identification.noise import TorqueNoise
 from sigmahat.identification.regression import MOTOR, Form, Signals, equations, fit, rows
 from sigmahat.logs.log import Array
 
@@ -23,30 +23,14 @@ _COHERENT = 0.5
 _LARGER = 4.0  # power of the deformation over what the noise of the torque explains
 
 
-@dataclass(frozen=True)
-class TorqueNoise:
-    """White noise of torque and position, as a torque on the motor's axis."""
-
-    torque: float  # variance [(N.m)2]
-    position: float  # variance [rad2]
-    inertia: float  # torque per acceleration, B gamma [kg.m2]
-    T: float  # time between samples [s]
-
-    def density(self, f: Array) -> Array:
-        """Power spectral density, one-sided [(N.m)2/Hz], at the frequencies f [Hz]."""
-        by_position = (self.inertia * (2 * math.pi * f) ** 2) ** 2 * self.position
-        density: Array = 2 * self.T * (self.torque + by_position)
-        return density
-
-
-def coherent_range(piece: Signals, gamma: float, highest: float, noise: TorqueNoise) -> float:
-    """Frequency above which the deformation is noise [Hz]; inf if it is not up to `highest`.
+def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
+    """Frequency above which the deformation is noise [Hz]; inf if it is not up to the bandwidth.
 
     Bands of half an octave. From the frequency on, the coherence of deformation and torque is below
     one half in all of them, and in the first one the deformation has more power than the noise of
     the torque explains.
     """
-    T = noise.T
+    T, highest = noise.T, noise.bandwidth
     if highest <= _LOWEST or len(piece.theta) * T < 2 * _SEGMENT:
         return math.inf
     low = Form(min(_FIRST, highest), min(_FIRST, highest))
@@ -61,10 +45,11 @@ def coherent_range(piece: Signals, gamma: float, highest: float, noise: TorqueNo
     torque, spring = np.concatenate(torques), np.concatenate(springs)
     if not np.all(np.isfinite(torque) & np.isfinite(spring)):
         return math.inf
-    return _incoherent_above(torque, spring, highest, noise)
+    return _incoherent_above(torque, spring, noise)
 
 
-def _incoherent_above(torque: Array, spring: Array, highest: float, noise: TorqueNoise) -> float:
+def _incoherent_above(torque: Array, spring: Array, noise: TorqueNoise) -> float:
+    highest = noise.bandwidth
     frequency, shared, power = spectra(torque, spring, 2 * noise.T)  # every second sample
     bands = math.ceil(2 * math.log2(highest / _LOWEST))
     limit = math.inf

@@ -13,9 +13,9 @@ from dataclasses import replace
 import numpy as np
 
 from sigmahat.fmi.instance import Fmu, Slave, Value, installed
-from sigmahat.identification.coherence import TorqueNoise, coherent_range
+from sigmahat.identification.coherence import coherent_range
 from sigmahat.identification.motor import KnownInertia, fit_motor
-from sigmahat.identification.noise import bandwidth, best_V_a, low_pass, variance
+from sigmahat.identification.noise import TorqueNoise, best_V_a, low_pass
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import Signals, shortest, signals_of
 from sigmahat.logs.configuration import Configuration
@@ -67,30 +67,24 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     if not pieces:
         raise LogError(f"{log.path}: {_too_short(samples, shortest(T) * T)}")
     longest = max(pieces, key=lambda piece: len(piece.theta))
-    tau_variance = variance(longest.tau)
-    theta_variance = variance(longest.theta, _step(every["encoder.theta"]))
-    B = float(every["motor.B"])
+    noise = TorqueNoise.of(longest.tau, longest.theta, every, T)
+    f_0 = noise.bandwidth
     asked = bool(configuration.parameters.get("rls.symmetric", False))
     symmetric = asked and not configuration.symmetric_chosen
-    f_0 = bandwidth(tau_variance, theta_variance, B * abs(gamma), T)
-    coherent = math.inf
-    if not torque_constant:
-        noise = TorqueNoise(tau_variance, theta_variance, B * abs(gamma), T)
-        coherent = coherent_range(longest, gamma, f_0, noise)
+    coherent = math.inf if torque_constant else coherent_range(longest, gamma, noise)
     apart = _apart(pieces, _step(every["encoder.theta"]))
-    low_pass = min(bandwidth(tau_variance, theta_variance, B * abs(gamma), apart * T), coherent)
     motor = fit_motor(
         [each.every(apart) for each in pieces],
         apart * T,
         gamma,
         symmetric,
-        low_pass,
+        min(replace(noise, T=apart * T).bandwidth, coherent),
         _known_inertia(every, configuration),
     )
     V_a = _best_V_a(fmu, samples, start, longest, f_0)
     quantities = dict(motor.quantities)
     if quantities["B"].determined:  # until here it was that of the configuration
-        f_0 = bandwidth(tau_variance, theta_variance, quantities["B"].value * abs(gamma), T)
+        f_0 = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
     nominal = configuration.ports["tau"].torque_constant
     if torque_constant and nominal is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
@@ -101,8 +95,8 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         symmetric=motor.polynomial.symmetric,
         n=motor.polynomial.n,
         m=motor.polynomial.m,
-        tau_variance=tau_variance,
-        theta_variance=theta_variance,
+        tau_variance=noise.torque,
+        theta_variance=noise.position,
         bandwidth=2 * math.pi * min(f_0, coherent),
         coherent=coherent,
         V_a=V_a,
@@ -110,7 +104,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         zero=zero,
         set_point=set_point,
         torque=max(abs(gamma) * tau, _finite(motor.spring)),
-        B=B,
+        B=float(every["motor.B"]),
         D_theta=float(every["motor.D_theta"]),
         notes=samples.notes,
     )

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
+from sigmahat.fmi.instance import Value
 from sigmahat.logs.log import Array
 
 _WINDOWS = 40
@@ -29,21 +31,41 @@ def variance(values: Array, resolution: float = 0.0) -> float:
     return max(found, resolution**2 / 12)
 
 
-def bandwidth(torque: float, theta: float, inertia: float, T: float) -> float:
-    """Frequency at which a position twice differentiated becomes noisier than the torque [Hz].
+@dataclass(frozen=True)
+class TorqueNoise:
+    """White noise of torque and position of a motor, as a torque on the motor's axis."""
 
-    torque   variance of the noise of the torque [(N.m)2]
-    theta    variance of the noise of the position [rad2]
-    inertia  torque per acceleration: B gamma on the motor's axis [kg.m2]
+    torque: float  # variance [(N.m)2]
+    position: float  # variance, rounding included [rad2]
+    inertia: float  # torque per acceleration, B gamma [kg.m2]
+    T: float  # time between samples [s]
 
-    The sum of both noises is about white below this frequency, and is attenuated above it, if it
-    is weighted by 1/(1 + (f/f_0)^4), the squared gain of a Butterworth filter of second order.
-    """
-    highest = _HIGHEST / T
-    if theta <= 0.0:
-        return highest
-    frequency = math.sqrt(math.sqrt(torque / (inertia**2 * theta))) / (2 * math.pi)
-    return min(max(frequency, _LOWEST), highest)
+    @staticmethod
+    def of(tau: Array, theta: Array, every: Mapping[str, Value], T: float) -> TorqueNoise:
+        """The noise of the signals of a motor; `every` are the parameters of the estimator."""
+        counts, inertia = float(every["encoder.theta"]), float(every["motor.B"])
+        position = variance(theta, 2 * math.pi / counts if counts else 0.0)
+        return TorqueNoise(variance(tau), position, inertia * abs(float(every["motor.gamma"])), T)
+
+    @property
+    def bandwidth(self) -> float:
+        """Frequency at which a position twice differentiated is noisier than the torque [Hz].
+
+        The sum of both noises is about white below this frequency, and is attenuated above it, if
+        it is weighted by 1/(1 + (f/f_0)^4), the squared gain of a Butterworth filter of second
+        order.
+        """
+        highest = _HIGHEST / self.T
+        if self.position <= 0.0:
+            return highest
+        ratio = self.torque / (self.inertia**2 * self.position)
+        return min(max(math.sqrt(math.sqrt(ratio)) / (2 * math.pi), _LOWEST), highest)
+
+    def density(self, f: Array) -> Array:
+        """Power spectral density, one-sided [(N.m)2/Hz], at the frequencies f [Hz]."""
+        by_position = (self.inertia * (2 * math.pi * f) ** 2) ** 2 * self.position
+        density: Array = 2 * self.T * (self.torque + by_position)
+        return density
 
 
 def low_pass(values: Array, frequency: float, h: float) -> Array:
