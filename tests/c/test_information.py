@@ -1,42 +1,43 @@
-"""Least squares in the information form, against dense matrices."""
+"""Least squares in the information form, against dense matrices in extended precision."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+import dense_regression
 import oracle
 from c_library import Array, Library
 from c_regression import SIDES, dense, factors
 
 SIZES = [1, 2, 3, 4, 5, 9, 31, 63]
 Y = 1  # the side of y
+each_size = pytest.mark.parametrize("size", SIZES)
 
 
 class Information:
-    """The C struct, and the same as dense matrices."""
+    """The C struct, and the same as a dense matrix."""
 
     def __init__(self, c: Library, size: int, precision: float = 1.0) -> None:
         self.c, self.size = c, size
         self.a = c.new("sh_information")
         c.lib.sh_information_start(self.a, size, precision)
-        self.matrix = precision * np.eye(size)
-        self.right = np.zeros((size, SIDES))
-        self.squares = 0.0  # sum of w y^2
+        self.want = dense_regression.Information(size, precision)
 
-    def take(self, x: Array, sides: Array, w: float) -> tuple[float, float]:
-        """Returned weight, and the prediction error of y that remains in the row."""
-        row = np.append(x, sides)
-        returned = self.c.lib.sh_information_take(self.a, self.c.pointer(row), w)
-        self.matrix += w * np.outer(x, x)
-        self.right += w * np.outer(x, sides)
-        self.squares += w * sides[Y] ** 2
-        return returned, row[-1]
+    @property
+    def matrix(self) -> Array:
+        return self.want.matrix[: self.size, : self.size].astype(float)
+
+    def take(self, row: Array, w: float) -> tuple[float, float]:
+        """Takes a row (x, sides). Returned weight, and prediction error of y left in the row."""
+        left = row.copy()
+        returned = self.c.lib.sh_information_take(self.a, self.c.pointer(left), w)
+        self.want.take(row.astype(np.longdouble), w)
+        return returned, left[-1]
 
     def fill(self, rng: np.random.Generator, samples: int) -> None:
         for _ in range(samples):
-            x, sides = rng.normal(size=self.size), rng.normal(size=SIDES)
-            self.take(x, sides, rng.uniform(0.1, 3.0))
+            self.take(rng.normal(size=self.size + SIDES), rng.uniform(0.1, 3.0))
 
     def solve(self, side: int) -> Array:
         """The estimate for a side."""
@@ -55,70 +56,54 @@ class Information:
         return np.array(of_each)
 
     def check(self, rel: float = 1e-9) -> None:
-        """The factors multiply to the dense matrices."""
-        matrix, right = dense(self.a)
-        assert matrix == pytest.approx(self.matrix, rel=rel, abs=rel * np.max(abs(self.matrix)))
-        assert right == pytest.approx(self.right, rel=rel, abs=rel * np.max(abs(self.right)))
+        """The factors multiply to the dense matrix, and its least sum of squares is left."""
+        n = self.size
+        found, want = np.hstack(dense(self.a)), self.want.matrix[:n].astype(float)
+        assert found == pytest.approx(want, rel=rel, abs=rel * float(np.max(abs(want[:, :n]))))
         assert np.all(factors(self.a)[1] > 0)
+        assert self.a.squares == pytest.approx(float(self.want.rest), rel=1e-8)
 
 
-@pytest.mark.parametrize("size", SIZES)
+@each_size
 def test_samples_add_to_the_information(c: Library, size: int) -> None:
     rng = np.random.default_rng(size)
     a = Information(c, size, 0.5)
     for _ in range(2 * size + 3):
-        x, sides, w = rng.normal(size=size), rng.normal(size=SIDES), rng.uniform(0, 3)
-        inverse = np.linalg.inv(a.matrix)
+        row, w = rng.normal(size=size + SIDES), rng.uniform(0, 3)
+        x, inverse = row[:size], np.linalg.inv(a.matrix)
+        error = row[-1] - x @ inverse @ a.want.matrix[:size, -1].astype(float)
         rho = x @ inverse @ x
-        error = sides[Y] - x @ inverse @ a.right[:, Y]
-        assert a.take(x, sides, w) == pytest.approx((w / (1 + w * rho), error), rel=1e-8)
+        assert a.take(row, w) == pytest.approx((w / (1 + w * rho), error), rel=1e-8)
     a.check()
     for side in range(SIDES):
-        want = np.linalg.solve(a.matrix, a.right[:, side])
+        right = a.want.matrix[:size, size + side].astype(float)
+        want = np.linalg.solve(a.matrix, right)
         assert a.solve(side) == pytest.approx(want, rel=1e-8, abs=1e-10)
+    for beta in (rng.normal(size=size), a.solve(Y)):
+        found = c.lib.sh_information_squares(a.a, c.pointer(beta))
+        assert found == pytest.approx(a.want.squares(beta), rel=1e-9)
 
 
-@pytest.mark.parametrize("size", SIZES)
+@each_size
 def test_a_negative_weight_removes_a_sample(c: Library, size: int) -> None:
     rng = np.random.default_rng(size)
     a = Information(c, size)
     a.fill(rng, 2 * size)
-    matrix, squares = a.matrix.copy(), a.a.squares
-    x, sides = rng.normal(size=size), rng.normal(size=SIDES)
-    a.take(x, sides, 2.0)
-    rho = x @ np.linalg.inv(a.matrix) @ x
-    returned, _ = a.take(x, sides, -2.0)
+    row = rng.normal(size=size + SIDES)
+    a.take(row, 2.0)
+    rho = row[:size] @ np.linalg.inv(a.matrix) @ row[:size]
+    returned, _ = a.take(row, -2.0)
     assert returned == pytest.approx(-2.0 / (1 - 2.0 * rho), rel=1e-8)
-    assert a.matrix == pytest.approx(matrix)
     a.check()
-    assert a.a.squares == pytest.approx(squares, rel=1e-8)
-
-
-@pytest.mark.parametrize("size", SIZES)
-def test_the_squares_are_those_of_all_samples_and_of_the_start(c: Library, size: int) -> None:
-    rng = np.random.default_rng(size)
-    a = Information(c, size, 0.3)
-    a.fill(rng, size + 5)
-    beta = rng.normal(size=size)
-    want = a.squares - 2 * beta @ a.right[:, Y] + beta @ a.matrix @ beta
-    assert c.lib.sh_information_squares(a.a, c.pointer(beta)) == pytest.approx(want, rel=1e-9)
-    best = a.solve(Y)
-    least = a.squares - a.right[:, Y] @ best
-    assert a.a.squares == pytest.approx(least, rel=1e-8)
-    assert c.lib.sh_information_squares(a.a, c.pointer(best)) == pytest.approx(
-        a.a.squares, rel=1e-9
-    )
 
 
 def test_fading_scales_all_weights(c: Library) -> None:
     a = Information(c, 5, 1e-9)
     a.fill(np.random.default_rng(2), 20)
-    estimate, rest = a.solve(Y), a.a.squares
+    estimate = a.solve(Y)
     c.lib.sh_information_forget(a.a, 0.25, 1e-9)
-    a.matrix *= 0.25
-    a.right *= 0.25
+    a.want.matrix *= 0.25
     a.check()
-    assert a.a.squares == pytest.approx(0.25 * rest)
     assert a.solve(Y) == pytest.approx(estimate, rel=1e-12)
 
 
@@ -130,7 +115,7 @@ def test_fading_keeps_the_least_precision(c: Library) -> None:
     assert factors(a.a)[1].tolist() == [1.0] * 5
 
 
-@pytest.mark.parametrize("size", SIZES)
+@each_size
 @pytest.mark.parametrize("variance", [0.0, 1e-6, 0.3, 1e6])
 def test_process_noise_adds_to_the_covariance_and_keeps_the_estimate(
     c: Library, size: int, variance: float
@@ -164,7 +149,7 @@ def test_columns_that_are_almost_equal(c: Library, distance: float) -> None:
     for precision, rel in ((1.0, 1e-9), (1e-9, 1e-3)):
         a = Information(c, 4, precision)
         for x, value in zip(rows, y, strict=True):
-            a.take(x, np.array([0.0, value]), 1.0)
+            a.take(np.append(x, [0.0, value]), 1.0)
         exact = oracle.exact(rows)
         matrix = exact.T @ exact + np.diag(oracle.exact([precision] * 4))
         want = oracle.rounded(oracle.solve(matrix, exact.T @ oracle.exact(y)[:, None]))[:, 0]
