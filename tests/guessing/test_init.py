@@ -13,6 +13,7 @@ from command_line import Shell
 from recorded_logs import write_log
 from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Fmu
+from sigmahat.guessing.columns import read_columns
 from sigmahat.guessing.guess import guess
 from sigmahat.guessing.template import write
 from sigmahat.logs.configuration import read_configuration
@@ -178,7 +179,8 @@ def test_the_configuration_of_many_columns_can_be_read_again(tmp_path: Path) -> 
         f"a_column_with_a_long_name_that_does_not_move[{i}]": np.ones(1000) for i in range(1500)
     }
     log = LogInMemory(tmp_path / "log", {**LOG, **many})
-    text = write(log, guess(log), {"motor.B": 1.0, "motor.D_theta": 1.0})
+    columns = read_columns(log)
+    text = write(log, columns, guess(columns), {"motor.B": 1.0, "motor.D_theta": 1.0})
     (tmp_path / "log.toml").write_text(text)
     assert toml_file.read(tmp_path / "log.toml")["ports"]
     assert "# " + "  and 1304 more, left out here" in text

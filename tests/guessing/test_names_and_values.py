@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from foreign_joint import GEAR, Motion, T, joint
-from sigmahat.guessing.columns import Facts, interval, look_at
+from sigmahat.guessing.columns import Facts, interval, look_at, read_columns
 from sigmahat.guessing.guess import JointGuess, guess
 from sigmahat.guessing.words import meaning
 from sigmahat.logs.log import LogInMemory
@@ -86,7 +86,7 @@ def test_the_sampling_period(times: np.ndarray, period: float) -> None:
 
 
 def only(columns: dict[str, np.ndarray]) -> JointGuess:
-    (found,) = guess(LogInMemory(Path("log"), columns)).values()
+    (found,) = guess(read_columns(LogInMemory(Path("log"), columns))).values()
     return found
 
 

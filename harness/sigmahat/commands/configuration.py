@@ -41,6 +41,7 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
     from sigmahat.files.output import write_whole
     from sigmahat.fmi.instance import installed
     from sigmahat.guessing import template
+    from sigmahat.guessing.columns import read_columns
     from sigmahat.guessing.guess import guess, one_joint
     from sigmahat.logs.readers.formats import open_log
 
@@ -48,13 +49,14 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
     one = config or common.configuration_of(log)
     with common.errors_in_one_line(one, "--config"):
         opened = open_log(log)
-        guessed = guess(opened)
+        columns = read_columns(opened)
+        guessed = guess(columns)
         if joint is not None:
             guessed = {"": one_joint(opened, guessed, joint)}
         common.refuse_to_overwrite(one, force, "--config")
         fmu = installed("StiffnessEstimator")
         motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
-        write_whole(template.write(opened, guessed, motor), one)
+        write_whole(template.write(opened, columns, guessed, motor), one)
     common.answer("\n".join([*opened.notes, _text(log, guessed, one)]))
 
 
@@ -142,8 +144,7 @@ def check(log: Path, config: Path | None, joint: str) -> int:
     common.need_fmu("StiffnessEstimator")
     config = config or common.configuration_of(log)
     with common.errors_in_one_line(config, "--config"):
-        joints = common.joints_of(log, config, joint)
-        checked = common.for_each(joints, partial(_checked, log, config))
+        checked = common.for_each_joint(log, config, joint, partial(_checked, log, config))
     texts = {name: f"{log} with {config}\n{summary(each)}" for name, each in checked.items()}
     common.answer_of_joints(texts, {name: as_dict(each) for name, each in checked.items()})
     return 1 if any(each.is_wrong for each in checked.values()) else 0
@@ -191,10 +192,10 @@ def identify(
     config = config or common.configuration_of(log)
     texts, values = {}, {}
     with common.errors_in_one_line(config, "--config"):
-        joints = common.joints_of(log, config, joint)
         job = partial(_identified, log, config, torque_constant, dry_run)
+        every = common.for_each_joint(log, config, joint, job)
         document = read_document(config)
-        for name, (found, checked) in common.for_each(joints, job).items():
+        for name, (found, checked) in every.items():
             written = [] if dry_run else update(document, found, name)
             texts[name] = f"{log}\n{summary(found)}"
             if written:

@@ -1,6 +1,6 @@
 """Guesses the joints of a log, and for each joint the column of every port.
 
-    joints = guess(open_log(path))
+    joints = guess(read_columns(open_log(path)))
     joints["knee"].ports["theta"].column
 
 A guess is data: `template.py` writes it as a configuration.
@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sigmahat.fmi.unknown_name import unknown
-from sigmahat.guessing.columns import Column, Columns, read_columns
+from sigmahat.guessing.columns import Column, Columns
 from sigmahat.guessing.ports import PortGuess, guess_ports
 from sigmahat.guessing.roles import Roles, assign, chosen_roles
 from sigmahat.logs.configuration import PORTS
@@ -64,15 +64,6 @@ def _all_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
 
 
 @dataclass(frozen=True)
-class Seen:
-    name: str
-    samples: int
-    low: float  # smallest value; nan if the column has no numbers
-    high: float  # largest value; nan if the column has no numbers
-    what: str  # in a few words: the port, or why the column has no port
-
-
-@dataclass(frozen=True)
 class JointGuess:
     name: str  # name of the joint in the columns; empty if no column names a joint
     time: str | None
@@ -82,21 +73,15 @@ class JointGuess:
     longest_gap: float | None
     """Longest gap because of single lost rows [s]; None if no rows are lost."""
     ports: Mapping[str, PortGuess]  # guesses of the ports that have a column, in the order of PORTS
-    columns: Sequence[Seen]  # all columns of the log, including columns of other joints
 
 
-def guess(log: Log) -> dict[str, JointGuess]:
+def guess(columns: Columns) -> dict[str, JointGuess]:
     """The joints of a log by their names, in the order of the columns; at least one joint.
 
     A joint lacks a port if no column of the log looks like this port.
     """
-    return guess_of(read_columns(log), log)
-
-
-def guess_of(columns: Columns, log: Log) -> dict[str, JointGuess]:
-    """As `guess`, from columns of a log that were already read."""
     found = joints_of_log(columns.signals, columns.window_T)
-    return {name: _joint(name, roles, columns, log) for name, roles in found.items()}
+    return {name: _joint(name, roles, columns) for name, roles in found.items()}
 
 
 def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGuess:
@@ -123,37 +108,10 @@ def guess_chosen(columns: Columns, names: Mapping[str, str | None]) -> dict[str,
     return guess_ports(roles, columns, next(iter(clocks), None))
 
 
-def _joint(name: str, roles: Roles, columns: Columns, log: Log) -> JointGuess:
+def _joint(name: str, roles: Roles, columns: Columns) -> JointGuess:
     clocks = {port: role.column.clock for port, role in roles.ports.items()}
     first = [clocks[port] for port in PORTS if port in clocks]
     main = first[0] if first else next(iter(columns.clocks), None)
-    ports = guess_ports(roles, columns, main)
-    uses = {port.column: f"ports.{each}" for each, port in ports.items()}
-    times = [main, *(port.time for port in ports.values())]
-    uses |= dict.fromkeys((each for each in times if each), "time")
-    by_name = {each.name: each for each in columns.signals}
-    seen = []
-    for column, samples in log.columns.items():
-        facts = columns.facts[column]
-        other = _what(by_name[column]) if column in by_name else "another time"
-        seen.append(Seen(column, samples, facts.low, facts.high, uses.get(column) or other))
     unit = columns.clocks.get(main or "", "s")
-    return JointGuess(name, main, unit, columns.intervals[main], columns.gaps[main], ports, seen)
-
-
-def _what(column: Column) -> str:
-    meaning, facts = column.meaning, column.facts
-    if facts.text:
-        return "text"
-    if facts.low != facts.low:
-        return "no number"
-    if not facts.varies:
-        return "constant" if facts.low == facts.high else "a few values only"
-    words = [
-        "reference" if meaning.reference else "",
-        "computed" if meaning.computed else "",
-        "" if meaning.quantity in (None, "other") else meaning.quantity,
-        f"of {' '.join(meaning.joints)}" if meaning.joints and meaning.quantity else "",
-    ]
-    said = " ".join(word for word in words if word)
-    return f"{said}, not used" if said else "not placed"
+    ports = guess_ports(roles, columns, main)
+    return JointGuess(name, main, unit, columns.intervals[main], columns.gaps[main], ports)

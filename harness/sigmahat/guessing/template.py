@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from itertools import accumulate
 
 import tomlkit
 from tomlkit.items import Item, Table
 
-from sigmahat.guessing.columns import TURN, likely_unit
-from sigmahat.guessing.guess import JointGuess, Seen
+from sigmahat.guessing.columns import TURN, Columns, likely_unit
+from sigmahat.guessing.guess import JointGuess
+from sigmahat.guessing.listing import listed
 from sigmahat.guessing.ports import PortGuess
 from sigmahat.logs.configuration import (
     ANOTHER_ROBOT,
@@ -38,7 +38,6 @@ _RANGE = (1.0, 100.0)  # of the set-point
 _GAIN = 0.02  # relative, the start value of the FMU
 _ALIKE = 1.2
 """Largest ratio of similar gear ratios as seen in a log: a soft joint may exceed its motor."""
-_MOST_LISTED, _LONGEST_LIST = 200, 40_000  # columns, and bytes of their lines together
 _HEAD = """\
 Configuration for {log}{joint}, guessed from names and values of its columns.
 Lines with FILL IN need a value of your data sheet; lines with CHECK are less sure than others.
@@ -58,15 +57,21 @@ Common keys of all joints are written once, below. Each joint has sections [join
 whose keys replace common keys: move a key there if a joint differs."""
 
 
-def write(log: Log, joints: Mapping[str, JointGuess], fmu_defaults: Mapping[str, float]) -> str:
+def write(
+    log: Log,
+    columns: Columns,
+    joints: Mapping[str, JointGuess],
+    fmu_defaults: Mapping[str, float],
+) -> str:
     """The text of a configuration. If no column looks like a port, the text asks for a column.
 
+    columns       of the log
     joints        of the log, by name; values that are common to all joints are written once
     fmu_defaults  start values of motor.B and motor.D_theta of the estimator
     """
-    columns = "\n".join(_listed(joints))
+    lines = "\n".join(listed(log, columns, joints))
     name = "" if len(joints) > 1 else next(iter(joints.values())).name
-    head = _HEAD.format(log=log.path.name, joint=name and f", joint {name}", columns=columns)
+    head = _HEAD.format(log=log.path.name, joint=name and f", joint {name}", columns=lines)
     if len(joints) > 1:
         head += _OF_SEVERAL
     guesses = _with_one_gear(joints).items()
@@ -112,30 +117,6 @@ def _document(
     document.add("ports", ports)
     document.add("parameters", _parameters(guess, fmu_defaults))
     return document
-
-
-def _listed(joints: Mapping[str, JointGuess]) -> Iterator[str]:
-    """A line for each column, but not more lines than fit a configuration."""
-    rows = zip(*(each.columns for each in joints.values()), strict=True)
-    lines = [f"  {_seen(_used(dict(zip(joints, row, strict=True))))}" for row in rows]
-    ends = accumulate(len(line.encode()) for line in lines)
-    shown = min(_MOST_LISTED, sum(end < _LONGEST_LIST for end in ends))
-    yield from lines[:shown]
-    if shown < len(lines):
-        yield f"  and {len(lines) - shown} more, left out here"
-
-
-def _used(column: Mapping[str, Seen]) -> Seen:
-    """A column in the view of the joint that uses this column, else of the first joint."""
-    for name, seen in column.items():
-        if seen.what.startswith("ports."):
-            return replace(seen, what=f"{name} {seen.what}".strip())
-    return next(iter(column.values()))
-
-
-def _seen(column: Seen) -> str:
-    span = "" if math.isnan(column.low) else f", {column.low:.6g} to {column.high:.6g}"
-    return f"{column.name}: {column.samples} samples{span}; {column.what}"
 
 
 def _is_sensor(guess: JointGuess) -> bool:

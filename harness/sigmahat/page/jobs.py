@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sigmahat.fmi.instance import FmuError, Slave, installed
 from sigmahat.guessing import template
 from sigmahat.guessing.columns import read_columns
-from sigmahat.guessing.guess import guess_chosen, guess_of
+from sigmahat.guessing.guess import guess, guess_chosen
 from sigmahat.logs.job import Replay
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.page.setup import Chosen, Look, Setup
@@ -56,10 +56,10 @@ def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
     units, signs and gear of columns that the user chooses.
     """
     columns = read_columns(log)
-    joints = guess_of(columns, log)
+    joints = guess(columns)
     fmu = installed("StiffnessEstimator")
     motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
-    templates = {name: template.write(log, {name: joint}, motor) for name, joint in joints.items()}
+    templates = {n: template.write(log, columns, {n: each}, motor) for n, each in joints.items()}
     return templates, partial(guess_chosen, columns)
 
 
