@@ -180,7 +180,7 @@ def test_the_configuration_of_many_columns_can_be_read_again(tmp_path: Path) -> 
     }
     log = LogInMemory(tmp_path / "log", {**LOG, **many})
     columns = read_columns(log)
-    text = write(log, columns, guess(columns), {"motor.B": 1.0, "motor.D_theta": 1.0})
+    text = write(log, columns, guess(columns))
     (tmp_path / "log.toml").write_text(text)
     assert toml_file.read(tmp_path / "log.toml")["ports"]
     assert "# " + "  and 1304 more, left out here" in text

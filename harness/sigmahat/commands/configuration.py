@@ -39,7 +39,6 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
     Example: sigmahat init knee.csv
     """
     from sigmahat.files.output import write_whole
-    from sigmahat.fmi.instance import installed
     from sigmahat.guessing import template
     from sigmahat.guessing.columns import read_columns
     from sigmahat.guessing.guess import guess, one_joint
@@ -54,9 +53,7 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
         if joint is not None:
             guessed = {"": one_joint(opened, guessed, joint)}
         common.refuse_to_overwrite(one, force, "--config")
-        fmu = installed("StiffnessEstimator")
-        motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
-        write_whole(template.write(opened, columns, guessed, motor), one)
+        write_whole(template.write(opened, columns, guessed), one)
     common.answer("\n".join([*opened.notes, _text(log, guessed, one)]))
 
 

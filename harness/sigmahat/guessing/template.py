@@ -9,6 +9,7 @@ from dataclasses import replace
 import tomlkit
 from tomlkit.items import Item, Table
 
+from sigmahat.fmi.instance import installed
 from sigmahat.guessing.columns import TURN, Columns, likely_unit
 from sigmahat.guessing.guess import JointGuess
 from sigmahat.guessing.listing import listed
@@ -57,17 +58,11 @@ Common keys of all joints are written once, below. Each joint has sections [join
 whose keys replace common keys: move a key there if a joint differs."""
 
 
-def write(
-    log: Log,
-    columns: Columns,
-    joints: Mapping[str, JointGuess],
-    fmu_defaults: Mapping[str, float],
-) -> str:
+def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
     """The text of a configuration. If no column looks like a port, the text asks for a column.
 
-    columns       of the log
-    joints        of the log, by name; values that are common to all joints are written once
-    fmu_defaults  start values of motor.B and motor.D_theta of the estimator
+    columns  of the log
+    joints   of the log, by name; values that are common to all joints are written once
     """
     lines = "\n".join(listed(log, columns, joints))
     name = "" if len(joints) > 1 else next(iter(joints.values())).name
@@ -75,7 +70,7 @@ def write(
     if len(joints) > 1:
         head += _OF_SEVERAL
     guesses = _with_one_gear(joints).items()
-    documents = {name: _document(guess, head, fmu_defaults) for name, guess in guesses}
+    documents = {name: _document(guess, head) for name, guess in guesses}
     (one, *others) = documents.values()
     return tomlkit.dumps(together(documents) if others else one)
 
@@ -91,9 +86,7 @@ def _with_one_gear(joints: Mapping[str, JointGuess]) -> Mapping[str, JointGuess]
     return {n: replace(j, ports={**j.ports, "theta": noted[n]}) for n, j in joints.items()}
 
 
-def _document(
-    guess: JointGuess, head: str, fmu_defaults: Mapping[str, float]
-) -> tomlkit.TOMLDocument:
+def _document(guess: JointGuess, head: str) -> tomlkit.TOMLDocument:
     document = tomlkit.document()
     for line in head.splitlines():
         document.add(tomlkit.comment(line))
@@ -115,7 +108,7 @@ def _document(
         ports[last].add(tomlkit.comment(text))
         ports[last].add(tomlkit.nl())
     document.add("ports", ports)
-    document.add("parameters", _parameters(guess, fmu_defaults))
+    document.add("parameters", _parameters(guess))
     return document
 
 
@@ -195,7 +188,7 @@ def period_of(guess: JointGuess) -> str:
     )
 
 
-def _parameters(guess: JointGuess, defaults: Mapping[str, float]) -> Table:
+def _parameters(guess: JointGuess) -> Table:
     table, ports = tomlkit.table(), guess.ports
     _comment(table, "of StiffnessEstimator.fmu, by their names; others keep their start values")
     period = "[s] FILL IN: the log has no times" if guess.time is None else period_of(guess)
@@ -206,7 +199,7 @@ def _parameters(guess: JointGuess, defaults: Mapping[str, float]) -> Table:
     if sensor:
         _add_ranges(table, guess)
     else:
-        _add_motor(table, ports.get("theta"), defaults)
+        _add_motor(table, ports.get("theta"))
     for name in ("theta", "q"):
         if name in ports and ports[name].unit != "counts":
             _add(table, f"encoder.{name}", *_encoder(ports[name]))
@@ -215,14 +208,15 @@ def _parameters(guess: JointGuess, defaults: Mapping[str, float]) -> Table:
     return table
 
 
-def _add_motor(table: Table, theta: PortGuess | None, defaults: Mapping[str, float]) -> None:
+def _add_motor(table: Table, theta: PortGuess | None) -> None:
     """The gear ratio unless theta gives it, motor data that are not known yet, and priors."""
     if theta is None or theta.gear_ratio == 1:
         _add(table, "motor.gamma", 0, "FILL IN: gear ratio, between motor and flexibility")
     else:
         _add(table, "motor.gamma", 0, "0: the gear_ratio of theta, which must then not be 1")
-    for name, value in defaults.items():
-        _add(table, name, value, f"[{_MOTOR_UNITS[name]}] {NOT_YOURS}")
+    fmu = installed("StiffnessEstimator")
+    for name, unit in _MOTOR_UNITS.items():
+        _add(table, name, float(fmu.variable(name).start), f"[{unit}] {NOT_YOURS}")
         _add(table, name.replace("motor.", "prior."), ANOTHER_ROBOT, WIDE_PRIOR)
     _add(table, "prior.tau_coulomb", ANY_COULOMB, WIDE_PRIOR)
     gain = "CHECK: how well is the gain of tau known, to 0.02, 0.05 or 0.1? No log shows it"

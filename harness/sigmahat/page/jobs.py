@@ -57,9 +57,7 @@ def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
     """
     columns = read_columns(log)
     joints = guess(columns)
-    fmu = installed("StiffnessEstimator")
-    motor = {n: float(fmu.variable(n).start) for n in ("motor.B", "motor.D_theta")}
-    templates = {n: template.write(log, columns, {n: each}, motor) for n, each in joints.items()}
+    templates = {name: template.write(log, columns, {name: j}) for name, j in joints.items()}
     return templates, partial(guess_chosen, columns)
 
 
