@@ -26,6 +26,7 @@ sign = 1   # measured on Monday
 [parameters]
 motor.B = 2.3e-05   # [kg.m2] not known: of another robot, until identify finds it or you set it
 "prior.B" = 1000
+torque.held = true   # CHECK: the log repeats values
 """
 
 
@@ -37,6 +38,7 @@ def test_a_value_is_set_and_comments_stay_if_they_are_still_true() -> None:
     set_value(document, "ports.theta.sign", -1)
     set_value(document, "motor.B", 1e-4)
     set_value(document, "prior.B", 0.1)
+    set_value(document, "torque.held", False)
     set_value(document, "range.phi", 0.02)
     set_value(document, "method", "Paper2011")
     remove_value(document, "ports.theta.unit")
@@ -52,6 +54,7 @@ sign = -1   # measured on Monday
 [parameters]
 motor.B = 0.0001
 "prior.B" = 0.1
+torque.held = false
 range.phi = 0.02
 method = "Paper2011"
 """

@@ -5,7 +5,7 @@ Comments of the user stay.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,7 @@ import tomlkit
 from tomlkit.items import Table
 
 from sigmahat.files import toml_file
+from sigmahat.logs import joints
 from sigmahat.logs.configuration import FILL_IN, NOT_YOURS, WIDE_PRIOR
 
 ANGLES = ("rad", "mrad", "deg", "turn", "counts")
@@ -88,22 +89,21 @@ def value_of(document: tomlkit.TOMLDocument, key: str) -> Any:
 
 def set_value(document: tomlkit.TOMLDocument, key: str, value: Value) -> None:
     """Sets a key, and removes its comment if a guess wrote this comment."""
-    table, name = _place(document, key)
+    place = _place(key)
     whole = isinstance(value, float) and value.is_integer() and abs(value) < 2**53
     item = tomlkit.item(int(value) if whole else value)
-    old = _item(document, key)
+    old = joints.items(document).get(place)
     if old is not None:
         comment = old.trivia.comment.removeprefix("#").strip()
         if comment.startswith(_OF_A_GUESS) or comment.endswith((NOT_YOURS, WIDE_PRIOR)):
             old.trivia.comment = old.trivia.comment_ws = ""
-    toml_file.set_dotted(table, name, item)
+    joints.set_item(document, place, item)
 
 
 def remove_value(document: tomlkit.TOMLDocument, key: str) -> None:
     """Removes a key, if the key exists."""
     if value_of(document, key) is not None:
-        table, name = _holder(document, key)
-        del table[name]
+        joints.remove(document, _place(key))
 
 
 def set_port(document: tomlkit.TOMLDocument, port: str, table: Table | None) -> None:
@@ -117,7 +117,7 @@ def set_port(document: tomlkit.TOMLDocument, port: str, table: Table | None) -> 
 
 def comment_of(document: tomlkit.TOMLDocument, key: str) -> str:
     """The comment of a key that a guess left: what to fill in or to check; else empty."""
-    item = _item(document, key)
+    item = joints.items(document).get(_place(key))
     comment = "" if item is None else item.trivia.comment.removeprefix("#").strip()
     return comment if comment.startswith((FILL_IN, "CHECK")) else ""
 
@@ -141,29 +141,7 @@ def _values(document: tomlkit.TOMLDocument) -> Iterator[tuple[str, Any]]:
         yield key.removeprefix("parameters."), value
 
 
-def _place(document: tomlkit.TOMLDocument, key: str) -> tuple[MutableMapping[str, Any], str]:
-    """The table of a key, made if missing, and the name of the key in this table."""
-    *path, name = key.split(".")
-    if not path or path[0] not in SECTIONS:
-        return document.setdefault("parameters", tomlkit.table()), key
-    table: Any = document
-    for part in path:
-        table = table.setdefault(part, tomlkit.table())
-    return table, name
-
-
-def _holder(document: tomlkit.TOMLDocument, key: str) -> tuple[MutableMapping[str, Any], str]:
-    """The innermost table of an existing key, and the name of the key in this table."""
-    table, name = _place(document, key)
-    if name in table:
-        return table, name
-    group, _, last = name.partition(".")
-    return table[group], last
-
-
-def _item(document: tomlkit.TOMLDocument, key: str) -> Any:
-    """The item of a key with its comment; None if the key is missing."""
-    if value_of(document, key) is None:
-        return None
-    table, name = _holder(document, key)
-    return table[name] if hasattr(table[name], "trivia") else None
+def _place(key: str) -> joints.Place:
+    """The sections and the name of a key."""
+    place = tuple(key.split("."))
+    return place if place[0] in SECTIONS else ("parameters", key)
