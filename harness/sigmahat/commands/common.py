@@ -11,7 +11,7 @@ import logging
 import re
 import shutil
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -79,21 +79,19 @@ def opened(log: Path, config: Path, joint: str) -> tuple[Log, Configuration]:
     return open_log(log), read_configuration(config, joint)
 
 
-def joints_of(log: Path, config: Path, joint: str) -> list[str]:
-    """The requested joint, else all joints of the configuration; [""] if the file names no joint.
+def for_each_joint(
+    log: Path, config: Path, joint: str, job: Callable[[str], _Result]
+) -> dict[str, _Result]:
+    """Results of a job by joint: of the requested joint, else of each joint of the configuration.
 
-    Raises LogError if the log or the configuration cannot be read.
+    The job of several joints runs in other processes. If the file names no joint, its name is "".
+    Raises LogError if the log or the configuration cannot be read, and errors of the job.
     """
-    from sigmahat.logs.configuration import joints_of as every
-    from sigmahat.logs.configuration import read_document
+    from sigmahat.logs.configuration import joints_of, read_document
     from sigmahat.logs.readers.formats import open_log
 
     open_log(log)  # a missing log is reported before a missing configuration
-    return [joint] if joint else every(read_document(config), config)
-
-
-def for_each(joints: Sequence[str], job: Callable[[str], _Result]) -> dict[str, _Result]:
-    """Runs a job for each name of a joint; with several joints, in other processes."""
+    joints = [joint] if joint else joints_of(read_document(config), config)
     if len(joints) == 1:
         return {joints[0]: job(joints[0])}
     from sigmahat.runs.pool import spread
@@ -173,7 +171,7 @@ def _folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | N
 
 def progress(label: str, length: int) -> Any:
     """A progress bar on stderr, hidden after --quiet or if stderr is no terminal."""
-    context = click.get_current_context(silent=True)  # None in the processes of `for_each`
+    context = click.get_current_context(silent=True)  # None in the processes of joints
     hidden = context is None or context.meta.get(_QUIET) or not sys.stderr.isatty()
     return click.progressbar(length=length, label=label, file=sys.stderr, hidden=hidden)
 

@@ -67,9 +67,9 @@ def estimate(
     out = out or Path("sigmahat-results", log.stem)
     config = config or common.configuration_of(log)
     with common.errors_in_one_line(out):
-        joints = common.joints_of(log, config, joint)
-        found = common.for_each(joints, partial(_estimated, log, config, out, start_from, to))
-        if len(joints) > 1:
+        job = partial(_estimated, log, config, out, start_from, to)
+        found = common.for_each_joint(log, config, joint, job)
+        if len(found) > 1:
             write_joints({name: each for name, (each, _) in found.items()}, out)
     values = {name: {**each.as_dict(), "checks": as_dict(c)} for name, (each, c) in found.items()}
     where = f"Table, curve, figure (PNG, SVG), joint.json and state.json are in {out.resolve()}"
@@ -143,8 +143,8 @@ def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> in
     common.need_fmu("StiffnessEstimator")
     start_from = start_from or Path("sigmahat-results", config.stem)
     with common.errors_in_one_line(start_from, "--start-from"):
-        joints = common.joints_of(log, config, joint)
-        found = common.for_each(joints, partial(_validated, log, config, start_from))
+        job = partial(_validated, log, config, start_from)
+        found = common.for_each_joint(log, config, joint, job)
     texts = {name: summary(each) for name, each in found.items()}
     common.answer_of_joints(texts, {name: each.as_dict() for name, each in found.items()})
     return 0 if all(each.agree for each in found.values()) else 1
