@@ -55,8 +55,10 @@ def check(log: Log, configuration: Configuration) -> Checked:
     seen = _view(log, configuration)
     every = seen.every
     findings = _swapped(seen) or [_tried(seen, each) for each in _contradictions(seen)]
-    with Slave(fmu, "check") as slave:
-        outputs = _play(slave, seen)
+    # The warnings of the FMU are findings here.
+    with Slave(fmu, "check") as slave, slave.only_errors():
+        start = parameters(fmu, configuration)
+        (outputs,) = replay(slave, seen.samples, start, len(seen.samples.values))
     if not any(each.severity is Severity.WRONG for each in findings):
         # After a wrong value, the findings of the replay are only consequences of this value.
         findings += _replayed(seen, outputs)
@@ -76,17 +78,12 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
     Raises LogError, FmuError as `check`.
     """
     checked = check(log, after)
-    if before == after or not _is_given(before):
+    is_given = "motor.B" in before.parameters and float(_every(before)["prior.B"]) < WIDE
+    if before == after or not is_given:
         return checked
     of_inertia = [each for each in _contradictions(_view(log, before)) if each.kind in _INERTIA]
     others = [each for each in checked.findings if each.kind not in _INERTIA]
     return replace(checked, findings=[*of_inertia, *others])
-
-
-def _is_given(configuration: Configuration) -> bool:
-    """Whether the configuration gives the inertia, and not with a wide prior."""
-    prior = float(_every(configuration)["prior.B"])
-    return "motor.B" in configuration.parameters and prior < WIDE
 
 
 def _every(configuration: Configuration) -> dict[str, Value]:
@@ -221,14 +218,6 @@ def rests_on(
         yield Finding(Kind.EXACT, Severity.RESTS_ON, f"prior.{name}", value, "", about=name)
     for name in absent(every):
         yield Finding(Kind.ABSENT, Severity.RESTS_ON, f"prior.{name}", 0.0, "", about=name)
-
-
-def _play(slave: Slave, seen: View) -> Outputs:
-    """Outputs of the estimator at the ticks of the view. Raises FmuError if the FMU refuses."""
-    start = parameters(slave.fmu, seen.configuration)
-    with slave.only_errors():  # the FMU's warnings are findings here
-        (outputs,) = replay(slave, seen.samples, start, len(seen.samples.values))
-    return outputs
 
 
 def _replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:

@@ -121,7 +121,7 @@ def _check(fmu: Fmu, start: Mapping[str, Value]) -> sheet.Check:
         other.initialize(start)
         outputs = Recorder(other, ["sigma", "tau_e"], 1)
         outputs.sample(0)
-        return sheet.Check(**{name: float(x[0]) for name, x in outputs.columns().items()})
+        return sheet.Check(**outputs.row(0))
 
 
 def _parameters(

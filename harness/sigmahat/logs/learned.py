@@ -112,8 +112,7 @@ def _parameters(slave: Slave) -> dict[str, Value]:
     names = [name for name, v in fmu.variables.items() if v.causality == "parameter"]
     recorder = Recorder(slave, names, 1)
     recorder.sample(0)
-    columns = recorder.columns()
-    return {name: columns[name][0].item() for name in names}
+    return recorder.row(0)
 
 
 def _compare(

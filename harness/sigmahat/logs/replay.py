@@ -94,11 +94,9 @@ def play(
 
 def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
     """Current coefficients eta of (21), [size: n x m]."""
-    names = [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
-    values = (fmi2.fmi2Real * len(names))()
-    references = slave.fmu.references(names, "output")
-    slave.call(slave.functions.fmi2GetReal, references, len(names), values)
-    return np.array(values).reshape(n, m).tolist()
+    outputs = Recorder(slave, (f"eta[{i},{j}]" for i in range(n) for j in range(m)), 1)
+    outputs.sample(0)
+    return np.array([*outputs.row(0).values()]).reshape(n, m).tolist()
 
 
 def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:
