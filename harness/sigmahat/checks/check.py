@@ -168,7 +168,7 @@ def _contradictions(seen: View) -> Iterator[Finding]:
             yield each
     if "ports.q.gear_ratio" not in keys:
         yield from gears(seen.configuration, seen.every)
-    yield from dynamics(seen, here)
+    yield from dynamics(here)
 
 
 _AWAS = ("motor.B", "motor.D_theta", "motor.gamma")

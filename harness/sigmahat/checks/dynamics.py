@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from sigmahat.checks.motor import LINEAR, Fitted, explains, with_all_powers
 from sigmahat.checks.relation import Relation, gear_of
 from sigmahat.checks.view import View
 from sigmahat.identification.quantities import WIDE
-from sigmahat.identification.regression import MOTOR, Signals
+from sigmahat.identification.regression import MOTOR
 from sigmahat.logs.configuration import Port
 from sigmahat.logs.units import scale
 
@@ -21,28 +21,28 @@ _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is le
 _STD = 3.0  # a prior contradicts the log beyond this number of standard deviations
 
 
-def dynamics(seen: View, here: Relation) -> Iterator[Finding]:
+def dynamics(here: Relation) -> Iterator[Finding]:
     """All checks by the motor equation, as far as the motion allows these checks."""
-    found = here.fitted
+    seen, found = here.seen, here.fitted
     if found is None or not 0 < found.linear.half_width.get(LINEAR, math.inf) < math.inf:
         return  # the log determines no stiffness
     sign = _sign(seen, found)
     if sign is not None:
         yield sign
         return  # with a wrong sign, further results mean nothing
-    gear = None if here.findings else _gear(seen, found, here.pieces)
+    gear = None if here.findings else _gear(seen, found)
     if gear is not None:
         yield gear
         return  # the deformation is wrong, so all further results are wrong
-    zero = _zero(seen, found, here.pieces)
+    zero = _zero(seen, found)
     if zero is not None:
         yield zero
     elif found.form.symmetric:
-        yield from _asymmetry(seen, found, here.pieces)
+        yield from _asymmetry(seen, found)
     if not seen.has_sensor:
-        yield from _late(seen, here, found)
+        yield from _late(seen, found)
         yield from _encoder_lag(seen, found)
-        yield from inertia(seen, here.pieces, found)
+        yield from inertia(seen, found)
 
 
 def _sign(seen: View, found: Fitted) -> Finding | None:
@@ -71,23 +71,24 @@ _MUCH = 0.3
 """Largest ratio of the squared errors, after to before, if a gear ratio explains the log."""
 
 
-def _gear(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | None:
+def _gear(seen: View, found: Fitted) -> Finding | None:
     """A slightly wrong gear ratio, if its correction explains much of the torque."""
     if "theta" not in seen.configuration.ports:
         return None
-    error = motor.gear_error(seen, pieces, found.form)
+    error = motor.gear_error(seen, found.form)
     if error is None or not abs(error.value - 1) > error.half_width + _LEAST_GEAR:
         return None
     # An asymmetric spring, or a wrong zero, must not explain the torque as well.
-    others = min(found.error, float(np.sum(with_all_powers(seen, pieces, found.form).squares)))
+    others = min(found.error, float(np.sum(with_all_powers(seen, found.form).squares)))
     if not float(np.sum(error.fit.squares)) < _MUCH * others:
         return None
     change, slope = gear_of(seen.configuration.ports["theta"], error.value), 1 / error.value
     return Finding(Kind.SLOPE, Severity.WRONG, change.key, slope, "", 1.0, change.value)
 
 
-def _zero(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | None:
+def _zero(seen: View, found: Fitted) -> Finding | None:
     """A wrong zero of the deformation. The zero matters only for an odd polynomial."""
+    pieces = seen.pieces
     zero = found.spring.zero(found.fit, pieces) if found.form.symmetric else math.nan
     if not math.isfinite(zero):
         return None
@@ -104,9 +105,9 @@ def _zero(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Finding | Non
     return Finding(Kind.ZERO, severity, key, zero, "rad", 0.0, proposed, others)
 
 
-def _asymmetry(seen: View, found: Fitted, pieces: Sequence[Signals]) -> Iterator[Finding]:
+def _asymmetry(seen: View, found: Fitted) -> Iterator[Finding]:
     """A spring that is softer to one side, where only odd powers are used."""
-    with_all = with_all_powers(seen, pieces, found.form)
+    with_all = with_all_powers(seen, found.form)
     if explains(found.fit, with_all):
         times = math.sqrt(found.error / float(np.sum(with_all.squares)))
         key = "rls.symmetric"
@@ -126,9 +127,9 @@ def _moved(port: Port, name: str, angle: float) -> float:
     return float(f"{port.zero + angle / scale(name, port):.6g}")
 
 
-def _late(seen: View, here: Relation, found: Fitted) -> Iterator[Finding]:
+def _late(seen: View, found: Fitted) -> Iterator[Finding]:
     """Delay of the torque with respect to the motion."""
-    late = motor.delay(seen, here.pieces, found.form)
+    late = motor.delay(seen, found.form)
     if late is None:
         return
     least = abs(late.value) - late.half_width
@@ -166,13 +167,13 @@ _DIFFERENT = 2.0  # a torque constant is wrong by less than this factor
 _LIKE = 3.0  # up to this factor, a ratio of inertias counts as the gear ratio
 
 
-def inertia(seen: View, pieces: Sequence[Signals], found: Fitted) -> Iterator[Finding]:
+def inertia(seen: View, found: Fitted) -> Iterator[Finding]:
     """A wrong inertia, or a wrong scale of the torque, if the log shows the error clearly."""
     given = float(seen.every["motor.B"])
-    B = _nearest(seen, pieces, found, given) if given > 0 else None
+    B = _nearest(seen, found, given) if given > 0 else None
     if B is None or not _differs(B, given, _DIFFERENT):
         return
-    if not explains(motor.with_inertia(seen, pieces, found.form, given), found.fit):
+    if not explains(motor.with_inertia(seen, found.form, given), found.fit):
         return
     B = found.linear.value["B"]
     unit, rounded = "kg.m2", float(f"{B:.3g}")
@@ -192,13 +193,13 @@ def inertia(seen: View, pieces: Sequence[Signals], found: Fitted) -> Iterator[Fi
     yield Finding(Kind.INERTIA, severity, "motor.B", B, unit, given, rounded, constant)
 
 
-def _nearest(seen: View, pieces: Sequence[Signals], found: Fitted, given: float) -> float | None:
+def _nearest(seen: View, found: Fitted, given: float) -> float | None:
     """The inertia that differs least from `given`, among fits with other forms of friction and the
     ends of the interval. None if the difference is not clear, or an inertia is not above 0."""
     B, half = found.linear.value["B"], found.linear.half_width["B"]
     if not 0 < B - half < math.inf or not _differs(B, given, _DIFFERENT):
         return None
-    every = [motor.with_form(seen, pieces, f).value["B"] for f in motor.variants(found.form)]
+    every = [motor.with_form(seen, f).value["B"] for f in motor.variants(found.form)]
     every += [B - half, B + half]
     if not all(each > 0 for each in every):
         return None

@@ -8,7 +8,6 @@ tau(t - delta) = tau(t) - delta tau'(t).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +16,7 @@ from sigmahat.checks.view import View
 from sigmahat.identification import regression
 from sigmahat.identification.coherence import coherent_range
 from sigmahat.identification.noise import TorqueNoise
-from sigmahat.identification.regression import EXTRA, MOTOR, Equations, Fit, Form, Signals, fit
+from sigmahat.identification.regression import EXTRA, MOTOR, Equations, Fit, Form, fit
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
 
@@ -45,19 +44,19 @@ class Fitted:
         return float(np.sum(self.fit.squares))
 
 
-def fitted(seen: View, pieces: Sequence[Signals]) -> Fitted | None:
+def fitted(seen: View) -> Fitted | None:
     """Fits the motor equation, or with a torque sensor the spring alone.
 
     None without data, or if the sample period is too long for the motion of a joint.
     """
-    if not pieces or seen.T > _SLOWEST:
+    if not seen.pieces or seen.T > _SLOWEST:
         return None
-    f_0 = _band(seen, pieces)
-    m_most = _ORDERS if np.ptp(pieces[0].set_point) > 0 else 1
+    f_0 = _band(seen)
+    m_most = _ORDERS if np.ptp(seen.pieces[0].set_point) > 0 else 1
     symmetric = bool(seen.every["rls.symmetric"])
     form = Form(f_0, min(2.5 * f_0, _HIGHEST / seen.T), _ORDERS, m_most, symmetric)
-    form, system = _chosen(seen, pieces, form)
-    line = _equations(seen, pieces, replace(form, n=1, m=1, symmetric=True))
+    form, system = _chosen(seen, form)
+    line = _equations(seen, replace(form, n=1, m=1, symmetric=True))
     return Fitted(form, fit(system), fit(line), Spring(form, system.units))
 
 
@@ -70,7 +69,7 @@ class Corrected:
     fit: Fit  # fit of the motor equation with this value
 
 
-def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Corrected | None:
+def delay(seen: View, form: Form) -> Corrected | None:
     """How late the torque is [s]; None if no value is found.
 
     Newton's method: each step shifts the torque by the delay found, so the coefficient of the slope
@@ -78,9 +77,12 @@ def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Corrected | None
     """
     late = 0.0
     for _ in range(_STEPS):
-        moved = [replace(piece, tau=_moved(piece.tau, late / seen.T)) for piece in pieces]
-        slopes = [-np.gradient(piece.tau, seen.T) for piece in moved]
-        found = fit(_with_column(seen, moved, form, slopes))
+        torques = [_moved(piece.tau, late / seen.T) for piece in seen.pieces]
+        moved = [
+            replace(piece, tau=tau, extra=-np.gradient(tau, seen.T))
+            for piece, tau in zip(seen.pieces, torques, strict=True)
+        ]
+        found = with_form(replace(seen, pieces=moved), form)
         step, half_width = found.value[EXTRA], found.half_width[EXTRA]
         late += step
         if not math.isfinite(late) or abs(late) > _LONGEST:
@@ -88,7 +90,7 @@ def delay(seen: View, pieces: Sequence[Signals], form: Form) -> Corrected | None
     return Corrected(late, half_width + abs(step), found) if math.isfinite(half_width) else None
 
 
-def gear_error(seen: View, pieces: Sequence[Signals], form: Form) -> Corrected | None:
+def gear_error(seen: View, form: Form) -> Corrected | None:
     """Configured gear ratio of theta divided by the right one; None if the log does not show it.
 
     With theta (1 + delta) for theta, phi becomes phi - delta theta. So the torque has a term in
@@ -97,11 +99,17 @@ def gear_error(seen: View, pieces: Sequence[Signals], form: Form) -> Corrected |
     whole = 1.0
     for _ in range(_STEPS):
         scaled = [
-            replace(each, theta=whole * each.theta, phi=each.phi + (1 - whole) * each.theta)
-            for each in pieces
+            replace(
+                each,
+                theta=whole * each.theta,
+                phi=each.phi + (1 - whole) * each.theta,
+                extra=whole * each.theta,
+            )
+            for each in seen.pieces
         ]
-        found = fit(_with_column(seen, scaled, form, [each.theta for each in scaled]))
-        spring = found.value[LINEAR] / Spring(form, _equations(seen, scaled, form).units).units[0]
+        system = _equations(replace(seen, pieces=scaled), form)
+        found = fit(system)
+        spring = found.value[LINEAR] / system.units[0]
         if not (spring and math.isfinite(found.half_width[EXTRA])):
             return None
         step, half_width = -found.value[EXTRA] / spring, abs(found.half_width[EXTRA] / spring)
@@ -120,12 +128,12 @@ def variants(form: Form) -> list[Form]:
     ]
 
 
-def with_form(seen: View, pieces: Sequence[Signals], form: Form) -> Fit:
-    return fit(_equations(seen, pieces, form))
+def with_form(seen: View, form: Form) -> Fit:
+    return fit(_equations(seen, form))
 
 
-def with_inertia(seen: View, pieces: Sequence[Signals], form: Form, B: float) -> Fit:
-    return fit(_equations(seen, pieces, form).known("B", B))
+def with_inertia(seen: View, form: Form, B: float) -> Fit:
+    return fit(_equations(seen, form).known("B", B))
 
 
 def explains(before: Fit, after: Fit) -> bool:
@@ -134,40 +142,32 @@ def explains(before: Fit, after: Fit) -> bool:
     return less and regression.is_worse(before, after)
 
 
-def _band(seen: View, pieces: Sequence[Signals]) -> float:
+def _band(seen: View) -> float:
     """Low pass of the equations, as identify chooses it [Hz]."""
-    longest = max(pieces, key=lambda piece: len(piece.theta))
+    longest = max(seen.pieces, key=lambda piece: len(piece.theta))
     noise = TorqueNoise.of(longest.tau, longest.theta, seen.every, seen.T)
     if seen.has_sensor:
         return noise.bandwidth
     return min(noise.bandwidth, coherent_range(longest, seen.gamma, noise))
 
 
-def with_all_powers(seen: View, pieces: Sequence[Signals], form: Form) -> Fit:
+def with_all_powers(seen: View, form: Form) -> Fit:
     form = replace(form, n=2 * _ORDERS, symmetric=False)
-    return fit(_chosen(seen, pieces, form)[1])
+    return fit(_chosen(seen, form)[1])
 
 
-def _chosen(seen: View, pieces: Sequence[Signals], form: Form) -> tuple[Form, Equations]:
+def _chosen(seen: View, form: Form) -> tuple[Form, Equations]:
     """The form and its equations with the orders that predict best, up to those of `form`."""
-    (n, m), _ = regression.choose(_equations(seen, pieces, form), form.n, form.m)
+    (n, m), _ = regression.choose(_equations(seen, form), form.n, form.m)
     form = replace(form, n=n, m=m)
-    return form, _equations(seen, pieces, form)
+    return form, _equations(seen, form)
 
 
-def _equations(seen: View, pieces: Sequence[Signals], form: Form) -> Equations:
-    every = regression.equations(pieces, seen.T, seen.gamma, form)
+def _equations(seen: View, form: Form) -> Equations:
+    every = regression.equations(seen.pieces, seen.T, seen.gamma, form)
     if not seen.has_sensor:
         return every
     return every.only([name for name in every.names if name not in MOTOR])
-
-
-def _with_column(
-    seen: View, pieces: Sequence[Signals], form: Form, signals: Sequence[Array]
-) -> Equations:
-    """The equations with one more column, a signal for each piece."""
-    own = [replace(p, extra=signal) for p, signal in zip(pieces, signals, strict=True)]
-    return _equations(seen, own, form)
 
 
 def _moved(tau: Array, ticks: float) -> Array:

@@ -95,20 +95,17 @@ class Relation:
     """The motion of q and theta after the errors found are corrected."""
 
     findings: Sequence[Finding]
-    pieces: Sequence[Signals]  # as View.pieces, with the scales that were proposed
-    fitted: Fitted | None  # the motor equation of these pieces
+    seen: View  # the log, with the scales that were proposed
+    fitted: Fitted | None  # the motor equation of this log
 
 
 def relation(seen: View) -> Relation:
     """Compares the motions of q and theta, and corrects scale and sign."""
-    here = Relation((), seen.pieces, fitted(seen, seen.pieces))
+    here = Relation((), seen, fitted(seen))
     if not {"theta", "q"} <= set(seen.samples.names) or _is_from_torque(seen.configuration.ports):
         return here
     found = slope_of(seen.pieces, seen.T)
-    if found is None:
-        return here
-    here = _scale(seen, here, found)
-    return _sign(seen, here, found)
+    return here if found is None else _sign(_scale(here, found), found)
 
 
 def _is_from_torque(ports: Mapping[str, Port]) -> bool:
@@ -116,15 +113,15 @@ def _is_from_torque(ports: Mapping[str, Port]) -> bool:
     return "tau_e_sensor" in ports and ports["theta"].column == ports["tau_e_sensor"].column
 
 
-def _scale(seen: View, here: Relation, slope: float) -> Relation:
+def _scale(here: Relation, slope: float) -> Relation:
     if not abs(np.log(abs(slope))) > np.log(_DIFFERENT):
         return here
-    ports = seen.configuration.ports
+    ports = here.seen.configuration.ports
     every = [("theta", gear_of(ports["theta"], abs(slope)))]
     every += [
         (name, change)
         for name in PORTS
-        for change in changes(name, ports[name], seen.gamma)
+        for change in changes(name, ports[name], here.seen.gamma)
         if distance(_on_theta(name, change), abs(slope)) < _LIKE
     ]
 
@@ -136,8 +133,8 @@ def _scale(seen: View, here: Relation, slope: float) -> Relation:
     best: tuple[str, Change] | None = None
     found = here
     for name, change in every:
-        repaired = [_scaled(piece, name, change.factor) for piece in here.pieces]
-        after = fitted(seen, repaired)
+        repaired = _scaled(here.seen, name, change.factor)
+        after = fitted(repaired)
         is_next = _is_better(found.fitted, after)
         if best is None:
             is_next = _is_plausible(here.fitted, after, abs(slope))
@@ -155,12 +152,12 @@ def _scale(seen: View, here: Relation, slope: float) -> Relation:
     return replace(found, findings=[finding])
 
 
-def _sign(seen: View, here: Relation, slope: float) -> Relation:
+def _sign(here: Relation, slope: float) -> Relation:
     if slope > 0:
         return here
-    flipped = [_scaled(piece, "q", -1.0) for piece in here.pieces]
-    after = fitted(seen, flipped)
-    before = here.fitted
+    seen, before = here.seen, here.fitted
+    flipped = _scaled(seen, "q", -1.0)
+    after = fitted(flipped)
     if before is not None and after is not None:
         is_stiff = before.linear.value[LINEAR] * seen.gamma < 0
         if is_worse(after.fit, before.fit) or (is_stiff and not _is_better(before, after)):
@@ -177,8 +174,8 @@ def _sign(seen: View, here: Relation, slope: float) -> Relation:
     (key, proposed), *others = keys.items()
     finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, proposed, others, "sign")
     if name == "theta":
-        flipped = [_scaled(piece, "theta", -1.0) for piece in here.pieces]
-        after = fitted(seen, flipped)
+        flipped = _scaled(seen, "theta", -1.0)
+        after = fitted(flipped)
     return Relation([*here.findings, finding], flipped, after)
 
 
@@ -199,10 +196,14 @@ def _on_theta(name: str, change: Change) -> float:
     return change.factor if name == "theta" else 1 / change.factor
 
 
-def _scaled(piece: Signals, name: str, factor: float) -> Signals:
-    theta, q = piece.theta, piece.theta + piece.phi
-    theta, q = (factor * theta, q) if name == "theta" else (theta, factor * q)
-    return replace(piece, theta=theta, phi=q - theta)
+def _scaled(seen: View, name: str, factor: float) -> View:
+    """The log with another scale of theta or q."""
+    of_theta, of_q = (factor, 1.0) if name == "theta" else (1.0, factor)
+    pieces = []
+    for piece in seen.pieces:
+        theta, q = of_theta * piece.theta, of_q * (piece.theta + piece.phi)
+        pieces.append(replace(piece, theta=theta, phi=q - theta))
+    return replace(seen, pieces=pieces)
 
 
 def _is_plausible(before: Fitted | None, after: Fitted | None, slope: float) -> bool:
