@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from c_library import Estimator, load
+from controllers import run
 from gate import need, need_of_environment
 from reference_joints import table1_recording
 
@@ -53,19 +54,6 @@ find_package(sigmahat 0.1 REQUIRED)
 add_executable(consumer main.c)
 target_link_libraries(consumer PRIVATE sigmahat::sigmahat)
 """
-
-
-def run(*command: str | Path, **environment: str) -> str:
-    """Runs a command, which must succeed, and returns what it printed."""
-    done = subprocess.run(
-        [str(part) for part in command],
-        env={**os.environ, **environment},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout
-    return done.stdout
 
 
 def check(program: Path, build: Path, size: int) -> None:

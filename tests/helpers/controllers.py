@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -61,10 +62,18 @@ def cross_build(
     return tree
 
 
-def run(*command: str, cwd: Path | None = None) -> str:
+def run(*command: str | Path, cwd: Path | None = None, **environment: str) -> str:
     """Runs a command, which must succeed within 5 minutes. Returns what it printed."""
-    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout + done.stderr
+    done = subprocess.run(
+        [str(part) for part in command],
+        cwd=cwd,
+        env={**os.environ, **environment},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stdout
     return done.stdout
 
 

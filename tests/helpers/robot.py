@@ -9,12 +9,10 @@ SIGMAHAT_KR300 names.
 
 from __future__ import annotations
 
-import io
 import json
 import sys
 import tempfile
 from collections.abc import Sequence
-from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,9 +21,9 @@ import numpy as np
 import pyarrow as pa
 from matplotlib.figure import Figure
 
+from command_line import in_process
 from recorded_logs import read_estimate
 from shared_data import data_folder
-from sigmahat.cli import main
 
 RUNS = ("a", "b")
 AXES = (3, 2, 1)
@@ -136,11 +134,10 @@ def _estimate(runs: str, log: Path, config: Path, out: Path, *more: object) -> E
 
 
 def _sigmahat(*arguments: object, may_disagree: bool = False) -> str:
-    with redirect_stdout(io.StringIO()) as out:
-        status = main([*map(str, arguments)])
-    if status not in ((0, 1) if may_disagree else (0,)):
-        raise RuntimeError(f"{arguments} ended with {status}")
-    return out.getvalue()
+    done = in_process(*map(str, arguments))
+    if done.returncode not in ((0, 1) if may_disagree else (0,)):
+        raise RuntimeError(f"{arguments} ended with {done.returncode}: {done.stderr}")
+    return done.stdout
 
 
 def draw(axes: Sequence[Axis]) -> Figure:

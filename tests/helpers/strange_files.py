@@ -9,7 +9,8 @@ from tempfile import TemporaryDirectory
 
 from hypothesis import strategies as st
 
-from confined import Confined, Done
+import confined
+from confined import Done
 from recorded_logs import CONFIGURATION, plain_log, write_log
 
 _WORDS = "0 -1 1e999 -1e-999 nan inf 1e308 5e-324 1e-12 0x7f 1e300 true [1,2] {a=1} 1979-05-27 []"
@@ -106,7 +107,7 @@ class Trial:
     arguments: tuple[str, ...]
     files: Mapping[str, bytes]
 
-    def run(self, confined: Confined) -> Done:
+    def run(self) -> Done:
         """Runs the command; its folder is removed."""
         with TemporaryDirectory() as folder:
             for name, content in self.files.items():

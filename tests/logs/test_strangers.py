@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import struct
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -17,7 +17,8 @@ import pytest
 import scipy.io
 from hypothesis import HealthCheck, Phase, given, settings
 
-from confined import MOST_MEMORY, Confined, Done
+import confined
+from confined import MOST_MEMORY, Done
 from recorded_logs import CONFIGURATION, plain_log, write_log
 from sigmahat.logs.readers.formats import open_log
 from strange_files import TRIALS, Trial
@@ -30,14 +31,8 @@ CONFIGURED = CONFIGURATION.replace("motor.B", "rls.n = 3\nmotor.B")
 Run = Callable[[str], Done]
 
 
-@pytest.fixture(scope="module")
-def confined() -> Iterator[Confined]:
-    with Confined() as process:
-        yield process
-
-
 @pytest.fixture
-def run(confined: Confined, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
     """Runs a command in a folder with a configuration; nothing may be wrong with it."""
     monkeypatch.chdir(tmp_path)
     Path("log.toml").write_text(CONFIGURATION)
@@ -60,8 +55,8 @@ def run(confined: Confined, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     suppress_health_check=list(HealthCheck),
 )
 @given(trial=TRIALS)
-def test_files_that_are_damaged_or_made_up(trial: Trial, confined: Confined) -> None:
-    assert trial.run(confined).complaint() is None
+def test_files_that_are_damaged_or_made_up(trial: Trial) -> None:
+    assert trial.run().complaint() is None
 
 
 def zeros_in_mat(path: Path) -> None:
