@@ -84,9 +84,7 @@ def test_with_a_wrong_sign_the_zero_stays(path: Path) -> None:
     assert "ports.q.zero" not in write(found, path)
 
 
-def test_the_prior_holds_what_encoders_read_at_different_times_show(
-    path: Path,
-) -> None:
+def test_the_prior_holds_what_encoders_read_at_different_times_show(path: Path) -> None:
     # GIVEN a link encoder read 20 ms late: k times -20 ms times the velocity looks like friction
     late, log = 20, recorded(motor(0.0))
     q = log["q"]

@@ -198,11 +198,7 @@ def identify(
             if written:
                 texts[name] += f"\n\nWritten into {config}: {', '.join(written)}"
             texts[name] += f"\n\n{of_checks(checked, IN_LOG)}"
-            values[name] = {
-                **as_dict(found),
-                "written": written,
-                "checks": checks_as_dict(checked),
-            }
+            values[name] = {**as_dict(found), "written": written, "checks": checks_as_dict(checked)}
         if not dry_run:
             write_whole(tomlkit.dumps(document), config)
     common.answer_of_joints(texts, values)

@@ -210,11 +210,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
 
 @click.command()
 @click.argument("folder", type=common.PATH)
-@click.option(
-    "--out",
-    type=common.FILE,
-    help="File to write.  [default: report.html in FOLDER]",
-)
+@click.option("--out", type=common.FILE, help="File to write.  [default: report.html in FOLDER]")
 @common.quiet_option
 def report(folder: Path, out: Path | None) -> None:
     """Make one HTML file of the results in FOLDER, with plots to zoom.

@@ -15,7 +15,7 @@ import numpy as np
 from sigmahat.fmi.instance import Fmu, Slave, Value, installed
 from sigmahat.identification.coherence import coherent_range
 from sigmahat.identification.motor import KnownInertia, fit_motor
-from sigmahat.identification.noise import TorqueNoise, best_V_a, low_pass
+from sigmahat.identification.noise import TorqueNoise, count, low_pass
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import Signals, shortest, signals_of
 from sigmahat.logs.configuration import Configuration
@@ -72,7 +72,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     asked = bool(configuration.parameters.get("rls.symmetric", False))
     symmetric = asked and not configuration.symmetric_chosen
     coherent = math.inf if torque_constant else coherent_range(longest, gamma, noise)
-    apart = _apart(pieces, _step(every["encoder.theta"]))
+    apart = _apart(pieces, count(every))
     motor = fit_motor(
         [each.every(apart) for each in pieces],
         apart * T,
@@ -88,7 +88,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     nominal = configuration.ports["tau"].torque_constant
     if torque_constant and nominal is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
-    set_point, tau = (_largest(pieces, name) for name in ("set_point", "tau"))
+    spring = motor.spring if math.isfinite(motor.spring) else 0.0
     zero = quantities["zero"].value if _is_wrong(quantities.get("zero"), pieces) else 0.0
     return Identified(
         quantities=quantities,
@@ -102,17 +102,12 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         V_a=V_a,
         phi=max(float(np.max(np.abs(piece.phi - zero))) for piece in pieces),
         zero=zero,
-        set_point=set_point,
-        torque=max(abs(gamma) * tau, _finite(motor.spring)),
+        set_point=max(float(np.max(np.abs(piece.set_point))) for piece in pieces),
+        torque=max(spring, *(abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces)),
         B=float(every["motor.B"]),
         D_theta=float(every["motor.D_theta"]),
         notes=samples.notes,
     )
-
-
-def _largest(pieces: Sequence[Signals], name: str) -> float:
-    """Largest magnitude of a signal."""
-    return max(float(np.max(np.abs(getattr(piece, name)))) for piece in pieces)
 
 
 def _apart(pieces: Sequence[Signals], count: float) -> int:
@@ -127,11 +122,6 @@ def _apart(pieces: Sequence[Signals], count: float) -> int:
         return 1
     longest = max(len(each.theta) for each in pieces)
     return max(1, min(math.ceil(2 * count / moved), longest // _FEWEST))
-
-
-def _step(counts: Value) -> float:
-    """Angle of a count of an encoder [rad]; 0 if there is none."""
-    return 2 * math.pi / float(counts) if counts else 0.0
 
 
 def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> KnownInertia | None:
@@ -150,10 +140,6 @@ def _is_wrong(zero: Quantity | None, pieces: Sequence[Signals]) -> bool:
         return False
     covered = max(float(np.ptp(piece.phi)) for piece in pieces)
     return abs(zero.value) > max(zero.half_width, _MATTERS * covered)
-
-
-def _finite(value: float) -> float:
-    return value if math.isfinite(value) else 0.0
 
 
 def _check(configuration: Configuration, torque_constant: bool) -> None:
@@ -189,10 +175,11 @@ def _best_V_a(
     reference = np.gradient(low_pass(theta, wide, samples.T), samples.T)
     settled = slice(len(theta) // 10, -len(theta) // 10)
     only = Samples(samples.T, ["theta"], theta[:, None], samples.tick_of_row, ())
-    velocity = {}
+    errors: dict[float, float] = {}
     for V_a in _V_A:
         with Slave(fmu, "filter") as slave:
             filtered = {"method": "Paper2011", "filter.V_a": V_a, "modality": "Residual"}
             (outputs,) = replay(slave, only, {**start, **filtered}, len(theta))
-            velocity[V_a] = outputs["theta_dot"][settled]
-    return best_V_a(velocity, reference[settled])
+            difference = outputs["theta_dot"][settled] - reference[settled]
+            errors[V_a] = float(np.mean(difference**2))
+    return min(errors, key=errors.__getitem__)

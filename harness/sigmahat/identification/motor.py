@@ -88,7 +88,7 @@ def fit_motor(
     """
     longest = max(pieces, key=lambda piece: len(piece.theta))
     m_most = _M if np.ptp(longest.set_point) > 0 else 1
-    form = replace(_motor_form(f_0, T), n=_N, m=m_most)
+    form = Form(f_0, min(2.5 * f_0, _WIDEST / T), n=_N, m=m_most)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     form, polynomial = _with_spring(without_sensor, T, gamma, form, symmetric)
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
@@ -102,11 +102,6 @@ def fit_motor(
         quantities["zero"] = _zero(spring, fits, pieces, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
     return MotorFit(quantities, gain, polynomial, spring.largest(fits.first, pieces, abs(gamma)))
-
-
-def _motor_form(f_0: float, T: float) -> Form:
-    """The equation with a linear spring, and filters for a low pass of f_0 [Hz]."""
-    return Form(f_0, min(2.5 * f_0, _WIDEST / T))
 
 
 def _with_spring(

@@ -31,6 +31,15 @@ def variance(values: Array, resolution: float = 0.0) -> float:
     return max(found, resolution**2 / 12)
 
 
+def count(every: Mapping[str, Value]) -> float:
+    """Angle of a count of the motor's encoder [rad]; 0 if there is none.
+
+    every  parameters of the estimator
+    """
+    counts = float(every["encoder.theta"])
+    return 2 * math.pi / counts if counts else 0.0
+
+
 @dataclass(frozen=True)
 class TorqueNoise:
     """White noise of torque and position of a motor, as a torque on the motor's axis."""
@@ -43,9 +52,8 @@ class TorqueNoise:
     @staticmethod
     def of(tau: Array, theta: Array, every: Mapping[str, Value], T: float) -> TorqueNoise:
         """The noise of the signals of a motor; `every` are the parameters of the estimator."""
-        counts, inertia = float(every["encoder.theta"]), float(every["motor.B"])
-        position = variance(theta, 2 * math.pi / counts if counts else 0.0)
-        return TorqueNoise(variance(tau), position, inertia * abs(float(every["motor.gamma"])), T)
+        inertia = float(every["motor.B"]) * abs(float(every["motor.gamma"]))
+        return TorqueNoise(variance(tau), variance(theta, count(every)), inertia, T)
 
     @property
     def bandwidth(self) -> float:
@@ -88,12 +96,3 @@ def low_pass(values: Array, frequency: float, h: float) -> Array:
     spectrum /= (1 + relative**4).reshape(-1, *[1] * (values.ndim - 1))
     filtered: Array = fft.irfft(spectrum, size, axis=0)[settled : settled + len(values)]
     return filtered
-
-
-def best_V_a(velocity: Mapping[float, Array], reference: Array) -> float:
-    """The V_a whose velocity is nearest to a reference in the mean square [rad2/s4].
-
-    velocity   of the filter for each V_a [rad/s]
-    reference  of the same shape
-    """
-    return min(velocity, key=lambda V_a: float(np.mean((velocity[V_a] - reference) ** 2)))

@@ -82,7 +82,7 @@ class Identified:
 
 
 def as_dict(identified: Identified) -> dict[str, Any]:
-    """For JSON; units are in the names, or beside the value."""
+    """For JSON; units are in the names, or beside the value. Some values may be infinite."""
     return {
         **{
             name: {
@@ -99,7 +99,7 @@ def as_dict(identified: Identified) -> dict[str, Any]:
         "theta noise variance [rad2]": identified.theta_variance,
         "filter bandwidth [rad/s]": identified.bandwidth,
         "filter.V_a": identified.V_a,
-        "deformation is noise above [Hz]": _or_none(identified.coherent),
+        "deformation is noise above [Hz]": identified.coherent,
         "zero of the deformation [rad]": identified.zero,
         "largest phi [rad]": identified.phi,
         "largest setPoint [1]": identified.set_point,
@@ -133,10 +133,6 @@ def summary(identified: Identified) -> str:
             "not caused by a torque; the bandwidth is below that"
         )
     return "\n".join(lines)
-
-
-def _or_none(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 def _text(quantity: Quantity) -> str:

@@ -211,10 +211,7 @@ def _record(found: Identified) -> tomlkit.items.Table:
     table.comment("by sigmahat identify: values with 95 % intervals, for you to read")
     for name, q in found.quantities.items():
         row = tomlkit.inline_table()
-        if q.determined:
-            row["value"] = _short(q.value)
-        else:
-            row["value"] = "cannot tell"
+        row["value"] = _short(q.value) if q.determined else "cannot tell"
         row["half_width"] = float(f"{q.half_width:.3g}")
         row["unit"] = q.unit
         table[name] = row

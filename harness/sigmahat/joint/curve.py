@@ -126,24 +126,19 @@ def write_curve(curve: Curve, path: Path) -> None:
 
 
 def _rows(branch: Branch) -> Iterator[tuple[object, ...]]:
-    count = len(branch.phi)
-    columns: list[Sequence[object]] = [
-        [branch.set_point] * count,
-        branch.phi.tolist(),
-        branch.tau_e.tolist(),
-        *_or_empty([branch.tau_e_std], count),
-        *_or_empty(branch.torque_interval() or [None, None], count),
-        branch.sigma.tolist(),
-        *_or_empty([branch.sigma_std], count),
-        *_or_empty(branch.stiffness_interval() or [None, None], count),
-        ["true" if each else "false" for each in branch.within],
-    ]
-    yield from zip(*columns, strict=True)
-
-
-def _or_empty(columns: Sequence[Array | None], count: int) -> Iterator[Sequence[object]]:
-    for column in columns:
-        yield [None] * count if column is None else column.tolist()
+    columns = (
+        np.full_like(branch.phi, branch.set_point),
+        branch.phi,
+        branch.tau_e,
+        branch.tau_e_std,
+        *(branch.torque_interval() or (None, None)),
+        branch.sigma,
+        branch.sigma_std,
+        *(branch.stiffness_interval() or (None, None)),
+    )
+    empty = [None] * len(branch.phi)
+    cells = (empty if column is None else column.tolist() for column in columns)
+    yield from zip(*cells, ("true" if each else "false" for each in branch.within), strict=True)
 
 
 def read_curve(path: Path, polynomial: Polynomial) -> Curve:
