@@ -1,28 +1,15 @@
 #include "drive.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "fmi_calls.h"
 
-void check(int condition, const char *what)
-{
-    if (condition) {
-        return;
-    }
-    fprintf(stderr, "failed: %s\n", what);
-    abort();
-}
-
 void *start(void)
 {
-    void *instance = fmi_instantiate();
+    void *instance = fmi_instantiate(sh_fmu_model.guid);
 
     check(instance != NULL, "instantiate");
-    check(fmi_enter_initialization(instance, 0, 0.0, 0.0, 0, 0.0) == SH_OK,
-          "enter initialisation mode");
-    check(fmi_exit_initialization(instance) == SH_OK, "exit initialisation mode");
+    fmi_initialize(instance);
     return instance;
 }
 

@@ -6,9 +6,6 @@
 
 #include <stddef.h>
 
-/* If the condition is false, prints `what` and aborts the program. */
-void check(int condition, const char *what);
-
 /* A new instance, initialised; its messages are ignored. */
 void *start(void);
 

@@ -7,10 +7,19 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-#include "drive.h"
 #include "model.h"
+
+/* If the condition is false, prints `what` and aborts the program. */
+static inline void check(int condition, const char *what)
+{
+    if (!condition) {
+        fprintf(stderr, "failed: %s\n", what);
+        abort();
+    }
+}
 
 #define fmi_terminate(instance) ((sh_status)FMI(Terminate)(instance))
 #define fmi_reset(instance) ((sh_status)FMI(Reset)(instance))
@@ -47,12 +56,11 @@ static inline void fmi_ignore(fmi2ComponentEnvironment environment, fmi2String n
 }
 
 /* A new instance with all messages switched on; they are ignored. */
-static inline void *fmi_instantiate(void)
+static inline void *fmi_instantiate(const char *token)
 {
     static const fmi2CallbackFunctions callbacks = {fmi_ignore, calloc, free, NULL, NULL};
 
-    return fmi2Instantiate("test", fmi2CoSimulation, sh_fmu_model.guid, NULL, &callbacks, fmi2False,
-                           fmi2True);
+    return fmi2Instantiate("test", fmi2CoSimulation, token, NULL, &callbacks, fmi2False, fmi2True);
 }
 
 /* In FMI 2.0 two calls: if the first one fails, the second one is left out. */
@@ -104,10 +112,10 @@ static inline void fmi_ignore(fmi3InstanceEnvironment environment, fmi3Status st
     (void)environment, (void)status, (void)category, (void)message;
 }
 
-static inline void *fmi_instantiate(void)
+static inline void *fmi_instantiate(const char *token)
 {
-    return fmi3InstantiateCoSimulation("test", sh_fmu_model.guid, NULL, fmi3False, fmi3True,
-                                       fmi3False, fmi3False, NULL, 0, NULL, fmi_ignore, NULL);
+    return fmi3InstantiateCoSimulation("test", token, NULL, fmi3False, fmi3True, fmi3False,
+                                       fmi3False, NULL, 0, NULL, fmi_ignore, NULL);
 }
 
 static inline double fmi_time(void *instance, double otherwise)
@@ -126,12 +134,19 @@ static inline sh_status fmi_do_step(void *instance, double t, double h)
         fmi3DoStep(instance, t, h, fmi3True, &event, &terminate, &early, &reached);
 
     if (status <= fmi3Warning) {
-        check(!event && !terminate && !early && reached == fmi_time(instance, -1.0),
+        check(!event && !terminate && !early && reached == t + h,
               "after a step fmi3DoStep tells what happened");
     }
     return (sh_status)status;
 }
 
 #endif
+
+/* Makes an instance ready for the first step, at t = 0. */
+static inline void fmi_initialize(void *instance)
+{
+    check(fmi_enter_initialization(instance, 0, 0.0, 0.0, 0, 0.0) == SH_OK, "enter initialisation");
+    check(fmi_exit_initialization(instance) == SH_OK, "exit initialisation");
+}
 
 #endif

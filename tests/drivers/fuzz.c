@@ -12,7 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drive.h"
 #include "fmi_calls.h"
 #include "model.h"
 

@@ -120,22 +120,10 @@ static void set_up(sequence *s)
     }
 }
 
-static void call_what_is_not_provided(sequence *s)
-{
-    const fmi2ValueReference reference = byte(s);
-    const fmi2Integer order = 1;
-    double value = 0.0;
-
-    fmi2GetRealOutputDerivatives(s->instance, &reference, below(s, 2), &order, &value);
-    fmi2GetDirectionalDerivative(s->instance, &reference, 1, &reference, 1, &value, &value);
-    fmi2CancelStep(s->instance);
-}
-
 static void call_of_this_version(sequence *s)
 {
-    static void (*const CALLS[])(sequence *) = {ask_for_the_status,        set_up,
-                                                call_what_is_not_provided, set_derivatives,
-                                                set_derivatives,           set_derivatives};
+    static void (*const CALLS[])(sequence *) = {ask_for_the_status, set_up, set_derivatives,
+                                                set_derivatives};
 
     CALLS[below(s, sizeof CALLS / sizeof CALLS[0])](s);
 }

@@ -1,4 +1,4 @@
-/* What only FMI 3.0 has: modes of an importer, integers of any size, numbers of values, results of a step. */
+/* What only FMI 3.0 has: integers of any size, and numbers of values. */
 
 static int environment; /* that of the importer */
 
@@ -9,35 +9,23 @@ static void logger(fmi3InstanceEnvironment received, fmi3Status status, fmi3Stri
     check_message((int)status, category, message);
 }
 
-static void *instance_of(sequence *s, const char *name, const char *token, fmi3Boolean event_mode,
-                         size_t intermediate_variables)
+static void *instance_of(sequence *s, const char *name, const char *token)
 {
     const unsigned how = byte(s);
 
-    return fmi3InstantiateCoSimulation(
-        name, token, how & 1 ? "/%s" : NULL, (how & 2) != 0, (how & 4) != 0, event_mode,
-        (how & 8) != 0, NULL, intermediate_variables, &environment, how & 16 ? NULL : logger, NULL);
+    return fmi3InstantiateCoSimulation(name, token, how & 1 ? "/%s" : NULL, (how & 2) != 0,
+                                       (how & 4) != 0, fmi3False, (how & 8) != 0, NULL, 0,
+                                       &environment, how & 16 ? NULL : logger, NULL);
 }
 
 static void *some_instance(sequence *s)
 {
-    const char *const token = sh_fmu_model.guid;
     char text[TEXT];
 
     if (seldom(s, 16)) {
-        check(instance_of(s, "fuzz", some_text(s, text), fmi3False, 0) == NULL,
-              "a wrong token was taken");
-        check(instance_of(s, "fuzz", token, fmi3True, 0) == NULL, "event mode was promised");
-        check(instance_of(s, "fuzz", token, fmi3False, 1 + byte(s)) == NULL,
-              "intermediate update was promised");
-        check(fmi3InstantiateModelExchange("fuzz", token, NULL, fmi3False, fmi3True, &environment,
-                                           logger) == NULL,
-              "model exchange was promised");
-        check(fmi3InstantiateScheduledExecution("fuzz", token, NULL, fmi3False, fmi3True,
-                                                &environment, logger, NULL, NULL, NULL) == NULL,
-              "scheduled execution was promised");
+        check(instance_of(s, "fuzz", some_text(s, text)) == NULL, "a wrong token was taken");
     }
-    return instance_of(s, seldom(s, 4) ? some_text(s, text) : "fuzz", token, fmi3False, 0);
+    return instance_of(s, seldom(s, 4) ? some_text(s, text) : "fuzz", sh_fmu_model.guid);
 }
 
 /* 1 to 3, or what a conversion to int changes. */
@@ -85,7 +73,7 @@ static void use_integers(sequence *s, int sets)
 /* Reads and writes Real variables with any references and any number of values. Only the right number
  * may be taken, and a refused call reads nothing.
  */
-static void use_values(sequence *s)
+static void call_of_this_version(sequence *s)
 {
     uint32_t references[MAX_REFERENCES];
     const size_t n = some_references(s, references, SH_TYPE_REAL, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
@@ -109,22 +97,4 @@ static void use_values(sequence *s)
     }
     free(values);
     free(before);
-}
-
-/* A step whose results have no place. */
-static void step_without_results(sequence *s)
-{
-    const unsigned absent = below(s, 15); /* not all four are there */
-    fmi3Boolean event, terminate, early;
-    double reached;
-
-    check(fmi3DoStep(s->instance, s->time, 1e-3, fmi3True, absent & 1 ? &event : NULL,
-                     absent & 2 ? &terminate : NULL, absent & 4 ? &early : NULL,
-                     absent & 8 ? &reached : NULL) == fmi3Error,
-          "a step was made whose results have no place");
-}
-
-static void call_of_this_version(sequence *s)
-{
-    (seldom(s, 8) ? step_without_results : use_values)(s);
 }

@@ -14,7 +14,7 @@ int main(int argc, char **argv)
 {
     const fmi2Integer method = argc == 2 ? atoi(argv[1]) : 0;
     double outputs[256];
-    void *instance = fmi_instantiate();
+    void *instance = fmi_instantiate(sh_fmu_model.guid);
     uint32_t i;
     long k;
 
@@ -24,8 +24,7 @@ int main(int argc, char **argv)
             check(fmi2SetInteger(instance, &i, 1, &method) == fmi2OK, "set the method");
         }
     }
-    check(fmi_enter_initialization(instance, 0, 0.0, 0.0, 0, 0.0) == SH_OK, "enter");
-    check(fmi_exit_initialization(instance) == SH_OK, "exit");
+    fmi_initialize(instance);
     for (k = 0; k < STEPS; ++k) {
         step(instance, 0, k);
         get_outputs(instance, outputs);

@@ -11,7 +11,7 @@ import fmpy
 import numpy as np
 import pytest
 
-from c_programs import DRIVERS
+from c_programs import DRIVERS, FMU_SOURCES
 from gate import missing, need
 from released_fmus import STEP, Run
 from sigmahat.export.cross_compiler import HEADERS, compile_files
@@ -62,16 +62,17 @@ def assert_same_in(
     target  of the cross compiler
     binary  of the FMU
     """
-    run, program, source = run_of(fmu), folder / "master.exe", DRIVERS / "master.c"
-    version = f"-DSH_FMI={run.description.fmiVersion[0]}"
+    run, program = run_of(fmu), folder / "binaries" / Path(binary).with_name("master.exe")
+    fmpy.extract(str(fmu), unzipdir=str(folder))
     # With -s and in a folder outside of the sources as the binaries of the release: so what the
     # compiler made of its C library for them is used again, which takes minutes to make.
-    options = ["-std=c99", "-O2", "-s", version, f"-I{HEADERS}", "-o", str(program), str(source)]
-    compile_files(target, options, build / "cross-compiler", folder)
-    fmpy.extract(str(fmu), unzipdir=str(folder))
+    options = ["-std=c99", "-O2", "-s", f"-DSH_FMI={run.description.fmiVersion[0]}"]
+    options += [f"-I{HEADERS}", f"-I{FMU_SOURCES}", "-o", str(program), str(DRIVERS / "master.c")]
+    link = [f"binaries/{binary}", "-Wl,-rpath,$ORIGIN"]  # Windows searches in the folder itself
+    compile_files(target, [*options, *link], build / "cross-compiler", folder)
     done = subprocess.run(
         [
-            *(*emulator, str(program), f"binaries/{binary}"),
+            *(*emulator, str(program)),
             *(run.description.guid, repr(STEP), str(len(run.inputs))),
             *(str(v.valueReference) for v in run.inputs + run.outputs),
         ],
