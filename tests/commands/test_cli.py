@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import os
 import re
 import shutil
@@ -15,18 +14,13 @@ from pathlib import Path
 
 import pytest
 
-from command_line import in_process, one_line
+from command_line import Shell
 from gate import need
 from sigmahat.cli import cli
 from sigmahat.fmi import installed
 from sigmahat.paper.scenarios import SCENARIOS
 
 COMMAND = [sys.executable, "-m", "sigmahat"]
-
-
-def refused(*arguments: str, cwd: Path) -> str:
-    """Runs a command that must fail with one line, and returns that line."""
-    return one_line(in_process(*arguments, cwd=cwd))
 
 
 @pytest.mark.slow("a whole reproduction with its figures")
@@ -42,21 +36,20 @@ def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> Non
     assert {path.name for path in out.iterdir()} == expected
 
 
-def test_scenarios_are_listed_one_a_line(tmp_path: Path) -> None:
-    done = in_process("scenarios", cwd=tmp_path)
-    lines = done.stdout.splitlines()
+def test_scenarios_are_listed_one_a_line(shell: Shell) -> None:
+    lines = shell.run("scenarios").splitlines()
     assert [line.split()[0] for line in lines] == list(SCENARIOS)
     for line, scenario in zip(lines, SCENARIOS.values(), strict=True):
         assert line.endswith(scenario.description)
 
 
 @pytest.mark.parametrize("name", ["", *sorted(cli.commands)])
-def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
-    done = in_process(*name.split(), "--help", cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
+def test_help_has_an_example_that_parses(name: str, shell: Shell) -> None:
+    printed = shell.run(f"{name} --help")
+    assert shell.err == ""
     help_ = (cli.commands[name] if name else cli).help or ""
     (example,) = re.findall(r"Example: sigmahat (.*?)(?:\n\n|$)", help_, re.DOTALL)
-    assert f"Example: sigmahat {example.split()[0]}" in done.stdout
+    assert f"Example: sigmahat {example.split()[0]}" in printed
     first, *arguments = example.split()
     assert first == name or not name
     with cli.commands[first].make_context(first, arguments):
@@ -64,12 +57,11 @@ def test_help_has_an_example_that_parses(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow("a whole reproduction with its figures")
-def test_json_of_reproduce_is_its_table(tmp_path: Path) -> None:
-    done = in_process("reproduce", "--scenario", "single-linear", "--json", cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
-    printed = json.loads(done.stdout)
+def test_json_of_reproduce_is_its_table(shell: Shell) -> None:
+    printed = shell.json("reproduce --scenario single-linear")
+    assert shell.err == ""
     assert (printed["scenario"], printed["seeds"]) == ("single-linear", [1])
-    with (tmp_path / "sigmahat-results" / "single-linear" / "table.csv").open() as file:
+    with Path("sigmahat-results/single-linear/table.csv").open() as file:
         rows = list(csv.DictReader(file))
     as_text = [{k: "" if v is None else str(v) for k, v in row.items()} for row in printed["table"]]
     assert as_text == rows
@@ -126,20 +118,19 @@ def test_help_imports_nothing_slow() -> None:
         ),
     ],
 )
-def test_what_does_not_fit_is_refused(command: str, words: list[str], tmp_path: Path) -> None:
-    line = refused(*command.split(), cwd=tmp_path)
+def test_what_does_not_fit_is_refused(command: str, words: list[str], shell: Shell) -> None:
+    line = shell.refused(command)
     assert all(each in line for each in words)
-    assert list(tmp_path.iterdir()) == []
+    assert list(Path().iterdir()) == []
 
 
 @pytest.mark.parametrize("out", ["file", "file/below"])
-def test_folder_that_is_a_file(out: str, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("mine")
+def test_folder_that_is_a_file(out: str, shell: Shell) -> None:
+    Path("file").write_text("mine")
     started = time.monotonic()
-    line = refused("reproduce", "--seeds", "500", "--out", out, cwd=tmp_path)
+    line = shell.refused(f"reproduce --seeds 500 --out {out}")
     assert "file is a file" in line or "choose another folder with --out" in line
     assert time.monotonic() - started < 30  # refused before anything is computed
-    assert (tmp_path / "file").read_text() == "mine"
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
@@ -156,17 +147,17 @@ def test_output_that_cannot_be_written(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["reproduce", "compare", "compare --misfits"])
 @pytest.mark.parametrize("compiler", [None, "/usr/bin/cc"])
 def test_fmus_not_built(
-    name: str, compiler: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, compiler: str | None, shell: Shell, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def missing(name: str) -> Path:
         raise FileNotFoundError(name)
 
     monkeypatch.setattr(installed, "fmu", missing)
     monkeypatch.setattr(shutil, "which", lambda name: compiler)
-    line = refused(*name.split(), "--out", "out", cwd=tmp_path)
+    line = shell.refused(f"{name} --out out")
     assert "cmake --workflow --preset build" in line
     assert ("install a C compiler" in line) == (compiler is None)
-    assert list(tmp_path.iterdir()) == []
+    assert list(Path().iterdir()) == []
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from foreign_joint import GEAR, TORQUE_CONSTANT, Array, Motion, joint
 from recorded_logs import write_log
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.estimate import estimate
+from sigmahat.logs.joints import set_item
 from sigmahat.logs.readers.formats import open_log
 
 ACCURACY = 0.04
@@ -137,17 +138,12 @@ def simulink(m: Motion) -> Columns:
 class Style:
     """A way to log a joint."""
 
-    file: str
-    """Its suffix is the format."""
+    file: str  # its suffix is the format
     log: Callable[[Motion], Columns]
-    ports: Mapping[str, tuple[str, str | None]]
-    """Column and unit of each port."""
-    sheet: Mapping[str, Any]
-    """Keys that are filled in with values of the data sheet."""
-    edits: Mapping[str, Any] = field(default_factory=dict)
-    """Keys that are edited beyond that."""
-    joint: str | None = None
-    """For --joint."""
+    ports: Mapping[str, tuple[str, str | None]]  # column and unit of each port
+    sheet: Mapping[str, Any]  # keys that are filled in with values of the data sheet
+    edits: Mapping[str, Any] = field(default_factory=dict)  # keys that are edited beyond that
+    joint: str | None = None  # for --joint
 
 
 CURRENT = {"ports.tau.torque_constant": TORQUE_CONSTANT}
@@ -206,15 +202,12 @@ STYLES = [
 ]
 
 
-def edited(text: str, values: dict[str, Any]) -> str:
+def edited(text: str, values: Mapping[str, Any]) -> str:
     """A configuration with values for dotted keys; [parameters] is left out of their names."""
     document = tomlkit.parse(text)
     for key, value in values.items():
-        group, *names = key.split(".")
-        table: Any = document["ports"] if group == "ports" else document["parameters"]
-        for name in names[:-1] if group == "ports" else [group, *names[:-1]]:
-            table = table.setdefault(name, tomlkit.table())
-        table[names[-1]] = value
+        place = key.split(".") if key.startswith("ports.") else ("parameters", key)
+        set_item(document, tuple(place), tomlkit.item(value))
     return tomlkit.dumps(document)
 
 
