@@ -12,8 +12,6 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
 
-import jinja2
-
 from sigmahat.export import templates
 
 _ICONS = {
@@ -39,13 +37,9 @@ def write(template: Path, out: Path, version: str) -> None:
 
 
 def _write_page(template: Path, folder: Path, svg: Path, version: str, fmi: int) -> None:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(template.parent / "documentation"),
-        undefined=jinja2.StrictUndefined,
-        autoescape=True,
-    )
     root = templates.render(template, version)
     (experiment,) = root.findall("DefaultExperiment")
+    environment = templates.environment(template.parent / "documentation")
     page = environment.get_template("page.html").render(
         identifier=template.stem,
         fmi=fmi,

@@ -8,9 +8,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import jinja2
-
 from sigmahat.export import archive
+from sigmahat.export.templates import environment
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import Scenario, Sine
@@ -25,9 +24,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
     table1 = scenario("table1")
     residual = table1.estimators["RESIDUAL"]
     connections = residual.connections
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(templates), undefined=jinja2.StrictUndefined, autoescape=True
-    )
+    jinja = environment(templates)
     with Fmu(plant) as of_plant, Fmu(estimator) as of_estimator, TemporaryDirectory() as folder:
         units = {u.name: u for f in (of_plant, of_estimator) for u in f.description.unitDefinitions}
         sent = dict.fromkeys((*connections.values(), "sigma"))
@@ -44,7 +41,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
 
         def add(name: str, template: str, **more: Any) -> None:
             contents[name] = Path(folder) / Path(name).name
-            text = environment.get_template(template).render(data, **more)
+            text = jinja.get_template(template).render(data, **more)
             contents[name].write_text(text, encoding="utf-8")
 
         add("SystemStructure.ssd", "SystemStructure.ssd")

@@ -16,16 +16,21 @@ import jinja2
 UNITS = Path(__file__).with_name("units.xml")  # all units that a variable may have
 
 
+def environment(*folders: Path, autoescape: bool = True) -> jinja2.Environment:
+    """Jinja2 for the templates in these folders; a name without a value is an error."""
+    loader = jinja2.FileSystemLoader(folders)
+    return jinja2.Environment(
+        loader=loader, undefined=jinja2.StrictUndefined, autoescape=autoescape
+    )
+
+
 def render(template: Path, version: str) -> Element:
     """Render a template to the root element of its XML.
 
     Raises ``jinja2.TemplateError`` or ``ElementTree.ParseError`` for a damaged template.
     """
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([template.parent, UNITS.parent]),
-        undefined=jinja2.StrictUndefined,
-    )
-    text = environment.get_template(template.name).render(version=version, pi=math.pi)
+    found = environment(template.parent, UNITS.parent, autoescape=False)
+    text = found.get_template(template.name).render(version=version, pi=math.pi)
     return ElementTree.fromstring(text)
 
 
