@@ -42,9 +42,8 @@
 #define SH_EXCESS ((sh_real)0.3)
 /* Share of count^2/12 that fourth differences of rounding lack [1]: mean for 1 to 100 counts in a sample. */
 #define SH_ROUNDING_IS_NOT_WHITE ((sh_real)0.056)
-/* Time constants of the measured noise, and of the mean of its excess [s]. */
+/* Time constant of the measured noise [s]. */
 #define SH_NOISE_TIME ((sh_real)0.1)
-#define SH_EXCESS_TIME ((sh_real)5)
 /* Std deviations by which the first samples may contradict a motor at rest [1]. */
 #define SH_AT_REST ((sh_real)5)
 

@@ -53,8 +53,6 @@ void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_par
     history->rough +=
         sh_fmin(T / SH_NOISE_TIME, 1) * (sh_signals_roughness(signals) - history->rough);
     history->excess = sh_fmax(1, (torque + inertial * history->rough) / rounded);
-    history->excess_mean +=
-        sh_fmin(T / SH_EXCESS_TIME, 1) * (history->excess - history->excess_mean);
 }
 
 /* lambda = N_tau / (N_tau + N_theta + variance of the friction whose sign is unknown), detail 14 */

@@ -49,14 +49,13 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
     return size;
 }
 
-/* The weight of the data is 1 / kappa^2. In a trial it is 1 / max(1, q, mean of X): noise that is
- * correlated is no evidence for columns.
+/* The weight of the data is 1 / kappa^2. In a trial it is 1 / max(1, q).
  */
 static void start_refit(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
-    const sh_real noise = sh_fmax(sh_fmax(1, state->misfit), state->history.excess_mean);
-    const sh_real weight = 1 / (refit->trial == 0 ? state->variance_factor : noise);
+    const sh_real weight =
+        1 / (refit->trial == 0 ? state->variance_factor : sh_fmax(1, state->misfit));
     const int size = choose_columns(state, p, refit->posterior.column);
 
     sh_information_start(&refit->posterior.information, size, 1);

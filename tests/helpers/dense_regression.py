@@ -240,7 +240,7 @@ class Oracle:
         self.sigma = self.y = self.delay = 0.0
         self.resting = self.unsure = 0
         self.settling, self.starting = 0.0, 12 / self.w
-        self.rough, self.excess, self.excess_mean = 0.0, 1.0, 1.0
+        self.rough, self.excess = 0.0, 1.0
         self.once_used: set[int] = set()  # groups that a trial has shown to be needed
         self.changes = 0  # passes in which the recent data agreed by themselves
         self.out: dict[str, list[Any]] = defaultdict(list)
@@ -283,7 +283,7 @@ class Oracle:
     def make_passes(self) -> Iterator[None]:
         """Builds posteriors from all data, one after the other; a row brings it one step on."""
         while True:
-            least = max(1.0, self.q, self.excess_mean)
+            least = max(1.0, self.q)
             weight = 1 / (least if self.trial else self.factor)
             self.build = self.posterior(self.trial, weight)
             self.build.surplus = self.surplus * weight
@@ -429,7 +429,6 @@ class Oracle:
         rounded = self.torque_noise + self.inertial * self.counts[0] ** 2 / 12
         self.rough += min(self.T / 0.1, 1) * (roughness - self.rough)
         self.excess = max(1.0, (self.torque_noise + self.inertial * self.rough) / rounded)
-        self.excess_mean += min(self.T / 5, 1) * (self.excess - self.excess_mean)
 
     def variance(self, filtered: Filtered, unknown: float) -> tuple[float, float]:
         """R, and the factor in it by errors that last."""
