@@ -11,7 +11,7 @@
 #include "drive.h"
 #include "fmi_calls.h"
 
-enum { INSTANCES = 4, STEPS = 100, OUTPUTS = 256 };
+enum { INSTANCES = 4, STEPS = 40, OUTPUTS = 256 };
 
 typedef struct {
     int variant;

@@ -267,3 +267,8 @@ def test_a_range_that_is_far_from_the_motion_is_warned_of_once(
     words = [each.getMessage() for each in caplog.records]
     assert len(words) == warned
     assert all(f"is up to 0.01 rad, but range.phi is {given}" in each for each in words)
+
+
+def test_an_unknown_name_of_the_package_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'estimator'"):
+        sigmahat.estimator  # type: ignore[attr-defined]  # noqa: B018

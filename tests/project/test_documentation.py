@@ -30,44 +30,39 @@ def text(element: Any) -> str:
     return "".join(parts)
 
 
+def items(root: Any, variable: Any) -> list[tuple[str, str]]:
+    """Value and name, and description, of each item of an enumeration; of others none."""
+    path = f"TypeDefinitions/SimpleType[@name='{variable[0].get('declaredType')}']//Item"
+    return [
+        (f"{i.get('value')} {i.get('name')}", i.get("description")) for i in root.iterfind(path)
+    ]
+
+
 def test_the_tables_list_the_variables_of_the_model_description(files: dict[str, bytes]) -> None:
-    page = etree.fromstring(files[INDEX])
     rows = {}
-    for row in page.iterfind(".//tbody/tr"):
-        name, unit, start, limits, variability, description = map(text, row)
+    for row in etree.fromstring(files[INDEX]).iterfind(".//tbody/tr"):
+        name, *cells = map(text, row)
         assert name not in rows
-        rows[name] = (unit, start, limits, variability, description)
-    variables = etree.fromstring(files["modelDescription.xml"]).findall("ModelVariables/*")
+        rows[name] = (*cells, [e.text for e in row.iterfind(".//dl[@class='items']/*")])
+    root = etree.fromstring(files["modelDescription.xml"])
+    variables = root.findall("ModelVariables/*")
     assert set(rows) == {v.get("name") for v in variables}
     for v in variables:
-        unit, start, limits, variability, description = rows[v.get("name")]
+        unit, start, limits, variability, description, listed = rows[v.get("name")]
         assert unit == v[0].get("unit", "")
         assert (variability, description) == (v.get("variability"), v.get("description"))
         for limit in (v[0].get("min"), v[0].get("max")):
             assert limit is None or limit in limits
-        if v[0].tag == "Real" and v[0].get("start") is not None:
+        expected = items(root, v)
+        assert listed == [part for item in expected for part in item]
+        if v[0].get("start") is None:
+            assert start == ""
+        elif v[0].tag == "Real":
             assert float(start.split()[0]) == pytest.approx(float(v[0].get("start")), rel=1e-5)
+        elif expected:
+            assert f"{v[0].get('start')} {start}" in dict(expected)
         else:
-            assert bool(start) == (v[0].get("start") is not None)
-
-
-def test_enumerations_are_listed_with_their_items(files: dict[str, bytes]) -> None:
-    page = etree.fromstring(files[INDEX])
-    root = etree.fromstring(files["modelDescription.xml"])
-    for enumeration in root.iterfind("ModelVariables/*/Enumeration"):
-        name = enumeration.getparent().get("name")
-        (row,) = [r for r in page.iterfind(".//tbody/tr") if text(r[0]) == name]
-        path = f"TypeDefinitions/SimpleType[@name='{enumeration.get('declaredType')}']//Item"
-        items = [
-            (f"{item.get('value')} {item.get('name')}", item.get("description"))
-            for item in root.iterfind(path)
-        ]
-        found = [e.text for e in row.iterfind(".//dl[@class='items']/*")]
-        assert found == [part for item in items for part in item]
-        if enumeration.get("start") is None:  # an output
-            assert text(row[2]) == ""
-        else:
-            assert f"{enumeration.get('start')} {text(row[2])}" in [title for title, _ in items]
+            assert start
 
 
 def test_every_name_in_the_text_is_a_variable(files: dict[str, bytes]) -> None:

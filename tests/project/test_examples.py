@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import math
 import re
+import runpy
 import subprocess
 import sys
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 
 import fmpy.validation
 import nbclient
@@ -23,14 +23,6 @@ from scipy.integrate import solve_ivp
 import sigmahat
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-
-
-def load(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def run(name: str, folder: Path) -> str:
@@ -59,7 +51,7 @@ def test_own_log(tmp_path: Path) -> None:
         assert found and abs(float(found[1]) - true) <= float(found[2])
     table = pyarrow.csv.read_csv(tmp_path / "knee" / "estimate.csv")
     estimate = table["estimate.sigma [N.m/rad]"].to_numpy()
-    joint = load("own_log").record(tmp_path / "again.csv")
+    joint = runpy.run_path(str(EXAMPLES / "own_log.py"))["record"](tmp_path / "again.csv")
     assert (tmp_path / "again.csv").read_bytes() == (tmp_path / "knee.csv").read_bytes()
     late = joint.t >= joint.t[-1] / 2
     true = joint.plant["sigma"][late]
@@ -113,7 +105,8 @@ def test_own_plant(tmp_path: Path) -> None:
 
 @pytest.mark.slow("two controlled runs, tick by tick")
 def test_stiffness_control(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    example = load("stiffness_control")
+    monkeypatch.syspath_prepend(EXAMPLES)
+    example = importlib.import_module("stiffness_control")
     monkeypatch.setattr(example, "run", cache(example.run))
     example.main(tmp_path)
     assert (tmp_path / "stiffness_control.png").stat().st_size > 0

@@ -27,6 +27,14 @@ def blocks(page: str, language: str) -> Iterator[str]:
     return (m[1] for m in re.finditer(rf"^```{language}\n(.*?)^```$", text, re.M | re.S))
 
 
+def executed(page: str) -> dict[str, Any]:
+    """Variables of the Python of a page after all of its blocks ran in their order."""
+    names: dict[str, Any] = {}
+    for code in blocks(page, "python"):
+        exec(compile(code, page, "exec"), names)
+    return names
+
+
 @pytest.mark.skipif(fmpy.platform != "linux64", reason="the page names the Linux binary")
 def test_the_commands_of_the_page_on_c_masters_work(tmp_path: Path) -> None:
     (commands,) = blocks("c-master.md", "sh")
@@ -81,25 +89,21 @@ def test_the_c_to_copy_estimates_a_stiffness(tmp_path: Path, build: Path) -> Non
 
 @pytest.fixture(scope="module")
 def page() -> dict[str, Any]:
-    """Variables of the code blocks of the FMPy page, after all of them ran in their order."""
-    names: dict[str, Any] = {}
-    for code in blocks("fmpy.md", "python"):
-        exec(compile(code, "fmpy.md", "exec"), names)
-    return names
+    return executed("fmpy.md")
 
 
-def test_the_code_on_the_page_of_fmi_3_works(build: Path) -> None:
-    (code,) = blocks("fmi3.md", "python")
-    names: dict[str, Any] = {}
-    exec(compile(code.replace('"build/', f'"{build.resolve()}/'), "fmi3.md", "exec"), names)
+def test_the_code_on_the_page_of_fmi_3_works(
+    build: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "build").symlink_to(build.resolve())
+    monkeypatch.chdir(tmp_path)
+    names = executed("fmi3.md")
     assert names["sigma"] == pytest.approx(1000, rel=1e-3)
     assert names["eta"] != 0
 
 
 def test_the_code_on_the_page_of_python_works() -> None:
-    names: dict[str, Any] = {}
-    for code in blocks("python.md", "python"):
-        exec(compile(code, "python.md", "exec"), names)
+    names = executed("python.md")
     # The joint of the first block has 1000 N.m/rad; the residual lags slightly behind.
     assert names["found"]["sigma"][-1] == pytest.approx(1000, rel=1e-3)
     assert names["now"]["sigma"] == names["found"]["sigma"][-1]
@@ -110,11 +114,8 @@ def test_the_code_on_the_page_of_python_works() -> None:
 
 def test_a_copy_without_enumerations_is_the_same_fmu(page: dict[str, Any], tmp_path: Path) -> None:
     """The function of the page on importers."""
-    names: dict[str, Any] = {}
-    (code,) = blocks("importers.md", "python")
-    exec(compile(code, "importers.md", "exec"), names)
     source, copy = sigmahat.fmu("StiffnessEstimator"), tmp_path / "copy.fmu"
-    names["without_enumerations"](source, copy)
+    executed("importers.md")["without_enumerations"](source, copy)
     found = {
         v.name: v for v in fmpy.read_model_description(str(copy), validate=True).modelVariables
     }

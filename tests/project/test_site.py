@@ -1,4 +1,4 @@
-"""The documentation as a site: search, and how it looks in a browser.
+"""The documentation as a site: the API, search, and how it looks in a browser.
 
 The build has checked that every page is in the navigation, and that Sphinx has nothing to warn of,
 such as a link that leads nowhere.
@@ -17,6 +17,7 @@ from lxml import html
 from selenium.webdriver.support.expected_conditions import text_to_be_present_in_element
 from selenium.webdriver.support.ui import WebDriverWait
 
+import sigmahat
 from browser import opened
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -58,6 +59,11 @@ def pages(site: Path) -> list[Path]:
 @cache
 def read(page: Path) -> Any:
     return html.parse(str(page)).getroot()
+
+
+@pytest.mark.parametrize("name", sorted({*sigmahat.__all__} - {"__version__"}))
+def test_a_public_name_is_on_the_page_of_the_api(name: str, site: Path) -> None:
+    assert read(site / "api.html").xpath("//*[@id=$id]", id=f"sigmahat.{name}")
 
 
 def test_the_site_loads_nothing_from_the_network(site: Path) -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import re
+import runpy
 import shutil
 from pathlib import Path
 from typing import Any
@@ -48,12 +48,9 @@ def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The program that made the log, the log that it makes, and the recording of the joint."""
-    spec = importlib.util.spec_from_file_location("record", FILES / "record.py")
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    program = runpy.run_path(str(FILES / "record.py"))
     log = tmp_path_factory.mktemp("again") / "knee.csv"
-    return module.JOINT, log, module.record(log)
+    return program["JOINT"], log, program["record"](log)
 
 
 def test_the_log_can_be_made_again_to_the_byte(recording: Any) -> None:
