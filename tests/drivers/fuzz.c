@@ -186,65 +186,53 @@ static void forge(sequence *s, uint8_t *bytes, size_t size)
     sign(bytes, size);
 }
 
-/* Lets the instance go on from a forged state, if it is taken. */
-static void use_forged(sequence *s, void *state)
+/* Damages a serialised state, in a block of its own of exactly the new size. */
+static uint8_t *damage(sequence *s, uint8_t *bytes, size_t *size)
 {
-    size_t size = 0;
-    uint8_t *bytes;
-    void *copy = NULL;
-
-    if (fmi_state_size(s->instance, state, &size) != SH_OK) {
-        return;
+    if (below(s, 2)) {
+        bytes[bits(s) % *size] ^= (uint8_t)(1 + below(s, 255));
+        return bytes;
     }
-    bytes = memory(size);
-    check(fmi_serialize_state(s->instance, state, bytes, size) == SH_OK,
-          "a good state was not serialised");
-    forge(s, bytes, size);
-    if (fmi_deserialize_state(s->instance, bytes, size, &copy) == SH_OK) {
-        check(fmi_set_state(s->instance, copy) == SH_OK, "a state was taken, and then refused");
-        s->stop_time = INFINITY; /* the state may have another one, which nobody knows */
-        s->forged = 1;
-        s->time = fmi_time(s->instance, s->time);
-    }
-    fmi_free_state(s->instance, &copy);
-    free(bytes);
+    *size = (below(s, 2) ? bits(s) : byte(s)) % *size;
+    bytes = realloc(bytes, *size > 0 ? *size : 1);
+    check(bytes != NULL, "out of memory");
+    return bytes;
 }
 
-/* Serialises a state, maybe damages it, and reads it back. */
-static void serialise(sequence *s, void **state)
+/* Serialises a state, maybe damages or forges it, and reads it back in the place of the state. */
+static void serialise(sequence *s, unsigned slot)
 {
+    const unsigned choice = below(s, 5);
+    const int damaged = choice == 0, forged = choice > 2;
     void *copy = NULL;
     sh_status status;
     uint8_t *bytes;
-    size_t size = 0, length;
-    int damaged = 0;
+    size_t size = 0;
 
-    if (fmi_state_size(s->instance, *state, &size) != SH_OK) {
+    if (fmi_state_size(s->instance, s->states[slot], &size) != SH_OK) {
         return;
     }
     bytes = memory(size);
     if (seldom(s, 16)) {
-        check(fmi_serialize_state(s->instance, *state, bytes, size - 1) == SH_ERROR,
+        check(fmi_serialize_state(s->instance, s->states[slot], bytes, size - 1) == SH_ERROR,
               "a state went into too little room");
     }
-    check(fmi_serialize_state(s->instance, *state, bytes, size) == SH_OK,
+    check(fmi_serialize_state(s->instance, s->states[slot], bytes, size) == SH_OK,
           "a good state was not serialised");
-    length = size;
-    if (below(s, 2)) {
-        const unsigned flip = byte(s);
-        bytes[bits(s) % size] ^= (uint8_t)flip;
-        damaged = flip != 0;
+    if (damaged) {
+        bytes = damage(s, bytes, &size);
+    } else if (forged) {
+        forge(s, bytes, size);
     }
-    if (seldom(s, 4)) { /* truncated, in a block of exactly this size */
-        length = (below(s, 2) ? bits(s) : byte(s)) % size;
-        bytes = realloc(bytes, length > 0 ? length : 1);
-        check(bytes != NULL, "out of memory");
-    }
-    status = fmi_deserialize_state(s->instance, bytes, length, &copy);
-    check(status == SH_ERROR || (!damaged && length == size), "a spoilt state was taken");
+    status = fmi_deserialize_state(s->instance, bytes, size, &copy);
+    check(status == SH_ERROR || !damaged, "a spoilt state was taken");
     if (status == SH_OK) {
-        fmi_free_state(s->instance, state);
-        *state = copy;
+        fmi_free_state(s->instance, &s->states[slot]);
+        s->states[slot] = copy;
+    }
+    if (status == SH_OK && forged) {
+        s->stop_times[slot] = INFINITY; /* it may have another one, which nobody knows */
+        s->forged = 1;
     }
     free(bytes);
 }
@@ -253,16 +241,19 @@ static void restore(sequence *s, unsigned slot)
 {
     unsigned char *block = s->states[slot];
 
-    if (block != NULL && seldom(s, 32)) {
+    if (block == NULL) {
+        check(fmi_set_state(s->instance, block) == SH_ERROR, "no state was taken");
+        return;
+    }
+    if (seldom(s, 32)) {
         unsigned char *place = block + below(s, 12); /* of what says whose state it is */
         *place ^= 1;
         check(fmi_set_state(s->instance, block) == SH_ERROR, "a foreign state was taken");
         *place ^= 1;
     }
-    if (fmi_set_state(s->instance, block) == SH_OK) {
-        s->stop_time = s->stop_times[slot];
-        s->time = fmi_time(s->instance, s->time);
-    }
+    check(fmi_set_state(s->instance, block) == SH_OK, "a good state was refused");
+    s->stop_time = s->stop_times[slot];
+    s->time = fmi_time(s->instance, s->time);
 }
 
 /* Saves, restores, frees or serialises one of the states. */
@@ -278,17 +269,14 @@ static void use_states(sequence *s)
         }
         break;
     case 2:
+    case 3:
         restore(s, slot);
         break;
-    case 3:
+    case 4:
         fmi_free_state(s->instance, &s->states[slot]);
         break;
-    case 4:
-    case 5:
-        use_forged(s, s->states[slot]);
-        break;
     default:
-        serialise(s, &s->states[slot]);
+        serialise(s, slot);
     }
 }
 

@@ -38,20 +38,16 @@ REFUSED_BY_A_RELATION = {("filter.V_max", "min")}
 
 def limits(variable: Any) -> Iterator[tuple[str, float, float]]:
     """Of a parameter: which limit, the limit, and the next value outside."""
+    lowest, highest = variable.min, variable.max
     if variable.type == "Enumeration":
-        items = [int(item.value) for item in variable.declaredType.items]
-        yield "min", min(items), min(items) - 1
-        yield "max", max(items), max(items) + 1
-    elif variable.type == "Integer":
-        for which, step in (("min", -1), ("max", 1)):
-            limit = getattr(variable, which)
-            if limit is not None:
-                yield which, int(limit), int(limit) + step
-    elif variable.type == "Real":
-        for which, outward in (("min", -math.inf), ("max", math.inf)):
-            limit = getattr(variable, which)
+        values = [item.value for item in variable.declaredType.items]
+        lowest, highest = values[0], values[-1]
+    for which, limit, outward in (("min", lowest, -math.inf), ("max", highest, math.inf)):
+        if variable.type == "Real":
             real = float(outward if limit is None else limit)
             yield which, real, math.nextafter(real, outward)
+        elif limit is not None:
+            yield which, int(limit), int(limit) + int(math.copysign(1, outward))
 
 
 def initialised(fmu: Instance, name: str, value: float) -> tuple[int, str]:
@@ -88,6 +84,8 @@ def test_a_parameter_at_its_limit_is_accepted_and_beyond_it_refused_by_its_name(
     [
         ("samplePeriod", math.nan, "[1e-09, inf)"),
         ("filter.kind", 4, "[1, 3]"),
+        ("modality", 2**40, "[1, 3]"),  # in FMI 3.0 an enumeration has 64 bits
+        ("modality", -(2**63), "[1, 3]"),
         ("rls.n", 9, "[1, 8]"),
         ("rls.eta_0[1,2]", math.inf, "(-inf, inf)"),
     ],
@@ -105,15 +103,6 @@ def test_a_parameter_out_of_range_is_refused_where_it_is_set(
         assert fmu.set(name, bad) == ERROR
         assert fmu.exit() == OK
         assert fmu.step(0.0, 1e-3) == OK
-
-
-@pytest.mark.parametrize("bad", [0, 4, 2**40, -(2**63)])
-def test_an_enumeration_outside_its_items_is_refused(bad: int, estimator_twin: Path) -> None:
-    with Instance3(estimator_twin) as fmu:
-        assert fmu.set("modality", bad) == ERROR
-        assert "modality = " in fmu.last_message and "[1, 3]" in fmu.last_message
-        fmu.initialise()
-        assert fmu.get("modality") == 1
 
 
 @pytest.mark.parametrize(
