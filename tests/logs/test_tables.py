@@ -64,6 +64,21 @@ def test_whole_numbers_stay_whole_numbers(begin: int, tmp_path: Path) -> None:
     assert log.read("note").sum() == 0.5 * begin
 
 
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        (np.arange(5, dtype=np.uint64) + np.uint64(2**63), np.arange(5.0)),
+        (np.datetime64("9000-01-01", "ms") + np.arange(5), 1e-3 * np.arange(5.0)),
+    ],
+    ids=["whole numbers", "dates"],
+)
+def test_times_beyond_an_int64_of_nanoseconds(
+    values: np.ndarray, expected: np.ndarray, tmp_path: Path
+) -> None:
+    log = open_log(write_log({"t": values, "q": expected}, tmp_path / "log.parquet"))
+    assert np.array_equal(log.read("t"), expected)
+
+
 def test_dates_are_times_and_stay_as_they_are(shell: Shell) -> None:
     stamps = np.datetime64("2024-05-01T12:00:00.250") + np.arange(ROWS).astype("timedelta64[ms]")
     text = np.datetime_as_string(stamps, "ms")

@@ -237,13 +237,17 @@ def lost_rows(times: Array, T: float) -> float | None:
 
 
 @dataclass(frozen=True)
+class Clock:
+    unit: str = "s"
+    interval: float = 1e-3  # usual time between rows [s]
+    longest_gap: float | None = None  # as `lost_rows`
+
+
+@dataclass(frozen=True)
 class Columns:
     signals: Sequence[Column]
-    clocks: Mapping[str, str]  # units of the columns of times, by name
+    clocks: Mapping[str | None, Clock]  # by the column of the times; last None, for no times
     facts: Mapping[str, Facts]  # facts of all columns, by name
-    intervals: Mapping[str | None, float]
-    """Usual time between rows [s], by clock; by None for columns without a clock."""
-    gaps: Mapping[str | None, float | None]  # as `lost_rows`, by clock
     window_T: float  # time between the samples of the windows [s]
 
 
@@ -263,17 +267,18 @@ def read_columns(log: Log) -> Columns:
     named = {name: unit for name, unit in units.items() if meanings[name].quantity == "time"}
     units = named or units
     times = {name: values[name] * seconds(unit) for name, unit in units.items()}
-    intervals: dict[str | None, float] = {name: interval(t) for name, t in times.items()}
-    intervals[None] = 1e-3
-    gaps: dict[str | None, float | None] = {n: lost_rows(t, intervals[n]) for n, t in times.items()}
-    gaps[None] = None
-    clocks = {name: _clock_of(name, log, list(units)) for name in log.columns}
+    clocks: dict[str | None, Clock] = {}
+    for name, t in times.items():
+        T = interval(t)
+        clocks[name] = Clock(units[name], T, lost_rows(t, T))
+    clocks[None] = Clock()
+    clock_of = {name: _clock_of(name, log, list(units)) for name in log.columns}
     signals = [name for name in log.columns if name not in units]
     moving = [name for name in signals if facts[name].varies]
-    T = min((intervals[clocks[name]] for name in moving), default=1e-3)
-    windows = dict.fromkeys(signals, np.empty(0)) | _windows(moving, values, clocks, times, T)
-    found = [Column(n, meanings[n], facts[n], clocks[n], windows[n]) for n in signals]
-    return Columns(found, units, facts, intervals, gaps, T)
+    T = min((clocks[clock_of[name]].interval for name in moving), default=clocks[None].interval)
+    windows = dict.fromkeys(signals, np.empty(0)) | _windows(moving, values, clock_of, times, T)
+    found = [Column(n, meanings[n], facts[n], clock_of[n], windows[n]) for n in signals]
+    return Columns(found, clocks, facts, T)
 
 
 def _clock_of(column: str, log: Log, clocks: Sequence[str]) -> str | None:

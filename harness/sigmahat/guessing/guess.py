@@ -111,7 +111,7 @@ def guess_chosen(columns: Columns, names: Mapping[str, str | None]) -> dict[str,
 def _joint(name: str, roles: Roles, columns: Columns) -> JointGuess:
     clocks = {port: role.column.clock for port, role in roles.ports.items()}
     first = [clocks[port] for port in PORTS if port in clocks]
-    main = first[0] if first else next(iter(columns.clocks), None)
-    unit = columns.clocks.get(main or "", "s")
+    main = first[0] if first else next(iter(columns.clocks))
     ports = guess_ports(roles, columns, main)
-    return JointGuess(name, main, unit, columns.intervals[main], columns.gaps[main], ports)
+    clock = columns.clocks[main]
+    return JointGuess(name, main, clock.unit, clock.interval, clock.longest_gap, ports)

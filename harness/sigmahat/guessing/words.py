@@ -111,21 +111,20 @@ class _Unit:
 
 def _without_unit(name: str) -> tuple[_Unit, list[str]]:
     """The unit at the end of a name, and the other words."""
-    text = _plain(name)
+    text, units = _plain(name), _vocabulary().units
     bracket = _BRACKET.search(text)
     if bracket:
-        unit = _unit(re.sub(r"[\s.*·⋅]|\bin\b", "", bracket[1]).lower())
-        if unit != _Unit():
+        unit = units.get(re.sub(r"[\s.*·⋅]|\bin\b", "", bracket[1]).lower())
+        if unit is not None:
             return unit, _TOKEN.findall(text[: bracket.start()])
     tokens = _TOKEN.findall(text)
     for count in (3, 2, 1):
         last = [token.lower() for token in tokens[-count:]]
         if len(last) < count:
             continue
-        unit = _unit("/".join(each for each in last if each != "per"))
-        if unit == _Unit() and count > 1:
-            unit = _unit("".join(last))
-        if unit != _Unit() and _is_unit(tokens, count, unit):
+        unit = units.get("/".join(each for each in last if each != "per"))
+        unit = unit or units.get("".join(last))
+        if unit is not None and _is_unit(tokens, count, unit):
             return unit, tokens[:-count]
     return _Unit(), tokens
 
@@ -138,13 +137,6 @@ def _is_unit(tokens: Sequence[str], count: int, unit: _Unit) -> bool:
     of = _UNIT_OF.get(unit.name or "")
     fits = of == before or (of, before) == ("current", "torque")
     return of is not None and (fits or (before is None and tokens[-1] == "A" and len(tokens) > 1))
-
-
-def _unit(text: str) -> _Unit:
-    vocabulary = _vocabulary()
-    if text in vocabulary.speeds:
-        return _Unit(foreign="velocity", speed=vocabulary.speeds[text])
-    return _Unit(vocabulary.units.get(text), vocabulary.foreign.get(text))
 
 
 def _entries(tokens: Sequence[str]) -> Iterator[tuple[str, _Entry | None]]:
@@ -190,9 +182,7 @@ class _Vocabulary:
     """The file vocabulary.toml by words."""
 
     entries: Mapping[str, _Entry]
-    units: Mapping[str, str]
-    speeds: Mapping[str, str]
-    foreign: Mapping[str, str]
+    units: Mapping[str, _Unit]
     longest_first: Sequence[str]
 
 
@@ -206,8 +196,9 @@ def _vocabulary() -> _Vocabulary:
             for word in words:
                 entries.setdefault(word, {}).setdefault(section, kind)
     known = [word for word in entries if len(word) >= _AT_AN_END and " " not in word]
-    units, speeds, foreign = (
-        {word: kind for kind, words in table[section].items() for word in words}
-        for section in ("unit", "speed", "foreign")
-    )
-    return _Vocabulary(entries, units, speeds, foreign, sorted(known, key=len)[::-1])
+    units = {word: _Unit(name) for name, words in table["unit"].items() for word in words}
+    for speed, words in table["speed"].items():
+        units |= dict.fromkeys(words, _Unit(foreign="velocity", speed=speed))
+    for quantity, words in table["foreign"].items():
+        units |= dict.fromkeys(words, _Unit(foreign=quantity))
+    return _Vocabulary(entries, units, sorted(known, key=len)[::-1])

@@ -1,12 +1,7 @@
 """A configuration of several joints: common values stand once, other values in joints' sections.
 
-    [ports.theta]                  # of every joint
-    counts_per_turn = 4096
-
-    [joints.elbow.ports.theta]     # of one joint; values here replace common values
-    column = "elbow_motor"
-
-A configuration of one joint has no section [joints], and its joint has the name "".
+docs/how-to-log.md has an example. A configuration of one joint has no section [joints], and its
+joint has the name "".
 """
 
 import re

@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 _NO_TEXT = r"^\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(?i:nan|inf|infinity))?\s*$"
 """An empty cell, or a number in the notation of Python."""
 _SHOWN = 100  # characters of a text
+_PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}  # units of timestamps
 EXACT = 2**53  # largest magnitude up to which a float64 holds every integer
 
 
@@ -90,10 +91,9 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
     """An Arrow column as Log.read returns it. Raises LogError if it does not hold numbers."""
     kind = column.type
     if pa.types.is_timestamp(kind):
-        nanoseconds = column.cast(pa.timestamp("ns")).cast(pa.int64())
-        first = next((x.as_py() for x in nanoseconds if x.is_valid), 0)
-        shifted = pa.compute.subtract(nanoseconds, first)
-        return numbers(path, name, shifted) / 1e9
+        ticks = column.cast(pa.int64())
+        first = next((x.as_py() for x in ticks if x.is_valid), 0)
+        return numbers(path, name, pa.compute.subtract(ticks, first)) / _PER_SECOND[kind.unit]
     if pa.types.is_string(kind) or pa.types.is_large_string(kind):
         raise holds_text(path, name, *(first_text(column) or (1, "")))
     if pa.types.is_null(kind):
@@ -101,8 +101,9 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
     if not (pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)):
         raise LogError(f"{path}: column {name!r} holds {kind}, expected numbers")
     if pa.types.is_integer(kind) and not fits_float64(column):
+        column = column.cast(pa.int64(), safe=False)  # large uint64 become negative
         first = next(x.as_py() for x in column if x.is_valid)
-        column = pa.compute.subtract(column.cast(pa.int64()), first)
+        column = pa.compute.subtract(column, first)
     values, row = np.empty(len(column)), 0
     for chunk in column.chunks:  # to_numpy() of a column imports pandas, which takes long
         batch = pa.record_batch([chunk.cast(pa.float64(), safe=False)], [name])
