@@ -1,4 +1,4 @@
-"""What a joint is made of. `draw.py` draws the values, `simulation.py` builds what they say."""
+"""The parts of a joint. `draw.py` draws their values, `simulation.py` builds the joint."""
 
 from __future__ import annotations
 
@@ -114,31 +114,33 @@ class Tendons:
 
 @dataclass(frozen=True)
 class Link:
-    """A link that turns about a horizontal axis; it hangs down at q = 0."""
+    """A rod that turns about a horizontal or a vertical axis; it hangs down at q = 0."""
 
     mass: float  # [kg]
-    length: float  # to the next joint or to the tip [m]
-    centre: float  # from the axis to the centre of mass [m]
-    inertia: float  # about the centre of mass [kg.m2]
+    length: float  # [m]
 
     @property
-    def about_axis(self) -> float:
-        """Inertia about the axis of the joint [kg.m2]."""
-        return self.inertia + self.mass * self.centre**2
+    def centre(self) -> float:
+        """Distance from the axis to the centre of mass [m]."""
+        return self.length / 2
+
+    @property
+    def inertia(self) -> float:
+        """Inertia about the centre of mass [kg.m2]."""
+        return self.mass * self.length**2 / 12
 
 
 @dataclass(frozen=True)
 class Drive:
     """Command of a motor: u = feed_forward + kp (reference - theta) - kd theta', within +-peak.
 
-    theta is what the encoder reads, theta' its difference through a low pass of the first order.
+    theta is the encoder reading, theta' its difference through a low pass of the first order.
     """
 
     feed_forward: Array  # [N.m] at every sample
     reference: Array  # [rad] at every sample
     kp: float  # [N.m/rad]
     kd: float  # [N.m.s/rad]
-    peak: float  # [N.m]
 
 
 @dataclass(frozen=True)
@@ -156,7 +158,7 @@ class Instruments:
 
 @dataclass(frozen=True)
 class Sheet:
-    """How wrong the owner's data are: factors to the true values."""
+    """Errors of the owner's data: factors to the true values."""
 
     B: float
     D: float
@@ -167,20 +169,13 @@ class Sheet:
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """Motors, links, drives and instruments: one of each but for an arm, which has two.
+    """A motor, an elastic element and a link, with drive and instruments."""
 
-    An arm has two links in a vertical plane, a motor and a spring in each joint, and a floor.
-    """
-
-    motors: tuple[Motor, ...]
-    links: tuple[Link, ...]
-    drives: tuple[Drive, ...]
-    instruments: tuple[Instruments, ...]
-    sheet: Sheet
+    motor: Motor
+    elastic: Spring | Tendons
+    link: Link
     gravity: float  # 0 where the axis is vertical [m/s2]
-    springs: tuple[Spring, ...] = ()  # one a motor, or none beside tendons
-    tendons: Tendons | None = None
-    theta_c: Array | None = None  # where the stiffness motor shall be at every sample [rad]
-    floor: float | None = None  # of an arm, height against the first axis [m]
-    start: tuple[float, ...] = (0.0,)  # angles of the motors [rad]
-    observed: int = 0  # the joint in the log; of an arm 0 is the shoulder, 1 the elbow
+    drive: Drive
+    theta_c: Array  # reference of the stiffness motor at every sample; 0 without tendons [rad]
+    instruments: Instruments
+    sheet: Sheet

@@ -1,15 +1,14 @@
 """The methods that are compared, by name: those of this package, and least squares.
 
-All share the spring: its torque is a linear combination of given functions, the odd cubic
-polynomial in the deformation, because an owner does not know whether a spring hardens. Where the
-stiffness is variable, its coefficients are quadratic in the position of the stiffness motor.
+In all methods the torque of the spring is the same odd cubic polynomial in the deformation, because
+an owner does not know whether a spring hardens. Where the stiffness is variable, the coefficients
+are quadratic in the position of the stiffness motor.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import signal
@@ -31,42 +30,10 @@ DYNAMICS = 0.99
 """Share of the power of the motor velocity below the frequency of the dynamics."""
 EDGE = 5
 """Rows that are dropped at both ends, where filters without lag have no past or no future."""
-INERTIA, VISCOUS, COULOMB, OFFSET, SPRING = 0, 1, 2, 3, 4
+INERTIA, VISCOUS, SPRING = 0, 1, 4
 """Columns of least squares; those of the spring are the last ones."""
-
-
-@dataclass(frozen=True)
-class _Spring:
-    """tau_e = sum of c_ij x^(2i+1)/(2i+1) l^j with x, l over their ranges; i below n, j below m.
-
-    The range of the stiffness motor is its travel in this log: an owner knows it.
-    """
-
-    log: JointLog
-
-    n = 2
-
-    @property
-    def m(self) -> int:
-        return 3 if self.log.theta_c.any() else 1
-
-    @property
-    def range_theta_c(self) -> float:
-        return float(np.abs(self.log.theta_c).max()) or 1.0
-
-    def torque(self, phi: Array) -> Array:
-        """The functions [size: samples x n m]. A coefficient is a torque [N.m]."""
-        x = phi / self.log.known.range_phi
-        return self._products([x ** (2 * i + 1) / (2 * i + 1) for i in range(self.n)])
-
-    def slope(self, phi: Array) -> Array:
-        """Their derivatives with respect to the deformation [size: samples x n m], [1/rad]."""
-        x = phi / self.log.known.range_phi
-        return self._products([x ** (2 * i) / self.log.known.range_phi for i in range(self.n)])
-
-    def _products(self, of_phi: list[Array]) -> Array:
-        r = self.log.theta_c / self.range_theta_c
-        return np.column_stack([p * r**j for p in of_phi for j in range(self.m)])
+N = 2
+"""Odd powers of the deformation in the torque of the spring."""
 
 
 def _filtered_regression(log: JointLog) -> Estimate:
@@ -81,7 +48,7 @@ def _filtered_regression(log: JointLog) -> Estimate:
         {
             "method": "FilteredRegression",
             "range.phi": known.range_phi,
-            "range.setPoint": _Spring(log).range_theta_c,
+            "range.setPoint": log.range_theta_c,
             "prior.tau_e": known.range_tau_e,
             "prior.B": known.relative_std_B,
             "prior.D_theta": known.relative_std_D_theta,
@@ -110,7 +77,7 @@ def _paper2011(log: JointLog) -> Estimate:
 
 def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
     """What the estimator of this package says. `start` has the parameters of the method."""
-    known, spring = log.known, _Spring(log)
+    known = log.known
     estimator = sigmahat.Estimator(
         {
             "samplePeriod": log.sample_period,
@@ -121,8 +88,8 @@ def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
             "encoder.q": float(known.counts_q),
             "setPoint.offset": 0.0,
             "setPoint.scale": 1.0,
-            "rls.n": spring.n,
-            "rls.m": spring.m,
+            "rls.n": N,
+            "rls.m": _orders(log),
             "noise.tau": known.noise_tau,
             **start,
         },
@@ -132,6 +99,11 @@ def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
     found = estimator.run(log.theta, log.q, log.tau, log.theta_c)
     seconds = time.perf_counter() - begin
     return Estimate(found["sigma"], found["sigma_std"], found["confident"], seconds)
+
+
+def _orders(log: JointLog) -> int:
+    """Number of powers of the stiffness motor's position in the torque of the spring."""
+    return 3 if log.theta_c.any() else 1
 
 
 def _least_squares(log: JointLog) -> Estimate:
@@ -172,19 +144,33 @@ def _regression(log: JointLog) -> tuple[Array, Array, Array]:
 
     Raises ValueError if the motor does not move.
     """
-    T, g, spring, f = log.sample_period, log.known.gamma, _Spring(log), _dynamics(log)
+    T, g, f = log.sample_period, log.known.gamma, _dynamics(log)
     corner = min(10 * f * 2 * T, 0.8)
     butterworth = signal.butter(ORDER, corner, output="sos")
     theta, q = (signal.sosfiltfilt(butterworth, x) for x in (log.theta, log.q))
-    theta_dot, phi = np.gradient(theta, T), q - theta
+    theta_dot = np.gradient(theta, T)
+    torque, slope = _spring(log, q - theta)
     columns = (
         *(g**2 * np.gradient(theta_dot, T), g**2 * theta_dot, g * np.sign(theta_dot)),
-        *(np.ones(len(theta)), -spring.torque(phi), g * log.tau),
+        *(np.ones(len(theta)), -torque, g * log.tau),
     )
     keep = max(int(0.8 / (2 * f * 2 * T)), 1)  # the low pass of a decimation is at 0.8 of Nyquist
     chebyshev = signal.cheby1(8, 0.05, 0.8 / keep, output="sos")
     rows = signal.sosfiltfilt(chebyshev, np.column_stack(columns), axis=0)[::keep][EDGE:-EDGE]
-    return rows[:, :-1], rows[:, -1], spring.slope(phi)
+    return rows[:, :-1], rows[:, -1], slope
+
+
+def _spring(log: JointLog, phi: Array) -> tuple[Array, Array]:
+    """Functions of the deformation phi [rad] whose linear combination is the torque, and their
+    derivatives with respect to phi [1/rad]; both [size: samples x coefficients].
+
+    The functions are x^(2i+1)/(2i+1) r^j, with x = phi and r = theta_c divided by their ranges.
+    """
+    x, r = phi / log.known.range_phi, log.theta_c / log.range_theta_c
+    powers = [(i, j) for i in range(N) for j in range(_orders(log))]
+    torque = [x ** (2 * i + 1) / (2 * i + 1) * r**j for i, j in powers]
+    slope = [x ** (2 * i) / log.known.range_phi * r**j for i, j in powers]
+    return np.column_stack(torque), np.column_stack(slope)
 
 
 def _dynamics(log: JointLog) -> float:

@@ -1,10 +1,10 @@
-"""Runs a joint in MuJoCo: drives at the rate of the log, current loops, encoders; makes the log.
+"""Runs a joint in MuJoCo: drive at the rate of the log, current loop, encoders; makes the log.
 
-Motor i is the hinge theta_i, with an actuator; its spring is on the hinge phi_i of the body behind
-it, so that q = theta + phi. Armature, damping, dry friction (a constraint, whose limit is set at
-every step), springs, tendons, contact and integration are MuJoCo's. The tendons are spatial: MuJoCo
-finds their lengths and lever arms, so their torque is no formula of ours. They pull, and do not
-push; `joint.Tendons` says how they run.
+The motor is the hinge theta. The spring is on the hinge phi of the body behind it, so that
+q = theta + phi. Armature, damping, dry friction (a constraint, whose limit is set at every step),
+springs, tendons and integration are MuJoCo's. The tendons are spatial: MuJoCo finds their lengths
+and lever arms, so their torque is no formula of ours. They pull, and do not push; `joint.Tendons`
+says how they run.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from rivals.draw import KINDS, SAMPLE_PERIOD, STD_B, STD_D, STD_GAIN, TIP, drawn
-from rivals.joint import Drive, Instruments, Joint, Link, Motor, Tendons
+from rivals.draw import KINDS, SAMPLE_PERIOD, STD_B, STD_D, STD_GAIN, drawn
+from rivals.joint import Joint, Link, Motor, Spring, Tendons
 from rivals.records import Array, JointLog, Known
 
 STEP = 1e-4  # of the physics [s]
@@ -25,42 +25,37 @@ INNER_DELAY = 2e-4  # from command to torque where the log has measured torque [
 DIFFERENCE = 1e-6  # of phi, for the slope of the torque [rad]
 FLANGE = 0.002
 """Share of a motor's inertia that is a body behind its gear, the rest is armature. An engine needs
-a body there; its acceleration is that of the flange in space, and it has no weight."""
+a body there, which has no weight."""
 SLIDER_MASS = 0.1  # [kg]
 SLIDER_ARMATURE = 5.0  # of its screw and motor [kg]
 SERVO = 40.0  # stiffness of the servo of the slider, by that of a tendon
 DAMPED = 1.4  # damping of that servo, by the geometric mean of its stiffness and armature
 
 Run = dict[str, Array]
-"""Of the observed joint, without errors, one entry a sample; torques behind the gear, on the motor.
+"""A run without errors, one entry a sample; torques behind the gear, on the motor.
 
 theta, phi [rad], theta_dot [rad/s], theta_ddot [rad/s2], dry friction that the engine applied,
 damper and spring (tau_e) [N.m], stiffness [N.m/rad], theta_c [rad]; on the motor's axis: torque,
-the same as late as it comes into the log, command [N.m].
+late (the torque after the delay of its measurement), command [N.m].
 """
 
 
 def make(kind: str, seed: int) -> JointLog:
     """The log of a joint: one of KINDS."""
     joint = drawn(kind, seed)
-    noise = np.random.default_rng([seed, KINDS.index(kind), 0, 1])
-    return log(kind, seed, run(joint), joint, noise)
+    return log(run(joint), joint, np.random.default_rng([seed, KINDS.index(kind), 0, 1]))
 
 
-def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) -> JointLog:
+def log(run: Run, joint: Joint, rng: np.random.Generator) -> JointLog:
     """The log of a run of a joint; `rng` draws the noise."""
-    sheet, motor = joint.sheet, joint.motors[joint.observed]
-    tools = joint.instruments[joint.observed]
+    sheet, motor, tools = joint.sheet, joint.motor, joint.instruments
     torque = run["command" if tools.commanded else "late"]
     return JointLog(
-        kind=kind,
-        seed=seed,
         sample_period=SAMPLE_PERIOD,
         theta=_rounded(run["theta"], tools.counts_theta),
         q=_rounded(run["theta"] + run["phi"], tools.counts_q),
         tau=tools.gain * torque + tools.noise * rng.standard_normal(len(torque)),
         theta_c=run["theta_c"],
-        tau_e=run["tau_e"],
         stiffness=run["stiffness"],
         known=Known(
             gamma=motor.gear,
@@ -80,36 +75,29 @@ def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) 
 
 
 def _rounded(angle: Array, counts: int) -> Array:
-    """What an encoder with this number of counts a turn reads [rad]; it counts on past a turn."""
+    """The reading of an encoder with this number of counts a turn [rad], also beyond a turn."""
     count = 2 * math.pi / counts
     read: Array = np.round(angle / count) * count
     return read
 
 
 def run(joint: Joint) -> Run:
-    """Runs the drives of a joint to their end."""
-    physics, observed = _Physics(joint), joint.observed
-    parts = zip(joint.motors, joint.drives, joint.instruments, strict=True)
-    axes = [_Axis(*each) for each in parts]
-    samples = len(joint.drives[0].reference)
-    targets = np.zeros(samples) if joint.theta_c is None else joint.theta_c
+    """Runs the drive of a joint to its end."""
+    physics, axis = _Physics(joint), _Axis(joint)
     rows: list[dict[str, float]] = []
-    for k in range(samples):
-        for axis, (theta, _, _) in zip(axes, physics.motors(), strict=True):
-            axis.decide(k, theta)
+    for k in range(len(joint.drive.reference)):
+        axis.decide(k, physics.theta)
         for substep in range(round(SAMPLE_PERIOD / STEP)):
-            for axis, state in zip(axes, physics.motors(), strict=True):
-                axis.act(*state)
-            before = physics.advance(axes, float(targets[k]))
+            axis.act(physics.velocity, physics.load)
+            before = physics.advance(axis.torque, axis.dry, float(joint.theta_c[k]))
             if substep == 0:
-                axis = axes[observed]
                 of_axis = {"torque": axis.torque, "late": axis.late, "command": axis.command}
                 rows.append({**before, **physics.instant(), **of_axis})
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 class _Delay:
-    """Gives what it was given `seconds` ago, to the nearest step; zero before that."""
+    """Gives the value of `seconds` ago, to the nearest step; zero before that."""
 
     def __init__(self, seconds: float) -> None:
         length = 1 + round(seconds / STEP)
@@ -121,35 +109,36 @@ class _Delay:
 
 
 class _Axis:
-    """Controller, current loop and friction of one motor.
+    """Controller, current loop and friction of the motor.
 
     The torque follows its command late: after a dead time, with a lag of the first order.
     """
 
-    def __init__(self, motor: Motor, drive: Drive, instruments: Instruments) -> None:
-        at_command, at_log = instruments.delay, 0.0
-        if not instruments.commanded:
-            at_command, at_log = INNER_DELAY, instruments.delay
+    def __init__(self, joint: Joint) -> None:
+        tools = joint.instruments
+        at_command, at_log = tools.delay, 0.0
+        if not tools.commanded:
+            at_command, at_log = INNER_DELAY, tools.delay
         self._dead, self._late = _Delay(at_command), _Delay(at_log)
-        self._share = -math.expm1(-STEP / instruments.lag)
-        self._count = 2 * math.pi / instruments.counts_theta
-        self._motor, self._drive = motor, drive
+        self._share = -math.expm1(-STEP / tools.lag)
+        self._count = 2 * math.pi / tools.counts_theta
+        self._motor, self._drive = joint.motor, joint.drive
         self._seen: float | None = None
         self._velocity = 0.0
         self.command = self.torque = self.late = self.dry = 0.0
 
     def decide(self, k: int, theta: float) -> None:
-        """The command of sample k; theta is the true position [rad]."""
-        drive = self._drive
+        """Sets the command of sample k; theta is the true position [rad]."""
+        drive, peak = self._drive, self._motor.peak
         seen = round(theta / self._count) * self._count
         before = seen if self._seen is None else self._seen
         share = SAMPLE_PERIOD / (SAMPLE_PERIOD + VELOCITY_LAG)
         self._velocity += share * ((seen - before) / SAMPLE_PERIOD - self._velocity)
         self._seen = seen
         wanted = drive.kp * (drive.reference[k] - seen) - drive.kd * self._velocity
-        self.command = min(max(drive.feed_forward[k] + wanted, -drive.peak), drive.peak)
+        self.command = min(max(drive.feed_forward[k] + wanted, -peak), peak)
 
-    def act(self, _theta: float, v: float, load: float) -> None:
+    def act(self, v: float, load: float) -> None:
         """Sets the torque of the next step, and the friction `dry` that may resist it [N.m]."""
         self.torque += self._share * (self._dead(self.command) - self.torque)
         self.late = self._late(self.torque)
@@ -160,57 +149,62 @@ class _Physics:
     """A joint in MuJoCo."""
 
     def __init__(self, joint: Joint) -> None:
-        import mujoco  # what is drawn needs no MuJoCo
+        import mujoco  # drawing needs no MuJoCo
 
         self._engine = mujoco
         self._model = mujoco.MjModel.from_xml_string(_mjcf(joint))
         self._data: Any = mujoco.MjData(self._model)
         self._probe: Any = mujoco.MjData(self._model)
-        self._gears = [motor.gear for motor in joint.motors]
-        self._theta, self._phi = (
-            [int(self._model.joint(f"{name}_{i}").dofadr[0]) for i in range(len(joint.motors))]
-            for name in ("theta", "phi")
-        )
-        self._at = self._theta[joint.observed], self._phi[joint.observed]
-        self._travel = joint.tendons.travel if joint.tendons else 0.0
-        self._slider = int(self._model.joint("slider").dofadr[0]) if joint.tendons else -1
-        self._data.qpos[self._theta] = joint.start
+        self._gear = joint.motor.gear
+        self._theta, self._phi = self._dof("theta"), self._dof("phi")
+        self._travel, self._slider = 0.0, -1
+        if isinstance(joint.elastic, Tendons):
+            self._travel, self._slider = joint.elastic.travel, self._dof("slider")
         mujoco.mj_forward(self._model, self._data)
 
-    def motors(self) -> list[tuple[float, float, float]]:
-        """Position, velocity and load of each motor, behind its gear [rad, rad/s, N.m]."""
-        x, v, d = self._data.qpos, self._data.qvel, self._data
-        return [
-            (float(x[i]), float(v[i]), -float(d.qfrc_spring[j]) - float(d.qfrc_damper[j]))
-            for i, j in zip(self._theta, self._phi, strict=True)
-        ]
+    def _dof(self, name: str) -> int:
+        return int(self._model.joint(name).dofadr[0])
 
-    def advance(self, axes: list[_Axis], target: float) -> dict[str, float]:
-        """One step with the torques and the largest friction of the axes of the motors; positions
-        and velocity before it.
+    @property
+    def theta(self) -> float:
+        """Position of the motor behind its gear [rad]."""
+        return float(self._data.qpos[self._theta])
 
-        target  where the stiffness motor shall be, if there is one [rad]
+    @property
+    def velocity(self) -> float:
+        """Velocity of the motor behind its gear [rad/s]."""
+        return float(self._data.qvel[self._theta])
+
+    @property
+    def load(self) -> float:
+        """Torque of the elastic element on the motor [N.m]."""
+        data, j = self._data, self._phi
+        return -float(data.qfrc_spring[j]) - float(data.qfrc_damper[j])
+
+    def advance(self, torque: float, dry: float, theta_c: float) -> dict[str, float]:
+        """One step; positions and velocity before it.
+
+        torque   of the motor, on its axis [N.m]
+        dry      largest dry friction, on the motor's axis [N.m]
+        theta_c  reference of the stiffness motor, if there is one [rad]
         """
-        data, (i, j) = self._data, self._at
-        for k, (axis, dof) in enumerate(zip(axes, self._theta, strict=True)):
-            data.ctrl[k] = axis.torque
-            self._model.dof_frictionloss[dof] = self._gears[k] * axis.dry
-        theta_c = 0.0
+        data = self._data
+        data.ctrl[0] = torque
+        self._model.dof_frictionloss[self._theta] = self._gear * dry
+        phi, theta_dot = float(data.qpos[self._phi]), self.velocity
+        before = {"theta": self.theta, "phi": phi, "theta_dot": theta_dot, "theta_c": 0.0}
         if self._travel:
-            data.ctrl[-1] = self._travel * target
-            theta_c = float(data.qpos[self._slider]) / self._travel
-        x, theta_dot = data.qpos, float(data.qvel[i])
-        before = {"theta": float(x[i]), "phi": float(x[j]), "theta_dot": theta_dot}
+            data.ctrl[1] = self._travel * theta_c
+            before["theta_c"] = float(data.qpos[self._slider]) / self._travel
         self._probe.qpos[:] = data.qpos
         self._engine.mj_step(self._model, data)
-        return {**before, "theta_c": theta_c}
+        return before
 
     def instant(self) -> dict[str, float]:
         """Acceleration and torques at the beginning of the step that `advance` made."""
-        data, (i, j) = self._data, self._at
+        data, i, j = self._data, self._theta, self._phi
         return {
             "theta_ddot": float(data.qacc[i]),
-            # A contact acts on both hinges, which have one axis; dry friction is of the motor.
             "friction": float(data.qfrc_constraint[i] - data.qfrc_constraint[j]),
             "damper": -float(data.qfrc_damper[j]),
             "tau_e": -float(data.qfrc_spring[j]),
@@ -231,60 +225,55 @@ class _Physics:
 
 def _mjcf(joint: Joint) -> str:
     """The model, with an actuator for each motor."""
-    tip = beside = ""
-    if joint.tendons:
-        tip, beside = _slider(joint.tendons), _pulls(joint.tendons)
-    floor = ""
-    if joint.floor is not None:
-        floor = f'<geom type="plane" pos="0 0 {joint.floor!r}" size="5 5 1"/>'
-        tip = f'<geom type="sphere" size="{TIP!r}" pos="0 0 {-joint.links[-1].length!r}"/>'
-    bodies = tip
-    for i in reversed(range(len(joint.motors))):
-        place = f' pos="0 0 {-joint.links[i - 1].length!r}"' if i else ""
-        bodies = (
-            f"<body{place}>{_flange(joint, i)}<body>{_hinge(joint, i)}"
-            f"{_inertia(joint.links[i])}{bodies}</body></body>"
-        )
-    actuators = "".join(
-        f'<motor joint="theta_{i}" gear="{motor.gear!r}"/>' for i, motor in enumerate(joint.motors)
-    )
+    elastic, levers, slider, pulls = joint.elastic, "", "", ""
+    if isinstance(elastic, Tendons):
+        levers, slider, pulls = _levers(elastic), _slider(elastic), _pulls(elastic)
     return (
         f'<mujoco><compiler angle="radian"/>'
         f'<option timestep="{STEP!r}" integrator="implicitfast" gravity="0 0 {-joint.gravity!r}"/>'
-        f"<worldbody>{floor}{bodies}</worldbody><actuator>{actuators}</actuator>{beside}</mujoco>"
+        f"<worldbody><body>{_flange(joint.motor)}{levers}<body>{_hinge(elastic)}"
+        f"{_inertia(joint.link)}{slider}</body></body></worldbody>"
+        f'<actuator><motor joint="theta" gear="{joint.motor.gear!r}"/></actuator>{pulls}</mujoco>'
     )
 
 
-def _flange(joint: Joint, i: int) -> str:
-    """What stands in the body of a motor's flange: hinge, inertia, levers of tendons."""
-    motor, levers = joint.motors[i], ""
-    if joint.tendons:
-        lever, spread = joint.tendons.lever, joint.tendons.spread
-        side, up = lever * math.sin(spread), lever * math.cos(spread)
-        levers = (
-            f'<site name="left" pos="{-side!r} 0 {-up!r}"/>'
-            f'<site name="right" pos="{side!r} 0 {-up!r}"/>'
-        )
+def _flange(motor: Motor) -> str:
+    """Hinge and inertia of a motor's flange."""
     body = FLANGE * motor.inertia
     return (
-        f'<joint name="theta_{i}" axis="0 -1 0" armature="{motor.inertia - body!r}"'
+        f'<joint name="theta" axis="0 -1 0" armature="{motor.inertia - body!r}"'
         f' damping="{motor.D * motor.gear**2!r}"'
         f' frictionloss="{motor.gear * motor.friction.at_rest!r}"'
         f' solreffriction="{motor.stiction_time!r} 1"/>'
-        f'<inertial pos="0 0 0" mass="1e-6" diaginertia="{body!r} {body!r} {body!r}"/>{levers}'
+        f'<inertial pos="0 0 0" mass="1e-6" diaginertia="{body!r} {body!r} {body!r}"/>'
     )
 
 
-def _hinge(joint: Joint, i: int) -> str:
+def _hinge(elastic: Spring | Tendons) -> str:
     spring = ""
-    if joint.springs:
-        spring = f' stiffness="{joint.springs[i].stiffness!r} 0 {joint.springs[i].k_3!r}"'
-    damping = joint.tendons.damping if joint.tendons else joint.springs[i].damping
-    return f'<joint name="phi_{i}" axis="0 -1 0"{spring} damping="{damping!r}"/>'
+    if isinstance(elastic, Spring):
+        spring = f' stiffness="{elastic.stiffness!r} 0 {elastic.k_3!r}"'
+    return f'<joint name="phi" axis="0 -1 0"{spring} damping="{elastic.damping!r}"/>'
+
+
+def _inertia(link: Link) -> str:
+    """Mass of a link that hangs down at q = 0."""
+    turning = f"{link.inertia!r} {link.inertia!r} {link.inertia!r}"
+    return f'<inertial pos="0 0 {-link.centre!r}" mass="{link.mass!r}" diaginertia="{turning}"/>'
+
+
+def _levers(tendons: Tendons) -> str:
+    """The ends of the tendons in the body of the motor's flange."""
+    side = tendons.lever * math.sin(tendons.spread)
+    up = tendons.lever * math.cos(tendons.spread)
+    return "".join(
+        f'<site name="{end}" pos="{x!r} 0 {-up!r}"/>'
+        for end, x in (("left", -side), ("right", side))
+    )
 
 
 def _slider(tendons: Tendons) -> str:
-    """What stands in the body of the link: the eyelet, and the slider."""
+    """The eyelet in the body of the link, and the slider."""
     return (
         f'<site name="eyelet" pos="0 0 {-tendons.eyelet!r}"/>'
         f'<body pos="0 0 {-tendons.eyelet - _behind(tendons)!r}">'
@@ -312,9 +301,3 @@ def _pulls(tendons: Tendons) -> str:
     kv = DAMPED * math.sqrt(kp * SLIDER_ARMATURE)
     servo = f'<position joint="slider" kp="{kp!r}" kv="{kv!r}"/>'
     return f"<tendon>{pulls}</tendon><actuator>{servo}</actuator>"
-
-
-def _inertia(link: Link) -> str:
-    """Mass of a link that hangs down at q = 0."""
-    turning = f"{link.inertia!r} {link.inertia!r} {link.inertia!r}"
-    return f'<inertial pos="0 0 {-link.centre!r}" mass="{link.mass!r}" diaginertia="{turning}"/>'

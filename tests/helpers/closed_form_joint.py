@@ -56,4 +56,4 @@ def closed_form_log(kind: str, tau_coulomb: float = 0.01, seed: int = 1) -> Join
         range_tau_e=20.0,
     )
     angles = (round_to_counts(angle, COUNTS) for angle in (theta, theta + phi))
-    return JointLog(kind, seed, T, *angles, tau, theta_c, tau_e, stiffness, known)
+    return JointLog(T, *angles, tau, theta_c, stiffness, known)

@@ -52,15 +52,15 @@ def test_friction_is_as_published(model: str) -> None:
 
 @cache
 def ran(kind: str) -> tuple[Joint, Run]:
-    """A joint, and the first seconds of what its drives do."""
+    """A joint, and the first seconds of its run."""
     if find_spec("mujoco") is None:  # too large for every run of the tests
         pytest.skip("MuJoCo is not installed; to install it: cmake --workflow --preset rivals")
     joint, samples = drawn(kind, SEED), round(SECONDS / SAMPLE_PERIOD)
-    drives = tuple(
-        replace(each, feed_forward=each.feed_forward[:samples], reference=each.reference[:samples])
-        for each in joint.drives
+    drive = joint.drive
+    drive = replace(
+        drive, feed_forward=drive.feed_forward[:samples], reference=drive.reference[:samples]
     )
-    joint = replace(joint, drives=drives)
+    joint = replace(joint, drive=drive)
     return joint, simulate(joint)
 
 
@@ -73,10 +73,9 @@ def rms(x: Array) -> float:
 def test_the_motor_obeys_its_equation(kind: str) -> None:
     """B g^2 theta'' + D g^2 theta' = g tau + friction + tau_e + damper, all on the motor."""
     joint, x = ran(kind)
-    motor = joint.motors[joint.observed]
+    motor = joint.motor
     left = motor.inertia * x["theta_ddot"] + motor.D * motor.gear**2 * x["theta_dot"]
     right = motor.gear * x["torque"] + x["friction"] + x["tau_e"] + x["damper"]
-    # The flange of an elbow moves with the arm.
     assert rms(left - right) < 2e-3 * rms(right - x["tau_e"])
 
 
@@ -106,20 +105,20 @@ def pulled(tendons: Tendons, phi: Array, theta_c: Array) -> Array:
 
 def test_the_tendons_pull_as_their_geometry_says() -> None:
     joint, x = ran("variable_stiffness")
-    assert joint.tendons
-    step = 1e-5
-    torques = [pulled(joint.tendons, x["phi"] + shift, x["theta_c"]) for shift in (-step, 0, step)]
+    tendons, step = joint.elastic, 1e-5
+    assert isinstance(tendons, Tendons)
+    torques = [pulled(tendons, x["phi"] + shift, x["theta_c"]) for shift in (-step, 0, step)]
     np.testing.assert_allclose(x["tau_e"], torques[1], atol=1e-6 * np.abs(torques[1]).max())
     np.testing.assert_allclose(x["stiffness"], (torques[2] - torques[0]) / 2 / step, rtol=1e-5)
-    assert np.ptp(x["theta_c"]) > 0.1 * joint.tendons.range_theta_c
+    assert np.ptp(x["theta_c"]) > 0.1 * tendons.range_theta_c
     assert np.ptp(x["stiffness"]) > 0.05 * x["stiffness"].mean()
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_log_is_what_the_instruments_make_of_the_run(kind: str) -> None:
     joint, x = ran(kind)
-    motor, tools = joint.motors[joint.observed], joint.instruments[joint.observed]
-    made = log(kind, SEED, x, joint, np.random.default_rng(SEED))
+    motor, tools = joint.motor, joint.instruments
+    made = log(x, joint, np.random.default_rng(SEED))
     known = made.known
     for read, true, counts in (
         (made.theta, x["theta"], known.counts_theta),
@@ -131,6 +130,6 @@ def test_a_log_is_what_the_instruments_make_of_the_run(kind: str) -> None:
     noise = made.tau - tools.gain * x["command" if tools.commanded else "late"]
     assert np.std(noise) == pytest.approx(known.noise_tau, rel=0.06)
     assert known.range_phi >= np.abs(x["phi"]).max()
-    assert known.range_tau_e >= np.abs(made.tau_e).max()
+    assert known.range_tau_e >= np.abs(x["tau_e"]).max()
     assert abs(known.B / motor.B - 1) < 5 * known.relative_std_B
     assert abs(known.D_theta / motor.D - 1) < 5 * known.relative_std_D_theta
