@@ -67,9 +67,11 @@ def test_a_misfit_is_no_change(c: Library, joint: Joint, parameters: dict[str, f
     assert np.all(found["change_age"] == -1)
 
 
-def test_without_memory_no_change_is_looked_for(c: Library) -> None:
+@pytest.mark.parametrize("parameters", [{"regression.memory": 0.0}, {"method": 1}])
+def test_no_change_is_looked_for(c: Library, parameters: dict[str, float]) -> None:
+    """Without memory, and by the method of the paper."""
     joint = Joint(duration=20.0, stiffness=step(2.0))
-    found = Estimator(c, {**REGRESSION, "regression.memory": 0.0}).run(joint.measurements())
+    found = Estimator(c, {**REGRESSION, **parameters}).run(joint.measurements())
     assert np.all(found["change_age"] == -1)
     assert not np.any(found["doubt"] == CHANGE)
 
@@ -86,9 +88,4 @@ def test_a_misfit_that_begins_is_in_doubt_until_it_is_usual(c: Library) -> None:
     assert not np.any(in_doubt[before]) and np.all(found["confident"][before])
     assert np.any(in_doubt[begun & (joint.t < 22.0)])
     assert not np.any(in_doubt[joint.t > 55.0])
-    assert np.all(found["change_age"] == -1)
-
-
-def test_the_paper_looks_for_no_change(c: Library) -> None:
-    found = Estimator(c, {"method": 1}).run(Joint(duration=1.0).measurements())
     assert np.all(found["change_age"] == -1)

@@ -58,6 +58,7 @@ def outputs(c: Library, method: int, n: int, m: int, torque: float) -> Array:
 
 
 @pytest.mark.skipif(np.finfo(np.longdouble).eps > 1e-18, reason="long double is double here")
+@pytest.mark.complete
 @pytest.mark.slow("a million ticks, in double and in the slower long double")
 @pytest.mark.parametrize("case", [(1, 6, 3, 1e6), (2, 3, 3, 1e3)])
 def test_a_million_ticks_agree_with_those_in_long_double(

@@ -26,14 +26,14 @@ def position(kalman: Any) -> float:
     return x
 
 
-def run(c: Library, z: Array, w_s: float = W_S, dt: float = T, **settings: Any) -> Array:
+def run(c: Library, z: Array, **settings: Any) -> Array:
     """Position and velocity at every sample [size: samples x 2]."""
     p = c.new("sh_filter_parameters", **{**SETTINGS, **settings})
     kalman = c.new("sh_kinematic_kalman")
     c.lib.sh_kinematic_kalman_start(kalman, p, z[0])
     track = [(position(kalman), kalman.x_dot)]
     for z_k in z[1:]:
-        c.lib.sh_kinematic_kalman_step(kalman, p, z_k, dt, w_s)
+        c.lib.sh_kinematic_kalman_step(kalman, p, z_k, T, W_S)
         track.append((position(kalman), kalman.x_dot))
     return np.array(track)
 

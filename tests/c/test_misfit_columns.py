@@ -11,8 +11,8 @@ import pytest
 from scipy import signal
 
 from c_library import Estimator, Library
-from c_regression import PLAIN, coefficients, covariance
-from regression_joint import SETTINGS, STIFFNESS, Joint, MisfitJoint, T, at_rest
+from c_regression import coefficients, covariance
+from regression_joint import PLAIN, SETTINGS, STIFFNESS, Joint, MisfitJoint, T, at_rest
 
 GAP, HYSTERESIS = 3, 4
 

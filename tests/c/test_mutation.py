@@ -22,9 +22,7 @@ def test_every_exemption_is_of_code_that_exists(file: str, code: str) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="the mutants are tested in forks")
-@pytest.mark.skipif(
-    not os.environ.get("SIGMAHAT_PROOF"), reason="runs with SIGMAHAT_PROOF=1 in the environment"
-)
+@pytest.mark.complete
 @pytest.mark.slow("six mutants of the library are compiled and tested")
 def test_nearly_every_wrong_token_is_noticed() -> None:
     need("gcc")

@@ -15,11 +15,10 @@ import pytest
 from numpy.typing import NDArray
 
 from c_library import Array, Estimator, Library
-from c_regression import PLAIN
 from dense_regression import START, Oracle
 from oracle import RESIDUAL, SENSOR
 from reference_joints import table1_recording
-from regression_joint import GAMMA, Joint
+from regression_joint import GAMMA, PLAIN, Joint
 
 SHORT = Joint(duration=1.5, tau_coulomb=0.02)
 JOINT = Joint(duration=3.0, tau_coulomb=0.02)

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from misfit_priors import WITHOUT_MISFITS
+from regression_joint import WITHOUT_MISFITS
 from sigmahat.cli import main
 from sigmahat.compare import conditions
 from sigmahat.compare import table as labels

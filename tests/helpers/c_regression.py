@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from c_library import Array, Estimator
-from misfit_priors import WITHOUT_MISFITS
 
 SIDES = 2
 
@@ -54,7 +53,3 @@ def numbered(kind: str, column: Any, n: int) -> int:
     """Number of a column among those of its kind."""
     number = {"POWER": column.j * n + column.i, "HIGHER_POWER": column.i - n, "DAMPING": column.j}
     return int(number.get(kind, column.i if kind in ("DEAD_ZONE", "HYSTERESIS") else 0))
-
-
-# Priors of all that a joint has besides the model; 0 removes their columns.
-PLAIN = {"prior.torque_gain": 0.0, **WITHOUT_MISFITS}

@@ -109,6 +109,13 @@ class _Instance:
         self, start: float = 0.0, stop: float | None = None, tolerance: float | None = None
     ) -> int:
         """Tells the experiment and enters initialisation mode."""
+        return self.begin(
+            *(int(tolerance is not None), REAL(tolerance or 0.0), REAL(start)),
+            *(int(stop is not None), REAL(stop or 0.0)),
+        )
+
+    def begin(self, *experiment: Any) -> int:
+        """Enters initialisation mode with the arguments of an experiment."""
         raise NotImplementedError
 
     def exit(self) -> int:
@@ -223,14 +230,8 @@ class Instance(_Instance):
         reference, orders = self.references([name]), (ctypes.c_int * 1)(order)
         return self.call("SetRealInputDerivatives", reference, SIZE(1), orders, (REAL * 1)(value))
 
-    def enter(
-        self, start: float = 0.0, stop: float | None = None, tolerance: float | None = None
-    ) -> int:
-        status = self.call(
-            "SetupExperiment",
-            *(int(tolerance is not None), REAL(tolerance or 0), REAL(start)),
-            *(int(stop is not None), REAL(stop or 0)),
-        )
+    def begin(self, *experiment: Any) -> int:
+        status = self.call("SetupExperiment", *experiment)
         return status if status != OK else self.call("EnterInitializationMode")
 
     def step(self, t: float, h: float) -> int:
@@ -290,14 +291,8 @@ class Instance3(_Instance):
         n = SIZE(len(values))
         return self.call(function, references, n, values, n)
 
-    def enter(
-        self, start: float = 0.0, stop: float | None = None, tolerance: float | None = None
-    ) -> int:
-        return self.call(
-            "EnterInitializationMode",
-            *(tolerance is not None, REAL(tolerance or 0.0), REAL(start)),
-            *(stop is not None, REAL(stop or 0.0)),
-        )
+    def begin(self, *experiment: Any) -> int:
+        return self.call("EnterInitializationMode", *experiment)
 
     def step(self, t: float, h: float) -> int:
         """Makes a step, of which nothing may be asked and which may not end early."""

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import sigmahat
-from misfit_priors import WITHOUT_MISFITS
+from regression_joint import WITHOUT_MISFITS
 from shared_data import data_folder
 from sigmahat.fmi.instance import Value
 

@@ -21,6 +21,15 @@ SETTINGS = {  # for it, with the scale of the stiffness, prior.tau_e / range.phi
     **{"method": 2, "rls.n": 2, "rls.m": 1, "range.phi": RANGE, "prior.tau_e": STIFFNESS * RANGE},
     "prior.torque_gain": 0.0,
 }
+WITHOUT_MISFITS = {
+    f"prior.{name}": 0.0
+    for name in (
+        *("bias", "damping", "load_friction", "eccentric", "delay", "reversal"),
+        *("power", "gap", "hysteresis", "eccentric_motor"),
+    )
+}
+"""Parameters of FilteredRegression without the columns for what the model does not have."""
+PLAIN = {"prior.torque_gain": 0.0, **WITHOUT_MISFITS}
 
 
 def stop_operator(changes: Array, width: float) -> Array:
