@@ -49,6 +49,7 @@ def network() -> Iterator[list[str]]:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="networks of a process are Linux")
+@pytest.mark.complete
 @pytest.mark.slow("two programs find each other, and talk in real time")
 @pytest.mark.parametrize("reliability", ["reliable", "best-effort"])
 def test_joint_states_in_and_estimates_out(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 
@@ -22,15 +21,10 @@ def table(processor: str) -> dict[str, float]:
 
 
 # A Cortex-M4F computes double in software, which QEMU takes a minute to measure.
-by_hand = pytest.mark.skipif(
-    not os.environ.get("SIGMAHAT_PROOF"), reason="runs with SIGMAHAT_PROOF=1 in the environment"
-)
-
-
 @pytest.mark.slow("a library is built, and run in QEMU")
 @pytest.mark.parametrize(
     ("name", "real"),
-    [pytest.param("Cortex-M4F", "float", marks=by_hand), ("Cortex-M7", "double")],
+    [pytest.param("Cortex-M4F", "float", marks=pytest.mark.complete), ("Cortex-M7", "double")],
 )
 def test_the_longest_ticks_are_those_of_the_page(
     name: str, real: str, build: Path, tmp_path: Path

@@ -4,7 +4,7 @@ A tick is analysed with contracts in place of the functions that work on triangl
 a loop that is analysed to its fixpoint: so the result holds for any number of ticks. The functions
 themselves are analysed for each number of columns, in arrays that are just large enough.
 
-The preset `proof` runs all of it, for which it sets SIGMAHAT_PROOF; the tests of the gate run some.
+The preset `complete` runs all of it; the tests of the gate run some.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import c_sources
 from eva import Analysis, analyse
 
 HERE = Path(__file__).parent / "library"
-ALL = bool(os.environ.get("SIGMAHAT_PROOF"))
+ALL = bool(os.environ.get("SIGMAHAT_COMPLETE"))
 MAX_COLUMNS, MAX_PARAMETERS = 64, 40
 BOTH = ("started", "restored")
 REALS = ("double", "float")

@@ -6,7 +6,6 @@ cover.
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 from collections.abc import Sequence
@@ -70,9 +69,6 @@ APART_IN_A_PLANT = [
     *("sh_radau_integrate:0", "take:0", "sh_noise_normal:0", "step:30", "fmin:10", "fmax:10")
 ]
 
-by_hand = pytest.mark.skipif(
-    not os.environ.get("SIGMAHAT_PROOF"), reason="runs with SIGMAHAT_PROOF=1 in the environment"
-)
 slow = pytest.mark.slow("the analysis of a shell")
 
 
@@ -144,7 +140,7 @@ def test_any_bytes_as_the_state_of_an_estimator_are_harmless(build: Path) -> Non
     assert alarms_of(build, "shell_states.c") == ()
 
 
-@by_hand
+@pytest.mark.complete
 @slow
 def test_the_proof_finds_a_length_that_is_not_checked(build: Path, tmp_path: Path) -> None:
     """GIVEN a shell that compares no length, THEN the proof finds reads beyond the bytes."""
@@ -154,7 +150,7 @@ def test_the_proof_finds_a_length_that_is_not_checked(build: Path, tmp_path: Pat
     assert any("saved_state.c" in a and "valid_src" in a for a in alarms)
 
 
-@by_hand
+@pytest.mark.complete
 @slow
 def test_any_bytes_as_the_state_of_a_plant_touch_no_other_memory(build: Path) -> None:
     alarms = alarms_of(build, "shell_states.c", "AwasPlant")
@@ -165,14 +161,14 @@ def test_any_bytes_as_the_state_of_a_plant_touch_no_other_memory(build: Path) ->
         assert "out of bounds" not in alarm and "initialized" not in alarm
 
 
-@by_hand
+@pytest.mark.complete
 @slow
 @pytest.mark.parametrize("version", ["fmi2", "fmi3"])
 def test_any_calls_in_any_order_are_harmless(build: Path, version: str, tmp_path: Path) -> None:
     assert alarms_of_calls(build, version, tmp_path) == ()
 
 
-@by_hand
+@pytest.mark.complete
 @slow
 def test_the_proof_of_the_calls_finds_a_parameter_that_is_not_noted(
     build: Path, tmp_path: Path
