@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import http.client
-import json
 import socket
 from pathlib import Path
-from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
@@ -14,9 +12,9 @@ import tomlkit
 
 from browser import opened
 from checked_logs import knee_log
+from command_line import Shell
 from recorded_logs import write_log
 from served_page import Hand, served
-from sigmahat.cli import main
 
 
 def by_hand(text: str) -> str:
@@ -36,21 +34,11 @@ def fill_in(hand: Hand) -> None:
     hand.types("ports.tau.torque_constant", "0.05")
 
 
-def estimated(capsys: pytest.CaptureFixture[str]) -> Any:
-    """What the command prints of the log."""
-    capsys.readouterr()
-    assert main(["estimate", "knee.csv", "--json"]) == 0
-    return json.loads(capsys.readouterr().out)
-
-
 @pytest.mark.slow("two browsers, five checks and curves, an identification")
-def test_from_an_empty_configuration_to_the_results(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_from_an_empty_configuration_to_the_results(shell: Shell) -> None:
     """One window edits, on a desktop; another one, narrow and dark, follows it."""
-    monkeypatch.chdir(tmp_path)
     write_log(knee_log(), Path("knee.csv"))
-    with served("knee.csv", folder=tmp_path) as page:
+    with served("knee.csv", folder=Path()) as page:
         with opened(page.address) as first, opened(page.address, 400, dark=True) as second:
             hand, other = Hand(first), Hand(second)
             hand.sees("Fill in: ports.theta.counts_per_turn, ports.theta.gear_ratio")
@@ -66,7 +54,7 @@ def test_from_an_empty_configuration_to_the_results(
             other.sees("the stiffness as a curve")
             other.presses("write")
             hand.sees("Written:")
-            middle = estimated(capsys)["curve"][1]
+            middle = shell.json("estimate knee.csv")["curve"][1]
             low, high = middle["interval [N.m/rad]"]
             assert low < 1000 < high
             other.sees(f"{middle['sigma [N.m/rad]']:.4g} {low:.4g} to {high:.4g}")
@@ -76,7 +64,7 @@ def test_from_an_empty_configuration_to_the_results(
             hand.sees("Results: ")
             assert float(hand.value("motor.B")) == pytest.approx(1e-4, rel=0.01)
             assert Path("sigmahat-results/knee/estimate.png").is_file()
-            hand.sees(estimated(capsys)["answer"])
+            hand.sees(shell.json("estimate knee.csv")["answer"])
             place = first.run("return document.querySelector('h1').nextElementSibling.offsetTop")
             assert place < 100  # on the first screen
             for each in (first, second):
@@ -87,7 +75,7 @@ def test_from_an_empty_configuration_to_the_results(
                 wide, there = each.run("return [document.body.scrollWidth, innerWidth]")
                 assert wide <= there
         assert page.interrupt() == (0, "", "")
-    assert main(["init", "knee.csv", "--config", "own.toml", "--quiet"]) == 0
+    shell.run("init knee.csv --config own.toml")
     assert written == tomlkit.parse(by_hand(Path("own.toml").read_text())).unwrap()
 
 
@@ -153,20 +141,9 @@ def test_only_who_has_the_address_is_served(tmp_path: Path) -> None:
         ("knee.csv --port {port}", "port {port} cannot be used (Address already in use)"),
     ],
 )
-def test_bad_input_is_refused_in_one_line(
-    arguments: str,
-    said: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_bad_input_is_refused_in_one_line(arguments: str, said: str, shell: Shell) -> None:
     write_log(knee_log(), Path("knee.csv"))
     Path("broken.toml").write_text("[ports")
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        assert main(["open", *arguments.format(port=port).split()]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.startswith("sigmahat: error: ") and said.format(port=port) in err
-    assert len(err.splitlines()) == 1
+        assert said.format(port=port) in shell.refused(f"open {arguments.format(port=port)}")

@@ -15,7 +15,7 @@ import pytest
 from selenium.webdriver.common.by import By
 
 from browser import DATA, ROWS, Page, opened
-from command_line import in_process
+from command_line import Shell, in_process
 from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
 from sigmahat.logs.panels import reduce
 
@@ -152,13 +152,12 @@ def test_a_sweep_has_the_numbers_of_its_summary(results: Callable[[str], Path], 
     assert list(zip(masses, errors, strict=True)) == points
 
 
-def test_names_are_not_taken_for_html(results: Callable[[str], Path], tmp_path: Path) -> None:
-    folder = tmp_path / "<b>&"
+def test_names_are_not_taken_for_html(results: Callable[[str], Path], shell: Shell) -> None:
+    folder = Path("<b>&")
     folder.mkdir()
     (folder / "sweep.parquet").write_bytes((results("sweep") / "sweep.parquet").read_bytes())
-    done = in_process("report", "<b>&", "--out", "r.html", "--quiet", cwd=tmp_path)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    assert html.escape("Sweep: <b>&") in (tmp_path / "r.html").read_text()
+    assert shell.run("report '<b>&' --out r.html --quiet") == shell.err == ""
+    assert html.escape("Sweep: <b>&") in Path("r.html").read_text()
 
 
 @pytest.mark.parametrize("samples", [1, 2, 5, 4000, 4001, 4321, 100_000, 123_457])
@@ -202,14 +201,10 @@ def test_fewer_points_of_a_long_signal_keep_every_peak(samples: int) -> None:
         ({"misfits.csv": b"group,seeds\nx,2\n"}, "no table of `sigmahat compare`; run it again"),
     ],
 )
-def test_bad_input(files: dict[str, bytes] | None, words: str, tmp_path: Path) -> None:
+def test_bad_input(files: dict[str, bytes] | None, words: str, shell: Shell) -> None:
     if files is not None:
-        (tmp_path / "in").mkdir()
+        Path("in").mkdir()
         for name, content in files.items():
-            (tmp_path / "in" / name).write_bytes(content)
-    done = in_process("report", "in", "--out", "r.html", cwd=tmp_path)
-    assert (done.returncode, done.stdout) == (2, "")
-    (line,) = done.stderr.splitlines()
-    assert line.startswith("sigmahat: error: in")
-    assert words in line
-    assert not (tmp_path / "r.html").exists()
+            Path("in", name).write_bytes(content)
+    line = shell.refused("report in --out r.html")
+    assert line.startswith("sigmahat: error: in") and words in line

@@ -6,15 +6,14 @@ import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pytest
 
 from browser import DATA, ROWS, Page, opened
+from command_line import Shell, working_in
 from recorded_logs import CONFIGURATION, awas_log, write_log
-from sigmahat.cli import main
 from sigmahat.joint.curve import CURVE
 from sigmahat.plotting.style import limits
 from sigmahat.report.from_log import FINDINGS, ShownFinding, write_findings
@@ -32,17 +31,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     log["q"][GAP.stop] += SPIKE
     log["tau"][40_000] = np.nan
     columns = {name: np.delete(values, GAP) for name, values in log.items()}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
-        answers: list[Any] = []
-        patch.setattr("sigmahat.commands.common.print_json", answers.append)
+    with working_in(folder):
         write_log(columns, Path("knee.parquet"))
         Path("knee.toml").write_text(REGRESSION)
-        assert main(["estimate", "knee.parquet", "--out", "out", "--json"]) == 0
-        Path("answer.json").write_text(json.dumps(answers[0]))
+        answer = Shell().run("estimate knee.parquet --out out --json")
+        Path("answer.json").write_text(answer)
         write_findings([ShownFinding("wrong", "motor.gamma: 50, expected <100>")], Path("out"))
-        assert main(["report", "out", "--quiet"]) == 0
+        Shell().run("report out")
     return folder
 
 
@@ -120,15 +115,13 @@ def test_limits_keep_what_belongs_to_the_signal() -> None:
     ],
 )
 def test_a_damaged_file_is_named(
-    name: str, text: str | None, words: str, folder: Path, tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
+    name: str, text: str | None, words: str, folder: Path, shell: Shell
+) -> None:
     for path in (folder / "out").iterdir():
         if path.suffix != ".html":
-            (tmp_path / path.name).symlink_to(path)
-    (tmp_path / name).unlink()
+            Path(path.name).symlink_to(path)
+    Path(name).unlink()
     if text is not None:
-        (tmp_path / name).write_text(text)
-    assert main(["report", str(tmp_path)]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
+        Path(name).write_text(text)
+    line = shell.refused("report .")
     assert name in line and re.search(words, line)
