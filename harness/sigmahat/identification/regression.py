@@ -42,9 +42,7 @@ EXTRA = "extra"  # name of the column of Signals.extra
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
 _WINDOW = 1 << 14  # rows that are filtered at a time, about
 _EDGE = 0.1  # [s] left out at both ends of a piece, where the filter has not settled
-
 _PARTS = 8  # of a log, of which each is predicted from the others
-
 _LEAST = 40  # samples of a stretch: filters need some
 
 
@@ -84,7 +82,6 @@ class Form:
     exp(-|theta'/v|^delta) (Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30:1083-1138,
     1994)."""
     stribeck_exponent: float = 2.0  # delta, usually 1 or 2
-
     delay: bool = False
     """Whether the torque may be late: tau(t - delay) = tau(t) - delay tau'(t)."""
 
@@ -331,13 +328,13 @@ def _direction(theta: Array, T: float, wide: float, v_s: float) -> Array:
 
 
 def units(pieces: Sequence[Signals]) -> tuple[float, float]:
-    """What deformation and set-point are divided by in the polynomial [rad, 1]."""
-    return _unit([p.phi for p in pieces]), _unit([p.set_point for p in pieces])
+    """What deformation and set-point are divided by in the polynomial [rad, 1].
 
-
-def _unit(pieces: Sequence[Array]) -> float:
-    """Largest magnitude in all pieces: divided by it, values have powers of order 1."""
-    return max(float(np.max(np.abs(values))) for values in pieces) or 1.0
+    They are the largest magnitudes in all pieces: divided by them, values have powers of order 1.
+    """
+    phi = max(float(np.max(np.abs(piece.phi))) for piece in pieces)
+    set_point = max(float(np.max(np.abs(piece.set_point))) for piece in pieces)
+    return phi or 1.0, set_point or 1.0
 
 
 def _first(x: Array, h: float) -> Array:

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.joint.curve import NORMAL_95
 from sigmahat.plotting.panels import COLORS, TRUE, Curve, Panel
 from sigmahat.plotting.style import QUANTITIES, around, plain_axis
 
 Array = NDArray[np.float64]
 
-_NORMAL_95 = 1.96
 _SHOWN = 600  # samples of the torque over time
 _LAGS, _BINS = 40, 20
 _FEWEST = 200  # independent residuals
@@ -78,7 +78,7 @@ def residual_panels(found: Residuals) -> Iterator[Panel]:
         caption=f"fit {found.fit:.1f} % in the second half of the log",
     )
     lags = found.T * np.arange(1, _LAGS + 1)
-    limit = _NORMAL_95 / np.sqrt(len(found.residual))
+    limit = NORMAL_95 / np.sqrt(len(found.residual))
     yield Panel(
         "Autocorrelation of the residual",
         "lag [s]",
@@ -123,4 +123,4 @@ def means(x: Array, y: Array) -> tuple[Array, Array, Array]:
     center = np.array([x[each].mean() for each in bins])
     mean = np.array([y[each].mean() for each in bins])
     std = np.array([y[each].std(ddof=1) / np.sqrt(len(each)) for each in bins])
-    return center, mean, _NORMAL_95 * std
+    return center, mean, NORMAL_95 * std
