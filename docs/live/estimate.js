@@ -2,7 +2,7 @@
 // The estimator over a log, and what it says over the deformation afterwards.
 
 const RUN = ["sigma", "sigma_std", "phi", "setPoint", "doubt"];
-const FROZEN = ["sigma", "sigma_std", "tau_e", "doubt"];
+const FROZEN = ["sigma", "sigma_std", "tau_e", "tau_e_std", "doubt"];
 const INPUTS = ["theta", "q", "theta_c", "tau", "tau_e_sensor"];
 const WITHIN = 41; // points of a curve
 const OUTER = 0.001; // share of the points at either end: single wrong samples do not set the reach
@@ -46,8 +46,9 @@ class LogEstimate {
     return this.#settings().map(({ setPoint, thetaC, phi: [low, high] }) => {
       const phi = grid(low, high);
       const points = Array.from(phi, (each) => this.#at(each, thetaC));
-      const [sigma, std, torque, doubt] = FROZEN.map((_, i) => Float64Array.from(points, (point) => point[i]));
-      return { setPoint, phi, sigma, std, doubt, torque, torqueStd: integral(std, phi) };
+      const [sigma, std, torque, torqueStd, doubt] =
+        FROZEN.map((_, i) => Float64Array.from(points, (point) => point[i]));
+      return { setPoint, phi, sigma, std, doubt, torque, torqueStd };
     });
   }
 
@@ -94,18 +95,6 @@ function shares(doubt) {
 function grid(low, high) {
   const even = Array.from({ length: WITHIN }, (_, i) => low + ((high - low) * i) / (WITHIN - 1));
   return Float64Array.from(new Set(low < 0 && high > 0 ? [...even, 0] : even)).sort();
-}
-
-/**
- * Of a standard deviation over phi, from the point next to 0: at most so uncertain is the torque
- * relative to the one there, since it is the integral of the stiffness.
- */
-function integral(std, phi) {
-  const sums = [0];
-  for (let i = 1; i < phi.length; i += 1)
-    sums.push(sums[i - 1] + ((phi[i] - phi[i - 1]) * (std[i] + std[i - 1])) / 2);
-  const zero = sums[nextToZero(phi)];
-  return Float64Array.from(sums, (sum) => Math.abs(sum - zero));
 }
 
 /** Place of the value that is nearest to 0. */
