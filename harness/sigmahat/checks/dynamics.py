@@ -58,10 +58,8 @@ def _sign(seen: View, found: Fitted) -> Finding | None:
     if seen.has_sensor or (signs and sum(signs) < 0):
         key, proposed = f"ports.{port}.sign", -seen.configuration.ports[port].sign
         return Finding(Kind.SIGN, Severity.WRONG, key, sigma, "N.m/rad", None, proposed, (), port)
-    key, others = (
-        "ports.theta.gear_ratio",
-        [("ports.q.gear_ratio", None), (f"ports.{port}.sign", None)],
-    )
+    key = "ports.theta.gear_ratio"
+    others = [("ports.q.gear_ratio", None), (f"ports.{port}.sign", None)]
     return Finding(Kind.STIFFNESS_SIGN, Severity.WRONG, key, sigma, "N.m/rad", None, None, others)
 
 

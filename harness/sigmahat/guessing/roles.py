@@ -130,7 +130,9 @@ def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
         """Points of two columns as motor and link, in this order."""
         theta, q = (columns[place] for place in places)
         together = float(correlation[places])
-        found = _points(theta, "motor") + _points(q, "link") + 0.5 * _is_larger(theta, q)
+        found = _points(theta, "motor") + _points(q, "link")
+        # A motor before its gear moves by larger numbers.
+        found += 0.5 * (abs(line(q.window, theta.window).slope) > 1.5)
         found += (together > _ALIKE) + (together > _CLOSE) + _APART * (together < _UNLIKE)
         return found + _COPY * is_copy(theta.window, q.window)
 
@@ -144,11 +146,6 @@ def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
         for each in (columns[place] for place in best)
     )
     return {"theta": theta, "q": q}
-
-
-def _is_larger(theta: Column, q: Column) -> bool:
-    """Whether theta moves by larger numbers than q, as a motor before its gear."""
-    return bool(abs(line(q.window, theta.window).slope) > 1.5)
 
 
 def _side(column: Column, side: str) -> float:

@@ -3,7 +3,6 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sigmahat.logs.curve import Answer
@@ -31,7 +30,9 @@ def draw(replay: Replay, answer: Answer) -> Figure:
     skipped = _skipped(replay.samples)
     every = below.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
     for axes, panel in zip(every, panels, strict=True):
-        _shade(axes, skipped)
+        for number, (begin, end) in enumerate(skipped.tolist()):
+            legend = None if number else "skipped"
+            axes.axvspan(begin, end, color="#cccccc", lw=0.5, label=legend)
         for number, change in enumerate(replay.changes.found):
             legend = None if number else "the stiffness changes"
             axes.axvline(change.t, color="black", linestyle=":", label=legend)
@@ -63,9 +64,7 @@ def _sensor(replay: Replay) -> Array:
     samples = replay.samples
     values = samples.values[:, list(samples.names).index("tau_e_sensor")]
     starts = np.arange(0, len(values), replay.statistics.bucket)
-    ends: Array = np.column_stack(
-        [np.fmin.reduceat(values, starts), np.fmax.reduceat(values, starts)]
-    )
+    ends: Array = np.column_stack([f.reduceat(values, starts) for f in (np.fmin, np.fmax)])
     return ends
 
 
@@ -75,9 +74,3 @@ def _skipped(samples: Samples) -> Array:
     longest = np.argsort(both[:, 1] - both[:, 0])[::-1][:200]
     times: Array = samples.T * both[longest].astype(np.float64)
     return times
-
-
-def _shade(axes: Axes, skipped: Array) -> None:
-    """Grey areas where the estimator skipped ticks."""
-    for i, (begin, end) in enumerate(skipped.tolist()):
-        axes.axvspan(begin, end, color="#cccccc", lw=0.5, label=None if i else "skipped")

@@ -121,10 +121,6 @@ Noisy signals are first, because they would hide other signals.
 """
 
 
-def _is_true(variable: str) -> bool:
-    return variable.startswith("plant.") and "_measured" not in variable
-
-
 def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterator[Panel]:
     """Stiffness, and its relative error if the truth was recorded; for each side of a pair."""
     for side in SIDES:
@@ -219,7 +215,7 @@ def _curves(labels: Mapping[str, str], side: str, reduced: Reduced) -> list[Curv
         values = reduced.signals.get(variable.format(side))
         if values is None:
             continue
-        if _is_true(variable):
+        if variable.startswith("plant.") and "_measured" not in variable:
             curves.append(Curve(label, TRUE, reduced.t, values, width=_WIDE))
         # A constant signal was not connected: no sensor, no set-point.
         elif np.nanmin(values) != np.nanmax(values):

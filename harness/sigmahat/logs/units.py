@@ -3,8 +3,6 @@
 import math
 import re
 from difflib import get_close_matches
-from functools import cache
-from typing import Any
 
 import numpy as np
 
@@ -107,8 +105,9 @@ def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> 
     import pint
 
     try:
-        quantity = _registry().Quantity(1.0, _spelled(unit))
-        return float(quantity.to(_spelled(target)).magnitude)
+        # N.m is N*m in the notation of pint.
+        quantity = pint.Quantity(1.0, unit.replace(".", "*"))
+        return float(quantity.to(target.replace(".", "*")).magnitude)
     except pint.DimensionalityError as error:
         raise LogError(
             f"{where}: unit {unit!r} cannot be converted to {target}{_meant(unit, usual)}"
@@ -122,15 +121,3 @@ def _meant(unit: str, usual: tuple[str, ...]) -> str:
     if similar:
         return "; did you mean " + " or ".join(map(repr, similar)) + "?"
     return f"; usual units are {', '.join(usual)}"
-
-
-def _spelled(unit: str) -> str:
-    """A unit such as N.m in the notation of pint."""
-    return unit.replace(".", "*")
-
-
-@cache
-def _registry() -> Any:
-    import pint
-
-    return pint.UnitRegistry()
