@@ -181,9 +181,11 @@ def test_the_commands_of_the_page_work(build: Path, tmp_path: Path) -> None:
     printed = run(
         *("sh", "-e", "-c", "".join(blocks)),
         cwd=tmp_path,
-        CMAKE_GENERATOR="Ninja",
-        PATH=f"{build / 'venv' / 'bin'}{os.pathsep}{os.environ['PATH']}",
-        PREFIX=str(tmp_path / "installed"),
+        environment={
+            "CMAKE_GENERATOR": "Ninja",
+            "PATH": f"{build / 'venv' / 'bin'}{os.pathsep}{os.environ['PATH']}",
+            "PREFIX": str(tmp_path / "installed"),
+        },
     )
     assert "sigma = " in printed
     assert "instructions per tick" in printed

@@ -81,7 +81,7 @@ def test_samples_add_to_the_information(c: Library, size: int) -> None:
         assert a.solve(side) == pytest.approx(want, rel=1e-8, abs=1e-10)
     for beta in (rng.normal(size=size), a.solve(Y)):
         found = c.lib.sh_information_squares(a.a, c.pointer(beta))
-        assert found == pytest.approx(a.want.squares(beta), rel=1e-9)
+        assert found == pytest.approx(a.want.squares(beta.astype(np.longdouble)), rel=1e-9)
 
 
 @each_size

@@ -105,7 +105,7 @@ def test_pkg_config_describes_the_installed_library(
     (described,) = prefix.rglob("sigmahat.pc")
     flags = run(
         *(need("pkg-config"), "--cflags", "--libs", "sigmahat"),
-        PKG_CONFIG_PATH=str(described.parent),
+        environment={"PKG_CONFIG_PATH": str(described.parent)},
     )
     (tmp_path / "main.c").write_text(PROGRAM.format(header="sigmahat.h"))
     run(need("cc"), tmp_path / "main.c", "-o", tmp_path / "consumer", *shlex.split(flags))
@@ -161,8 +161,8 @@ def conan(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[...
     program, home = need_of_environment("conan"), str(tmp_path_factory.mktemp("conan"))
     path = f"{build / 'venv' / 'bin'}{os.pathsep}{os.environ['PATH']}"  # for Ninja
     places = {"CONAN_HOME": home, "PATH": path, "TMP": home, "TMPDIR": home}
-    run(program, "profile", "detect", **places)
-    return partial(run, program, **places)
+    run(program, "profile", "detect", environment=places)
+    return partial(run, program, environment=places)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -127,7 +128,7 @@ def ripple_of_the_motor() -> Array:
 
 # Flexibility torque beyond the model [N.m], or misfits of the joint; parameters; and the group
 # that is then used.
-MISFITS: Mapping[str, tuple[Array | Mapping[str, float], Mapping[str, float], int]] = {
+MISFITS: Mapping[str, tuple[Array | Mapping[str, Any], Mapping[str, float], int]] = {
     "hysteresis": ({"hysteresis": 2.0, "hysteresis_width": 0.006}, {}, HYSTERESIS),
     "dead zone": (-140.0 * np.clip(PHI, -0.012, 0.012), {}, GAP),
     "powers": (3e5 * PHI**5, {**NO_HYSTERESIS, "rls.n": 2, "range.phi": 0.1}, POWERS),

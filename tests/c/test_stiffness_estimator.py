@@ -278,8 +278,8 @@ def compare(got: np.ndarray[Any, Any], want: oracle.Estimate, torque: Array) -> 
     n, m = want.eta.shape[1:]
     scales = {"epsilon": float(np.ptp(torque))}
     errors = {
-        name: oracle.relative_error(got[name], getattr(want, name), scales.get(name))
-        for name in oracle.Estimate.names()
+        name: oracle.relative_error(got[name], values, scales.get(name))
+        for name, values in vars(want).items()
         if name != "eta"
     }
     largest = np.max(np.abs(want.eta), axis=0)

@@ -55,5 +55,5 @@ def closed_form_log(kind: str, tau_coulomb: float = 0.01, seed: int = 1) -> Join
         range_phi=0.1,
         range_tau_e=20.0,
     )
-    angles = (round_to_counts(angle, COUNTS) for angle in (theta, theta + phi))
-    return JointLog(T, *angles, tau, theta_c, stiffness, known)
+    read, q = (round_to_counts(angle, COUNTS) for angle in (theta, theta + phi))
+    return JointLog(T, read, q, tau, theta_c, stiffness, known)

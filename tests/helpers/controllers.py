@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -62,12 +63,17 @@ def cross_build(
     return tree
 
 
-def run(*command: str | Path, cwd: Path | None = None, **environment: str) -> str:
-    """Runs a command, which must succeed within 5 minutes. Returns what it printed."""
+def run(
+    *command: str | Path, cwd: Path | None = None, environment: Mapping[str, str] | None = None
+) -> str:
+    """Runs a command, which must succeed within 5 minutes. Returns what it printed.
+
+    environment  variables besides those of this process
+    """
     done = subprocess.run(
         [str(part) for part in command],
         cwd=cwd,
-        env={**os.environ, **environment},
+        env={**os.environ, **(environment or {})},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

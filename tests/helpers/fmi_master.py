@@ -13,6 +13,7 @@ from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import T
 
 _PLANT = scenario("table1").plant
+_START = {name: float(value) for name, value in _PLANT.start.items()}
 _CONNECTIONS = scenario("table1").estimators["RESIDUAL"].connections
 
 
@@ -38,7 +39,7 @@ def run(
         Instance(sigmahat.fmu("AwasPlant")) as plant,
         Instance(sigmahat.fmu("StiffnessEstimator")) as estimator,
     ):
-        plant.initialise({**_PLANT.start, **(start or {})})
+        plant.initialise({**_START, **(start or {})})
         estimator.initialise()
         for k, t in enumerate(times):
             sigma["plant.sigma"].append(plant.get("sigma"))

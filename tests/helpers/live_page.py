@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -23,15 +22,6 @@ data.items.add(new File([arguments[1]], arguments[0]));
 document.getElementById("drop").dispatchEvent(
   new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
 """
-_PACK = """
-const pack = (array) => {
-  const bytes = new Uint8Array(Float64Array.from(array).buffer), parts = [];
-  for (let i = 0; i < bytes.length; i += 8192)
-    parts.push(String.fromCharCode(...bytes.subarray(i, i + 8192)));
-  return btoa(parts.join(""));
-};
-"""
-"""An array of numbers as text, to the last bit."""
 _FILL = """
 for (const [name, value] of Object.entries(arguments[0])) {
   const field = log.form.elements[name];
@@ -76,10 +66,12 @@ class LivePage:
 
     def arrays(self, script: str, *arguments: object) -> dict[str, NDArray[np.float64]]:
         """What a script returns: arrays of numbers by name."""
-        body = f"const found = (() => {{ {script} }})();"
-        end = "return Object.fromEntries(Object.entries(found).map(([n, a]) => [n, pack(a)]));"
-        packed = self.page.run(f"{_PACK} const given = arguments; {body} {end}", *arguments)
-        return {name: np.frombuffer(base64.b64decode(text)) for name, text in packed.items()}
+        found = f"Object.entries((() => {{ {script} }})())"
+        lists = f"{found}.map(([name, array]) => [name, Array.from(array)])"
+        result = self.page.run(
+            f"const given = arguments; return Object.fromEntries({lists})", *arguments
+        )
+        return {name: np.array(values, dtype=np.float64) for name, values in result.items()}
 
     def drops(self, text: str, name: str = "log.csv") -> str:
         """Drops a file, and returns what the page complains of; nothing if the file is good."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import gmpy2
 import numpy as np
@@ -203,10 +203,6 @@ class Estimate:
     rho: Array
     epsilon: Array
     eta: Array
-
-    @classmethod
-    def names(cls) -> list[str]:
-        return [field.name for field in fields(cls)]
 
 
 def estimator(

@@ -157,7 +157,8 @@ class MisfitJoint(Joint):
         """Signal of about this size that starts at rest, at zero [rad]."""
         rng = np.random.default_rng(self.seed)
         waves = [np.sin(2 * np.pi * f * self.t + rng.uniform(0, 6)) for f in frequencies]
-        return size * (1 - np.exp(-((self.t / 0.3) ** 3))) * np.sum(waves, axis=0)
+        start = 1 - np.exp(-((self.t / 0.3) ** 3))
+        return np.asarray(size * start * np.sum(waves, axis=0))
 
     @property
     def motion(self) -> tuple[Array, Array, Array, Array, Array]:

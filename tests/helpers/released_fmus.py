@@ -43,11 +43,8 @@ class Run:
 
     def table(self) -> NDArray[Any]:
         """The inputs with their times, as FMPy takes them."""
-        names = ["time", *(v.name for v in self.inputs)]
-        table = np.empty(len(self.time), [(name, np.float64) for name in names])
-        for name, column in zip(names, [self.time, *self.signals.T], strict=True):
-            table[name] = column
-        return table
+        columns = [(name, np.float64) for name in ("time", *(v.name for v in self.inputs))]
+        return np.asarray(np.rec.fromarrays([self.time, *self.signals.T], dtype=columns))
 
     def simulate(self, fmu: Path) -> NDArray[np.float64]:
         """Real outputs of an FMU with this description under FMPy [size: steps + 1, outputs]."""
