@@ -7,7 +7,6 @@ import logging
 import math
 import os
 import shutil
-import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +18,7 @@ import pytest
 from fmpy import fmi2
 
 import sigmahat
+from controllers import run
 from recordings import one_seed
 from sigmahat.fmi.instance import Fmu, FmuError, Slave, opened
 from sigmahat.fmi.master import EstimatorFmu, simulate
@@ -164,10 +164,7 @@ for K_I in (300.0, -1.0, 300.0):
         pass
     print(len(os.listdir(os.environ["TMPDIR"])))
 """
-    environment = {**os.environ, "TMPDIR": str(tmp_path)}
-    command = [sys.executable, "-c", program]
-    shown = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
-    assert shown.stdout.split() == ["2", "2", "2"] and shown.stderr == ""
+    assert run(sys.executable, "-c", program, TMPDIR=str(tmp_path)) == "2\n2\n2\n"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -218,8 +215,7 @@ for _ in range(200):
     failed += os.waitpid(child, 0)[1] != 0
 print(failed)
 """
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "0\n", "")
+    assert run(sys.executable, "-c", program) == "0\n"
 
 
 # Messages of FMUs: each comes to the slave that it is of

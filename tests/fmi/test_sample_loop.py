@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import os
 import signal
-import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 import pytest
 
 import sigmahat
+from controllers import run
 from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.fmi import native
 from sigmahat.fmi.instance import Fmu, FmuError, Slave
@@ -190,9 +190,7 @@ with multiprocessing.get_context("fork").Pool(2) as pool:
 print(run(0))
 """
     command = [sys.executable, "-W", "error::ResourceWarning", "-c", program]
-    environment = {**os.environ, "TMPDIR": str(tmp_path)}
-    shown = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
-    assert (shown.stdout, shown.stderr) == ("[1, 1, 1, 1]\n1\n", "")
+    assert run(*command, TMPDIR=str(tmp_path)) == "[1, 1, 1, 1]\n1\n"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -227,8 +225,7 @@ class Integrator(Fmi2Slave):
         return True
 """
     )
-    build = [sys.executable, "-m", "pythonfmu", "build", "-f", str(script), "-d", str(tmp_path)]
-    subprocess.run(build, check=True, capture_output=True)
+    run(sys.executable, "-m", "pythonfmu", "build", "-f", script, "-d", tmp_path)
     (fmu,) = map(str, tmp_path.glob("*.fmu"))
     plant = Plant(fmu, {}, {"u": lambda t: t}, ["x", "steps", "far"])
     h, steps = 0.01, 100

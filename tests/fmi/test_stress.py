@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from c_programs import compile_driver, compiler_with
+from controllers import run
 from gate import need
 
 # The versions of FMI share all code but their functions, and all FMUs the shell with its memory and
@@ -28,20 +29,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("drivers")
 
 
-def run(*command: str | Path) -> str:
-    """Standard output of a program, which must end with status 0 and print no error."""
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    assert done.returncode == 0 and done.stderr == "", done.stderr[-10000:]
-    return done.stdout
-
-
 @one_of_each_kind
 @pytest.mark.slow("many instances run side by side")
 def test_instances_do_not_influence_each_other_in_turn_and_in_threads(
     fmu: str, version: str, build: Path, folder: Path
 ) -> None:
     compiler = compiler_with(THREAD, folder)
-    run(compile_driver("instances", fmu, version, build, folder, compiler, THREAD))
+    assert run(compile_driver("instances", fmu, version, build, folder, compiler, THREAD)) == ""
 
 
 @pytest.mark.slow("valgrind executes the runs of some instances, tens of times slower")
@@ -53,7 +47,7 @@ def test_valgrind_finds_nothing(fmu: str, version: str, build: Path, folder: Pat
         "instances", fmu, version, build, folder, compiler_with(flags, folder), flags
     )
     leaks = ["--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all"]
-    run(valgrind, "-q", "--error-exitcode=1", *leaks, program)
+    assert run(valgrind, "-q", "--error-exitcode=1", *leaks, program) == ""
 
 
 @pytest.mark.slow("the fuzzer has a fixed time to try inputs")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import math
 import re
-import subprocess
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -17,6 +16,7 @@ import pytest
 from numpy.typing import NDArray
 
 import sigmahat
+from controllers import run
 from gate import need
 from recordings import one_seed
 from sigmahat.export.modelica import KEYWORDS
@@ -140,9 +140,7 @@ def _parameter(expression: str) -> str:
 
 
 def gcc(*arguments: str | Path) -> None:
-    command = [need("gcc"), *FLAGS, *WARNINGS, *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert run(need("gcc"), *FLAGS, *WARNINGS, *arguments) == ""
 
 
 @pytest.fixture(scope="module")
@@ -240,8 +238,7 @@ def test_all_in_one_file_they_run_without_an_error_of_memory(tool: Tool, tmp_pat
     )
     unit = tool.compiled(tmp_path, f"{includes}int main(void) {{ {body} }}\n", *SANITIZER)
     gcc(*SANITIZER, unit, "-lm", "-o", tmp_path / "program")
-    done = subprocess.run([tmp_path / "program"], capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert run(tmp_path / "program") == ""
 
 
 @pytest.mark.parametrize(

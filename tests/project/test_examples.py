@@ -6,7 +6,6 @@ import importlib
 import math
 import re
 import runpy
-import subprocess
 import sys
 from functools import cache
 from pathlib import Path
@@ -21,31 +20,22 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 import sigmahat
+from controllers import run
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def run(name: str, folder: Path) -> str:
-    """Runs an example as a user does, and returns what it prints."""
-    done = subprocess.run(
-        [sys.executable, EXAMPLES / f"{name}.py"], cwd=folder, capture_output=True, text=True
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    return done.stdout
-
-
 def test_fmpy_ten_lines(tmp_path: Path) -> None:
-    value, unit = run("fmpy_ten_lines", tmp_path).split()
+    value, unit = run(sys.executable, EXAMPLES / "fmpy_ten_lines.py", cwd=tmp_path).split()
     assert unit == "N.m/rad"
-    assert float(value) == pytest.approx(
-        1000.0, abs=1.0
-    )  # stiffness of the joint from which its log was computed
+    # The stiffness of the joint from which its log was computed.
+    assert float(value) == pytest.approx(1000.0, abs=1.0)
     page = (EXAMPLES.parent / "docs" / "fmu.md").read_text(encoding="utf-8")
     assert f"It prints {float(value):.1f}:" in page
 
 
 def test_own_log(tmp_path: Path) -> None:
-    printed = run("own_log", tmp_path)
+    printed = run(sys.executable, EXAMPLES / "own_log.py", cwd=tmp_path)
     for name, true in {"B": 2.3e-5, "D_theta": 1e-3}.items():  # values of AwasPlant
         found = re.search(rf"^{name}: (\S+) \+- (\S+)$", printed, re.M)
         assert found and abs(float(found[1]) - true) <= float(found[2])
@@ -81,7 +71,7 @@ def pendulum(t: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def test_own_plant(tmp_path: Path) -> None:
-    printed = run("own_plant", tmp_path)
+    printed = run(sys.executable, EXAMPLES / "own_plant.py", cwd=tmp_path)
     found = re.search(r"after 1 s, MSREP (\S+) %", printed)
     assert found and float(found[1]) < 0.01  # root mean square error below 1 %
     assert (tmp_path / "own_plant.png").stat().st_size > 0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,8 +13,9 @@ import fmpy
 import numpy as np
 import pytest
 
+import fmi_master
 import sigmahat
-from fmi_master import run, torques
+from controllers import run
 from sigmahat.runs.scenario import T
 
 REPOSITORY = Path(__file__).parents[2]
@@ -39,19 +39,11 @@ def executed(page: str) -> dict[str, Any]:
 def test_the_commands_of_the_page_on_c_masters_work(tmp_path: Path) -> None:
     (commands,) = blocks("c-master.md", "sh")
     (tmp_path / "examples").symlink_to(REPOSITORY / "examples")
-    done = subprocess.run(
-        ["sh", "-e", "-c", commands],
-        cwd=tmp_path,
-        env={
-            # The python3 that runs this test, which has FMPy.
-            "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
-            "FMU": str(sigmahat.fmu("StiffnessEstimator")),
-        },
-        capture_output=True,
-        text=True,
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    printed = re.fullmatch(r"sigma = (\S+) N\.m/rad\n", done.stdout)
+    # The python3 that runs this test, which has FMPy.
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    fmu = str(sigmahat.fmu("StiffnessEstimator"))
+    text = run("sh", "-e", "-c", commands, cwd=tmp_path, PATH=path, FMU=fmu)
+    printed = re.fullmatch(r"sigma = (\S+) N\.m/rad\n", text)
     assert printed and float(printed[1]) == pytest.approx(150.0, rel=1e-3)
 
 
@@ -81,9 +73,9 @@ def test_the_c_to_copy_estimates_a_stiffness(tmp_path: Path, build: Path) -> Non
     amalgamation, program = build / "amalgamation", tmp_path / "program"
     strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{amalgamation}"]
     sources = [tmp_path / "main.c", amalgamation / "sigmahat.c"]
-    subprocess.run(["cc", *strict, *sources, "-o", program, "-lm"], check=True)
-    sure, sigma, std = subprocess.run([program], check=True, capture_output=True).stdout.split()
-    assert sure == b"1"
+    run("cc", *strict, *sources, "-o", program, "-lm")
+    sure, sigma, std = run(program).split()
+    assert sure == "1"
     assert abs(float(sigma) - 400) < 2 * float(std) < 40
 
 
@@ -133,7 +125,7 @@ def test_a_copy_without_enumerations_is_the_same_fmu(page: dict[str, Any], tmp_p
 
 def test_fmpy_page_gives_the_results_of_a_master_written_by_hand(page: dict[str, Any]) -> None:
     times = page["t"]
-    own = run(torques(times), times)
+    own = fmi_master.run(fmi_master.torques(times), times)
     np.testing.assert_allclose(page["plant"]["sigma"], own["plant.sigma"], rtol=1e-9)
     # The outputs of the tick at t_k are available after the step.
     ticks = own["estimator.sigma"][:-1]

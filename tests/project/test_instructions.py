@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import platform
 import re
-import subprocess
 import sys
 from collections import defaultdict
 from collections.abc import Mapping
@@ -15,6 +14,7 @@ import pytest
 import tomlkit
 
 from c_programs import compile_driver
+from controllers import run
 from gate import need
 
 TABLE = Path(__file__).parent / "instructions.toml"
@@ -29,15 +29,14 @@ def counted(program: Path, method: str) -> Mapping[str, float]:
     """Instructions per step in each function, and in all that it calls."""
     profile = program.with_name("profile")
     valgrind = need("valgrind")
-    tool = [valgrind, "--tool=callgrind", f"--callgrind-out-file={profile}"]
-    subprocess.run([*tool, str(program), method], capture_output=True, check=True)
-    annotate = str(Path(valgrind).with_name("callgrind_annotate"))
-    command = [annotate, "--inclusive=yes", "--auto=no", "--threshold=100", str(profile)]
+    run(valgrind, "--tool=callgrind", f"--callgrind-out-file={profile}", program, method)
+    annotate = Path(valgrind).with_name("callgrind_annotate")
+    options = ["--inclusive=yes", "--auto=no", "--threshold=100"]
     # In another folder than that of the sources, which it would list under two names.
-    listed = subprocess.run(command, cwd=program.parent, capture_output=True, text=True, check=True)
+    listed = run(annotate, *options, profile, cwd=program.parent)
     found: defaultdict[str, float] = defaultdict(float)
     # A function has a row for its own file, and one for each header of its inline functions.
-    for total, function in re.findall(ROW, listed.stdout, re.M):
+    for total, function in re.findall(ROW, listed, re.M):
         found[function] += int(total.replace(",", "")) / STEPS
     return found
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from functools import cache
 from pathlib import Path
@@ -12,6 +11,7 @@ from zipfile import ZipFile
 import fmpy
 import pytest
 
+import controllers
 import sigmahat
 from released_fmus import FMUS, TWINS, Run
 from sigmahat.export import archive, cross_compiler
@@ -51,15 +51,8 @@ def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: 
     contents = {f.relative_to(folder).as_posix(): f for f in files}
     rebuilt = tmp_path / f"{name}.fmu"
     archive.write(rebuilt, {n: f for n, f in contents.items() if not n.startswith("binaries/")})
-    done = subprocess.run(
-        [sys.executable, "-m", "fmpy", "compile", str(rebuilt)],
-        env={  # with the build tool of the environment, because make may be missing
-            **os.environ,
-            "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
-            "CMAKE_GENERATOR": "Ninja",
-        },
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    # With the build tool of the environment, because make may be missing.
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    compile_ = [sys.executable, "-m", "fmpy", "compile", rebuilt]
+    controllers.run(*compile_, PATH=path, CMAKE_GENERATOR="Ninja")
     run.assert_same(run.simulate(rebuilt))

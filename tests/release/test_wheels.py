@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 import sys
 import sysconfig
 import zipfile
@@ -12,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import sigmahat
+from controllers import run
 from released_fmus import FMUS
 
 EXTENSIONS = {"manylinux_2_17_x86_64": ".so", "win_amd64": ".dll", "macosx_11_0_x86_64": ".dylib"}
@@ -54,8 +54,7 @@ def test_it_contains_the_released_fmus_and_its_library_alone(
 @each_platform
 def test_its_record_is_right(tag: str, folder: Path, tmp_path: Path) -> None:
     """`wheel unpack` compares every file with its hash."""
-    unpack = [sys.executable, "-m", "wheel", "unpack", "-d", str(tmp_path)]
-    subprocess.run([*unpack, str(wheel(folder, tag))], check=True, capture_output=True)
+    run(sys.executable, "-m", "wheel", "unpack", "-d", tmp_path, wheel(folder, tag))
     (kind,) = tmp_path.glob("*/*.dist-info/WHEEL")
     text = kind.read_text()
     assert f"Tag: py3-none-{tag}\n" in text and "Root-Is-Purelib: false\n" in text
@@ -80,12 +79,8 @@ print(json.dumps([sigmahat.__file__, run.estimators["RESIDUAL"]["sigma"].tolist(
     found = []
     packages = sysconfig.get_path("purelib")
     # Without "site" the package of this tree is on no path.
-    for command in (
-        [sys.executable, "-S", "-c", program, str(tmp_path), packages],
-        [sys.executable, "-c", program],
-    ):
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-        found.append(json.loads(done.stdout))
+    for command in (["-S", "-c", program, tmp_path, packages], ["-c", program]):
+        found.append(json.loads(run(sys.executable, *command)))
     assert Path(found[0][0]).is_relative_to(tmp_path)
     assert not Path(found[1][0]).is_relative_to(tmp_path)
     assert found[0][1:] == found[1][1:]
