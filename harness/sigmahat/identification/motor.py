@@ -25,23 +25,17 @@ from sigmahat.identification.regression import (
 from sigmahat.identification.spring import Spring
 
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
-_WIDEST = 0.1
-"""Of the sampling frequency: highest low pass of the velocity in the Coulomb friction."""
-_RELATIVE = 0.1
-"""Half width of the interval over the value, up to which the value is determined."""
-_NEGLIGIBLE = 0.005
-"""The same for Coulomb friction, over the torque: it may be determined to be zero."""
+_WIDEST = 0.1  # highest low pass of the velocity, in sampling frequencies
+_RELATIVE = 0.1  # largest half width of a determined value, over the value
+_NEGLIGIBLE = 0.005  # the same for Coulomb friction, over the torque: it may be zero
 _POWERS = 4
 """rls.n of every joint. FilteredRegression adds two more powers or knees if the data ask for them.
 With 6, the interval of the stiffness is a quarter wider, and with 3 it holds fewer curves."""
 _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
 """Relative error without any noise, at a period of 1 ms: reversals fall between samples."""
-_OF_COVERED = 0.05
-"""Half width of the interval of the zero over the covered deformation, up to which it is known."""
-_STRIBECK = (0.03, 0.1, 0.3)
-"""Velocities over which the friction of slow motion decreases [rad/s]."""
-_ENDS = (0.0, -1.96, 1.96)
-"""Of a known inertia, in standard deviations: its value, and the ends of its interval."""
+_OF_COVERED = 0.05  # largest half width of a known zero, over the covered deformation
+_STRIBECK = (0.03, 0.1, 0.3)  # [rad/s] over which the friction of slow motion decreases
+_ENDS = (0.0, -1.96, 1.96)  # value and ends of a known inertia, in standard deviations
 _N, _M = 4, 4  # highest orders of the polynomial that are tried
 
 
@@ -59,8 +53,7 @@ class MotorFit:
 
     quantities: dict[str, Quantity]
     """B, D_theta and tau_coulomb, and the zero of the deformation where there is one."""
-    gain: tuple[float, float]
-    """Of the torque, if it was measured: value and half of the 95 % interval."""
+    gain: tuple[float, float]  # of a measured torque: value, and half of the 95 % interval
     polynomial: Form  # orders and symmetry of the polynomial for the estimator
     spring: float  # largest torque of the spring in the log [N.m]
 
@@ -136,8 +129,7 @@ class Variants:
     """
 
     first: Fit
-    others: Sequence[Fit]
-    """With other filters, or the ends of the interval of a known inertia."""
+    others: Sequence[Fit]  # with other filters, or with the ends of a known inertia
     frictions: Sequence[Fit]  # with other forms of friction
 
 

@@ -33,10 +33,8 @@ from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.logs.log import Array
 from sigmahat.logs.sampling import Samples, stretches
 
-MOTOR = ("B", "D_theta", "tau_coulomb")
-"""Names of the first columns, which describe the motor."""
-COULOMB_VELOCITY = 0.02
-"""v_s, the velocity over which the friction changes its sign [rad/s]."""
+MOTOR = ("B", "D_theta", "tau_coulomb")  # first columns, which describe the motor
+COULOMB_VELOCITY = 0.02  # v_s, over which the friction changes its sign [rad/s]
 CONSTANT = "constant"  # name of the column of c
 EXTRA = "extra"  # name of the column of Signals.extra
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
@@ -54,8 +52,7 @@ class Signals:
     phi: Array
     set_point: Array
     tau: Array
-    tau_e: Array | None
-    """Torque of the sensor, if the torque constant is to be identified."""
+    tau_e: Array | None  # torque of the sensor, to identify the torque constant
     extra: Array | None = None
     """A regressor more, which is filtered as the torque and is its own instrument."""
 
@@ -69,8 +66,7 @@ class Form:
     """What the equations contain, and the filters."""
 
     f_0: float  # low pass of both sides [Hz]
-    wide: float
-    """Low pass of the velocity in the Coulomb friction, which changes fast [Hz]."""
+    wide: float  # low pass of the velocity in the Coulomb friction [Hz]
     n: int = 1  # order of the polynomial, as rls.n
     m: int = 1  # as rls.m
     symmetric: bool = True  # only odd powers of the deformation, as rls.symmetric
@@ -109,8 +105,7 @@ class Equations:
     So |y - X p| = |R [-p, 1]| without a difference of large numbers."""
     rows: NDArray[np.int64]  # number of equations in each block
     names: Sequence[str]  # names of the columns, see Form.names
-    units: tuple[float, float]
-    """What deformation and set-point are divided by in the polynomial [rad, 1]."""
+    units: tuple[float, float]  # divisors of deformation and set-point [rad, 1]
 
     @property
     def scale(self) -> Array:

@@ -36,8 +36,7 @@ class Stiffness:
     phi: float  # deformation [rad]
     set_point: float  # set-point [1]
     sigma: float  # stiffness at this point [N.m/rad]
-    interval: Range | None
-    """95 % interval [N.m/rad]; None if the method gives no interval."""
+    interval: Range | None  # 95 % interval [N.m/rad]; None: the method gives none
 
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
@@ -84,8 +83,7 @@ class Parameter:
     unit: Text
     interval: Range | None
     """95 % interval; None if the value is taken as exact, or the method gives no interval."""
-    interval_from: Text
-    """Origin of the interval: "identify", "prior"; or why no interval is given."""
+    interval_from: Text  # "identify" or "prior"; or why no interval is given
 
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)

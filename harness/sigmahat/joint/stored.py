@@ -58,8 +58,7 @@ class Format(Generic[_Contents]):
     file: str  # name of the file in the folder
     name: str  # value of the key "format" in the file
     version: int  # version of the format
-    contents: type[_Contents]
-    """A dataclass with the fields format and version, and all others of the file."""
+    contents: type[_Contents]  # dataclass with format, version and all other fields of the file
 
     def path(self, given: Path) -> Path:
         """The path of the file: `given` is the file, or the folder of the file."""

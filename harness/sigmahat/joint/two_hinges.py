@@ -33,8 +33,7 @@ class Spring:
 
     reference: float  # deformation without torque [rad]
     stiffness: tuple[float, ...]  # [N.m/rad], [N.m/rad2] and so on
-    error: float
-    """Largest error of this torque relative to the largest torque, in the range of the data [1]."""
+    error: float  # largest error of this torque over the largest torque in the data [1]
 
 
 @dataclass(frozen=True)
@@ -49,8 +48,7 @@ class TwoHinges:
     spring: Spring
     spring_damping: Quantity
     reach: Range  # range of the measured deformation [rad]
-    factor: Quantity
-    """Factor of the whole stiffness: 1, with the relative interval of the estimate."""
+    factor: Quantity  # of the whole stiffness: 1, with the relative interval
     absent: tuple[str, ...]  # effects of the joint that two hinges do not have, in words
 
     def quantities(self, name: str) -> Iterator[tuple[str, Quantity]]:

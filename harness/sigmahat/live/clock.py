@@ -7,10 +7,8 @@ import math
 from sigmahat.logs.log import EXACT
 
 _LATE = 1.0  # a sample that is late by less than this time was overtaken by other samples [s]
-LONGEST_PAUSE = 1.0
-"""After a longer pause, a sample has a wrong time, or the sender has started again [s]."""
-_STARTED = 20
-"""After this number of samples in order, far from the others, the sender has started again."""
+LONGEST_PAUSE = 1.0  # [s] after a longer one, the time is wrong or the sender has restarted
+_STARTED = 20  # samples in order, far from the others: the sender has restarted
 _ADAPT = 0.01
 _SHORTEST = 1e-6  # [s] between two samples
 

@@ -34,14 +34,10 @@ OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfi
 """Real outputs that are sent to the sinks."""
 _FLAGS = ("confident", "valid")
 GIVEN = (*OUTPUTS, *_FLAGS, "doubt")  # all outputs that are sent to the sinks
-BANDED = ("sigma", "tau_e")
-"""Outputs whose 95 % intervals are sent, too: sigma_low and sigma_high, ..."""
-_PATIENCE = 0.2
-"""Time that a tick waits for a port without samples while samples of other ports arrive [s]."""
-_WAITING, _MOST = 1000, 10_000
-"""Most samples that wait for the first time of the time column, and for slower ports."""
-_USUAL_GAP = 3.0
-"""Longest gap that is interpolated, in periods, if the configuration gives no such gap."""
+BANDED = ("sigma", "tau_e")  # outputs whose 95 % intervals are sent, too: sigma_low, ...
+_PATIENCE = 0.2  # [s] a tick waits for a port without samples while other ports have some
+_WAITING, _MOST = 1000, 10_000  # samples that wait for the first time, and for slower ports
+_USUAL_GAP = 3.0  # longest gap that is interpolated, in periods, if none is configured
 
 
 @dataclass(frozen=True)

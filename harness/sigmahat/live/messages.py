@@ -13,8 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
-Columns = Mapping[str, int | float]
-"""Numbers by the name of their column; nan where a value is missing."""
+Columns = Mapping[str, int | float]  # numbers by column; nan where one is missing
 
 LONGEST = 1 << 16  # bytes of a message
 _DEEPEST = 8

@@ -83,8 +83,7 @@ class Ros2:
             )
         self._domain = DomainParticipant(int(text))
         self._wanted: frozenset[str] = frozenset()
-        self._first: int | None = None
-        """Time of the first message [ns], the zero of the time columns."""
+        self._first: int | None = None  # time of the first message [ns], zero of the columns
 
     def joint_states(self, columns: Sequence[str]) -> Source:
         """Reads the topics of columns. Raises ValueError for a column that names no topic."""

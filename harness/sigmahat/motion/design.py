@@ -43,8 +43,7 @@ NOISE = 0.003  # default noise of the torque: standard deviation divided by the 
 @dataclass(frozen=True)
 class Sensors:
     gear_ratio: float
-    counts: tuple[float, float]
-    """Counts of the encoders of motor and link, per turn at the gear output."""
+    counts: tuple[float, float]  # of the encoders of motor and link, per turn at the gear output
     torque_gain: float  # relative standard deviation of the gain of the torque: prior.torque_gain
     noise: float  # noise of the torque of the motor at the gear output [N.m]
     T: float  # time between samples [s]

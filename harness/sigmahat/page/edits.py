@@ -75,8 +75,7 @@ CHOICES: Mapping[str, Sequence[str]] = {
 
 Value = str | float | bool
 GAMMA = "motor.gamma"
-SECTIONS = ("ports", "time")
-"""First parts of keys with their own sections; all other keys are in [parameters]."""
+SECTIONS = ("ports", "time")  # first parts of keys; all other keys are in [parameters]
 _NOT_ZERO = ("counts_per_turn", "gear_ratio", "torque_constant", "scale")
 _OF_A_GUESS = (FILL_IN, "CHECK", NOT_YOURS, WIDE_PRIOR)
 """First words of comments that are no longer true after the user has set the value."""

@@ -62,8 +62,7 @@ def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
 
 
 _REFUSED = (LogError, FmuError, OSError, ValueError)
-Later = Callable[[Callable[[], object]], object]
-"""Calls a function in the thread of the server."""
+Later = Callable[[Callable[[], object]], object]  # calls a function in the server's thread
 
 
 class _OutdatedError(Exception):

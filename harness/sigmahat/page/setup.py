@@ -49,27 +49,21 @@ class Setup:
         self.log = log
         self.path = path  # the file to write
         self.document: tomlkit.TOMLDocument = tomlkit.document()
-        self.is_edited = False
-        """Whether the configuration has edits that are not written yet."""
-        self.looks: Mapping[str, Look] = {}
-        """Previews of the columns by name; empty until they are known."""
+        self.is_edited = False  # whether edits are not written yet
+        self.looks: Mapping[str, Look] = {}  # previews of the columns by name; empty at first
         self.joint = ""  # name of the joint that is shown
         self.busy = "Looking at the columns ..."
         """The running computation, in words; empty without a computation."""
-        self.problem = ""
-        """Why the configuration cannot be checked; empty without a problem."""
+        self.problem = ""  # why the configuration cannot be checked; else empty
         self.checked: Checked | None = None
         self.answer: Answer | None = None
-        self.message = ""
-        """Message about the last click on a button, or about the last value."""
+        self.message = ""  # about the last click on a button, or the last value
         self.changed: Callable[[], object] = lambda: None
         """Is called after every change of the configuration."""
-        self.asks_to_overwrite = False
-        """Whether the page asks before it overwrites the file."""
+        self.asks_to_overwrite = False  # whether a question to overwrite the file is open
         self._asked = 0.0
         self._then: Callable[[], object] | None = None
-        self.windows: set[Callable[[], object]] = set()
-        """Functions that are called after every change."""
+        self.windows: set[Callable[[], object]] = set()  # functions to call after every change
         self._chosen: Chosen = lambda names: {}
         self.joints: dict[str, tomlkit.TOMLDocument] = {}
         """The configurations of the joints by name; empty until they are known."""

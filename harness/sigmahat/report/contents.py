@@ -44,8 +44,7 @@ class Contents:
     pictures: Sequence[Path] = ()  # PNG files
     every: tuple[float, float] | None = None
     """Times between which every sample is drawn [s]; None: everywhere."""
-    marks: Sequence[float] = ()
-    """Times at which the panels over time have a dotted line [s]."""
+    marks: Sequence[float] = ()  # times of dotted lines in the panels over time [s]
 
 
 def number(value: object) -> str:

@@ -116,8 +116,7 @@ def findings_table(folder: Path) -> list[TextTable]:
     return [TextTable("Checks", ["", "finding"], rows, [True, True], note=note)]
 
 
-_OF_THE_METHOD = ("a", "rho")
-"""Outputs about the inner working of the method; they are not in the table."""
+_OF_THE_METHOD = ("a", "rho")  # inner outputs of the method, which are not in the table
 
 
 @dataclass(frozen=True)
