@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from command_line import Shell
-from recorded_logs import CONFIGURATION, Columns, plain_log, write_log
+from recorded_logs import CONFIGURATION, plain_log, write_log
 
 
 @pytest.fixture(autouse=True)
@@ -55,55 +54,32 @@ def test_missing_file_and_folder(shell: Shell) -> None:
     assert "sigmahat init" in shell.refused("estimate other.csv")
 
 
-Log = dict[str, np.ndarray]
-
-
-def text(log: Columns) -> Log:
-    return {**log, "q": np.array(["1.0", *["fast"] * 1999])}
-
-
-def one_word(log: Columns) -> Log:
-    """A word among numbers, and an empty cell before it."""
-    q = log["q"].astype(str)
-    q[700], q[300] = "abc", ""
-    return {**log, "q": q}
-
-
-def back(log: Columns) -> Log:
-    log["t"][1500] = log["t"][1400]
-    return {**log}
-
-
-def back_since_1970(log: Columns) -> Log:
-    t = 1_700_000_000_000_000_000 + np.round(1e9 * back(log)["t"]).astype(np.int64)
-    return {**log, "t": t}
-
-
-def nothing(log: Columns) -> Log:
-    return {**log, "q": np.full(2000, np.nan)}
+WORD = plain_log()["q"].astype(str)
+"""A word among numbers, and an empty cell before it."""
+WORD[700], WORD[300] = "abc", ""
+BACK = plain_log()["t"]
+BACK[1500] = BACK[1400]
+BACK_SINCE_1970 = 1_700_000_000_000_000_000 + np.round(1e9 * BACK).astype(np.int64)
+NOT_INCREASING = "does not increase: 1.4 s in row 1501 after 1.499 s"
 
 
 @pytest.mark.parametrize(
-    ("change", "words", "suffixes"),
+    ("column", "values", "words"),
     [
-        (one_word, "column 'q' holds text ('abc' in row 701)", [".csv", ".parquet"]),
-        (text, "column 'q' holds text ('fast' in row 2)", [".csv", ".parquet"]),
-        (nothing, "no number", [".csv", ".parquet"]),
-        (back, "does not increase: 1.4 s in row 1501 after 1.499 s", [".csv", ".parquet"]),
-        (
-            back_since_1970,  # times are told from the first row
-            "does not increase: 1.4 s in row 1501 after 1.499 s",
-            [".csv", ".parquet", ".mat", ".h5"],
-        ),
+        ("q", WORD, "column 'q' holds text ('abc' in row 701)"),
+        ("q", np.array(["1.0", *["fast"] * 1999]), "column 'q' holds text ('fast' in row 2)"),
+        ("q", np.full(2000, np.nan), "no number"),
+        ("t", BACK, NOT_INCREASING),
+        ("t", BACK_SINCE_1970, NOT_INCREASING),  # times are told from the first row
     ],
 )
-def test_values_that_do_not_fit(
-    change: Callable[[Columns], Log], words: str, suffixes: list[str], shell: Shell
-) -> None:
-    if change is back_since_1970:
+def test_values_that_do_not_fit(column: str, values: np.ndarray, words: str, shell: Shell) -> None:
+    suffixes = [".csv", ".parquet"]
+    if values is BACK_SINCE_1970:
         Path("log.toml").write_text(CONFIGURATION.replace('"t"', '"t"\nunit = "ns"'))
+        suffixes += [".mat", ".h5"]
     for suffix in suffixes:
-        write_log(change(plain_log()), Path(f"log{suffix}"))
+        write_log({**plain_log(), column: values}, Path(f"log{suffix}"))
         assert words in shell.refused(f"estimate log{suffix}")
 
 
