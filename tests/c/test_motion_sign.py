@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from c_library import Array, Library
+from dense_signals import direction
 from reference_joints import round_to_counts
 
 COUNTS = 40000.0
@@ -19,16 +20,12 @@ def steps(count: int) -> Array:
     return np.arange(count, dtype=np.float64)
 
 
-def run(c: Library, positions: Array, count: float = COUNT) -> tuple[Array, Array]:
+def run(
+    c: Library, positions: Array, count: float = COUNT, slow: float = SLOW * T
+) -> tuple[Array, Array]:
     """For every sample but the first: mean sign, and 0 if it is known, else 1 or more."""
-    motion = c.new("sh_motion_sign")
-    c.lib.sh_motion_sign_start(motion, positions[0])
-    found = []
-    for position in positions[1:]:
-        c.lib.sh_motion_sign_step(motion, position, count, SLOW * T)
-        found.append((motion.sign, motion.unknown))
-    signs, unknown = np.array(found).T
-    return signs, unknown
+    signs, unknown = direction(c, positions, count, slow)
+    return signs[1:], unknown[1:]
 
 
 @pytest.mark.parametrize("velocity", [0.06, 0.3, -2.0, 40.0])
@@ -79,22 +76,15 @@ def test_without_rounding_the_time_of_a_reversal_is_exact(c: Library, way: float
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_the_sign_is_known_after_a_fast_reversal(c: Library, way: float) -> None:
-    motion = c.new("sh_motion_sign")
-    c.lib.sh_motion_sign_start(motion, 0.0)
-    for position in (5.0, 10.0, 15.0, 11.0):
-        c.lib.sh_motion_sign_step(motion, way * position, 1.0, 0.1)
-    assert motion.unknown == 0.0
-    assert motion.direction == -way
+    signs, unknown = run(c, way * np.array([0.0, 5.0, 10.0, 15.0, 11.0, 7.0]), 1.0, 0.1)
+    assert unknown[3] == 0.0
+    assert signs[4] == -way
 
 
 def test_the_sign_is_known_at_the_velocity_slow_itself(c: Library) -> None:
-    motion = c.new("sh_motion_sign")
-    c.lib.sh_motion_sign_start(motion, 0.0)
-    unknown = []
-    for _ in range(4):  # only the first one moves, by one count; `slow` is half a count per sample
-        c.lib.sh_motion_sign_step(motion, 1.0, 1.0, 0.5)
-        unknown.append(motion.unknown)
-    assert unknown == [1.0, 0.0, 0.0, 1.0]
+    """The motor moves once, by one count; `slow` is half a count per sample."""
+    _, unknown = run(c, np.array([0.0, 1.0, 1.0, 1.0, 1.0]), 1.0, 0.5)
+    assert unknown.tolist() == [1.0, 0.0, 0.0, 1.0]
 
 
 def test_a_reversal_subtracts_the_wrong_signs_and_counts_them_as_unknown(c: Library) -> None:

@@ -86,19 +86,3 @@ def relative_error(run: Mapping[str, Array], reference: Array) -> Array:
     states = np.column_stack(list(run.values())[: reference.shape[1]])
     error: Array = np.abs(states - reference).max(axis=0) / np.ptp(reference, axis=0)
     return error
-
-
-def slope(name: str, start: Mapping[str, float], phi: float, side: str = "") -> tuple[float, float]:
-    """Stiffness of a transmission at a deformation, and the difference quotient of its torque."""
-    small = 1e-4
-    tau_e, sigma = f"tau_e{side}", f"sigma{side}"
-    values = []
-    with Fmu(sigmahat.fmu(name)) as fmu:
-        for deformation in (phi, phi + small, phi - small):
-            with Slave(fmu, "plant") as plant:
-                plant.initialize({**start, f"initial.theta{side}": -deformation})
-                recorder = Recorder(plant, [tau_e, sigma], 1)
-                recorder.sample(0)
-                values.append({n: float(v[0]) for n, v in recorder.columns().items()})
-    here, above, below = values
-    return here[sigma], (above[tau_e] - below[tau_e]) / (2 * small)
