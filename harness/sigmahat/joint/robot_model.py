@@ -13,8 +13,8 @@ from typing import Any
 from lxml import etree
 
 from sigmahat.files.output import write_whole
-from sigmahat.joint.sheet import Sheet, one_line, origin
-from sigmahat.joint.two_hinges import Quantity, TwoHinges, two_hinges
+from sigmahat.joint.sheet import Parameter, Sheet, one_line, origin
+from sigmahat.joint.two_hinges import TwoHinges, two_hinges
 
 _DRAKE = "http://drake.mit.edu"
 _PLACEHOLDER = " A placeholder: put your own link here. "
@@ -47,7 +47,7 @@ def write_model(sheet: Sheet, kind: str, path: Path) -> None:
 def _head(hinges: TwoHinges, name: str) -> Iterator[str]:
     """Lines about the meaning of the numbers."""
     yield f"{name}_motor: the motor at its gear output; {name}_flexibility: the deformation."
-    for title, each in hinges.quantities(name):
+    for title, each in hinges.parameters(name):
         claim = f"no interval ({each.interval_from})"
         if each.interval is not None:
             claim = f"95 % from {each.interval[0]:.6g} to {each.interval[1]:.6g}"
@@ -91,7 +91,7 @@ def _mjcf(hinges: TwoHinges, name: str) -> Any:
     _add(actuator, "motor", name=f"{name}_motor", joint=f"{name}_motor", gear=gear)
     custom = _add(root, "custom")
     custom.append(etree.Comment(" Ranges of 95 %, for domain randomization. "))
-    for title, each in hinges.quantities(name):
+    for title, each in hinges.parameters(name):
         if each.interval is not None:
             _add(custom, "numeric", name=title, data=" ".join(map(repr, each.interval)))
     return root
@@ -172,7 +172,7 @@ def _urdf_link(root: Any, name: str, mass: float, inertia: float) -> None:
 
 
 def _urdf_joint(
-    root: Any, name: str, parent: str, child: str, dynamics: Mapping[str, Quantity]
+    root: Any, name: str, parent: str, child: str, dynamics: Mapping[str, Parameter]
 ) -> None:
     joint = _add(root, "joint", name=name, type="continuous")
     _add(joint, "parent", link=parent)
@@ -181,8 +181,8 @@ def _urdf_joint(
     _add(joint, "dynamics", **_values(dynamics))
 
 
-def _values(quantities: Mapping[str, Quantity]) -> dict[str, str]:
-    return {name: repr(each.value) for name, each in quantities.items()}
+def _values(parameters: Mapping[str, Parameter]) -> dict[str, str]:
+    return {name: repr(each.value) for name, each in parameters.items()}
 
 
 def _add(parent: Any, tag: str, **attributes: str) -> Any:

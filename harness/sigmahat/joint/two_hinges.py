@@ -17,17 +17,6 @@ from sigmahat.joint.stored import Range
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """A number of a hinge, at the gear output."""
-
-    value: float
-    interval: Range | None
-    """95 % interval; None if the value is taken as exact, or the method gives no interval."""
-    unit: str
-    interval_from: str  # "identify", "prior" or "estimate", or why no interval is given
-
-
-@dataclass(frozen=True)
 class Spring:
     """Torque of the spring: sum of stiffness[i] (phi - reference)^(i + 1)."""
 
@@ -38,21 +27,21 @@ class Spring:
 
 @dataclass(frozen=True)
 class TwoHinges:
-    """Data of a joint for a simulator."""
+    """Data of a joint for a simulator; parameters at the gear output."""
 
     gear_ratio: float
     rotor_inertia: float  # inertia of the motor on its own axis [kg.m2]
-    armature: Quantity  # inertia of the motor at the gear output
-    damping: Quantity  # viscous friction of the motor at the gear output
-    frictionloss: Quantity  # Coulomb friction of the motor at the gear output
+    armature: Parameter  # inertia of the motor
+    damping: Parameter  # viscous friction of the motor
+    frictionloss: Parameter  # Coulomb friction of the motor
     spring: Spring
-    spring_damping: Quantity
+    spring_damping: Parameter
     reach: Range  # range of the measured deformation [rad]
-    factor: Quantity  # of the whole stiffness: 1, with the relative interval
+    factor: Parameter  # of the whole stiffness: 1, with the relative interval
     absent: tuple[str, ...]  # effects of the joint that two hinges do not have, in words
 
-    def quantities(self, name: str) -> Iterator[tuple[str, Quantity]]:
-        """Quantities that may have an interval, by the name of hinge and quantity."""
+    def parameters(self, name: str) -> Iterator[tuple[str, Parameter]]:
+        """Parameters that may have an interval, by the name of hinge and parameter."""
         yield f"{name}_motor.armature", self.armature
         yield f"{name}_motor.damping", self.damping
         yield f"{name}_motor.frictionloss", self.frictionloss
@@ -85,22 +74,22 @@ def two_hinges(sheet: Sheet, degree: int) -> TwoHinges:
     )
 
 
-def _scaled(parameter: Parameter | None, factor: float, unit: str) -> Quantity:
+def _scaled(parameter: Parameter | None, factor: float, unit: str) -> Parameter:
     """A parameter of the motor at the gear output; value and interval are not below 0.
 
     The value is from the estimator, the interval may be from `identify`: an interval that does not
     contain the value is made wider.
     """
     if parameter is None:
-        return Quantity(0.0, None, unit, "absent")
+        return Parameter(0.0, unit, None, "absent")
     value, interval = max(factor * parameter.value, 0.0), None
     if parameter.interval is not None:
         low, high = (max(factor * end, 0.0) for end in parameter.interval)
         interval = min(low, value), max(high, value)
-    return Quantity(value, interval, unit, parameter.interval_from)
+    return Parameter(value, unit, interval, parameter.interval_from)
 
 
-def _factor(sheet: Sheet) -> Quantity:
+def _factor(sheet: Sheet) -> Parameter:
     """Factor 1 with half the mean interval of the stiffness divided by the mean stiffness.
 
     The torque, which is the integral of the stiffness, has at most this error.
@@ -109,10 +98,10 @@ def _factor(sheet: Sheet) -> Quantity:
     near = min((abs(each.set_point - setting) for each in sheet.curve or ()), default=0.0)
     curve = [c for c in sheet.curve or () if abs(c.set_point - setting) <= near and c.interval]
     if not curve:
-        return Quantity(1.0, None, "1", f"{sheet.method} claims none")
+        return Parameter(1.0, "1", None, f"{sheet.method} claims none")
     width = sum(c.interval[1] - c.interval[0] for c in curve if c.interval)
     half = width / 2 / sum(abs(c.sigma) for c in curve)
-    return Quantity(1.0, (max(1 - half, 0.0), 1 + half), "1", "estimate")
+    return Parameter(1.0, "1", (max(1 - half, 0.0), 1 + half), "estimate")
 
 
 _POINTS = 201
