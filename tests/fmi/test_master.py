@@ -164,7 +164,7 @@ for K_I in (300.0, -1.0, 300.0):
         pass
     print(len(os.listdir(os.environ["TMPDIR"])))
 """
-    assert run(sys.executable, "-c", program, TMPDIR=str(tmp_path)) == "2\n2\n2\n"
+    assert run(sys.executable, "-c", program, environment={"TMPDIR": str(tmp_path)}) == "2\n2\n2\n"
     assert list(tmp_path.iterdir()) == []
 
 

@@ -190,7 +190,7 @@ with multiprocessing.get_context("fork").Pool(2) as pool:
 print(run(0))
 """
     command = [sys.executable, "-W", "error::ResourceWarning", "-c", program]
-    assert run(*command, TMPDIR=str(tmp_path)) == "[1, 1, 1, 1]\n1\n"
+    assert run(*command, environment={"TMPDIR": str(tmp_path)}) == "[1, 1, 1, 1]\n1\n"
     assert list(tmp_path.iterdir()) == []
 
 

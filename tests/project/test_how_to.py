@@ -40,9 +40,11 @@ def test_the_commands_of_the_page_on_c_masters_work(tmp_path: Path) -> None:
     (commands,) = blocks("c-master.md", "sh")
     (tmp_path / "examples").symlink_to(REPOSITORY / "examples")
     # The python3 that runs this test, which has FMPy.
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    fmu = str(sigmahat.fmu("StiffnessEstimator"))
-    text = run("sh", "-e", "-c", commands, cwd=tmp_path, PATH=path, FMU=fmu)
+    environment = {
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "FMU": str(sigmahat.fmu("StiffnessEstimator")),
+    }
+    text = run("sh", "-e", "-c", commands, cwd=tmp_path, environment=environment)
     printed = re.fullmatch(r"sigma = (\S+) N\.m/rad\n", text)
     assert printed and float(printed[1]) == pytest.approx(150.0, rel=1e-3)
 

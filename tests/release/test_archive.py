@@ -52,7 +52,10 @@ def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: 
     rebuilt = tmp_path / f"{name}.fmu"
     archive.write(rebuilt, {n: f for n, f in contents.items() if not n.startswith("binaries/")})
     # With the build tool of the environment, because make may be missing.
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    compile_ = [sys.executable, "-m", "fmpy", "compile", rebuilt]
-    controllers.run(*compile_, PATH=path, CMAKE_GENERATOR="Ninja")
+    environment = {
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "CMAKE_GENERATOR": "Ninja",
+    }
+    compilation = [sys.executable, "-m", "fmpy", "compile", rebuilt]
+    controllers.run(*compilation, environment=environment)
     run.assert_same(run.simulate(rebuilt))

@@ -72,7 +72,7 @@ sys.path += sys.argv[1:]
 import sigmahat
 run = sigmahat.run(sigmahat.scenario("single-linear"), seed=1)
 theta = [math.sin(0.01 * k) for k in range(2000)]
-estimator = sigmahat.Estimator({"method": "FilteredRegression"})
+estimator = sigmahat.Estimator({"method": "FilteredRegression", "range.phi": 0.002})
 sigma = estimator.run(theta, [1.002 * x for x in theta], [-0.04 * x for x in theta])["sigma"]
 print(json.dumps([sigmahat.__file__, run.estimators["RESIDUAL"]["sigma"].tolist(), sigma.tolist()]))
 """
