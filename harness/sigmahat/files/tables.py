@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Container, Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -34,15 +33,7 @@ def write_csv(path: Path, head: Iterable[str], rows: Iterable[Iterable[Any]]) ->
         writer.writerows(rows)
 
 
-@dataclass(frozen=True)
-class NumericColumn:
-    """A column of numbers."""
-
-    unit: str | None
-    values: NDArray[Any]  # one value for each row
-
-
-def numeric_columns(table: pa.Table) -> dict[str, NumericColumn]:
+def numeric_columns(table: pa.Table) -> dict[str, NDArray[np.float64]]:
     """The columns with numbers or true and false, as floats, by name without the unit."""
     from pyarrow import types
 
@@ -50,9 +41,8 @@ def numeric_columns(table: pa.Table) -> dict[str, NumericColumn]:
     found = {}
     for field in table.schema:
         if any(is_kind(field.type) for is_kind in kinds):
-            name, unit = name_and_unit(field.name)
-            values = np.asarray(table[field.name].to_numpy(), dtype=np.float64)
-            found[name] = NumericColumn(unit, values)
+            name, _ = name_and_unit(field.name)
+            found[name] = np.asarray(table[field.name].to_numpy(), dtype=np.float64)
     return found
 
 

@@ -156,7 +156,7 @@ def read_curve(path: Path, polynomial: Polynomial) -> Curve:
     if not table.num_rows:
         return Curve(polynomial, ())
     empty = [name for name in table.column_names if pa.types.is_null(table[name].type)]
-    columns = {name: c.values for name, c in numeric_columns(table.drop_columns(empty)).items()}
+    columns = numeric_columns(table.drop_columns(empty))
     if missing := set(_UNITS) - set(columns) - {name.partition(" [")[0] for name in empty}:
         raise ValueError(f"{path}: no numbers in column {min(missing)!r}; {again}")
     settings = np.unique(columns["setPoint"])

@@ -86,6 +86,4 @@ def read_points(path: Path) -> MeasuredPoints:
         raise ValueError(f"{path}: {error.strerror}; {again}") from error
     if missing := set(_UNITS) - set(columns):
         raise ValueError(f"{path}: no numbers in column {min(missing)!r}; {again}")
-    return MeasuredPoints(
-        columns["phi"].values, columns["setPoint"].values, columns["tau_e"].values
-    )
+    return MeasuredPoints(columns["phi"], columns["setPoint"], columns["tau_e"])

@@ -104,9 +104,7 @@ def read_result_files(folder: Path) -> ResultFiles:
     series = {}
     names = {path.stem for path in folder.glob("*.csv") if path.name != TABLE}
     for name in sorted(names, key=lambda name: (*(name != each for each in _ORDER), name)):
-        signals = {
-            n: c.values for n, c in numeric_columns(read_csv(folder / f"{name}.csv")).items()
-        }
+        signals = numeric_columns(read_csv(folder / f"{name}.csv"))
         if next(iter(signals), None) == TIME:  # the folder may have files of other commands
             series[name] = signals
     if not series or table.column_names[:2] != [ESTIMATION, SEEDS]:
