@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import h5py
@@ -12,7 +10,6 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-import real_joint
 from command_line import Shell
 from recorded_logs import (
     CONFIGURATION,
@@ -240,19 +237,3 @@ def test_paper2011_makes_no_claim_and_has_no_band_in_the_figure(
             assert text.count("standard deviation") == 1 and "confident" not in text
             doubt = read_estimate(Path(method))["estimate.doubt"]
             assert set(doubt.to_pylist()) == {"NoClaim"}
-
-
-def test_the_real_joint(shell: Shell) -> None:
-    """The configuration in the documentation gives what the replay in real_joint.py does."""
-    try:
-        data = real_joint.folder()
-    except FileNotFoundError as error:
-        pytest.skip(str(error))
-    page = (Path(__file__).parents[2] / "docs" / "real-joint.md").read_text()
-    (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
-    (configuration,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
-    subprocess.run([sys.executable, "-c", program, str(data)], check=True)
-    expected = real_joint.replay(real_joint.logs(data), symmetric=False)
-    table = estimated(shell, Path("desr.csv"), configuration)
-    assert table[SIGMA].to_numpy()[-1] == pytest.approx(expected.sigma, rel=1e-12)
-    assert table["estimate.tau_e [N.m]"].to_numpy()[-1] == pytest.approx(expected.tau_e, rel=1e-12)

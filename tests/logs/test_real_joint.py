@@ -6,13 +6,18 @@ The requirements were chosen after a first look at the data: see docs/real-joint
 from __future__ import annotations
 
 import os
+import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import real_joint
+from command_line import Shell
 from real_joint import SETTINGS, Fit, Log, M, N
+from recorded_logs import read_estimate
 from sigmahat.checks.check import check
 from sigmahat.fmi.instance import Value
 from sigmahat.logs.configuration import Configuration, Port, Time
@@ -105,6 +110,19 @@ def test_filtered_regression_claims_what_it_knows(measured: Logs, general: Fit) 
     for log in measured:
         assert log.rms(regression) <= 1.3 * log.rms(general)
     assert real_joint.coverage(measured, real_joint.FILTERED_REGRESSION) >= 90.0
+
+
+def test_the_page_gives_the_same(data: Path, general: Fit, shell: Shell) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "real-joint.md").read_text()
+    (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    (configuration,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    subprocess.run([sys.executable, "-c", program, str(data)], check=True)
+    Path("desr.toml").write_text(configuration)
+    shell.run("estimate desr.csv --out out")
+    table = read_estimate(Path("out"))
+    for name, expected in (("sigma [N.m/rad]", general.sigma), ("tau_e [N.m]", general.tau_e)):
+        last = table[f"estimate.{name}"].to_numpy()[-1]
+        assert last == pytest.approx(expected, rel=1e-12)
 
 
 def test_check_finds_nothing_wrong_in_a_right_setup(data: Path) -> None:
