@@ -13,6 +13,7 @@ import pytest
 import sigmahat
 from fmi_instance import ERROR, OK, WARNING, Instance
 
+PAIR = sigmahat.fmu("AntagonisticStiffnessEstimator")
 OUTPUTS = [
     v.name
     for v in fmpy.read_model_description(str(sigmahat.fmu("StiffnessEstimator"))).modelVariables
@@ -73,10 +74,8 @@ def doubt_of_sum(pair: Instance, one: Instance, two: Instance) -> float:
         {"method": 2, "rls.n": 3, "rls.m": 1, "prior.B": 0.1, "prior.tau_coulomb": 0.02},
     ],
 )
-def test_bit_identical_to_two_estimators(
-    values: dict[str, float], antagonistic_fmu: Path, estimator_fmu: Path
-) -> None:
-    with trio(antagonistic_fmu, estimator_fmu, values) as instances:
+def test_bit_identical_to_two_estimators(values: dict[str, float], estimator_fmu: Path) -> None:
+    with trio(PAIR, estimator_fmu, values) as instances:
         pair, one, two = instances
         for k in range(200):
             bad = {"tau": math.nan} if 50 <= k < 53 else None
@@ -100,8 +99,8 @@ def test_bit_identical_to_two_estimators(
         assert pair.get("sigma") != 0.0
 
 
-def test_messages_name_the_motor(antagonistic_fmu: Path) -> None:
-    with Instance(antagonistic_fmu) as pair:
+def test_messages_name_the_motor() -> None:
+    with Instance(PAIR) as pair:
         pair.set_all({"motor_2.gamma": 0.0})
         assert pair.enter() == OK
         assert pair.exit() == ERROR

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import sigmahat
+from command_line import working_in
 from controllers import run
 from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.fmi import native
@@ -159,12 +160,12 @@ def test_a_log_is_replayed_without_the_library(
     write_log(log, tmp_path / "a.csv")
     (tmp_path / "a.toml").write_text(CONFIGURATION, encoding="utf-8")
     found: list[dict[str, Any]] = []
-    for _ in range(2):
+    for name in ("python", "c"):
         opened = sigmahat.open_log(tmp_path / "a.csv")
         configuration = sigmahat.read_configuration(tmp_path / "a.toml")
-        folder = tmp_path / f"out{len(found)}"
-        folder.mkdir()
-        found.append(sigmahat.estimate(opened, configuration, folder).as_dict())
+        (tmp_path / name).mkdir()
+        with working_in(tmp_path):
+            found.append(sigmahat.estimate(opened, configuration, tmp_path / name).as_dict())
         without_c.undo()
     assert repr(found[0]) == repr(found[1])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -57,6 +58,15 @@ def analyse(
     command += [f"-cpp-extra-args={' '.join(preprocessor)}", *options, *map(str, sources)]
     done = subprocess.run(command, capture_output=True, text=True)
     return read(done.stdout + done.stderr)
+
+
+def with_fault(source: Path, copy: Path, file: str, code: str, fault: str = "") -> Path:
+    """Copies a folder of sources. In one file `fault` stands in place of `code`."""
+    shutil.copytree(source, copy)
+    text = (copy / file).read_text()
+    assert text.count(code) == 1
+    (copy / file).write_text(text.replace(code, fault))
+    return copy
 
 
 def library_source(name: str) -> Path:

@@ -70,6 +70,8 @@ def in_modelica(name: str) -> str:
     return f"{KEYWORDS.get(group, group)}{dot}{last}"
 
 
-def compiled(text: str, model: str = "Test") -> rumoca.Model:
-    """A model that uses the package, compiled."""
-    return rumoca.Session(roots=[str(PACKAGE)]).loads(text, model=model)
+def compiled(text: str, model: str = "Test", package: Path = PACKAGE) -> rumoca.Model:
+    """A model that uses the package, compiled. It has as many equations as unknowns."""
+    found = rumoca.Session(roots=[str(package)]).loads(text, model=model)
+    assert found.structure().is_balanced
+    return found

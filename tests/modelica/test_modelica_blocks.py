@@ -1,4 +1,7 @@
-"""The blocks of the estimators in rumoca, with functions of Modelica in the place of those of C."""
+"""The Modelica package: parsers read it, its examples compile, and its blocks work in rumoca.
+
+rumoca calls no C, so functions of Modelica stand in the place of those of C.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pymoca.parser
 import pytest
 import rumoca
 
-from modelica_package import PACKAGE, classes
+from modelica_package import FILES, PACKAGE, REPOSITORY, classes, compiled
 
 SPECIAL = {
     "sigma": "estimator.reals[3] + t",  # the gear ratio shows whose motor it is
@@ -63,16 +67,27 @@ def simulated(package: Path, block: str, values: Mapping[str, str], changed: str
     """A block under inputs that are expressions, for 50 ms."""
     equations = " ".join(f"b.{name} = {value};" for name, value in values.items())
     text = f"model Test Sigmahat.Estimators.{block} b({changed}); equation {equations} end Test;"
-    model = rumoca.Session(roots=[str(package)]).loads(text, model="Test")
-    assert model.structure().is_balanced
-    return model.simulate(t=(0.0, 0.05), dt=1e-3)
+    return compiled(text, package=package).simulate(t=(0.0, 0.05), dt=1e-3)
 
 
-@pytest.mark.parametrize("example", ["Table1", "Antagonistic"])
-def test_an_example_has_as_many_equations_as_unknowns(example: str, package: Path) -> None:
+def test_two_parsers_read_every_file_without_error() -> None:
+    for file in FILES:
+        assert [each.message for each in rumoca.validate(file)] == []
+        assert pymoca.parser.parse(file.read_text(encoding="utf-8")) is not None
+
+
+@pytest.mark.parametrize(
+    "example", sorted({file.stem for file in (PACKAGE / "Examples").glob("*.mo")} - {"package"})
+)
+def test_an_example_compiles(example: str, package: Path) -> None:
     text = f"model Test extends Sigmahat.Examples.{example}; end Test;"
-    model = rumoca.Session(roots=[str(package)]).loads(text, model="Test")
-    assert model.structure().is_balanced
+    assert compiled(text, package=package)
+
+
+def test_the_model_of_the_page_compiles(package: Path) -> None:
+    page = (REPOSITORY / "docs" / "how-to" / "modelica.md").read_text(encoding="utf-8")
+    ((text, name),) = re.findall(r"```modelica\n(model (\w+)\n.*?)```", page, re.DOTALL)
+    assert compiled(text, name, package)
 
 
 def test_ticks_are_at_the_start_time_and_every_sample_period_after_it(package: Path) -> None:

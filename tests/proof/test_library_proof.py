@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 import c_sources
-from eva import Analysis, analyse
+from eva import Analysis, analyse, with_fault
 
 HERE = Path(__file__).parent / "library"
 ALL = bool(os.environ.get("SIGMAHAT_COMPLETE"))
@@ -98,16 +98,6 @@ def with_guards(folder: Path) -> Path:
     return copy
 
 
-def with_fault(folder: Path, file: str, code: str, fault: str) -> Path:
-    """A copy of the library in which `fault` stands in place of `code`."""
-    copy = folder / "c"
-    shutil.copytree(c_sources.LIBRARY, copy)
-    text = (copy / file).read_text()
-    assert text.count(code) == 1
-    (copy / file).write_text(text.replace(code, fault))
-    return copy
-
-
 def assert_proven(analysis: Analysis, least_coverage: int) -> None:
     assert analysis.alarms == ()
     # What is not reached is not proven either: an analysis that ends early finds nothing.
@@ -166,13 +156,17 @@ def test_check_of_parameters(method: int) -> None:
 def test_an_index_one_too_far_is_found(tmp_path: Path) -> None:
     """GIVEN a panel loop that takes a column too many."""
     code = "for (; j < size; ++j) {\n            const sh_pair s_j"
-    of = with_fault(tmp_path, "ud_factor.c", code, code.replace("<", "<="))
+    fault = code.replace("<", "<=")
+    of = with_fault(c_sources.LIBRARY, tmp_path / "c", "ud_factor.c", code, fault)
     alarms = factor("double", 6, tmp_path, of).alarms
     assert any(alarm.startswith("ud_factor.c:") and "initialized" in alarm for alarm in alarms)
 
 
 def test_information_that_is_not_checked_is_found(tmp_path: Path) -> None:
-    file, check = "filtered_regression/information.c", " && after > SH_SMALLEST_D"
-    of = with_fault(tmp_path, file, f"if (sh_fabs(xi) > 0{check}) {{", "if (sh_fabs(xi) > 0) {")
+    file, check = (
+        "filtered_regression/information.c",
+        "if (sh_fabs(xi) > 0 && after > SH_SMALLEST_D)",
+    )
+    of = with_fault(c_sources.LIBRARY, tmp_path / "c", file, check, "if (sh_fabs(xi) > 0)")
     (alarm,) = triangle("positive", "double", 1, tmp_path, of).alarms
     assert alarm.startswith("information.c:") and "positive" in alarm

@@ -7,14 +7,13 @@ cover.
 from __future__ import annotations
 
 import re
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
 import fmpy
 import pytest
 
-from eva import analyse, library_source
+from eva import analyse, library_source, with_fault
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PROOF = REPOSITORY / "tests" / "proof"
@@ -126,15 +125,6 @@ def alarms_of_calls(
     return alarms_of(build, program, shell=shell, version=copies, outcomes=outcomes)
 
 
-def shell_without(code: str, file: str, folder: Path) -> Path:
-    """Copies the sources of the shell into a folder, without some code in one of them."""
-    shutil.copytree(SHELL, folder)
-    text = (folder / file).read_text()
-    assert text.count(code) == 1
-    (folder / file).write_text(text.replace(code, ""))
-    return folder
-
-
 @slow
 def test_any_bytes_as_the_state_of_an_estimator_are_harmless(build: Path) -> None:
     assert alarms_of(build, "shell_states.c") == ()
@@ -144,7 +134,7 @@ def test_any_bytes_as_the_state_of_an_estimator_are_harmless(build: Path) -> Non
 @slow
 def test_the_proof_finds_a_length_that_is_not_checked(build: Path, tmp_path: Path) -> None:
     """GIVEN a shell that compares no length, THEN the proof finds reads beyond the bytes."""
-    shell = shell_without(LENGTH_CHECK, "state_block.c", tmp_path / "shell")
+    shell = with_fault(SHELL, tmp_path / "shell", "state_block.c", LENGTH_CHECK)
     alarms = alarms_of(build, "shell_states.c", shell=shell)
     assert any("state_block.c" in a and "out of bounds read" in a for a in alarms)
     assert any("saved_state.c" in a and "valid_src" in a for a in alarms)
@@ -174,6 +164,6 @@ def test_the_proof_of_the_calls_finds_a_parameter_that_is_not_noted(
     build: Path, tmp_path: Path
 ) -> None:
     """GIVEN a shell that does not note a changed parameter, THEN it can reach a tick unchecked."""
-    shell = shell_without(NOTE, "access.c", tmp_path / "shell")
+    shell = with_fault(SHELL, tmp_path / "shell", "access.c", NOTE)
     alarms = alarms_of_calls(build, "fmi2", tmp_path, shell=shell)
     assert any("assertion 'checked' got status" in alarm for alarm in alarms)
