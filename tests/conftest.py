@@ -49,12 +49,6 @@ def plant_fmu() -> Path:
 
 
 @pytest.fixture(scope="session")
-def antagonistic_fmu() -> Path:
-    """Path of AntagonisticStiffnessEstimator.fmu."""
-    return sigmahat.fmu("AntagonisticStiffnessEstimator")
-
-
-@pytest.fixture(scope="session")
 def twin(build: Path) -> Callable[[str], Path]:
     """Path of the twin for FMI 3.0 of an FMU, with the binary of this machine."""
     return lambda name: build / "fmi3" / f"{name}_FMI3.fmu"

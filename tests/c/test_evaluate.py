@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from c_library import Array, Estimator, Library
-from oracle import SENSOR, STANDARD
+from oracle import SENSOR
 from regression_joint import Joint
 
 METHODS = [{"method": 1}, {"method": 2, "rls.n": 3}, {"method": 2, "modality": SENSOR}]
@@ -73,17 +73,3 @@ def test_what_is_not_finite_has_no_value(
     result, found = evaluate(after(c, values), phi, set_point)
     assert result == 1
     assert np.all(found == math.inf)
-
-
-def test_the_deviations_of_paper2011_are_those_of_least_squares(c: Library) -> None:
-    """One coefficient: its variance is the noise's over 1 / P_0 plus the sum of phi^2."""
-    noise, P_0 = 0.05, 1e4
-    values = {"method": 1, "modality": SENSOR, "rls.kind": STANDARD, "rls.n": 1, "rls.m": 1}
-    estimator = Estimator(c, {**values, "rls.P_0": P_0, "noise.tau_e": noise})
-    phi = 0.02 * np.sin(np.arange(200) / 7)
-    for each in phi:
-        estimator.tick([0.0, each, 0.0, 0.0, 300 * each])
-    e, information = estimator.estimate, 1 / P_0 + np.sum(phi**2)
-    assert e.sigma_std == pytest.approx(noise / math.sqrt(information), rel=1e-9)
-    assert e.tau_e_std == pytest.approx(abs(phi[-1]) * e.sigma_std, rel=1e-9)
-    assert e.misfit == 1

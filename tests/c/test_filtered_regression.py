@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-import c_library
 from c_library import Estimator, Library
 from c_regression import covariance
 from oracle import MODEL, RESIDUAL, SENSOR
@@ -186,21 +185,7 @@ def test_friction_of_unknown_sign_increases_the_standard_deviation(c: Library) -
     assert np.mean(error < 1.96 * found["sigma_std"]) > 0.9
 
 
-# The paper's method
-
-
-def test_the_standard_deviation_of_the_paper_is_that_of_white_noise(c: Library) -> None:
-    estimator = Estimator(c, {"rls.n": 2, "rls.m": 1, "noise.tau": 0.01})
-    found = estimator.run(Joint(duration=2.0).measurements())
-    phi = found["phi"][-1]
-    dF = np.array([1.0, 3 * phi**2])
-    P = c_library.covariance(estimator.state.method.paper2011.rls.P)
-    want = 0.01 * GAMMA * math.sqrt(1e-20 * (dF @ P @ dF))
-    assert found["sigma_std"][-1] == pytest.approx(want, rel=1e-9)
-    F = np.array([phi, phi**3])
-    want = 0.01 * GAMMA * math.sqrt(1e-20 * (F @ P @ F))
-    assert found["tau_e_std"][-1] == pytest.approx(want, rel=1e-6)
-    assert found["B_hat"][-1] == 2.3e-5
+# Start
 
 
 @pytest.mark.parametrize("velocity", [0.0, 1.0])

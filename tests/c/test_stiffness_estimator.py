@@ -268,7 +268,7 @@ def oracle_of(kind: int) -> dict[tuple[int, int], oracle.Estimate]:
 
 
 def compare(got: np.ndarray[Any, Any], want: oracle.Estimate, torque: Array) -> None:
-    """Every output of every tick, see `oracle.relative_error`.
+    """Every output of every tick, see `oracle.relative_error`. The paper estimates no inertia.
 
     Two signals are less exact where they cross zero, so their errors are relative to something
     else. epsilon is the difference of two torques, each with a rounding error, so its error is
@@ -287,6 +287,7 @@ def compare(got: np.ndarray[Any, Any], want: oracle.Estimate, torque: Array) -> 
     size = np.max(np.abs(want.eta) / largest, axis=(1, 2))
     errors["eta"] = float(np.max(error / np.maximum(size, 1e-6)))
     assert max(errors.values()) < 1e-9, errors
+    assert np.all(got["misfit"] == 1) and np.all(got["B_hat"] == DEFAULTS["motor.B"])
 
 
 @pytest.mark.slow("the oracle computes in many digits")

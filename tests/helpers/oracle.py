@@ -42,6 +42,7 @@ DEFAULTS: Parameters = {
     **{"encoder.theta_c": 1024.0, "setPoint.offset": 100.0},
     **{"setPoint.scale": -0.0025 / (2 * math.pi) * 1000, "rls.kind": ENHANCED},
     **{"rls.symmetric": 1, "rls.n": 6, "rls.m": 3, "rls.P_0": 1e20, "rls.c": 1e-20, "rls.a": 0.1},
+    **{"noise.tau": 3.2e-3, "noise.tau_e": 3.2e-2},
     **{"model.k_s": 14220.0, "model.r_0": 0.1, "model.b": 0.0025 / (2 * math.pi)},
 }
 
@@ -132,11 +133,12 @@ class Regression:
     epsilon: Exact  # [size: ticks x columns] before the update, as rho
     rho: Exact  # [size: ticks]
     a: Exact  # [size: ticks]
+    variances: Exact  # [size: ticks x 2] after the update: F P F' and dF P dF'
     P: Exact  # [size: parameters x parameters] after the last tick
 
 
 def least_squares(
-    kind: int, factor: float, P_0: float, eta_0: Array, F: Exact, y: Exact
+    kind: int, factor: float, P_0: float, eta_0: Array, F: Exact, y: Exact, dF: Exact | None = None
 ) -> Regression:
     """The recursion (14) with (25), and (27) for the enhanced kind.
 
@@ -144,12 +146,13 @@ def least_squares(
     eta_0   [size: parameters]
     F       [size: ticks x parameters]
     y       [size: ticks x columns], independent right-hand sides that share one P
+    dF      [size: ticks x parameters], along which the variance is asked for, too
     """
     c = gmpy2.mpfr(factor)
     P = gmpy2.mpfr(P_0) * np.eye(F.shape[1], dtype=int)
     eta = np.repeat(exact(eta_0)[:, None], y.shape[1], axis=1)
     ticks = []
-    for F_k, y_k in zip(F, y, strict=True):
+    for F_k, dF_k, y_k in zip(F, F if dF is None else dF, y, strict=True):
         epsilon = y_k - F_k @ eta
         PF = P @ F_k
         rho = F_k @ PF
@@ -157,9 +160,9 @@ def least_squares(
         a = {ENHANCED: (c + c * rho) / (1 + c * rho), STANDARD: gmpy2.mpfr(1)}.get(kind, c)
         eta = eta + a * np.outer(K, epsilon)
         P = P - a * np.outer(K, PF)
-        ticks.append((eta, epsilon, rho, a))
-    etas, epsilons, rhos, factors = zip(*ticks, strict=True)
-    return Regression(np.array(etas), np.array(epsilons), np.array(rhos), np.array(factors), P)
+        variances = rho - a * rho**2 / (1 + rho), dF_k @ P @ dF_k
+        ticks.append((eta, epsilon, rho, a, variances))
+    return Regression(*(np.array(each) for each in zip(*ticks, strict=True)), P)
 
 
 def solve(matrix: Exact, right: Exact) -> Exact:
@@ -194,7 +197,9 @@ class Estimate:
     """Outputs of every tick [size: ticks], and eta [size: ticks x n x m]."""
 
     sigma: Array
+    sigma_std: Array
     tau_e: Array
+    tau_e_std: Array
     tau_e_residual: Array
     theta_dot: Array
     phi: Array
@@ -221,6 +226,7 @@ def estimator(
     set_point = p["setPoint.offset"] + p["setPoint.scale"] * exact(theta_c)
     phi = exact(q) - exact(theta)
     signals: list[tuple[Exact, Exact, Exact]] = []  # velocity, residual, torque
+    noise: list[float] = []  # standard deviation of the torque [N.m]
     filters: dict[tuple[Value, ...], tuple[Exact, Exact, Exact]] = {}
     for variant in variants:
         v = {**p, **variant}
@@ -240,14 +246,20 @@ def estimator(
         if v["deformation"] == FILTERED:
             phi = velocity_filter(v, q, v["encoder.q"])[0] - x
         signals.append((x_dot, residual, torque))
+        of_motor = abs(v["motor.gamma"]) * v["noise.tau"]
+        noise.append(of_motor if v["modality"] == RESIDUAL else v["noise.tau_e"])
 
     F, dF = basis(n, m, set_point, phi, int(p["rls.symmetric"]))
     factor = p["rls.a"] if p["rls.kind"] == CONSTANT_FACTOR else p["rls.c"]
     flat = np.zeros(n * m) if eta_0 is None else eta_0.T.ravel()
     torques = np.array([torque for _, _, torque in signals]).T
-    regression = least_squares(int(p["rls.kind"]), factor, p["rls.P_0"], flat, F, torques)
+    regression = least_squares(int(p["rls.kind"]), factor, p["rls.P_0"], flat, F, torques, dF)
+    unit = factor if p["rls.kind"] == ENHANCED else 1.0  # variance over P, for a noise of 1 N.m
+    of_tau_e, of_sigma = np.sqrt(unit * rounded(regression.variances)).T
     return [
         Estimate(
+            sigma_std=noise[i] * of_sigma,
+            tau_e_std=noise[i] * of_tau_e,
             sigma=rounded((dF * regression.eta[:, :, i]).sum(axis=1)),
             tau_e=rounded((F * regression.eta[:, :, i]).sum(axis=1)),
             tau_e_residual=rounded(residual),
