@@ -33,11 +33,17 @@ _LIKE = math.log(2.0)
 class Change:
     """Another value of a key, and the factor by which the values of the port change."""
 
+    port: str  # theta or q
     key: str
     value: Proposal
     factor: float
     fits_any: bool = False
     """Whether the value was computed from the slope of the log, so that any slope fits."""
+
+    @property
+    def on_theta(self) -> float:
+        """The factor of theta that has the same effect on the slope."""
+        return self.factor if self.port == "theta" else 1 / self.factor
 
 
 def changes(name: str, port: Port, gamma: float) -> Iterator[Change]:
@@ -48,19 +54,19 @@ def changes(name: str, port: Port, gamma: float) -> Iterator[Change]:
     """
     where, gear = f"ports.{name}", abs(port.gear_ratio)
     if name == "theta" and gear != abs(gamma):
-        yield Change(f"{where}.gear_ratio", abs(gamma), gear / abs(gamma))
+        yield Change(name, f"{where}.gear_ratio", abs(gamma), gear / abs(gamma))
     if gear != 1:
-        yield Change(f"{where}.gear_ratio", 1.0, gear)
+        yield Change(name, f"{where}.gear_ratio", 1.0, gear)
     if port.scale is None and port.unit in (None, *_ANGLES):
         now = factor(name, port)
         for unit in _ANGLES:
             other = factor(name, Port(port.column, unit=unit))
             if other != now:
-                yield Change(f"{where}.unit", unit, other / now)
+                yield Change(name, f"{where}.unit", unit, other / now)
     if port.unit == "counts" and port.counts_per_turn is not None:
         for times in _COUNTS:
             value = port.counts_per_turn * times
-            yield Change(f"{where}.counts_per_turn", value, 1 / times)
+            yield Change(name, f"{where}.counts_per_turn", value, 1 / times)
 
 
 def gear_of(theta: Port, slope: float) -> Change:
@@ -68,7 +74,7 @@ def gear_of(theta: Port, slope: float) -> Change:
     gear = abs(theta.gear_ratio) / slope
     whole = round(gear)
     likely = float(whole) if whole and abs(gear / whole - 1) < _WHOLE else float(f"{gear:.4g}")
-    return Change("ports.theta.gear_ratio", likely, slope, fits_any=True)
+    return Change("theta", "ports.theta.gear_ratio", likely, slope, fits_any=True)
 
 
 def distance(one: float, other: float) -> float:
@@ -117,38 +123,37 @@ def _scale(here: Relation, slope: float) -> Relation:
     if not abs(np.log(abs(slope))) > np.log(_DIFFERENT):
         return here
     ports = here.seen.configuration.ports
-    every = [("theta", gear_of(ports["theta"], abs(slope)))]
+    every = [gear_of(ports["theta"], abs(slope))]
     every += [
-        (name, change)
+        change
         for name in PORTS
         for change in changes(name, ports[name], here.seen.gamma)
-        if distance(_on_theta(name, change), abs(slope)) < _LIKE
+        if distance(change.on_theta, abs(slope)) < _LIKE
     ]
 
-    def unlikely(each: tuple[str, Change]) -> float:
+    def unlikely(each: Change) -> float:
         """The change with the smallest value is tried first."""
-        return _ANY if each[1].fits_any else round(distance(_on_theta(*each), abs(slope)), 1)
+        return _ANY if each.fits_any else round(distance(each.on_theta, abs(slope)), 1)
 
     every.sort(key=unlikely)
-    best: tuple[str, Change] | None = None
+    best: Change | None = None
     found = here
-    for name, change in every:
-        repaired = _scaled(here.seen, name, change.factor)
+    for change in every:
+        repaired = _scaled(here.seen, change.port, change.factor)
         after = fitted(repaired)
         is_next = _is_better(found.fitted, after)
         if best is None:
             is_next = _is_plausible(here.fitted, after, abs(slope))
         if is_next:
-            best, found = (name, change), Relation((), repaired, after)
+            best, found = change, Relation((), repaired, after)
     if best is None:
         return here
-    key, factor = best[1].key, _on_theta(*best)
     others = [
         (change.key, change.value)
-        for name, change in every
-        if change.key != key and distance(_on_theta(name, change), factor) < _AS_WELL
+        for change in every
+        if change.key != best.key and distance(change.on_theta, best.on_theta) < _AS_WELL
     ]
-    finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, best[1].value, others)
+    finding = Finding(Kind.SLOPE, Severity.WRONG, best.key, slope, "", 1.0, best.value, others)
     return replace(found, findings=[finding])
 
 
@@ -189,11 +194,6 @@ def _sign_of_motor(found: Fitted | None) -> float:
         if 0 < found.linear.half_width.get(name, np.inf) < np.inf
     ]
     return float(np.sign(sum(score for score in scores if abs(score) > 1)))
-
-
-def _on_theta(name: str, change: Change) -> float:
-    """The factor of theta that has the same effect on the slope as a change of port `name`."""
-    return change.factor if name == "theta" else 1 / change.factor
 
 
 def _scaled(seen: View, name: str, factor: float) -> View:
