@@ -18,7 +18,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rivals.joint import Drive, Friction, Instruments, Joint, Link, Motor, Sheet, Spring, Tendons
+from rivals.joint import Drive, Friction, Instruments, Joint, Link, Motor, Sheet, Spring
 from rivals.records import Array
 
 Range = tuple[float, float]
@@ -30,7 +30,6 @@ G = 9.81  # [m/s2]
 SAMPLE_PERIOD = 1e-3  # [s]
 DURATION = 20.0  # [s]
 TIMES: Array = SAMPLE_PERIOD * np.arange(round(DURATION / SAMPLE_PERIOD), dtype=np.float64)
-KINDS = ("series_elastic", "variable_stiffness")
 
 # The motor.
 LOG_GEAR: Range = (30.0, 160.0)
@@ -49,7 +48,6 @@ QUADRATIC: Range = (0.0, 0.05)  # by 1 / peak
 
 # The spring, and the link.
 LOG_STIFFNESS: Range = (100.0, 10000.0)  # [N.m/rad]
-LOG_STIFFNESS_VARIABLE: Range = (100.0, 400.0)  # at the lowest tension [N.m/rad]
 HARDENING: Range = (0.0, 0.5)  # more stiffness at the largest deformation, in half of the joints
 DAMPING_RATIO: Range = (0.002, 0.03)  # of the link on its spring, motor held
 LOG_LINK: Range = (0.05, 1.0)  # inertia about the axis [kg.m2]
@@ -57,15 +55,6 @@ LOG_LOAD_BY_MOTOR: Range = (0.25, 8.0)  # inertia of the link by that of the mot
 FREQUENCY: Range = (2.0, 25.0)  # of the link on its spring, motor held [Hz]
 LENGTHS: Range = (0.25, 0.45)  # of the link [m]
 LIFTS: float = 1.8  # peak torque by the largest torque of gravity, at least
-
-# The tendons.
-LEVER: Range = (0.05, 0.08)  # [m]
-EYELET_BY_LEVER: Range = (2.0, 3.0)
-SPREAD: Range = (0.3, 0.7)  # [rad]
-STIFFEST: Range = (1.5, 4.0)  # stiffness at the highest tension by that at the lowest
-OF_TENDONS: Range = (0.1, 0.4)  # share of their stiffness in that of the joint at the lowest
-RANGE_THETA_C: Range = (1.0, 6.0)  # [rad]
-KNOTS = 2.5  # between them the stiffness motor turns evenly [s]
 
 # Instruments and log.
 BITS = (14, 19)  # of the encoders: of the link, and of the motor behind the gear
@@ -96,16 +85,14 @@ STD_D = 0.2
 STD_GAIN = 0.015
 
 
-def drawn(kind: str, seed: int) -> Joint:
-    """A joint of one of KINDS; no two kinds share random numbers.
+def drawn(seed: int) -> Joint:
+    """A series elastic joint. Its link is a rod.
 
-    The link is a rod. Its axis is horizontal if the motor can lift the link, in half of the cases.
+    The axis is horizontal if the motor can lift the link, in half of these cases.
     """
-    is_variable = kind == "variable_stiffness"
-    rng = np.random.default_rng([seed, KINDS.index(kind), 0])
+    rng = np.random.default_rng([seed, 0, 0])
     load = _log(rng, LOG_LINK)
-    stiffness = _stiffness(rng, LOG_STIFFNESS_VARIABLE if is_variable else LOG_STIFFNESS, load)
-    tendons = _tendons(rng, stiffness, load) if is_variable else None
+    stiffness = _stiffness(rng, load)
     motor = _motor(rng, load)
     length = _even(rng, LENGTHS)
     link = Link(3 * load / length**2, length)
@@ -114,16 +101,8 @@ def drawn(kind: str, seed: int) -> Joint:
     make = _torque_drive if rng.integers(2) else _position_drive
     drive, phi = make(rng, motor, load, stiffness)
     instruments, sheet = _instruments(rng, motor.peak, phi), _sheet(rng)
-    return Joint(
-        motor=motor,
-        elastic=tendons or _spring(rng, stiffness, load, motor.gear * motor.peak),
-        link=link,
-        gravity=gravity,
-        drive=drive,
-        theta_c=_theta_c(rng, tendons.range_theta_c) if tendons else np.zeros_like(TIMES),
-        instruments=instruments,
-        sheet=sheet,
-    )
+    spring = _spring(rng, stiffness, load, motor.gear * motor.peak)
+    return Joint(motor, spring, link, gravity, drive, instruments, sheet)
 
 
 def _log(rng: Rng, limits: Range) -> float:
@@ -184,44 +163,20 @@ def _motor(rng: Rng, load: float) -> Motor:
     return _until(draw, lambda motor: _within(load / motor.inertia, LOG_LOAD_BY_MOTOR))
 
 
+def _stiffness(rng: Rng, load: float) -> float:
+    """A stiffness with which a link of this inertia [kg.m2] swings as joints do [N.m/rad]."""
+    return _until(
+        lambda: _log(rng, LOG_STIFFNESS),
+        lambda k: _within(math.sqrt(k / load) / 2 / math.pi, FREQUENCY),
+    )
+
+
 def _spring(rng: Rng, stiffness: float, load: float, torque: float) -> Spring:
     """A spring that is linear, or hardens at the deformation under this torque [N.m]."""
     more = _even(rng, HARDENING) * int(rng.integers(2))
     k_3 = stiffness * more / 3 / (torque / stiffness) ** 2
-    return Spring(stiffness, k_3, _damping(rng, stiffness, load))
-
-
-def _damping(rng: Rng, stiffness: float, load: float) -> float:
-    return 2 * _even(rng, DAMPING_RATIO) * math.sqrt(stiffness * load)
-
-
-def _stiffness(rng: Rng, limits: Range, load: float) -> float:
-    return _until(
-        lambda: _log(rng, limits), lambda k: _within(math.sqrt(k / load) / 2 / math.pi, FREQUENCY)
-    )
-
-
-def _tendons(rng: Rng, stiffness: float, load: float) -> Tendons:
-    lever = _even(rng, LEVER)
-    eyelet = lever * _even(rng, EYELET_BY_LEVER)
-    range_theta_c = _even(rng, RANGE_THETA_C)
-    share, stiffest = _even(rng, OF_TENDONS), _even(rng, STIFFEST)
-    damping = _damping(rng, stiffness, load)
-    plain = Tendons(lever, eyelet, _even(rng, SPREAD), 1, 0, 0, range_theta_c, damping)
-    # The stiffness of a joint is linear in stiffness and tension of its tendons.
-    by_tension = replace(plain, stiffness=0, tension=1).joint_stiffness
-    k = share * stiffness / plain.joint_stiffness
-    return replace(
-        plain,
-        stiffness=k,
-        tension=(1 - share) * stiffness / by_tension,
-        travel=(stiffest - 1) * stiffness / by_tension / k / range_theta_c,
-    )
-
-
-def _theta_c(rng: Rng, largest: float) -> Array:
-    knots = np.arange(0, DURATION + KNOTS, KNOTS)
-    return np.interp(TIMES, knots, rng.uniform(0, largest, len(knots)))
+    damping = 2 * _even(rng, DAMPING_RATIO) * math.sqrt(stiffness * load)
+    return Spring(stiffness, k_3, damping)
 
 
 def _sheet(rng: Rng) -> Sheet:

@@ -80,39 +80,6 @@ class Spring:
 
 
 @dataclass(frozen=True)
-class Tendons:
-    """Two tendons from a lever on the motor's flange to a slider on the link, mirror images.
-
-    Each begins on the flange at the radius `lever`, at the angle +-`spread` from the link, passes
-    an eyelet on the link at the radius `eyelet`, and ends on the slider. When the slider moves out
-    by x, both get longer by x: the tension rises, and with it the stiffness of the joint.
-    """
-
-    lever: float  # [m]
-    eyelet: float  # [m]
-    spread: float  # [rad]
-    stiffness: float  # of one tendon [N/m]
-    tension: float  # of one tendon at phi = 0, x = 0 [N]
-    travel: float  # x when the stiffness motor has turned by one radian [m/rad]
-    range_theta_c: float  # the stiffness motor turns from 0 to this [rad]
-    damping: float  # of the joint [N.m.s/rad]
-
-    def length(self, alpha: float) -> float:
-        """From lever to eyelet when the angle between them is alpha [m]."""
-        a, r = self.lever, self.eyelet
-        return math.sqrt(a * a + r * r - 2 * a * r * math.cos(alpha))
-
-    @property
-    def joint_stiffness(self) -> float:
-        """Slope of the torque at phi = 0, x = 0 [N.m/rad]."""
-        a, r, alpha = self.lever, self.eyelet, self.spread
-        d = self.length(alpha)
-        slope = a * r * math.sin(alpha) / d
-        bend = (a * r * math.cos(alpha) - slope**2) / d
-        return 2 * (self.stiffness * slope**2 + self.tension * bend)
-
-
-@dataclass(frozen=True)
 class Link:
     """A rod that turns about a horizontal or a vertical axis; it hangs down at q = 0."""
 
@@ -167,15 +134,14 @@ class Sheet:
     tau_e: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Joint:
-    """A motor, an elastic element and a link, with drive and instruments."""
+    """A motor, a spring and a link, with drive and instruments."""
 
     motor: Motor
-    elastic: Spring | Tendons
+    spring: Spring
     link: Link
     gravity: float  # 0 where the axis is vertical [m/s2]
     drive: Drive
-    theta_c: Array  # reference of the stiffness motor at every sample; 0 without tendons [rad]
     instruments: Instruments
     sheet: Sheet

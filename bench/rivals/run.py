@@ -11,7 +11,6 @@ import sys
 from functools import partial
 from pathlib import Path
 
-from rivals.draw import KINDS
 from rivals.methods import METHODS
 from rivals.score import Result, page, score
 from rivals.simulation import make
@@ -19,13 +18,13 @@ from sigmahat.files.tables import write_csv
 from sigmahat.runs.engine import run_all
 
 
-def run_joint(kind: str, seed: int) -> list[Result]:
-    """Results of all methods on the joint of this kind and seed."""
-    log = make(kind, seed)
+def run_joint(seed: int) -> list[Result]:
+    """Results of all methods on the joint with this seed."""
+    log = make(seed)
     results = []
     for method, estimate in METHODS.items():
         found = estimate(log)
-        about = {"kind": kind, "seed": seed, "method": method, "seconds": found.seconds}
+        about = {"seed": seed, "method": method, "seconds": found.seconds}
         results.append({**about, **score(log, found)})
     return results
 
@@ -43,7 +42,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder for results and table")
     arguments = parser.parse_args()
     first, last = arguments.seeds
-    jobs = [partial(run_joint, kind, seed) for kind in KINDS for seed in range(first, last + 1)]
+    jobs = [partial(run_joint, seed) for seed in range(first, last + 1)]
     done = itertools.count(1)
 
     def progress(_: int) -> None:

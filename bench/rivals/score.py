@@ -20,7 +20,7 @@ WRONG = 0.2
 """Relative error above which a confident estimate is wrong."""
 
 Result = dict[str, Any]
-"""A method on a joint: kind, seed and method; wall time `seconds` [s]; the scores of `score`."""
+"""A method on a joint: seed and method; wall time `seconds` [s]; the scores of `score`."""
 
 
 def score(log: JointLog, estimate: Estimate) -> dict[str, float]:
@@ -75,23 +75,23 @@ COLUMNS: dict[str, tuple[str, Callable[[list[float]], Any]]] = {
 
 
 def page(results: Sequence[Result]) -> str:
-    """The table as Markdown: a row for each kind of joint and method."""
-    titles = ["joint", "method", *(title for title, _ in COLUMNS.values())]
+    """The table as Markdown: a row for each method."""
+    titles = ["method", *(title for title, _ in COLUMNS.values())]
     rows = [titles, ["---"] * len(titles)]
     lowest = _lowest(results)
-    for kind, method in dict.fromkeys((r["kind"], r["method"]) for r in results):
+    for method in dict.fromkeys(result["method"] for result in results):
         own = [
-            {**r, "lowest": 100.0 * (lowest[kind, r["seed"]] == method)}
-            for r in results
-            if (r["kind"], r["method"]) == (kind, method)
+            {**result, "lowest": 100.0 * (lowest[result["seed"]] == method)}
+            for result in results
+            if result["method"] == method
         ]
-        means = [mean([r[name] for r in own]) for name, (_, mean) in COLUMNS.items()]
-        rows.append([kind, method, *("-" if math.isnan(x) else f"{x:.3g}" for x in means)])
+        means = [mean([each[name] for each in own]) for name, (_, mean) in COLUMNS.items()]
+        rows.append([method, *("-" if math.isnan(x) else f"{x:.3g}" for x in means)])
     return "".join(f"| {' | '.join(row)} |\n" for row in rows)
 
 
-def _lowest(results: Sequence[Result]) -> dict[tuple[str, int], str]:
-    """The method with the lowest interval score, by kind and seed."""
+def _lowest(results: Sequence[Result]) -> dict[int, str]:
+    """The method with the lowest interval score, by seed."""
     scored = [r for r in results if not math.isnan(r["interval_score"])]
     scored.sort(key=lambda r: r["interval_score"], reverse=True)
-    return {(r["kind"], r["seed"]): r["method"] for r in scored}  # the last one stays
+    return {r["seed"]: r["method"] for r in scored}  # the last one stays

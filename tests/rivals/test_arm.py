@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -71,8 +70,7 @@ def arm_log(seconds: float = 20.0) -> dict[str, np.ndarray]:
 def test_joints_that_push_each_other_are_estimated_one_by_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if find_spec("mujoco") is None:
-        pytest.skip("MuJoCo is not installed; to install it: cmake --workflow --preset rivals")
+    pytest.importorskip("mujoco", reason="to install MuJoCo: cmake --workflow --preset rivals")
     monkeypatch.chdir(tmp_path)
     write_log(arm_log(), Path("arm.csv"))
     assert main(["init", "arm.csv", "--quiet"]) == 0
