@@ -15,7 +15,7 @@ import pytest
 from selenium.webdriver.common.by import By
 
 from browser import DATA, ROWS, Page, opened
-from command_line import Shell, in_process
+from command_line import Shell, working_in
 from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
 from sigmahat.logs.panels import reduce
 
@@ -41,30 +41,29 @@ TRACES = "return [...document.querySelectorAll('.plots input')].map(box => box.d
 RANGES = "return Bokeh.documents[0].roots().map(p => [p.x_range.start, p.x_range.end]);"
 
 
+COMMANDS = {
+    "reproduction": "reproduce",
+    "log": "estimate knee.parquet",
+    "sweep": "sweep --modality RESIDUAL,SENSOR --seeds 2 --set estimator.motor.D_theta=0.9e-3,1e-3 "
+    "--set 'plant.link.M=normal(0.1,0.01)'",
+}
+
+
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     """Folder of results with their report, by kind; each is made once."""
 
     @cache
     def make(kind: str) -> Path:
-        cwd = tmp_path_factory.mktemp(kind)
-        if kind == "log":
-            write_log(awas_log(0.5, 0.1), cwd / "knee.parquet")
-            (cwd / "knee.toml").write_text(CONFIGURATION)
-        done = in_process(
-            *{
-                "reproduction": ("reproduce",),
-                "log": ("estimate", "knee.parquet"),
-                "sweep": (
-                    "sweep", "--modality", "RESIDUAL,SENSOR", "--seeds", "2", "--set",
-                    "estimator.motor.D_theta=0.9e-3,1e-3", "--set", "plant.link.M=normal(0.1,0.01)",
-                ),
-            }[kind], "--out", "out", cwd=cwd,
-        )  # fmt: skip
-        assert (done.returncode, done.stderr) == (0, "")
-        done = in_process("report", "out", cwd=cwd)
-        assert (done.returncode, done.stderr) == (0, "")
-        assert str(cwd / "out" / "report.html") in done.stdout
+        cwd, shell = tmp_path_factory.mktemp(kind), Shell()
+        with working_in(cwd):
+            if kind == "log":
+                write_log(awas_log(0.5, 0.1), Path("knee.parquet"))
+                Path("knee.toml").write_text(CONFIGURATION)
+            shell.run(f"{COMMANDS[kind]} --out out")
+            assert shell.err == ""
+            assert str(cwd / "out" / "report.html") in shell.run("report out")
+            assert shell.err == ""
         return cwd / "out"
 
     return make
