@@ -89,27 +89,24 @@ LONG_CASES: Mapping[str, tuple[Joint, Mapping[str, float]]] = {
     "no memory": (JOINT, {"regression.memory": 0.0, "motor.B": 3.5e-5}),
 }
 
+slow = pytest.mark.slow("dense matrices in extended precision")
 
-def run_case(c: Library, joint: Joint, values: Mapping[str, float]) -> None:
+
+@pytest.mark.parametrize(
+    ("joint", "values"),
+    [
+        *(pytest.param(*case, id=name) for name, case in CASES.items()),
+        *(pytest.param(*case, id=name, marks=slow) for name, case in LONG_CASES.items()),
+    ],
+)
+def test_every_tick(c: Library, joint: Joint, values: Mapping[str, float]) -> None:
     p = {**START, **values}
-    counts = {"encoder.theta": 40000.0, **p}["encoder.theta"]
-    z = replace(joint, counts=counts).measurements()
+    z = replace(joint, counts=p["encoder.theta"]).measurements()
     z[:, 3] *= np.sign(p["motor.gamma"])
     check(c, p, z)
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_every_tick(c: Library, case: str) -> None:
-    run_case(c, *CASES[case])
-
-
-@pytest.mark.slow("dense matrices in extended precision")
-@pytest.mark.parametrize("case", LONG_CASES)
-def test_every_tick_of_longer_runs(c: Library, case: str) -> None:
-    run_case(c, *LONG_CASES[case])
-
-
-@pytest.mark.slow("dense matrices in extended precision")
+@slow
 def test_every_tick_of_table1(c: Library) -> None:
     check(c, START, table1_recording().measurements()[:3000])
 
@@ -152,7 +149,7 @@ MISFITS: Mapping[str, tuple[Array | Mapping[str, Any], Mapping[str, float], int]
 DRIFTING = ("friction that warms up",)
 
 
-@pytest.mark.slow("dense matrices in extended precision")
+@slow
 @pytest.mark.parametrize("name", MISFITS)
 def test_every_tick_of_a_joint_with_a_misfit(c: Library, name: str) -> None:
     misfit, values, group = MISFITS[name]
@@ -167,7 +164,7 @@ def test_every_tick_of_a_joint_with_a_misfit(c: Library, name: str) -> None:
     assert group == 0 or group in oracle.once_used
 
 
-@pytest.mark.slow("dense matrices in extended precision")
+@slow
 def test_every_tick_of_a_misfit_that_begins(c: Library) -> None:
     """The older data are forgotten, five times as fast when the new ones agree by themselves."""
     joint = replace(JOINT, duration=12.0, stiffness=lambda t: np.where(t < 3.0, 1.0, 0.95))
@@ -187,7 +184,7 @@ def test_every_tick_of_a_joint_that_already_moves(c: Library, modality: int) -> 
     assert np.all(found["a"][5:30] == 0) == (modality == RESIDUAL)  # the first row shows it
 
 
-@pytest.mark.slow("dense matrices in extended precision")
+@slow
 def test_every_tick_with_gaps_rest_and_changes_of_the_modality(c: Library) -> None:
     z = np.vstack([JOINT.measurements()[:2000], WIDE.measurements()[2000:3500]])
     z[700:720, 0] = np.nan
