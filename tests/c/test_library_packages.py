@@ -14,11 +14,11 @@ from pathlib import Path
 import pytest
 
 from c_library import Estimator, load
+from c_sources import REPOSITORY
 from controllers import run
 from gate import need, need_of_environment
 from reference_joints import table1_recording
 
-REPOSITORY = Path(__file__).parents[2]
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
 PROGRAM = """
 #include <stdio.h>

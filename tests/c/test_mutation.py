@@ -5,14 +5,12 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
+from c_sources import REPOSITORY
 from gate import need
 from mutation import EQUIVALENT, SOURCES, candidates
-
-REPOSITORY = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize(("file", "code"), [(file, code) for file, code, _ in EQUIVALENT])

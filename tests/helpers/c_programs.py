@@ -13,11 +13,10 @@ from pathlib import Path
 
 import fmpy
 
-from c_sources import FOLDERS, SOURCES
+from c_sources import FOLDERS, REPOSITORY, SOURCES
 from fmi_runs import ESTIMATORS
 from gate import is_installed, missing
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 FMU_SOURCES = REPOSITORY / "fmu_src"
 PLANT_SOURCES = ("plant.c", "radau.c", "noise.c")
 DRIVERS = REPOSITORY / "tests" / "drivers"

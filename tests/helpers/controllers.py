@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from c_sources import REPOSITORY
 from gate import need
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 OUTPUTS = (
     *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),
     *("eta", "sigma_std", "D_theta_hat", "B_hat", "tau_coulomb_hat", "confident", "valid"),

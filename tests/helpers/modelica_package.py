@@ -13,9 +13,9 @@ import pymoca.parser
 import rumoca
 
 import sigmahat
+from c_sources import REPOSITORY
 from sigmahat.export.modelica import KEYWORDS, contents
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 _FOLDER = tempfile.TemporaryDirectory()
 PACKAGE = Path(_FOLDER.name) / "Sigmahat"
 for _name, _text in contents(

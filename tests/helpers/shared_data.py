@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from c_sources import REPOSITORY
+
 
 def data_folder(name: str, first: str) -> Path:
     """../shared/data/NAME next to the checkout, or the folder that SIGMAHAT_NAME names.
@@ -14,7 +16,7 @@ def data_folder(name: str, first: str) -> Path:
     Raises FileNotFoundError if it is not.
     """
     variable = f"SIGMAHAT_{name.upper()}"
-    beside = Path(__file__).resolve().parents[3] / "shared" / "data" / name
+    beside = REPOSITORY.parent / "shared" / "data" / name
     path = Path(os.environ.get(variable, beside))
     if not (path / first).is_file():
         raise FileNotFoundError(
