@@ -18,7 +18,7 @@ INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")  # inputs in the order
 _CACHE_LINE = 64  # [bytes]
 _LARGEST_INTEGER = 2**31 - 1
 _PIECE = 1 << 16  # ticks between two moments at which Ctrl-C can end the run
-_SHORTEST = 1 << 10  # ticks of a joint at a time: its state stays in the cache of the processor
+_GROUP = 64  # joints at a time: 1024 ticks of each, so that its state stays in the cache
 
 
 class _Violation(ctypes.Structure):
@@ -127,15 +127,14 @@ class Joints:
         outputs  arrays of empty() by name, of the same size, that are filled
         """
         joints, samples = next(each.shape for each in inputs if each is not None)
-        group = max(_PIECE // _SHORTEST, 1)
-        for joint in range(0, joints, group):
-            of_group = slice(joint, joint + group)
+        for joint in range(0, joints, _GROUP):
+            of_group = slice(joint, joint + _GROUP)
             call = self.prepared(
                 [None if each is None else each[of_group] for each in inputs],
                 {name: each[of_group] for name, each in outputs.items()},
                 joint,
             )
-            piece = max(_PIECE // min(group, joints), 1)
+            piece = _PIECE // min(_GROUP, joints)
             for first in range(0, samples, piece):
                 call(first, min(first + piece, samples))
 
