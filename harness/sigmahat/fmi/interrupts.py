@@ -1,25 +1,36 @@
-"""Delays Ctrl-C where a signal would be lost, or would leave work half done."""
+"""Signals: other handlers for a while, and Ctrl-C that waits."""
+
+from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+
+
+@contextmanager
+def handling(handler: Callable[..., object], *numbers: int) -> Iterator[None]:
+    """Inside the block, the handler is called for these signals. Only for the main thread."""
+    before = {number: signal.signal(number, handler) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, own in before.items():
+            signal.signal(number, own)
 
 
 @contextmanager
 def interrupts_wait() -> Iterator[None]:
     """Ctrl-C inside the block has its effect at the end of the block.
 
-    The function has no effect outside of the main thread: only this thread handles signals.
+    It would be lost, or would leave work half done. The function has no effect outside of the main
+    thread: only this thread handles signals.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     received: list[int] = []
-    handler = signal.signal(signal.SIGINT, lambda number, frame: received.append(number))
-    try:
+    with handling(lambda number, _: received.append(number), signal.SIGINT):
         yield
-    finally:
-        signal.signal(signal.SIGINT, handler)
     if received:
         signal.raise_signal(signal.SIGINT)

@@ -7,14 +7,13 @@ import shutil
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence, Set
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence, Set
 from queue import Empty, Full, Queue
-from types import FrameType
 
 import click
 
 from sigmahat.files.tables import aligned
+from sigmahat.fmi.interrupts import handling
 from sigmahat.joint.curve import NORMAL_95
 from sigmahat.live.joint import Estimated
 from sigmahat.live.messages import Columns
@@ -60,7 +59,9 @@ def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> None:
     """
     seen = set[str]()
     silent_at = time.monotonic() + _SILENT
-    with _stopped_by_signal() as stopped:
+    # A second signal does not interrupt the writing of files.
+    stopped: list[int] = []
+    with handling(lambda number, _: stopped.append(number), signal.SIGINT, signal.SIGTERM):
         while not stopped:
             try:
                 arrival, read = inbox.get(timeout=_IDLE)
@@ -107,22 +108,6 @@ def _look(session: Session, seen: Set[str]) -> None:
                 "or time.longest_gap", usual, joint.longest_gap,
             )  # fmt: skip
             return
-
-
-@contextmanager
-def _stopped_by_signal() -> Iterator[list[int]]:
-    """The signals that were received: a second signal does not interrupt the writing of files."""
-    stopped: list[int] = []
-
-    def stop(number: int, _frame: FrameType | None) -> None:
-        stopped.append(number)
-
-    before = {each: signal.signal(each, stop) for each in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield stopped
-    finally:
-        for each, handler in before.items():
-            signal.signal(each, handler)
 
 
 def terminal() -> Sink:

@@ -8,8 +8,7 @@ import signal
 import threading
 import warnings
 import webbrowser
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -27,6 +26,7 @@ from bokeh.util.warnings import BokehUserWarning
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop
 
+from sigmahat.fmi.interrupts import handling
 from sigmahat.logs.log import Log
 from sigmahat.page.jobs import Jobs
 from sigmahat.page.setup import Setup
@@ -72,7 +72,8 @@ def serve(
         token, port, lambda window: Window(setup, window, jobs.start, jobs.estimate)
     )
     address = f"http://{_HOST}:{port}/{token}"
-    with _until_a_signal(server.io_loop):
+    ends = [getattr(signal, name) for name in _ENDS if hasattr(signal, name)]
+    with handling(lambda *_: server.io_loop.add_callback_from_signal(server.io_loop.stop), *ends):
         server.start()
         if document is not None:
             setup.start_from(document)
@@ -106,21 +107,6 @@ def _listen(token: str, port: int, window: Callable[[Document], object]) -> tupl
     http = HTTPServer(tornado)
     http.add_sockets(sockets)
     return BaseServer(IOLoop.current(), tornado, http), port
-
-
-@contextmanager
-def _until_a_signal(loop: IOLoop) -> Iterator[None]:
-    """Inside the block, Ctrl-C and the signals of a closing terminal end the loop."""
-    before = {
-        number: signal.signal(number, lambda *_: loop.add_callback_from_signal(loop.stop))
-        for name in _ENDS
-        if (number := getattr(signal, name, None)) is not None
-    }
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def _open(address: str, say: Callable[[str], object]) -> None:
