@@ -8,11 +8,10 @@ from scipy.signal import lfilter
 
 from c_library import Array, Estimator, Library
 from plant_runs import run_awas, times
+from recorded_logs import COLUMNS, RETRACTED, T
 from sigmahat.runs.metrics import msrep
 
-T = 1e-3  # [s]
-SHORTENED = {"initial.theta_c": 0.030 / (0.0025 / (2 * np.pi))}  # lever arm of 70 mm
-MEASURED = ("theta_measured", "q_measured", "theta_c_measured", "tau_measured", "tau_e_measured")
+MEASURED = tuple(COLUMNS.values())
 SETTINGS = {"method": 2, "rls.n": 3, "motor.D_theta": 1.1e-3}  # 10 % too high
 
 
@@ -57,7 +56,7 @@ def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
         rng = np.random.default_rng(seed)
         tau, tau_c = multisine(rng, t) if seed % 2 == 0 else random_walk(rng, t)
         torques = np.column_stack([tau, tau_c, 0 * t])
-        run = run_awas(T, torques, {**SHORTENED, "noise.seed": seed}, (*MEASURED, "sigma"))
+        run = run_awas(T, torques, {**RETRACTED, "noise.seed": seed}, (*MEASURED, "sigma"))
         estimates = Estimator(c, SETTINGS).run(np.column_stack([run[name] for name in MEASURED]))
         found.append(msrep(run["sigma"][2000:], estimates["sigma"][2000:]))
     assert np.median(found) <= 0.5
@@ -76,7 +75,7 @@ def test_motor_that_turns_at_the_start(
     torques = np.column_stack([0.3 * np.sin(2 * np.pi * t), 8 * np.sin(0.2 * np.pi * t), 0 * t])
     start = {"initial.theta_dot": velocity, "initial.q_dot": velocity}
     start["motor.tau_coulomb"] = friction
-    run = run_awas(period, torques, {**SHORTENED, **start}, (*MEASURED, "sigma"))
+    run = run_awas(period, torques, {**RETRACTED, **start}, (*MEASURED, "sigma"))
     z = np.column_stack([run[name] for name in MEASURED])
     found = Estimator(c, {**SETTINGS, "samplePeriod": period}).run(z)
     learned = np.flatnonzero(found["a"] == 0)[-1] * period

@@ -15,11 +15,10 @@ from c_library import Array, Estimator, Library
 from dense_regression import START
 from dense_signals import GROUPS, Filtered, Inputs
 from plant_runs import run_awas, times
+from recorded_logs import COLUMNS, RETRACTED, T
 
-T = 1e-3  # [s]
-SHORTENED = {"initial.theta_c": 0.030 / (0.0025 / (2 * np.pi))}  # lever arm of 70 mm
 TRUE = ("theta", "q", "theta_c", "tau", "tau_e", "sigma")
-MEASURED = ("theta_measured", "q_measured", "theta_c_measured", "tau_measured", "tau_e_measured")
+MEASURED = tuple(COLUMNS.values())
 PRIORS = {
     **{**START, "prior.B": 0.0, "prior.torque_gain": 0.0, "prior.damping": 4e-3},
     **{"prior.load_friction": 0.05, "prior.eccentric": 3e-4, "prior.delay": 0.0},
@@ -48,7 +47,7 @@ def slow_run(frequency: float, coulomb: float, noise: float, seed: int) -> dict[
     """40 s of the AwAS, the noise of the torque so many times the noise of the paper."""
     t = times(T, 40.0)
     torques = [0.3 * np.sin(2 * np.pi * frequency * t), 8 * np.sin(0.2 * np.pi * t), 0 * t]
-    start = {**SHORTENED, "motor.tau_coulomb": coulomb, "noise.seed": seed}
+    start = {**RETRACTED, "motor.tau_coulomb": coulomb, "noise.seed": seed}
     start["noise.tau_variance"] = 1e-5 * noise**2
     return run_awas(T, np.column_stack(torques), start, {*MEASURED, *TRUE})
 

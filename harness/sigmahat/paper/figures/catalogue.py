@@ -56,14 +56,19 @@ def _whole_and_part(t: Array, draw: Draw, part: slice, title: str) -> tuple[Figu
     return figure, panels
 
 
-def deformation(recording: Recording) -> Figure:
+def _one_panel(draw: Callable[[Axes, Recording], object]) -> Callable[[Recording], Figure]:
+    """The figure with nothing but this panel."""
+
+    def draw_figure(recording: Recording) -> Figure:
+        figure, (axes,) = time_panels(1)
+        draw(axes, recording)
+        return figure
+
+    return draw_figure
+
+
+def deformation(axes: Axes, recording: Recording) -> None:
     """Figures 3 and 9: deformation phi."""
-    figure, (axes,) = time_panels(1)
-    _deformation(axes, recording)
-    return figure
-
-
-def _deformation(axes: Axes, recording: Recording) -> None:
     line(axes, recording.t, recording.plant["phi"], color=BLUE, label=r"deformation $\phi$")
     axes.set_ylabel(r"deformation $\phi$ [rad]")
     legend_above(axes)
@@ -117,19 +122,16 @@ def stiffness(recording: Recording) -> Figure:
     return figure
 
 
-def stability_factor(recording: Recording) -> Figure:
+def stability_factor(axes: Axes, recording: Recording) -> None:
     """Figure 7: stability factor a(k) of the RESIDUAL estimate."""
-    figure, (axes,) = time_panels(1)
     line(axes, recording.t, recording.estimators["RESIDUAL"]["a"], color=BLUE, label="RESIDUAL")
     axes.set_yscale("log")
     axes.set_ylabel("stability factor $a(k)$ [1]")
     axes.legend()
-    return figure
 
 
-def constant_factors(recording: Recording) -> Figure:
+def constant_factors(axes: Axes, recording: Recording) -> None:
     """Figure 8: stiffness with constant stability factors, and with the enhanced factor."""
-    figure, (axes,) = time_panels(1)
     t, true = recording.t, recording.plant["sigma"]
     constant = {
         float(series.parameters["rls.a"]): series["sigma"]
@@ -145,17 +147,10 @@ def constant_factors(recording: Recording) -> Figure:
     limit(axes, true)
     axes.set_ylabel(STIFFNESS)
     axes.legend(ncols=2)
-    return figure
 
 
-def lever_arm(recording: Recording) -> Figure:
+def lever_arm(axes: Axes, recording: Recording) -> None:
     """Figure 10: lever arm r, true and by the nominal data."""
-    figure, (axes,) = time_panels(1)
-    _lever_arm(axes, recording)
-    return figure
-
-
-def _lever_arm(axes: Axes, recording: Recording) -> None:
     line(axes, recording.t, recording.plant["r"], **TRUE)
     line(axes, recording.t, nominal_awas(recording)["r"], **_NOMINAL)
     axes.set_ylabel("lever arm $r$ [m]")
@@ -209,8 +204,8 @@ def _nominal_stiffness(recording: Recording, axes: Axes, shown: slice) -> None:
 def experiment(recording: Recording) -> Figure:
     """Figures 9 to 12 below each other, and the relative error of each estimate."""
     figure, panels = time_panels(5)
-    _deformation(panels[0], recording)
-    _lever_arm(panels[1], recording)
+    deformation(panels[0], recording)
+    lever_arm(panels[1], recording)
     draw, part = _nominal_torque(recording)
     draw(panels[2], part)
     panels[2].set_title(_MOST_WRONG, fontsize=9)
@@ -231,14 +226,14 @@ def summary(recording: Recording) -> Figure:
 
 
 FIGURES: dict[str, Callable[[Recording], Figure]] = {
-    "fig3-deformation": deformation,
+    "fig3-deformation": _one_panel(deformation),
     "fig4-velocity": velocity,
     "fig5-flexibility-torque": flexibility_torque,
     "fig6-stiffness": stiffness,
-    "fig7-stability-factor": stability_factor,
-    "fig8-constant-factors": constant_factors,
-    "fig9-deformation": deformation,
-    "fig10-lever-arm": lever_arm,
+    "fig7-stability-factor": _one_panel(stability_factor),
+    "fig8-constant-factors": _one_panel(constant_factors),
+    "fig9-deformation": _one_panel(deformation),
+    "fig10-lever-arm": _one_panel(lever_arm),
     "fig11-flexibility-torque": nominal_torque,
     "fig12-stiffness": nominal_stiffness,
     "transmission": curves.transmission,
