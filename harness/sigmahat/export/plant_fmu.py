@@ -20,7 +20,7 @@ import fmpy
 
 from sigmahat.export import archive, c_variables, description, plant_codegen, templates
 from sigmahat.export.c_variables import SAMPLE_PERIOD, SEED, is_of_every_plant
-from sigmahat.export.cross_compiler import FLAGS
+from sigmahat.export.cross_compiler import FLAGS, HEADERS
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.unknown_name import unknown
@@ -159,10 +159,10 @@ def compile_folder(sources: Path, binary: Path) -> None:
     if compiler is None:
         raise RuntimeError("no C compiler found: install gcc or clang, or name one in CC")
     files = sorted(file.name for file in sources.glob("*.c"))
-    include = f"-I{Path(fmpy.__file__).parent / 'c-code'}"
+    arguments = [*FLAGS, f"-I{HEADERS}", *files, "-lm", "-o", str(binary.resolve())]
     try:
         done = subprocess.run(
-            [*shlex.split(compiler), *FLAGS, include, *files, "-lm", "-o", str(binary.resolve())],
+            [*shlex.split(compiler), *arguments],
             cwd=sources,
             capture_output=True,
             text=True,
