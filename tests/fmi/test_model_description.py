@@ -1,4 +1,4 @@
-"""Units, ranges and dependencies in modelDescription.xml, against what the FMU does."""
+"""Units, enumerations and dependencies in modelDescription.xml, against what the FMU does."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from lxml import etree
 
 import sigmahat
-from fmi_instance import OK, Instance
+from fmi_instance import OK, Instance, unpacked
 from fmi_runs import ESTIMATORS, PLANTS
 
 FMUS = ESTIMATORS + PLANTS
@@ -80,6 +80,27 @@ def test_factors_of_display_units_are_right(
         assert float(each.get("factor")) == pytest.approx(shown, rel=1e-15)
     for real in reals:
         assert real.get("displayUnit") == display
+
+
+# The contract: masters write the items of enumerations as numbers.
+ITEMS = {
+    "method": "Paper2011 FilteredRegression",
+    "modality": "Residual Sensor Model",
+    "filter.kind": "ModifiedKalman Kalman FiniteDifference",
+    "filter.weighting": "Normalized AsPrinted",
+    "deformation": "Raw Filtered",
+    "rls.kind": "Enhanced Standard ConstantFactor",
+    "doubt": "None NoClaim NotExcited Misfit OutOfRange FrictionOutsidePrior InertiaOutsidePrior"
+    " NegativeStiffness Change",
+}
+
+
+def test_an_enumeration_has_the_items_of_the_contract() -> None:
+    variables = {v.name: v for v in unpacked(sigmahat.fmu("StiffnessEstimator"))[0].modelVariables}
+    for name, expected in ITEMS.items():
+        items = variables[name].declaredType.items
+        assert [item.name for item in items] == expected.split()
+        assert [int(item.value) for item in items] == list(range(1, len(items) + 1))
 
 
 def known_values(fmu: Instance) -> dict[str, list[float]]:

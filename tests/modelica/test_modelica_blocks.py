@@ -16,7 +16,8 @@ import pymoca.parser
 import pytest
 import rumoca
 
-from modelica_package import FILES, PACKAGE, REPOSITORY, classes, compiled
+from c_sources import REPOSITORY
+from modelica_package import FILES, PACKAGE, classes, compiled
 
 SPECIAL = {
     "sigma": "estimator.reals[3] + t",  # the gear ratio shows whose motor it is

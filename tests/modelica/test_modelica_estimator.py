@@ -26,7 +26,7 @@ from sigmahat.fmi.master import Plant, simulate
 DRIVERS = Path(__file__).parents[1] / "drivers" / "modelica"
 FLAGS = ["-std=c99", "-O2", "-g", "-ffp-contract=off", "-fPIC"]
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
-SANITIZER = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+SANITIZER = ("-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 T, N = 1e-3, 3000
 NOISY = {"tau_measured": 2, "tau_e_measured": 3}
 INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")

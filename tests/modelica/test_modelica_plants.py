@@ -13,7 +13,8 @@ import rumoca
 from numpy.typing import NDArray
 
 import sigmahat
-from modelica_package import NO_NOISE, REPOSITORY, compiled, modification
+from c_sources import REPOSITORY
+from modelica_package import NO_NOISE, compiled, modification
 from sigmahat.export.templates import render, variables
 from sigmahat.fmi.master import Plant, simulate
 from sigmahat.fmi.series import Series
