@@ -1,8 +1,7 @@
 """The methods that are compared, by name: those of this package, and least squares.
 
 In all methods the torque of the spring is the same odd cubic polynomial in the deformation, because
-an owner does not know whether a spring hardens. Where the stiffness is variable, the coefficients
-are quadratic in the position of the stiffness motor.
+an owner does not know whether a spring hardens.
 """
 
 from __future__ import annotations
@@ -48,7 +47,6 @@ def _filtered_regression(log: JointLog) -> Estimate:
         {
             "method": "FilteredRegression",
             "range.phi": known.range_phi,
-            "range.setPoint": log.range_theta_c,
             "prior.tau_e": known.range_tau_e,
             "prior.B": known.relative_std_B,
             "prior.D_theta": known.relative_std_D_theta,
@@ -86,24 +84,17 @@ def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
             "motor.D_theta": known.D_theta,
             "encoder.theta": float(known.counts_theta),
             "encoder.q": float(known.counts_q),
-            "setPoint.offset": 0.0,
-            "setPoint.scale": 1.0,
             "rls.n": N,
-            "rls.m": _orders(log),
+            "rls.m": 1,
             "noise.tau": known.noise_tau,
             **start,
         },
         ("sigma", "sigma_std", "confident"),
     )
     begin = time.perf_counter()
-    found = estimator.run(log.theta, log.q, log.tau, log.theta_c)
+    found = estimator.run(log.theta, log.q, log.tau)
     seconds = time.perf_counter() - begin
     return Estimate(found["sigma"], found["sigma_std"], found["confident"], seconds)
-
-
-def _orders(log: JointLog) -> int:
-    """Number of powers of the stiffness motor's position in the torque of the spring."""
-    return 3 if log.theta_c.any() else 1
 
 
 def _least_squares(log: JointLog) -> Estimate:
@@ -149,7 +140,7 @@ def _regression(log: JointLog) -> tuple[Array, Array, Array]:
     butterworth = signal.butter(ORDER, corner, output="sos")
     theta, q = (signal.sosfiltfilt(butterworth, x) for x in (log.theta, log.q))
     theta_dot = np.gradient(theta, T)
-    torque, slope = _spring(log, q - theta)
+    torque, slope = _spring((q - theta) / log.known.range_phi)
     columns = (
         *(g**2 * np.gradient(theta_dot, T), g**2 * theta_dot, g * np.sign(theta_dot)),
         *(np.ones(len(theta)), -torque, g * log.tau),
@@ -157,19 +148,16 @@ def _regression(log: JointLog) -> tuple[Array, Array, Array]:
     keep = max(int(0.8 / (2 * f * 2 * T)), 1)  # the low pass of a decimation is at 0.8 of Nyquist
     chebyshev = signal.cheby1(8, 0.05, 0.8 / keep, output="sos")
     rows = signal.sosfiltfilt(chebyshev, np.column_stack(columns), axis=0)[::keep][EDGE:-EDGE]
-    return rows[:, :-1], rows[:, -1], slope
+    return rows[:, :-1], rows[:, -1], slope / log.known.range_phi
 
 
-def _spring(log: JointLog, phi: Array) -> tuple[Array, Array]:
-    """Functions of the deformation phi [rad] whose linear combination is the torque, and their
-    derivatives with respect to phi [1/rad]; both [size: samples x coefficients].
+def _spring(x: Array) -> tuple[Array, Array]:
+    """The functions x^(2i+1)/(2i+1) of the deformation x over its range, and their slopes.
 
-    The functions are x^(2i+1)/(2i+1) r^j, with x = phi and r = theta_c divided by their ranges.
+    The torque of the spring is a linear combination of them. Both [size: samples x coefficients].
     """
-    x, r = phi / log.known.range_phi, log.theta_c / log.range_theta_c
-    powers = [(i, j) for i in range(N) for j in range(_orders(log))]
-    torque = [x ** (2 * i + 1) / (2 * i + 1) * r**j for i, j in powers]
-    slope = [x ** (2 * i) / log.known.range_phi * r**j for i, j in powers]
+    torque = [x ** (2 * i + 1) / (2 * i + 1) for i in range(N)]
+    slope = [x ** (2 * i) for i in range(N)]
     return np.column_stack(torque), np.column_stack(slope)
 
 

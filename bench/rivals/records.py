@@ -36,14 +36,8 @@ class JointLog:
     theta: Array  # measured motor position behind the gear [rad]
     q: Array  # measured link position [rad]
     tau: Array  # measured motor torque on the motor's axis [N.m]
-    theta_c: Array  # measured position of the stiffness motor; 0 without one [rad]
     stiffness: Array  # true slope d tau_e / d phi of the torque on the motor, phi = q - theta
     known: Known
-
-    @property
-    def range_theta_c(self) -> float:
-        """Travel of the stiffness motor, which an owner knows [rad]; 1 without one."""
-        return float(np.abs(self.theta_c).max()) or 1.0
 
 
 @dataclass(frozen=True)

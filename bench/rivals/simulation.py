@@ -48,7 +48,6 @@ def log(run: Run, joint: Joint, rng: np.random.Generator) -> JointLog:
         theta=_rounded(run["theta"], tools.counts_theta),
         q=_rounded(run["theta"] + run["phi"], tools.counts_q),
         tau=tools.gain * torque + tools.noise * rng.standard_normal(len(torque)),
-        theta_c=np.zeros(len(torque)),
         stiffness=run["stiffness"],
         known=Known(
             gamma=motor.gear,

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reference_joints import round_to_counts
 from regression_joint import D_THETA, GAMMA, B, T
-from rivals.records import Array, JointLog, Known
+
+Array = NDArray[np.float64]
 
 COUNTS = 1 << 18
 LINEAR, CUBIC, OF_THETA_C = 140.0, 3000.0, 0.3
@@ -25,8 +27,8 @@ def _cosines(t: Array, *terms: tuple[float, float]) -> tuple[Array, Array, Array
     return signal, first, second
 
 
-def closed_form_log(kind: str, tau_coulomb: float = 0.01, seed: int = 1) -> JointLog:
-    """12 s of a joint with Coulomb friction; the inertia and friction of the data sheet are true.
+def closed_form_log(kind: str, tau_coulomb: float = 0.01, seed: int = 1) -> dict[str, Array]:
+    """12 s of a joint with Coulomb friction: t, theta, q, theta_c, tau and the true stiffness.
 
     The stiffness is constant but for the kind variable_stiffness. The seed is that of the noise.
     """
@@ -41,19 +43,8 @@ def closed_form_log(kind: str, tau_coulomb: float = 0.01, seed: int = 1) -> Join
     stiffness = share * (LINEAR + 3 * cubic * phi**2)
     tau = GAMMA * (B * theta_ddot + D_THETA * theta_dot) + tau_coulomb * np.sign(theta_dot)
     tau = tau - tau_e / GAMMA + 1e-3 * np.random.default_rng(seed).normal(size=len(t))
-    known = Known(
-        gamma=GAMMA,
-        B=B,
-        D_theta=D_THETA,
-        relative_std_B=0.05,
-        relative_std_D_theta=0.2,
-        relative_std_gain=0.0,
-        tau_coulomb=0.02,
-        noise_tau=1e-3,
-        counts_theta=COUNTS,
-        counts_q=COUNTS,
-        range_phi=0.1,
-        range_tau_e=20.0,
-    )
     read, q = (round_to_counts(angle, COUNTS) for angle in (theta, theta + phi))
-    return JointLog(T, read, q, tau, theta_c, stiffness, known)
+    return {
+        **{"t": t, "theta": read, "q": q, "theta_c": theta_c, "tau": tau},
+        "stiffness": stiffness,
+    }

@@ -47,8 +47,7 @@ def estimated(columns: Columns, configuration: str, folder: Path) -> Estimate:
 
 def closed_form(kind: str, seed: int, gain: float) -> Columns:
     log = closed_form_log(kind, seed=seed)
-    t = log.sample_period * np.arange(float(len(log.theta)))
-    return {"t": t, "theta": log.theta, "q": log.q, "theta_c": log.theta_c, "tau": gain * log.tau}
+    return {name: log[name] for name in ("t", "theta", "q", "theta_c")} | {"tau": gain * log["tau"]}
 
 
 def truth(branch: Branch) -> tuple[Array, Array]:
