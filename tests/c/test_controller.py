@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from controllers import HOST, REPOSITORY, TARGETS, Target, cross_build, replay, run
+from c_sources import REPOSITORY
+from controllers import HOST, TARGETS, Target, cross_build, replay, run
 from gate import need
 from reference_joints import table1_recording
 

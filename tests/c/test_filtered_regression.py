@@ -35,18 +35,6 @@ def test_before_the_first_tick_the_estimate_is_the_prior(c: Library) -> None:
     assert e.confident == 0
 
 
-def test_a_nominal_curve_is_the_prior_mean(c: Library) -> None:
-    """GIVEN a nominal curve with an uncertainty of 30 % as a whole and an exact shape, THEN the
-    stiffness before the first tick is that of the curve, with a standard deviation of 30 %."""
-    estimator = Estimator(c, {**REGRESSION, "prior.nominal": 0.3})
-    estimator.parameters.rls.eta_0[0][2] = 2 * 14220e-6
-    estimator.parameters.prior.tau_e = 0.0
-    c.start(estimator.state, estimator.parameters, estimator.estimate)
-    sigma = 2 * 14220 * 0.1**2
-    assert estimator.estimate.sigma == pytest.approx(sigma)
-    assert estimator.estimate.sigma_std == pytest.approx(0.3 * sigma)
-
-
 # Wrong motor data
 
 
@@ -183,17 +171,3 @@ def test_friction_of_unknown_sign_increases_the_standard_deviation(c: Library) -
     found = Estimator(c, REGRESSION).run(joint.measurements())[2000:]
     error = np.abs(found["sigma"] - joint.sigma[2000:])
     assert np.mean(error < 1.96 * found["sigma_std"]) > 0.9
-
-
-# Start
-
-
-@pytest.mark.parametrize("velocity", [0.0, 1.0])
-def test_it_learns_at_once_only_from_a_motor_at_rest(c: Library, velocity: float) -> None:
-    t = T * np.arange(100)
-    z = np.zeros((len(t), 5))
-    z[:, 0] = z[:, 1] = np.round(velocity * t / (2 * np.pi / 40000)) * (2 * np.pi / 40000)
-    z[:, 3] = GAMMA * 1e-3 * velocity
-    a = Estimator(c, REGRESSION).run(z)["a"]
-    assert a[-1] == 1.0
-    assert np.count_nonzero(a == 0.0) == (0 if velocity == 0 else math.ceil(12 / 350 / T))

@@ -114,20 +114,6 @@ def test_P_stays_positive_definite_with_a_large_P_0(c: Library, kind: int) -> No
     assert np.diag(P) == pytest.approx(np.diag(want), rel=1e-6)
 
 
-def test_the_variance_along_a_regressor_is_that_of_the_covariance(c: Library) -> None:
-    rng = np.random.default_rng(4)
-    recursion = Recursion(c, STANDARD, 1.0, 2.0, np.zeros(5))
-    for F in rng.normal(size=(20, 5)):
-        recursion.update(F, 1.0)
-    F = rng.normal(size=5)
-    P = recursion.covariance
-    assert np.all(P == P.T)
-    want = float(F @ P @ F)
-    assert c.lib.sh_ud_factor_variance(recursion.P, c.pointer(F)) == pytest.approx(want)
-    recursion.update(F, 1.0)
-    assert recursion.innovation.rho == pytest.approx(want)
-
-
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("bad", [math.inf, -math.inf, math.nan, 1e300, -1e300])
 @pytest.mark.parametrize("where", [0, 2, "y"])

@@ -133,16 +133,6 @@ def test_a_prior_of_zero_is_the_limit_of_small_priors(c: Library, prior: str) ->
 # The gain of the torque
 
 
-def test_the_gain_of_the_torque_is_in_the_standard_deviation_only(c: Library) -> None:
-    z = MisfitJoint(duration=3.0).measurements()
-    exact, unsure = (
-        Estimator(c, {**SETTINGS, "prior.torque_gain": gain}).run(z)[-1] for gain in (0.0, 0.05)
-    )
-    assert unsure["sigma"] == exact["sigma"]
-    by_gain = 0.05 * unsure["sigma_per_gain"] * unsure["sigma"]
-    assert unsure["sigma_std"] == pytest.approx(math.hypot(exact["sigma_std"], by_gain), rel=1e-9)
-
-
 @pytest.mark.parametrize("values", [{}, {"prior.B": 0.1}], ids=["exact B", "unknown B"])
 def test_the_effect_of_the_gain_is_that_of_a_wrong_gain(
     c: Library, values: dict[str, float]

@@ -40,18 +40,6 @@ def test_signals_that_are_linear_between_samples_are_filtered_exactly(c: Library
         assert np.max(np.abs(np.array(values) - want)) < 1e-9 * np.max(np.abs(want))
 
 
-def test_means_over_a_sample_are_filtered_as_signals_that_are_held(c: Library) -> None:
-    x = random_walk(2)
-    lib, d, f = c.lib, design(c, 200.0), c.new("sh_state_variable_filter")
-    lib.sh_state_variable_filter_start(f, 0.0, 0.0)
-    got = [0.0]
-    for value in x[:-1]:
-        lib.sh_state_variable_filter_step_mean(f, d, value)
-        got.append(lib.sh_state_variable_filter_output(f))
-    want = through(x, 0, 200.0, T, held=True)
-    assert np.max(np.abs(np.array(got) - want)) < 1e-9 * np.max(np.abs(want))
-
-
 def test_a_start_at_a_constant_signal_has_no_transient(c: Library) -> None:
     lib, d, f = c.lib, design(c, 200.0), c.new("sh_state_variable_filter")
     lib.sh_state_variable_filter_start(f, 7.0, 7.0)

@@ -52,7 +52,7 @@ def compile_driver(
     """
     program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{version}_{fmu}"
     folders = [*FOLDERS, FMU_SOURCES, FMU_SOURCES / "shell", build / "fmu" / fmu]
-    files = [*(DRIVERS / f"{name}.c" for name in (driver, "drive")), *sources(fmu, build, version)]
+    files = [DRIVERS / f"{driver}.c", *sources(fmu, build, version)]
     command = [
         # -gdwarf-4: valgrind cannot read newer debug information
         *(compiler, "-gdwarf-4", "-O1", "-ffp-contract=off", *flags, f"-DSH_FMI={version[-1]}"),

@@ -162,7 +162,8 @@ def least_squares(
         P = P - a * np.outer(K, PF)
         variances = rho - a * rho**2 / (1 + rho), dF_k @ P @ dF_k
         ticks.append((eta, epsilon, rho, a, variances))
-    return Regression(*(np.array(each) for each in zip(*ticks, strict=True)), P)
+    eta, epsilon, rho, a, variances = (np.array(each) for each in zip(*ticks, strict=True))
+    return Regression(eta, epsilon, rho, a, variances, P)
 
 
 def solve(matrix: Exact, right: Exact) -> Exact:

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from controllers import REPOSITORY, TARGETS, cross_build, run
+from c_sources import REPOSITORY
+from controllers import TARGETS, cross_build, run
 
 PAGE = REPOSITORY / "docs" / "proof" / "bounds.md"
 METHODS = {"1": "Paper2011", "2": "FilteredRegression"}
