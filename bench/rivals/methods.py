@@ -29,8 +29,8 @@ DYNAMICS = 0.99
 """Share of the power of the motor velocity below the frequency of the dynamics."""
 EDGE = 5
 """Rows that are dropped at both ends, where filters without lag have no past or no future."""
-INERTIA, VISCOUS, SPRING = 0, 1, 4
-"""Columns of least squares; those of the spring are the last ones."""
+MOTOR, SPRING = slice(0, 2), slice(4, None)
+"""Columns of least squares: inertia and viscous friction; the functions of the spring."""
 N = 2
 """Odd powers of the deformation in the torque of the spring."""
 
@@ -122,8 +122,8 @@ def _least_squares(log: JointLog) -> Estimate:
     begin = time.perf_counter()
     X, y, slope = _regression(log)
     beta, covariance = _solve(X, y, log.known)
-    stiffness = slope @ beta[SPRING:]
-    variance = np.sum((slope @ covariance[SPRING:, SPRING:]) * slope, axis=1)
+    stiffness = slope @ beta[SPRING]
+    variance = np.sum((slope @ covariance[SPRING, SPRING]) * slope, axis=1)
     std = np.hypot(np.sqrt(np.maximum(variance, 0.0)), log.known.relative_std_gain * stiffness)
     confident = np.isfinite(stiffness) & np.isfinite(std) & (std < CONFIDENT * stiffness)
     return Estimate(stiffness, std, confident, time.perf_counter() - begin)
@@ -166,7 +166,7 @@ def _dynamics(log: JointLog) -> float:
     T, counts = log.sample_period, log.known.counts_theta
     segment = min(len(log.theta), round(8 / T))
     f, density = signal.welch(log.theta, 1 / T, nperseg=segment, detrend="linear")
-    std = 2 * np.pi / counts / np.sqrt(12) if counts else 0.0  # of the rounding of the encoder
+    std = 2 * np.pi / counts / np.sqrt(12)  # of the rounding of the encoder
     rounding = 2 * T * std**2  # white, one-sided density
     power = (2 * np.pi * f) ** 2 * np.where(density > 4 * rounding, density, 0.0)
     if not power.sum() > 0:
@@ -180,13 +180,9 @@ def _solve(X: Array, y: Array, known: Known) -> tuple[Array, Array]:
     scale = np.sqrt(np.mean(X**2, axis=0))
     X = X / scale
     mean, information = np.zeros(len(scale)), np.zeros(len(scale))  # of the data sheet
-    for column, value, relative in (
-        (INERTIA, known.B, known.relative_std_B),
-        (VISCOUS, known.D_theta, known.relative_std_D_theta),
-    ):
-        mean[column] = value * scale[column]
-        if value and relative:
-            information[column] = (relative * value * scale[column]) ** -2
+    relative = np.array([known.relative_std_B, known.relative_std_D_theta])
+    mean[MOTOR] = np.array([known.B, known.D_theta]) * scale[MOTOR]
+    information[MOTOR] = (relative * mean[MOTOR]) ** -2
     beta = np.linalg.lstsq(X, y)[0]
     for _ in range(2):  # the first time the residual is that without the rows of the data sheet
         residual = y - X @ beta

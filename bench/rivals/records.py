@@ -22,8 +22,8 @@ class Known:
     relative_std_gain: float  # of the measured torque; no log shows the gain
     tau_coulomb: float  # largest plausible Coulomb friction on the motor's axis [N.m]
     noise_tau: float  # standard deviation of the measured motor torque [N.m]
-    counts_theta: int  # counts of the motor encoder per turn behind the gear; 0: not quantised
-    counts_q: int  # counts of the link encoder per turn; 0: not quantised
+    counts_theta: int  # counts of the motor encoder per turn behind the gear
+    counts_q: int  # counts of the link encoder per turn
     range_phi: float  # largest expected deformation [rad]
     range_tau_e: float  # largest expected torque of the spring [N.m]
 
