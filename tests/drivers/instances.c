@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "drive.h"
-#include "fmi_calls.h"
 
 enum { INSTANCES = 4, STEPS = 40, OUTPUTS = 256 };
 

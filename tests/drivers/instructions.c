@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "drive.h"
-#include "fmi_calls.h"
 
 enum { STEPS = 600 };
 

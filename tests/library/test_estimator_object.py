@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -141,29 +141,26 @@ def test_what_is_misused_is_named_and_changes_nothing(z: dict[str, NDArray[np.fl
     with pytest.raises(ValueError, match="sigma_hat"):
         sigmahat.Estimator({}, record=["sigma_hat"])
     estimator = sigmahat.Estimator({})
-    with pytest.raises(ValueError, match="modality Residual needs tau"):
-        estimator.run(z["theta"], z["q"])
-    with pytest.raises(ValueError, match=r"theta \(3000,\), q \(2999,\)"):
-        estimator.run(z["theta"], z["q"][1:], z["tau"])
-    with pytest.raises(ValueError, match=r"one shape.*\(\)"):
-        estimator.run(0.0, 0.0, 0.0)
-    expected = estimator.run(**z)["sigma"]
-    with pytest.raises(ValueError, match=r"one joint\(s\), got 2"):
-        estimator.run(*(np.zeros((2, 5)) for _ in range(3)))
-    with pytest.raises(ValueError, match=r"expected samples of one joint\(s\), got 3"):
-        estimator.tick(np.zeros(3), 0.0, 0.0)
-    with pytest.raises(ValueError, match="modality Residual needs tau"):
-        estimator.tick(0.0, 0.0)
-    with pytest.raises(ValueError, match="expected numbers or arrays of one shape"):
-        estimator.tick(np.zeros((2, 3)), 0.0, 0.0)
-    with pytest.raises(ValueError, match="one joint or more, got none"):
-        estimator.run(*(np.zeros((0, 5)) for _ in range(3)))
-    with pytest.raises(ValueError, match=r"rls\.n is fixed"):
-        estimator.tune({"motor.B": 1e-5, "rls.n": 3})
-    with pytest.raises(ValueError, match=r"motor\.gamma: expected .*got 0"):
-        estimator.tune({"motor.B": 1e-5, "motor.gamma": 0.0})
+    run, tick, tune = estimator.run, estimator.tick, estimator.tune
+    theta, q, tau = z["theta"], z["q"], z["tau"]
+
+    def refused(call: Callable[..., Any], *arguments: Any, message: str) -> None:
+        with pytest.raises(ValueError, match=message):
+            call(*arguments)
+
+    refused(run, theta, q, message="modality Residual needs tau")
+    refused(run, theta, q[1:], tau, message=r"theta \(3000,\), q \(2999,\)")
+    refused(run, 0.0, 0.0, 0.0, message=r"one shape.*\(\)")
+    expected = run(**z)["sigma"]
+    refused(run, *np.zeros((3, 2, 5)), message=r"one joint\(s\), got 2")
+    refused(tick, np.zeros(3), 0.0, 0.0, message=r"expected samples of one joint\(s\), got 3")
+    refused(tick, 0.0, 0.0, message="modality Residual needs tau")
+    refused(tick, np.zeros((2, 3)), 0.0, 0.0, message="expected numbers or arrays of one shape")
+    refused(run, *np.zeros((3, 0, 5)), message="one joint or more, got none")
+    refused(tune, {"motor.B": 1e-5, "rls.n": 3}, message=r"rls\.n is fixed")
+    refused(tune, {"motor.B": 1e-5, "motor.gamma": 0.0}, message=r"motor\.gamma: expected .*got 0")
     estimator.reset()
-    np.testing.assert_array_equal(estimator.run(**z)["sigma"], expected)
+    np.testing.assert_array_equal(run(**z)["sigma"], expected)
 
 
 def test_masked_samples_are_skipped(z: dict[str, NDArray[np.float64]]) -> None:

@@ -39,7 +39,7 @@ def items(root: Any, variable: Any) -> list[tuple[str, str]]:
 
 
 def test_the_tables_list_the_variables_of_the_model_description(files: dict[str, bytes]) -> None:
-    rows = {}
+    rows: dict[str, tuple[Any, ...]] = {}
     for row in etree.fromstring(files[INDEX]).iterfind(".//tbody/tr"):
         name, *cells = map(text, row)
         assert name not in rows

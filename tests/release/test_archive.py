@@ -56,6 +56,6 @@ def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: 
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
         "CMAKE_GENERATOR": "Ninja",
     }
-    compilation = [sys.executable, "-m", "fmpy", "compile", rebuilt]
-    controllers.run(*compilation, environment=environment)
+    command = [sys.executable, "-m", "fmpy", "compile", str(rebuilt)]
+    controllers.run(*command, environment=environment)
     run.assert_same(run.simulate(rebuilt))
