@@ -20,7 +20,6 @@ from selenium.webdriver.support.ui import WebDriverWait
 import sigmahat
 from browser import opened
 
-DOCS = Path(__file__).parents[2] / "docs"
 SEEN = [
     "index",
     "start",
@@ -32,7 +31,6 @@ SEEN = [
     "genindex",
 ]
 """Pages to look at: tables, formulas, pictures, code, signatures."""
-FMUS = sorted(path.stem for path in (DOCS.parent / "modelDescription").glob("[A-Z]*.xml"))
 WORDS = ["motor.gamma", "MSREP", "wrap"]
 QUESTIONS = {
     "forget": "parameters",

@@ -12,7 +12,6 @@ from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimObserver import CosimObserver
-from lxml import etree
 
 import sigmahat
 from fmi_master import run
@@ -36,11 +35,6 @@ STEPS = 1500  # half of the first motion to one side
 def ssp() -> Path:
     """The system of the build for development; the released one differs in its binaries."""
     return sigmahat.fmu("StiffnessEstimator").with_name("sigmahat-awas.ssp")
-
-
-def read(ssp: Path, name: str) -> Any:
-    with zipfile.ZipFile(ssp) as archive:
-        return etree.fromstring(archive.read(name))
 
 
 def test_it_is_valid_against_the_schema(ssp: Path) -> None:
