@@ -97,45 +97,12 @@ def test_a_negative_weight_removes_a_sample(c: Library, size: int) -> None:
     a.check()
 
 
-def test_fading_scales_all_weights(c: Library) -> None:
-    a = Information(c, 5, 1e-9)
-    a.fill(np.random.default_rng(2), 20)
-    estimate = a.solve(Y)
-    c.lib.sh_information_forget(a.a, 0.25, 1e-9)
-    a.want.matrix *= 0.25
-    a.check()
-    assert a.solve(Y) == pytest.approx(estimate, rel=1e-12)
-
-
 def test_fading_keeps_the_least_precision(c: Library) -> None:
     a = Information(c, 5)
     a.fill(np.random.default_rng(3), 20)
     for _ in range(100):
         c.lib.sh_information_forget(a.a, 0.5, 1.0)
     assert factors(a.a)[1].tolist() == [1.0] * 5
-
-
-@each_size
-@pytest.mark.parametrize("variance", [0.0, 1e-6, 0.3, 1e6])
-def test_process_noise_adds_to_the_covariance_and_keeps_the_estimate(
-    c: Library, size: int, variance: float
-) -> None:
-    rng = np.random.default_rng(size)
-    a = Information(c, size)
-    a.fill(rng, 2 * size)
-    estimate = [a.solve(side) for side in range(SIDES)]
-    v = rng.normal(size=size)
-    want = np.linalg.inv(a.matrix) + variance * np.outer(v, v)
-    # The information along v that is left is this number of times smaller than before.
-    lost = 1 + variance * float(v @ a.matrix @ v)
-    rel, rest = 1e-8 + 1e-14 * lost, a.a.squares
-    c.lib.sh_information_drift(a.a, c.pointer(v), variance)
-    matrix, _ = dense(a.a)
-    assert np.linalg.inv(matrix) == pytest.approx(want, abs=rel * np.max(abs(want)))
-    assert np.all(factors(a.a)[1] > 0)
-    for side in range(SIDES):
-        assert a.solve(side) == pytest.approx(estimate[side], abs=rel)
-    assert a.a.squares == pytest.approx(rest, rel=rel)
 
 
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12, 0.0])

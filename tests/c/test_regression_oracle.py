@@ -27,6 +27,7 @@ WIDE = Joint(duration=4.0, tau_coulomb=0.02, deformation=0.05)
 FAST = Joint(duration=3.0, frequency=8.0, amplitude=0.05, tau_coulomb=0.02)
 CREEPS = Joint(duration=4.0, frequency=0.2, amplitude=0.5, tau_coulomb=0.02)
 ONE = {"rls.n": 1, "rls.m": 1}
+NO_MOTOR = {**PLAIN, "prior.D_theta": 0.0, "prior.tau_coulomb": 0.0, "prior.B": 0.0}
 OTHERS = {
     **{"regression.bandwidth": 200.0, "regression.slow": 0.2},
     **{"range.phi": 0.1, "noise.tau": 0.01},
@@ -68,6 +69,7 @@ def check(
 CASES: Mapping[str, tuple[Joint, Mapping[str, float]]] = {
     "one coefficient": (SHORT, ONE),
     "one coefficient, plain": (JOINT, {**ONE, **PLAIN}),
+    "one column": (replace(SHORT, tau_coulomb=0.0), {**ONE, **NO_MOTOR, "regression.drift": 1e-2}),
     "sensor": (SHORT, {**ONE, "modality": SENSOR}),
     "general basis": (SHORT, {"rls.symmetric": 0, "rls.n": 4, "rls.m": 1}),
     "turned round": (replace(FAST, duration=1.5), {**ONE, "motor.gamma": -50.0}),

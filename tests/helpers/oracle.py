@@ -160,10 +160,9 @@ def least_squares(
         a = {ENHANCED: (c + c * rho) / (1 + c * rho), STANDARD: gmpy2.mpfr(1)}.get(kind, c)
         eta = eta + a * np.outer(K, epsilon)
         P = P - a * np.outer(K, PF)
-        variances = rho - a * rho**2 / (1 + rho), dF_k @ P @ dF_k
-        ticks.append((eta, epsilon, rho, a, variances))
-    eta, epsilon, rho, a, variances = (np.array(each) for each in zip(*ticks, strict=True))
-    return Regression(eta, epsilon, rho, a, variances, P)
+        ticks.append((eta, epsilon, rho, a, (rho - a * rho**2 / (1 + rho), dF_k @ P @ dF_k)))
+    etas, epsilons, rhos, factors, variances = map(np.array, zip(*ticks, strict=True))
+    return Regression(etas, epsilons, rhos, factors, variances, P)
 
 
 def solve(matrix: Exact, right: Exact) -> Exact:
