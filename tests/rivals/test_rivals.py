@@ -11,7 +11,7 @@ from closed_form_joint import COUNTS, closed_form_log
 from regression_joint import D_THETA, GAMMA, B, T
 from rivals.methods import METHODS
 from rivals.records import Estimate, JointLog, Known
-from rivals.score import COLUMNS, QUANTILE, Result, page, score, winkler
+from rivals.score import COLUMNS, QUANTILE, Result, page, score
 
 ERRORS = {"FilteredRegression": 0.5, "least_squares": 0.1}
 """Largest root mean square error of the stiffness [%]."""
@@ -52,12 +52,6 @@ def test_paper2011_finds_the_stiffness_of_a_joint_without_coulomb_friction() -> 
     assert found["error"] < 5
     assert not estimate.confident.any()
     assert np.isnan([found["width"], found["coverage"], found["interval_score"]]).all()
-
-
-def test_the_interval_score_is_the_width_and_40_times_what_is_outside() -> None:
-    true = np.array([10.0, 10.0, 10.0])
-    low, high = np.array([9.0, 10.5, 5.0]), np.array([11.0, 12.0, 9.9])
-    np.testing.assert_allclose(winkler(true, low, high), [2.0, 1.5 + 20.0, 4.9 + 4.0])
 
 
 SHORT = JointLog(0.5, np.zeros(8), np.zeros(8), np.zeros(8), np.full(8, 100.0), KNOWN)
