@@ -1,4 +1,4 @@
-/* What only FMI 2.0 has: memory from the importer, derivatives of inputs, status of a step. */
+/* What only FMI 2.0 has: memory from the importer, derivatives of inputs. */
 
 static int allocations_left; /* until the allocator of the importer fails */
 
@@ -89,21 +89,6 @@ static void set_derivatives(sequence *s)
     fmi2SetRealInputDerivatives(s->instance, references, n, seldom(s, 99) ? NULL : orders, values);
 }
 
-static void ask_for_the_status(sequence *s)
-{
-    const fmi2StatusKind kind = (fmi2StatusKind)below(s, 4);
-    fmi2Status status;
-    double real;
-    int integer;
-    fmi2String string;
-
-    fmi2GetStatus(s->instance, kind, &status);
-    fmi2GetRealStatus(s->instance, kind, seldom(s, 9) ? NULL : &real);
-    fmi2GetIntegerStatus(s->instance, kind, &integer);
-    fmi2GetBooleanStatus(s->instance, kind, seldom(s, 9) ? NULL : &integer);
-    fmi2GetStringStatus(s->instance, kind, &string);
-}
-
 /* In FMI 2.0 a call of its own, and an importer may leave it out. */
 static void set_up(sequence *s)
 {
@@ -122,8 +107,5 @@ static void set_up(sequence *s)
 
 static void call_of_this_version(sequence *s)
 {
-    static void (*const CALLS[])(sequence *) = {ask_for_the_status, set_up, set_derivatives,
-                                                set_derivatives};
-
-    CALLS[below(s, sizeof CALLS / sizeof CALLS[0])](s);
+    (below(s, 4) == 0 ? set_up : set_derivatives)(s);
 }
