@@ -100,9 +100,11 @@ def test_a_negative_weight_removes_a_sample(c: Library, size: int) -> None:
 def test_fading_keeps_the_least_precision(c: Library) -> None:
     a = Information(c, 5)
     a.fill(np.random.default_rng(3), 20)
+    rest = a.a.squares
     for _ in range(100):
         c.lib.sh_information_forget(a.a, 0.5, 1.0)
     assert factors(a.a)[1].tolist() == [1.0] * 5
+    assert a.a.squares == pytest.approx(rest * 0.5**100)
 
 
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12, 0.0])

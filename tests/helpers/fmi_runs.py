@@ -81,7 +81,6 @@ class Driver:
         return self.result()
 
     def result(self) -> bytes:
-        """The outputs."""
         values = (REAL * len(self.outputs))()
         assert self.fmu.access(f"Get{self.fmu.real}", self._from, values) == OK
         return bytes(values)

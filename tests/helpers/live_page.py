@@ -80,7 +80,6 @@ class LivePage:
         return self.text("log-message")
 
     def fills(self, fields: Mapping[str, object]) -> None:
-        """Fills fields of the log in."""
         self.page.run(_FILL, fields)
 
     def estimates(self, fields: Mapping[str, object]) -> str:
@@ -96,7 +95,6 @@ class LivePage:
         return self.arrays(script, names)
 
     def until(self, is_so: Callable[[], object]) -> None:
-        """Waits until something is so."""
         WebDriverWait(self.page.driver, _LONGEST, poll_frequency=0.05).until(lambda _: is_so())
 
 

@@ -105,7 +105,6 @@ class Hand:
         Select(self.find(name)).select_by_visible_text(item)
 
     def presses(self, name: str) -> None:
-        """Presses a button."""
         button = self.find(name)
         self.page.run("arguments[0].scrollIntoView({block: 'center'})", button)
         button.click()
@@ -142,7 +141,6 @@ class Hand:
             return False  # the page is drawing it anew: it is gone, or there twice, for a moment
 
     def until(self, is_so: Callable[[], bool], what: str) -> None:
-        """Waits until something is so."""
         end = time.monotonic() + _LONGEST
         while not self._now(is_so):
             assert time.monotonic() < end, f"{what!r} is not in: {self.text()}"
