@@ -1,4 +1,4 @@
-"""The parts of a joint. `draw.py` draws their values, `simulation.py` builds the joint."""
+"""What a joint is made of. `draw.py` draws the values, `simulation.py` builds what they say."""
 
 from __future__ import annotations
 
@@ -80,34 +80,65 @@ class Spring:
 
 
 @dataclass(frozen=True)
+class Tendons:
+    """Two tendons from a lever on the motor's flange to a slider on the link, mirror images.
+
+    Each begins on the flange at the radius `lever`, at the angle +-`spread` from the link, passes
+    an eyelet on the link at the radius `eyelet`, and ends on the slider. When the slider moves out
+    by x, both get longer by x: the tension rises, and with it the stiffness of the joint.
+    """
+
+    lever: float  # [m]
+    eyelet: float  # [m]
+    spread: float  # [rad]
+    stiffness: float  # of one tendon [N/m]
+    tension: float  # of one tendon at phi = 0, x = 0 [N]
+    travel: float  # x when the stiffness motor has turned by one radian [m/rad]
+    range_theta_c: float  # the stiffness motor turns from 0 to this [rad]
+    damping: float  # of the joint [N.m.s/rad]
+
+    def length(self, alpha: float) -> float:
+        """From lever to eyelet when the angle between them is alpha [m]."""
+        a, r = self.lever, self.eyelet
+        return math.sqrt(a * a + r * r - 2 * a * r * math.cos(alpha))
+
+    def joint_stiffness(self, theta_c: float) -> float:
+        """Slope of the torque at phi = 0 [N.m/rad]."""
+        a, r, alpha = self.lever, self.eyelet, self.spread
+        d = self.length(alpha)
+        slope = a * r * math.sin(alpha) / d
+        bend = (a * r * math.cos(alpha) - slope**2) / d
+        tension = self.tension + self.stiffness * self.travel * theta_c
+        return 2 * (self.stiffness * slope**2 + tension * bend)
+
+
+@dataclass(frozen=True)
 class Link:
-    """A rod that turns about a horizontal or a vertical axis; it hangs down at q = 0."""
+    """A link that turns about a horizontal axis; it hangs down at q = 0."""
 
     mass: float  # [kg]
-    length: float  # [m]
+    length: float  # to the next joint or to the tip [m]
+    centre: float  # from the axis to the centre of mass [m]
+    inertia: float  # about the centre of mass [kg.m2]
 
     @property
-    def centre(self) -> float:
-        """Distance from the axis to the centre of mass [m]."""
-        return self.length / 2
-
-    @property
-    def inertia(self) -> float:
-        """Inertia about the centre of mass [kg.m2]."""
-        return self.mass * self.length**2 / 12
+    def about_axis(self) -> float:
+        """Inertia about the axis of the joint [kg.m2]."""
+        return self.inertia + self.mass * self.centre**2
 
 
 @dataclass(frozen=True)
 class Drive:
     """Command of a motor: u = feed_forward + kp (reference - theta) - kd theta', within +-peak.
 
-    theta is the encoder reading, theta' its difference through a low pass of the first order.
+    theta is what the encoder reads, theta' its difference through a low pass of the first order.
     """
 
     feed_forward: Array  # [N.m] at every sample
     reference: Array  # [rad] at every sample
     kp: float  # [N.m/rad]
     kd: float  # [N.m.s/rad]
+    peak: float  # [N.m]
 
 
 @dataclass(frozen=True)
@@ -125,7 +156,7 @@ class Instruments:
 
 @dataclass(frozen=True)
 class Sheet:
-    """Errors of the owner's data: factors to the true values."""
+    """How wrong the owner's data are: factors to the true values."""
 
     B: float
     D: float
@@ -134,14 +165,22 @@ class Sheet:
     tau_e: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Joint:
-    """A motor, a spring and a link, with drive and instruments."""
+    """Motors, links, drives and instruments: one of each but for an arm, which has two.
 
-    motor: Motor
-    spring: Spring
-    link: Link
-    gravity: float  # 0 where the axis is vertical [m/s2]
-    drive: Drive
-    instruments: Instruments
+    An arm has two links in a vertical plane, a motor and a spring in each joint, and a floor.
+    """
+
+    motors: tuple[Motor, ...]
+    links: tuple[Link, ...]
+    drives: tuple[Drive, ...]
+    instruments: tuple[Instruments, ...]
     sheet: Sheet
+    gravity: float  # 0 where the axis is vertical [m/s2]
+    springs: tuple[Spring, ...] = ()  # one a motor, or none beside tendons
+    tendons: Tendons | None = None
+    theta_c: Array | None = None  # where the stiffness motor shall be at every sample [rad]
+    floor: float | None = None  # of an arm, height against the first axis [m]
+    start: tuple[float, ...] = (0.0,)  # angles of the motors [rad]
+    observed: int = 0  # the joint in the log; of an arm 0 is the shoulder, 1 the elbow

@@ -1,13 +1,15 @@
 """The methods that are compared, by name: those of this package, and least squares.
 
-In all methods the torque of the spring is the same odd cubic polynomial in the deformation, because
-an owner does not know whether a spring hardens.
+All share the spring: its torque is a linear combination of given functions, the odd cubic
+polynomial in the deformation, because an owner does not know whether a spring hardens. Where the
+stiffness is variable, its coefficients are quadratic in the position of the stiffness motor.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import signal
@@ -29,10 +31,42 @@ DYNAMICS = 0.99
 """Share of the power of the motor velocity below the frequency of the dynamics."""
 EDGE = 5
 """Rows that are dropped at both ends, where filters without lag have no past or no future."""
-MOTOR, SPRING = slice(0, 2), slice(4, None)
-"""Columns of least squares: inertia and viscous friction; the functions of the spring."""
-N = 2
-"""Odd powers of the deformation in the torque of the spring."""
+INERTIA, VISCOUS, COULOMB, OFFSET, SPRING = 0, 1, 2, 3, 4
+"""Columns of least squares; those of the spring are the last ones."""
+
+
+@dataclass(frozen=True)
+class _Spring:
+    """tau_e = sum of c_ij x^(2i+1)/(2i+1) l^j with x, l over their ranges; i below n, j below m.
+
+    The range of the stiffness motor is its travel in this log: an owner knows it.
+    """
+
+    log: JointLog
+
+    n = 2
+
+    @property
+    def m(self) -> int:
+        return 3 if self.log.theta_c.any() else 1
+
+    @property
+    def range_theta_c(self) -> float:
+        return float(np.abs(self.log.theta_c).max()) or 1.0
+
+    def torque(self, phi: Array) -> Array:
+        """The functions [size: samples x n m]. A coefficient is a torque [N.m]."""
+        x = phi / self.log.known.range_phi
+        return self._products([x ** (2 * i + 1) / (2 * i + 1) for i in range(self.n)])
+
+    def slope(self, phi: Array) -> Array:
+        """Their derivatives with respect to the deformation [size: samples x n m], [1/rad]."""
+        x = phi / self.log.known.range_phi
+        return self._products([x ** (2 * i) / self.log.known.range_phi for i in range(self.n)])
+
+    def _products(self, of_phi: list[Array]) -> Array:
+        r = self.log.theta_c / self.range_theta_c
+        return np.column_stack([p * r**j for p in of_phi for j in range(self.m)])
 
 
 def _filtered_regression(log: JointLog) -> Estimate:
@@ -47,6 +81,7 @@ def _filtered_regression(log: JointLog) -> Estimate:
         {
             "method": "FilteredRegression",
             "range.phi": known.range_phi,
+            "range.setPoint": _Spring(log).range_theta_c,
             "prior.tau_e": known.range_tau_e,
             "prior.B": known.relative_std_B,
             "prior.D_theta": known.relative_std_D_theta,
@@ -75,7 +110,7 @@ def _paper2011(log: JointLog) -> Estimate:
 
 def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
     """What the estimator of this package says. `start` has the parameters of the method."""
-    known = log.known
+    known, spring = log.known, _Spring(log)
     estimator = sigmahat.Estimator(
         {
             "samplePeriod": log.sample_period,
@@ -84,15 +119,17 @@ def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
             "motor.D_theta": known.D_theta,
             "encoder.theta": float(known.counts_theta),
             "encoder.q": float(known.counts_q),
-            "rls.n": N,
-            "rls.m": 1,
+            "setPoint.offset": 0.0,
+            "setPoint.scale": 1.0,
+            "rls.n": spring.n,
+            "rls.m": spring.m,
             "noise.tau": known.noise_tau,
             **start,
         },
         ("sigma", "sigma_std", "confident"),
     )
     begin = time.perf_counter()
-    found = estimator.run(log.theta, log.q, log.tau)
+    found = estimator.run(log.theta, log.q, log.tau, log.theta_c)
     seconds = time.perf_counter() - begin
     return Estimate(found["sigma"], found["sigma_std"], found["confident"], seconds)
 
@@ -122,8 +159,8 @@ def _least_squares(log: JointLog) -> Estimate:
     begin = time.perf_counter()
     X, y, slope = _regression(log)
     beta, covariance = _solve(X, y, log.known)
-    stiffness = slope @ beta[SPRING]
-    variance = np.sum((slope @ covariance[SPRING, SPRING]) * slope, axis=1)
+    stiffness = slope @ beta[SPRING:]
+    variance = np.sum((slope @ covariance[SPRING:, SPRING:]) * slope, axis=1)
     std = np.hypot(np.sqrt(np.maximum(variance, 0.0)), log.known.relative_std_gain * stiffness)
     confident = np.isfinite(stiffness) & np.isfinite(std) & (std < CONFIDENT * stiffness)
     return Estimate(stiffness, std, confident, time.perf_counter() - begin)
@@ -135,30 +172,19 @@ def _regression(log: JointLog) -> tuple[Array, Array, Array]:
 
     Raises ValueError if the motor does not move.
     """
-    T, g, f = log.sample_period, log.known.gamma, _dynamics(log)
+    T, g, spring, f = log.sample_period, log.known.gamma, _Spring(log), _dynamics(log)
     corner = min(10 * f * 2 * T, 0.8)
     butterworth = signal.butter(ORDER, corner, output="sos")
     theta, q = (signal.sosfiltfilt(butterworth, x) for x in (log.theta, log.q))
-    theta_dot = np.gradient(theta, T)
-    torque, slope = _spring((q - theta) / log.known.range_phi)
+    theta_dot, phi = np.gradient(theta, T), q - theta
     columns = (
         *(g**2 * np.gradient(theta_dot, T), g**2 * theta_dot, g * np.sign(theta_dot)),
-        *(np.ones(len(theta)), -torque, g * log.tau),
+        *(np.ones(len(theta)), -spring.torque(phi), g * log.tau),
     )
     keep = max(int(0.8 / (2 * f * 2 * T)), 1)  # the low pass of a decimation is at 0.8 of Nyquist
     chebyshev = signal.cheby1(8, 0.05, 0.8 / keep, output="sos")
     rows = signal.sosfiltfilt(chebyshev, np.column_stack(columns), axis=0)[::keep][EDGE:-EDGE]
-    return rows[:, :-1], rows[:, -1], slope / log.known.range_phi
-
-
-def _spring(x: Array) -> tuple[Array, Array]:
-    """The functions x^(2i+1)/(2i+1) of the deformation x over its range, and their slopes.
-
-    The torque of the spring is a linear combination of them. Both [size: samples x coefficients].
-    """
-    torque = [x ** (2 * i + 1) / (2 * i + 1) for i in range(N)]
-    slope = [x ** (2 * i) for i in range(N)]
-    return np.column_stack(torque), np.column_stack(slope)
+    return rows[:, :-1], rows[:, -1], spring.slope(phi)
 
 
 def _dynamics(log: JointLog) -> float:
@@ -166,7 +192,7 @@ def _dynamics(log: JointLog) -> float:
     T, counts = log.sample_period, log.known.counts_theta
     segment = min(len(log.theta), round(8 / T))
     f, density = signal.welch(log.theta, 1 / T, nperseg=segment, detrend="linear")
-    std = 2 * np.pi / counts / np.sqrt(12)  # of the rounding of the encoder
+    std = 2 * np.pi / counts / np.sqrt(12) if counts else 0.0  # of the rounding of the encoder
     rounding = 2 * T * std**2  # white, one-sided density
     power = (2 * np.pi * f) ** 2 * np.where(density > 4 * rounding, density, 0.0)
     if not power.sum() > 0:
@@ -180,9 +206,13 @@ def _solve(X: Array, y: Array, known: Known) -> tuple[Array, Array]:
     scale = np.sqrt(np.mean(X**2, axis=0))
     X = X / scale
     mean, information = np.zeros(len(scale)), np.zeros(len(scale))  # of the data sheet
-    relative = np.array([known.relative_std_B, known.relative_std_D_theta])
-    mean[MOTOR] = np.array([known.B, known.D_theta]) * scale[MOTOR]
-    information[MOTOR] = (relative * mean[MOTOR]) ** -2
+    for column, value, relative in (
+        (INERTIA, known.B, known.relative_std_B),
+        (VISCOUS, known.D_theta, known.relative_std_D_theta),
+    ):
+        mean[column] = value * scale[column]
+        if value and relative:
+            information[column] = (relative * value * scale[column]) ** -2
     beta = np.linalg.lstsq(X, y)[0]
     for _ in range(2):  # the first time the residual is that without the rows of the data sheet
         residual = y - X @ beta

@@ -12,18 +12,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Known:
-    """The owner's data of a joint. Values are those of a data sheet, so they have errors."""
+    """What the owner of a joint knows about it. Values are data sheet values, so they are wrong."""
 
     gamma: float  # gear ratio
     B: float  # motor inertia on the motor's axis [kg.m2]
     D_theta: float  # viscous friction on the motor's axis [N.m.s/rad]
     relative_std_B: float
     relative_std_D_theta: float
-    relative_std_gain: float  # of the measured torque; no log shows the gain
+    relative_std_gain: float  # of the measured torque, which no log shows
     tau_coulomb: float  # largest plausible Coulomb friction on the motor's axis [N.m]
     noise_tau: float  # standard deviation of the measured motor torque [N.m]
-    counts_theta: int  # counts of the motor encoder per turn behind the gear
-    counts_q: int  # counts of the link encoder per turn
+    counts_theta: int  # counts of the motor encoder per turn behind the gear; 0: not quantised
+    counts_q: int  # counts of the link encoder per turn; 0: not quantised
     range_phi: float  # largest expected deformation [rad]
     range_tau_e: float  # largest expected torque of the spring [N.m]
 
@@ -32,11 +32,15 @@ class Known:
 class JointLog:
     """One run of one joint. All arrays have one entry a sample."""
 
+    kind: str  # series_elastic, variable_stiffness or arm
+    seed: int
     sample_period: float  # [s]
     theta: Array  # measured motor position behind the gear [rad]
     q: Array  # measured link position [rad]
     tau: Array  # measured motor torque on the motor's axis [N.m]
-    stiffness: Array  # true slope d tau_e / d phi of the torque on the motor, phi = q - theta
+    theta_c: Array  # measured position of the stiffness motor; 0 where there is none [rad]
+    tau_e: Array  # true torque of the spring, which acts on the motor [N.m]
+    stiffness: Array  # true slope d tau_e / d phi, phi = q - theta [N.m/rad]
     known: Known
 
 

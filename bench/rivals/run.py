@@ -1,4 +1,4 @@
-"""Runs all methods on all joints, writes results and table: python -m rivals.run --help.
+"""Runs all methods on all joints, writes results and tables: python -m rivals.run --help.
 
 Needs the folders bench/ and harness/ on the path; cmake --workflow --preset rivals sees to it.
 """
@@ -6,27 +6,23 @@ Needs the folders bench/ and harness/ on the path; cmake --workflow --preset riv
 from __future__ import annotations
 
 import argparse
-import itertools
 import sys
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 
+from rivals.draw import KINDS
 from rivals.methods import METHODS
-from rivals.score import Result, page, score
+from rivals.score import RESULT, Result, judge, page
 from rivals.simulation import make
 from sigmahat.files.tables import write_csv
-from sigmahat.runs.engine import run_all
 
 
-def run_joint(seed: int) -> list[Result]:
-    """Results of all methods on the joint with this seed."""
-    log = make(seed)
-    results = []
-    for method, estimate in METHODS.items():
-        found = estimate(log)
-        about = {"seed": seed, "method": method, "seconds": found.seconds}
-        results.append({**about, **score(log, found)})
-    return results
+def run_joint(methods: Sequence[str], joint: tuple[str, int]) -> list[Result]:
+    """Results of the methods on the joint of this kind and seed."""
+    log = make(*joint)
+    return [judge(name, METHODS[name], log) for name in methods]
 
 
 def main() -> None:
@@ -39,19 +35,22 @@ def main() -> None:
         default=(1, 5),
         help="of the joints; default: 1 5, which methods may be developed with",
     )
-    parser.add_argument("--out", type=Path, required=True, help="folder for results and table")
+    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
+    parser.add_argument("--jobs", type=int, default=1, help="processes; default: %(default)s")
+    parser.add_argument("--out", type=Path, required=True, help="folder for results and tables")
     arguments = parser.parse_args()
     first, last = arguments.seeds
-    jobs = [partial(run_joint, seed) for seed in range(first, last + 1)]
-    done = itertools.count(1)
-
-    def progress(_: int) -> None:
-        print(f"{next(done)} of {len(jobs)}", file=sys.stderr, flush=True)
-
-    results = [each for joint in run_all(jobs, progress=progress) for each in joint]
+    joints = [(kind, seed) for kind in arguments.kinds for seed in range(first, last + 1)]
+    results: list[Result] = []
+    with ProcessPoolExecutor(arguments.jobs) as pool:
+        for found in pool.map(partial(run_joint, arguments.methods), joints):
+            results += found
+            print(found[0]["kind"], found[0]["seed"], file=sys.stderr, flush=True)
     text = page(results)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    write_csv(arguments.out / "rivals.csv", list(results[0]), (list(r.values()) for r in results))
+    rows = ([result.get(name) for name in RESULT] for result in results)
+    write_csv(arguments.out / "rivals.csv", RESULT, rows)
     (arguments.out / "rivals.md").write_text(text, encoding="utf-8")
     print(text)
 

@@ -1,4 +1,4 @@
-"""The errors of an estimate of a log and of its intervals, and the table of all results."""
+"""How right an estimate of a log and its interval are, and the table of all results."""
 
 from __future__ import annotations
 
@@ -18,9 +18,17 @@ QUANTILE = 1.96
 """The interval is the estimate and this many standard deviations to both sides."""
 WRONG = 0.2
 """Relative error above which a confident estimate is wrong."""
+SCORES = ("error", "width", "coverage", "interval_score", "confident", "wrong")
+RESULT = ("kind", "seed", "method", "seconds", "remark", *SCORES)
+"""Names in the result of a method on a log."""
+HEAD = (
+    *("joint", "method", "estimates", "error %", "interval width %", "coverage %"),
+    *("interval score %", "lowest score %", "time s", "confident %", "confident and wrong %"),
+)
 
 Result = dict[str, Any]
-"""A method on a joint: seed and method; wall time `seconds` [s]; the scores of `score`."""
+"""By RESULT: kind, seed and method; wall time [s], nan if the method failed, and why; SCORES if it
+did not."""
 
 
 def score(log: JointLog, estimate: Estimate) -> dict[str, float]:
@@ -31,23 +39,25 @@ def score(log: JointLog, estimate: Estimate) -> dict[str, float]:
     confident, and confident with an error above WRONG.
 
     Instants at which the true stiffness is not positive are left out: the spring is not engaged.
+    Raises ValueError if none is left, or if the estimate is not finite at one of them.
     """
     time = log.sample_period * np.arange(len(log.stiffness))
     judged = (time >= SETTLED) & (log.stiffness > 0)
+    if not judged.any():
+        raise ValueError(f"the log has no stiffness after {SETTLED:g} s")
     confident = estimate.confident[judged]
     true, found, std = (a[judged] for a in (log.stiffness, estimate.stiffness, estimate.std))
+    if not np.isfinite(found).all():
+        raise ValueError(f"not finite at {np.count_nonzero(~np.isfinite(found))} instants")
     error = np.abs(found / true - 1)
     low, high = found - QUANTILE * std, found + QUANTILE * std
     holds = np.mean((low <= true) & (true <= high)) if np.isfinite(std).any() else math.nan
-    shares = {
-        "error": np.sqrt(np.mean(error**2)),
-        "width": np.mean((high - low) / true),
-        "coverage": holds,
-        "interval_score": np.mean(winkler(true, low, high) / true),
-        "confident": np.mean(confident),
-        "wrong": np.mean(confident & (error > WRONG)),
-    }
-    return {name: 100 * float(share) for name, share in shares.items()}
+    values = (
+        *(np.sqrt(np.mean(error**2)), np.mean((high - low) / true), holds),
+        *(np.mean(winkler(true, low, high) / true), np.mean(confident)),
+        np.mean(confident & (error > WRONG)),
+    )
+    return {name: 100 * float(value) for name, value in zip(SCORES, values, strict=True)}
 
 
 def winkler(true: Array, low: Array, high: Array) -> Array:
@@ -61,37 +71,52 @@ def winkler(true: Array, low: Array, high: Array) -> Array:
     return high - low + 2 / (1 - INTERVAL) * outside
 
 
-COLUMNS: dict[str, tuple[str, Callable[[list[float]], Any]]] = {
-    "error": ("error %", np.median),
-    "width": ("interval width %", np.median),
-    "coverage": ("coverage %", np.mean),
-    "interval_score": ("interval score %", np.median),
-    "lowest": ("lowest score %", np.mean),
-    "seconds": ("time s", np.median),
-    "confident": ("confident %", np.mean),
-    "wrong": ("confident and wrong %", np.mean),
-}
-"""Title and mean of each number in the table."""
+def judge(method: str, estimate: Callable[[JointLog], Estimate], log: JointLog) -> Result:
+    """Result of a method on a log. A method that raises an exception has no score."""
+    result = {"kind": log.kind, "seed": log.seed, "method": method}
+    try:
+        found = estimate(log)
+        return {**result, "seconds": found.seconds, "remark": "", **score(log, found)}
+    except Exception as error:  # whatever a rival raises is a row of the table
+        return {**result, "seconds": math.nan, "remark": f"{type(error).__name__}: {error}"}
 
 
 def page(results: Sequence[Result]) -> str:
-    """The table as Markdown: a row for each method."""
-    titles = ["method", *(title for title, _ in COLUMNS.values())]
-    rows = [titles, ["---"] * len(titles)]
-    lowest = _lowest(results)
-    for method in dict.fromkeys(result["method"] for result in results):
-        own = [
-            {**result, "lowest": 100.0 * (lowest[result["seed"]] == method)}
-            for result in results
-            if result["method"] == method
-        ]
-        means = [mean([each[name] for each in own]) for name, (_, mean) in COLUMNS.items()]
-        rows.append([method, *("-" if math.isnan(x) else f"{x:.3g}" for x in means)])
-    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
+    """The table as Markdown: a row for each kind of joint and method."""
+    lines = [
+        "Error (root mean square), interval width, interval score and time are medians over the "
+        "logs, the others means. The interval is that of 95 %. *Lowest score*: the share of the "
+        "logs on which the interval score of this method is the lowest. `rivals.csv` has every "
+        "log, and why an estimate is missing.",
+        "",
+        *("| " + " | ".join(cells) + " |" for cells in (HEAD, ["---"] * len(HEAD))),
+    ]
+    for kind, method in dict.fromkeys((r["kind"], r["method"]) for r in results):
+        cells = _cells([r for r in results if r["kind"] == kind], method)
+        lines.append(f"| {kind} | {method} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
 
 
-def _lowest(results: Sequence[Result]) -> dict[int, str]:
-    """The method with the lowest interval score, by seed."""
-    scored = [r for r in results if not math.isnan(r["interval_score"])]
-    scored.sort(key=lambda r: r["interval_score"], reverse=True)
-    return {r["seed"]: r["method"] for r in scored}  # the last one stays
+def _cells(results: Sequence[Result], method: str) -> list[str]:
+    """The cells of a method, from the results of all methods on one kind of joint."""
+    own = [r for r in results if r["method"] == method]
+    scored = [r for r in own if "error" in r]
+
+    def cell(name: str, over: str, digits: int = 3) -> str:
+        values = [r[name] for r in scored if not math.isnan(r[name])]
+        return f"{getattr(np, over)(values):.{digits}g}" if values else "-"
+
+    lowest = 100 * list(best(results).values()).count(method) / len(own)
+    return [
+        f"{len(scored)} of {len(own)}",
+        *(cell("error", "median"), cell("width", "median"), cell("coverage", "mean")),
+        *(cell("interval_score", "median"), f"{lowest:.3g}", cell("seconds", "median", 2)),
+        *(cell("confident", "mean"), cell("wrong", "mean")),
+    ]
+
+
+def best(results: Sequence[Result]) -> dict[tuple[str, int], str]:
+    """The method with the lowest interval score, by kind and seed."""
+    scored = [r for r in results if not math.isnan(r.get("interval_score", math.nan))]
+    scored.sort(key=lambda r: (r["interval_score"], r["method"]), reverse=True)
+    return {(r["kind"], r["seed"]): r["method"] for r in scored}  # the last one stays

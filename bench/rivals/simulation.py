@@ -1,8 +1,10 @@
-"""Runs a joint in MuJoCo: drive at the rate of the log, current loop, encoders; makes the log.
+"""Runs a joint in MuJoCo: drives at the rate of the log, current loops, encoders; makes the log.
 
-The motor is the hinge theta. The spring is on the hinge phi of the body behind it, so that
-q = theta + phi. Armature, damping, dry friction (a constraint, whose limit is set at every step),
-spring and integration are MuJoCo's.
+Motor i is the hinge theta_i, with an actuator; its spring is on the hinge phi_i of the body behind
+it, so that q = theta + phi. Armature, damping, dry friction (a constraint, whose limit is set at
+every step), springs, tendons, contact and integration are MuJoCo's. The tendons are spatial: MuJoCo
+finds their lengths and lever arms, so their torque is no formula of ours. They pull, and do not
+push; `joint.Tendons` says how they run.
 """
 
 from __future__ import annotations
@@ -13,41 +15,52 @@ from typing import Any
 
 import numpy as np
 
-from rivals.draw import SAMPLE_PERIOD, STD_B, STD_D, STD_GAIN, drawn
-from rivals.joint import Joint
+from rivals.draw import KINDS, SAMPLE_PERIOD, STD_B, STD_D, STD_GAIN, TIP, drawn
+from rivals.joint import Drive, Instruments, Joint, Link, Motor, Tendons
 from rivals.records import Array, JointLog, Known
 
 STEP = 1e-4  # of the physics [s]
 VELOCITY_LAG = 5e-3  # of the low pass behind the difference of the encoder [s]
 INNER_DELAY = 2e-4  # from command to torque where the log has measured torque [s]
+DIFFERENCE = 1e-6  # of phi, for the slope of the torque [rad]
 FLANGE = 0.002
 """Share of a motor's inertia that is a body behind its gear, the rest is armature. An engine needs
-a body there, which has no weight."""
+a body there; its acceleration is that of the flange in space, and it has no weight."""
+SLIDER_MASS = 0.1  # [kg]
+SLIDER_ARMATURE = 5.0  # of its screw and motor [kg]
+SERVO = 40.0  # stiffness of the servo of the slider, by that of a tendon
+DAMPED = 1.4  # damping of that servo, by the geometric mean of its stiffness and armature
 
 Run = dict[str, Array]
-"""A run without errors, one entry a sample.
+"""Of the observed joint, without errors, one entry a sample; torques behind the gear, on the motor.
 
-theta, phi [rad], theta_dot [rad/s], theta_ddot [rad/s2]; torques behind the gear, on the motor:
-dry friction that the engine applied, damper and spring (tau_e) [N.m]; stiffness [N.m/rad]; torques
-on the motor's axis: command, torque, late (the torque after the delay of its measurement) [N.m].
+theta, phi [rad], theta_dot [rad/s], theta_ddot [rad/s2], dry friction that the engine applied,
+damper and spring (tau_e) [N.m], stiffness [N.m/rad], theta_c [rad]; on the motor's axis: torque,
+the same as late as it comes into the log, command [N.m].
 """
 
 
-def make(seed: int) -> JointLog:
-    """The log of the joint with this seed."""
-    joint = drawn(seed)
-    return log(run(joint), joint, np.random.default_rng([seed, 0, 0, 1]))
+def make(kind: str, seed: int) -> JointLog:
+    """The log of a joint: one of KINDS."""
+    joint = drawn(kind, seed)
+    noise = np.random.default_rng([seed, KINDS.index(kind), 0, 1])
+    return log(kind, seed, run(joint), joint, noise)
 
 
-def log(run: Run, joint: Joint, rng: np.random.Generator) -> JointLog:
+def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) -> JointLog:
     """The log of a run of a joint; `rng` draws the noise."""
-    sheet, motor, tools = joint.sheet, joint.motor, joint.instruments
+    sheet, motor = joint.sheet, joint.motors[joint.observed]
+    tools = joint.instruments[joint.observed]
     torque = run["command" if tools.commanded else "late"]
     return JointLog(
+        kind=kind,
+        seed=seed,
         sample_period=SAMPLE_PERIOD,
         theta=_rounded(run["theta"], tools.counts_theta),
         q=_rounded(run["theta"] + run["phi"], tools.counts_q),
         tau=tools.gain * torque + tools.noise * rng.standard_normal(len(torque)),
+        theta_c=run["theta_c"],
+        tau_e=run["tau_e"],
         stiffness=run["stiffness"],
         known=Known(
             gamma=motor.gear,
@@ -67,29 +80,36 @@ def log(run: Run, joint: Joint, rng: np.random.Generator) -> JointLog:
 
 
 def _rounded(angle: Array, counts: int) -> Array:
-    """The reading of an encoder with this number of counts a turn [rad], also beyond a turn."""
+    """What an encoder with this number of counts a turn reads [rad]; it counts on past a turn."""
     count = 2 * math.pi / counts
     read: Array = np.round(angle / count) * count
     return read
 
 
 def run(joint: Joint) -> Run:
-    """Runs the drive of a joint to its end."""
-    physics, axis = _Physics(joint), _Axis(joint)
+    """Runs the drives of a joint to their end."""
+    physics, observed = _Physics(joint), joint.observed
+    parts = zip(joint.motors, joint.drives, joint.instruments, strict=True)
+    axes = [_Axis(*each) for each in parts]
+    samples = len(joint.drives[0].reference)
+    targets = np.zeros(samples) if joint.theta_c is None else joint.theta_c
     rows: list[dict[str, float]] = []
-    for k in range(len(joint.drive.reference)):
-        axis.decide(k, physics.theta)
+    for k in range(samples):
+        for axis, (theta, _, _) in zip(axes, physics.motors(), strict=True):
+            axis.decide(k, theta)
         for substep in range(round(SAMPLE_PERIOD / STEP)):
-            axis.act(physics.velocity, physics.load)
-            state = physics.advance(axis.torque, axis.dry)
+            for axis, state in zip(axes, physics.motors(), strict=True):
+                axis.act(*state)
+            before = physics.advance(axes, float(targets[k]))
             if substep == 0:
+                axis = axes[observed]
                 of_axis = {"torque": axis.torque, "late": axis.late, "command": axis.command}
-                rows.append({**state, **of_axis})
+                rows.append({**before, **physics.instant(), **of_axis})
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 class _Delay:
-    """Gives the value of `seconds` ago, to the nearest step; zero before that."""
+    """Gives what it was given `seconds` ago, to the nearest step; zero before that."""
 
     def __init__(self, seconds: float) -> None:
         length = 1 + round(seconds / STEP)
@@ -101,36 +121,35 @@ class _Delay:
 
 
 class _Axis:
-    """Controller, current loop and friction of the motor.
+    """Controller, current loop and friction of one motor.
 
     The torque follows its command late: after a dead time, with a lag of the first order.
     """
 
-    def __init__(self, joint: Joint) -> None:
-        tools = joint.instruments
-        at_command, at_log = tools.delay, 0.0
-        if not tools.commanded:
-            at_command, at_log = INNER_DELAY, tools.delay
+    def __init__(self, motor: Motor, drive: Drive, instruments: Instruments) -> None:
+        at_command, at_log = instruments.delay, 0.0
+        if not instruments.commanded:
+            at_command, at_log = INNER_DELAY, instruments.delay
         self._dead, self._late = _Delay(at_command), _Delay(at_log)
-        self._share = -math.expm1(-STEP / tools.lag)
-        self._count = 2 * math.pi / tools.counts_theta
-        self._motor, self._drive = joint.motor, joint.drive
+        self._share = -math.expm1(-STEP / instruments.lag)
+        self._count = 2 * math.pi / instruments.counts_theta
+        self._motor, self._drive = motor, drive
         self._seen: float | None = None
         self._velocity = 0.0
         self.command = self.torque = self.late = self.dry = 0.0
 
     def decide(self, k: int, theta: float) -> None:
-        """Sets the command of sample k; theta is the true position [rad]."""
-        drive, peak = self._drive, self._motor.peak
+        """The command of sample k; theta is the true position [rad]."""
+        drive = self._drive
         seen = round(theta / self._count) * self._count
         before = seen if self._seen is None else self._seen
         share = SAMPLE_PERIOD / (SAMPLE_PERIOD + VELOCITY_LAG)
         self._velocity += share * ((seen - before) / SAMPLE_PERIOD - self._velocity)
         self._seen = seen
         wanted = drive.kp * (drive.reference[k] - seen) - drive.kd * self._velocity
-        self.command = min(max(drive.feed_forward[k] + wanted, -peak), peak)
+        self.command = min(max(drive.feed_forward[k] + wanted, -drive.peak), drive.peak)
 
-    def act(self, v: float, load: float) -> None:
+    def act(self, _theta: float, v: float, load: float) -> None:
         """Sets the torque of the next step, and the friction `dry` that may resist it [N.m]."""
         self.torque += self._share * (self._dead(self.command) - self.torque)
         self.late = self._late(self.torque)
@@ -141,78 +160,161 @@ class _Physics:
     """A joint in MuJoCo."""
 
     def __init__(self, joint: Joint) -> None:
-        import mujoco  # drawing needs no MuJoCo
+        import mujoco  # what is drawn needs no MuJoCo
 
         self._engine = mujoco
         self._model = mujoco.MjModel.from_xml_string(_mjcf(joint))
         self._data: Any = mujoco.MjData(self._model)
-        self._gear, self._spring = joint.motor.gear, joint.spring
-        self._theta, self._phi = self._dof("theta"), self._dof("phi")
+        self._probe: Any = mujoco.MjData(self._model)
+        self._gears = [motor.gear for motor in joint.motors]
+        self._theta, self._phi = (
+            [int(self._model.joint(f"{name}_{i}").dofadr[0]) for i in range(len(joint.motors))]
+            for name in ("theta", "phi")
+        )
+        self._at = self._theta[joint.observed], self._phi[joint.observed]
+        self._travel = joint.tendons.travel if joint.tendons else 0.0
+        self._slider = int(self._model.joint("slider").dofadr[0]) if joint.tendons else -1
+        self._data.qpos[self._theta] = joint.start
         mujoco.mj_forward(self._model, self._data)
 
-    def _dof(self, name: str) -> int:
-        return int(self._model.joint(name).dofadr[0])
+    def motors(self) -> list[tuple[float, float, float]]:
+        """Position, velocity and load of each motor, behind its gear [rad, rad/s, N.m]."""
+        x, v, d = self._data.qpos, self._data.qvel, self._data
+        return [
+            (float(x[i]), float(v[i]), -float(d.qfrc_spring[j]) - float(d.qfrc_damper[j]))
+            for i, j in zip(self._theta, self._phi, strict=True)
+        ]
 
-    @property
-    def theta(self) -> float:
-        """Position of the motor behind its gear [rad]."""
-        return float(self._data.qpos[self._theta])
+    def advance(self, axes: list[_Axis], target: float) -> dict[str, float]:
+        """One step with the torques and the largest friction of the axes of the motors; positions
+        and velocity before it.
 
-    @property
-    def velocity(self) -> float:
-        """Velocity of the motor behind its gear [rad/s]."""
-        return float(self._data.qvel[self._theta])
-
-    @property
-    def load(self) -> float:
-        """Torque of the spring with its damping on the motor [N.m]."""
-        data, j = self._data, self._phi
-        return -float(data.qfrc_spring[j]) - float(data.qfrc_damper[j])
-
-    def advance(self, torque: float, dry: float) -> dict[str, float]:
-        """One step; the motion and the torques at its beginning, as in Run.
-
-        torque  of the motor, on its axis [N.m]
-        dry     largest dry friction, on the motor's axis [N.m]
+        target  where the stiffness motor shall be, if there is one [rad]
         """
-        data, i, j = self._data, self._theta, self._phi
-        data.ctrl[0] = torque
-        self._model.dof_frictionloss[i] = self._gear * dry
-        phi = float(data.qpos[j])
-        motion = {"theta": self.theta, "phi": phi, "theta_dot": self.velocity}
+        data, (i, j) = self._data, self._at
+        for k, (axis, dof) in enumerate(zip(axes, self._theta, strict=True)):
+            data.ctrl[k] = axis.torque
+            self._model.dof_frictionloss[dof] = self._gears[k] * axis.dry
+        theta_c = 0.0
+        if self._travel:
+            data.ctrl[-1] = self._travel * target
+            theta_c = float(data.qpos[self._slider]) / self._travel
+        x, theta_dot = data.qpos, float(data.qvel[i])
+        before = {"theta": float(x[i]), "phi": float(x[j]), "theta_dot": theta_dot}
+        self._probe.qpos[:] = data.qpos
         self._engine.mj_step(self._model, data)
+        return {**before, "theta_c": theta_c}
+
+    def instant(self) -> dict[str, float]:
+        """Acceleration and torques at the beginning of the step that `advance` made."""
+        data, (i, j) = self._data, self._at
         return {
-            **motion,
             "theta_ddot": float(data.qacc[i]),
+            # A contact acts on both hinges, which have one axis; dry friction is of the motor.
             "friction": float(data.qfrc_constraint[i] - data.qfrc_constraint[j]),
             "damper": -float(data.qfrc_damper[j]),
             "tau_e": -float(data.qfrc_spring[j]),
-            "stiffness": self._spring.stiffness + 3 * self._spring.k_3 * phi**2,
+            "stiffness": self._slope(j),
         }
+
+    def _slope(self, dof: int) -> float:
+        """Of the torque on the motor, by central differences of phi in the model itself."""
+        probe, phi = self._probe, float(self._probe.qpos[dof])
+        torque = []
+        for side in (1, -1):
+            probe.qpos[dof] = phi + side * DIFFERENCE
+            self._engine.mj_fwdPosition(self._model, probe)
+            self._engine.mj_fwdVelocity(self._model, probe)
+            torque.append(-float(probe.qfrc_spring[dof]))
+        return (torque[0] - torque[1]) / (2 * DIFFERENCE)
 
 
 def _mjcf(joint: Joint) -> str:
-    """The model: a flange with the motor's hinge, and a link that hangs down at q = 0."""
-    motor, spring, link = joint.motor, joint.spring, joint.link
-    flange = FLANGE * motor.inertia
-    return f"""
-        <mujoco>
-          <compiler angle="radian"/>
-          <option timestep="{STEP!r}" integrator="implicitfast" gravity="0 0 {-joint.gravity!r}"/>
-          <worldbody>
-            <body>
-              <joint name="theta" axis="0 -1 0" armature="{motor.inertia - flange!r}"
-                     damping="{motor.D * motor.gear**2!r}"
-                     frictionloss="{motor.gear * motor.friction.at_rest!r}"
-                     solreffriction="{motor.stiction_time!r} 1"/>
-              <inertial pos="0 0 0" mass="1e-6" diaginertia="{flange!r} {flange!r} {flange!r}"/>
-              <body>
-                <joint name="phi" axis="0 -1 0" stiffness="{spring.stiffness!r} 0 {spring.k_3!r}"
-                       damping="{spring.damping!r}"/>
-                <inertial pos="0 0 {-link.centre!r}" mass="{link.mass!r}"
-                          diaginertia="{link.inertia!r} {link.inertia!r} {link.inertia!r}"/>
-              </body>
-            </body>
-          </worldbody>
-          <actuator><motor joint="theta" gear="{motor.gear!r}"/></actuator>
-        </mujoco>"""
+    """The model, with an actuator for each motor."""
+    tip = beside = ""
+    if joint.tendons:
+        tip, beside = _slider(joint.tendons), _pulls(joint.tendons)
+    floor = ""
+    if joint.floor is not None:
+        floor = f'<geom type="plane" pos="0 0 {joint.floor!r}" size="5 5 1"/>'
+        tip = f'<geom type="sphere" size="{TIP!r}" pos="0 0 {-joint.links[-1].length!r}"/>'
+    bodies = tip
+    for i in reversed(range(len(joint.motors))):
+        place = f' pos="0 0 {-joint.links[i - 1].length!r}"' if i else ""
+        bodies = (
+            f"<body{place}>{_flange(joint, i)}<body>{_hinge(joint, i)}"
+            f"{_inertia(joint.links[i])}{bodies}</body></body>"
+        )
+    actuators = "".join(
+        f'<motor joint="theta_{i}" gear="{motor.gear!r}"/>' for i, motor in enumerate(joint.motors)
+    )
+    return (
+        f'<mujoco><compiler angle="radian"/>'
+        f'<option timestep="{STEP!r}" integrator="implicitfast" gravity="0 0 {-joint.gravity!r}"/>'
+        f"<worldbody>{floor}{bodies}</worldbody><actuator>{actuators}</actuator>{beside}</mujoco>"
+    )
+
+
+def _flange(joint: Joint, i: int) -> str:
+    """What stands in the body of a motor's flange: hinge, inertia, levers of tendons."""
+    motor, levers = joint.motors[i], ""
+    if joint.tendons:
+        lever, spread = joint.tendons.lever, joint.tendons.spread
+        side, up = lever * math.sin(spread), lever * math.cos(spread)
+        levers = (
+            f'<site name="left" pos="{-side!r} 0 {-up!r}"/>'
+            f'<site name="right" pos="{side!r} 0 {-up!r}"/>'
+        )
+    body = FLANGE * motor.inertia
+    return (
+        f'<joint name="theta_{i}" axis="0 -1 0" armature="{motor.inertia - body!r}"'
+        f' damping="{motor.D * motor.gear**2!r}"'
+        f' frictionloss="{motor.gear * motor.friction.at_rest!r}"'
+        f' solreffriction="{motor.stiction_time!r} 1"/>'
+        f'<inertial pos="0 0 0" mass="1e-6" diaginertia="{body!r} {body!r} {body!r}"/>{levers}'
+    )
+
+
+def _hinge(joint: Joint, i: int) -> str:
+    spring = ""
+    if joint.springs:
+        spring = f' stiffness="{joint.springs[i].stiffness!r} 0 {joint.springs[i].k_3!r}"'
+    damping = joint.tendons.damping if joint.tendons else joint.springs[i].damping
+    return f'<joint name="phi_{i}" axis="0 -1 0"{spring} damping="{damping!r}"/>'
+
+
+def _slider(tendons: Tendons) -> str:
+    """What stands in the body of the link: the eyelet, and the slider."""
+    return (
+        f'<site name="eyelet" pos="0 0 {-tendons.eyelet!r}"/>'
+        f'<body pos="0 0 {-tendons.eyelet - _behind(tendons)!r}">'
+        f'<inertial pos="0 0 0" mass="{SLIDER_MASS!r}"'
+        ' diaginertia="1e-5 1e-5 1e-5"/><site name="slider"/>'
+        f'<joint name="slider" type="slide" axis="0 0 -1" armature="{SLIDER_ARMATURE!r}"/></body>'
+    )
+
+
+def _behind(tendons: Tendons) -> float:
+    """From eyelet to slider [m]."""
+    return 0.05 + tendons.tension / tendons.stiffness
+
+
+def _pulls(tendons: Tendons) -> str:
+    """The tendons, and the servo of their slider."""
+    behind = _behind(tendons)
+    rest = tendons.length(tendons.spread) + behind - tendons.tension / tendons.stiffness
+    pulls = "".join(
+        f'<spatial stiffness="{tendons.stiffness!r}" springlength="0 {rest!r}">'
+        f'<site site="{end}"/><site site="eyelet"/><site site="slider"/></spatial>'
+        for end in ("left", "right")
+    )
+    kp = SERVO * tendons.stiffness
+    kv = DAMPED * math.sqrt(kp * SLIDER_ARMATURE)
+    servo = f'<position joint="slider" kp="{kp!r}" kv="{kv!r}"/>'
+    return f"<tendon>{pulls}</tendon><actuator>{servo}</actuator>"
+
+
+def _inertia(link: Link) -> str:
+    """Mass of a link that hangs down at q = 0."""
+    turning = f"{link.inertia!r} {link.inertia!r} {link.inertia!r}"
+    return f'<inertial pos="0 0 {-link.centre!r}" mass="{link.mass!r}" diaginertia="{turning}"/>'

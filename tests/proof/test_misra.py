@@ -39,6 +39,7 @@ def test_the_table_is_in_order() -> None:
         assert "yes" in places and reason, rule
 
 
+@pytest.mark.complete
 @pytest.mark.slow("the addon of cppcheck, a Python program, reads all files, twice")
 def test_the_table_has_the_rules_that_are_not_followed(build: Path, tmp_path: Path) -> None:
     """In each folder: no rule is missing, and none is in the table without a finding."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from closed_form_joint import COUNTS, closed_form_log
 from regression_joint import D_THETA, GAMMA, B, T
 from rivals.methods import METHODS
 from rivals.records import Estimate, JointLog, Known
-from rivals.score import COLUMNS, QUANTILE, Result, page, score
+from rivals.score import QUANTILE, SCORES, Result, best, judge, page, score, winkler
 
 ERRORS = {"FilteredRegression": 0.5, "least_squares": 0.1}
 """Largest root mean square error of the stiffness [%]."""
@@ -31,35 +32,45 @@ KNOWN = Known(
 )
 
 
-def ideal(tau_coulomb: float) -> JointLog:
-    """A joint with a linear spring, whose data sheet is right."""
-    log = closed_form_log("series_elastic", tau_coulomb)
-    return JointLog(T, log["theta"], log["q"], log["tau"], log["stiffness"], KNOWN)
+def ideal(kind: str, tau_coulomb: float = 0.01) -> JointLog:
+    """A joint whose data sheet is right."""
+    log = closed_form_log(kind, tau_coulomb)
+    theta, q, tau, theta_c = (log[name] for name in ("theta", "q", "tau", "theta_c"))
+    unknown = np.full(len(theta), np.nan)
+    return JointLog(kind, 1, T, theta, q, tau, theta_c, unknown, log["stiffness"], KNOWN)
 
 
-@pytest.mark.parametrize("method", ERRORS)
-def test_the_stiffness_of_an_ideal_joint_is_found(method: str) -> None:
-    log = ideal(tau_coulomb=0.01)
-    found = score(log, METHODS[method](log))
-    assert found["error"] < ERRORS[method]
-    assert (found["confident"], found["wrong"]) == (100, 0)
+@pytest.mark.parametrize("kind", ["series_elastic", "variable_stiffness"])
+def test_the_stiffness_of_an_ideal_joint_is_found(kind: str) -> None:
+    log = ideal(kind)
+    for method, error in ERRORS.items():
+        found = score(log, METHODS[method](log))
+        assert found["error"] < error
+        assert (found["confident"], found["wrong"]) == (100, 0)
 
 
 def test_paper2011_finds_the_stiffness_of_a_joint_without_coulomb_friction() -> None:
-    log = ideal(tau_coulomb=0.0)
+    log = ideal("series_elastic", tau_coulomb=0.0)
     estimate = METHODS["Paper2011"](log)
-    found = score(log, estimate)
-    assert found["error"] < 5
+    assert score(log, estimate)["error"] < 5
+    assert np.isnan(estimate.std).all()
     assert not estimate.confident.any()
-    assert np.isnan([found["width"], found["coverage"], found["interval_score"]]).all()
 
 
-SHORT = JointLog(0.5, np.zeros(8), np.zeros(8), np.zeros(8), np.full(8, 100.0), KNOWN)
-"""A log of 4 s, every half second; four samples are judged."""
+def test_the_interval_score_is_the_width_and_40_times_what_is_outside() -> None:
+    true = np.array([10.0, 10.0, 10.0])
+    low, high = np.array([9.0, 10.5, 5.0]), np.array([11.0, 12.0, 9.9])
+    np.testing.assert_allclose(winkler(true, low, high), [2.0, 1.5 + 20.0, 4.9 + 4.0])
+
+
+def short_log() -> JointLog:
+    """A log of 4 s, every half second; four samples are judged."""
+    zero, true = np.zeros(8), np.full(8, 100.0)
+    return JointLog("arm", 1, 0.5, zero, zero, zero, zero, zero, true, KNOWN)
 
 
 def estimate(stiffness: list[float], std: list[float], confident: list[bool]) -> Estimate:
-    """An estimate of the last four samples; before that it is nonsense."""
+    """What is said of the last four samples; before that it is nonsense."""
     return Estimate(
         np.array([np.nan] * 4 + stiffness),
         np.array([np.nan] * 4 + std),
@@ -69,7 +80,8 @@ def estimate(stiffness: list[float], std: list[float], confident: list[bool]) ->
 
 
 def test_a_score_is_of_the_samples_after_two_seconds_and_relative_to_the_truth() -> None:
-    found = score(SHORT, estimate([110, 100, 130, 90], [10, 5, 10, 1], [True, True, True, False]))
+    of = estimate([110, 100, 130, 90], [10, 5, 10, 1], [True, True, True, False])
+    found = score(short_log(), of)
     assert found["error"] == pytest.approx(100 * np.sqrt((0.1**2 + 0.3**2 + 0.1**2) / 4))
     assert found["width"] == pytest.approx(2 * QUANTILE * (10 + 5 + 10 + 1) / 4)
     outside = (30 - QUANTILE * 10) + (10 - QUANTILE * 1)
@@ -77,31 +89,54 @@ def test_a_score_is_of_the_samples_after_two_seconds_and_relative_to_the_truth()
     assert [found[name] for name in ("coverage", "confident", "wrong")] == [50, 75, 25]
 
 
+def test_without_a_standard_deviation_there_is_no_interval() -> None:
+    found = score(short_log(), estimate([110, 100, 130, 90], [np.nan] * 4, [False] * 4))
+    assert np.isnan([found["width"], found["coverage"], found["interval_score"]]).all()
+    assert found["error"] > 0
+
+
 def test_where_the_spring_is_not_engaged_nothing_is_judged() -> None:
-    slack = replace(SHORT, stiffness=np.where(np.arange(8) == 6, 0.0, 100.0))
+    slack = replace(short_log(), stiffness=np.where(np.arange(8) == 6, 0.0, 100.0))
     found = score(slack, estimate([110, 110, 1e9, 110], [1.0] * 4, [True] * 4))
     assert found["error"] == pytest.approx(10)
 
 
-def test_a_row_of_the_table_has_medians_and_means_over_the_joints() -> None:
-    def result(method: str, seed: int, interval_score: float, wrong: float = 0.0) -> Result:
-        values = (2.0 * seed, 5.0, 90.0, interval_score, 0.0, 0.5, 100.0, wrong)
-        found = dict(zip(COLUMNS, values, strict=True))
-        return {"seed": seed, "method": method, **found}
+def test_a_method_that_fails_or_is_not_finite_has_a_row_with_its_reason() -> None:
+    def raises(log: JointLog) -> Estimate:
+        raise ZeroDivisionError("no motion")
 
-    table = page(
-        [
-            result("FilteredRegression", 1, 8.0),
-            result("Paper2011", 1, float("nan")),
-            result("least_squares", 1, 9.0),
-            result("FilteredRegression", 2, 6.0),
-            result("Paper2011", 2, float("nan")),
-            result("least_squares", 2, 4.0, wrong=25.0),
-        ]
-    )
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
-    assert rows[2:] == [
-        ["FilteredRegression", "3", "5", "90", "7", "50", "0.5", "100", "0"],
-        ["Paper2011", "3", "5", "90", "-", "0", "0.5", "100", "0"],
-        ["least_squares", "3", "5", "90", "6.5", "50", "0.5", "100", "12.5"],
+    def not_finite(log: JointLog) -> Estimate:
+        return estimate([110, np.nan, 1, 110], [1.0] * 4, [True] * 4)
+
+    for method, words in (
+        (raises, "ZeroDivisionError: no motion"),
+        (not_finite, "ValueError: not finite at 1 instants"),
+    ):
+        result = judge("Paper2011", method, short_log())
+        assert math.isnan(result.pop("seconds"))
+        assert result == {"kind": "arm", "seed": 1, "method": "Paper2011", "remark": words}
+
+
+def of(method: str, seed: int, interval_score: float, wrong: float = 0.0) -> Result:
+    values = (2.0 * seed, 5.0, 90.0, interval_score, 100.0, wrong)
+    found = dict(zip(SCORES, values, strict=True))
+    return {"kind": "arm", "seed": seed, "method": method, "seconds": 0.5, **found}
+
+
+def test_a_row_has_medians_and_means_over_the_logs() -> None:
+    results = [
+        of("FilteredRegression", 1, 8.0),
+        of("Paper2011", 1, 9.0),
+        of("FilteredRegression", 2, 6.0),
+        of("Paper2011", 2, 4.0, wrong=25.0),
+        of("least_squares", 1, float("nan")),
+        {"kind": "arm", "seed": 2, "method": "least_squares", "seconds": math.nan},
     ]
+    assert best(results) == {("arm", 1): "FilteredRegression", ("arm", 2): "Paper2011"}
+    rows = {}
+    for line in page(results).splitlines()[4:]:
+        _, method, *cells = (cell.strip() for cell in line.strip("|").split("|"))
+        rows[method] = cells
+    assert rows["FilteredRegression"] == ["2 of 2", "3", "5", "90", "7", "50", "0.5", "100", "0"]
+    assert rows["least_squares"][:5] == ["1 of 2", "2", "5", "90", "-"]
+    assert rows["Paper2011"][-1] == "12.5"
