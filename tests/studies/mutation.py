@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-import multiprocessing
 import os
 import re
 import resource
@@ -20,15 +19,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
-from typing import NoReturn
 
 import pytest
 
@@ -114,8 +110,8 @@ class Mutant:
     new: str
 
     def text(self) -> str:
-        text = SOURCES[self.file].read_text()
-        return text[: self.start] + self.new + text[self.start + len(self.old) :]
+        original = SOURCES[self.file].read_text()
+        return original[: self.start] + self.new + original[self.start + len(self.old) :]
 
     def line(self) -> str:
         """The changed line."""
@@ -199,34 +195,46 @@ def files_for(source: str) -> list[str]:
     ]
 
 
-def run_tests(tree: Path, files: Sequence[str], limit: int) -> NoReturn:
-    """Runs the fast tests with the library of a build tree, and ends this process.
+def start_tests(tree: Path, files: Sequence[str], limit: int = resource.RLIM_INFINITY) -> int:
+    """Starts the fast tests with the library of a build tree in a new process; returns its id.
 
     limit  time of the processor after which it ends [s]
+
+    It is forked, because the imports of the tests take longer than most of the tests.
     """
+    child = os.fork()
+    if child:
+        return child
     os.environ["SIGMAHAT_BUILD"] = str(tree)
     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
     output = os.open(tree / "output.txt", os.O_WRONLY | os.O_CREAT)
     os.dup2(output, 1)
     os.dup2(output, 2)
-    sys.exit(pytest.main([*PYTEST, *files]))
+    status = 2
+    try:
+        status = pytest.main([*PYTEST, *files])
+    finally:
+        sys.stdout.flush()
+        os._exit(status)
 
 
-def passes(tree: Path, files: Sequence[str], limit: int = resource.RLIM_INFINITY) -> bool:
-    """Whether the tests pass. They do not if a test fails or crashes or does not end.
+def children_seconds() -> float:
+    """Time of the processor that processes took that were started here and have ended [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
-    They run in a fork, because the imports of the tests take longer than most of the tests.
+
+def finished(running: dict[int, Path]) -> tuple[int, bool]:
+    """Waits for one of the processes and removes its tree. Returns its id and whether it passed.
+
+    It did not pass if a test failed or crashed or did not end.
     """
-    process = multiprocessing.get_context("fork").Process(
-        target=run_tests, args=(tree, files, limit)
-    )
-    process.start()
-    process.join()
-    code = process.exitcode
-    if code is None or code > 1:
+    child, status = os.wait()
+    tree, code = running.pop(child), os.waitstatus_to_exitcode(status)
+    if code > 1:
         raise RuntimeError(f"pytest ended with {code}:\n{(tree / 'output.txt').read_text()}")
     shutil.rmtree(tree)
-    return code == 0
+    return child, code == 0
 
 
 def shares(number: int) -> dict[str, int]:
@@ -260,24 +268,32 @@ def run(folder: Path, number: int, seed: str) -> Counter[str]:
         pytest.main([*PYTEST, "--collect-only", *files])  # imports the modules that they use
     unchanged = Path(tempfile.mkdtemp(dir=folder))
     bench.link(unchanged, bench.objects)
-    start = time.monotonic()
-    if not passes(unchanged, files):
+    before = children_seconds()
+    if not finished({start_tests(unchanged, files): unchanged})[1]:
         raise RuntimeError("the tests fail without any change")
-    limit = math.ceil(LIMIT * (time.monotonic() - start))
+    limit = math.ceil(LIMIT * (children_seconds() - before))
+    outcome: Counter[str] = Counter()
+    running: dict[int, Path] = {}
+    tested: dict[int, Mutant] = {}
 
-    def outcome(mutant: Mutant, tree: Path) -> str:
-        if not passes(tree, files_for(mutant.file), limit):
-            return "killed"
+    def wait() -> None:
+        child, passed = finished(running)
+        mutant = tested[child]
         same = any(mutant.file == file and mutant.makes(code) for file, code, _ in EQUIVALENT)
-        result = "equivalent" if same else "survived"
-        print(f"{result}: {mutant}", flush=True)
-        return result
+        result = "killed" if not passed else "equivalent" if same else "survived"
+        outcome[result] += 1
+        if passed:
+            print(f"{result}: {mutant}", flush=True)
 
-    made = [
-        each for file, share in shares(number).items() for each in mutants(bench, file, share, seed)
-    ]
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return Counter(pool.map(outcome, *zip(*made, strict=True)))
+    for file, share in shares(number).items():
+        for mutant, tree in mutants(bench, file, share, seed):
+            if len(running) == (os.cpu_count() or 1):
+                wait()
+            child = start_tests(tree, files_for(file), limit)
+            running[child], tested[child] = tree, mutant
+    while running:
+        wait()
+    return outcome
 
 
 def main() -> int:
