@@ -108,6 +108,8 @@ def _swapped(seen: View) -> list[Finding]:
     if now is None or distance(abs(now), 1.0) < math.log(_UNLIKE):
         return []
     theta, q = ports["theta"], ports["q"]
+    if abs(theta.gear_ratio) < 1:
+        return []  # a ratio that is upside down moves theta and q as swapped columns do
     turned = {
         "theta": replace(theta, column=q.column, time=q.time, zero=q.zero),
         "q": replace(q, column=theta.column, time=theta.time, zero=theta.zero),
