@@ -78,6 +78,18 @@ def test_a_wrong_gear_ratio_is_named(gear: float, gamma: bool, tmp_path: Path) -
     assert (first.key, first.proposed) == ("ports.theta.gear_ratio", 100.0)
 
 
+def test_a_gear_ratio_upside_down_is_no_swap_of_columns_in_one_unit(tmp_path: Path) -> None:
+    """With both columns in rad, swapped columns would move alike, too."""
+    log = joint_log(KNEE, 1e-3)
+    columns = {**knee_log(), "motor_rad": GEAR * log["theta"], "link_rad": log["q"]}
+    text = RIGHT.replace('"motor_counts"\nunit = "counts"\ncounts_per_turn = 4096', '"motor_rad"')
+    text = text.replace("gear_ratio = 100\nzero = 1500", "gear_ratio = 0.01")
+    text = text.replace('"link_deg"\nunit = "deg"', '"link_rad"')
+    first = wrong(columns, text, tmp_path)[0]
+    assert first.key == "ports.theta.gear_ratio"
+    assert first.proposed == pytest.approx(100.0, rel=0.05)
+
+
 def test_columns_that_are_swapped_are_said_as_that(tmp_path: Path) -> None:
     text = RIGHT.replace("motor_counts", "X").replace("link_deg", "motor_counts")
     (found,) = wrong(knee_log(), text.replace("X", "link_deg"), tmp_path)
