@@ -20,7 +20,7 @@ from sigmahat.identification.regression import EXTRA, MOTOR, Equations, Fit, For
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
 
-LINEAR = "eta[0,0]"  # the column of a linear spring
+LINEAR = "eta[0,0]"  # the column of the linear spring in a symmetric polynomial
 _HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Coulomb friction
 _SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a joint
 _ORDERS = 3
@@ -97,6 +97,7 @@ def gear_error(seen: View, form: Form) -> Corrected | None:
     theta, which is a column here. Newton's method corrects theta until this term vanishes.
     """
     whole = 1.0
+    linear = LINEAR if form.symmetric else "eta[1,0]"  # eta[0,0] belongs to the power 0 then
     for _ in range(_STEPS):
         scaled = [
             replace(
@@ -109,7 +110,7 @@ def gear_error(seen: View, form: Form) -> Corrected | None:
         ]
         system = _equations(replace(seen, pieces=scaled), form)
         found = fit(system)
-        spring = found.value[LINEAR] / system.units[0]
+        spring = found.value.get(linear, 0.0) / system.units[0]
         if not (spring and math.isfinite(found.half_width[EXTRA])):
             return None
         step, half_width = -found.value[EXTRA] / spring, abs(found.half_width[EXTRA] / spring)

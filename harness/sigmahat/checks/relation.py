@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sigmahat.checks.findings import Finding, Kind, Proposal, Severity
-from sigmahat.checks.motor import LINEAR, Fitted, fitted
+from sigmahat.checks.motor import LINEAR, Fitted, fitted, gear_error
 from sigmahat.checks.view import View
 from sigmahat.identification.noise import low_pass
 from sigmahat.identification.regression import Signals, is_worse
@@ -92,6 +92,7 @@ _CORRELATED = 0.9
 _FAR = 5.0  # below resonance, a spring may enlarge the motion of the link by this factor
 _DIFFERENT = 1.5  # up to this factor, a soft spring may be the cause of the slope
 _BETTER = 0.8  # largest ratio of the squared errors, after to before
+_PRECISE = 0.01  # largest half width of the correction of a gear ratio [1]
 _AS_WELL = 0.25  # tolerance of the logarithm: another factor explains the same slope
 PORTS = ("theta", "q")
 
@@ -123,7 +124,7 @@ def _scale(here: Relation, slope: float) -> Relation:
     if not abs(np.log(abs(slope))) > np.log(_DIFFERENT):
         return here
     ports = here.seen.configuration.ports
-    every = [gear_of(ports["theta"], abs(slope))]
+    every = [gear_of(ports["theta"], _refined(here.seen, abs(slope)))]
     every += [
         change
         for name in PORTS
@@ -155,6 +156,17 @@ def _scale(here: Relation, slope: float) -> Relation:
     ]
     finding = Finding(Kind.SLOPE, Severity.WRONG, best.key, slope, "", 1.0, best.value, others)
     return replace(found, findings=[finding])
+
+
+def _refined(seen: View, slope: float) -> float:
+    """The slope that the motor equation shows near a slope of the motions.
+
+    Motor and link of a flexible joint move alike only roughly, the torque depends on 1 % of theta.
+    """
+    near = _scaled(seen, "theta", slope)
+    found = fitted(near)
+    error = None if found is None else gear_error(near, found.form)
+    return slope if error is None or error.half_width > _PRECISE else slope * error.value
 
 
 def _sign(here: Relation, slope: float) -> Relation:
