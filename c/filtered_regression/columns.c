@@ -140,7 +140,12 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
         column.unit = unit_of_power(p, i, j);
     }
     if (list->column != NULL) {
-        list->column[list->size] = column;
+        /* Not the whole struct: its padding would bring bytes of the stack into a saved state. */
+        list->column[list->size].kind = kind;
+        list->column[list->size].i = i;
+        list->column[list->size].j = j;
+        list->column[list->size].prior = column.prior;
+        list->column[list->size].unit = column.unit;
     }
     list->size += 1;
 }
