@@ -53,6 +53,7 @@ def test_from_the_log_to_one_report(shell: Shell) -> None:
     page = Path("sigmahat-results/leg/report.html").read_text(encoding="utf-8")
     assert "hip: Stiffness against deformation" in page
     assert "knee: Stiffness against deformation" in page
+    assert "leg.csv with leg.toml; sigmahat " in page
     # The motor is in one column each: the first log confirms itself for every joint, or for none.
     said = shell.run("validate leg.csv --with leg.toml", 1)
     assert said.count("learned before from leg.csv") == 2

@@ -185,16 +185,17 @@ def from_joints(folder: Path) -> Contents:
     if table.column_names[:1] != ["joint"]:
         raise ValueError(f"{folder / JOINTS}: no table of `sigmahat estimate`; run it again")
     names = list(dict.fromkeys(map(str, table["joint"].to_pylist())))
-    panels = []
+    panels, lines = [], list[str]()
     for name in names:
         answer = _answer(folder / name)
+        lines = lines or list(_origin(answer, folder / name))  # the same log for all joints
         if answer is None:
             raise ValueError(f"{folder / name}: no result of `sigmahat estimate`; run it again")
         of_curve = list(curve_panels(answer.curve, answer.points))
         panels += [replace(each, title=f"{name}: {each.title}") for each in of_curve[1:]]
     note = f"Each joint has a report of its own: sigmahat report {folder}/{names[0]}"
     stiffness = replace(of_file("Stiffness", table), note=note)
-    return Contents(f"Joints: {folder.resolve().name}", [], [stiffness], panels)
+    return Contents(f"Joints: {folder.resolve().name}", lines, [stiffness], panels)
 
 
 def _residuals(
