@@ -188,9 +188,9 @@ def from_joints(folder: Path) -> Contents:
     panels, lines = [], list[str]()
     for name in names:
         answer = _answer(folder / name)
-        lines = lines or list(_origin(answer, folder / name))  # the same log for all joints
         if answer is None:
             raise ValueError(f"{folder / name}: no result of `sigmahat estimate`; run it again")
+        lines = lines or list(_origin(answer, folder / name))  # the same log for all joints
         of_curve = list(curve_panels(answer.curve, answer.points))
         panels += [replace(each, title=f"{name}: {each.title}") for each in of_curve[1:]]
     note = f"Each joint has a report of its own: sigmahat report {folder}/{names[0]}"
