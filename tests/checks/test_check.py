@@ -8,7 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from checked_logs import GEAR, KNEE, RIGHT, SINES, WRONG, Array, as_recorded, joint_log, knee_log
+from checked_logs import (
+    GEAR,
+    KNEE,
+    RIGHT,
+    SINES,
+    WRONG,
+    Array,
+    as_recorded,
+    joint_log,
+    knee_log,
+    log_by_hand,
+)
 from command_line import Shell
 from recorded_logs import CONFIGURATION, awas_log, configured, write_log
 from sigmahat.checks.check import check
@@ -84,6 +95,20 @@ def test_a_wrong_gear_ratio_is_named_with_even_powers_too(gear: float, tmp_path:
     text = RIGHT.replace("gear_ratio = 100", f"gear_ratio = {gear}")
     text = text.replace("rls.n = 1", "rls.symmetric = false\nrls.n = 6")
     first = wrong(knee_log(), text, tmp_path)[0]
+    assert (first.key, first.proposed) == ("ports.theta.gear_ratio", 100.0)
+
+
+@pytest.mark.parametrize("hold", [0.0, 0.05])
+@pytest.mark.parametrize("gear", [10.0, 1000.0, 0.01, -100.0])
+def test_a_wrong_gear_ratio_is_named_if_a_hand_moves_the_link(
+    gear: float, hold: float, tmp_path: Path
+) -> None:
+    """Then the torque is none, or that of a controller: it looks like the torque of a spring."""
+    right = RIGHT.replace("range.phi = 0.03", "range.phi = 0.05")
+    right = right.replace("rls.n = 1", "rls.symmetric = false\nrls.n = 6")
+    log = log_by_hand(hold)
+    assert wrong(log, right, tmp_path) == []
+    first = wrong(log, right.replace("gear_ratio = 100", f"gear_ratio = {gear}"), tmp_path)[0]
     assert (first.key, first.proposed) == ("ports.theta.gear_ratio", 100.0)
 
 

@@ -110,3 +110,23 @@ def knee_log() -> Mapping[str, Array]:
     log = as_recorded(joint_log(KNEE, 1e-3))
     current = log["current"]
     return {**log, "late_current": np.concatenate([np.full(10, current[0]), current[:-10]])}
+
+
+def log_by_hand(hold: float) -> Mapping[str, Array]:
+    """The knee, moved by a hand, in closed form: the motion of the motor, then (1) and (3) for q.
+
+    hold  stiffness with which the drive holds the motor at 0, as a part of that of the spring [1];
+          0 for a drive without current
+    """
+    t = times(1e-3, 20.0)
+    waves = [(0.3 / n, 2 * np.pi * f) for n, f in enumerate((0.23, 0.61, 1.07), 1)]
+    theta = sum(A * np.sin(w * t) for A, w in waves)
+    velocity = sum(A * w * np.cos(w * t) for A, w in waves)
+    acceleration = sum(-A * w**2 * np.sin(w * t) for A, w in waves)
+    K = KNEE["spring.k_1"]
+    tau = -hold * K * (theta + 0.02 * velocity) / GEAR
+    friction = KNEE["motor.D_theta"] * GEAR * velocity
+    friction += KNEE["motor.tau_coulomb"] * np.tanh(velocity / 0.02)
+    tau_e = GEAR * (KNEE["motor.B"] * GEAR * acceleration + friction - tau)
+    noise = 1e-5 * np.random.default_rng(1).standard_normal(len(t))
+    return as_recorded({"t": t, "theta": theta, "q": theta + tau_e / K, "tau": tau + noise})

@@ -105,7 +105,7 @@ def _swapped(seen: View) -> list[Finding]:
     if not {"theta", "q"} <= ports.keys():
         return []
     now = slope_of(seen.pieces, seen.T)
-    if now is None or distance(abs(now), 1.0) < math.log(_UNLIKE):
+    if now is None or distance(abs(now.value), 1.0) < math.log(_UNLIKE):
         return []
     theta, q = ports["theta"], ports["q"]
     if abs(theta.gear_ratio) < 1:
@@ -119,10 +119,10 @@ def _swapped(seen: View) -> list[Finding]:
     except LogError:
         return []
     slope = slope_of(other.pieces, other.T)
-    if slope is None or distance(abs(slope), 1.0) > math.log(_ALIKE):
+    if slope is None or distance(abs(slope.value), 1.0) > math.log(_ALIKE):
         return []
     key, second = "ports.theta.column", [("ports.q.column", theta.column)]
-    return [Finding(Kind.SLOPE, Severity.WRONG, key, now, "", 1.0, q.column, second, "swap")]
+    return [Finding(Kind.SLOPE, Severity.WRONG, key, now.value, "", 1.0, q.column, second, "swap")]
 
 
 def _tried(seen: View, finding: Finding) -> Finding:

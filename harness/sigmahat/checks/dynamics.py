@@ -26,14 +26,14 @@ def dynamics(here: Relation) -> Iterator[Finding]:
     seen, found = here.seen, here.fitted
     if found is None or not 0 < found.linear.half_width.get(LINEAR, math.inf) < math.inf:
         return  # the log determines no stiffness
+    gear = None if here.findings else _gear(seen, found)
+    if gear is not None:
+        yield gear
+        return  # the deformation is wrong, even its sign, so all further results are wrong
     sign = _sign(seen, found)
     if sign is not None:
         yield sign
         return  # with a wrong sign, further results mean nothing
-    gear = None if here.findings else _gear(seen, found)
-    if gear is not None:
-        yield gear
-        return  # the deformation is wrong, so all further results are wrong
     zero = _zero(seen, found)
     if zero is not None:
         yield zero
@@ -80,7 +80,8 @@ def _gear(seen: View, found: Fitted) -> Finding | None:
     others = min(found.error, float(np.sum(with_all_powers(seen, found.form).squares)))
     if not float(np.sum(error.fit.squares)) < _MUCH * others:
         return None
-    change, slope = gear_of(seen.configuration.ports["theta"], error.value), 1 / error.value
+    change = gear_of(seen.configuration.ports["theta"], error.value, error.half_width)
+    slope = 1 / error.value
     return Finding(Kind.SLOPE, Severity.WRONG, change.key, slope, "", 1.0, change.value)
 
 
@@ -133,6 +134,12 @@ def _late(seen: View, found: Fitted) -> Iterator[Finding]:
     least = abs(late.value) - late.half_width
     if least < seen.T or not explains(found.fit, late.fit):
         return
+    # Friction of another form, or a spring of another form, must not explain the torque as well.
+    _, *frictions = motor.variants(found.form)
+    others = [motor.with_form(seen, form) for form in frictions]
+    others.append(with_all_powers(seen, found.form))
+    if not all(explains(each, late.fit) for each in others):
+        return
     is_expected = least < _STD * float(seen.every["prior.delay"])
     severity = Severity.NOTE if is_expected else Severity.WRONG
     port = seen.configuration.ports["tau"]
@@ -142,13 +149,20 @@ def _late(seen: View, found: Fitted) -> Iterator[Finding]:
 
 
 def _encoder_lag(seen: View, found: Fitted) -> Iterator[Finding]:
-    """A friction below 0, as encoders that are read at different times cause."""
+    """A friction below 0, as encoders that are read at different times cause.
+
+    It must explain much of the torque: friction of another form than the model's is below 0, too.
+    """
     value, half = found.linear.value, found.linear.half_width
     if not value["D_theta"] + half["D_theta"] < 0:
+        return
+    if not explains(motor.with_known(seen, found.form, "D_theta", 0.0), found.fit):
         return
     slope = value[LINEAR] / found.spring.units[0]
     D_theta = float(seen.every["motor.D_theta"])
     lag = seen.gamma * (value["D_theta"] - D_theta) / slope
+    if abs(lag) > motor.LONGEST:
+        return
     least = seen.gamma * (value["D_theta"] + half["D_theta"]) / slope
     severity = Severity.WRONG if least > seen.T else Severity.NOTE
     port = seen.configuration.ports["q"]
@@ -171,9 +185,9 @@ def inertia(seen: View, found: Fitted) -> Iterator[Finding]:
     B = _nearest(seen, found, given) if given > 0 else None
     if B is None or not _differs(B, given, _DIFFERENT):
         return
-    if not explains(motor.with_inertia(seen, found.form, given), found.fit):
+    if not explains(motor.with_known(seen, found.form, "B", given), found.fit):
         return
-    B = found.linear.value["B"]
+    B = found.fit.value["B"]
     unit, rounded = "kg.m2", float(f"{B:.3g}")
     if float(seen.every["prior.B"]) >= WIDE:
         return  # the prior of B is wide, so identify will determine B
@@ -194,7 +208,7 @@ def inertia(seen: View, found: Fitted) -> Iterator[Finding]:
 def _nearest(seen: View, found: Fitted, given: float) -> float | None:
     """The inertia that differs least from `given`, among fits with other forms of friction and the
     ends of the interval. None if the difference is not clear, or an inertia is not above 0."""
-    B, half = found.linear.value["B"], found.linear.half_width["B"]
+    B, half = found.fit.value["B"], found.fit.half_width["B"]
     if not 0 < B - half < math.inf or not _differs(B, given, _DIFFERENT):
         return None
     every = [motor.with_form(seen, f).value["B"] for f in motor.variants(found.form)]

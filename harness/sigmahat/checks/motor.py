@@ -15,7 +15,7 @@ import numpy as np
 from sigmahat.checks.view import View
 from sigmahat.identification import regression
 from sigmahat.identification.coherence import coherent_range
-from sigmahat.identification.noise import TorqueNoise
+from sigmahat.identification.noise import TorqueNoise, variance
 from sigmahat.identification.regression import EXTRA, MOTOR, Equations, Fit, Form, fit
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
@@ -25,7 +25,8 @@ _HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Cou
 _SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a joint
 _ORDERS = 3
 _STEPS = 4  # of Newton's method for the delay
-_LONGEST = 0.1  # largest delay [s]
+LONGEST = 0.1  # largest delay [s]
+_SIGNAL = 2.0  # least ratio of the variance of a torque to that of its noise
 _BETTER = 0.7
 """Largest ratio of the squared errors, after to before, if a change explains the log. Significance
 alone is not enough: with unmodelled friction, nearly every change is significant."""
@@ -44,17 +45,21 @@ class Fitted:
         return float(np.sum(self.fit.squares))
 
 
-def fitted(seen: View) -> Fitted | None:
+def fitted(seen: View, f_0: float | None = None) -> Fitted | None:
     """Fits the motor equation, or with a torque sensor the spring alone.
 
-    None without data, or if the sample period is too long for the motion of a joint.
+    f_0  low pass of the equations [Hz]; None: as identify chooses it
+
+    None without data, if the sample period is too long for the motion of a joint, or if the torque
+    is only noise, as that of a motor without current.
     """
-    if not seen.pieces or seen.T > _SLOWEST:
+    if not seen.pieces or seen.T > _SLOWEST or not any(_is_signal(p.tau) for p in seen.pieces):
         return None
-    f_0 = _band(seen)
+    f_0 = f_0 or _band(seen)
     m_most = _ORDERS if np.ptp(seen.pieces[0].set_point) > 0 else 1
     symmetric = bool(seen.every["rls.symmetric"])
-    form = Form(f_0, min(2.5 * f_0, _HIGHEST / seen.T), _ORDERS, m_most, symmetric)
+    n_most = _ORDERS if symmetric else 2 * _ORDERS  # so the highest power is about the same
+    form = Form(f_0, min(2.5 * f_0, _HIGHEST / seen.T), n_most, m_most, symmetric)
     form, system = _chosen(seen, form)
     line = _equations(seen, replace(form, n=1, m=1, symmetric=True))
     return Fitted(form, fit(system), fit(line), Spring(form, system.units))
@@ -85,7 +90,7 @@ def delay(seen: View, form: Form) -> Corrected | None:
         found = with_form(replace(seen, pieces=moved), form)
         step, half_width = found.value[EXTRA], found.half_width[EXTRA]
         late += step
-        if not math.isfinite(late) or abs(late) > _LONGEST:
+        if not math.isfinite(late) or abs(late) > LONGEST:
             return None
     return Corrected(late, half_width + abs(step), found) if math.isfinite(half_width) else None
 
@@ -94,10 +99,11 @@ def gear_error(seen: View, form: Form) -> Corrected | None:
     """Configured gear ratio of theta divided by the right one; None if the log does not show it.
 
     With theta (1 + delta) for theta, phi becomes phi - delta theta. So the torque has a term in
-    theta, which is a column here. Newton's method corrects theta until this term vanishes.
+    theta, which is a column here. Newton's method corrects theta until this term vanishes. The
+    spring has all powers: a spring of another form would look like a small part of theta.
     """
     whole = 1.0
-    linear = LINEAR if form.symmetric else "eta[1,0]"  # eta[0,0] belongs to the power 0 then
+    form = replace(form, n=2 * _ORDERS, symmetric=False)
     for _ in range(_STEPS):
         scaled = [
             replace(
@@ -110,7 +116,7 @@ def gear_error(seen: View, form: Form) -> Corrected | None:
         ]
         system = _equations(replace(seen, pieces=scaled), form)
         found = fit(system)
-        spring = found.value.get(linear, 0.0) / system.units[0]
+        spring = found.value.get("eta[1,0]", 0.0) / system.units[0]  # of the power 1
         if not (spring and math.isfinite(found.half_width[EXTRA])):
             return None
         step, half_width = -found.value[EXTRA] / spring, abs(found.half_width[EXTRA] / spring)
@@ -133,14 +139,19 @@ def with_form(seen: View, form: Form) -> Fit:
     return fit(_equations(seen, form))
 
 
-def with_inertia(seen: View, form: Form, B: float) -> Fit:
-    return fit(_equations(seen, form).known("B", B))
+def with_known(seen: View, form: Form, name: str, value: float) -> Fit:
+    """The fit if a coefficient of the motor is known."""
+    return fit(_equations(seen, form).known(name, value))
 
 
 def explains(before: Fit, after: Fit) -> bool:
     """Whether a change explains much of the errors before the change."""
     less = float(np.sum(after.squares)) < _BETTER * float(np.sum(before.squares))
     return less and regression.is_worse(before, after)
+
+
+def _is_signal(tau: Array) -> bool:
+    return float(np.var(tau)) > _SIGNAL * variance(tau)
 
 
 def _band(seen: View) -> float:

@@ -1,8 +1,13 @@
 """How q follows theta: their slope is 1, unless a sign, a unit, a gear or an encoder is wrong.
 
-In slow motion the link follows its motor. Near the resonance the link does not, nor if the link is
-held. So a slope alone is no proof: with the scale that the slope proposes, the motor equation must
-fit the torque as well as before, or better.
+In slow motion the link follows its motor. Near the resonance the link does not, nor if the link or
+the motor is held. So a slope alone is no proof: with the scale that the slope proposes, the motor
+equation must fit the torque as well as before, or better.
+
+The torque is no proof either if it is a function of the position, as under gravity, or if the motor
+holds its position while a hand moves the link: then it looks like the torque of a spring. So a
+slope of slow motion with a high correlation needs no torque, if the slope is that of a likely
+mistake, such as a gear ratio with one zero too many, or if it is negative.
 """
 
 from __future__ import annotations
@@ -25,7 +30,7 @@ from sigmahat.logs.units import factor
 _ANGLES = ("rad", "deg", "turn")
 _COUNTS = tuple(2.0**k for i in (2, 1, 3, 4, 5, 6) for k in (i, -i))
 """Likely factors of wrong counts: two or four counts per line, and wraps mistaken for turns."""
-_LIKE = math.log(2.0)
+_LIKE = math.log(1.5)
 """Tolerance of the logarithm of a factor: a spring deforms, so q and theta do not move alike."""
 
 
@@ -69,12 +74,28 @@ def changes(name: str, port: Port, gamma: float) -> Iterator[Change]:
             yield Change(name, f"{where}.counts_per_turn", value, 1 / times)
 
 
-def gear_of(theta: Port, slope: float) -> Change:
-    """The gear ratio with which the motor moves as far as the link."""
-    gear = abs(theta.gear_ratio) / slope
-    whole = round(gear)
-    likely = float(whole) if whole and abs(gear / whole - 1) < _WHOLE else float(f"{gear:.4g}")
-    return Change("theta", "ports.theta.gear_ratio", likely, slope, fits_any=True)
+def gear_of(theta: Port, slope: float, half_width: float = 0.0) -> Change:
+    """The gear ratio with which the motor moves as far as the link.
+
+    slope       of q on theta [1]
+    half_width  half of the 95 % interval of the slope [1]
+    """
+    now = abs(theta.gear_ratio)
+    gear = _simplest(now / slope, half_width / slope)
+    return Change("theta", "ports.theta.gear_ratio", gear, now / gear, fits_any=True)
+
+
+def _simplest(gear: float, half_width: float) -> float:
+    """The integer with the most zeros in an interval, else the nearest integer, else four digits.
+
+    half_width  of the interval, relative [1]
+    """
+    for digits in range(len(f"{gear:.0f}")):
+        likely = float(f"{gear:.{digits + 1}g}")
+        if likely.is_integer() and abs(likely / gear - 1) < half_width:
+            return likely
+    whole = float(round(gear))
+    return whole if whole and abs(gear / whole - 1) < _WHOLE else float(f"{gear:.4g}")
 
 
 def distance(one: float, other: float) -> float:
@@ -89,8 +110,10 @@ _ANY = 0.05
 _SLOW = 1.0  # [Hz]
 _ENOUGH = 0.1  # least fraction of slow motion, else the whole motion is used
 _CORRELATED = 0.9
+_RIGID = 0.99  # correlation of motor and link, beyond which the deformation is small beside both
+_LIKELY = 0.06  # tolerance of the logarithm of a likely mistake
 _FAR = 5.0  # below resonance, a spring may enlarge the motion of the link by this factor
-_DIFFERENT = 1.5  # up to this factor, a soft spring may be the cause of the slope
+_FARTHEST = 100.0  # beyond this factor, resonance is no cause either
 _BETTER = 0.8  # largest ratio of the squared errors, after to before
 _PRECISE = 0.01  # largest half width of the correction of a gear ratio [1]
 _AS_WELL = 0.25  # tolerance of the logarithm: another factor explains the same slope
@@ -112,7 +135,7 @@ def relation(seen: View) -> Relation:
     if not {"theta", "q"} <= set(seen.samples.names) or _is_from_torque(seen.configuration.ports):
         return here
     found = slope_of(seen.pieces, seen.T)
-    return here if found is None else _sign(_scale(here, found), found)
+    return here if found is None else _sign(_scale(here, found))
 
 
 def _is_from_torque(ports: Mapping[str, Port]) -> bool:
@@ -120,64 +143,96 @@ def _is_from_torque(ports: Mapping[str, Port]) -> bool:
     return "tau_e_sensor" in ports and ports["theta"].column == ports["tau_e_sensor"].column
 
 
-def _scale(here: Relation, slope: float) -> Relation:
-    if not abs(np.log(abs(slope))) > np.log(_DIFFERENT):
+def _scale(here: Relation, slope: Slope) -> Relation:
+    size = abs(slope.value)
+    if not distance(size, 1.0) > _LIKE:
         return here
     ports = here.seen.configuration.ports
-    every = [gear_of(ports["theta"], _refined(here.seen, abs(slope)))]
-    every += [
+    near = [
         change
         for name in PORTS
         for change in changes(name, ports[name], here.seen.gamma)
-        if distance(change.on_theta, abs(slope)) < _LIKE
+        if distance(change.on_theta, size) < _LIKE
     ]
+    best = _likely(here.seen, slope)
+    if best is None:
+        best = _by_torque(here, slope, [_refined(here.seen, size), *near])
+    if best is None:
+        return here
+    others = {
+        change.key: change.value
+        for change in near
+        if change.key != best.key and distance(change.on_theta, best.on_theta) < _AS_WELL
+    }
+    repaired = _scaled(here.seen, best.port, best.factor)
+    key, listed = best.key, list(others.items())
+    what = (Kind.SLOPE, Severity.WRONG, key, slope.value, "", 1.0, best.value, listed)
+    finding = Finding(*what, "held" if size > 1 else "")
+    return Relation([finding], repaired, fitted(repaired))
+
+
+def _likely(seen: View, slope: Slope) -> Change | None:
+    """The likely mistake that makes a slope of slow motion; None if the slope is of another size.
+
+    A gear ratio that disagrees with motor.gamma is a second sign, so its slope may be less exact.
+    """
+    size, ports = abs(slope.value), seen.configuration.ports
+    if not (slope.is_rigid and max(size, 1 / size) > (_FAR if slope.is_slow else _FARTHEST)):
+        return None
+    now = abs(ports["theta"].gear_ratio)
+    known = [each for name in PORTS for each in changes(name, ports[name], seen.gamma)]
+    gears = [1 / now, *(now * 10.0**k for k in (-3, -2, -1, 1, 2, 3))]
+    known += [Change("theta", "ports.theta.gear_ratio", gear, now / gear) for gear in gears]
+    best = min(known, key=lambda each: distance(each.on_theta, size))
+    is_gamma = best.port == "theta" and best.value == abs(seen.gamma)
+    return best if distance(best.on_theta, size) < (_LIKE if is_gamma else _LIKELY) else None
+
+
+def _by_torque(here: Relation, slope: Slope, every: list[Change]) -> Change | None:
+    """The change with which the motor equation fits the torque best; None if none is plausible."""
 
     def unlikely(each: Change) -> float:
         """The change with the smallest value is tried first."""
-        return _ANY if each.fits_any else round(distance(each.on_theta, abs(slope)), 1)
+        return _ANY if each.fits_any else round(distance(each.on_theta, abs(slope.value)), 1)
 
-    every.sort(key=unlikely)
+    f_0 = here.fitted.form.f_0 if here.fitted else None  # errors compare with one filter only
     best: Change | None = None
-    found = here
-    for change in every:
-        repaired = _scaled(here.seen, change.port, change.factor)
-        after = fitted(repaired)
-        is_next = _is_better(found.fitted, after)
+    found = here.fitted
+    for change in sorted(every, key=unlikely):
+        after = fitted(_scaled(here.seen, change.port, change.factor), f_0)
+        is_next = _is_better(found, after)
         if best is None:
-            is_next = _is_plausible(here.fitted, after, abs(slope))
+            is_next = _is_plausible(here, after, slope)
         if is_next:
-            best, found = change, Relation((), repaired, after)
-    if best is None:
-        return here
-    others = [
-        (change.key, change.value)
-        for change in every
-        if change.key != best.key and distance(change.on_theta, best.on_theta) < _AS_WELL
-    ]
-    finding = Finding(Kind.SLOPE, Severity.WRONG, best.key, slope, "", 1.0, best.value, others)
-    return replace(found, findings=[finding])
+            best, found = change, after
+    return best
 
 
-def _refined(seen: View, slope: float) -> float:
-    """The slope that the motor equation shows near a slope of the motions.
+def _refined(seen: View, slope: float) -> Change:
+    """The gear ratio that the motor equation shows near a slope of the motions.
 
     Motor and link of a flexible joint move alike only roughly, the torque depends on 1 % of theta.
     """
-    near = _scaled(seen, "theta", slope)
+    near, theta = _scaled(seen, "theta", slope), seen.configuration.ports["theta"]
     found = fitted(near)
     error = None if found is None else gear_error(near, found.form)
-    return slope if error is None or error.half_width > _PRECISE else slope * error.value
+    if error is None or error.half_width > _PRECISE:
+        return gear_of(theta, slope)
+    return gear_of(theta, slope * error.value, slope * error.half_width)
 
 
-def _sign(here: Relation, slope: float) -> Relation:
-    if slope > 0:
-        return here
+def _sign(here: Relation) -> Relation:
     seen, before = here.seen, here.fitted
+    slope = slope_of(seen.pieces, seen.T)
+    if slope is None or slope.value > 0:
+        return here
     flipped = _scaled(seen, "q", -1.0)
-    after = fitted(flipped)
-    if before is not None and after is not None:
-        is_stiff = before.linear.value[LINEAR] * seen.gamma < 0
-        if is_worse(after.fit, before.fit) or (is_stiff and not _is_better(before, after)):
+    after = fitted(flipped, before.form.f_0 if before else None)
+    # In slow motion, nothing makes the link move as far as its motor, but against it.
+    is_certain = slope.is_slow and slope.is_rigid and distance(-slope.value, 1.0) < _LIKE
+    if before is not None and after is not None and not is_certain:
+        is_soft = _is_stiffness_negative(seen, before)
+        if is_worse(after.fit, before.fit) or not (is_soft or _is_better(before, after)):
             return here
     ports = seen.configuration.ports
     keys = {f"ports.{name}.sign": -ports[name].sign for name in PORTS}
@@ -189,11 +244,9 @@ def _sign(here: Relation, slope: float) -> Relation:
         name = "q"
         keys = dict(reversed(keys.items()))
     (key, proposed), *others = keys.items()
-    finding = Finding(Kind.SLOPE, Severity.WRONG, key, slope, "", 1.0, proposed, others, "sign")
-    if name == "theta":
-        flipped = _scaled(seen, "theta", -1.0)
-        after = fitted(flipped)
-    return Relation([*here.findings, finding], flipped, after)
+    what = (Kind.SLOPE, Severity.WRONG, key, slope.value, "", 1.0, proposed, others, "sign")
+    repaired = _scaled(seen, name, -1.0)
+    return Relation([*here.findings, Finding(*what)], repaired, fitted(repaired))
 
 
 def _sign_of_motor(found: Fitted | None) -> float:
@@ -218,12 +271,18 @@ def _scaled(seen: View, name: str, factor: float) -> View:
     return replace(seen, pieces=pieces)
 
 
-def _is_plausible(before: Fitted | None, after: Fitted | None, slope: float) -> bool:
+def _is_plausible(here: Relation, after: Fitted | None, slope: Slope) -> bool:
+    before, size = here.fitted, abs(slope.value)
+    is_far = max(size, 1 / size) > _FAR
     if before is None or after is None:
-        return True
-    if max(slope, 1 / slope) > _FAR:
-        return not is_worse(after.fit, before.fit)
-    return _is_better(before, after)
+        return is_far
+    if slope.is_slow and slope.is_rigid and size < 1 and _is_stiffness_negative(here.seen, before):
+        return True  # the motor moves farther than a free link, and the spring would push it on
+    return not is_worse(after.fit, before.fit) if is_far else _is_better(before, after)
+
+
+def _is_stiffness_negative(seen: View, found: Fitted) -> bool:
+    return found.linear.value[LINEAR] * seen.gamma > 0
 
 
 def _is_better(before: Fitted | None, after: Fitted | None) -> bool:
@@ -232,11 +291,25 @@ def _is_better(before: Fitted | None, after: Fitted | None) -> bool:
     return is_worse(before.fit, after.fit) and after.error < _BETTER * before.error
 
 
-def slope_of(pieces: Sequence[Signals], T: float) -> float | None:
-    """Slope of q on theta by total least squares, of the slow motion if the log has any."""
+@dataclass(frozen=True)
+class Slope:
+    """Slope of q on theta, of the slow motion if the log has any."""
+
+    value: float  # [1]
+    is_slow: bool
+    is_rigid: bool  # whether the deformation is small beside the motion
+
+
+def slope_of(pieces: Sequence[Signals], T: float) -> Slope | None:
+    """Slope of q on theta by total least squares; None if q and theta do not move together."""
     if not pieces:
         return None
-    both = np.concatenate([_slow(np.column_stack([p.theta, p.theta + p.phi]), T) for p in pieces])
+    motions = [np.column_stack([p.theta, p.theta + p.phi]) for p in pieces]
+    slow = [_slow(each, T) for each in motions]
+    is_slow = all(each is not None for each in slow)
+    both = np.concatenate(
+        [m - m.mean(axis=0) if s is None else s for m, s in zip(motions, slow, strict=True)]
+    )
     variances = np.var(both, axis=0)
     if not np.all(variances > 0):
         return None
@@ -244,11 +317,12 @@ def slope_of(pieces: Sequence[Signals], T: float) -> float | None:
     correlation = np.corrcoef(both.T)[0, 1]
     if abs(correlation) < _CORRELATED:
         return None
-    return float(np.sign(correlation) * np.sqrt(variances[1] / variances[0]))
+    value = float(np.sign(correlation) * np.sqrt(variances[1] / variances[0]))
+    return Slope(value, is_slow, bool(abs(correlation) > _RIGID))
 
 
-def _slow(motion: Array, T: float) -> Array:
-    """The motion without its mean; only the slow part, if this part is large enough."""
+def _slow(motion: Array, T: float) -> Array | None:
+    """The slow part of a motion; None if this part is too small."""
     motion = motion - motion.mean(axis=0)
     slow = low_pass(motion, min(_SLOW, 0.1 / T), T)
-    return slow if np.all(np.std(slow, axis=0) > _ENOUGH * np.std(motion, axis=0)) else motion
+    return slow if np.all(np.std(slow, axis=0) > _ENOUGH * np.std(motion, axis=0)) else None

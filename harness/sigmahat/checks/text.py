@@ -99,6 +99,8 @@ def _what(f: Finding) -> str:
 
 
 _SPECIAL = {
+    (Kind.SLOPE, "held"): "q moves {value:.4g} times as far as theta, expected about 1, unless a "
+    "hand moves the link while the motor is held",
     (Kind.SLOPE, "sign"): "q moves against theta",
     (Kind.SLOPE, "swap"): "the columns of theta and q are swapped: the link would move "
     "{value:.4g} times as far",
