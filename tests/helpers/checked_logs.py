@@ -120,9 +120,9 @@ def log_by_hand(hold: float) -> Mapping[str, Array]:
     """
     t = times(1e-3, 20.0)
     waves = [(0.3 / n, 2 * np.pi * f) for n, f in enumerate((0.23, 0.61, 1.07), 1)]
-    theta = sum(A * np.sin(w * t) for A, w in waves)
-    velocity = sum(A * w * np.cos(w * t) for A, w in waves)
-    acceleration = sum(-A * w**2 * np.sin(w * t) for A, w in waves)
+    theta = np.sum([A * np.sin(w * t) for A, w in waves], axis=0)
+    velocity = np.sum([A * w * np.cos(w * t) for A, w in waves], axis=0)
+    acceleration = np.sum([-A * w**2 * np.sin(w * t) for A, w in waves], axis=0)
     K = KNEE["spring.k_1"]
     tau = -hold * K * (theta + 0.02 * velocity) / GEAR
     friction = KNEE["motor.D_theta"] * GEAR * velocity
