@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from sigmahat.checks.changes import distance
 from sigmahat.checks.columns import at_rest, columns
 from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
-from sigmahat.checks.relation import distance, relation, slope_of
+from sigmahat.checks.relation import relation
+from sigmahat.checks.slope import slope_of
 from sigmahat.checks.view import View, view
 from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.noise import variance

@@ -8,9 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from sigmahat.checks import motor
+from sigmahat.checks.changes import gear_of
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.checks.motor import LINEAR, Fitted, explains, with_all_powers
-from sigmahat.checks.relation import Relation, gear_of
+from sigmahat.checks.relation import Relation
 from sigmahat.checks.view import View
 from sigmahat.identification.quantities import WIDE
 from sigmahat.identification.regression import MOTOR

@@ -13,111 +13,30 @@ mistake, such as a gear ratio with one zero too many, or if it is negative.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sigmahat.checks.findings import Finding, Kind, Proposal, Severity
+from sigmahat.checks.changes import Change, changes, distance, gear_of
+from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.checks.motor import LINEAR, Fitted, fitted, gear_error
+from sigmahat.checks.slope import Slope, slope_of
 from sigmahat.checks.view import View
-from sigmahat.identification.noise import low_pass
-from sigmahat.identification.regression import Signals, is_worse
+from sigmahat.identification.regression import is_worse
 from sigmahat.logs.configuration import Port
-from sigmahat.logs.log import Array
-from sigmahat.logs.units import factor
 
-_ANGLES = ("rad", "deg", "turn")
-_COUNTS = tuple(2.0**k for i in (2, 1, 3, 4, 5, 6) for k in (i, -i))
-"""Likely factors of wrong counts: two or four counts per line, and wraps mistaken for turns."""
+PORTS = ("theta", "q")
 _LIKE = math.log(1.5)
 """Tolerance of the logarithm of a factor: a spring deforms, so q and theta do not move alike."""
-
-
-@dataclass(frozen=True)
-class Change:
-    """Another value of a key, and the factor by which the values of the port change."""
-
-    port: str  # theta or q
-    key: str
-    value: Proposal
-    factor: float
-    fits_any: bool = False
-    """Whether the value was computed from the slope of the log, so that any slope fits."""
-
-    @property
-    def on_theta(self) -> float:
-        """The factor of theta that has the same effect on the slope."""
-        return self.factor if self.port == "theta" else 1 / self.factor
-
-
-def changes(name: str, port: Port, gamma: float) -> Iterator[Change]:
-    """Changes of the scale of an angle, likely changes first.
-
-    name   theta or q
-    gamma  gear ratio of the motor
-    """
-    where, gear = f"ports.{name}", abs(port.gear_ratio)
-    if name == "theta" and gear != abs(gamma):
-        yield Change(name, f"{where}.gear_ratio", abs(gamma), gear / abs(gamma))
-    if gear != 1:
-        yield Change(name, f"{where}.gear_ratio", 1.0, gear)
-    if port.scale is None and port.unit in (None, *_ANGLES):
-        now = factor(name, port)
-        for unit in _ANGLES:
-            other = factor(name, Port(port.column, unit=unit))
-            if other != now:
-                yield Change(name, f"{where}.unit", unit, other / now)
-    if port.unit == "counts" and port.counts_per_turn is not None:
-        for times in _COUNTS:
-            value = port.counts_per_turn * times
-            yield Change(name, f"{where}.counts_per_turn", value, 1 / times)
-
-
-def gear_of(theta: Port, slope: float, half_width: float = 0.0) -> Change:
-    """The gear ratio with which the motor moves as far as the link.
-
-    slope       of q on theta [1]
-    half_width  half of the 95 % interval of the slope [1]
-    """
-    now = abs(theta.gear_ratio)
-    gear = _simplest(now / slope, half_width / slope)
-    return Change("theta", "ports.theta.gear_ratio", gear, now / gear, fits_any=True)
-
-
-def _simplest(gear: float, half_width: float) -> float:
-    """The integer with the most zeros in an interval, else the nearest integer, else four digits.
-
-    half_width  of the interval, relative [1]
-    """
-    for digits in range(len(f"{gear:.0f}")):
-        likely = float(f"{gear:.{digits + 1}g}")
-        if likely.is_integer() and abs(likely / gear - 1) < half_width:
-            return likely
-    whole = float(round(gear))
-    return whole if whole and abs(gear / whole - 1) < _WHOLE else float(f"{gear:.4g}")
-
-
-def distance(one: float, other: float) -> float:
-    """Distance of two positive factors on a logarithmic scale [1]."""
-    return abs(math.log(one / other))
-
-
-_WHOLE = 0.02
-"""Most gear ratios are integers: up to this relative error, the nearest integer is proposed."""
 _ANY = 0.05
 """Sort key of a gear ratio that was computed from the slope: other changes that agree are first."""
-_SLOW = 1.0  # [Hz]
-_ENOUGH = 0.1  # least fraction of slow motion, else the whole motion is used
-_CORRELATED = 0.9
-_RIGID = 0.99  # correlation of motor and link, beyond which the deformation is small beside both
 _LIKELY = 0.06  # tolerance of the logarithm of a likely mistake
 _FAR = 5.0  # below resonance, a spring may enlarge the motion of the link by this factor
 _FARTHEST = 100.0  # beyond this factor, resonance is no cause either
 _BETTER = 0.8  # largest ratio of the squared errors, after to before
 _PRECISE = 0.01  # largest half width of the correction of a gear ratio [1]
 _AS_WELL = 0.25  # tolerance of the logarithm: another factor explains the same slope
-PORTS = ("theta", "q")
 
 
 @dataclass(frozen=True)
@@ -289,40 +208,3 @@ def _is_better(before: Fitted | None, after: Fitted | None) -> bool:
     if before is None or after is None:
         return False
     return is_worse(before.fit, after.fit) and after.error < _BETTER * before.error
-
-
-@dataclass(frozen=True)
-class Slope:
-    """Slope of q on theta, of the slow motion if the log has any."""
-
-    value: float  # [1]
-    is_slow: bool
-    is_rigid: bool  # whether the deformation is small beside the motion
-
-
-def slope_of(pieces: Sequence[Signals], T: float) -> Slope | None:
-    """Slope of q on theta by total least squares; None if q and theta do not move together."""
-    if not pieces:
-        return None
-    motions = [np.column_stack([p.theta, p.theta + p.phi]) for p in pieces]
-    slow = [_slow(each, T) for each in motions]
-    is_slow = all(each is not None for each in slow)
-    both = np.concatenate(
-        [m - m.mean(axis=0) if s is None else s for m, s in zip(motions, slow, strict=True)]
-    )
-    variances = np.var(both, axis=0)
-    if not np.all(variances > 0):
-        return None
-    # If both are scaled to variance 1, the axis is the diagonal, whatever the units are.
-    correlation = np.corrcoef(both.T)[0, 1]
-    if abs(correlation) < _CORRELATED:
-        return None
-    value = float(np.sign(correlation) * np.sqrt(variances[1] / variances[0]))
-    return Slope(value, is_slow, bool(abs(correlation) > _RIGID))
-
-
-def _slow(motion: Array, T: float) -> Array | None:
-    """The slow part of a motion; None if this part is too small."""
-    motion = motion - motion.mean(axis=0)
-    slow = low_pass(motion, min(_SLOW, 0.1 / T), T)
-    return slow if np.all(np.std(slow, axis=0) > _ENOUGH * np.std(motion, axis=0)) else None
