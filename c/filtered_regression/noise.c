@@ -37,22 +37,25 @@ static sh_real friction_variance(const sh_regression_state *state, const sh_para
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * tau_C;
 }
 
-/* X = (N_tau + N_theta) / (N_tau + (gamma^2 B)^2 G count^2/12) >= 1, where N_theta has the mean square of
- * the noise of theta over 0.1 s in place of count^2/12; detail 4. Jitter of the sample times makes X
- * larger.
- */
+/* Mean square of the noise of theta over 0.1 s [rad2]; detail 4 */
 void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p)
 {
-    const sh_real T = signals->design.T;
-    const sh_real torque = torque_noise(signals, p), inertial = inertial_noise(signals, p);
-    const sh_real rounded = torque + inertial * sh_square(signals->count) / 12;
-
-    if (sh_is_measured(p)) {
-        return;
+    if (!sh_is_measured(p)) {
+        history->rough += sh_fmin(signals->design.T / SH_NOISE_TIME, 1) *
+                          (sh_signals_roughness(signals) - history->rough);
     }
-    history->rough +=
-        sh_fmin(T / SH_NOISE_TIME, 1) * (sh_signals_roughness(signals) - history->rough);
-    history->excess = sh_fmax(1, (torque + inertial * history->rough) / rounded);
+}
+
+/* X = (N_tau + N_theta) / (N_tau + (gamma^2 B)^2 G count^2/12) >= 1, where N_theta has the mean square of
+ * the noise of theta in place of count^2/12; detail 4. Jitter of the sample times makes X larger.
+ */
+static sh_real excess_of_noise(const sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_real torque = torque_noise(&state->signals, p);
+    const sh_real inertial = inertial_noise(&state->signals, p);
+    const sh_real rounded = torque + inertial * sh_square(state->signals.count) / 12;
+
+    return sh_fmax(1, (torque + inertial * state->history.rough) / rounded);
 }
 
 /* lambda = N_tau / (N_tau + N_theta + variance of the friction whose sign is unknown), detail 14 */
@@ -89,7 +92,7 @@ sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_paramete
         const sh_real friction = friction_variance(state, p);
 
         R = (rounding + sh_square(p->motor.gamma * p->noise.tau)) *
-                (1 + SH_EXCESS * (history->excess - 1)) +
+                (1 + SH_EXCESS * (excess_of_noise(state, p) - 1)) +
             friction / ((sh_real)(3.0 / 16) * design->w * design->T);
         stays += friction * history->unsure;
         noise.torque = torque_noise(&state->signals, p);

@@ -46,7 +46,6 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
     signals->gain /= (sh_real)signals->decimation; /* of a mean of K samples */
     signals->gain_second /= (sh_real)signals->decimation;
     history->starting = SH_FORGOTTEN / signals->design.w;
-    history->excess = 1;
     history->phi_min = SH_LARGE; /* no deformation yet */
     history->phi_max = -SH_LARGE;
 }

@@ -166,7 +166,6 @@ typedef struct {
     sh_real starting;   /* time left in which samples may show that the motor was moving [s] */
     sh_real rough;      /* mean square of the noise of theta, from its fourth differences [rad2] */
     sh_real change_age; /* time since the last change of the spring [s], -1 if there was none */
-    sh_real excess;     /* noise over what rounding explains [1] */
 } sh_history;
 
 /* Sums over the samples of the next row. */

@@ -240,7 +240,7 @@ class Oracle:
         self.sigma = self.y = self.delay = 0.0
         self.resting = self.unsure = 0
         self.settling, self.starting = 0.0, 12 / self.w
-        self.rough, self.excess = 0.0, 1.0
+        self.rough = 0.0
         self.once_used: set[int] = set()  # groups that a trial has shown to be needed
         self.changes = 0  # passes in which the recent data agreed by themselves
         self.out: dict[str, list[Any]] = defaultdict(list)
@@ -426,9 +426,12 @@ class Oracle:
         return float(self.torque_noise / whole)
 
     def watch(self, roughness: float) -> None:
-        rounded = self.torque_noise + self.inertial * self.counts[0] ** 2 / 12
         self.rough += min(self.T / 0.1, 1) * (roughness - self.rough)
-        self.excess = max(1.0, (self.torque_noise + self.inertial * self.rough) / rounded)
+
+    def excess(self) -> float:
+        """X, the noise over what rounding explains [1]."""
+        rounded = self.torque_noise + self.inertial * self.counts[0] ** 2 / 12
+        return max(1.0, float((self.torque_noise + self.inertial * self.rough) / rounded))
 
     def variance(self, filtered: Filtered, unknown: float) -> tuple[float, float]:
         """R, and the factor in it by errors that last."""
@@ -438,7 +441,7 @@ class Oracle:
             R = rounding + self.p["noise.tau_e"] ** 2
         else:
             friction = self.friction_variance(unknown)
-            R = (rounding + self.of_torque) * (1 + 0.3 * (self.excess - 1))
+            R = (rounding + self.of_torque) * (1 + 0.3 * (self.excess() - 1))
             R += friction * 16 / (3 * self.w * self.T)
             stays += friction * self.unsure
         last = (1 + stays / R) ** 2

@@ -91,9 +91,7 @@ def check_regression(state: Any) -> None:
         assert 0 < posterior.weight <= 1
         for number in (posterior.removed, posterior.spread, posterior.surplus):
             assert 0 <= number < math.inf
-    history = regression.history
-    for number in (regression.variance_factor, history.excess):
-        assert 1 <= number < math.inf
+    assert 1 <= regression.variance_factor < math.inf
     assert 0 <= regression.misfit < math.inf
     assert abs(regression.signals.motion.direction) <= 1
 
