@@ -12,7 +12,7 @@ import numpy as np
 from sigmahat.checks.changes import distance
 from sigmahat.checks.columns import at_rest, columns
 from sigmahat.checks.dynamics import dynamics
-from sigmahat.checks.findings import Checked, Finding, Kind, Severity
+from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
 from sigmahat.checks.relation import relation
 from sigmahat.checks.slope import slope_of
 from sigmahat.checks.view import View, view
@@ -128,16 +128,35 @@ def _swapped(seen: View) -> list[Finding]:
 
 
 def _tried(seen: View, finding: Finding) -> Finding:
-    """The finding; without its proposed value if this value does not remove the finding."""
+    """The finding with the value, of those proposed, after which nothing is wrong.
+
+    If there is none, with its first value if this value removes the finding, else without a value.
+    """
     if finding.severity is not Severity.WRONG or finding.proposed is None:
         return finding
-    try:
-        after = _view(seen.log, changed(seen.configuration, finding.key, finding.proposed))
-    except (LogError, FmuError):
-        return replace(finding, proposed=None)
-    found = [each for each in _contradictions(after) if each.severity is Severity.WRONG]
-    is_mended = all((each.kind, each.about) != (finding.kind, finding.about) for each in found)
+    every = [(finding.key, finding.proposed), *finding.others]
+    is_mended = False
+    for key, value in every:
+        left = _left(seen, key, value)
+        if left is None:
+            continue
+        if not left:
+            others = [each for each in every if each[0] != key]
+            return replace(finding, key=key, proposed=value, others=others)
+        if key == finding.key:
+            is_mended = all((e.kind, e.about) != (finding.kind, finding.about) for e in left)
     return finding if is_mended else replace(finding, proposed=None)
+
+
+def _left(seen: View, key: str, value: Proposal | None) -> list[Finding] | None:
+    """What is wrong with another value of a key; None if the value cannot be tried."""
+    if value is None:
+        return None
+    try:
+        after = _view(seen.log, changed(seen.configuration, key, value))
+    except (LogError, FmuError):
+        return None
+    return [each for each in _contradictions(after) if each.severity is Severity.WRONG]
 
 
 def changed(configuration: Configuration, key: str, value: Any) -> Configuration:

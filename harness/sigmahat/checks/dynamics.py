@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,9 +42,16 @@ def dynamics(here: Relation) -> Iterator[Finding]:
     elif found.form.symmetric:
         yield from _asymmetry(seen, found)
     if not seen.has_sensor:
-        yield from _late(seen, found)
-        yield from _encoder_lag(seen, found)
+        delays = [each for each in (_late(seen, found), _encoder_lag(seen, found)) if each]
+        # Each looks like the other: the one that explains more is the cause.
+        yield from [min(delays, key=lambda each: each.error).finding] if delays else []
         yield from inertia(seen, found)
+
+
+@dataclass(frozen=True)
+class _Delay:
+    finding: Finding
+    error: float  # sum of the squared errors without the delay
 
 
 def _sign(seen: View, found: Fitted) -> Finding | None:
@@ -87,9 +95,12 @@ def _gear(seen: View, found: Fitted) -> Finding | None:
 
 
 def _zero(seen: View, found: Fitted) -> Finding | None:
-    """A wrong zero of the deformation. The zero matters only for an odd polynomial."""
+    """A wrong zero of the deformation.
+
+    A polynomial with even powers has its zero anywhere, but in the range of the deformations.
+    """
     pieces = seen.pieces
-    zero = found.spring.zero(found.fit, pieces) if found.form.symmetric else math.nan
+    zero = found.spring.zero(found.fit, pieces)
     if not math.isfinite(zero):
         return None
     covered = max(float(np.max(p.phi)) for p in pieces) - min(float(np.min(p.phi)) for p in pieces)
@@ -100,6 +111,8 @@ def _zero(seen: View, found: Fitted) -> Finding | None:
     keys = [(f"ports.{n}.zero", _moved(ports[n], n, m)) for n, m in moves.items() if n in ports]
     # A zero within the deformations of the log is only a note, because identify sets this zero.
     is_wrong = abs(zero) > covered / 2 and _is_more_than_bias(seen, found, zero)
+    if not (is_wrong or found.form.symmetric):
+        return None
     severity = Severity.WRONG if is_wrong else Severity.NOTE
     (key, proposed), *others = keys
     return Finding(Kind.ZERO, severity, key, zero, "rad", 0.0, proposed, others)
@@ -127,50 +140,60 @@ def _moved(port: Port, name: str, angle: float) -> float:
     return float(f"{port.zero + angle / scale(name, port):.6g}")
 
 
-def _late(seen: View, found: Fitted) -> Iterator[Finding]:
+def _late(seen: View, found: Fitted) -> _Delay | None:
     """Delay of the torque with respect to the motion."""
     late = motor.delay(seen, found.form)
     if late is None:
-        return
+        return None
     least = abs(late.value) - late.half_width
     if least < seen.T or not explains(found.fit, late.fit):
-        return
+        return None
     # Friction of another form, or a spring of another form, must not explain the torque as well.
     _, *frictions = motor.variants(found.form)
     others = [motor.with_form(seen, form) for form in frictions]
     others.append(with_all_powers(seen, found.form))
     if not all(explains(each, late.fit) for each in others):
-        return
+        return None
     is_expected = least < _STD * float(seen.every["prior.delay"])
     severity = Severity.NOTE if is_expected else Severity.WRONG
     port = seen.configuration.ports["tau"]
     # The estimator handles expected delays: damping of the spring looks like an early torque.
     proposed = None if is_expected else float(f"{port.delay + late.value:.3g}")
-    yield Finding(Kind.TORQUE_LAG, severity, "ports.tau.delay", late.value, "s", 0.0, proposed)
+    key = "ports.tau.delay"
+    finding = Finding(Kind.TORQUE_LAG, severity, key, late.value, "s", 0.0, proposed)
+    return _Delay(finding, float(np.sum(late.fit.squares)))
 
 
-def _encoder_lag(seen: View, found: Fitted) -> Iterator[Finding]:
+def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     """A friction below 0, as encoders that are read at different times cause.
 
-    It must explain much of the torque: friction of another form than the model's is below 0, too.
+    It is below 0 with friction of another form than the model's, too. So without the lag, the
+    equation must fit better.
     """
     value, half = found.linear.value, found.linear.half_width
     if not value["D_theta"] + half["D_theta"] < 0:
-        return
-    if not explains(motor.with_known(seen, found.form, "D_theta", 0.0), found.fit):
-        return
+        return None
     slope = value[LINEAR] / found.spring.units[0]
     D_theta = float(seen.every["motor.D_theta"])
     lag = seen.gamma * (value["D_theta"] - D_theta) / slope
-    if abs(lag) > motor.LONGEST:
-        return
+    without = motor.with_form(_earlier(seen, lag), found.form)
+    if abs(lag) > motor.LONGEST or not explains(found.fit, without):
+        return None
     least = seen.gamma * (value["D_theta"] + half["D_theta"]) / slope
     severity = Severity.WRONG if least > seen.T else Severity.NOTE
     port = seen.configuration.ports["q"]
     proposed = float(f"{port.delay + lag:.3g}")
     others = [("ports.theta.delay", float(f"{seen.configuration.ports['theta'].delay - lag:.3g}"))]
     key = "ports.q.delay"
-    yield Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others)
+    finding = Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others)
+    return _Delay(finding, float(np.sum(without.squares)))
+
+
+def _earlier(seen: View, lag: float) -> View:
+    """The log with earlier positions of the link."""
+    q = [motor.moved(piece.theta + piece.phi, lag / seen.T) for piece in seen.pieces]
+    pieces = [replace(p, phi=moved - p.theta) for p, moved in zip(seen.pieces, q, strict=True)]
+    return replace(seen, pieces=pieces)
 
 
 _AWAS = 2.3e-5  # start value of motor.B [kg.m2]

@@ -82,12 +82,12 @@ def delay(seen: View, form: Form) -> Corrected | None:
     """
     late = 0.0
     for _ in range(_STEPS):
-        torques = [_moved(piece.tau, late / seen.T) for piece in seen.pieces]
-        moved = [
+        torques = [moved(piece.tau, late / seen.T) for piece in seen.pieces]
+        shifted = [
             replace(piece, tau=tau, extra=-np.gradient(tau, seen.T))
             for piece, tau in zip(seen.pieces, torques, strict=True)
         ]
-        found = with_form(replace(seen, pieces=moved), form)
+        found = with_form(replace(seen, pieces=shifted), form)
         step, half_width = found.value[EXTRA], found.half_width[EXTRA]
         late += step
         if not math.isfinite(late) or abs(late) > LONGEST:
@@ -182,7 +182,7 @@ def _equations(seen: View, form: Form) -> Equations:
     return every.only([name for name in every.names if name not in MOTOR])
 
 
-def _moved(tau: Array, ticks: float) -> Array:
+def moved(tau: Array, ticks: float) -> Array:
     """A torque, shifted to earlier times by a number of ticks."""
     at = np.arange(len(tau), dtype=np.float64)
     moved: Array = np.interp(at + ticks, at, tau)
