@@ -31,6 +31,7 @@ _LEARNED = 0.5
 _DOUBTED = 0.5  # fraction of the second half
 _ROOM = 1.2  # ratio of a proposed range to the largest value
 _WIDE = 5.0  # a range is too wide from this ratio to the largest value
+_ERROR = 100  # a contradiction counts more than all notes together
 _TORQUE = 3.0  # ratio of torques, measured to configured
 
 Outputs = Mapping[str, np.ndarray[Any, Any]]
@@ -128,35 +129,35 @@ def _swapped(seen: View) -> list[Finding]:
 
 
 def _tried(seen: View, finding: Finding) -> Finding:
-    """The finding with the value, of those proposed, after which nothing is wrong.
+    """The finding with the value, of those proposed, after which least is left to find.
 
-    If there is none, with its first value if this value removes the finding, else without a value.
+    Without a value if none removes the finding.
     """
     if finding.severity is not Severity.WRONG or finding.proposed is None:
         return finding
     every = [(finding.key, finding.proposed), *finding.others]
-    is_mended = False
+    best, least = None, math.inf
     for key, value in every:
         left = _left(seen, key, value)
-        if left is None:
+        if left is None or any((e.kind, e.about) == (finding.kind, finding.about) for e in left):
             continue
-        if not left:
-            others = [each for each in every if each[0] != key]
-            return replace(finding, key=key, proposed=value, others=others)
-        if key == finding.key:
-            is_mended = all((e.kind, e.about) != (finding.kind, finding.about) for e in left)
-    return finding if is_mended else replace(finding, proposed=None)
+        weight = sum(_ERROR if each.severity is Severity.WRONG else 1 for each in left)
+        if weight < least:
+            best, least = (key, value), weight
+    if best is None:
+        return replace(finding, proposed=None)
+    others = [each for each in every if each != best]
+    return replace(finding, key=best[0], proposed=best[1], others=others)
 
 
 def _left(seen: View, key: str, value: Proposal | None) -> list[Finding] | None:
-    """What is wrong with another value of a key; None if the value cannot be tried."""
+    """What is found with another value of a key; None if the value cannot be tried."""
     if value is None:
         return None
     try:
-        after = _view(seen.log, changed(seen.configuration, key, value))
+        return [*_contradictions(_view(seen.log, changed(seen.configuration, key, value)))]
     except (LogError, FmuError):
         return None
-    return [each for each in _contradictions(after) if each.severity is Severity.WRONG]
 
 
 def changed(configuration: Configuration, key: str, value: Any) -> Configuration:

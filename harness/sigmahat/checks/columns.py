@@ -30,7 +30,7 @@ def columns(seen: View) -> Iterator[Finding]:
         values = values if finite.all() else values[finite]  # no copy: a log can be long
         if name in ("theta", "q"):
             yield from _jumps(name, port, values)
-            yield from _step(seen, name, port, values)
+            yield from step(seen, name, port, values)
         if name == "tau":
             yield from _saturation(values)
 
@@ -68,7 +68,7 @@ def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
     yield Finding(Kind.JUMP, Severity.WRONG, key, jump, unit, None, known, about=name)
 
 
-def _step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]:
+def step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]:
     """Compares the step of the values with the step of the configured encoder."""
     given = float(seen.every[f"encoder.{name}"])
     step = smallest_step(values[:: max(1, len(values) // _LOOKED_AT)])

@@ -42,10 +42,18 @@ def dynamics(here: Relation) -> Iterator[Finding]:
     elif found.form.symmetric:
         yield from _asymmetry(seen, found)
     if not seen.has_sensor:
-        delays = [each for each in (_late(seen, found), _encoder_lag(seen, found)) if each]
-        # Each looks like the other: the one that explains more is the cause.
-        yield from [min(delays, key=lambda each: each.error).finding] if delays else []
+        yield from _delays(seen, found)
         yield from inertia(seen, found)
+
+
+def _delays(seen: View, found: Fitted) -> Iterator[Finding]:
+    """A delay of the torque, or between the encoders. A late link also looks like an early torque,
+    and a late torque like a link that is early."""
+    late, lag = _late(seen, found), _encoder_lag(seen, found)
+    if late is not None and (lag is None or (late.finding.measured > 0 and late.error < lag.error)):
+        yield late.finding
+    elif lag is not None:
+        yield lag.finding
 
 
 @dataclass(frozen=True)
@@ -168,7 +176,7 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     """A friction below 0, as encoders that are read at different times cause.
 
     It is below 0 with friction of another form than the model's, too. So without the lag, the
-    equation must fit better.
+    equation must fit better: much better, unless the friction below 0 already explains much.
     """
     value, half = found.linear.value, found.linear.half_width
     if not value["D_theta"] + half["D_theta"] < 0:
@@ -177,7 +185,10 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     D_theta = float(seen.every["motor.D_theta"])
     lag = seen.gamma * (value["D_theta"] - D_theta) / slope
     without = motor.with_form(_earlier(seen, lag), found.form)
-    if abs(lag) > motor.LONGEST or not explains(found.fit, without):
+    error, is_better = float(np.sum(without.squares)), explains(found.fit, without)
+    if not is_better and error < found.error:
+        is_better = explains(motor.with_known(seen, found.form, "D_theta", 0.0), found.fit)
+    if abs(lag) > motor.LONGEST or not is_better:
         return None
     least = seen.gamma * (value["D_theta"] + half["D_theta"]) / slope
     severity = Severity.WRONG if least > seen.T else Severity.NOTE
@@ -186,7 +197,7 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     others = [("ports.theta.delay", float(f"{seen.configuration.ports['theta'].delay - lag:.3g}"))]
     key = "ports.q.delay"
     finding = Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others)
-    return _Delay(finding, float(np.sum(without.squares)))
+    return _Delay(finding, error)
 
 
 def _earlier(seen: View, lag: float) -> View:

@@ -15,10 +15,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from sigmahat.checks.changes import Change, changes, distance, gear_of
+from sigmahat.checks.columns import step
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.checks.motor import LINEAR, Fitted, fitted, gear_error
 from sigmahat.checks.slope import Slope, slope_of
@@ -32,6 +34,7 @@ _LIKE = math.log(1.5)
 _ANY = 0.05
 """Sort key of a gear ratio that was computed from the slope: other changes that agree are first."""
 _LIKELY = 0.06  # tolerance of the logarithm of a likely mistake
+_APART = 3.0  # the smallest likely mistake is a factor of 4, by counts per line
 _FAR = 5.0  # below resonance, a spring may enlarge the motion of the link by this factor
 _FARTHEST = 100.0  # beyond this factor, resonance is no cause either
 _BETTER = 0.8  # largest ratio of the squared errors, after to before
@@ -96,7 +99,7 @@ def _likely(seen: View, slope: Slope) -> Change | None:
     A gear ratio that disagrees with motor.gamma is a second sign, so its slope may be less exact.
     """
     size, ports = abs(slope.value), seen.configuration.ports
-    if not (slope.is_rigid and max(size, 1 / size) > (_FAR if slope.is_slow else _FARTHEST)):
+    if not (slope.is_rigid and max(size, 1 / size) > (_APART if slope.is_slow else _FARTHEST)):
         return None
     now = abs(ports["theta"].gear_ratio)
     known = [each for name in PORTS for each in changes(name, ports[name], seen.gamma)]
@@ -104,7 +107,22 @@ def _likely(seen: View, slope: Slope) -> Change | None:
     known += [Change("theta", "ports.theta.gear_ratio", gear, now / gear) for gear in gears]
     best = min(known, key=lambda each: distance(each.on_theta, size))
     is_gamma = best.port == "theta" and best.value == abs(seen.gamma)
-    return best if distance(best.on_theta, size) < (_LIKE if is_gamma else _LIKELY) else None
+    if distance(best.on_theta, size) > (_LIKE if is_gamma else _LIKELY):
+        return None
+    return None if _encoder_denies(seen, best) else best
+
+
+def _encoder_denies(seen: View, change: Change) -> bool:
+    """Whether the steps of an encoder fit its given resolution now, and would not afterwards."""
+    port = seen.configuration.ports[change.port]
+    if f"encoder.{change.port}" not in seen.configuration.parameters:
+        return False
+    other: dict[str, Any] = {change.key.rpartition(".")[2]: change.value}
+    after = replace(port, **other)
+    values = seen.log.read(port.column)
+    finite = values[np.isfinite(values)]
+    now, then = (list(step(seen, change.port, each, finite)) for each in (port, after))
+    return not now and bool(then)
 
 
 def _by_torque(here: Relation, slope: Slope, every: list[Change]) -> Change | None:
