@@ -111,7 +111,8 @@ def test_another_count_of_samples_is_found(c: Library, member: str, value: float
     assert not passes(e)
 
 
-def test_no_method_has_no_state(c: Library) -> None:
+@pytest.mark.parametrize("method", [-(2**31), -1, 0, 3, 2**31 - 1])
+def test_no_method_has_no_state(c: Library, method: int) -> None:
     e = Estimator(c, {})
-    e.parameters.method = 7
+    e.parameters.method = method
     assert not passes(e)
