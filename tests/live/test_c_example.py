@@ -21,10 +21,15 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="it needs timerf
 
 
 @pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def program(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     cmake, folder = need("cmake"), tmp_path_factory.mktemp("live")
     need("cc")
-    for command in ([cmake, "-S", EXAMPLE, "-B", folder], [cmake, "--build", folder]):
+    ninja = build / "venv" / "bin" / "ninja"
+    configure = [cmake, "-S", EXAMPLE, "-B", folder, "-G", "Ninja"]
+    for command in (
+        [*configure, f"-DCMAKE_MAKE_PROGRAM={ninja}"],
+        [cmake, "--build", folder],
+    ):
         subprocess.run([*map(str, command)], check=True, capture_output=True)
     return folder / "live"
 
