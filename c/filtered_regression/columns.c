@@ -28,7 +28,7 @@
 
 static const sh_real DEAD_ZONES[SH_WIDTHS] = SH_DEAD_ZONES;
 static const sh_real HYSTERESES[SH_WIDTHS] = SH_HYSTERESES;
-static const sh_real KNEES[SH_WIDTHS] = SH_KNEES;
+static const sh_real KNEES[SH_WIDTHS] = {0, -1, 1}; /* over range.knee */
 
 int sh_is_measured(const sh_parameters *p)
 {
@@ -274,7 +274,8 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
     case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- sh_limited(z + dphi, h) */
         return at->stop[i % SH_WIDTHS] / (half_width(column) * p->range.phi);
     case SH_COLUMN_KNEE:
-        beyond = beyond_knee(at->phi / p->range.phi, KNEES[i % SH_WIDTHS], p->rls.symmetric, slope);
+        beyond = beyond_knee(at->phi / p->range.phi, KNEES[i % SH_WIDTHS] * p->range.knee,
+                             p->rls.symmetric, slope);
         *slope /= p->range.phi;
         return beyond;
     case SH_COLUMN_SIN_M:

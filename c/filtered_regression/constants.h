@@ -23,10 +23,6 @@
 /* Half widths over range.phi [1]: each four times the one before, so that three come near any width. */
 #define SH_DEAD_ZONES {(sh_real)0.01, (sh_real)0.04, (sh_real)0.16}
 #define SH_HYSTERESES {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08}
-/* Knees of the curve, over range.phi [1]. Others than 0.35 (0.25 or 0.45, or two on each side) give the
- * same errors. If the torque is symmetric, there is only the last one, on both sides.
- */
-#define SH_KNEES {(sh_real)0, -(sh_real)0.35, (sh_real)0.35}
 /* Share of the covered range from which such a width looks like the spring [1]: with half, twice the error. */
 #define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
 /* Relative std deviation of sigma below which columns that need sigma have an effect [1]. */

@@ -37,7 +37,14 @@ SIDES = 2
 LEAST = 1e-9
 START: Parameters = {  # start values, with rls.n for the AwAS and an unknown inertia
     **{"method": 2, "modality": 1, "samplePeriod": 1e-3, "torque.held": 0},
-    **{"rls.n": 3, "rls.m": 3, "rls.symmetric": 1, "range.phi": 0.3, "range.setPoint": 100.0},
+    **{
+        "rls.n": 3,
+        "rls.m": 3,
+        "rls.symmetric": 1,
+        "range.phi": 0.3,
+        "range.setPoint": 100.0,
+        "range.knee": 0.35,
+    },
     **{"encoder.theta": 40000.0, "encoder.q": 40000.0, "noise.tau": 3.2e-3, "noise.tau_e": 3.2e-2},
     **{"motor.D_theta": 1e-3, "motor.B": 2.3e-5, "motor.gamma": 50.0},
     **{"regression.bandwidth": 350.0, "regression.slow": 0.05, "regression.drift": 0.0},

@@ -19,7 +19,7 @@ from regression_joint import stop_operator
 Parameters = Mapping[str, Any]
 GAPS = (0.01, 0.04, 0.16)
 PLAYS = (0.005, 0.02, 0.08)
-KNEES = (0.0, -0.35, 0.35)
+KNEES = (0.0, -1.0, 1.0)  # over range.knee
 SENSOR = 2
 
 
@@ -172,7 +172,7 @@ class Inputs:
         if kind == "NOMINAL":
             return self.nominal, self.nominal_slope
         if kind == "KNEE":
-            knee, x = KNEES[index], self.x
+            knee, x = KNEES[index] * self.p["range.knee"], self.x
             sides = np.sign(x) if self.p["rls.symmetric"] else -1.0 if knee < 0 else 1.0
             beyond = np.maximum(sides * x - abs(knee), 0.0)
             return sides * beyond, (beyond > 0) / self.p["range.phi"]

@@ -11,6 +11,7 @@ import pytest
 import tomlkit
 
 import sigmahat
+from checked_logs import RIGHT, log_by_hand
 from command_line import Shell
 from recorded_logs import CONFIGURATION, LEAD, TRUE, Columns, awas_log, read_estimate, write_log
 from sigmahat.fmi.instance import Fmu
@@ -204,6 +205,19 @@ def test_ranges_hold_what_the_log_shows(found: Found, tmp_path: Path) -> None:
         ("prior.tau_e", 50 * np.max(np.abs(log["tau"]))),
     ):
         assert largest <= float(read[name]) <= 1.5 * largest
+
+
+def test_a_motor_that_is_off_shows_nothing_of_itself(tmp_path: Path) -> None:
+    """GIVEN a link that a hand moves while the motor has no torque, THEN no 0 is written for it."""
+    path = tmp_path / "log.toml"
+    path.write_text(RIGHT)
+    log = LogInMemory(Path("log"), log_by_hand(0.0))
+    found = identify(log, read_configuration(path))
+    assert not any(each.determined for each in found.quantities.values())
+    assert "only noise" in found.notes[-1]
+    assert found.torque == 0
+    with_torque = identify(LogInMemory(Path("log"), log_by_hand(0.05)), read_configuration(path))
+    assert with_torque.torque > 0 and len(with_torque.notes) == len(found.notes) - 1
 
 
 @pytest.mark.parametrize("f", [1.0, 8.0])

@@ -15,7 +15,7 @@ import numpy as np
 from sigmahat.checks.view import View
 from sigmahat.identification import regression
 from sigmahat.identification.coherence import coherent_range
-from sigmahat.identification.noise import TorqueNoise, variance
+from sigmahat.identification.noise import TorqueNoise, is_only_noise
 from sigmahat.identification.regression import EXTRA, MOTOR, Equations, Fit, Form, fit
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
@@ -26,7 +26,6 @@ _SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a 
 _ORDERS = 3
 _STEPS = 4  # of Newton's method for the delay
 LONGEST = 0.1  # largest delay [s]
-_SIGNAL = 2.0  # least ratio of the variance of a torque to that of its noise
 _BETTER = 0.7
 """Largest ratio of the squared errors, after to before, if a change explains the log. Significance
 alone is not enough: with unmodelled friction, nearly every change is significant."""
@@ -53,7 +52,7 @@ def fitted(seen: View, f_0: float | None = None) -> Fitted | None:
     None without data, if the sample period is too long for the motion of a joint, or if the torque
     is only noise, as that of a motor without current.
     """
-    if not seen.pieces or seen.T > _SLOWEST or not any(_is_signal(p.tau) for p in seen.pieces):
+    if seen.T > _SLOWEST or all(is_only_noise(piece.tau) for piece in seen.pieces):
         return None
     f_0 = f_0 or _band(seen)
     m_most = _ORDERS if np.ptp(seen.pieces[0].set_point) > 0 else 1
@@ -148,10 +147,6 @@ def explains(before: Fit, after: Fit) -> bool:
     """Whether a change explains much of the errors before the change."""
     less = float(np.sum(after.squares)) < _BETTER * float(np.sum(before.squares))
     return less and regression.is_worse(before, after)
-
-
-def _is_signal(tau: Array) -> bool:
-    return float(np.var(tau)) > _SIGNAL * variance(tau)
 
 
 def _band(seen: View) -> float:

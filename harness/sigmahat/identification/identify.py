@@ -14,8 +14,9 @@ import numpy as np
 
 from sigmahat.fmi.instance import Fmu, Slave, Value, installed
 from sigmahat.identification.coherence import coherent_range
+from sigmahat.identification.knee import knee
 from sigmahat.identification.motor import KnownInertia, fit_motor
-from sigmahat.identification.noise import TorqueNoise, count, low_pass
+from sigmahat.identification.noise import TorqueNoise, count, is_only_noise, low_pass
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import Signals, shortest, signals_of
 from sigmahat.logs.configuration import Configuration
@@ -28,6 +29,10 @@ _FEWEST = 1000  # samples of the longest stretch that are left if the motor move
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _V_A_TICKS = 10000
+_NO_TORQUE = (
+    "the torque of the motor is only noise: such a log does not show its inertia and friction, and "
+    "they have to be known for the stiffness; record with the motor on"
+)
 _V_A_HIGHEST = 0.1  # low pass of the velocity to compare with, in sampling frequencies
 
 
@@ -73,8 +78,9 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     symmetric = asked and not configuration.symmetric_chosen
     coherent = math.inf if torque_constant else coherent_range(longest, gamma, noise)
     apart = _apart(pieces, count(every))
+    thinned = [each.every(apart) for each in pieces]
     motor = fit_motor(
-        [each.every(apart) for each in pieces],
+        thinned,
         apart * T,
         gamma,
         symmetric,
@@ -82,14 +88,19 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         _known_inertia(every, configuration),
     )
     V_a = _best_V_a(fmu, samples, start, longest, f_0)
-    quantities = dict(motor.quantities)
+    quantities, notes = dict(motor.quantities), list(samples.notes)
+    no_torque = all(is_only_noise(piece.tau) for piece in pieces)
+    if no_torque:
+        quantities = {name: _not_shown(each) for name, each in quantities.items()}
+        notes.append(_NO_TORQUE)
     if quantities["B"].determined:  # until here it was that of the configuration
         f_0 = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
     nominal = configuration.ports["tau"].torque_constant
     if torque_constant and nominal is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
     spring = motor.spring if math.isfinite(motor.spring) else 0.0
-    zero = quantities["zero"].value if _is_wrong(quantities.get("zero"), pieces) else 0.0
+    zero = quantities.get("zero")
+    center = zero.value if zero is not None and _is_wrong(zero, pieces) else 0.0
     return Identified(
         quantities=quantities,
         symmetric=motor.polynomial.symmetric,
@@ -100,14 +111,23 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         bandwidth=2 * math.pi * min(f_0, coherent),
         coherent=coherent,
         V_a=V_a,
-        phi=max(float(np.max(np.abs(piece.phi - zero))) for piece in pieces),
-        zero=zero,
+        phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
+        zero=center,
+        knee=knee(thinned, apart * T, gamma, motor.polynomial, center),
         set_point=max(float(np.max(np.abs(piece.set_point))) for piece in pieces),
-        torque=max(spring, *(abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces)),
+        torque=0.0 if no_torque else max(spring, *_torques(pieces, gamma)),
         B=float(every["motor.B"]),
         D_theta=float(every["motor.D_theta"]),
-        notes=samples.notes,
+        notes=notes,
     )
+
+
+def _not_shown(quantity: Quantity) -> Quantity:
+    return replace(quantity, value=math.nan, half_width=math.inf, determined=False)
+
+
+def _torques(pieces: Sequence[Signals], gamma: float) -> list[float]:
+    return [abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces]
 
 
 def _apart(pieces: Sequence[Signals], count: float) -> int:

@@ -12,6 +12,7 @@ from sigmahat.fmi.instance import Value
 from sigmahat.logs.log import Array
 
 _WINDOWS = 40
+_ONLY_NOISE = 1.2  # ratio of a variance to that of the noise: for 1000 samples of noise, up to 1.1
 _LOWEST = 5.0  # [Hz]
 _HIGHEST = 0.1  # of the sampling frequency
 SETTLED = 8.0  # periods of the low pass, after which it has forgotten a step to 1e-15
@@ -29,6 +30,11 @@ def variance(values: Array, resolution: float = 0.0) -> float:
     windows = np.array_split(np.diff(values, 4), min(_WINDOWS, max(1, len(values) // 50)))
     found = float(np.median([np.mean(each**2) for each in windows])) / 70
     return max(found, resolution**2 / 12)
+
+
+def is_only_noise(values: Array) -> bool:
+    """Whether a signal is constant but for white noise, as the torque of a motor that is off."""
+    return float(np.var(values)) <= _ONLY_NOISE * variance(values)
 
 
 def count(every: Mapping[str, Value]) -> float:

@@ -69,6 +69,8 @@ class Identified:
     """Largest magnitude of the deformation, from its zero [rad]."""
     zero: float
     """Deformation at which the spring has no torque [rad], where it is surely not 0; else 0."""
+    knee: float
+    """Deformation over `phi` at which the slope of the spring changes at once [1]; nan if none."""
     set_point: float
     """Largest magnitude of the set-point [1]."""
     torque: float
@@ -101,6 +103,9 @@ def as_dict(identified: Identified) -> dict[str, Any]:
         "filter.V_a": identified.V_a,
         "deformation is noise above [Hz]": identified.coherent,
         "zero of the deformation [rad]": identified.zero,
+        "knee over the largest deformation [1]": None
+        if math.isnan(identified.knee)
+        else identified.knee,
         "largest phi [rad]": identified.phi,
         "largest setPoint [1]": identified.set_point,
         "largest gamma tau [N.m]": identified.torque,
@@ -127,6 +132,9 @@ def summary(identified: Identified) -> str:
         f"set-point {identified.set_point:.3g}, gamma tau {identified.torque:.3g} N.m",
         f"friction is     tau_coulomb tanh(theta_dot / ({COULOMB_VELOCITY:g} rad/s))",
     ]
+    if math.isfinite(identified.knee):
+        place = identified.knee * identified.phi
+        lines.append(f"knee            the slope of the torque changes at +-{place:.3g} rad")
     if math.isfinite(identified.coherent):
         lines.append(
             f"above {identified.coherent:.2g} Hz the deformation is noise, "

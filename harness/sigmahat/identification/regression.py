@@ -60,6 +60,10 @@ class Signals:
         """Every so many samples alone."""
         return _part(self, slice(None, None, number))
 
+    def up_to(self, number: int) -> Signals:
+        """The first so many samples."""
+        return _part(self, slice(None, number))
+
 
 @dataclass(frozen=True)
 class Form:

@@ -73,6 +73,8 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
         "range.setPoint": _ROOM * found.set_point,
         "prior.tau_e": _ROOM * found.torque,
     }
+    if math.isfinite(found.knee):
+        values["range.knee"] = found.knee / _ROOM
     for name, q in found.quantities.items():
         if q.determined and name in MOTOR:
             if name == "tau_coulomb":

@@ -1,0 +1,61 @@
+"""The deformation at which the slope of the spring changes at once, as in harmonic drives.
+
+The equation of the motor gets a column max(|phi| - k, 0) sign(phi) more. It is linear in its
+coefficient, so the errors are compared for many places k, with the polynomial that the estimator
+has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sigmahat.identification.regression import Fit, Form, Signals, equations, fit, is_worse
+from sigmahat.logs.log import Array
+
+_SHARES = np.linspace(0.1, 0.9, 17)  # of the largest deformation: places that are compared
+_FINER = np.linspace(-0.04, 0.04, 9)  # added to the best one, for places near it
+_MOST = 100_000  # samples that are used
+
+
+def knee(pieces: Sequence[Signals], T: float, gamma: float, form: Form, zero: float) -> float:
+    """Place of the knee over the largest deformation [1]; nan if the log shows none.
+
+    T      time between samples [s]
+    gamma  gear ratio
+    form   polynomial of the estimator, and filters
+    zero   deformation at which the spring has no torque [rad]
+    """
+    used = _first(pieces)
+    largest = max(float(np.max(np.abs(piece.phi - zero))) for piece in used)
+
+    def fitted(share: float) -> Fit:
+        k = share * largest
+        with_knee = [replace(p, extra=_beyond(p.phi - zero, k)) for p in used]
+        return fit(equations(with_knee, T, gamma, form))
+
+    without = fit(equations(used, T, gamma, form))
+    best = min(_SHARES, key=lambda share: _error(fitted(share)))
+    best = min(best + _FINER, key=lambda share: _error(fitted(share)))
+    return float(best) if is_worse(without, fitted(best)) else float("nan")
+
+
+def _beyond(phi: Array, k: float) -> Array:
+    beyond: Array = phi - np.clip(phi, -k, k)
+    return beyond
+
+
+def _error(found: Fit) -> float:
+    return float(np.sum(found.squares))
+
+
+def _first(pieces: Sequence[Signals]) -> list[Signals]:
+    """The first pieces, up to a number of samples: more tell little about the place."""
+    used, left = [], _MOST
+    for piece in pieces:
+        if left > 0:
+            used.append(piece.up_to(left))
+            left -= len(piece.theta)
+    return used

@@ -1,0 +1,51 @@
+"""The place at which the slope of a spring changes at once, from motions in closed form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from recorded_logs import Array
+from sigmahat.identification.knee import knee
+from sigmahat.identification.regression import Form, Signals
+
+T, GAMMA, K = 1e-3, 50.0, 400.0
+FORM = Form(20.0, 50.0, n=4, symmetric=False)
+LARGEST, ZERO = 0.03, 0.004  # of the deformation [rad], of its zero
+
+
+def piece(spring: Callable[[Array], Array]) -> Signals:
+    """Equation (3) without inertia, solved for the torque, with noise of 1 % of it."""
+    t = T * np.arange(20_000)
+    theta = 0.3 * np.sin(2.1 * t) + 0.2 * np.sin(5.3 * t)
+    velocity = 0.63 * np.cos(2.1 * t) + 1.06 * np.cos(5.3 * t)
+    phi = 0.7 * LARGEST * np.sin(3.7 * t) + 0.3 * LARGEST * np.sin(1.3 * t)
+    tau = 5e-4 * GAMMA * velocity + 0.01 * np.tanh(velocity / 0.02) - spring(phi) / GAMMA
+    tau += 0.01 * np.std(tau) * np.random.default_rng(1).standard_normal(len(t))
+    return Signals(theta, phi + ZERO, np.ones(len(t)), tau, None)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.43, 0.7])
+@pytest.mark.parametrize("ratio", [1.5, 0.5])
+def test_the_knee_of_a_spring_is_found(share: float, ratio: float) -> None:
+    k = share * LARGEST
+
+    def spring(phi: Array) -> Array:
+        within: Array = np.clip(phi, -k, k)
+        return K * (within + ratio * (phi - within))
+
+    found = knee([piece(spring)], T, GAMMA, FORM, ZERO)
+    assert found == pytest.approx(share, abs=0.03)
+
+
+@pytest.mark.parametrize("power", [1, 3])
+def test_a_spring_without_a_knee_has_none(power: int) -> None:
+    """GIVEN a torque that the polynomial of the estimator can make."""
+
+    def spring(phi: Array) -> Array:
+        return K * phi if power == 1 else K * (phi + 0.5 * phi**3 / LARGEST**2)
+
+    assert math.isnan(knee([piece(spring)], T, GAMMA, FORM, ZERO))
