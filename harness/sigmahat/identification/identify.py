@@ -26,6 +26,9 @@ from sigmahat.logs.sampling import Samples, sample, stretches
 
 _LONGEST = 600.0  # [s] of a log that are used
 _FEWEST = 1000  # samples of the longest stretch that are left if the motor moves slowly
+_RESOLVED = 0.05
+"""Largest bandwidth of the estimator, in sampling frequencies. Signals are taken as lines between
+samples: with twice as much, the stiffness of joints that are sampled at 250 Hz is too small."""
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _V_A_TICKS = 10000
@@ -108,7 +111,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         m=motor.polynomial.m,
         tau_variance=noise.torque,
         theta_variance=noise.position,
-        bandwidth=2 * math.pi * min(f_0, coherent),
+        bandwidth=2 * math.pi * min(f_0, coherent, _RESOLVED / samples.T),
         coherent=coherent,
         V_a=V_a,
         phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
