@@ -177,8 +177,8 @@ def _equations(seen: View, form: Form) -> Equations:
     return every.only([name for name in every.names if name not in MOTOR])
 
 
-def moved(tau: Array, ticks: float) -> Array:
-    """A torque, shifted to earlier times by a number of ticks."""
-    at = np.arange(len(tau), dtype=np.float64)
-    moved: Array = np.interp(at + ticks, at, tau)
-    return moved
+def moved(signal: Array, ticks: float) -> Array:
+    """A signal, shifted to earlier times by a number of ticks."""
+    at = np.arange(len(signal), dtype=np.float64)
+    earlier: Array = np.interp(at + ticks, at, signal)
+    return earlier
