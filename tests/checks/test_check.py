@@ -237,6 +237,12 @@ def test_a_torque_that_saturates_is_noted(tmp_path: Path) -> None:
     assert Kind.SATURATION in [each.kind for each in found.findings]
 
 
+def test_a_torque_that_is_only_noise_is_noted(tmp_path: Path) -> None:
+    for hold, noted in ((0.0, True), (0.05, False)):
+        found = checked(log_by_hand(hold), RIGHT, tmp_path)
+        assert (Kind.NO_TORQUE in [each.kind for each in found.findings]) is noted
+
+
 def test_the_command(shell: Shell) -> None:
     write_log({name: column[:8000] for name, column in knee_log().items()}, Path("knee.csv"))
     Path("knee.toml").write_text(RIGHT)

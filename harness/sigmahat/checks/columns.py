@@ -9,6 +9,7 @@ import numpy as np
 
 from sigmahat.checks.findings import Finding, Kind, Proposal, Severity
 from sigmahat.checks.view import View
+from sigmahat.identification.noise import is_only_noise
 from sigmahat.logs.configuration import Port
 from sigmahat.logs.log import Array
 from sigmahat.logs.units import factor
@@ -31,7 +32,10 @@ def columns(seen: View) -> Iterator[Finding]:
         if name in ("theta", "q"):
             yield from _jumps(name, port, values)
             yield from step(seen, name, port, values)
-        if name == "tau":
+        if name == "tau" and is_only_noise(values):
+            key, size = f"ports.{name}.column", float(np.std(values))
+            yield Finding(Kind.NO_TORQUE, Severity.NOTE, key, size, port.unit or "N.m")
+        elif name == "tau":
             yield from _saturation(values)
 
 

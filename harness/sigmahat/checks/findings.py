@@ -39,6 +39,7 @@ class Kind(Enum):
     STEP = "step of the encoder"
     JUMP = "jumps of the encoder"
     SATURATION = "saturation of the torque"
+    NO_TORQUE = "torque that is only noise"
     NOISE = "prediction error and noise"
     MISFIT = "misfit of the model"
     DOUBT = "reasons of doubt"

@@ -133,6 +133,8 @@ _SENTENCES: Mapping[Kind, str] = {
     "{expected}",
     Kind.JUMP: "{about} jumps by {measured}, as a counter that starts again",
     Kind.SATURATION: "the torque stays at an end of its range for {percent} of the samples",
+    Kind.NO_TORQUE: "the torque is only noise ({measured}): the motor is off, or the column is "
+    "wrong. The stiffness then rests on motor.B, motor.D_theta and the Coulomb friction alone",
     Kind.NOISE: "the noise of the torque is {measured}, the configuration says {expected}",
     Kind.MISFIT: "the errors of the model are {value:.3g} times as large as noise explains",
     Kind.DOUBT: "not confident in {percent} of the second half: {reason}",
