@@ -43,6 +43,16 @@ def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, facto
     assert found["D_theta_hat"][-1] == pytest.approx(1e-3, rel=0.05)
 
 
+def test_the_doubt_begins_before_the_change_is_certain(c: Library) -> None:
+    """GIVEN a change after 8 s, in which no misfit is usual yet, THEN the evidence alone is doubt."""
+    joint = Joint(duration=14.0, stiffness=lambda t: np.where(t < 8.0, 1.0, 1.3))
+    found = Estimator(c, REGRESSION).run(joint.measurements())
+    in_doubt, age = found["doubt"] == CHANGE, found["change_age"]
+    assert not np.any(in_doubt[joint.t < 8.0])
+    assert np.any(in_doubt & (age == -1))
+    assert age[-1] > 0
+
+
 def test_the_age_is_the_time_since_the_last_change(c: Library) -> None:
     """Ticks without a measurement count, too, and those in which the filters settle."""
     z = Joint(duration=25.0, stiffness=step(2.0)).measurements()

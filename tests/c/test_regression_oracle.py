@@ -71,7 +71,8 @@ CASES: Mapping[str, tuple[Joint, Mapping[str, float]]] = {
     "one coefficient, plain": (JOINT, {**ONE, **PLAIN}),
     "one column": (replace(SHORT, tau_coulomb=0.0), {**ONE, **NO_MOTOR, "regression.drift": 1e-2}),
     "sensor": (SHORT, {**ONE, "modality": SENSOR}),
-    "general basis": (SHORT, {"rls.symmetric": 0, "rls.n": 4, "rls.m": 1}),
+    "general basis": (SHORT, {"rls.symmetric": 0, "rls.n": 4, "rls.m": 1, "range.knee": 0.6}),
+    "one power less than the most": (SHORT, {"rls.n": 7, "rls.m": 1}),
     "turned round": (replace(FAST, duration=1.5), {**ONE, "motor.gamma": -50.0}),
     "held torque": (SHORT, {**ONE, "torque.held": 1}),
 }
