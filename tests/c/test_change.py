@@ -44,7 +44,7 @@ def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, facto
 
 
 def test_the_doubt_begins_before_the_change_is_certain(c: Library) -> None:
-    """GIVEN a change after 8 s, in which no misfit is usual yet, THEN the evidence alone is doubt."""
+    """GIVEN a change after 8 s, when no misfit is usual yet, THEN the evidence alone is doubt."""
     joint = Joint(duration=14.0, stiffness=lambda t: np.where(t < 8.0, 1.0, 1.3))
     found = Estimator(c, REGRESSION).run(joint.measurements())
     in_doubt, age = found["doubt"] == CHANGE, found["change_age"]
