@@ -18,7 +18,7 @@ JOINTS: list[dict[str, Any]] = [
     {"rls.n": 8, "rls.m": 5},
     {"rls.symmetric": 0, "rls.n": 4, "rls.m": 1},
     {"rls.n": 3, "prior.B": 0.1, "regression.drift": 0.01},
-    {"rls.n": 2, "prior.tau_coulomb": 0.0, "prior.D_theta": 0.0},
+    {"rls.n": 2, "prior.tau_coulomb": 0.0, "prior.D_theta": 0.0, "regression.decimation": 1},
 ]
 
 

@@ -171,3 +171,12 @@ def test_friction_of_unknown_sign_increases_the_standard_deviation(c: Library) -
     found = Estimator(c, REGRESSION).run(joint.measurements())[2000:]
     error = np.abs(found["sigma"] - joint.sigma[2000:])
     assert np.mean(error < 1.96 * found["sigma_std"]) > 0.9
+
+
+@pytest.mark.parametrize("samples", [1, 2, 5])
+def test_a_row_has_as_many_samples_as_asked(c: Library, samples: int) -> None:
+    """The error of the prediction is that of the last row, so it stays until the next one."""
+    z = Joint(duration=3.0).measurements()
+    found = Estimator(c, {"method": 2, "rls.n": 1, "regression.decimation": samples}).run(z)
+    rows = np.count_nonzero(np.diff(found["epsilon"][-1001:]))
+    assert rows == 1000 // samples
