@@ -45,7 +45,8 @@ def test_from_an_empty_configuration_to_the_results(shell: Shell) -> None:
             assert hand.value("ports.theta.column") == "motor_counts"
             fill_in(hand)
             hand.chooses("ports.q.sign", "-1: turned round")
-            hand.sees("ports.q.sign: q moves against theta")
+            said = "ports.q.sign: q moves against theta"
+            hand.until(lambda: hand.text().count(said) == 2, "below the result, and in the checks")
             hand.accepts("ports.q.sign")
             other.until(lambda: other.value("ports.q.sign") == "+1", "the sign is right again")
             hand.types("motor.D_theta", "5e-4")

@@ -97,6 +97,8 @@ class Window:
             self._document.add_next_tick_callback(self._show)
 
     def _show(self) -> None:
+        from sigmahat.checks.findings import Severity
+        from sigmahat.checks.text import sentence
         from sigmahat.joint.curve import headline
 
         self._is_due = False
@@ -115,5 +117,9 @@ class Window:
         # The last result is dimmed while another result is computed.
         opacity = "0.45" if setup.busy else "1"
         self._headline.styles = {**self._headline.styles, "opacity": opacity}
-        self._headline.text = "" if answer is None else escape(headline(answer.curve, answer.doubt))
+        text = "" if answer is None else escape(headline(answer.curve, answer.doubt))
+        wrong = [] if setup.checked is None else setup.checked.of(Severity.WRONG)
+        if wrong:  # the result means nothing before this is mended
+            text += f'<br><small style="color: var(--wrong)">{escape(sentence(wrong[0]))}</small>'
+        self._headline.text = text
         self._file.text = f"<pre>{escape(setup.text)}</pre>"
