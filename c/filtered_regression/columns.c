@@ -28,7 +28,8 @@
 
 static const sh_real DEAD_ZONES[SH_WIDTHS] = SH_DEAD_ZONES;
 static const sh_real HYSTERESES[SH_WIDTHS] = SH_HYSTERESES;
-static const sh_real KNEES[SH_WIDTHS] = {0, -1, 1}; /* over range.knee */
+/* Over range.knee. If the torque is symmetric, there is only the last one, on both sides. */
+static const sh_real KNEES[SH_WIDTHS] = {0, -1, 1};
 
 int sh_is_measured(const sh_parameters *p)
 {

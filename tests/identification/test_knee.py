@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -39,6 +40,17 @@ def test_the_knee_of_a_spring_is_found(share: float, ratio: float) -> None:
 
     found = knee([piece(spring)], T, GAMMA, FORM, ZERO)
     assert found == pytest.approx(share, abs=0.03)
+
+
+def test_a_torque_sensor_does_not_hide_the_knee() -> None:
+    """GIVEN a sensor, whose torque takes the place of the polynomial where K_t is identified."""
+
+    def spring(phi: Array) -> Array:
+        return K * (2 * phi - np.clip(phi, -0.4 * LARGEST, 0.4 * LARGEST))
+
+    plain = piece(spring)
+    measured = replace(plain, tau_e=spring(plain.phi - ZERO))
+    assert knee([measured], T, GAMMA, FORM, ZERO) == pytest.approx(0.4, abs=0.03)
 
 
 @pytest.mark.parametrize("power", [1, 3])

@@ -184,11 +184,13 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     slope = value[LINEAR] / found.spring.units[0]
     D_theta = float(seen.every["motor.D_theta"])
     lag = seen.gamma * (value["D_theta"] - D_theta) / slope
+    if abs(lag) > motor.LONGEST:
+        return None
     without = motor.with_form(_earlier(seen, lag), found.form)
     error, is_better = float(np.sum(without.squares)), explains(found.fit, without)
     if not is_better and error < found.error:
         is_better = explains(motor.with_known(seen, found.form, "D_theta", 0.0), found.fit)
-    if abs(lag) > motor.LONGEST or not is_better:
+    if not is_better:
         return None
     least = seen.gamma * (value["D_theta"] + half["D_theta"]) / slope
     severity = Severity.WRONG if least > seen.T else Severity.NOTE

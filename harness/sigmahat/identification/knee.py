@@ -7,6 +7,7 @@ has.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -16,7 +17,9 @@ from sigmahat.identification.regression import Fit, Form, Signals, equations, fi
 from sigmahat.logs.log import Array
 
 _SHARES = np.linspace(0.1, 0.9, 17)  # of the largest deformation: places that are compared
-_FINER = np.linspace(-0.04, 0.04, 9)  # added to the best one, for places near it
+_FINER = np.array(
+    [-0.04, -0.03, -0.02, -0.01, 0.01, 0.02, 0.03, 0.04]
+)  # added to the best one, for places near it
 _MOST = 100_000  # samples that are used
 
 
@@ -37,9 +40,11 @@ def knee(pieces: Sequence[Signals], T: float, gamma: float, form: Form, zero: fl
         return fit(equations(with_knee, T, gamma, form))
 
     without = fit(equations(used, T, gamma, form))
-    best = min(_SHARES, key=lambda share: _error(fitted(share)))
-    best = min(best + _FINER, key=lambda share: _error(fitted(share)))
-    return float(best) if is_worse(without, fitted(best)) else float("nan")
+    fits = {share: fitted(share) for share in _SHARES}
+    best = min(fits, key=lambda share: _error(fits[share]))
+    fits |= {share: fitted(share) for share in best + _FINER}
+    best = min(fits, key=lambda share: _error(fits[share]))
+    return float(best) if is_worse(without, fits[best]) else math.nan
 
 
 def _beyond(phi: Array, k: float) -> Array:
@@ -52,10 +57,13 @@ def _error(found: Fit) -> float:
 
 
 def _first(pieces: Sequence[Signals]) -> list[Signals]:
-    """The first pieces, up to a number of samples: more tell little about the place."""
+    """The first pieces without a sensor, up to a number of samples: more show the place no better.
+
+    With the torque of a sensor, the equation has no polynomial.
+    """
     used, left = [], _MOST
     for piece in pieces:
         if left > 0:
-            used.append(piece.up_to(left))
+            used.append(replace(piece, tau_e=None).up_to(left))
             left -= len(piece.theta)
     return used
