@@ -240,15 +240,18 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
     const int size = P->size;
     sh_real *u = P->U, *g = P->work.g, *s = P->work.f;
     int stride = size * SH_PANEL; /* from the begin of a panel to that of the next */
-    int i, j;
+    int has_underflowed = 0, i, j;
 
     for (j = 0; j < size; ++j) {
         const sh_real beta = 1 + w * P->work.rho[j];
 
         P->D[j] *= beta / (1 + w * P->work.rho[j + 1]);
         P->work.f[j] = w * P->work.f[j] / beta; /* s_j */
+        has_underflowed |= !(P->D[j] > 0);
     }
-    clear_underflowed(P);
+    if (has_underflowed) {
+        clear_underflowed(P);
+    }
     /* Panel after panel, as an entry of p depends on its own row of U alone; two at a time, as they
      * share the factors of the columns. In the first column of a panel only the one on the diagonal
      * is not zero: there p becomes g_i, and u does not change.

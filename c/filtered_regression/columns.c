@@ -74,9 +74,9 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
     [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 1, POWER},
     [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 2, POWER},
-    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, 3, SH_IS_SPRING},
+    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, 6, SH_IS_SPRING},
     [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, SH_SIGNAL_LINEAR, 4, 0},
-    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 6, CURVE},
+    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 3, CURVE},
     [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, 5, SH_IS_MOTOR},
     [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, 5, SH_IS_MOTOR},
     [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, SH_SIGNAL_NONE, 0, MOTOR | SH_IS_FRICTION},
@@ -246,6 +246,12 @@ static sh_real beyond_knee(sh_real x, sh_real k, int symmetric, sh_real *slope)
     return beyond;
 }
 
+/* Whether the column is the widest dead zone: it may be a knee, and then has a slope. */
+static int may_be_knee(const sh_column *column)
+{
+    return column->kind == SH_COLUMN_DEAD_ZONE && column->i == SH_WIDTHS - 1;
+}
+
 /* Signal of a column before its filter. Sets its slope over phi if it has one. */
 static sh_real signal_of(const sh_column *column, const sh_parameters *p, const sh_joint_point *at,
                          sh_real *slope)
@@ -270,7 +276,10 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
         return sh_sin(at->q);
     case SH_COLUMN_COS_Q:
         return sh_cos(at->q);
-    case SH_COLUMN_DEAD_ZONE: /* sh_limited(x, h) / h without a slope: it does not count in sigma */
+    case SH_COLUMN_DEAD_ZONE: /* sh_limited(x, h) / h */
+        if (may_be_knee(column) && sh_fabs(at->phi) < half_width(column) * p->range.phi) {
+            *slope = 1 / (half_width(column) * p->range.phi);
+        }
         return sh_limited(at->phi / p->range.phi, half_width(column)) / half_width(column);
     case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- sh_limited(z + dphi, h) */
         return at->stop[i % SH_WIDTHS] / (half_width(column) * p->range.phi);
@@ -348,6 +357,48 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
         point->F[i] = columns->column[i].prior * signal_of(&columns->column[i], p, point, &slope);
         point->dF[i] = columns->column[i].prior * slope;
     }
+}
+
+/* 1 if the error of its place may leave x beyond a knee. */
+static int is_beside(const sh_column *column, const sh_parameters *p, sh_real x)
+{
+    const sh_real knee = KNEES[column->i % SH_WIDTHS] * p->range.knee;
+
+    return column->kind == SH_COLUMN_KNEE &&
+           (sh_fabs(x - knee) < SH_PLACE_OF_KNEE ||
+            (p->rls.symmetric && sh_fabs(x + knee) < SH_PLACE_OF_KNEE));
+}
+
+sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
+                               const sh_real *beta, sh_joint_point *at)
+{
+    const sh_real x = at->phi / p->range.phi;
+    sh_real curve = at->sigma_nominal, variance = 0;
+    int zone = -1, i;
+
+    for (i = 0; i < columns->spring; ++i) {
+        const sh_column *column = &columns->column[i];
+
+        if (may_be_knee(column)) {
+            zone = i;
+            continue;
+        }
+        curve += at->dF[i] * beta[i];
+        if (is_beside(column, p, x)) {
+            variance += sh_square(beta[i] * column->prior / p->range.phi / 2);
+        }
+    }
+    if (zone >= 0) {
+        const sh_real h = half_width(&columns->column[zone]);
+        const sh_real jump = beta[zone] * columns->column[zone].prior / (h * p->range.phi);
+
+        if (curve + jump < SH_GAP * curve) {
+            at->dF[zone] = 0;
+        } else if (sh_fabs(x) > h / 2 && sh_fabs(x) < 2 * h) {
+            variance += sh_square(jump / 2);
+        }
+    }
+    return variance;
 }
 
 void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change)

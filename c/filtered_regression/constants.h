@@ -25,6 +25,12 @@
 #define SH_HYSTERESES {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08}
 /* Share of the covered range from which such a width looks like the spring [1]: with half, twice the error. */
 #define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
+/* Stiffness within the widest dead zone over the one outside, below which it is a gap, and no part of sigma [1]:
+ * else it is a knee. A gap leaves 0, a knee of harmonic drives half.
+ */
+#define SH_GAP ((sh_real)0.3)
+/* Error of the place of a knee, over range.phi [1]: identify finds it to 0.01. */
+#define SH_PLACE_OF_KNEE ((sh_real)0.02)
 /* Relative std deviation of sigma below which columns that need sigma have an effect [1]. */
 #define SH_KNOWN_STIFFNESS ((sh_real)0.2)
 /* Largest delay that the column of the delay corrects, in std deviations of its prior [1]. */

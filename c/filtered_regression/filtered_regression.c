@@ -37,23 +37,24 @@ static sh_real largest_deformation_filtered_regression(const sh_parameters *p)
 
 /* ---- torque and stiffness at a point ------------------------------------------------------ */
 
-/* sqrt(c' P c + (s_g d(c' beta)/dg)^2 + (share c' beta)^2), with the gain g of the torque (point 8) and the
- * share by which rounding makes the stiffness too small (point 5).
+/* c' P c + (s_g d(c' beta)/dg)^2 + (share c' beta)^2, with the gain g of the torque (point 8) and the share by
+ * which rounding makes the stiffness too small (point 5).
  */
-static sh_real std_deviation(const sh_parameters *p, const sh_combination *c, sh_real too_small)
+static sh_real variance_with_gain(const sh_parameters *p, const sh_combination *c,
+                                  sh_real too_small)
 {
-    return sh_std_deviation(c->variance +
-                            sh_square(p->prior.torque_gain * c->value[SH_RIGHT_GAIN]) +
-                            sh_square(too_small));
+    return c->variance + sh_square(p->prior.torque_gain * c->value[SH_RIGHT_GAIN]) +
+           sh_square(too_small);
 }
 
 /* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Returns how uncertain
  * the stiffness is.
  */
 static sh_combination evaluate_at(const sh_regression_state *state, const sh_parameters *p,
-                                  const sh_joint_point *at, sh_point *point)
+                                  sh_joint_point *at, sh_point *point)
 {
     const sh_posterior *posterior = &state->posterior;
+    const sh_real knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
     const sh_combinations found =
         sh_posterior_combine(posterior, p->prior.B, at->F, at->dF, state->columns.spring);
     const sh_combination *torque = &found.first, *stiffness = &found.second;
@@ -61,8 +62,9 @@ static sh_combination evaluate_at(const sh_regression_state *state, const sh_par
 
     point->tau_e = at->tau_nominal + torque->value[SH_RIGHT_Y];
     point->sigma = at->sigma_nominal + stiffness->value[SH_RIGHT_Y];
-    point->tau_e_std = std_deviation(p, torque, share * point->tau_e);
-    point->sigma_std = std_deviation(p, stiffness, share * point->sigma);
+    point->tau_e_std = sh_std_deviation(variance_with_gain(p, torque, share * point->tau_e));
+    point->sigma_std =
+        sh_std_deviation(variance_with_gain(p, stiffness, share * point->sigma) + knees);
     return *stiffness;
 }
 
@@ -164,8 +166,8 @@ static void report_coefficients(const sh_regression_state *state, const sh_param
  *
  * settled  whether the filters have settled
  */
-static int report(sh_regression_state *state, const sh_parameters *p, const sh_joint_point *at,
-                  sh_real y, int settled, sh_estimate *estimate)
+static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_point *at, sh_real y,
+                  int settled, sh_estimate *estimate)
 {
     const sh_signals *signals = &state->signals;
     sh_point point;

@@ -113,6 +113,12 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
                        sh_real theta, sh_real q, sh_real phi, sh_real set_point,
                        const sh_real *stop);
 
+/* Point 6: leaves the slope of a dead zone out that is a gap. Returns the variance of the slope where it changes
+ * at once, because this place is not known exactly [(N.m/rad)2].
+ */
+sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
+                               const sh_real *beta, sh_joint_point *at);
+
 /* Moves the stop operators of hysteresis [size: SH_WIDTHS] by a change of the deformation [rad]. */
 void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change);
 

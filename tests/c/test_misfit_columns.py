@@ -14,7 +14,7 @@ from c_library import Estimator, Library
 from c_regression import coefficients, covariance
 from regression_joint import PLAIN, SETTINGS, STIFFNESS, Joint, MisfitJoint, T, at_rest
 
-GAP, HYSTERESIS = 3, 4
+HYSTERESIS, GAP = 4, 6
 
 
 def accuracy(estimator: Estimator, *kinds: str) -> float:

@@ -32,7 +32,7 @@ OTHERS = {
     **{"regression.bandwidth": 200.0, "regression.slow": 0.2},
     **{"range.phi": 0.1, "noise.tau": 0.01},
 }
-POWERS, SET_POWER, GAP, HYSTERESIS, MOTOR_ENCODER, KNEE = range(1, 7)
+POWERS, SET_POWER, KNEE, HYSTERESIS, MOTOR_ENCODER, GAP = range(1, 7)
 
 
 def compare(found: NDArray[np.void], expected: Mapping[str, Array]) -> None:
@@ -131,6 +131,11 @@ def ripple_of_the_motor() -> Array:
 MISFITS: Mapping[str, tuple[Array | Mapping[str, Any], Mapping[str, float], int]] = {
     "hysteresis": ({"hysteresis": 2.0, "hysteresis_width": 0.006}, {}, HYSTERESIS),
     "dead zone": (-140.0 * np.clip(PHI, -0.012, 0.012), {}, GAP),
+    "soft middle": (
+        -70.0 * np.clip(PHI, -0.0096, 0.0096),
+        {"prior.power": 0.0, "prior.hysteresis": 0.0, "range.phi": 0.06},
+        GAP,
+    ),
     "powers": (3e5 * PHI**5, {**NO_HYSTERESIS, "rls.n": 2, "range.phi": 0.1}, POWERS),
     "set-point": (PHI * 3e6 * (LEVER - 0.07) ** 3, {**NO_GAP, "rls.m": 2}, SET_POWER),
     "knees": (

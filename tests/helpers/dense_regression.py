@@ -19,6 +19,7 @@ from dense_signals import (
     CURVE,
     GAPS,
     GROUPS,
+    KNEES,
     PLAYS,
     SENSOR,
     TORQUE,
@@ -641,9 +642,35 @@ class Oracle:
             self.of[kind] += float(beta) * prior
         self.eta = self.curve()
 
+    def judge_knees(self, k: int) -> tuple[Array, float]:
+        """Slopes of the columns, and variance of the stiffness beside a place where it changes."""
+        dF, x, half = self.inputs.dF[k].copy(), self.inputs.x[k], 0.5 / self.p["range.phi"]
+        coefficients = [
+            (float(b) * c[2] * half) ** 2 for b, c in zip(self.beta, self.columns, strict=True)
+        ]
+        places = {
+            i: KNEES[c[1]] * self.p["range.knee"]
+            for i, c in enumerate(self.columns)
+            if c[0] == "KNEE"
+        }
+        x_of = np.abs(x) if self.p["rls.symmetric"] else x
+        variance = sum(coefficients[i] for i, knee in places.items() if abs(x_of - knee) < 0.02)
+        widest = [i for i, c in enumerate(self.columns) if c[:2] == ("DEAD_ZONE", 2)]
+        for i in widest:
+            outside = (
+                float(np.delete(dF, i) @ np.delete(self.beta, i)) + self.inputs.nominal_slope[k]
+            )
+            jump = float(self.beta[i]) * self.columns[i][2] * 2 * half / GAPS[2]
+            if outside + jump < 0.3 * outside:
+                dF[i] = 0.0
+            elif GAPS[2] / 2 < abs(x) < 2 * GAPS[2]:
+                variance += (jump / 2) ** 2
+        return dF, variance
+
     def report(self, k: int, y: float, settled: bool) -> None:
         p, of, chosen = self.p, self.of, self.live.chosen
-        dF, F = self.inputs.dF[k], np.where(self.of_spring, self.inputs.F[k], 0.0)
+        dF, knees = self.judge_knees(k)
+        F = np.where(self.of_spring, self.inputs.F[k], 0.0)
         self.sigma = float(dF @ self.beta + self.inputs.nominal_slope[k])
         tau_e, by_gain = self.torque(k), float(dF @ self.by_gain)
         variance, of_tau_e = (float(f[chosen] @ self.P @ f[chosen]) for f in (dF, F))
@@ -666,7 +693,7 @@ class Oracle:
         values = {
             "tau_e_std": std(of_tau_e, float(F @ self.by_gain), tau_e),
             "sigma": self.sigma,
-            "sigma_std": std(variance, by_gain, self.sigma),
+            "sigma_std": math.hypot(std(variance, by_gain, self.sigma), math.sqrt(knees)),
             "sigma_per_gain": by_gain / abs(self.sigma) if self.sigma else 0.0,
             "tau_e": tau_e,
             "tau_e_residual": y,

@@ -109,11 +109,11 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
 GROUPS = {
     "HIGHER_POWER": 1,
     "SET_POWER": 2,
-    "DEAD_ZONE": 3,
+    "DEAD_ZONE": 6,
     "HYSTERESIS": 4,
     "SIN_M": 5,
     "COS_M": 5,
-    "KNEE": 6,
+    "KNEE": 3,
 }
 CURVE = ("POWER", "NOMINAL", "HIGHER_POWER", "SET_POWER", "KNEE")
 TORQUE = (*CURVE, "DEAD_ZONE")
@@ -176,13 +176,16 @@ class Inputs:
             sides = np.sign(x) if self.p["rls.symmetric"] else -1.0 if knee < 0 else 1.0
             beyond = np.maximum(sides * x - abs(knee), 0.0)
             return sides * beyond, (beyond > 0) / self.p["range.phi"]
+        if kind == "DEAD_ZONE":
+            width = GAPS[index] * self.p["range.phi"]
+            is_inside = (np.abs(self.phi) < width) if index == 2 else zero > 0
+            return np.clip(self.x / GAPS[index], -1, 1), is_inside / width
         gamma = self.p["motor.gamma"]
         flat: dict[str, Callable[[], Array]] = {
             "BIAS": lambda: zero + 1,
             "DAMPING": lambda: self.phi * self.l**index,
             "SIN_Q": lambda: np.sin(self.q),
             "COS_Q": lambda: np.cos(self.q),
-            "DEAD_ZONE": lambda: np.clip(self.x / GAPS[index], -1, 1),
             "HYSTERESIS": lambda: self.plays[:, index] / (PLAYS[index] * self.p["range.phi"]),
             "SIN_M": lambda: np.sin(gamma * self.theta),
             "COS_M": lambda: np.cos(gamma * self.theta),

@@ -16,7 +16,8 @@ import numpy as np
 from sigmahat.identification.regression import Fit, Form, Signals, equations, fit, is_worse
 from sigmahat.logs.log import Array
 
-_SHARES = np.linspace(0.1, 0.9, 17)  # of the largest deformation: places that are compared
+_SHARES = np.linspace(0.1, 0.9, 17)  # of the usual deformation: places that are compared
+_USUAL = 0.995  # quantile of the deformation that is not rare
 _FINER = np.array(
     [-0.04, -0.03, -0.02, -0.01, 0.01, 0.02, 0.03, 0.04]
 )  # added to the best one, for places near it
@@ -24,7 +25,7 @@ _MOST = 100_000  # samples that are used
 
 
 def knee(pieces: Sequence[Signals], T: float, gamma: float, form: Form, zero: float) -> float:
-    """Place of the knee over the largest deformation [1]; nan if the log shows none.
+    """Place of the knee, from the zero [rad]; nan if the log shows none.
 
     T      time between samples [s]
     gamma  gear ratio
@@ -32,10 +33,11 @@ def knee(pieces: Sequence[Signals], T: float, gamma: float, form: Form, zero: fl
     zero   deformation at which the spring has no torque [rad]
     """
     used = _first(pieces)
-    largest = max(float(np.max(np.abs(piece.phi - zero))) for piece in used)
+    phi = np.abs(np.concatenate([piece.phi for piece in used]) - zero)
+    usual = float(np.quantile(phi, _USUAL))
 
     def fitted(share: float) -> Fit:
-        k = share * largest
+        k = share * usual
         with_knee = [replace(p, extra=_beyond(p.phi - zero, k)) for p in used]
         return fit(equations(with_knee, T, gamma, form))
 
@@ -44,7 +46,7 @@ def knee(pieces: Sequence[Signals], T: float, gamma: float, form: Form, zero: fl
     best = min(fits, key=lambda share: _error(fits[share]))
     fits |= {share: fitted(share) for share in best + _FINER}
     best = min(fits, key=lambda share: _error(fits[share]))
-    return float(best) if is_worse(without, fits[best]) else math.nan
+    return float(best) * usual if is_worse(without, fits[best]) else math.nan
 
 
 def _beyond(phi: Array, k: float) -> Array:

@@ -70,7 +70,7 @@ class Identified:
     zero: float
     """Deformation at which the spring has no torque [rad], where it is surely not 0; else 0."""
     knee: float
-    """Deformation over `phi` at which the slope of the spring changes at once [1]; nan if none."""
+    """Deformation, from its zero, at which the slope of the spring changes at once [rad]; or nan."""
     set_point: float
     """Largest magnitude of the set-point [1]."""
     torque: float
@@ -103,9 +103,7 @@ def as_dict(identified: Identified) -> dict[str, Any]:
         "filter.V_a": identified.V_a,
         "deformation is noise above [Hz]": identified.coherent,
         "zero of the deformation [rad]": identified.zero,
-        "knee over the largest deformation [1]": None
-        if math.isnan(identified.knee)
-        else identified.knee,
+        "knee [rad]": None if math.isnan(identified.knee) else identified.knee,
         "largest phi [rad]": identified.phi,
         "largest setPoint [1]": identified.set_point,
         "largest gamma tau [N.m]": identified.torque,
@@ -133,8 +131,9 @@ def summary(identified: Identified) -> str:
         f"friction is     tau_coulomb tanh(theta_dot / ({COULOMB_VELOCITY:g} rad/s))",
     ]
     if math.isfinite(identified.knee):
-        place = identified.knee * identified.phi
-        lines.append(f"knee            the slope of the torque changes at +-{place:.3g} rad")
+        lines.append(
+            f"knee            the slope of the torque changes at +-{identified.knee:.3g} rad"
+        )
     if math.isfinite(identified.coherent):
         lines.append(
             f"above {identified.coherent:.2g} Hz the deformation is noise, "

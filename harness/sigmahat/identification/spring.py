@@ -12,6 +12,8 @@ from sigmahat.identification.regression import CONSTANT, Fit, Form, Signals
 from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.logs.log import Array
 
+_USUAL = (0.005, 0.995)  # quantiles of the deformation, between which the polynomial is known
+
 
 @dataclass(frozen=True)
 class Spring:
@@ -62,16 +64,22 @@ class Spring:
         return float(np.sum(e * x ** np.maximum(e - 1, 0) * coefficients)) / self.units[0]
 
     def largest(self, fit: Fit, pieces: Sequence[Signals], gamma: float) -> float:
-        """Largest torque of the spring in the log, behind the gear [N.m]; nan if not known."""
+        """Largest torque of the spring in the log, behind the gear [N.m]; nan if not known.
+
+        A rare deformation, such as a blow, may be beyond what the polynomial was fitted to. There
+        the torque is taken as proportional to the deformation.
+        """
         if "gain" in fit.value:
             return math.nan
         eta, constant = self._eta(fit), fit.value.get(CONSTANT, 0.0)
         largest = 0.0
         for piece in pieces:
-            x = (piece.phi / self.units[0])[:, None] ** self._exponents
+            usual = np.clip(piece.phi, *np.quantile(piece.phi, _USUAL))
+            x = (usual / self.units[0])[:, None] ** self._exponents
             y = self._of_set_point(piece.set_point)
             torque = np.sum((x @ eta) * y, axis=1) + constant
-            largest = max(largest, gamma * float(np.max(np.abs(torque))))
+            beyond = float(np.max(np.abs(piece.phi)) / np.max(np.abs(usual)))
+            largest = max(largest, beyond * gamma * float(np.max(np.abs(torque))))
         return largest
 
     @property
