@@ -11,6 +11,7 @@ import pytest
 
 from recorded_logs import Array
 from sigmahat.identification.knee import knee
+from sigmahat.identification.motor import fit_motor
 from sigmahat.identification.regression import Form, Signals
 
 T, GAMMA, K = 1e-3, 50.0, 400.0
@@ -18,12 +19,16 @@ FORM = Form(20.0, 50.0, n=4, symmetric=False)
 LARGEST, ZERO = 0.03, 0.004  # of the deformation [rad], of its zero
 
 
-def piece(spring: Callable[[Array], Array]) -> Signals:
-    """Equation (3) without inertia, solved for the torque, with noise of 1 % of it."""
+def piece(spring: Callable[[Array], Array], blow: float = 0.0) -> Signals:
+    """Equation (3) without inertia, solved for the torque, with noise of 1 % of it.
+
+    blow  deformation for a moment at the begin, beside that of the motion [rad]
+    """
     t = T * np.arange(20_000)
     theta = 0.3 * np.sin(2.1 * t) + 0.2 * np.sin(5.3 * t)
     velocity = 0.63 * np.cos(2.1 * t) + 1.06 * np.cos(5.3 * t)
     phi = 0.7 * LARGEST * np.sin(3.7 * t) + 0.3 * LARGEST * np.sin(1.3 * t)
+    phi += blow * np.exp(-(((t - 0.05) / 0.01) ** 2))
     tau = 5e-4 * GAMMA * velocity + 0.01 * np.tanh(velocity / 0.02) - spring(phi) / GAMMA
     tau += 0.01 * np.std(tau) * np.random.default_rng(1).standard_normal(len(t))
     return Signals(theta, phi + ZERO, np.ones(len(t)), tau, None)
@@ -52,6 +57,18 @@ def test_a_torque_sensor_does_not_hide_the_knee() -> None:
     measured = replace(plain, tau_e=spring(plain.phi - ZERO))
     found = knee([measured], T, GAMMA, FORM, ZERO)
     assert found == pytest.approx(0.4 * LARGEST, abs=0.03 * LARGEST)
+
+
+def test_a_blow_moves_neither_the_knee_nor_the_scale_of_the_torque() -> None:
+    k, blow = 0.3 * LARGEST, 4 * LARGEST
+
+    def spring(phi: Array) -> Array:
+        return K * (2 * phi - np.clip(phi, -k, k))
+
+    blown = [piece(spring, blow)]
+    assert knee(blown, T, GAMMA, FORM, ZERO) == pytest.approx(k, abs=0.03 * LARGEST)
+    largest = fit_motor(blown, T, GAMMA, False, 20.0, None).spring
+    assert largest == pytest.approx(float(spring(np.array(blow))), rel=0.3)
 
 
 @pytest.mark.parametrize("power", [1, 3])

@@ -70,7 +70,7 @@ class Identified:
     zero: float
     """Deformation at which the spring has no torque [rad], where it is surely not 0; else 0."""
     knee: float
-    """Deformation, from its zero, at which the slope of the spring changes at once [rad]; or nan."""
+    """Deformation at which the slope of the spring changes at once [rad]; nan if there is none."""
     set_point: float
     """Largest magnitude of the set-point [1]."""
     torque: float
