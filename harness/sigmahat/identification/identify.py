@@ -27,9 +27,9 @@ from sigmahat.logs.sampling import Samples, sample, stretches
 _LONGEST = 600.0  # [s] of a log that are used
 _FEWEST = 1000  # samples of the longest stretch that are left if the motor moves slowly
 _RESOLVED = 0.07
-"""Largest bandwidth of the estimator, in sampling frequencies. Of joints that are sampled at 250 Hz,
-the intervals hold fewer with 0.05, which is too slow, and with 0.15, where signals between samples
-are no lines."""
+"""Largest bandwidth of the estimator, in sampling frequencies. Of joints that are sampled at
+250 Hz, the intervals hold fewer with 0.05, which is too slow, and with 0.15, where signals between
+samples are no lines."""
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
 _V_A_TICKS = 10000

@@ -78,7 +78,8 @@ class Spring:
             x = (usual / self.units[0])[:, None] ** self._exponents
             y = self._of_set_point(piece.set_point)
             torque = np.sum((x @ eta) * y, axis=1) + constant
-            beyond = float(np.max(np.abs(piece.phi)) / np.max(np.abs(usual)))
+            most = float(np.max(np.abs(usual)))
+            beyond = float(np.max(np.abs(piece.phi))) / most if most > 0 else 1.0
             largest = max(largest, beyond * gamma * float(np.max(np.abs(torque))))
         return largest
 
