@@ -30,6 +30,9 @@
 
 enum { TWO_COLUMNS = 2 * SH_PANEL, THREE_COLUMNS = 3 * SH_PANEL }; /* of a panel, in memory */
 
+/* Below it, entries of D may underflow soon. */
+static const sh_real FAR_ABOVE_UNDERFLOW = SH_FOR(SH_REAL, 1e-290, 1e-30f);
+
 /* Place of entry (i, j) of U, i <= j, in memory. The panel of row i begins at row and column
  * i - i % SH_PANEL.
  */
@@ -54,6 +57,7 @@ void sh_ud_factor_start(sh_ud_factor *P, int size, sh_real P_0)
 
     (void)memset(P, 0, sizeof *P);
     P->size = size;
+    P->least = P_0;
     for (j = 0; j < size; ++j) {
         P->D[j] = P_0;
         P->U[place(size, j, j)] = 1;
@@ -209,14 +213,16 @@ static inline void rotate(sh_real *u, sh_pair s, sh_pair g, sh_pair *p_0, sh_pai
     *p_1 = sh_pair_add(*p_1, sh_pair_multiply(g, u_1));
 }
 
-/* Columns whose D_j has underflowed to 0 have no part in P any more. They would go on to change by
- * rounding errors alone, which grow until they overflow; so they are cleared.
+/* A column whose D_j has underflowed to 0 has no part in P any more. It would go on to change by
+ * rounding errors alone, which grow until they overflow; so it is cleared.
  */
 static void clear_underflowed(sh_ud_factor *P)
 {
     int i, j;
 
+    P->least = SH_LARGE;
     for (j = 0; j < P->size; ++j) {
+        P->least = sh_fmin(P->least, P->D[j]);
         if (!(P->D[j] > 0)) {
             for (i = 0; i < j; ++i) {
                 P->U[place(P->size, i, j)] = 0;
@@ -240,16 +246,16 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
     const int size = P->size;
     sh_real *u = P->U, *g = P->work.g, *s = P->work.f;
     int stride = size * SH_PANEL; /* from the begin of a panel to that of the next */
-    int has_underflowed = 0, i, j;
+    int i, j;
 
     for (j = 0; j < size; ++j) {
         const sh_real beta = 1 + w * P->work.rho[j];
 
         P->D[j] *= beta / (1 + w * P->work.rho[j + 1]);
         P->work.f[j] = w * P->work.f[j] / beta; /* s_j */
-        has_underflowed |= !(P->D[j] > 0);
     }
-    if (has_underflowed) {
+    P->least /= 1 + w * P->work.rho[size]; /* no D_j shrinks by more */
+    if (!(P->least > FAR_ABOVE_UNDERFLOW)) {
         clear_underflowed(P);
     }
     /* Panel after panel, as an entry of p depends on its own row of U alone; two at a time, as they

@@ -194,24 +194,14 @@ sh_status sh_get(const sh_access *access, void *values)
 
 sh_status sh_set(const sh_access *access, const void *values)
 {
-    const sh_variable *const variables = sh_fmu_model.variables;
-    const uint32_t *const references = access->references;
-    const size_t count = access->count;
     sh_instance *instance = sh_begin_set(access, values);
     size_t i;
 
     if (instance == NULL) {
         return SH_ERROR;
     }
-    if (access->values ==
-        SH_DOUBLES) { /* made in every step: the type is not asked for each value */
-        for (i = 0; i < count; ++i) {
-            *(double *)sh_place(instance, &variables[references[i]]) = ((const double *)values)[i];
-        }
-        return SH_OK;
-    }
-    for (i = 0; i < count; ++i) {
-        sh_write(instance, &variables[references[i]], load(access, values, i));
+    for (i = 0; i < access->count; ++i) {
+        sh_write(instance, &sh_fmu_model.variables[access->references[i]], load(access, values, i));
     }
     return SH_OK;
 }

@@ -173,3 +173,19 @@ def test_pairs_and_plain_c_give_the_same_digits(c: Library, plain: Library, size
     for F, y in zip(random.standard_normal((100, size)), random.standard_normal(100), strict=True):
         assert all(each.update(F, y) for each in recursions)
     assert recursions[0].bytes() == recursions[1].bytes()
+
+
+def test_a_parameter_whose_variance_underflows_leaves_the_others_alone(c: Library) -> None:
+    """GIVEN samples that determine the second of two parameters beyond the smallest number."""
+    rng = np.random.default_rng(3)
+    rls = Recursion(c, STANDARD, 1.0, 1.0, np.zeros(2))
+    assert rls.update(np.array([1.0, 1.0]), 5.0)
+    for size in (1e60, 1e120, 1e150, 1e160, 1e170):
+        assert rls.update(np.array([0.0, size]), 0.0)
+    assert rls.diagonal[1] == 0.0
+    F = rng.normal(size=2000)
+    for f in F:
+        assert rls.update(np.array([f, rng.normal()]), 5.0 * f)
+    assert rls.eta == pytest.approx([5.0, 0.0], abs=1e-2)
+    assert rls.covariance[0, 0] == pytest.approx(1 / (2 + F @ F), rel=1e-9)
+    assert rls.P.U[4] == 0.0  # its column is cleared, so that no rounding errors add up there

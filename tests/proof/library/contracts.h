@@ -81,7 +81,7 @@ sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
 sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
 /*@ requires 1 <= size <= SH_MAX_PARAMETERS;
-    assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work \from P_0;
+    assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work, P->least \from P_0;
     assigns P->size \from size;
     ensures P->size == size;
     ensures \initialized(&P->D[0 .. SH_MAX_ROWS - 1]);
@@ -95,7 +95,7 @@ void sh_ud_factor_start(sh_ud_factor *P, int size, sh_real P_0);
 sh_real sh_ud_factor_project(sh_ud_factor *P, const sh_real *F);
 
 /*@ requires 1 <= P->size <= SH_MAX_PARAMETERS;
-    assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work \from *P, w;
+    assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work, P->least \from *P, w;
     assigns \result \from P, *P;
     ensures \result == P->work.g;
 */

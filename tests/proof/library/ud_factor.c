@@ -14,6 +14,7 @@ void parameters(void)
     ANYTHING(P.D);
     ANYTHING(P.U);
     ANYTHING(F);
+    P.least = any_real();
     P.size = SH_MAX_PARAMETERS;
     sh_ud_factor_project(&P, F);
     sh_ud_factor_update(&P, any_real());
