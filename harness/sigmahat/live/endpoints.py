@@ -115,11 +115,8 @@ def _udp(address: _Address, decoders: _Decoders) -> Source:
     columns = decoders().columns
 
     def read(inbox: Inbox) -> None:
-        # Memory of LONGEST bytes for each datagram would be cut into pieces, and grow with time.
-        received = memoryview(bytearray(LONGEST + 1))
         while True:
-            count = bound.recv_into(received)
-            inbox.add(partial(columns, bytes(received[:count])), can_wait=False)
+            inbox.add(partial(columns, bound.recv(LONGEST + 1)), can_wait=False)
 
     return read
 
