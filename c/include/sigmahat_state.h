@@ -22,12 +22,12 @@ enum {
 /* Factors of a covariance P = U D U'. */
 typedef struct {
     sh_real D[SH_MAX_ROWS]; /* diagonal, >= 0 */
-    sh_real least;          /* not above any entry of D */
     sh_real U[SH_MAX_U];    /* unit upper triangular */
     struct {
         sh_real g[SH_MAX_ROWS], f[SH_MAX_ROWS], rho[SH_MAX_ROWS + 1];
     } work;
-    int size; /* number of parameters, 1..SH_MAX_PARAMETERS */
+    sh_real least; /* not above any entry of D */
+    int size;      /* number of parameters, 1..SH_MAX_PARAMETERS */
 } sh_ud_factor;
 
 /* The recursion. */
