@@ -63,8 +63,8 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
             return fmi2Error;
         }
     }
-    instance->slopes_set = 1;
     for (i = 0; i < nvr; ++i) {
+        instance->slopes_end = vr[i] < instance->slopes_end ? instance->slopes_end : vr[i] + 1;
         *sh_slope(instance, &variables[vr[i]]) = value[i];
     }
     return fmi2OK;

@@ -12,16 +12,13 @@ static void clear_input_derivatives(sh_instance *instance)
 {
     size_t i;
 
-    if (!instance->slopes_set) {
-        return;
-    }
-    instance->slopes_set = 0;
-    for (i = 0; i < sh_fmu_model.count; ++i) {
+    for (i = 0; i < instance->slopes_end; ++i) {
         const sh_variable *variable = &sh_fmu_model.variables[i];
         if (variable->role == SH_ROLE_INPUT) {
             *sh_slope(instance, variable) = 0.0;
         }
     }
+    instance->slopes_end = 0;
 }
 
 /* Whether a step ends after the stop time by rounding only. Some importers make a last step of

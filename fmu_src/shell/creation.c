@@ -152,5 +152,5 @@ void sh_reset(sh_instance *instance)
     instance->previous_step = 0.0;
     instance->outputs_stale = 1;
     instance->parameters_unchecked = 1;
-    instance->slopes_set = 0;
+    instance->slopes_end = 0;
 }

@@ -34,7 +34,7 @@ struct sh_instance {
     double previous_step;     /* length of the last step [s]; 0: no step yet */
     int outputs_stale;        /* in initialisation: outputs are older than the values set */
     int parameters_unchecked; /* a parameter was set since the last check */
-    int slopes_set;           /* derivatives of inputs may differ from 0 */
+    size_t slopes_end;        /* derivatives of inputs may differ from 0 up to this variable */
     void *model;              /* of sh_fmu_model.size bytes */
 };
 

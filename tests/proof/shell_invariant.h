@@ -83,7 +83,10 @@ static void any_instance(course here, sh_importer importer)
     instance.previous_step = any_real();
     instance.outputs_stale = here.outputs_stale;
     instance.parameters_unchecked = here.parameters_unchecked;
-    instance.slopes_set = any_int();
+    instance.slopes_end = any_size();
+    if (instance.slopes_end > sh_fmu_model.count) {
+        instance.slopes_end = sh_fmu_model.count;
+    }
     instance.model = &model;
 }
 
@@ -105,6 +108,9 @@ static void expect(sh_importer importer)
     if (state != SH_INSTANTIATED && state != SH_INITIALIZATION && state != SH_STEP &&
         state != SH_TERMINATED) {
         //@ assert state: \false;
+    }
+    if (instance.slopes_end > sh_fmu_model.count) {
+        //@ assert slopes: \false;
     }
     if ((stale != 0 && stale != 1) || (unchecked != 0 && unchecked != 1)) {
         //@ assert flags: \false;
