@@ -95,7 +95,7 @@ static void read_header(sh_instance *instance, const void *block)
     instance->steps = header.steps;
     instance->previous_step = header.previous_step;
     instance->outputs_stale = header.outputs_stale != 0;
-    instance->parameters_unchecked = 1; /* the next step checks the parameters */
+    instance->parameters_unchecked = 1;        /* the next step checks the parameters */
     instance->slopes_end = sh_fmu_model.count; /* the state may have slopes */
 }
 
