@@ -30,7 +30,7 @@ from sigmahat.logs.learned import LEARNED, read_learned
 
 ARRIVAL = "arrival"
 """Column of a recording for messages without a stamp: time of arrival [ns] since 1970."""
-_ROWS = 1 << 13  # rows of a row group: seconds of a log, which are written in milliseconds
+_ROWS = 1 << 16  # rows of a row group; each group needs 20 kB of memory until the file ends
 _MISSING = -(2**63)
 
 # With the first array, pyarrow imports an installed pandas. No sample should wait for this import.
