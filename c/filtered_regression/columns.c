@@ -359,42 +359,41 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
     }
 }
 
-/* 1 if the error of its place may leave x beyond a knee. */
+/* 1 if x may be on the other side of the place where the slope of a knee changes, or of a dead zone that may be
+ * one: that place is known to 2 % of the range, or to a factor of 2.
+ */
 static int is_beside(const sh_column *column, const sh_parameters *p, sh_real x)
 {
-    const sh_real knee = KNEES[column->i % SH_WIDTHS] * p->range.knee;
+    const sh_real knee = KNEES[column->i % SH_WIDTHS] * p->range.knee, h = half_width(column);
 
-    return column->kind == SH_COLUMN_KNEE &&
-           (sh_fabs(x - knee) < SH_PLACE_OF_KNEE ||
-            (p->rls.symmetric && sh_fabs(x + knee) < SH_PLACE_OF_KNEE));
+    if (may_be_knee(column)) {
+        return sh_fabs(x) > h / 2 && sh_fabs(x) < 2 * h;
+    }
+    return sh_fabs(x - knee) < SH_PLACE_OF_KNEE ||
+           (p->rls.symmetric && sh_fabs(x + knee) < SH_PLACE_OF_KNEE);
 }
 
 sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
                                const sh_real *beta, sh_joint_point *at)
 {
     const sh_real x = at->phi / p->range.phi;
-    sh_real curve = at->sigma_nominal, variance = 0;
-    int zone = -1, i;
+    const sh_real slope = at->sigma_nominal + sh_sum_of_products(at->dF, beta, columns->spring);
+    sh_real variance = 0;
+    int i;
 
     for (i = 0; i < columns->spring; ++i) {
         const sh_column *column = &columns->column[i];
+        const sh_real outside = slope - at->dF[i] * beta[i]; /* of a dead zone */
+        sh_real jump = beta[i] * column->prior / p->range.phi;
 
         if (may_be_knee(column)) {
-            zone = i;
+            jump /= half_width(column);
+        } else if (column->kind != SH_COLUMN_KNEE) {
             continue;
         }
-        curve += at->dF[i] * beta[i];
-        if (is_beside(column, p, x)) {
-            variance += sh_square(beta[i] * column->prior / p->range.phi / 2);
-        }
-    }
-    if (zone >= 0) {
-        const sh_real h = half_width(&columns->column[zone]);
-        const sh_real jump = beta[zone] * columns->column[zone].prior / (h * p->range.phi);
-
-        if (curve + jump < SH_GAP * curve) {
-            at->dF[zone] = 0;
-        } else if (sh_fabs(x) > h / 2 && sh_fabs(x) < 2 * h) {
+        if (may_be_knee(column) && outside + jump < SH_GAP * outside) {
+            at->dF[i] = 0;
+        } else if (is_beside(column, p, x)) {
             variance += sh_square(jump / 2);
         }
     }

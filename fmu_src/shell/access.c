@@ -64,18 +64,18 @@ static const sh_variable *find(const sh_access *access, uint32_t reference)
     return NULL;
 }
 
+/* Of all variables but inputs, which may be set in all states of sh_begin_set. */
 static int may_be_set(sh_instance *instance, const sh_variable *variable, const char *function)
 {
     static const struct {
         unsigned states;
         const char *rule;
     } RULES[] = {
-        {SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, "an input"},
-        {0, "an output"},
-        {SH_INSTANTIATED, "an output"}, /* a guess of its initial value, overwritten */
-        {SH_INSTANTIATED | SH_INITIALIZATION,
-         "a fixed parameter, settable until the end of initialisation"},
-        {SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, "a tunable parameter"},
+        [SH_ROLE_OUTPUT] = {0, "an output"},
+        [SH_ROLE_GUESS] = {SH_INSTANTIATED, "an output"}, /* of its initial value, overwritten */
+        [SH_ROLE_FIXED] = {SH_INSTANTIATED | SH_INITIALIZATION,
+                           "a fixed parameter, settable until the end of initialisation"},
+        [SH_ROLE_TUNABLE] = {SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, "a tunable parameter"},
     };
 
     if ((unsigned)instance->state & RULES[variable->role].states) {
@@ -143,7 +143,7 @@ sh_instance *sh_begin_set(const sh_access *access, const void *values)
             refuse_reference(access, access->references[i]);
             return NULL;
         }
-        if (variable->role == SH_ROLE_INPUT) { /* in all states of this function, any value */
+        if (variable->role == SH_ROLE_INPUT) { /* with any value, see sh_accepts */
             continue;
         }
         if (!may_be_set(instance, variable, access->function)) {

@@ -34,8 +34,8 @@ struct sh_instance {
     double previous_step;     /* length of the last step [s]; 0: no step yet */
     int outputs_stale;        /* in initialisation: outputs are older than the values set */
     int parameters_unchecked; /* a parameter was set since the last check */
-    size_t slopes_end;        /* derivatives of inputs may differ from 0 up to this variable */
-    void *model;              /* of sh_fmu_model.size bytes */
+    size_t slopes_end; /* number of first variables in which a derivative may differ from 0 */
+    void *model;       /* of sh_fmu_model.size bytes */
 };
 
 #endif

@@ -118,6 +118,8 @@ THETA, THETA_DOT, THETA_DDOT, PHI, LEVER = WIDE.motion
 GEAR_ANGLE, GEAR_VELOCITY = GAMMA * THETA, GAMMA * THETA_DOT
 NO_GAP = {"prior.gap": 0.0}
 NO_HYSTERESIS = {**NO_GAP, "prior.hysteresis": 0.0}
+# The widest dead zone, 16 % of the range, is what is taken out, and no other column is.
+NARROW = {"prior.power": 0.0, "prior.hysteresis": 0.0, "range.phi": 0.06}
 
 
 def ripple_of_the_motor() -> Array:
@@ -131,11 +133,8 @@ def ripple_of_the_motor() -> Array:
 MISFITS: Mapping[str, tuple[Array | Mapping[str, Any], Mapping[str, float], int]] = {
     "hysteresis": ({"hysteresis": 2.0, "hysteresis_width": 0.006}, {}, HYSTERESIS),
     "dead zone": (-140.0 * np.clip(PHI, -0.012, 0.012), {}, GAP),
-    "soft middle": (
-        -70.0 * np.clip(PHI, -0.0096, 0.0096),
-        {"prior.power": 0.0, "prior.hysteresis": 0.0, "range.phi": 0.06},
-        GAP,
-    ),
+    "wide dead zone": (-140.0 * np.clip(PHI, -0.0096, 0.0096), NARROW, GAP),
+    "soft middle": (-70.0 * np.clip(PHI, -0.0096, 0.0096), NARROW, GAP),
     "powers": (3e5 * PHI**5, {**NO_HYSTERESIS, "rls.n": 2, "range.phi": 0.1}, POWERS),
     "set-point": (PHI * 3e6 * (LEVER - 0.07) ** 3, {**NO_GAP, "rls.m": 2}, SET_POWER),
     "knees": (
