@@ -28,8 +28,8 @@
 
 static const sh_real DEAD_ZONES[SH_WIDTHS] = SH_DEAD_ZONES;
 static const sh_real HYSTERESES[SH_WIDTHS] = SH_HYSTERESES;
-/* Over range.knee. If the torque is symmetric, there is only the last one, on both sides. */
-static const sh_real KNEES[SH_WIDTHS] = {0, -1, 1};
+/* Knees: at 0, and on both sides at a first and at a second place. */
+enum { FIRST_KNEE = 1, SECOND_KNEE = 3, KNEES = 5 };
 
 int sh_is_measured(const sh_parameters *p)
 {
@@ -76,7 +76,8 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 2, POWER},
     [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, 6, SH_IS_SPRING},
     [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, SH_SIGNAL_LINEAR, 4, 0},
-    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 3, CURVE},
+    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 0, CURVE},
+    [SH_COLUMN_POSSIBLE_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 3, CURVE},
     [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, 5, SH_IS_MOTOR},
     [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, 5, SH_IS_MOTOR},
     [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, SH_SIGNAL_NONE, 0, MOTOR | SH_IS_FRICTION},
@@ -90,6 +91,21 @@ static sh_real half_width(const sh_column *column)
     return column->kind == SH_COLUMN_DEAD_ZONE    ? DEAD_ZONES[column->i % SH_WIDTHS]
            : column->kind == SH_COLUMN_HYSTERESIS ? HYSTERESES[column->i % SH_WIDTHS]
                                                   : 0;
+}
+
+static int is_knee(const sh_column *column)
+{
+    return column->kind == SH_COLUMN_KNEE || column->kind == SH_COLUMN_POSSIBLE_KNEE;
+}
+
+/* Place of a knee over range.phi [1]. If the torque is symmetric, a place > 0 is on both sides. */
+static sh_real place_of_knee(const sh_column *column, const sh_parameters *p)
+{
+    const sh_real first = p->range.knee > 0 ? p->range.knee : SH_POSSIBLE_KNEE,
+                  second = p->range.knee_2;
+    const sh_real places[KNEES] = {0, -first, first, -second, second};
+
+    return places[column->i % KNEES];
 }
 
 int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_real phi_min,
@@ -178,8 +194,13 @@ static void list_columns(const sh_parameters *p, column_list *list)
     for (i = 0; i < SH_WIDTHS; ++i) {
         add(list, p, SH_COLUMN_DEAD_ZONE, i, 0);
     }
-    /*@ loop unroll SH_WIDTHS; */
-    for (i = p->rls.symmetric ? SH_WIDTHS - 1 : 0; i < SH_WIDTHS; ++i) {
+    /*@ loop unroll KNEES; */
+    for (i = p->rls.symmetric ? FIRST_KNEE + 1 : 0; i < SECOND_KNEE; ++i) {
+        add(list, p, p->range.knee > 0 ? SH_COLUMN_KNEE : SH_COLUMN_POSSIBLE_KNEE, i, 0);
+    }
+    /*@ loop unroll KNEES; */
+    for (i = p->rls.symmetric ? SECOND_KNEE + 1 : SECOND_KNEE; i < KNEES && p->range.knee_2 > 0;
+         ++i) {
         add(list, p, SH_COLUMN_KNEE, i, 0);
     }
     add(list, p, SH_COLUMN_BIAS, 0, 0);
@@ -284,8 +305,9 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
     case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- sh_limited(z + dphi, h) */
         return at->stop[i % SH_WIDTHS] / (half_width(column) * p->range.phi);
     case SH_COLUMN_KNEE:
-        beyond = beyond_knee(at->phi / p->range.phi, KNEES[i % SH_WIDTHS] * p->range.knee,
-                             p->rls.symmetric, slope);
+    case SH_COLUMN_POSSIBLE_KNEE:
+        beyond =
+            beyond_knee(at->phi / p->range.phi, place_of_knee(column, p), p->rls.symmetric, slope);
         *slope /= p->range.phi;
         return beyond;
     case SH_COLUMN_SIN_M:
@@ -364,7 +386,7 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
  */
 static int is_beside(const sh_column *column, const sh_parameters *p, sh_real x)
 {
-    const sh_real knee = KNEES[column->i % SH_WIDTHS] * p->range.knee, h = half_width(column);
+    const sh_real knee = place_of_knee(column, p), h = half_width(column);
 
     if (may_be_knee(column)) {
         return sh_fabs(x) > h / 2 && sh_fabs(x) < 2 * h;
@@ -388,7 +410,7 @@ sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p
 
         if (may_be_knee(column)) {
             jump /= half_width(column);
-        } else if (column->kind != SH_COLUMN_KNEE) {
+        } else if (!is_knee(column)) {
             continue;
         }
         if (may_be_knee(column) && outside + jump < SH_GAP * outside) {

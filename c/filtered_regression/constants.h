@@ -29,6 +29,8 @@
  * else it is a knee. A gap leaves 0, a knee of harmonic drives half.
  */
 #define SH_GAP ((sh_real)0.3)
+/* Place of a possible knee over range.phi [1]: harmonic drives have theirs at a third of the largest torque. */
+#define SH_POSSIBLE_KNEE ((sh_real)0.35)
 /* Error of the place of a knee, over range.phi [1]: identify finds it to 0.01. */
 #define SH_PLACE_OF_KNEE ((sh_real)0.02)
 /* Relative std deviation of sigma below which columns that need sigma have an effect [1]. */

@@ -46,8 +46,9 @@ enum {
     SH_COLUMN_SET_POWER,    /* one more power of the set-point */
     SH_COLUMN_DEAD_ZONE,    /* backlash */
     SH_COLUMN_HYSTERESIS,
-    SH_COLUMN_KNEE,  /* a slope of the curve that changes at once */
-    SH_COLUMN_SIN_M, /* motor encoder that is not centred */
+    SH_COLUMN_KNEE,          /* a slope of the curve that changes at once, at a known place */
+    SH_COLUMN_POSSIBLE_KNEE, /* the same, if nobody knows of a knee */
+    SH_COLUMN_SIN_M,         /* motor encoder that is not centred */
     SH_COLUMN_COS_M,
     SH_COLUMN_VISCOUS, /* d. It and what follows stand last in a posterior */
     SH_COLUMN_COULOMB, /* tau_C */

@@ -108,7 +108,8 @@ enum {
 enum { SH_MAX_BASIS = SH_MAX_N * SH_MAX_M };
 
 /* Largest number of columns of the regression: those of the basis, and the others of columns.c. A
- * smaller one, given to the compiler, saves memory where priors of 0 remove columns.
+ * smaller one, given to the compiler, saves memory where priors of 0 remove columns. With the largest
+ * orders, a second knee needs two columns less of others.
  */
 #ifndef SH_MAX_COLUMNS
 enum { SH_MAX_COLUMNS = SH_MAX_BASIS + 24 };
@@ -144,8 +145,9 @@ typedef struct {
 typedef struct {
     sh_real phi;      /* largest deformation to be expected [rad], 1e-6..1e6 */
     sh_real setPoint; /* largest set-point to be expected [1], 1e-12..1e12 */
-    sh_real knee;     /* deformation over phi at which the slope of the curve may change at once, on
-                         both sides [1], 0.01..1 */
+    sh_real knee;   /* deformation over phi at which the slope of the curve changes at once, on both
+                         sides [1], 0..1; 0: not known, and used if the data ask for it */
+    sh_real knee_2; /* the same for a second one [1], 0..1; 0: there is none */
 } sh_range_parameters;
 
 /* Std deviations of what is not known exactly, each 0..1e12. With 0, the quantity is exact, or there

@@ -103,7 +103,7 @@ enum {
     SH_RIGHT_Y = 1,     /* y */
     SH_MAX_ROW = SH_MAX_COLUMNS + SH_RIGHT_SIDES, /* entries of a row: columns, right-hand sides */
     SH_MAX_TRIANGLE = SH_MAX_COLUMNS * (SH_MAX_COLUMNS - 1) / 2 + SH_RIGHT_SIDES * SH_MAX_COLUMNS,
-    SH_WIDTHS = 3, /* half widths of dead zones, and of elements of hysteresis; knees */
+    SH_WIDTHS = 3, /* half widths of dead zones, and of elements of hysteresis */
     SH_GROUPS = 7  /* groups of columns: 0 is always used, the others if the data ask for them */
 };
 

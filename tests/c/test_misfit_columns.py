@@ -95,7 +95,7 @@ COLUMNS_OF: dict[str, tuple[str, ...]] = {
     "prior.load_friction": ("LOAD", "DRIVE"),
     "prior.delay": ("DELAY",),
     "prior.reversal": ("REVERSAL",),
-    "prior.power": ("HIGHER_POWER", "SET_POWER", "KNEE"),
+    "prior.power": ("HIGHER_POWER", "SET_POWER", "POSSIBLE_KNEE"),
     "prior.gap": ("DEAD_ZONE",),
     "prior.hysteresis": ("HYSTERESIS",),
     "prior.eccentric_motor": ("SIN_M", "COS_M"),

@@ -66,12 +66,15 @@ def check(
     return oracle, found
 
 
+GENERAL = {"rls.symmetric": 0, "rls.n": 4, "rls.m": 1}
 CASES: Mapping[str, tuple[Joint, Mapping[str, float]]] = {
     "one coefficient": (SHORT, ONE),
     "one coefficient, plain": (JOINT, {**ONE, **PLAIN}),
     "one column": (replace(SHORT, tau_coulomb=0.0), {**ONE, **NO_MOTOR, "regression.drift": 1e-2}),
     "sensor": (SHORT, {**ONE, "modality": SENSOR}),
-    "general basis": (SHORT, {"rls.symmetric": 0, "rls.n": 4, "rls.m": 1, "range.knee": 0.6}),
+    "general basis": (SHORT, GENERAL),
+    "two knees": (SHORT, {**GENERAL, "range.knee": 0.2, "range.knee_2": 0.6}),
+    "symmetric knees": (SHORT, {"rls.m": 1, "range.knee": 0.2, "range.knee_2": 0.6}),
     "one power less than the most": (SHORT, {"rls.n": 7, "rls.m": 1}),
     "turned round": (replace(FAST, duration=1.5), {**ONE, "motor.gamma": -50.0}),
     "held torque": (SHORT, {**ONE, "torque.held": 1}),

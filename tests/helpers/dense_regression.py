@@ -19,7 +19,6 @@ from dense_signals import (
     CURVE,
     GAPS,
     GROUPS,
-    KNEES,
     PLAYS,
     SENSOR,
     TORQUE,
@@ -29,6 +28,7 @@ from dense_signals import (
     Parameters,
     bandwidth,
     decimation,
+    place_of_knee,
     resolution,
     through,
 )
@@ -44,7 +44,8 @@ START: Parameters = {  # start values, with rls.n for the AwAS and an unknown in
         "rls.symmetric": 1,
         "range.phi": 0.3,
         "range.setPoint": 100.0,
-        "range.knee": 0.35,
+        "range.knee": 0.0,
+        "range.knee_2": 0.0,
     },
     **{"encoder.theta": 40000.0, "encoder.q": 40000.0, "noise.tau": 3.2e-3, "noise.tau_e": 3.2e-2},
     **{"motor.D_theta": 1e-3, "motor.B": 2.3e-5, "motor.gamma": 50.0},
@@ -649,9 +650,9 @@ class Oracle:
             (float(b) * c[2] * half) ** 2 for b, c in zip(self.beta, self.columns, strict=True)
         ]
         places = {
-            i: KNEES[c[1]] * self.p["range.knee"]
+            i: place_of_knee(self.p, c[1])
             for i, c in enumerate(self.columns)
-            if c[0] == "KNEE"
+            if c[0] in ("KNEE", "POSSIBLE_KNEE")
         }
         x_of = np.abs(x) if self.p["rls.symmetric"] else x
         variance = sum(coefficients[i] for i, knee in places.items() if abs(x_of - knee) < 0.02)

@@ -19,7 +19,6 @@ from regression_joint import stop_operator
 Parameters = Mapping[str, Any]
 GAPS = (0.01, 0.04, 0.16)
 PLAYS = (0.005, 0.02, 0.08)
-KNEES = (0.0, -1.0, 1.0)  # over range.knee
 SENSOR = 2
 
 
@@ -91,7 +90,11 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
     if 1 < m < most_m and linear < n:
         found += [("SET_POWER", 0, of("power") * tau_e)]
     found += [("DEAD_ZONE", i, of("gap") * tau_e) for i in range(3)]
-    found += [("KNEE", i, of("power") * tau_e) for i in ([2] if p["rls.symmetric"] else range(3))]
+    knee = "KNEE" if p["range.knee"] > 0 else "POSSIBLE_KNEE"
+    found += [(knee, i, of("power") * tau_e) for i in ([2] if p["rls.symmetric"] else range(3))]
+    if p["range.knee_2"] > 0:
+        sides = [4] if p["rls.symmetric"] else [3, 4]
+        found += [("KNEE", i, of("power") * tau_e) for i in sides]
     found += [("BIAS", 0, of("bias") * tau_e)]
     found += [("DAMPING", j, of("damping") * K_0) for j in sorted({0, m - 1})]
     found += [(f"{name}_Q", 0, of("eccentric") * K_0) for name in ("SIN", "COS")]
@@ -106,6 +109,12 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
     return [column for column in found if column[2] > 0]
 
 
+def place_of_knee(p: Parameters, index: int) -> float:
+    """Over range.phi."""
+    first, second = float(p["range.knee"]) or 0.35, float(p["range.knee_2"])
+    return (0.0, -first, first, -second, second)[index]
+
+
 GROUPS = {
     "HIGHER_POWER": 1,
     "SET_POWER": 2,
@@ -113,9 +122,9 @@ GROUPS = {
     "HYSTERESIS": 4,
     "SIN_M": 5,
     "COS_M": 5,
-    "KNEE": 3,
+    "POSSIBLE_KNEE": 3,
 }
-CURVE = ("POWER", "NOMINAL", "HIGHER_POWER", "SET_POWER", "KNEE")
+CURVE = ("POWER", "NOMINAL", "HIGHER_POWER", "SET_POWER", "KNEE", "POSSIBLE_KNEE")
 TORQUE = (*CURVE, "DEAD_ZONE")
 
 
@@ -171,8 +180,8 @@ class Inputs:
             return self.x * self.l**m, self.l**m / self.p["range.phi"]
         if kind == "NOMINAL":
             return self.nominal, self.nominal_slope
-        if kind == "KNEE":
-            knee, x = KNEES[index] * self.p["range.knee"], self.x
+        if kind in ("KNEE", "POSSIBLE_KNEE"):
+            knee, x = place_of_knee(self.p, index), self.x
             sides = np.sign(x) if self.p["rls.symmetric"] else -1.0 if knee < 0 else 1.0
             beyond = np.maximum(sides * x - abs(knee), 0.0)
             return sides * beyond, (beyond > 0) / self.p["range.phi"]

@@ -16,7 +16,7 @@ from sigmahat.checks.view import View
 from sigmahat.identification import regression
 from sigmahat.identification.coherence import coherent_range
 from sigmahat.identification.noise import TorqueNoise, is_only_noise
-from sigmahat.identification.regression import EXTRA, MOTOR, Equations, Fit, Form, fit
+from sigmahat.identification.regression import MOTOR, Equations, Fit, Form, extra, fit
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
 
@@ -83,11 +83,11 @@ def delay(seen: View, form: Form) -> Corrected | None:
     for _ in range(_STEPS):
         torques = [moved(piece.tau, late / seen.T) for piece in seen.pieces]
         shifted = [
-            replace(piece, tau=tau, extra=-np.gradient(tau, seen.T))
+            replace(piece, tau=tau, extra=-np.gradient(tau, seen.T)[:, None])
             for piece, tau in zip(seen.pieces, torques, strict=True)
         ]
         found = with_form(replace(seen, pieces=shifted), form)
-        step, half_width = found.value[EXTRA], found.half_width[EXTRA]
+        step, half_width = found.value[extra(0)], found.half_width[extra(0)]
         late += step
         if not math.isfinite(late) or abs(late) > LONGEST:
             return None
@@ -109,16 +109,16 @@ def gear_error(seen: View, form: Form) -> Corrected | None:
                 each,
                 theta=whole * each.theta,
                 phi=each.phi + (1 - whole) * each.theta,
-                extra=whole * each.theta,
+                extra=whole * each.theta[:, None],
             )
             for each in seen.pieces
         ]
         system = _equations(replace(seen, pieces=scaled), form)
         found = fit(system)
         spring = found.value.get("eta[1,0]", 0.0) / system.units[0]  # of the power 1
-        if not (spring and math.isfinite(found.half_width[EXTRA])):
+        if not (spring and math.isfinite(found.half_width[extra(0)])):
             return None
-        step, half_width = -found.value[EXTRA] / spring, abs(found.half_width[EXTRA] / spring)
+        step, half_width = -found.value[extra(0)] / spring, abs(found.half_width[extra(0)] / spring)
         whole *= 1 + step
         if not 0.5 < whole < 2:
             return None

@@ -14,7 +14,7 @@ import numpy as np
 
 from sigmahat.fmi.instance import Fmu, Slave, Value, installed
 from sigmahat.identification.coherence import coherent_range
-from sigmahat.identification.knee import knee
+from sigmahat.identification.knees import knees
 from sigmahat.identification.motor import KnownInertia, fit_motor
 from sigmahat.identification.noise import TorqueNoise, count, is_only_noise, low_pass
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
@@ -117,7 +117,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         V_a=V_a,
         phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
         zero=center,
-        knee=math.nan if no_torque else knee(thinned, apart * T, gamma, motor.polynomial, center),
+        knees=() if no_torque else knees(thinned, apart * T, gamma, motor.polynomial, center),
         set_point=max(float(np.max(np.abs(piece.set_point))) for piece in pieces),
         torque=0.0 if no_torque else max(spring, *_torques(pieces, gamma)),
         B=float(every["motor.B"]),

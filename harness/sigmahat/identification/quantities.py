@@ -69,8 +69,8 @@ class Identified:
     """Largest magnitude of the deformation, from its zero [rad]."""
     zero: float
     """Deformation at which the spring has no torque [rad], where it is surely not 0; else 0."""
-    knee: float
-    """Deformation at which the slope of the spring changes at once [rad]; nan if there is none."""
+    knees: tuple[float, ...]
+    """Up to two deformations at which the slope of the spring changes at once [rad]."""
     set_point: float
     """Largest magnitude of the set-point [1]."""
     torque: float
@@ -103,7 +103,7 @@ def as_dict(identified: Identified) -> dict[str, Any]:
         "filter.V_a": identified.V_a,
         "deformation is noise above [Hz]": identified.coherent,
         "zero of the deformation [rad]": identified.zero,
-        "knee [rad]": None if math.isnan(identified.knee) else identified.knee,
+        "knees [rad]": list(identified.knees),
         "largest phi [rad]": identified.phi,
         "largest setPoint [1]": identified.set_point,
         "largest gamma tau [N.m]": identified.torque,
@@ -130,10 +130,10 @@ def summary(identified: Identified) -> str:
         f"set-point {identified.set_point:.3g}, gamma tau {identified.torque:.3g} N.m",
         f"friction is     tau_coulomb tanh(theta_dot / ({COULOMB_VELOCITY:g} rad/s))",
     ]
-    if math.isfinite(identified.knee):
-        lines.append(
-            f"knee            the slope of the torque changes at +-{identified.knee:.3g} rad"
-        )
+    lines += [
+        f"knee            the slope of the torque changes at +-{knee:.3g} rad"
+        for knee in identified.knees
+    ]
     if math.isfinite(identified.coherent):
         lines.append(
             f"above {identified.coherent:.2g} Hz the deformation is noise, "

@@ -36,7 +36,6 @@ from sigmahat.logs.sampling import Samples, stretches
 MOTOR = ("B", "D_theta", "tau_coulomb")  # first columns, which describe the motor
 COULOMB_VELOCITY = 0.02  # v_s, over which the friction changes its sign [rad/s]
 CONSTANT = "constant"  # name of the column of c
-EXTRA = "extra"  # name of the column of Signals.extra
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
 _WINDOW = 1 << 14  # rows that are filtered at a time, about
 _EDGE = 0.1  # [s] left out at both ends of a piece, where the filter has not settled
@@ -54,7 +53,8 @@ class Signals:
     tau: Array
     tau_e: Array | None  # torque of the sensor, to identify the torque constant
     extra: Array | None = None
-    """A regressor more, which is filtered as the torque and is its own instrument."""
+    """More regressors, [size: samples x columns]. They are filtered as the torque is, and are their
+    own instruments."""
 
     def every(self, number: int) -> Signals:
         """Every so many samples alone."""
@@ -173,7 +173,7 @@ def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> 
             parts.append((ZX, Zy, _factor(np.concatenate([X, y], axis=2)), 2 * of_block))
     names = form.names(pieces[0].tau_e is not None)
     if pieces[0].extra is not None:
-        names.append(EXTRA)
+        names += [extra(i) for i in range(pieces[0].extra.shape[1])]
     ZX, Zy, R, number = (np.concatenate(each) for each in zip(*parts, strict=True))
     return Equations(ZX, Zy, R, number, names, of_polynomial)
 
@@ -208,7 +208,8 @@ def rows(
         Z[0, 1:], Z[0, 0] = (X[1, 1:] + X[1, :-1]) / 2, X[1, 0]  # at the times of half 0
         Z[1, :-1], Z[1, -1] = (X[0, 1:] + X[0, :-1]) / 2, X[0, -1]
         if piece.extra is not None:
-            Z[..., -1] = X[..., -1]
+            own = X.shape[2] - piece.extra.shape[1]
+            Z[..., own:] = X[..., own:]
         place = np.arange(max(begin, edge), min(begin + step, count - edge))
         inner = place - first
         yield Rows(y[:, inner], X[:, inner], Z[:, inner], place)
@@ -242,6 +243,11 @@ def _in_blocks(values: Array, place: NDArray[np.intp], T: float) -> Array:
 def eta(n: int, m: int) -> list[str]:
     """Names of the columns of a polynomial of orders n and m."""
     return [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
+
+
+def extra(i: int) -> str:
+    """Name of column i of Signals.extra."""
+    return f"extra[{i}]"
 
 
 def shortest(T: float) -> int:
@@ -302,7 +308,7 @@ def _half(
         x, y = s.phi[kept] / units[0], s.set_point[kept] / units[1]
         raw += [x**e * y**j for e in powers_of_phi(form.symmetric, form.n) for j in range(form.m)]
     if s.extra is not None:
-        raw.append(s.extra[kept])
+        raw += list(s.extra[kept].T)
     filtered = low_pass(np.column_stack(raw), form.f_0, h)
     smooth = low_pass(theta, form.f_0, h)
     motion = [gamma * _second(smooth, h), gamma * _first(smooth, h)]

@@ -1,8 +1,7 @@
-"""The place at which the slope of a spring changes at once, from motions in closed form."""
+"""The places at which the slope of a spring changes at once, from motions in closed form."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 
 from recorded_logs import Array
-from sigmahat.identification.knee import knee
+from sigmahat.identification.knees import knees
 from sigmahat.identification.motor import fit_motor
 from sigmahat.identification.regression import Form, Signals
 
@@ -43,8 +42,19 @@ def test_the_knee_of_a_spring_is_found(share: float, ratio: float) -> None:
         within: Array = np.clip(phi, -k, k)
         return K * (within + ratio * (phi - within))
 
-    found = knee([piece(spring)], T, GAMMA, FORM, ZERO)
+    (found,) = knees([piece(spring)], T, GAMMA, FORM, ZERO)
     assert found == pytest.approx(k, abs=0.03 * LARGEST)
+
+
+def test_both_knees_of_a_harmonic_drive_are_found() -> None:
+    """GIVEN the three slopes K_1, K_2, K_3 of their catalogues."""
+    places = (0.25 * LARGEST, 0.6 * LARGEST)
+
+    def spring(phi: Array) -> Array:
+        return K * (phi + sum(phi - np.clip(phi, -k, k) for k in places) / 2)
+
+    found = knees([piece(spring)], T, GAMMA, FORM, ZERO)
+    assert found == pytest.approx(places, abs=0.03 * LARGEST)
 
 
 def test_a_torque_sensor_does_not_hide_the_knee() -> None:
@@ -55,7 +65,7 @@ def test_a_torque_sensor_does_not_hide_the_knee() -> None:
 
     plain = piece(spring)
     measured = replace(plain, tau_e=spring(plain.phi - ZERO))
-    found = knee([measured], T, GAMMA, FORM, ZERO)
+    (found,) = knees([measured], T, GAMMA, FORM, ZERO)
     assert found == pytest.approx(0.4 * LARGEST, abs=0.03 * LARGEST)
 
 
@@ -66,7 +76,8 @@ def test_a_blow_moves_neither_the_knee_nor_the_scale_of_the_torque() -> None:
         return K * (2 * phi - np.clip(phi, -k, k))
 
     blown = [piece(spring, blow)]
-    assert knee(blown, T, GAMMA, FORM, ZERO) == pytest.approx(k, abs=0.03 * LARGEST)
+    (found,) = knees(blown, T, GAMMA, FORM, ZERO)
+    assert found == pytest.approx(k, abs=0.03 * LARGEST)
     largest = fit_motor(blown, T, GAMMA, False, 20.0, None).spring
     assert largest == pytest.approx(float(spring(np.array(blow))), rel=0.3)
 
@@ -78,4 +89,4 @@ def test_a_spring_without_a_knee_has_none(power: int) -> None:
     def spring(phi: Array) -> Array:
         return K * phi if power == 1 else K * (phi + 0.5 * phi**3 / LARGEST**2)
 
-    assert math.isnan(knee([piece(spring)], T, GAMMA, FORM, ZERO))
+    assert knees([piece(spring)], T, GAMMA, FORM, ZERO) == ()
