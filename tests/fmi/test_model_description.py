@@ -109,6 +109,8 @@ def known_values(fmu: Instance) -> dict[str, list[float]]:
     for name, v in fmu.variables.items():
         if v.causality == "output":
             continue
+        if name == "range.knee_2" and not fmu.get("rls.symmetric"):
+            continue  # with the largest orders, these columns are too many
         if v.type == "Boolean":
             values[name] = [0, 1]
         elif v.type == "Enumeration":
@@ -134,6 +136,8 @@ def distinct(fmu: Instance, choices: dict[str, int]) -> dict[str, float]:
         elif name in ("spring.knee_1", "spring.knee_2"):
             # below the deformation, and above it when it is 1.2345 times as large
             start[name] = 0.3
+        elif name in ("range.knee", "range.knee_2"):
+            start[name] = 0.0
         elif name in ("spring.step_at", "spring.step_for"):
             start[name] = 0.0  # so that the stiffness has changed at the start
         elif v.causality == "parameter" and v.type == "Real" and float(v.start) == 0:

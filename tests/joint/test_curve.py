@@ -249,21 +249,27 @@ SETTINGS = np.linspace(1.0, 2.0, 101)
 SLOPE = 100 + 3 * SETTINGS + 40 * ANGLES - 120 * ANGLES**2
 
 
+TORQUE = 0.5 + (100 + 3 * SETTINGS) * ANGLES + 20 * ANGLES**2 - 40 * ANGLES**3
+
+
 def test_a_polynomial_without_knees_stays_as_it_is() -> None:
-    assert with_knees(OF_KNEE, ANGLES, SETTINGS, SLOPE) is OF_KNEE
+    assert with_knees(OF_KNEE, ANGLES, SETTINGS, TORQUE, SLOPE) is OF_KNEE
 
 
-def test_more_powers_come_near_a_knee() -> None:
-    knee = np.where(ANGLES > 0.1, 30.0, 0.0)
-    found = with_knees(OF_KNEE, ANGLES, SETTINGS, SLOPE + knee)
-    slope = [found.at(np.array([x]), s)[1][0] for x, s in zip(ANGLES, SETTINGS, strict=True)]
-    # The least squares of a polynomial of seven powers, by another function
-    powers = np.polynomial.Polynomial.fit(ANGLES, knee, 6)
-    np.testing.assert_allclose(slope - SLOPE, powers(ANGLES), rtol=0, atol=1e-6)
-    assert found.powers_of_phi == list(range(8))
-    assert found.eta[0] == OF_KNEE.eta[0] and found.eta[1][1] == 3.0
-    torque, _ = found.at(np.array([0.0]), 1.0)
-    assert torque[0] == pytest.approx(0.5)
+@pytest.mark.parametrize("low", [0, 50])  # from -0.2 rad on, and without 0 rad
+def test_more_powers_come_near_a_knee(low: int) -> None:
+    x, s = ANGLES[low:], SETTINGS[low:]
+    beyond, knee = 30 * np.maximum(x - 0.1, 0), np.where(x > 0.1, 30.0, 0.0)
+    found = with_knees(OF_KNEE, x, s, TORQUE[low:] + beyond, SLOPE[low:] + knee)
+    pairs = [found.at(np.array([each]), setting) for each, setting in zip(x, s, strict=True)]
+    torque, slope = np.squeeze(pairs).T
+    # The best polynomials for the torque alone, and for the stiffness alone, by another function
+    errors = torque - TORQUE[low:] - beyond, slope - SLOPE[low:] - knee
+    for error, wanted, degree in zip(errors, (beyond, knee), (7, 6), strict=True):
+        best = np.polynomial.Polynomial.fit(x, wanted, degree)(x)
+        assert np.std(error) < 2 * np.std(best - wanted)
+        assert abs(np.mean(error)) < 0.2 * np.std(error)
+    assert found.powers_of_phi == list(range(8)) and found.eta[1][1] == 3.0
 
 
 def test_the_start_values_are_the_curve() -> None:

@@ -186,29 +186,33 @@ def with_knees(
     curve: Polynomial,
     phi: NDArray[np.float64],
     set_point: NDArray[np.float64],
+    tau_e: NDArray[np.float64],
     sigma: NDArray[np.float64],
 ) -> Polynomial:
-    """The polynomial that is nearest to the stiffness of an estimator, whose curve may have knees.
+    """The polynomial that is nearest to the curve of an estimator, which may have knees.
 
     The knees are not part of the given coefficients. Without knees, the curve is unchanged.
 
-    phi, set_point, sigma   outputs of the estimator [rad, 1, N.m/rad], of one size
+    phi, set_point, tau_e, sigma   outputs of the estimator [rad, 1, N.m, N.m/rad], of one size
     """
     of_set_point = np.power.outer(set_point, curve.powers_of_set_point) @ np.transpose(curve.eta)
-    beyond = sigma - sum(
-        e * phi ** max(e - 1, 0) * of_set_point[:, i] for i, e in enumerate(curve.powers_of_phi)
-    )
+    of_powers = list(zip(curve.powers_of_phi, of_set_point.T, strict=True))
+    torque = tau_e - sum(phi**e * of_power for e, of_power in of_powers)
+    beyond = sigma - sum(e * phi ** max(e - 1, 0) * of_power for e, of_power in of_powers)
     if not np.any(np.abs(beyond) > _SAME * np.max(np.abs(sigma), initial=0.0)):
         return curve
     powers = powers_of_phi(0 not in curve.powers_of_phi, _MOST_POWERS)
     largest = float(np.max(np.abs(phi)))
-    slopes = [e * (phi / largest) ** max(e - 1, 0) for e in powers]
-    found = np.linalg.lstsq(np.transpose(slopes), beyond, rcond=None)[0]
+    x = phi / largest
+    rows = [np.concatenate([x**e, e * x ** max(e - 1, 0)]) for e in powers]
+    found = np.linalg.lstsq(
+        np.transpose(rows), np.concatenate([torque, beyond * largest]), rcond=None
+    )[0]
     eta = [[0.0] * len(curve.powers_of_set_point) for _ in powers]
     for i, e in enumerate(powers):
         if i < len(curve.eta):
             eta[i] = list(curve.eta[i])
-        eta[i][0] += float(found[i]) / largest ** max(e - 1, 0)
+        eta[i][0] += float(found[i]) / largest**e
     units = [[_UNITS_OF_POWERS.get(e, f"N.m/rad{e}")] * len(eta[0]) for e in powers]
     return replace(curve, powers_of_phi=powers, eta=eta, units=units)
 

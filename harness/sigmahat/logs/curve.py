@@ -145,7 +145,9 @@ def curve(
     rows: list[Any]
     if every["method"] == "FilteredRegression" and grids:
         found = _evaluated(slave, every, reach, grids)
-        polynomial = sheet.with_knees(polynomial, found["phi"], found["setPoint"], found["sigma"])
+        polynomial = sheet.with_knees(
+            polynomial, *(found[name] for name in ("phi", "setPoint", "tau_e", "sigma"))
+        )
         ends = np.cumsum([len(grid) for grid in grids])[:-1]
         rows = [np.split(found[name], ends) for name in _OUTPUTS[:4]]
     else:

@@ -144,7 +144,7 @@ def validate(log: Log, configuration: Configuration, start_from: str | Path) -> 
         points = _points(log, samples)
         start = start_values(slave, every)
         before = stiffness_at(slave, samples.names, points, replay.t, samples.T)
-        at = (before[name] for name in ("phi", "setPoint", "sigma"))
+        at = (before[name] for name in ("phi", "setPoint", "tau_e", "sigma"))
         start |= sheet.start_of(sheet.with_knees(sheet.polynomial(start, None, None), *at))
     with Slave(fmu, "alone") as slave:
         replay = Replay(slave, log, configuration)
