@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -173,7 +175,9 @@ def _variants(
     every = {each: fits_of(each) for each in (form, late)}
     plain, other = (late, form) if is_worse(every[form][0], every[late][0]) else (form, late)
     del every[other]
-    every |= {each: fits_of(each) for each in _frictions(plain)[1:]}
+    frictions = _frictions(plain)[1:]
+    with ThreadPoolExecutor(os.cpu_count()) as threads:  # the time is spent in numpy and scipy
+        every |= zip(frictions, threads.map(fits_of, frictions), strict=True)
     errors = {each: float(np.sum(fits[0].squares)) for each, fits in every.items()}
     best = min(errors, key=lambda each: np.nan_to_num(errors[each], nan=np.inf))
     chosen = best if is_worse(every[plain][0], every[best][0]) else plain

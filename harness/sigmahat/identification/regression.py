@@ -306,7 +306,10 @@ def _half(
         raw.append(-tau)
     else:
         x, y = s.phi[kept] / units[0], s.set_point[kept] / units[1]
-        raw += [x**e * y**j for e in powers_of_phi(form.symmetric, form.n) for j in range(form.m)]
+        powers = powers_of_phi(form.symmetric, form.n)
+        of_x = np.vander(x, powers[-1] + 1, increasing=True)[:, powers]
+        of_y = np.vander(y, form.m, increasing=True)
+        raw += [a * b for a in of_x.T for b in of_y.T]
     if s.extra is not None:
         raw += list(s.extra[kept].T)
     filtered = low_pass(np.column_stack(raw), form.f_0, h)
