@@ -2,7 +2,8 @@
 
 The equation of the motor gets a column max(|phi| - k, 0) sign(phi) for each knee k. It is linear in
 its coefficients. So the columns of many places are filtered once, and their equations are solved
-for every place and every pair of places, with the polynomial that the estimator has.
+for every place and every pair of places. Beside them they have the polynomial and the friction by
+load of the estimator: without this friction, the places are less exact.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def knees(
     form   polynomial of the estimator, and filters
     zero   deformation at which the spring has no torque [rad]
     """
-    used = _first(pieces)
+    used, form = _first(pieces), replace(form, load_friction=True)
     phi = np.abs(np.concatenate([piece.phi for piece in used]) - zero)
     usual = float(np.quantile(phi, _USUAL))
 
