@@ -93,7 +93,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         if self._dialect is not None:
             options = pa.csv.WriteOptions(quoting_style="needed", delimiter=self._dialect.delimiter)
             return {"write_options": options}
-        split = [name for name in first.column_names if _is_smooth(first[name])]
+        split = [name for name in first.column_names if _is_split(name, first[name])]
         others = [name for name in first.column_names if name not in split]
         return {"compression": "zstd", "use_byte_stream_split": split, "use_dictionary": others}
 
@@ -107,17 +107,18 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
                 self._writer.close()
 
 
-def _is_smooth(column: pa.ChunkedArray) -> bool:
-    """Whether a column has numbers whose first bytes change slowly from row to row.
+def _is_split(name: str, column: pa.ChunkedArray) -> bool:
+    """Whether the file gets the numbers of a column byte by byte: their first bytes change slowly.
 
     Measured numbers that were written in decimals and read again have all their bytes at random,
-    but few values.
+    but few values. An estimate may begin with one value for a while.
     """
     if pa.types.is_integer(column.type):
         return True
     if not pa.types.is_floating(column.type):
         return False
-    return bool(_REPEATED * pa.compute.count_distinct(column).as_py() > len(column))
+    repeated = _REPEATED * pa.compute.count_distinct(column).as_py() <= len(column)
+    return name.startswith(_PREFIX) or not repeated
 
 
 def _with_commas(table: pa.Table) -> pa.Table:
