@@ -14,11 +14,13 @@ void sh_change_start(sh_regression_state *state)
 
     sh_information_start(&change->changed, state->columns.size, SH_LEAST_INFORMATION);
     change->level = change->usual_misfit = 1;
-    change->blocks = SH_SHORTEST_TEST; /* it begins with the first block that can show a change */
+    change->blocks = SH_LONGEST_TEST; /* it begins with the first block that can show a change */
     state->history.change_age = -1;
 }
 
-/* Hypothesis 1 begins now. */
+/* Hypothesis 1 begins now: t is the end of the last block without evidence. A block of before t that counted as one
+ * of the changed spring would contradict those behind t.
+ */
 static void begin(sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;
@@ -29,7 +31,9 @@ static void begin(sh_regression_state *state)
     change->evidence = change->blocks = 0;
 }
 
-/* The blocks are those of hypothesis 1; the data of all samples and the next posterior follow. */
+/* The blocks are those of hypothesis 1, and so are the data: those of all samples contain some of behind t, which
+ * contradict what they say about the motor. The next posterior follows.
+ */
 static void adopt(sh_regression_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;
@@ -38,8 +42,9 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     blocks->constant = blocks->drifting = change->changed;
     sh_information_start(&blocks->recent, state->columns.size, 1);
     blocks->recent_count = 0;
-    sh_information_restart(&state->data, state->columns.spring, SH_LEAST_INFORMATION);
-    state->rounding = 0;
+    state->data = change->changed;
+    state->surplus = state->spread = state->rounding = 0;
+    state->noise.information = state->noise.gain = 0;
     sh_refit_restart(state, p);
     change->following = 1;
     change->usual_misfit *=
@@ -76,24 +81,26 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
         return;
     }
     change->blocks += 1;
-    if (change->blocks > (change->evidence > 0 ? SH_LONGEST_TEST : SH_SHORTEST_TEST)) {
-        begin(state);
-        return;
-    }
     change->evidence = sh_fmax(change->evidence + sh_fmin(before / level, SH_LARGEST_EVIDENCE) -
                                    2 * sh_fmin(changed / level, SH_LARGEST_EVIDENCE / 2) - 2,
                                0);
     if (change->evidence > SH_HAS_CHANGED * sh_sqrt(level) && change->following == 0) {
         adopt(state, p);
+    } else if (!(change->evidence > 0) || change->blocks >= SH_LONGEST_TEST) {
+        begin(state);
     }
+}
+
+sh_real sh_change_misfit(const sh_regression_state *state)
+{
+    return sh_sqrt(sh_fmax(1, state->misfit)) / state->change.usual_misfit;
 }
 
 int sh_change_is_likely(const sh_regression_state *state)
 {
     const sh_change *change = &state->change;
-    const sh_real misfit = sh_sqrt(sh_fmax(1, state->misfit));
     const int is_sudden =
-        change->judged >= SH_USUAL_BLOCKS && misfit > SH_SUDDEN_MISFIT * change->usual_misfit;
+        change->judged >= SH_USUAL_BLOCKS && sh_change_misfit(state) > SH_SUDDEN_MISFIT;
 
     return change->following || change->evidence > SH_MAY_HAVE_CHANGED || is_sudden;
 }

@@ -110,8 +110,7 @@
  */
 #define SH_SUDDEN_MISFIT ((sh_real)1.7)
 #define SH_USUAL_BLOCKS ((sh_real)300)
-/* Number of blocks after which a hypothesis ends that has no evidence, and any one [1]: 0.5 s and 4 s. */
-#define SH_SHORTEST_TEST ((sh_real)10)
+/* Number of blocks after which a hypothesis ends [1]: 4 s. */
 #define SH_LONGEST_TEST ((sh_real)80)
 /* Number of blocks from which a change can be seen [1]. */
 #define SH_SHORTEST_PAST ((sh_real)40)

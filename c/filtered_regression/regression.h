@@ -259,6 +259,9 @@ void sh_change_start(sh_regression_state *state);
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real changed);
 
+/* The misfit over its usual value [1]. */
+sh_real sh_change_misfit(const sh_regression_state *state);
+
 /* Whether the present estimate is in doubt. */
 int sh_change_is_likely(const sh_regression_state *state);
 

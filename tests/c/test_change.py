@@ -43,6 +43,29 @@ def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, facto
     assert found["D_theta_hat"][-1] == pytest.approx(1e-3, rel=0.05)
 
 
+@pytest.mark.parametrize("factor", [2.0, 0.5])
+def test_samples_of_the_changed_spring_do_not_spoil_the_motor(c: Library, factor: float) -> None:
+    """GIVEN other misfits, too, THEN the stiffness is right again three seconds after the step."""
+    joint = Joint(
+        **{"duration": 22.0, "frequency": 0.5, "amplitude": 1.6, "stiffness": step(factor)},
+        **{"load_friction": 0.03, "delay": 1e-3},
+    )
+    found = Estimator(c, {**REGRESSION, "prior.B": 0.1}).run(joint.measurements())
+    error = np.abs(found["sigma"] / joint.sigma - 1)
+    assert np.max(error[joint.t > AT + 3.0]) < 0.1
+
+
+def test_a_slow_change_is_followed(c: Library) -> None:
+    """GIVEN a stiffness that doubles within 10 s."""
+    joint = Joint(
+        duration=30.0, frequency=0.5, amplitude=1.6, stiffness=lambda t: np.clip(t / 10 - 0.5, 1, 2)
+    )
+    found = Estimator(c, {**REGRESSION, "prior.B": 0.1}).run(joint.measurements())
+    error = np.abs(found["sigma"] / joint.sigma - 1)
+    assert T * np.count_nonzero(found["confident"].astype(bool) & (error > 0.2)) < 1.0
+    assert np.max(error[joint.t > 28.0]) < 0.1 and found["confident"][-1]
+
+
 def test_the_doubt_begins_before_the_change_is_certain(c: Library) -> None:
     """GIVEN a change after 8 s, when no misfit is usual yet, THEN the evidence alone is doubt."""
     joint = Joint(duration=14.0, stiffness=lambda t: np.where(t < 8.0, 1.0, 1.3))

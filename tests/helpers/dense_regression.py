@@ -250,6 +250,7 @@ class Oracle:
         self.resting = self.unsure = 0
         self.settling, self.starting = 0.0, 12 / self.w
         self.rough = 0.0
+        self.judged, self.usual_misfit = 0, 1.0
         self.once_used: set[int] = set()  # groups that a trial has shown to be needed
         self.changes = 0  # passes in which the recent data agreed by themselves
         self.out: dict[str, list[Any]] = defaultdict(list)
@@ -402,7 +403,8 @@ class Oracle:
             N = blocks.recent_count
             has_changed = N > 20 and blocks.recent.rest < threshold(N)
             self.changes += has_changed
-            keep = math.exp(-gained / (memory / 5 if has_changed else memory))
+            sudden = min(math.sqrt(max(1.0, self.q)) / self.usual_misfit, 10.0)
+            keep = math.exp(-gained * max(sudden, 5.0 if has_changed else 1.0) / memory)
             for sums in everything:
                 sums.fade(keep)
             blocks.count *= keep
@@ -505,9 +507,17 @@ class Oracle:
             blocks.count += count
             blocks.recent_count += count
             blocks.gained += count * blocks.length * self.K * self.T
+            self.watch_misfit()
             blocks.rows.clear()
         yield
         next(self.passes)
+
+    def watch_misfit(self) -> None:
+        """Its mean over 400 blocks, in which none counts as more than 1.7 times this mean."""
+        if self.p["regression.memory"] > 0:
+            self.judged = min(self.judged + 1, 400)
+            most = min(math.sqrt(max(1.0, self.q)), 1.7 * self.usual_misfit)
+            self.usual_misfit += (most - self.usual_misfit) / self.judged
 
     def full_block(self, measured: bool) -> tuple[Long, float, float]:
         """Mean row, its variance, and as how many independent blocks it counts."""
