@@ -83,6 +83,10 @@
 #define SH_CONTRADICTION ((sh_real)1.5)
 /* regression.memory over the time constant of the recent blocks [1]. */
 #define SH_RECENT ((sh_real)10)
+/* Misfit over its usual value above which data are forgotten faster [1]: with 1, a second run of an industrial robot
+ * with other friction makes it forget the first one.
+ */
+#define SH_FAR_FROM_USUAL ((sh_real)3)
 /* How much faster data are forgotten if the recent ones agree [1]: the joint has changed. */
 #define SH_FASTER ((sh_real)5)
 /* Process noise of friction that drifts, in variances of its prior [1/s]. */

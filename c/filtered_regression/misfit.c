@@ -229,15 +229,15 @@ void sh_friction_drift(sh_regression_state *state, sh_real time)
 
 /* ---- forgetting, details 9 and 11 -------------------------------------------------------- */
 
-/* Forgets data of `time` [s]: as many times faster as the misfit is larger than usual, but not faster than the recent
- * blocks; at least five times if these agree by themselves, because then the joint has changed.
+/* Forgets data of `time` [s]: faster while the misfit is over three times its usual value, but not faster than the
+ * recent blocks; at least five times as fast if these agree by themselves, because then the joint has changed.
  */
 static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->recent_count;
     const int has_changed = N > SH_FIRST_BLOCKS && blocks->recent.squares < chance(N);
-    const sh_real sudden = sh_fmin(sh_change_misfit(state), SH_RECENT);
+    const sh_real sudden = sh_fmin(sh_change_misfit(state) / SH_FAR_FROM_USUAL, SH_RECENT);
     const sh_real faster = sh_fmax(sudden, has_changed ? SH_FASTER : 1);
     const sh_real memory = p->regression.memory / faster;
     const sh_real factor = sh_exp(-time / memory);

@@ -403,7 +403,7 @@ class Oracle:
             N = blocks.recent_count
             has_changed = N > 20 and blocks.recent.rest < threshold(N)
             self.changes += has_changed
-            sudden = min(math.sqrt(max(1.0, self.q)) / self.usual_misfit, 10.0)
+            sudden = min(math.sqrt(max(1.0, self.q)) / self.usual_misfit / 3, 10.0)
             keep = math.exp(-gained * max(sudden, 5.0 if has_changed else 1.0) / memory)
             for sums in everything:
                 sums.fade(keep)
