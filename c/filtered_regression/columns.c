@@ -29,7 +29,7 @@
 static const sh_real DEAD_ZONES[SH_WIDTHS] = SH_DEAD_ZONES;
 static const sh_real HYSTERESES[SH_WIDTHS] = SH_HYSTERESES;
 /* Knees: at 0, and on both sides at a first and at a second place. */
-enum { FIRST_KNEE = 1, SECOND_KNEE = 3, KNEES = 5 };
+enum { AT_ZERO, LEFT, RIGHT, SECOND_LEFT, SECOND_RIGHT, KNEES };
 
 int sh_is_measured(const sh_parameters *p)
 {
@@ -103,7 +103,8 @@ static sh_real place_of_knee(const sh_column *column, const sh_parameters *p)
 {
     const sh_real first = p->range.knee > 0 ? p->range.knee : SH_POSSIBLE_KNEE,
                   second = p->range.knee_2;
-    const sh_real places[KNEES] = {0, -first, first, -second, second};
+    const sh_real places[KNEES] = {
+        [LEFT] = -first, [RIGHT] = first, [SECOND_LEFT] = -second, [SECOND_RIGHT] = second};
 
     return places[column->i % KNEES];
 }
@@ -195,12 +196,11 @@ static void list_columns(const sh_parameters *p, column_list *list)
         add(list, p, SH_COLUMN_DEAD_ZONE, i, 0);
     }
     /*@ loop unroll KNEES; */
-    for (i = p->rls.symmetric ? FIRST_KNEE + 1 : 0; i < SECOND_KNEE; ++i) {
+    for (i = p->rls.symmetric ? RIGHT : AT_ZERO; i <= RIGHT; ++i) {
         add(list, p, p->range.knee > 0 ? SH_COLUMN_KNEE : SH_COLUMN_POSSIBLE_KNEE, i, 0);
     }
     /*@ loop unroll KNEES; */
-    for (i = p->rls.symmetric ? SECOND_KNEE + 1 : SECOND_KNEE; i < KNEES && p->range.knee_2 > 0;
-         ++i) {
+    for (i = p->rls.symmetric ? SECOND_RIGHT : SECOND_LEFT; i < KNEES && p->range.knee_2 > 0; ++i) {
         add(list, p, SH_COLUMN_KNEE, i, 0);
     }
     add(list, p, SH_COLUMN_BIAS, 0, 0);

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -46,10 +47,8 @@ def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, facto
 @pytest.mark.parametrize("factor", [2.0, 0.5])
 def test_samples_of_the_changed_spring_do_not_spoil_the_motor(c: Library, factor: float) -> None:
     """GIVEN other misfits, too, THEN the stiffness is right again three seconds after the step."""
-    joint = Joint(
-        **{"duration": 22.0, "frequency": 0.5, "amplitude": 1.6, "stiffness": step(factor)},
-        **{"load_friction": 0.03, "delay": 1e-3},
-    )
+    slow = Joint(duration=22.0, frequency=0.5, amplitude=1.6, stiffness=step(factor))
+    joint = replace(slow, load_friction=0.03, delay=1e-3)
     found = Estimator(c, {**REGRESSION, "prior.B": 0.1}).run(joint.measurements())
     error = np.abs(found["sigma"] / joint.sigma - 1)
     assert np.max(error[joint.t > AT + 3.0]) < 0.1

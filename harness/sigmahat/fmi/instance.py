@@ -41,7 +41,6 @@ _etree.XMLSchema(_etree.XML('<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSche
 
 Value = float | int | bool | str  # of a variable. An enumeration takes the name of its item.
 
-_NEEDED = ("modelDescription.xml", "binaries/", "resources/")  # not the sources, the documentation
 _TOO_LARGE = 2**31  # smallest positive integer that does not fit an Integer of FMI
 
 _log = logging.getLogger("sigmahat")
@@ -78,7 +77,7 @@ class Fmu:
         self._library: list[fmi2.FMU2Slave] = []
         # Also called at the end of a process of multiprocessing, but not in a fork of this process.
         self._close = Finalize(self, _close, (self._library, self.folder), exitpriority=1)
-        fmpy.extract(path, self.folder, include=lambda name: name.startswith(_NEEDED))
+        fmpy.extract(path, self.folder)
 
     def __enter__(self) -> Fmu:
         return self

@@ -31,7 +31,7 @@ from sigmahat.logs.units import factor
 _ABOVE = 1.4
 """regression.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
 _ROOM = 1.2  # ranges over the largest values of the log: another motion may go further
-KNEES = ("range.knee", "range.knee_2")
+_KNEES = ("range.knee", "range.knee_2")
 _ERROR_OF_B = 0.15
 """Least relative prior of B: RMS of its error on joints whose friction or spring the regression has
 no columns for. There the error is up to five times the interval, which contains only chance."""
@@ -74,7 +74,7 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
         "range.setPoint": _ROOM * found.set_point,
         "prior.tau_e": _ROOM * found.torque,
     }
-    for name, knee in zip(KNEES, found.knees, strict=False):
+    for name, knee in zip(_KNEES, found.knees, strict=False):
         values[name] = knee / values["range.phi"]
     for name, q in found.quantities.items():
         if q.determined and name in MOTOR:
