@@ -145,9 +145,9 @@ typedef struct {
 typedef struct {
     sh_real phi;      /* largest deformation to be expected [rad], 1e-6..1e6 */
     sh_real setPoint; /* largest set-point to be expected [1], 1e-12..1e12 */
-    sh_real knee;   /* deformation over phi at which the slope of the curve changes at once, on both
-                         sides [1], 0..1; 0: not known, and used if the data ask for it */
-    sh_real knee_2; /* the same for a second one [1], 0..1; 0: there is none */
+    /* Deformations over phi at which the slope of the curve changes at once, on both sides [1], 0..1: */
+    sh_real knee;   /* 0: not known, and used if the data ask for it */
+    sh_real knee_2; /* a second one; 0: there is none */
 } sh_range_parameters;
 
 /* Std deviations of what is not known exactly, each 0..1e12. With 0, the quantity is exact, or there

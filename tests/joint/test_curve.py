@@ -261,8 +261,7 @@ def test_more_powers_come_near_a_knee(low: int) -> None:
     x, s = ANGLES[low:], SETTINGS[low:]
     beyond, knee = 30 * np.maximum(x - 0.1, 0), np.where(x > 0.1, 30.0, 0.0)
     found = with_knees(OF_KNEE, x, s, TORQUE[low:] + beyond, SLOPE[low:] + knee)
-    pairs = [found.at(np.array([each]), setting) for each, setting in zip(x, s, strict=True)]
-    torque, slope = np.squeeze(pairs).T
+    torque, slope = found.at(x, s)
     # The best polynomials for the torque alone, and for the stiffness alone, by another function
     errors = torque - TORQUE[low:] - beyond, slope - SLOPE[low:] - knee
     for error, wanted, degree in zip(errors, (beyond, knee), (7, 6), strict=True):

@@ -9,9 +9,9 @@ load of the estimator: without this friction, the places are less exact.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import combinations
 
 import numpy as np
 
@@ -35,9 +35,6 @@ _LEAST_CHANGE = 0.25  # of the slope at a knee, over that at the other one
 _MOST = 100_000  # samples that are used
 
 
-Shares = tuple[float, ...]
-
-
 def knees(
     pieces: Sequence[Signals], T: float, gamma: float, form: Form, zero: float
 ) -> tuple[float, ...]:
@@ -58,48 +55,40 @@ def knees(
         return equations(with_knees, T, gamma, form)
 
     coarse = beyond(_SHARES)
-    best: Shares = ()
-    found = _fit(coarse, _SHARES, best)
-    for tried in (_each(_SHARES), _pairs(_SHARES, _SHARES)):
-        near = [share + _FINER for share in _least(coarse, _SHARES, tried)]
-        shares = np.concatenate(near)
-        fine = beyond(shares)
-        better = _least(fine, shares, _each(shares) if len(near) == 1 else _pairs(*near))
-        other = _fit(fine, shares, better)
+    best, found = _least(coarse, _SHARES, 0)
+    for number in (1, 2):
+        near, _ = _least(coarse, _SHARES, number)
+        shares = np.unique(np.add.outer(near, _FINER))
+        better, other = _least(beyond(shares), shares, number)
         if not is_worse(found, other) or _is_one_knee(other):
             break
         best, found = better, other
-    return tuple(share * usual for share in best)
+    return tuple((best * usual).tolist())
 
 
-def _each(shares: Iterable[float]) -> list[Shares]:
-    return [(float(share),) for share in shares]
+def _least(e: Equations, shares: Array, number: int) -> tuple[Array, Fit]:
+    """So many of the shares with the least error, and the fit with their columns alone."""
+    own = e.names[: len(e.names) - len(shares)]
+
+    def fitted(chosen: Sequence[int]) -> tuple[Array, Fit]:
+        return shares[list(chosen)], fit(e.only([*own, *map(extra, chosen)]))
+
+    def error(each: tuple[Array, Fit]) -> float:
+        found = float(np.sum(each[1].squares))
+        return found if math.isfinite(found) else math.inf
+
+    tried = combinations(range(len(shares)), number)
+    return min((fitted(c) for c in tried if _are_apart(shares[list(c)])), key=error)
 
 
-def _pairs(first: Iterable[float], second: Iterable[float]) -> list[Shares]:
-    return [(float(a), float(b)) for a, b in product(first, second) if b - a >= _APART]
-
-
-def _fit(e: Equations, shares: Array, chosen: Shares) -> Fit:
-    """With the columns of some of the shares alone."""
-    knees = [extra(int(np.argmin(np.abs(shares - share)))) for share in chosen]
-    return fit(e.only([*e.names[: len(e.names) - len(shares)], *knees]))
+def _are_apart(shares: Array) -> bool:
+    return bool(np.all(np.diff(shares) >= _APART))
 
 
 def _is_one_knee(found: Fit) -> bool:
     """Whether the smaller one of two changes of the slope only corrects the place of the other."""
     changes = [abs(value) for name, value in found.value.items() if name.startswith("extra")]
     return min(changes) < _LEAST_CHANGE * max(changes)
-
-
-def _least(e: Equations, shares: Array, tried: Sequence[Shares]) -> Shares:
-    """The knees with the least error."""
-
-    def error(each: Shares) -> float:
-        found = float(np.sum(_fit(e, shares, each).squares))
-        return found if math.isfinite(found) else math.inf
-
-    return min(tried, key=error)
 
 
 def _beyond(phi: Array, places: Array) -> Array:

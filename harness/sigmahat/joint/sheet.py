@@ -58,10 +58,14 @@ class Polynomial:
     """Range of the set-point in the data [1]."""
 
     def at(
-        self, phi: NDArray[np.float64], set_point: float
+        self, phi: NDArray[np.float64], set_point: float | NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Torque [N.m] and stiffness [N.m/rad] at deformations [rad] and a set-point [1]."""
-        rows = np.array(self.eta) @ np.power(float(set_point), self.powers_of_set_point)
+        """Torque [N.m] and stiffness [N.m/rad] at deformations [rad].
+
+        set_point  one for all deformations, or one for each [1]
+        """
+        powers = np.power.outer(np.asarray(set_point, dtype=float), self.powers_of_set_point)
+        rows = np.array(self.eta) @ powers.T
         torque, stiffness = np.zeros_like(phi), np.zeros_like(phi)
         for coefficient, power in zip(rows, self.powers_of_phi, strict=True):
             torque += coefficient * phi**power
@@ -195,10 +199,8 @@ def with_knees(
 
     phi, set_point, tau_e, sigma   outputs of the estimator [rad, 1, N.m, N.m/rad], of one size
     """
-    of_set_point = np.power.outer(set_point, curve.powers_of_set_point) @ np.transpose(curve.eta)
-    of_powers = list(zip(curve.powers_of_phi, of_set_point.T, strict=True))
-    torque = tau_e - sum(phi**e * of_power for e, of_power in of_powers)
-    beyond = sigma - sum(e * phi ** max(e - 1, 0) * of_power for e, of_power in of_powers)
+    torque, stiffness = curve.at(phi, set_point)
+    torque, beyond = tau_e - torque, sigma - stiffness
     if not np.any(np.abs(beyond) > _SAME * np.max(np.abs(sigma), initial=0.0)):
         return curve
     powers = powers_of_phi(0 not in curve.powers_of_phi, _MOST_POWERS)
