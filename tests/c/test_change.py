@@ -52,6 +52,7 @@ def test_samples_of_the_changed_spring_do_not_spoil_the_motor(c: Library, factor
     found = Estimator(c, {**REGRESSION, "prior.B": 0.1}).run(joint.measurements())
     error = np.abs(found["sigma"] / joint.sigma - 1)
     assert np.max(error[joint.t > AT + 3.0]) < 0.1
+    assert found["B_hat"][-1] == pytest.approx(2.3e-5, rel=0.1)
 
 
 def test_a_slow_change_is_followed(c: Library) -> None:
