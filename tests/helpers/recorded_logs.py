@@ -99,6 +99,10 @@ def write_log(columns: Mapping[str, NDArray[np.generic]], path: Path) -> Path:
     return path
 
 
+STORED = 2**-17
+"""Largest relative rounding error of the estimates in Parquet [1]."""
+
+
 def read_estimate(folder: Path) -> pa.Table:
     """The table that `sigmahat estimate` wrote."""
     if (folder / "estimate.csv").exists():

@@ -91,14 +91,13 @@ def low_pass(values: Array, frequency: float, h: float) -> Array:
 
     The gain is that of the bilinear transform, as of scipy.signal, which takes a second to import.
     """
-    from scipy import fft
-
     settled = math.ceil(SETTLED / (frequency * h))
     ends = [(settled, settled), *[(0, 0)] * (values.ndim - 1)]
     padded = np.pad(values, ends, mode="reflect", reflect_type="odd")
-    size = fft.next_fast_len(len(padded), real=True)
-    spectrum = fft.rfft(padded, size, axis=0)
-    relative = np.tan(np.pi * fft.rfftfreq(size)) / math.tan(math.pi * frequency * h)
+    # A product of small primes, else the transform is slow.
+    size = min(m << math.ceil(math.log2(len(padded) / m)) for m in (1, 3, 5, 9))
+    spectrum = np.fft.rfft(padded, size, axis=0)
+    relative = np.tan(np.pi * np.fft.rfftfreq(size)) / math.tan(math.pi * frequency * h)
     spectrum /= (1 + relative**4).reshape(-1, *[1] * (values.ndim - 1))
-    filtered: Array = fft.irfft(spectrum, size, axis=0)[settled : settled + len(values)]
+    filtered: Array = np.fft.irfft(spectrum, size, axis=0)[settled : settled + len(values)]
     return filtered

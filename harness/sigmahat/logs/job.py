@@ -100,7 +100,7 @@ class ReplayStatistics:
         return float(np.sqrt(self._squares / max(self._later, 1)))
 
 
-_CHUNK = 1 << 14  # ticks that are replayed at a time, about
+_CHUNK = 1 << 15  # ticks that are replayed at a time, about, and rows of a group in Parquet
 
 
 class Replay:
