@@ -1,7 +1,5 @@
 """Tables of the measured times."""
 
-from __future__ import annotations
-
 import platform
 import re
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,5 @@
 """Measures all times in one run and writes tables: python bench/run.py --help."""
 
-from __future__ import annotations
-
 import argparse
 import time
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The subjects whose time is measured. Each repeats the same work on the same inputs."""
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Configuration of the site: `cmake --workflow --preset docs` builds it with Sphinx."""
 
-from __future__ import annotations
-
 import re
 import sys
 from pathlib import Path

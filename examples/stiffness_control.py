@@ -8,8 +8,6 @@ confident, the last confident correction of the data sheet is used instead of it
 Usage: python stiffness_control.py [FOLDER]     writes stiffness_control.png there
 """
 
-from __future__ import annotations
-
 import math
 import shutil
 import sys

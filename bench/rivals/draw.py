@@ -9,8 +9,6 @@ brought the joints, before any method saw one of them. The seeds of a second loo
 fixed before they were run, too. All other seeds are for development.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """What a joint is made of. `draw.py` draws the values, `simulation.py` builds what they say."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ polynomial in the deformation, because an owner does not know whether a spring h
 stiffness is variable, its coefficients are quadratic in the position of the stiffness motor.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What the joints hand to the methods, and what the methods return."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,8 +3,6 @@
 Needs the folders bench/ and harness/ on the path; cmake --workflow --preset rivals sees to it.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Sequence

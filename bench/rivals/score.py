@@ -1,7 +1,5 @@
 """How right an estimate of a log and its interval are, and the table of all results."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import Any

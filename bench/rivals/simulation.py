@@ -7,8 +7,6 @@ finds their lengths and lever arms, so their torque is no formula of ours. They 
 push; `joint.Tendons` says how they run.
 """
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from typing import Any

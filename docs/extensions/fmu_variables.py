@@ -7,8 +7,6 @@ Parameters are grouped by the first part of their names. Each variable is an obj
 that a search finds its whole name and leads to its row.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Formulas as MathML, which browsers draw without a script: the pages load nothing."""
 
-from __future__ import annotations
-
 from docutils import nodes
 from latex2mathml.converter import convert
 from sphinx.application import Sphinx

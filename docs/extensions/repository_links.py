@@ -4,8 +4,6 @@ The changelog and the like are pages of the site that include the file: a link l
 Any other file is a download, as MyST does it for all files that are not Markdown.
 """
 
-from __future__ import annotations
-
 import os.path
 from pathlib import Path
 

@@ -21,8 +21,6 @@ and `encoder` need the extra `plants` and a C compiler.
 What is on this page is public, and nothing else: other modules may change with any version.
 """
 
-from __future__ import annotations
-
 import lazy_loader
 
 # The list of public names is the stub beside this file. They are imported when they are used,

@@ -1,7 +1,5 @@
 """Command line: the group of all commands, and how an error ends them."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Detail 15 of FilteredRegression: a stiffness that changes is noticed and followed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The library on controllers in QEMU, in double and in single precision."""
 
-from __future__ import annotations
-
 import os
 import re
 from functools import cache

@@ -1,7 +1,5 @@
 """A million ticks in double agree with the same ticks in long double."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The check of a state that comes from elsewhere: states of runs pass, damaged ones do not."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Torque and stiffness at any deformation, without learning."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

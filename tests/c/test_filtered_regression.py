@@ -1,7 +1,5 @@
 """The method FilteredRegression: wrong motor data, drift, unknown errors, start and gaps."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Least squares in the information form, against dense matrices in extended precision."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -3,8 +3,6 @@
 test_stiffness_estimator.py compares its velocity with that of the oracle in every tick.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

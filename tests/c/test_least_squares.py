@@ -1,7 +1,5 @@
 """The recursion in UD factors, against the recursion as printed and the sum that it minimises."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The C library in a program of a user: find_package, pkg-config, a pair of files, Conan."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

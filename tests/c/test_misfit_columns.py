@@ -1,7 +1,5 @@
 """What a joint has beside the model: it is estimated, can be switched off, and is doubted."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """The direction of motion from encoder counts."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Mutation testing: the tests of the library notice a wrong token in its code."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The library against the list of variables: names, start values, ranges, and its table in C."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from pathlib import Path

@@ -5,8 +5,6 @@ Decisions compare a number with a threshold. In these runs the numbers are far f
 rounding errors decide nothing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """The state-variable filter, against scipy's solution of the same differential equation."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

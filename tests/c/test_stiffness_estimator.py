@@ -1,7 +1,5 @@
 """The whole estimator: parameters, bad samples, long runs, every tick against the oracle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from functools import cache

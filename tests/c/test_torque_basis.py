@@ -1,7 +1,5 @@
 """The polynomial basis, (18)-(23), against the oracle and against its properties."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -3,8 +3,6 @@
 test_stiffness_estimator.py compares it with that of the oracle in every tick.
 """
 
-from __future__ import annotations
-
 import pytest
 
 from c_library import Library

@@ -1,7 +1,5 @@
 """`sigmahat check`: wrong configurations of one good log, and good logs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A package that is not installed: one line names it and the command that installs it."""
 
-from __future__ import annotations
-
 import shlex
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The results of `sigmahat compare` and their text. The bounds of FilteredRegression."""
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The catalogue of misfits as data, the samples of a run, and the measure, in closed form."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

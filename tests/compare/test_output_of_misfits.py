@@ -1,7 +1,5 @@
 """What `sigmahat compare --misfits` prints, writes and draws."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math

@@ -1,7 +1,5 @@
 """Folders that are written to: filled, or as they were. SHA-256 of files and folders."""
 
-from __future__ import annotations
-
 import hashlib
 import shutil
 import subprocess

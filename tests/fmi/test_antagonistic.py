@@ -1,7 +1,5 @@
 """The antagonistic estimator has the results of two single estimators."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager

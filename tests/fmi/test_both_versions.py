@@ -1,7 +1,5 @@
 """An FMU of FMI 3.0 does the same as that of FMI 2.0, bit for bit, and takes its states."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The XML files of the twins, against the schemas of FMI 3.0, and against the FMUs of FMI 2.0."""
 
-from __future__ import annotations
-
 import zipfile
 from collections.abc import Callable
 from pathlib import Path

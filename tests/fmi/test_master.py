@@ -1,7 +1,5 @@
 """The co-simulation master of the harness."""
 
-from __future__ import annotations
-
 import gc
 import logging
 import math

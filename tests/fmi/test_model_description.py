@@ -1,7 +1,5 @@
 """Units, enumerations and dependencies in modelDescription.xml, against what the FMU does."""
 
-from __future__ import annotations
-
 import math
 import zipfile
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What no importer may do is refused with a message, and changes nothing: FMI 2.0 and 3.0."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 import re

@@ -1,7 +1,5 @@
 """The loop over samples: in C as in Python, to the last bit, and with FMUs of other makers."""
 
-from __future__ import annotations
-
 import logging
 import os
 import signal

@@ -1,7 +1,5 @@
 """When the estimator computes its ticks, and with which inputs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from fractions import Fraction

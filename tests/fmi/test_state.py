@@ -1,7 +1,5 @@
 """Reset, copies of the state, and states that are damaged or of another FMU: FMI 2.0 and 3.0."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 import random

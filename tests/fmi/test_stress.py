@@ -1,7 +1,5 @@
 """Races, leaks and undefined behaviour, found by sanitizers, also in random sequences of calls."""
 
-from __future__ import annotations
-
 import subprocess
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Tunable parameters that are changed during a run: they act at once and change nothing else."""
 
-from __future__ import annotations
-
 import json
 import random
 from collections.abc import Mapping, Sequence

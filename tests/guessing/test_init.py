@@ -1,7 +1,5 @@
 """`sigmahat init`: a configuration guessed from names and values of columns."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What names say, and what values say where names are silent."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -4,8 +4,6 @@ The joints are simulated outside of the package. After `init`, values of the dat
 in, and at most two other keys may be edited.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Chromium without a window, to test reports and the site in a browser."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager

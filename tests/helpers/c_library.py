@@ -1,7 +1,5 @@
 """The C library for Python, with the declarations of its headers and with numpy arrays."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys
@@ -47,7 +45,7 @@ def declarations(*headers: Path) -> str:
 
 
 @cache
-def load(build: Path) -> Library:
+def load(build: Path) -> "Library":
     """The library of a build tree."""
     return Library(build)
 

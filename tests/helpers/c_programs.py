@@ -4,8 +4,6 @@ If a compiler or a checker is missing, the test is skipped. In the gate, which s
 it fails.
 """
 
-from __future__ import annotations
-
 import subprocess
 import tempfile
 from functools import cache

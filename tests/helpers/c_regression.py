@@ -1,7 +1,5 @@
 """The state of FilteredRegression in C as dense numpy arrays."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The C code of the library: where it is, and what a compiler needs to find its headers."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]

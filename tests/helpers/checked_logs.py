@@ -3,8 +3,6 @@
 The twelve wrong ones are those of the issue that asked for `sigmahat check`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cache
 

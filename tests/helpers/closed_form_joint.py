@@ -1,7 +1,5 @@
 """Logs of joints whose motion is prescribed, so that the motor torque follows in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

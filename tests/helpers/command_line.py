@@ -1,7 +1,5 @@
 """Commands of sigmahat in this process, and what the command line says when it refuses."""
 
-from __future__ import annotations
-
 import io
 import json
 import shlex

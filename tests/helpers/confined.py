@@ -4,8 +4,6 @@ One process imports the package and is forked for every command, so that one tak
 of a second.
 """
 
-from __future__ import annotations
-
 import json
 import multiprocessing
 import os

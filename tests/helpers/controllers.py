@@ -1,7 +1,5 @@
 """Programs for other processors, built with the toolchains of cmake/ and run in QEMU."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import tempfile

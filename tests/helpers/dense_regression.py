@@ -4,8 +4,6 @@ matrices in extended precision.
 It shares nothing with the C code except the direction of motion, which has its own tests.
 """
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Mapping

@@ -3,8 +3,6 @@
 A record is cut into runs of samples without a gap; in each of them the filters begin anew.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from functools import cache

@@ -4,8 +4,6 @@ Parameters and measurements are at the edges of what is allowed. SIGMAHAT_PROMIS
 hundred times as many examples.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Mapping, Sequence

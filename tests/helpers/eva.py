@@ -1,7 +1,5 @@
 """Frama-C Eva: which run-time errors are possible in C code, found by abstract interpretation."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

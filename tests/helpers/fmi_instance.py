@@ -4,8 +4,6 @@ FMPy only loads the library; its error handling is not used. `Instance` is of FM
 `Instance3`, which has the same methods, of FMI 3.0.
 """
 
-from __future__ import annotations
-
 import atexit
 import ctypes
 import math

@@ -1,7 +1,5 @@
 """A simple master for AwasPlant and StiffnessEstimator of the scenario table1."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 import numpy as np

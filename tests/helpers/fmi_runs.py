@@ -1,7 +1,5 @@
 """Runs of any FMU through its C interface, whose results can be compared bit for bit."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 import random

@@ -4,8 +4,6 @@ A series elastic joint with gravity, and a joint whose lever sets the stiffness,
 Both have a motor with viscous and Coulomb friction behind a gear, and a controller of its position.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

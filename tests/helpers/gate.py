@@ -1,7 +1,5 @@
 """Programs that tests need beside a compiler, CMake, git and Python."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import sysconfig

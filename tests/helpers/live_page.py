@@ -1,7 +1,5 @@
 """What a user does with the page of the site that runs the FMUs in the browser."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """What the MISRA addon of cppcheck finds in c/ and fmu_src/."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

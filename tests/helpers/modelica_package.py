@@ -1,7 +1,5 @@
 """The Modelica package: its files, its classes as pymoca reads them, and models of it in rumoca."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Iterator, Mapping
 from functools import cache

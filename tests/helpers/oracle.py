@@ -8,8 +8,6 @@ many more DIGITS than cancel in the worst case. Inputs are doubles, which are ta
 Parameters are a flat mapping from the names of the FMU to values.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

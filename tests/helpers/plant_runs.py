@@ -1,7 +1,5 @@
 """Runs of a plant FMU under given torques."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np

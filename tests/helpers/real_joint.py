@@ -7,8 +7,6 @@ prints the tables of docs/real-joint.md and draws its figure. The data are looke
 SIGMAHAT_DESR names.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Mapping, Sequence
@@ -73,7 +71,7 @@ class Log:
         """Deformation of the transmission [rad]."""
         return self.q - self.theta
 
-    def rms(self, fit: Fit) -> float:
+    def rms(self, fit: "Fit") -> float:
         """RMS error of the fitted torque in percent of the torque range."""
         error = fit.torque(self.setting, self.phi) - self.torque
         return float(100 * np.sqrt(np.mean(error**2)) / np.ptp(self.torque))

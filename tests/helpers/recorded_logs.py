@@ -1,7 +1,5 @@
 """Logs of the AwAS plant for tests, and the files they are written to."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType

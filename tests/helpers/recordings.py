@@ -1,7 +1,5 @@
 """Runs that several tests look at, each made once."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from sigmahat.paper.reproduction import Result, reproduce

@@ -5,8 +5,6 @@ and share nothing with the plants that are generated to C. Parameters go by the 
 whose start values stand here a second time.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ The positions of the motor and the deformation are prescribed. The motor torque 
 them with (3) and friction, so no differential equation has to be solved.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import accumulate

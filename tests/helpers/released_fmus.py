@@ -1,7 +1,5 @@
 """The FMUs as they are released, and one run of each that every importer repeats."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -7,8 +7,6 @@ prints the table of docs/robot.md and draws its figure. The data are looked for 
 SIGMAHAT_KR300 names.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import tempfile

@@ -1,8 +1,6 @@
 """Messages of a joint that moves a load, as a robot would send them, their configuration, and
 `sigmahat live`, which receives them."""
 
-from __future__ import annotations
-
 import signal
 import socket
 import subprocess

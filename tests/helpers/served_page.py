@@ -1,7 +1,5 @@
 """`sigmahat open` in a process of its own, and what a user does in a window of it."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """Where recorded data are that are not in the repository."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

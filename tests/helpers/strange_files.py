@@ -1,7 +1,5 @@
 """Logs, configurations and plans as no recorder writes them: mutated and made up, for fuzzing."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`sigmahat identify`: powers of the deformation, for springs that are symmetric or not."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What identify computes without rows of equations, and without scipy.signal, against both."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import replace

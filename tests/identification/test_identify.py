@@ -1,7 +1,5 @@
 """`sigmahat identify`: the motor of the AwAS plant, from logs with encoders, noise and friction."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

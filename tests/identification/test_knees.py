@@ -1,7 +1,5 @@
 """The places at which the slope of a spring changes at once, from motions in closed form."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

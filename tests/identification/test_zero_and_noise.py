@@ -1,7 +1,5 @@
 """`sigmahat identify`: the zero of the deformation, and a deformation that is noise."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The answer as a curve: it holds the truth as often as it says, and only where the data reach."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re

@@ -1,7 +1,5 @@
 """The data sheet of a joint, what is made of it for other tools, and the way back into the FMU."""
 
-from __future__ import annotations
-
 import ast
 import json
 import re

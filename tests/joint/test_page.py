@@ -1,7 +1,5 @@
 """The program of docs/how-to/joint.md works as it stands."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The joint of a data sheet as two hinges: its numbers, read back by other parsers."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """sigmahat.Estimator: the numbers of the FMU without the FMU, and clear words on misuse."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 import sys

@@ -1,7 +1,5 @@
 """The loop in C: it estimates, and sends what `sigmahat live` would."""
 
-from __future__ import annotations
-
 import json
 import re
 import socket

@@ -1,7 +1,5 @@
 """Estimates by the protocol of Foxglove: a client of the tests, and the page in the browser."""
 
-from __future__ import annotations
-
 import json
 import struct
 import subprocess

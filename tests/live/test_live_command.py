@@ -1,7 +1,5 @@
 """`sigmahat live` as a program: sockets, signals, and what it leaves behind."""
 
-from __future__ import annotations
-
 import json
 import random
 import signal

@@ -1,7 +1,5 @@
 """A log that is dropped on the page: estimated as in Python, or refused in one line."""
 
-from __future__ import annotations
-
 import io
 import re
 from collections.abc import Iterator

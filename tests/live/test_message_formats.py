@@ -1,7 +1,5 @@
 """Messages: what they mean, and what is no message."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

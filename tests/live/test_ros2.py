@@ -3,8 +3,6 @@
 Both run in a network of their own, whose loopback has multicast, by which they find each other.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import time

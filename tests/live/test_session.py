@@ -1,7 +1,5 @@
 """What is estimated on line is what `estimate` finds in the recording, to the last bit."""
 
-from __future__ import annotations
-
 import json
 import math
 import tempfile

@@ -1,7 +1,5 @@
 """The simulated joint in the browser: the numbers of the FMUs, settings, time, how it looks."""
 
-from __future__ import annotations
-
 import re
 import time
 from collections.abc import Iterator

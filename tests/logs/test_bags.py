@@ -1,7 +1,5 @@
 """ROS 2 bags, written and read without a ROS installation."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A stiffness that changes in a log: when and by how much, on the screen and in the report."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

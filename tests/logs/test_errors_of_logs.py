@@ -1,7 +1,5 @@
 """Bad logs and configurations: one line that says where and what to do, exit 2."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`sigmahat estimate`: a log replayed gives what the co-simulation gave."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`sigmahat estimate --start-from` goes on from what was learned, and refuses what does not fit."""
 
-from __future__ import annotations
-
 import base64
 import json
 import shutil

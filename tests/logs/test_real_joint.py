@@ -3,8 +3,6 @@
 The requirements were chosen after a first look at the data: see docs/real-joint.md.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -3,8 +3,6 @@
 The requirements are those of the issue that asked for it; intervals are of 95 %.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Samples at ticks: a counter that goes on during a gap, and logs of too many ticks."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

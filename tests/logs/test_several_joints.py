@@ -1,7 +1,5 @@
 """From a log of several joints to one report, as a user goes; the joints are simulated by scipy."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Logs, configurations and plans from strangers: no crash, no hang, no memory, no other file."""
 
-from __future__ import annotations
-
 import os
 import struct
 import zlib

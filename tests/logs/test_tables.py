@@ -1,7 +1,5 @@
 """CSV logs, which are parsed once; the estimates as a table, and in MCAP, pandas and xarray."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

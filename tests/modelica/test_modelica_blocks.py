@@ -3,8 +3,6 @@
 rumoca calls no C, so functions of Modelica stand in the place of those of C.
 """
 
-from __future__ import annotations
-
 import re
 import shutil
 from collections.abc import Mapping

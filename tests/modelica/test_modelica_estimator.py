@@ -1,7 +1,5 @@
 """The C of the Modelica package, called as by a tool: the numbers of sigmahat.Estimator."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 import re

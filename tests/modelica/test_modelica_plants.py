@@ -1,7 +1,5 @@
 """The plants of the Modelica package, run by rumoca, move as their FMUs do."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

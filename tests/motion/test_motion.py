@@ -1,7 +1,5 @@
 """The proposed motion: closed form, other solvers, a C compiler, and joints that nobody tried."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Iterator
 from dataclasses import replace

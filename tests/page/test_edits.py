@@ -1,7 +1,5 @@
 """Edits of a configuration: as somebody with an editor would make them."""
 
-from __future__ import annotations
-
 import time
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`sigmahat open`: a log set up in the browser, from an empty configuration to the results."""
 
-from __future__ import annotations
-
 import http.client
 import socket
 from pathlib import Path

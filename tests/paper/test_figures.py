@@ -1,7 +1,5 @@
 """Figures: content, labels, units, files."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

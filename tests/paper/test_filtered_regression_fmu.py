@@ -1,7 +1,5 @@
 """FilteredRegression on logs of the AwAS: motions it was not made for, odd beginnings."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.signal import lfilter

@@ -1,7 +1,5 @@
 """The table and the CSV files."""
 
-from __future__ import annotations
-
 import csv
 import re
 from dataclasses import replace

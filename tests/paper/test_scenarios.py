@@ -1,7 +1,5 @@
 """The scenarios, and the figures that the paper gives for them."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ priors van Trees): no estimator can know the stiffness better from these data. T
 column of the delay: it contains the derivative of the noise, which is not removed.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray

@@ -1,7 +1,5 @@
 """AntagonisticVsaPlant.fmu against the paper's equations solved by scipy, and against physics."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """AwasPlant.fmu against the paper's equations solved by scipy, and against physics."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What the plants share: large torques are taken, and extremes are refused."""
 
-from __future__ import annotations
-
 import time
 
 import pytest

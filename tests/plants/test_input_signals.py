@@ -1,7 +1,5 @@
 """The sines that plants add to the torques of their motors, so that they move without a source."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Noise of the plant's sensors, as the FMU gives it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

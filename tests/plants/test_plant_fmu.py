@@ -1,7 +1,5 @@
 """The FMU of a plant that a user writes."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """RealJointPlant.fmu against equations solved by scipy, and its measurements in closed form."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """All programs that the bench compares work and compute the same. No time is measured here."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Documentation and icons inside the FMUs."""
 
-from __future__ import annotations
-
 import re
 import zipfile
 from typing import Any

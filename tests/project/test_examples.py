@@ -1,7 +1,5 @@
 """The examples run, and their results are right."""
 
-from __future__ import annotations
-
 import importlib
 import math
 import re

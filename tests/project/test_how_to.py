@@ -1,7 +1,5 @@
 """The how-to pages: their code works."""
 
-from __future__ import annotations
-
 import os
 import re
 import sys

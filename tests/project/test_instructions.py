@@ -1,7 +1,5 @@
 """Speed without a clock: the fast parts need as many instructions as the table says."""
 
-from __future__ import annotations
-
 import os
 import platform
 import re

@@ -1,7 +1,5 @@
 """What the documentation names and shows is there: files, functions, the example, links."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 from functools import cache

@@ -1,7 +1,5 @@
 """The rooms of the Python package: imports run one way, and not through many of them."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator, Mapping
 from graphlib import TopologicalSorter

@@ -4,8 +4,6 @@ The build has checked that every page is in the navigation, and that Sphinx has 
 such as a link that leads nowhere.
 """
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from pathlib import Path

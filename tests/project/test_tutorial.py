@@ -1,7 +1,5 @@
 """The tutorial: its log can be made again, its commands work, and it tells what comes out."""
 
-from __future__ import annotations
-
 import json
 import re
 import runpy

@@ -1,7 +1,5 @@
 """Instructions of the longest tick that was found, and the table of the page."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -7,8 +7,6 @@ themselves are analysed for each number of columns, in arrays that are just larg
 The preset `complete` runs all of it; the tests of the gate run some.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -1,7 +1,5 @@
 """MISRA C:2012: the table of docs/proof/misra.md has all that does not follow a rule."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

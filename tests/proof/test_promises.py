@@ -1,7 +1,5 @@
 """Numerical promises of an estimator as a whole: docs/proof/promises.md."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """Numerical promises of the blocks of Paper2011: docs/proof/promises.md."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

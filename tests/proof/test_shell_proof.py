@@ -4,8 +4,6 @@ The programs `shell_*.c` call the shell as an importer may; docs/proof/shell.md 
 cover.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The released FMUs as archives: size, and identical bytes from every build."""
 
-from __future__ import annotations
-
 import os
 import sys
 from functools import cache

@@ -1,7 +1,5 @@
 """Exported functions and required libraries of the released binaries, read from the files."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from zipfile import ZipFile

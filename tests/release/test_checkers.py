@@ -1,7 +1,5 @@
 """Tools that check the archive and its model description find no error in the released FMUs."""
 
-from __future__ import annotations
-
 import shutil
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The released FMUs give the trajectories of FMPy in other importers and on Windows, too."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 from functools import cache

@@ -3,8 +3,6 @@
 Nothing of this tree is on a path of what runs here.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The system sigmahat-awas.ssp: validity, reproducibility, and its simulation in FMPy."""
 
-from __future__ import annotations
-
 import zipfile
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The bill of materials of the release; archives that are the same wherever they are packed."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

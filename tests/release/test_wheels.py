@@ -1,7 +1,5 @@
 """The wheels and the source distribution of a release, read from the files."""
 
-from __future__ import annotations
-
 import json
 import sys
 import sysconfig

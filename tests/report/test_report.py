@@ -1,7 +1,5 @@
 """Reports: one file that shows what the results are, in a browser without a network."""
 
-from __future__ import annotations
-
 import csv
 import html
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """The report of `sigmahat compare`: figure and tables in one file."""
 
-from __future__ import annotations
-
 import base64
 from pathlib import Path
 

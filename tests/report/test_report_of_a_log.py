@@ -1,7 +1,5 @@
 """The report of a log: the answer first, and the same numbers as the command."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterator

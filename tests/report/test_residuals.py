@@ -1,7 +1,5 @@
 """The panels of the residual: white noise looks like it, and a model that fails shows where."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Two joints of an arm that push each other, in MuJoCo: each motor's equation is enough."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

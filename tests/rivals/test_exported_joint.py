@@ -1,7 +1,5 @@
 """A joint from a log in a simulator: what `export` writes, in MuJoCo and in Drake's parsers."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +33,7 @@ class Joint:
     """Length of a rod with a mass at its end [m]."""
 
     @staticmethod
-    def drawn(seed: int) -> Joint:
+    def drawn(seed: int) -> "Joint":
         rng = np.random.default_rng(seed)
         k_1 = float(np.exp(rng.uniform(np.log(100), np.log(3000))))
         largest = 40 / k_1  # [rad] about

@@ -3,8 +3,6 @@
 The seeds of the comparison stay unused here: these are others.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """The methods on a joint that is as its equation says; scores and table against values by hand."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

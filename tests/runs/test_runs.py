@@ -1,7 +1,5 @@
 """Jobs in parallel, and the performance indices (35), (36) of their results."""
 
-from __future__ import annotations
-
 import math
 import os
 import signal

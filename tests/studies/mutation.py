@@ -8,8 +8,6 @@ mutants that no test noticed. The places are chosen by a hash of SEED and of the
 stay the same if other lines of the code change.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 import os

@@ -1,7 +1,5 @@
 """Sweeps on a Dask cluster of this machine, started as a user starts one."""
 
-from __future__ import annotations
-
 import json
 import signal
 import subprocess

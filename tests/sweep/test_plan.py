@@ -1,7 +1,5 @@
 """The plan of a sweep, from a file and the command line."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

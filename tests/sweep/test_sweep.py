@@ -1,7 +1,5 @@
 """Sweeps: the right numbers, and none lost or done twice."""
 
-from __future__ import annotations
-
 import csv
 import json
 import signal

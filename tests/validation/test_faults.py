@@ -1,7 +1,5 @@
 """`sigmahat validate`: two logs of one joint that are wrong in the same way confirm nothing."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """`sigmahat validate`: whether a second log of a joint confirms what was learned from the first."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Other values of the scale of an angle: of its gear ratio, its unit or its counts per turn."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

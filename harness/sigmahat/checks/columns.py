@@ -1,7 +1,5 @@
 """Checks of the recorded columns: steps of an encoder, jumps, a torque that saturates."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

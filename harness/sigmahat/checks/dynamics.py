@@ -1,7 +1,5 @@
 """What the motor equation shows: signs, zero of the deformation, delays, inertia."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -5,8 +5,6 @@ are narrower than in `identify`. The slope of the torque is the column of a dela
 tau(t - delta) = tau(t) - delta tau'(t).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

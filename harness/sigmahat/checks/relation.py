@@ -10,8 +10,6 @@ slope of slow motion with a high correlation needs no torque, if the slope is th
 mistake, such as a gear ratio with one zero too many, or if it is negative.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

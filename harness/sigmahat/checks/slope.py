@@ -1,7 +1,5 @@
 """How far the link moves with the motor."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

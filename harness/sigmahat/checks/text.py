@@ -1,7 +1,5 @@
 """Findings as sentences for people."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """The part of a log that the checks use: a bounded number of ticks, in units of the estimator."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Commands that simulate: reproduce, compare, scenarios, sweep."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from pathlib import Path
 

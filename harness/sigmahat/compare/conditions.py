@@ -4,8 +4,6 @@ A joint is one co-simulation, in which both methods estimate the stiffness once 
 case is the difference between the motor data of the estimators and the motor data of the joint.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 

@@ -1,7 +1,5 @@
 """The figure of `sigmahat compare`: error against the frequency of the motion."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from matplotlib.axes import Axes

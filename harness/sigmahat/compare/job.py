@@ -1,7 +1,5 @@
 """The job of `sigmahat compare`: every joint with every seed, and how well each method did."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """The table of `sigmahat compare` (printed, as a file, for JSON), and its conditions in words."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Signals: other handlers for a while, and Ctrl-C that waits."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """The columns of a log for the guess: names, values, steps, counters, and times of the rows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@
 A guess is data: `template.py` writes it as a configuration.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The list of all columns of a log at the head of its configuration."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from itertools import accumulate

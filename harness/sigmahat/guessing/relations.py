@@ -1,7 +1,5 @@
 """Relations between columns: copies, derivatives, the equation of the motor."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

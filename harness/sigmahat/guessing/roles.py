@@ -1,7 +1,5 @@
 """Chooses the column of each port of one joint, by the names and the motions of the columns."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations

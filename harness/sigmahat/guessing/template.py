@@ -1,7 +1,5 @@
 """The configuration that `sigmahat init` writes: the guess, and comments on what to check."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Meaning of the name of a column: quantity, side of the joint, unit, and name of the joint."""
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence

@@ -4,8 +4,6 @@ Above it, what the encoders show as a deformation are errors: of gears, of coupl
 encoders between their counts. As the regressor of the stiffness, such errors make it too small.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 

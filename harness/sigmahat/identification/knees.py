@@ -6,8 +6,6 @@ for every place and every pair of places. Beside them they have the polynomial a
 load of the estimator: without this friction, the places are less exact.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

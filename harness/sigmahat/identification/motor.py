@@ -1,7 +1,5 @@
 """Motor data with their intervals, from several fits of the motor equation."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Sequence

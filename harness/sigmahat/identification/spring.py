@@ -1,7 +1,5 @@
 """The polynomial of the spring in a fit: where it is zero, and its largest torque."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

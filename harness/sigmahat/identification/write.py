@@ -1,7 +1,5 @@
 """Writes the result of an identification into a configuration, whose comments are kept."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from copy import copy

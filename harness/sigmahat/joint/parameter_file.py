@@ -4,8 +4,6 @@ Each number is written with all of its digits, so that the FMU gets what was lea
 bit.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass

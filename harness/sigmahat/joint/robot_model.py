@@ -4,8 +4,6 @@ Each number has all of its digits. A comment has the 95 % interval of the number
 allows, the interval is also a range for domain randomization.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any

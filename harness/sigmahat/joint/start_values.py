@@ -1,7 +1,5 @@
 """Start values of the estimator FMU, with the curve that another estimator has learned."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sigmahat.fmi.instance import Slave, Value

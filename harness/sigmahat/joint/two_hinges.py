@@ -4,8 +4,6 @@ The first hinge is the motor at its gear output. The second hinge is the flexibi
 deformation phi as its angle, and -tau_e as the torque of its spring.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The time stamps of a sender: order of the samples, and restarts of the sender."""
 
-from __future__ import annotations
-
 import math
 
 from sigmahat.logs.log import EXACT

@@ -1,7 +1,5 @@
 """A WebSocket server for Foxglove: a topic /JOINT/estimate for each joint, and a layout to load."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from functools import partial

@@ -4,8 +4,6 @@ Samples are moved to the ticks as in logs/sampling.py. Units and counters are co
 logs/sampling.py.
 """
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Iterator, Mapping

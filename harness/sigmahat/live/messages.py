@@ -5,8 +5,6 @@ JSON is an object, as PlotJuggler reads it: {"elbow": {"motor": [1.5, 2]}} are t
 that is cut off is still a number. A first line, or an option, names the columns of CSV.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence

@@ -6,8 +6,6 @@ A column of the configuration names topic, field and joint as in a bag:
 message. ROS_DOMAIN_ID and CYCLONEDDS_URI have their usual effect.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import re

@@ -4,8 +4,6 @@ A sender that starts again, or a pause of more than a second, ends the recording
 continue with another recording, as `sigmahat estimate --start-from` does.
 """
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """The loop: messages from the inbox through the session to the sinks, until it is stopped."""
 
-from __future__ import annotations
-
 import logging
 import shutil
 import signal

@@ -3,8 +3,6 @@
 The log of each motion is simulated, and evaluated by `identify` and `estimate`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial

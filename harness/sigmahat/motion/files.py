@@ -1,7 +1,5 @@
 """A motion as files: CSV, a trajectory for ROS, and C that computes it sample by sample."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

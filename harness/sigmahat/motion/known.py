@@ -1,7 +1,5 @@
 """Data of a joint and its sensors, from a log or from a configuration alone."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from sigmahat.fmi.instance import installed

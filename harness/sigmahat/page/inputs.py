@@ -1,7 +1,5 @@
 """Parts of the page: texts, buttons, and inputs that are bound to keys of the configuration."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Slow jobs in a thread: previews, guess, checks, curve. The page stays responsive meanwhile."""
 
-from __future__ import annotations
-
 import logging
 import threading
 from collections.abc import Callable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Serves the page on this computer alone, until Ctrl-C."""
 
-from __future__ import annotations
-
 import logging
 import secrets
 import signal

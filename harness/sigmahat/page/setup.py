@@ -4,8 +4,6 @@ All windows share one state, so that they show the same, and a closed window los
 the thread of the server may use the state; jobs send their results to this thread.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The document of one window: panels that show the setup."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from html import escape
 from pathlib import Path

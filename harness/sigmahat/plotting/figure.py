@@ -1,7 +1,5 @@
 """Draws panels with Matplotlib."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

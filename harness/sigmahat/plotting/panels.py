@@ -1,7 +1,5 @@
 """Panels with curves as data: Matplotlib draws them for files, Bokeh for pages."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum

@@ -1,7 +1,5 @@
 """Figures as files, all in one style."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -34,6 +32,7 @@ def save(draw: Callable[[Source], Figure], source: Source, path: Path) -> None:
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
         figure.set_layout_engine("none")  # the layout is kept, because it takes long to compute
         pixels = BytesIO()
-        figure.savefig(pixels, format="png")
+        figure.savefig(pixels, format="png", pil_kwargs={"compress_level": 0})
     with Image.open(pixels) as image:  # 256 colours look the same in a third of the bytes
-        image.convert("RGB").quantize(256).save(path.with_suffix(".png"))
+        few = image.convert("RGB").quantize(256, method=Image.Quantize.FASTOCTREE)
+        few.save(path.with_suffix(".png"))

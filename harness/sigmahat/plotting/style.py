@@ -1,7 +1,5 @@
 """Common parts of figures: colours, symbols with units, and limits of an axis."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The files of `sigmahat estimate` with the findings of the checks, and a report from the files."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace

@@ -1,7 +1,5 @@
 """The contents of a report from the files of `sigmahat reproduce`."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path

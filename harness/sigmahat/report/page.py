@@ -1,7 +1,5 @@
 """The job of `sigmahat report`: one HTML file of the results in a folder, of several commands."""
 
-from __future__ import annotations
-
 from base64 import b64encode
 from collections.abc import Callable
 from functools import partial

@@ -3,8 +3,6 @@
 The page gives the plots their switches and, through CSS, their colours.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -4,8 +4,6 @@ The torque of every tick is predicted before the estimator learns from this tick
 half of a log is a test set: no sample was known when its torque was predicted.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any

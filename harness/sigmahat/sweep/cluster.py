@@ -1,7 +1,5 @@
 """Jobs on a Dask cluster; sigmahat.runs.pool does jobs in processes of this machine."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections.abc import Callable, Generator, Sequence

@@ -6,8 +6,6 @@ scenario and listed values in the plan, and its seed. So a sweep with more seeds
 same file.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping

@@ -1,7 +1,5 @@
 """The panels of a sweep, for its figures and its report."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -19,8 +19,6 @@ uniform(0.9e-3,1.1e-3) drawn for each seed, between two ends
 normal(1e-3,5e-5)      drawn for each seed, by mean and standard deviation
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 import re

@@ -1,7 +1,5 @@
 """One run of a sweep: its scenario with the parameters of the run, and its execution."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Mapping, Sequence

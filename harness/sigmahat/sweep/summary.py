@@ -1,7 +1,5 @@
 """The summary of a sweep: means over the seeds, printed, as a CSV file, and for JSON."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The conditions of the catalogue, as data: misfits added to an experiment without misfits."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The figure of misfits: the error of each row against its uncertainty sigma_std."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """Runs the plant of an experiment with drive and control; gives measured and true values."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

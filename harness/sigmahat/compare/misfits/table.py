@@ -1,7 +1,5 @@
 """The table of misfits: printed, as a CSV file, and for JSON."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

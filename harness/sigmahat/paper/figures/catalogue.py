@@ -1,7 +1,5 @@
 """Figures 3 to 12 of the paper, a summary of the AwAS, and all figures by their names."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any

@@ -4,8 +4,6 @@ The spring of these scenarios does not change, so that both are curves. The curv
 part of a run, in which an estimate changes little.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Panels over time, and drawing functions that several panels need."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
