@@ -10,7 +10,6 @@ import pytest
 from scipy.signal import butter, coherence, sosfiltfilt, welch
 
 from recorded_logs import CONFIGURATION, Array, awas_log, write_log
-from sigmahat.identification import regression
 from sigmahat.identification.coherence import spectra
 from sigmahat.identification.identify import _apart
 from sigmahat.identification.noise import low_pass
@@ -80,17 +79,6 @@ def test_a_fit_to_sums_is_a_fit_to_rows() -> None:
     inverse = np.linalg.inv(Z.T @ X)
     expected = inverse @ S.T @ S @ inverse.T * len(S) / (len(S) - len(p))
     assert found.covariance == pytest.approx(expected, rel=rounding)
-
-
-def test_windows_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
-    pieces = [piece(9001, 1)]
-    whole = equations(pieces, T, GAMMA, FORM)
-    monkeypatch.setattr(regression, "_WINDOW", 600)
-    parts = equations(pieces, T, GAMMA, FORM)
-    assert list(fit(parts).value.values()) == pytest.approx(list(fit(whole).value.values()))
-    assert parts.rows.tolist() == whole.rows.tolist()
-    found, expected = parts.ZX.ravel(), whole.ZX.ravel()
-    assert found == pytest.approx(expected, rel=1e-6, abs=1e-9 * np.abs(expected).max())
 
 
 def test_a_known_coefficient_and_parts_that_are_left_out() -> None:

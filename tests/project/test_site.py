@@ -1,4 +1,4 @@
-"""The documentation as a site: the API, search, and how it looks in a browser.
+"""The documentation as a site: the API, and how it looks in a browser.
 
 The build has checked that every page is in the navigation, and that Sphinx has nothing to warn of,
 such as a link that leads nowhere.
@@ -12,8 +12,6 @@ from urllib.parse import urlsplit
 
 import pytest
 from lxml import html
-from selenium.webdriver.support.expected_conditions import text_to_be_present_in_element
-from selenium.webdriver.support.ui import WebDriverWait
 
 import sigmahat
 from browser import opened
@@ -29,20 +27,6 @@ SEEN = [
     "genindex",
 ]
 """Pages to look at: tables, formulas, pictures, code, signatures."""
-WORDS = ["motor.gamma", "MSREP", "wrap"]
-QUESTIONS = {
-    "forget": "parameters",
-    "check complains": "how-to-log",
-    "C code": "controller",
-    "Simulink": "how-to/simulink",
-    "torque constant": "how-to-log",
-    "several joints": "how-to-log",
-    "confident": "filtered-regression",
-    "stiffness changes": "filtered-regression",
-    "install": "start",
-    "export": "how-to/joint",
-}
-"""What new users type into the search, and the page that answers it."""
 
 
 def pages(site: Path) -> list[Path]:
@@ -84,22 +68,3 @@ def test_pages_fit_the_window_without_a_complaint(width: int, dark: bool, site: 
             assert page.run("return [...document.images].every(i => i.naturalWidth)"), name
         assert page.complaints() == []
         assert all(url.startswith("file:") for url in page.requests())
-
-
-def test_the_search_finds(site: Path) -> None:
-    found = {}
-    with opened(site / "index.html") as page:
-        for word in (*WORDS, *QUESTIONS):
-            page.driver.get(f"{(site / 'search.html').as_uri()}?q={word}")
-            done = text_to_be_present_in_element(("id", "search-results"), "finished")
-            WebDriverWait(page.driver, 10).until(done)
-            found[word] = page.run(
-                "return [...document.querySelectorAll('#search-results li a')].map(a => a.href)"
-            )
-        assert page.complaints() == []
-    rows = [link for link in found["motor.gamma"] if "parameters.html#stiffnessestimator" in link]
-    assert [link.endswith("#stiffnessestimator-motor-gamma") for link in rows] == [True]
-    assert any("paper.html" in link for link in found["MSREP"])
-    assert any("how-to-log.html" in link for link in found["wrap"])
-    for word, name in QUESTIONS.items():
-        assert any(f"/{name}.html" in link for link in found[word][:3]), (word, found[word][:5])
