@@ -159,7 +159,7 @@ def test_columns_with_times_of_their_own(log: Columns, shell: Shell) -> None:
     assert "theta_c" not in table.column_names  # it is no column of the table of t
     found = table["estimate.setPoint [1]"].to_numpy()[::10]
     scale = -0.0025 / (2 * np.pi) * 1e3
-    assert found == pytest.approx(100 + scale * columns["theta_c"], rel=1e-12)
+    assert found == pytest.approx(100 + scale * columns["theta_c"], rel=STORED)
 
 
 def test_other_columns_stay_as_they_are(log: Columns, shell: Shell) -> None:
@@ -178,14 +178,14 @@ def test_json_and_quiet(log: Columns, shell: Shell) -> None:
     Path("log.toml").write_text(AS_IN_THE_FMU)
     summary = shell.json("estimate log.parquet --out out")
     last = read_estimate(Path("out"))
-    assert summary["sigma [N.m/rad]"] == last[SIGMA].to_numpy()[-1]
+    assert last[SIGMA].to_numpy()[-1] == pytest.approx(summary["sigma [N.m/rad]"], rel=STORED)
     # THEN the coefficients are those of (23) at the last sample
     eta = np.array(summary["eta"])
     phi = last["estimate.phi [rad]"].to_numpy()[-1]
     set_point = last["estimate.setPoint [1]"].to_numpy()[-1]
     powers = 2 * np.arange(len(eta)) + 1
     slope = (powers * phi ** (powers - 1)) @ eta @ set_point ** np.arange(eta.shape[1])
-    assert slope == pytest.approx(summary["sigma [N.m/rad]"], rel=1e-9)
+    assert slope == pytest.approx(summary["sigma [N.m/rad]"], rel=4 * STORED)
     assert (shell.run("estimate log.parquet --out out --quiet"), shell.err) == ("", "")
 
 

@@ -14,7 +14,6 @@ from command_line import Shell, working_in
 from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.joint.curve import CURVE
 from sigmahat.plotting.style import limits
-from sigmahat.report.from_log import FINDINGS, ShownFinding, write_findings
 
 REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nprior.B = 0.2\nrls.n = 3\n'
 GAP = slice(20_000, 20_200)
@@ -34,7 +33,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         Path("knee.toml").write_text(REGRESSION)
         answer = Shell().run("estimate knee.parquet --out out --json")
         Path("answer.json").write_text(answer)
-        write_findings([ShownFinding("wrong", "motor.gamma: 50, expected <100>")], Path("out"))
+        notes = json.loads(Path("out/estimate.json").read_text())
+        notes["findings"] = [["wrong", "motor.gamma: 50, expected <100>"]]
+        Path("out/estimate.json").write_text(json.dumps(notes))
         Shell().run("report out")
     return folder
 
@@ -109,7 +110,7 @@ def test_limits_keep_what_belongs_to_the_signal() -> None:
         ("joint.json", None, "name the folder or the joint.json"),
         (CURVE, "a,b\n1,2\n", "expected the curve that"),
         ("estimate.points.csv", "a,b\n1,2\n", "no numbers in column"),
-        (FINDINGS.file, '{"format": "x"}', "expected a findings.json"),
+        ("estimate.json", '{"format": "x"}', "expected the estimate.json"),
     ],
 )
 def test_a_damaged_file_is_named(

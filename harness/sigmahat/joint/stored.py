@@ -95,5 +95,5 @@ class Format(Generic[_Contents]):
             raise ValueError(f"{path}: damaged: {where}: {first['msg']}; {_AGAIN}") from error
 
     def _unexpected(self, path: Path, got: str) -> ValueError:
-        expected = f"expected a {self.file} that `sigmahat estimate` wrote"
+        expected = f"expected the {self.file} that `sigmahat estimate` wrote"
         return ValueError(f"{path}: {expected}, got {got}")

@@ -113,7 +113,8 @@ def _rounded(values: NDArray[np.float64]) -> NDArray[np.float32]:
     third of the file.
     """
     bits = values.astype(np.float32).view(np.uint32)
-    return ((bits + np.uint32(0x40)) & np.uint32(0xFFFFFF80)).view(np.float32)
+    rounded: NDArray[np.float32] = ((bits + 0x40) & 0xFFFFFF80).view(np.float32)
+    return rounded
 
 
 def _is_split(name: str, column: pa.ChunkedArray) -> bool:
@@ -176,9 +177,9 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         names = [tables.name_and_unit(title.removeprefix(_PREFIX)) for title in titles]
         self.units = dict(names)  # unit of each output, None for flags
         self._titles = dict(zip(self.units, titles, strict=True))
-        if not self.units.keys() >= {_TIME, "sigma", "valid"}:
+        if not self.units.keys() >= {*_TIMES, "sigma", "valid", DOUBT}:
             raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
-        self._doubt = self._titles.pop(DOUBT, None)
+        self._doubt = self._titles.pop(DOUBT)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         return self._log.read(self._titles[name])
@@ -196,13 +197,8 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         return rest
 
     def doubts(self) -> Counter[str]:
-        """Number of rows in the second half of the log for each value of the output `doubt`.
-
-        The result is empty if an older version wrote the table.
-        """
+        """Number of rows in the second half of the log for each value of the output `doubt`."""
         found: Counter[str] = Counter()
-        if self._doubt is None:
-            return found
         left = self._log.samples(self._doubt) // 2  # of the first half
         for batch in self._log.batches([self._doubt], _ROWS):
             later = batch.column(0).slice(min(left, len(batch)))
@@ -225,6 +221,8 @@ class Replayed:
     skipped: int  # ticks without an estimate: a measurement was missing
     T: float  # time between ticks [s]
     notes: list[Text]  # sentences about the processing of the samples of the log
+    findings: list[tuple[Text, Text]] | None = None
+    """Severity and sentence of each finding of the checks; None without checks."""
 
 
 REPLAYED = Format("estimate.json", "sigmahat estimate", 1, Replayed)  # format of the file

@@ -26,7 +26,6 @@ from sigmahat.joint.curve import (
     stiffness_rows,
 )
 from sigmahat.joint.sheet import Sheet
-from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs import estimate as estimation
 from sigmahat.logs.changes import detected
 from sigmahat.logs.configuration import Configuration
@@ -48,37 +47,6 @@ from sigmahat.report.contents import Contents, TextTable, number, of_file
 from sigmahat.report.residuals import residual_panels, residuals
 
 
-@dataclass(frozen=True)
-class ShownFinding:
-    """A finding as text."""
-
-    __pydantic_config__ = NO_OTHER_KEYS
-
-    severity: Text  # how much the finding matters: "wrong", "rests on", "note"
-    text: Text  # A sentence: the key of the configuration, the number, and a value that is proposed
-
-
-@dataclass(frozen=True)
-class FindingsFile:
-    """The contents of the file."""
-
-    __pydantic_config__ = NO_OTHER_KEYS
-
-    format: Text
-    version: int
-    findings: list[ShownFinding]
-
-
-FINDINGS = Format("findings.json", "sigmahat findings", 1, FindingsFile)
-"""Format of the file."""
-
-
-def write_findings(findings: Sequence[ShownFinding], folder: Path) -> None:
-    """Writes the file into a folder of results; an empty list says that nothing was found."""
-    contents = FindingsFile(FINDINGS.name, FINDINGS.version, list(findings))
-    write_json(asdict(contents), folder / FINDINGS.file)
-
-
 def estimated(
     log: Log,
     configuration: Configuration,
@@ -97,21 +65,9 @@ def estimated(
     """
     with output_folder(out) as folder:
         result = estimation.estimate(log, configuration, folder, progress, start_from, mcap)
-        write_findings([ShownFinding(*each) for each in findings], folder)
+        replayed = replace(REPLAYED.read(folder), findings=list(findings))
+        write_json(asdict(replayed), folder / REPLAYED.file)
     return result
-
-
-def findings_table(folder: Path) -> list[TextTable]:
-    """The table of the file in a folder; no table without this file.
-
-    Raises ValueError, which says what is wrong, for a damaged file.
-    """
-    if not (folder / FINDINGS.file).is_file():
-        return []
-    found = FINDINGS.read(folder).findings
-    rows = [[each.severity, each.text] for each in found]
-    note = "" if rows else "Nothing in the log contradicts the configuration."
-    return [TextTable("Checks", ["", "finding"], rows, [True, True], note=note)]
 
 
 _OF_THE_METHOD = ("a", "rho")  # inner outputs of the method, which are not in the table
@@ -130,34 +86,30 @@ class _Answer:
 def from_log(folder: Path) -> Contents:
     """The curve, other results, and the signals of the estimator over time.
 
-    A folder that an older version wrote has only the signals. Raises ValueError, which says what to
-    do, for a damaged or wrong file.
+    Raises ValueError, which says what to do, for a file that is missing, damaged or wrong.
     """
     table = EstimateTable(folder)
     used, t = table["valid"].astype(bool), table["t"]
     signals = drawn = table.without("valid", "t")
     answer = _answer(folder)
-    if answer is not None and answer.sheet.method != "FilteredRegression":
+    if answer.sheet.method != "FilteredRegression":
         drawn = signals.without("sigma_std")  # the method gives no interval
     reduced = reduce(t, drawn)
-    marks = []
-    if "change_age" in signals:  # older versions have no such output
-        marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
-    tables = []
-    if answer is not None:
-        tables += [curve_table(answer.curve)] if answer.curve.branches else []
-        tables.append(found_table(answer.sheet))
-    tables += findings_table(folder)
-    tables.append(_estimates(signals, used))
-    if doubts := table.doubts():
-        tables.append(_doubts(doubts))
-    if answer is not None:
-        tables.append(estimator_table(answer.sheet))
+    marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
+    findings = answer.replayed.findings
+    tables = [
+        *([curve_table(answer.curve)] if answer.curve.branches else []),
+        found_table(answer.sheet),
+        *([] if findings is None else [findings_table(findings)]),
+        _estimates(signals, used),
+        _doubts(table.doubts()),
+        estimator_table(answer.sheet),
+    ]
     return Contents(
         f"Log: {folder.resolve().name}",
         [
-            *_origin(answer, folder),
-            f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer, used)}",
+            _origin(answer, folder),
+            f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer.replayed)}",
             *(["Dotted lines: changes of the stiffness, see Samples."] if marks else []),
         ],
         tables,
@@ -166,9 +118,9 @@ def from_log(folder: Path) -> Contents:
             *quantity_panels(reduced, ""),
             *_residuals(t, drawn, used, answer),
         ],
-        headline="" if answer is None else headline(answer.curve, answer.sheet.doubt),
-        answer=[] if answer is None else list(curve_panels(answer.curve, answer.points)),
-        notes=[*([] if answer is None else answer.replayed.notes), *sampling(reduced)],
+        headline=headline(answer.curve, answer.sheet.doubt),
+        answer=list(curve_panels(answer.curve, answer.points)),
+        notes=[*answer.replayed.notes, *sampling(reduced)],
         every=reduced.every if reduced.bucket > 1 else None,
         marks=marks,
     )
@@ -186,9 +138,7 @@ def from_joints(folder: Path) -> Contents:
     panels, lines = [], list[str]()
     for name in names:
         answer = _answer(folder / name)
-        if answer is None:
-            raise ValueError(f"{folder / name}: no result of `sigmahat estimate`; run it again")
-        lines = lines or list(_origin(answer, folder / name))  # the same log for all joints
+        lines = lines or [_origin(answer, folder / name)]  # the same log for all joints
         of_curve = list(curve_panels(answer.curve, answer.points))
         panels += [replace(each, title=f"{name}: {each.title}") for each in of_curve[1:]]
     note = f"Each joint has a report of its own: sigmahat report {folder}/{names[0]}"
@@ -200,10 +150,10 @@ def _residuals(
     t: NDArray[Any],
     drawn: Mapping[str, NDArray[Any]],
     used: NDArray[np.bool_],
-    answer: _Answer | None,
+    answer: _Answer,
 ) -> Iterator[Panel]:
     """Panels about the residual of FilteredRegression; the other method predicts no friction."""
-    if answer is None or answer.sheet.method != "FilteredRegression":
+    if answer.sheet.method != "FilteredRegression":
         return
     bandwidth = float(answer.sheet.start_values["regression.bandwidth"])
     found = residuals(t, drawn, used, bandwidth)
@@ -211,9 +161,7 @@ def _residuals(
         yield from residual_panels(found)
 
 
-def _answer(folder: Path) -> _Answer | None:
-    if not (folder / REPLAYED.file).is_file():
-        return None
+def _answer(folder: Path) -> _Answer:
     found = sheet.FORMAT.read(folder)
     return _Answer(
         found,
@@ -223,20 +171,22 @@ def _answer(folder: Path) -> _Answer | None:
     )
 
 
-def _origin(answer: _Answer | None, folder: Path) -> Iterator[str]:
+def _origin(answer: _Answer, folder: Path) -> str:
     """A line with the log, the configuration, the version and the time of the results."""
-    if answer is not None:
-        made = datetime.fromtimestamp((folder / REPLAYED.file).stat().st_mtime).astimezone()
-        version, source = answer.sheet.sigmahat, answer.sheet.configuration.file
-        yield f"{answer.replayed.log} with {source}; sigmahat {version}, {made:%Y-%m-%d %H:%M %Z}"
+    made = datetime.fromtimestamp((folder / REPLAYED.file).stat().st_mtime).astimezone()
+    version, source = answer.sheet.sigmahat, answer.sheet.configuration.file
+    return f"{answer.replayed.log} with {source}; sigmahat {version}, {made:%Y-%m-%d %H:%M %Z}"
 
 
-def _skipped(answer: _Answer | None, used: NDArray[np.bool_]) -> str:
+def _skipped(replayed: Replayed) -> str:
     """Number of skipped ticks, as in `estimate`. A gap in the log has ticks, but no rows."""
-    if answer is None:
-        return f"in {np.count_nonzero(~used)} of the rows the estimator skipped the tick"
-    replayed = answer.replayed
     return f"{replayed.skipped} of {replayed.ticks} ticks of {replayed.T:g} s skipped"
+
+
+def findings_table(findings: Sequence[tuple[str, str]]) -> TextTable:
+    """The findings of the checks: severity and sentence."""
+    note = "" if findings else "Nothing in the log contradicts the configuration."
+    return TextTable("Checks", ["", "finding"], list(map(list, findings)), [True, True], note=note)
 
 
 def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
