@@ -15,7 +15,7 @@ from sigmahat.plotting.style import cycle
 _MARKERS = dict(zip((joint.name for joint in JOINTS), "o^s", strict=True))
 _COLORS = dict(zip(Group, cycle(len(Group)), strict=True))
 _GREY = "#888888"
-_LIMITS = 0.01, 1000.0  # of both axes, wider if a row needs it [%]
+_LIMITS = 0.05, 100.0  # of both axes, wider if a row needs it [%]
 
 
 def draw(rows: Sequence[Row]) -> Figure:
@@ -25,7 +25,7 @@ def draw(rows: Sequence[Row]) -> Figure:
     points = [(row.score.figures["claim"], row.score.figures["error"]) for row in rows]
     values = [value for point in points for value in point if value > 0]
     limits = min(_LIMITS[0], 0.8 * min(values)), max(_LIMITS[1], 1.2 * max(values))
-    axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits, aspect="equal")
+    axes.set(xscale="log", yscale="log", xlim=limits, ylim=limits)
     axes.set_xlabel("claim: RMS of sigma_std relative to the true stiffness [%]")
     axes.set_ylabel("RMS error relative to the true stiffness [%]")
     _regions(axes, limits)
