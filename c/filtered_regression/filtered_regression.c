@@ -212,7 +212,7 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
     sh_information_start(&state->data, state->columns.size, SH_LEAST_INFORMATION);
     sh_blocks_start(state);
     sh_change_start(state);
-    state->row.step = SH_ROW_STEPS;
+    state->row.tick = state->signals.decimation;
     sh_refit_start(state, p);
     sh_joint_point_at(&at, &state->columns, p, 0, 0, 0, p->setPoint.offset, state->history.stop);
     stiffness = evaluate_at(state, p, &at, &point);
@@ -321,40 +321,53 @@ static int use_row(sh_regression_state *state, const sh_parameters *p)
     row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     update_noise(state, p, &left, row->w);
     sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, size);
-    row->step = 0;
+    row->tick = 0;
     return 1;
 }
 
-/* What else a row changes. The steps are of similar length, so that they can be spread evenly: one triangular
- * matrix each, but for the last one, which takes (K + 1) / 2 rows of the data.
- */
-static void take_step(sh_regression_state *state, const sh_parameters *p)
+/* What else a row changes: step 0 to 5, at most one triangular matrix each. */
+static void take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
-    sh_row *row = &state->row;
+    const sh_row *row = &state->row;
     sh_real x[SH_MAX_ROW] = {0};
 
-    if (row->step == 0) { /* before the data: a refit that starts below has this row from them */
+    if (step == 0) { /* before the data: a refit that starts later has this row from them */
         sh_refit_take(state);
-    } else if (row->step == 1) {
+    } else if (step == 1) {
         (void)memcpy(x, row->x, sizeof x);
         (void)sh_information_take(&state->data, x, row->w);
-    } else if (row->step == 2) {
+    } else if (step == 2) {
         sh_blocks_take(state);
-    } else if (row->step == SH_ROW_STEPS - 1) {
-        sh_refit_advance(state, p);
     }
-    sh_blocks_end(state, p, row->step - 2);
-    row->step += 1;
+    sh_blocks_end(state, p, step - 2);
 }
 
-/* The steps are spread over the ticks without a new row; all of them follow at once if there is none. */
+static int is_block_full(const sh_blocks *blocks)
+{
+    return blocks->rows >= blocks->length;
+}
+
+/* The steps are spread over the ticks until the next row. The refit advances in ticks in which neither the data
+ * nor the blocks take a row, if there are at least three.
+ */
 static void take_steps(sh_regression_state *state, const sh_parameters *p)
 {
     const int ticks = state->signals.decimation > 1 ? state->signals.decimation - 1 : 1;
-    const int last = state->row.step + (SH_ROW_STEPS + ticks - 1) / ticks;
+    const int tick = state->row.tick;
+    const int first = (SH_ROW_STEPS * tick + ticks - 1) / ticks;
+    const int end = (SH_ROW_STEPS * (tick + 1) + ticks - 1) / ticks;
+    int is_busy = first < 2 || is_block_full(&state->blocks), step;
 
-    while (state->row.step < SH_ROW_STEPS && state->row.step < last) {
-        take_step(state, p);
+    if (tick >= ticks) { /* all steps are done */
+        return;
+    }
+    state->row.tick += 1;
+    for (step = first; step < end; ++step) {
+        take_step(state, p, step);
+        is_busy = is_busy || is_block_full(&state->blocks);
+    }
+    if (!is_busy || ticks < 3) {
+        sh_refit_advance(state, p);
     }
 }
 
@@ -362,7 +375,7 @@ static void take_steps(sh_regression_state *state, const sh_parameters *p)
 static void wait_until_settled(sh_regression_state *state)
 {
     sh_signals_unsettle(&state->signals, &state->history);
-    if (state->blocks.rows < state->blocks.length) { /* else it will be taken and emptied */
+    if (!is_block_full(&state->blocks)) { /* else it will be taken and emptied */
         sh_blocks_interrupt(&state->blocks);
     }
 }

@@ -65,12 +65,12 @@ static int is_choice(const sh_regression_state *state, const sh_posterior *poste
     return 1;
 }
 
-/* Where the present refit stands: refit.c takes the rows of the data, and then three more steps. */
+/* Where the present refit stands: refit.c takes the rows of the data, and then some more steps. */
 static int is_refit(const sh_refit *refit, int size)
 {
     int i;
 
-    if (refit->row < 0 || refit->row > size + 3 || refit->trial < 0 || refit->trial >= SH_GROUPS ||
+    if (refit->row < 0 || refit->row > size + SH_REFIT_STEPS || refit->trial < 0 || refit->trial >= SH_GROUPS ||
         refit->last_trial < 0 || refit->last_trial >= SH_GROUPS) {
         return 0;
     }
@@ -88,7 +88,7 @@ static int are_numbers(const sh_regression_state *state)
     if (state->modality < SH_MODALITY_RESIDUAL || state->modality > SH_MODALITY_MODEL ||
         state->signals.decimation < 1 || state->signals.decimation > SH_LARGEST_DECIMATION ||
         state->mean.samples < 0 || state->mean.samples >= state->signals.decimation ||
-        state->row.step < 0 || state->row.step > SH_ROW_STEPS || state->signals.begun < 0 ||
+        state->row.tick < 0 || state->row.tick > SH_LARGEST_DECIMATION || state->signals.begun < 0 ||
         state->signals.begun > 1 || state->friction_drifts < 0 || state->friction_drifts > 1 ||
         state->stiffness_known < 0 || state->stiffness_known > 1 || state->change.following < 0 ||
         state->change.following > 1) {

@@ -191,13 +191,14 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 
 /* ---- drift of friction, detail 10 -------------------------------------------------------- */
 
-/* Process noise of viscous and Coulomb friction. */
-static void let_friction_drift(const sh_columns *columns, sh_information *a, sh_real variance)
+/* Process noise of viscous or Coulomb friction. */
+static void let_friction_drift(const sh_columns *columns, int kind, sh_information *a,
+                               sh_real variance)
 {
     int i;
 
     for (i = 0; i < columns->size; ++i) {
-        if (sh_column_is(&columns->column[i], SH_IS_FRICTION)) {
+        if (columns->column[i].kind == kind) {
             sh_real v[SH_MAX_COLUMNS] = {0};
 
             v[i] = 1;
@@ -206,24 +207,35 @@ static void let_friction_drift(const sh_columns *columns, sh_information *a, sh_
     }
 }
 
-void sh_friction_drift(sh_regression_state *state, sh_real time)
+/* Whether friction drifts, by the residuals of both regressions. */
+static void judge_drift(sh_regression_state *state)
 {
-    sh_blocks *blocks = &state->blocks;
+    const sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->count, parameters = (sh_real)state->columns.size;
+    const sh_real constant = blocks->constant.squares, drifting = blocks->drifting.squares;
+
+    if (!(N > 2 * parameters)) {
+        return;
+    }
+    if (drifting < SH_DRIFT_BEGINS * constant && constant > (N - parameters) * chance(N) / N) {
+        state->friction_drifts = 1;
+    } else if (drifting > SH_DRIFT_ENDS * constant) {
+        state->friction_drifts = 0;
+    }
+}
+
+void sh_friction_drift(sh_regression_state *state, sh_real time, int step)
+{
+    const int kind = step % 2 == 0 ? SH_COLUMN_VISCOUS : SH_COLUMN_COULOMB;
     const sh_real variance = SH_FRICTION_DRIFT * time;
 
-    let_friction_drift(&state->columns, &blocks->drifting, variance);
-    if (N > 2 * parameters) {
-        const sh_real constant = blocks->constant.squares, drifting = blocks->drifting.squares;
-
-        if (drifting < SH_DRIFT_BEGINS * constant && constant > (N - parameters) * chance(N) / N) {
-            state->friction_drifts = 1;
-        } else if (drifting > SH_DRIFT_ENDS * constant) {
-            state->friction_drifts = 0;
-        }
+    if (step < 2) {
+        let_friction_drift(&state->columns, kind, &state->blocks.drifting, variance);
+    } else if (state->friction_drifts) {
+        let_friction_drift(&state->columns, kind, &state->data, variance);
     }
-    if (state->friction_drifts) {
-        let_friction_drift(&state->columns, &state->data, variance);
+    if (step == 1) {
+        judge_drift(state);
     }
 }
 

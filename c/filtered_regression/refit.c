@@ -1,7 +1,7 @@
 /* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of
  * the data with its weight is a sample for another triangle: so a new posterior is computed beside the present
- * one, from some rows of a copy of the data with each new row. Every second refit is a trial of a group of
- * columns, and its estimate is not used.
+ * one, from a row of a copy of the data in each tick, and from each new row. Every second refit is a trial of a
+ * group of columns, and its estimate is not used.
  */
 #include "constants.h"
 #include "regression.h"
@@ -35,13 +35,16 @@ static int place_of(const sh_regression_state *state, const sh_parameters *p, in
 /* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */
 static int choose_columns(const sh_regression_state *state, const sh_parameters *p, int *chosen)
 {
-    int size = 0, place, i;
+    int places[SH_MAX_COLUMNS] = {0}, size = 0, place, i;
 
+    for (i = 0; i < state->columns.size; ++i) {
+        places[i] = place_of(state, p, i);
+    }
     /*@ loop unroll 4; */
     for (place = 0; place < 4; ++place) {
         /*@ loop unroll SH_MAX_COLUMNS; */
         for (i = 0; i < state->columns.size; ++i) {
-            if (size < state->columns.size && place == place_of(state, p, i)) {
+            if (size < state->columns.size && place == places[i]) {
                 chosen[size++] = i;
             }
         }
@@ -142,25 +145,26 @@ static void remove_noise(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* All rows have been taken. The next refit is a trial after every one that changed the estimate. */
+/* All rows have been taken. */
 static void end_refit(sh_regression_state *state, const sh_parameters *p)
 {
-    sh_refit *refit = &state->refit;
-    const int was_trial = refit->trial != 0;
-
-    if (was_trial) {
+    if (state->refit.trial != 0) {
         decide_about_group(state);
-    } else {
-        state->posterior = refit->posterior;
-        state->change.following = 0;
-        remove_noise(state, p);
-        sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
+        return;
     }
-    sh_misfit_judge(state, p);
-    refit->trial = 0;
-    if (!was_trial && state->blocks.count >= SH_FIRST_BLOCKS) {
-        refit->trial = next_trial(state, p);
-    }
+    state->posterior = state->refit.posterior;
+    state->change.following = 0;
+    remove_noise(state, p);
+    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
+}
+
+/* The next refit is a trial after every one that changed the estimate. */
+static void plan_refit(sh_regression_state *state, const sh_parameters *p)
+{
+    sh_refit *refit = &state->refit;
+    const int is_due = refit->trial == 0 && state->blocks.count >= SH_FIRST_BLOCKS;
+
+    refit->trial = is_due ? next_trial(state, p) : 0;
 }
 
 static void take_row(sh_regression_state *state)
@@ -184,43 +188,38 @@ void sh_refit_take(sh_regression_state *state)
     const sh_real duration = (sh_real)state->signals.decimation * state->signals.design.T;
     sh_refit *refit = &state->refit;
 
-    if (refit->row <= state->columns.size + 2) { /* else it pauses */
+    if (refit->row <= state->columns.size) { /* else it has ended */
         (void)sh_posterior_take(&refit->posterior, row->x, state->columns.size, row->w);
     }
     refit->time += duration;
     refit->pause += duration;
 }
 
-/* What a refit needs beside the rows is spread over ticks, too. */
+/* What a refit needs beside the rows is spread over ticks, too. Data are forgotten before a refit that is no trial.
+ */
 void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
+    const int step = refit->row - state->columns.size;
 
-    if (refit->row < state->columns.size) {
-        const int last = refit->row + (state->signals.decimation + 1) / 2;
-
-        for (; refit->row < last && refit->row < state->columns.size; ++refit->row) {
-            take_row(state);
-        }
-        return;
-    }
-    switch (refit->row - state->columns.size) {
-    case 0:
+    if (step < 0) {
+        take_row(state);
+    } else if (step == 0) {
         end_refit(state, p);
-        break;
-    case 1: /* end_refit has set the trial of the next refit: data are forgotten before one without */
+    } else if (step == 1) {
+        sh_misfit_judge(state, p);
+        plan_refit(state, p);
+    } else if (step < SH_REFIT_STEPS - 1) {
         if (refit->trial == 0) {
-            sh_friction_drift(state, refit->time);
+            sh_friction_drift(state, refit->time, step - 2);
         }
-        break;
-    case 2:
+    } else if (step < SH_REFIT_STEPS) {
         if (refit->trial == 0) {
             sh_forget(state, p, refit->time);
             refit->time = 0;
         }
         refit->pause = 0;
-        break;
-    default:
+    } else {
         if (refit->pause >= SH_REFIT_PAUSE * state->blocks.count * SH_BLOCK) {
             start_refit(state, p);
         }

@@ -6,7 +6,10 @@
 
 #include "information.h"
 
-enum { SH_ROW_STEPS = 7 }; /* in which a row changes what is behind the estimate */
+enum {
+    SH_ROW_STEPS = 6,  /* in which a row changes what is behind the estimate */
+    SH_REFIT_STEPS = 7 /* of a refit behind its rows, before it pauses */
+};
 
 /* Where the joint is, and the signals of the columns there, before the filter. */
 typedef struct {
@@ -62,8 +65,7 @@ enum {
     SH_IS_CURVE = 2,    /* a part of its smooth curve, which has a slope */
     SH_IS_POWER = 4,    /* a power of the deformation: its coefficient is an eta */
     SH_IS_EQUATION = 8, /* a term of the equation of motion, not an additional effect */
-    SH_IS_MOTOR = 16,   /* 0 where the torque of the spring is measured or modelled */
-    SH_IS_FRICTION = 32 /* friction of the motor that may drift */
+    SH_IS_MOTOR = 16    /* 0 where the torque of the spring is measured or modelled */
 };
 
 /* How the filter of a column takes its signal. */
@@ -241,8 +243,10 @@ void sh_blocks_interrupt(sh_blocks *blocks);
 /* Detail 8: sets misfit and variance_factor by the estimate beta. */
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
 
-/* Detail 10: lets friction drift for `time` [s] if the blocks contradict each other less with it. */
-void sh_friction_drift(sh_regression_state *state, sh_real time);
+/* Step 0..3 of detail 10: lets friction drift for `time` [s], in the data if the blocks contradict each other less
+ * with it.
+ */
+void sh_friction_drift(sh_regression_state *state, sh_real time, int step);
 
 /* Details 9 and 11: forgets data that contradict the model, and lets the curve drift for `time` [s]
  * along the last row.
@@ -276,7 +280,7 @@ void sh_refit_restart(sh_regression_state *state, const sh_parameters *p);
 /* Takes the last row, if a refit is under way. */
 void sh_refit_take(sh_regression_state *state);
 
-/* Takes (K + 1) / 2 rows of the data of all samples, or does the next step at the end of a refit. */
+/* Takes one row of the data of all samples, or does the next step at the end of a refit. */
 void sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

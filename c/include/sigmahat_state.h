@@ -179,7 +179,7 @@ typedef struct {
 
 /* The last row. The steps that take it are spread over the ticks until the next one. */
 typedef struct {
-    int step;              /* next step, of filtered_regression.c; behind the last one: none */
+    int tick;              /* ticks since the row, up to the number in which its steps are done */
     sh_real x[SH_MAX_ROW]; /* columns, then right-hand sides */
     sh_real w;             /* weight [1/(N.m)2] */
     sh_real lasting;       /* factor in 1/w by errors that last, >= 1 */

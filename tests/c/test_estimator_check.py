@@ -56,7 +56,7 @@ INTEGERS_OF_FILTERED_REGRESSION = [
     *("refit.used", "refit.frozen.size"),
     *("blocks.constant.size", "blocks.drifting.size", "blocks.recent.size"),
     *("change.changed.size", "change.following"),
-    *("signals.decimation", "mean.samples", "row.step"),
+    *("signals.decimation", "mean.samples", "row.tick"),
     *(
         f"{posterior}.{member}"
         for posterior in ("posterior", "refit.posterior")

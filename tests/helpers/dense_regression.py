@@ -242,6 +242,7 @@ class Oracle:
         self.since = self.pause = self.epsilon = self.rho = 0.0
         self.samples: list[int] = []  # of the next row
         self.steps: Iterator[None] = iter(())  # what the last row still changes
+        self.tick = self.K  # ticks since the last row, as far as it still changes something
         self.friction_drifts = self.known = False
         self.set_beta()
         self.sigma = self.y = self.delay = 0.0
@@ -289,7 +290,7 @@ class Oracle:
     # Passes
 
     def make_passes(self) -> Iterator[None]:
-        """Builds posteriors from all data, one after the other; a row brings it one step on."""
+        """Builds posteriors from all data, one after the other; a tick brings it one step on."""
         while True:
             least = max(1.0, self.q)
             weight = 1 / (least if self.trial else self.factor)
@@ -298,17 +299,19 @@ class Oracle:
             self.build.spread = self.spread * weight**2
             self.build.of_drive = self.of_drive * weight
             yield
-            for _ in range(math.ceil(self.n / ((self.K + 1) // 2))):  # some columns at a time
+            for _ in range(self.n):
                 yield
             if self.trial:
                 self.end_trial()
             else:
                 self.end_pass()
+            yield
             self.plan()
             yield
-            if not self.trial:
-                self.watch_friction(self.since)
-            yield
+            for step in range(4):
+                if not self.trial:
+                    self.watch_friction(self.since, step)
+                yield
             self.pause = 0.0
             if not self.trial:
                 self.forget(self.since)
@@ -373,22 +376,19 @@ class Oracle:
         self.trial = next((group for group in following if group in ready), 0)
         self.last_trial = self.trial or self.last_trial
 
-    def walk_friction(self, sums: Information, time: float) -> None:
-        for i, kind in enumerate(self.kinds):
-            if kind in ("VISCOUS", "COULOMB"):
-                sums.walk(identity(self.n)[i], 1e-3 * time)
-
-    def watch_friction(self, time: float) -> None:
+    def watch_friction(self, time: float, step: int) -> None:
+        """Step 0 and 1: the blocks, of viscous and Coulomb friction; 2 and 3: the data."""
         blocks, N = self.blocks, self.blocks.count
-        self.walk_friction(blocks.walking, time)
-        if 2 * self.n < N:
+        kind = ("VISCOUS", "COULOMB")[step % 2]
+        sums = blocks.walking if step < 2 else self.data
+        if kind in self.kinds and (step < 2 or self.friction_drifts):
+            sums.walk(identity(self.n)[self.kinds.index(kind)], 1e-3 * time)
+        if step == 1 and 2 * self.n < N:
             constant, walking = blocks.all.rest, blocks.walking.rest
             if walking < 0.8 * constant and constant > (N - self.n) * threshold(N) / N:
                 self.friction_drifts = True
             elif walking > 0.95 * constant:
                 self.friction_drifts = False
-        if self.friction_drifts:
-            self.walk_friction(self.data, time)
 
     def forget(self, time: float) -> None:
         blocks, memory, drift = self.blocks, self.p["regression.memory"], self.p["regression.drift"]
@@ -481,12 +481,14 @@ class Oracle:
             self.build.surplus += N * self.build.weight
             self.live.remove(N * self.live.weight)
         self.set_beta()
-        self.steps = self.make_steps(row, R, last, mean_rough, filtered.measured)
+        self.steps, self.tick = self.make_steps(row, R, last, mean_rough, filtered.measured), 0
 
     def make_steps(
         self, row: Long, R: float, last: float, rough: float, measured: bool
     ) -> Iterator[None]:
-        """The seven steps after a row, spread over the ticks until the next one."""
+        """The six steps after a row, spread over the ticks until the next one; and the passes, which
+        go on in each tick as soon as the data have the row.
+        """
         self.since += self.K * self.T
         self.pause += self.K * self.T
         yield
@@ -508,7 +510,19 @@ class Oracle:
             self.watch_misfit()
             blocks.rows.clear()
         yield
-        next(self.passes)
+
+    def follow(self) -> None:
+        """What a tick without a new row does."""
+        blocks, ticks = self.blocks, max(self.K - 1, 1)
+        if self.tick < ticks:
+            first, end = (math.ceil(6 * tick / ticks) for tick in (self.tick, self.tick + 1))
+            is_busy = first < 2 or len(blocks.rows) == blocks.length
+            for _ in range(first, end):
+                next(self.steps)
+                is_busy = is_busy or len(blocks.rows) == blocks.length
+            self.tick += 1
+            if not is_busy or ticks < 3:
+                next(self.passes)
 
     def watch_misfit(self) -> None:
         """Its mean over 400 blocks, in which none counts as more than 1.7 times this mean."""
@@ -622,8 +636,7 @@ class Oracle:
                     self.learn(k, filtered, row, rough)
                 self.samples.clear()
             if not complete or self.K == 1:
-                for _ in range(math.ceil(7 / max(self.K - 1, 1))):
-                    next(self.steps, None)
+                self.follow()
             if not settled:
                 self.epsilon = self.rho = 0.0
             self.report(k, filtered.y[at], settled)
