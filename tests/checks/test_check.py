@@ -221,6 +221,23 @@ def test_a_counter_that_wraps_is_named_with_its_period(tmp_path: Path) -> None:
     assert found.proposed == 4096
 
 
+def test_single_samples_that_were_lost_are_counted(tmp_path: Path) -> None:
+    link = np.array(knee_log()["link_deg"])
+    link[1000:12_000:1000] += 90.0
+    (found,) = wrong({**knee_log(), "link_deg": link}, RIGHT, tmp_path)
+    assert (found.kind, found.key, found.expected) == (Kind.SPIKE, "ports.q.column", 11)
+    assert found.measured == pytest.approx(90.0, abs=1.0)
+
+
+def test_the_unit_of_both_positions_shows_in_the_steps_of_the_encoders(tmp_path: Path) -> None:
+    text = parameters(KNEE, 1e-3)
+    for name in ("theta", "q"):
+        text = f'ports.{name}.unit = "deg"\n{text}'
+    found = checked(joint_log(KNEE, 1e-3), text, tmp_path).findings
+    keys = {each.key: each.proposed for each in found if each.kind is Kind.STEP}
+    assert keys == {"ports.theta.unit": "rad", "ports.q.unit": "rad"}
+
+
 def test_a_torque_behind_the_gear_shows_in_the_inertia(tmp_path: Path) -> None:
     log = joint_log(KNEE, 1e-3)
     (found,) = wrong({**log, "tau": GEAR * log["tau"]}, parameters(KNEE, 1e-3), tmp_path)

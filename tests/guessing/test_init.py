@@ -100,8 +100,20 @@ def test_no_column_that_looks_like_a_port(shell: Shell) -> None:
     assert "#   note: 9 samples; text" in text
     assert set(read()["ports"]) == {"theta", "q", "tau"}
     assert "motor.gamma is 0; fill in the gear ratio" in shell.refused("estimate log.csv")
-    Path("log.toml").write_text(text.replace("motor.gamma = 0", "motor.gamma = 9"))
+    text = text.replace("motor.gamma = 0", "motor.gamma = 9")
+    Path("log.toml").write_text(text)
+    assert "samplePeriod is 0; fill in the time between" in shell.refused("estimate log.csv")
+    Path("log.toml").write_text(text.replace("samplePeriod = 0", "samplePeriod = 0.1"))
     assert "unknown column 'FILL IN'" in shell.refused("estimate log.csv")
+
+
+def test_a_set_point_of_two_settings_and_a_column_with_a_text(shell: Shell) -> None:
+    setting = np.where(T < 1, 10.0, 20.0)
+    text = np.where(T[7] == T, "ERR", MOTION.astype(str))
+    log = {**LOG, "q": text, "link_deg": MOTION, "theta_c_mm": setting}
+    write_log(log, Path("log.csv"))
+    assert "column 'q' holds text ('ERR' in row 8), expected numbers" in shell.run("init log.csv")
+    assert read()["ports"]["theta_c"]["column"] == "theta_c_mm"
 
 
 def two_joints(*names: str) -> None:

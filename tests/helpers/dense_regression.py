@@ -241,8 +241,8 @@ class Oracle:
         self.trial = self.last_trial = 0
         self.since = self.pause = self.epsilon = self.rho = 0.0
         self.samples: list[int] = []  # of the next row
-        self.steps: Iterator[None] = iter(())  # what the last row still changes
-        self.tick = self.K  # ticks since the last row, as far as it still changes something
+        # What the last row still changes, and ticks since it as far as there is something.
+        self.steps, self.tick = iter(list[None]()), self.K
         self.friction_drifts = self.known = False
         self.set_beta()
         self.sigma = self.y = self.delay = 0.0
@@ -486,9 +486,7 @@ class Oracle:
     def make_steps(
         self, row: Long, R: float, last: float, rough: float, measured: bool
     ) -> Iterator[None]:
-        """The six steps after a row, spread over the ticks until the next one; and the passes, which
-        go on in each tick as soon as the data have the row.
-        """
+        """The six steps after a row, spread over the ticks until the next one."""
         self.since += self.K * self.T
         self.pause += self.K * self.T
         yield

@@ -1,6 +1,7 @@
 """`sigmahat identify`: the motor of the AwAS plant, from logs with encoders, noise and friction."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import sigmahat
 from checked_logs import RIGHT, log_by_hand
 from command_line import Shell
 from recorded_logs import CONFIGURATION, LEAD, TRUE, Columns, awas_log, read_estimate, write_log
+from recorded_logs import configured as configured_as
 from sigmahat.fmi.instance import Fmu
 from sigmahat.identification.identify import identify
 from sigmahat.identification.quantities import Identified, Quantity
@@ -296,3 +298,35 @@ def test_a_value_instead_of_one_that_is_not_known_stays(found: Found, tmp_path: 
     write(cannot_tell(found[1.0]), path)
     read = read_configuration(path).parameters
     assert (read["motor.B"], read["prior.B"]) == (1.2e-4, 0.1)
+
+
+def free_load(frequencies: Sequence[float]) -> Columns:
+    """A free inertia of 0.6 kg.m2 behind 7000 N.m/rad and a gear of 50, in the steady state."""
+    M, K, gear, B, D = 0.6, 7000.0, 50.0, 8e-5, 6e-4
+    t = np.arange(0.0, 20.0, 0.002)
+    theta, q, tau = np.zeros((3, len(t)))
+    for f in frequencies:
+        w = 2 * np.pi * f
+        wave, velocity = 0.4 * np.sin(w * t), 0.4 * w * np.cos(w * t)
+        link = 1 / (1 - M * w**2 / K)
+        theta, q = theta + wave, q + link * wave
+        tau += -B * gear * w**2 * wave + D * gear * velocity - K * (link - 1) * wave / gear
+    theta, q = (
+        2 * np.pi / n * np.round(x * n / 2 / np.pi) for x, n in ((theta, 2**14 * gear), (q, 2**15))
+    )
+    noise = 0.01 * np.random.default_rng(1).standard_normal(len(t))
+    return {"t": t, "theta": theta, "q": q, "tau": tau + noise}
+
+
+@pytest.mark.parametrize(("frequencies", "shown"), [((1.5,), False), ((1.5, 5.3, 11.0), True)])
+def test_one_sine_of_a_free_load_does_not_tell_its_inertia_from_the_motors(
+    frequencies: Sequence[float], shown: bool, tmp_path: Path
+) -> None:
+    encoders = ["encoder.theta = 819200", "encoder.q = 32768", "samplePeriod = 0.002"]
+    path = tmp_path / "log.toml"
+    path.write_text(configured_as("motor.gamma = 50", *encoders))
+    found = identified(free_load(frequencies), path)
+    assert found.quantities["B"].determined is shown
+    assert any("the inertia of the load" in note for note in found.notes) is not shown
+    if shown:
+        assert found.quantities["B"].value == pytest.approx(8e-5, rel=0.1)

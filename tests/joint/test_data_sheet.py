@@ -95,18 +95,22 @@ def test_what_it_rests_on(original: Path) -> None:
 def test_the_stiffness_is_that_of_the_table(original: Path) -> None:
     sheet, table = sheet_of(original), read_estimate(original / "knee")
     end = {name: table[name].to_numpy()[-1] for name in table.column_names if "[" in name}
-    at, rounding = sheet["at_the_end"], {"rel": STORED, "abs": 0.0}
-    assert at["sigma"] == pytest.approx(end["estimate.sigma [N.m/rad]"], **rounding)
-    assert at["phi"] == pytest.approx(end["estimate.phi [rad]"], **rounding)
-    assert at["set_point"] == pytest.approx(end["estimate.setPoint [1]"], **rounding)
+    at = sheet["at_the_end"]
+
+    def near(value: Any) -> Any:
+        return pytest.approx(value, rel=STORED, abs=0.0)
+
+    assert at["sigma"] == near(end["estimate.sigma [N.m/rad]"])
+    assert at["phi"] == near(end["estimate.phi [rad]"])
+    assert at["set_point"] == near(end["estimate.setPoint [1]"])
     half = 1.96 * end["estimate.sigma_std [N.m/rad]"]
-    assert at["interval"] == pytest.approx([at["sigma"] - half, at["sigma"] + half], **rounding)
+    assert at["interval"] == near([at["sigma"] - half, at["sigma"] + half])
     for name, unit in (("B", "kg.m2"), ("D_theta", "N.m.s/rad"), ("tau_coulomb", "N.m")):
         parameter = sheet["parameters"][name]
         assert parameter["unit"] == unit
-        assert parameter["value"] == pytest.approx(end[f"estimate.{name}_hat [{unit}]"], **rounding)
+        assert parameter["value"] == near(end[f"estimate.{name}_hat [{unit}]"])
     phi = table["estimate.phi [rad]"].to_numpy()
-    assert sheet["polynomial"]["phi"] == pytest.approx([phi.min(), phi.max()], **rounding)
+    assert sheet["polynomial"]["phi"] == near([phi.min(), phi.max()])
 
 
 def test_the_intervals_of_the_curve_hold_the_true_stiffness(original: Path) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import random
+import re
 import signal
 import socket
 import sys
@@ -129,6 +130,13 @@ def test_standard_input_ends_the_command(tmp_path: Path) -> None:
         out, _ = process.communicate(sent, timeout=60)
     assert out.startswith("messages: 100 read\n")
     assert process.returncode == 0
+
+
+def test_messages_of_which_none_can_be_read_are_an_error(tmp_path: Path) -> None:
+    with running(tmp_path, "--from", "stdin") as process:
+        _, error = process.communicate("0.0,1.0,2.0\n0.1,1.0,2.0\n", timeout=60)
+    assert process.returncode != 0
+    assert re.search("none of .* messages could be read; expected .* --columns", error)
 
 
 def test_a_replayed_log_takes_its_time(tmp_path: Path) -> None:

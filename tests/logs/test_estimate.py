@@ -173,6 +173,18 @@ def test_other_columns_stay_as_they_are(log: Columns, shell: Shell) -> None:
         assert '"x, y"' in theirs[row]
 
 
+@pytest.mark.parametrize(("period", "rate"), [(0.001, None), (0.01, 100.0)])
+def test_filters_are_not_faster_than_the_samples(
+    period: float, rate: float | None, log: Columns, shell: Shell
+) -> None:
+    every = round(period / 0.001)
+    write_log({name: values[::every] for name, values in log.items()}, Path("log.parquet"))
+    Path("log.toml").write_text(REGRESSION.replace("= 0.001", f"= {period}"))
+    used = shell.json("estimate log.parquet")["parameters"]
+    assert used["regression.bandwidth"] == (rate or 350.0)
+    assert used["residual.K_I"] == (rate or 300.0)
+
+
 def test_json_and_quiet(log: Columns, shell: Shell) -> None:
     write_log(log, Path("log.parquet"))
     Path("log.toml").write_text(AS_IN_THE_FMU)

@@ -19,7 +19,7 @@ from sigmahat.checks.view import View, view
 from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.noise import variance
 from sigmahat.identification.quantities import WIDE
-from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.configuration import PORTS, Configuration
 from sigmahat.logs.data_sheet import absent, exact
 from sigmahat.logs.log import Log, LogError
 from sigmahat.logs.replay import parameters, replay
@@ -179,7 +179,7 @@ def _contradictions(seen: View) -> Iterator[Finding]:
         yield from still
         return
     recorded = list(columns(seen))
-    if any(each.kind is Kind.JUMP for each in recorded):
+    if any(each.kind in (Kind.JUMP, Kind.SPIKE) for each in recorded):
         yield from recorded
         return
     here = relation(seen)
@@ -195,7 +195,6 @@ def _contradictions(seen: View) -> Iterator[Finding]:
     yield from dynamics(here)
 
 
-_AWAS = ("motor.B", "motor.D_theta", "motor.gamma")
 _SAME = 0.01  # two gear ratios count as equal up to this relative difference
 
 
@@ -232,9 +231,15 @@ def rests_on(
     key = "ports.tau.torque_constant" if is_current else "prior.torque_gain"
     gain = float(every["prior.torque_gain"])
     yield Finding(Kind.TORQUE_GAIN, Severity.RESTS_ON, key, per_gain, "", gain)
-    if every["modality"] == "Residual" and all(every[name] == start[name] for name in _AWAS):
-        gamma = float(every["motor.gamma"])
-        yield Finding(Kind.OTHER_ROBOT, Severity.RESTS_ON, "motor.gamma", gamma, "")
+    ports = {name: configuration.ports.get(name) for name in ("theta", "q")}
+    units = [f"{name} in {port.unit or PORTS[name]}" for name, port in ports.items() if port]
+    about = " and ".join(units)
+    yield Finding(Kind.UNIT, Severity.RESTS_ON, "ports.theta.unit", 1.0, "", about=about)
+    for name in ("B", "D_theta"):
+        is_other = every[f"motor.{name}"] == start[f"motor.{name}"]
+        if every["modality"] == "Residual" and is_other and float(every[f"prior.{name}"]) < WIDE:
+            value = float(every[f"motor.{name}"])
+            yield Finding(Kind.OTHER_ROBOT, Severity.RESTS_ON, f"motor.{name}", value, "")
     if every["method"] != "FilteredRegression":
         return
     for name in exact(every):

@@ -16,6 +16,10 @@ _LOOKED_AT = 20_000  # about how many values are searched for the step of an enc
 _FINER = 1.5  # a configured step that differs by more than this factor is wrong
 _FLAT = 3  # consecutive samples at an end of the range
 _OFTEN = 0.01  # fraction of all samples
+_SAME = 0.001  # relative difference of the logarithm of a ratio from the one of two units
+_LEAST = 20  # samples
+_SPIKE, _ALONE = 0.1, 5.0
+"""A spike: the least distance from the neighbours over the range, and over their own distance."""
 _FEW = 50  # with fewer distinct values, the torque is a series of steps
 _PERIODS = (360.0, 2 * math.pi, *(2.0**k for k in range(8, 33)))
 
@@ -28,7 +32,7 @@ def columns(seen: View) -> Iterator[Finding]:
         finite = np.isfinite(values)
         values = values if finite.all() else values[finite]  # no copy: a log can be long
         if name in ("theta", "q"):
-            yield from _jumps(name, port, values)
+            yield from list(_spikes(name, port, values)) or _jumps(name, port, values)
             yield from step(seen, name, port, values)
         if name == "tau" and is_only_noise(values):
             key, size = f"ports.{name}.column", float(np.std(values))
@@ -70,6 +74,19 @@ def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
     yield Finding(Kind.JUMP, Severity.WRONG, key, jump, unit, None, known, about=name)
 
 
+def _spikes(name: str, port: Port, values: Array) -> Iterator[Finding]:
+    """Single samples far from both neighbours, which agree: a bus or an encoder lost them."""
+    if len(values) < _LEAST:
+        return
+    span = float(np.diff(np.quantile(values, [0.01, 0.99]))[0])
+    away = np.abs(values[1:-1] - (values[2:] + values[:-2]) / 2)
+    lost = (away > _SPIKE * span) & (away > _ALONE * np.abs(values[2:] - values[:-2]))
+    number, largest = int(np.count_nonzero(lost)), float(away.max())
+    if 0 < number < _OFTEN * len(values):
+        key, unit = f"ports.{name}.column", port.unit or "rad"
+        yield Finding(Kind.SPIKE, Severity.WRONG, key, largest, unit, float(number), about=name)
+
+
 def step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]:
     """Compares the step of the values with the step of the configured encoder."""
     given = float(seen.every[f"encoder.{name}"])
@@ -81,8 +98,13 @@ def step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]:
     if 1 / _FINER < angle / expected < _FINER:
         return
     proposed: Proposal = float(round(2 * math.pi / angle))
-    others = [(f"ports.{name}.counts_per_turn", None)] if port.unit == "counts" else []
+    others: list[tuple[str, Proposal | None]] = []
+    if port.unit == "counts":
+        others.append((f"ports.{name}.counts_per_turn", None))
     key = f"encoder.{name}"
+    unit = "deg" if angle > expected else "rad"
+    if abs(abs(math.log(angle / expected)) / math.log(180 / math.pi) - 1) < _SAME:
+        others, key, proposed = [(key, proposed)], f"ports.{name}.unit", unit
     severity = Severity.WRONG if angle > expected else Severity.NOTE
     yield Finding(Kind.STEP, severity, key, angle, "rad", expected, proposed, others, name)
 

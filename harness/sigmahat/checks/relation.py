@@ -84,11 +84,27 @@ def _scale(here: Relation, slope: Slope) -> Relation:
         for change in near
         if change.key != best.key and distance(change.on_theta, best.on_theta) < _AS_WELL
     }
-    repaired = _scaled(here.seen, best.port, best.factor)
     key, listed = best.key, list(others.items())
-    what = (Kind.SLOPE, Severity.WRONG, key, slope.value, "", 1.0, best.value, listed)
-    finding = Finding(*what, "held" if size > 1 else "")
-    return Relation([finding], repaired, fitted(repaired))
+    what = (key, slope.value, "", 1.0, best.value, listed, "held" if size > 1 else "")
+    is_gamma = key == "ports.theta.gear_ratio" and best.value == abs(here.seen.gamma)
+    if size > 1 and not is_gamma and _is_sane(here):
+        return replace(here, findings=[Finding(Kind.SLOPE, Severity.NOTE, *what)])
+    repaired = _scaled(here.seen, best.port, best.factor)
+    return Relation([Finding(Kind.SLOPE, Severity.WRONG, *what)], repaired, fitted(repaired))
+
+
+def _is_sane(here: Relation) -> bool:
+    """Whether the torque of the log as it is gives motor data and a stiffness above 0: a hand may
+    have moved the link while a drive held the motor.
+    """
+    found = here.fitted
+    if found is None or not _is_determined(found, LINEAR):
+        return False
+    return not _is_stiffness_negative(here.seen, found) and _sign_of_motor(found) >= 0
+
+
+def _is_determined(found: Fitted, name: str) -> bool:
+    return abs(found.linear.value[name]) > found.linear.half_width[name]
 
 
 def _likely(seen: View, slope: Slope) -> Change | None:

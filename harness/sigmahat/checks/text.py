@@ -126,10 +126,13 @@ _SENTENCES: Mapping[Kind, str] = {
     "than theta",
     Kind.INERTIA: _INERTIA,
     Kind.TORQUE_SCALE: f"{_INERTIA}, as if the torque were geared twice or not at all",
-    Kind.OTHER_ROBOT: "motor.B, motor.D_theta and motor.gamma are still the values of the AwAS",
+    Kind.OTHER_ROBOT: "{value:.4g} is the start value, of another robot",
+    Kind.UNIT: "{about}; a wrong unit of both changes nothing but the stiffness",
     Kind.STEP: "the values of {about} change in steps of {measured}, the configured encoder has "
     "{expected}",
     Kind.JUMP: "{about} jumps by {measured}, as a counter that starts again",
+    Kind.SPIKE: "{about} is up to {measured} away from both neighbours in {given:g} samples: they "
+    "were lost, leave them empty",
     Kind.SATURATION: "the torque stays at an end of its range for {percent} of the samples",
     Kind.NO_TORQUE: "the torque is only noise ({measured}): the motor is off, or the column is "
     "wrong. The stiffness then rests on motor.B, motor.D_theta and the Coulomb friction alone",

@@ -54,7 +54,8 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
             guessed = {"": one_joint(opened, guessed, joint)}
         common.refuse_to_overwrite(one, force, "--config")
         write_whole(template.write(opened, columns, guessed), one)
-    common.answer("\n".join([*opened.notes, _text(log, guessed, one)]))
+    notes = [*opened.notes, *columns.unreadable]
+    common.answer("\n".join([*notes, _text(log, guessed, one)]))
 
 
 def _text(log: Path, joints: Mapping[str, JointGuess], path: Path) -> str:

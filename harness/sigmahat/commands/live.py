@@ -95,6 +95,12 @@ def live(
     lines = [f"messages: {', '.join(counts)}", learned if files else "Nothing was recorded"]
     lines += [f"sigmahat estimate {each} --config {each.with_suffix('.toml')}" for each in files]
     common.answer("\n".join(lines), {"messages": values, "recordings": [str(f) for f in files]})
+    if not inbox.read and inbox.wrong:
+        expected = f"JSON, or CSV with the columns {', '.join(session.columns)}"
+        raise click.ClickException(
+            f"none of {inbox.wrong} messages could be read; expected {expected}. For CSV without a "
+            "title line, name its columns with --columns"
+        )
 
 
 def _greeting(session: Session, source: str, targets: Sequence[str], host: str) -> str:

@@ -31,7 +31,7 @@ def read(path: Path) -> tomlkit.TOMLDocument:
     with path.open("rb") as file:
         content = file.read(_LONGEST + 1)
     if len(content) > _LONGEST:
-        raise ValueError(f"expected at most {_LONGEST} bytes")
+        raise ValueError(f"expected at most {_LONGEST} bytes, got more: is it the log?")
     text = content.decode().replace("\r\n", "\n").replace("\r", "\n")
     # The time that tomlkit takes grows with the square of the keys, and more with their depth.
     try:

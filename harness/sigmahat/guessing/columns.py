@@ -1,7 +1,7 @@
 """The columns of a log for the guess: names, values, steps, counters, and times of the rows."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -38,15 +38,15 @@ class Facts:
     """Distance between neighbouring values of a quantised column; inf if it is not quantised."""
     wrap: float | None = None
     """Period after which a counter starts again; None if the column is no such counter."""
-    text: bool = False  # whether the column contains something other than numbers
+    text: str = ""  # what is wrong with a column that contains something other than numbers
 
 
 def look_at(log: Log, name: str) -> tuple[Facts, Array]:
     """Facts of a column and its values, unwrapped; no values if the column contains text."""
     try:
         values = log.read(name)
-    except LogError:
-        return Facts(text=True), np.empty(0)
+    except LogError as error:
+        return Facts(text=str(error)), np.empty(0)
     finite = values[np.isfinite(values)]
     if not len(finite):
         return Facts(), values
@@ -248,15 +248,23 @@ class Columns:
     facts: Mapping[str, Facts]  # facts of all columns, by name
     window_T: float  # time between the samples of the windows [s]
 
+    @property
+    def unreadable(self) -> list[str]:
+        """What is wrong with the columns whose names promise numbers, in sentences."""
+        texts = {name: each.text for name, each in self.facts.items() if each.text}
+        return [text for name, text in texts.items() if meaning(name).quantity is not None]
+
 
 def read_columns(log: Log) -> Columns:
     """Looks at every column of a log, once."""
     check_together(log.path, sum(log.columns.values()))
     facts: dict[str, Facts] = {}
     values: dict[str, Array] = {}
+    meanings = {name: meaning(name) for name in log.columns}
     for name in log.columns:
         facts[name], values[name] = look_at(log, name)
-    meanings = {name: meaning(name) for name in log.columns}
+        if meanings[name].side == "setting":  # two settings make a set-point
+            facts[name] = replace(facts[name], varies=facts[name].low < facts[name].high)
     units = {
         name: unit_of(meanings[name], facts[name], values[name])
         for name in log.columns

@@ -189,8 +189,10 @@ def period_of(guess: JointGuess) -> str:
 def _parameters(guess: JointGuess) -> Table:
     table, ports = tomlkit.table(), guess.ports
     _comment(table, "of StiffnessEstimator.fmu, by their names; others keep their start values")
-    period = "[s] FILL IN: the log has no times" if guess.time is None else period_of(guess)
-    _add(table, "samplePeriod", guess.T, period)
+    if guess.time is None:
+        _add(table, "samplePeriod", 0, "[s] FILL IN: time between two rows; the log has no times")
+    else:
+        _add(table, "samplePeriod", guess.T, period_of(guess))
     _add(table, "method", "FilteredRegression", "or Paper2011, which needs exact motor data")
     sensor = _is_sensor(guess)
     _add(table, "modality", "Sensor" if sensor else "Residual", "Residual, Sensor or Model")

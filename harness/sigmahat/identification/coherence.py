@@ -6,12 +6,21 @@ encoders between their counts. As the regressor of the stiffness, such errors ma
 
 import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from sigmahat.identification.noise import TorqueNoise
-from sigmahat.identification.regression import MOTOR, Form, Signals, equations, fit, rows
+from sigmahat.identification.regression import (
+    MOTOR,
+    Form,
+    Signals,
+    equations,
+    factor,
+    fit,
+    rows,
+)
 from sigmahat.logs.log import Array
 
 _FIRST = 5.0  # [Hz] low pass of the fit that the spectra are computed from
@@ -19,6 +28,8 @@ _SEGMENT = 2.0  # [s] of a spectrum
 _LOWEST = 2.0  # [Hz]
 _COHERENT = 0.5
 _LARGER = 4.0  # power of the deformation over what the noise of the torque explains
+_BUTTERWORTH = 1.11  # noise bandwidth of the low pass over its frequency
+_HIDDEN = 0.5  # variance of the rounding over the one of the deformation that the motor leaves
 
 
 def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
@@ -80,3 +91,24 @@ def spectra(x: Array, y: Array, h: float) -> tuple[Array, Array, Array]:
     coherence: Array = np.abs(np.mean(of_x.conj() * of_y, axis=0)) ** 2 / (xx * yy)
     density: Array = 2 * h * yy / np.sum(window**2)
     return frequency, coherence, density
+
+
+def is_hidden(
+    pieces: Sequence[Signals], T: float, gamma: float, f_0: float, noise: float, known: bool
+) -> bool:
+    """Whether what the motor leaves of the deformation is rounding: then the log shows how
+    inertia, friction and the load together move, and not one of them.
+
+    A free load in one slow sine does that: the spring has the torque of one more inertia.
+
+    f_0    low pass of the equations [Hz]
+    noise  variance of the rounding of the deformation [rad2]
+    known  whether the inertia is known
+    """
+    system = equations(pieces, T, gamma, Form(f_0, f_0))
+    R = factor(system.R.reshape(-1, system.R.shape[2]))
+    others, spring = R[:, int(known) : -2], R[:, -2]  # the last one is y
+    own = spring - others @ np.linalg.lstsq(others, spring, rcond=None)[0]
+    variance = float(own @ own) / int(system.rows.sum()) * system.units[0] ** 2
+    left = min(1.0, _BUTTERWORTH * 4 * f_0 * T)  # of white noise, every second sample
+    return bool(noise * left > _HIDDEN * variance)

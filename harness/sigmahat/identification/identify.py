@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from sigmahat.fmi.instance import Fmu, Slave, Value, installed
-from sigmahat.identification.coherence import coherent_range
+from sigmahat.identification.coherence import coherent_range, is_hidden
 from sigmahat.identification.knees import knees
 from sigmahat.identification.motor import KnownInertia, fit_motor
 from sigmahat.identification.noise import TorqueNoise, count, is_only_noise, low_pass
@@ -36,6 +36,11 @@ _V_A_TICKS = 10000
 _NO_TORQUE = (
     "the torque of the motor is only noise: such a log does not show its inertia and friction, and "
     "they have to be known for the stiffness; record with the motor on"
+)
+_HIDDEN = (
+    "the deformation differs from the acceleration of the motor by less than the rounding of the "
+    "encoders: the log cannot tell the inertia of the motor from the inertia of the load; record "
+    "more frequencies, or give motor.B and prior.B"
 )
 _V_A_HIGHEST = 0.1  # low pass of the velocity to compare with, in sampling frequencies
 
@@ -83,20 +88,25 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     coherent = math.inf if torque_constant else coherent_range(longest, gamma, noise)
     apart = _apart(pieces, count(every))
     thinned = [each.every(apart) for each in pieces]
+    inertia = _known_inertia(every, configuration)
     motor = fit_motor(
         thinned,
         apart * T,
         gamma,
         symmetric,
         min(replace(noise, T=apart * T).bandwidth, coherent),
-        _known_inertia(every, configuration),
+        inertia,
     )
     V_a = _best_V_a(fmu, samples, start, longest, f_0)
     quantities, notes = dict(motor.quantities), list(samples.notes)
     no_torque = all(is_only_noise(piece.tau) for piece in pieces)
-    if no_torque:
+    rounding = sum(count(every, encoder) ** 2 / 12 for encoder in ("theta", "q"))
+    hidden = not torque_constant and is_hidden(
+        thinned, apart * T, gamma, motor.polynomial.f_0, rounding, inertia is not None
+    )
+    if no_torque or hidden:
         quantities = {name: _not_shown(each) for name, each in quantities.items()}
-        notes.append(_NO_TORQUE)
+        notes.append(_NO_TORQUE if no_torque else _HIDDEN)
     if quantities["B"].determined:  # until here it was that of the configuration
         f_0 = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
     nominal = configuration.ports["tau"].torque_constant
@@ -117,7 +127,9 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         V_a=V_a,
         phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
         zero=center,
-        knees=() if no_torque else knees(thinned, apart * T, gamma, motor.polynomial, center),
+        knees=()
+        if no_torque or hidden
+        else knees(thinned, apart * T, gamma, motor.polynomial, center),
         set_point=max(float(np.max(np.abs(piece.set_point))) for piece in pieces),
         torque=0.0 if no_torque else max(spring, *_torques(pieces, gamma)),
         B=float(every["motor.B"]),

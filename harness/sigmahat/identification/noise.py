@@ -37,12 +37,12 @@ def is_only_noise(values: Array) -> bool:
     return float(np.var(values)) <= _ONLY_NOISE * variance(values)
 
 
-def count(every: Mapping[str, Value]) -> float:
-    """Angle of a count of the motor's encoder [rad]; 0 if there is none.
+def count(every: Mapping[str, Value], encoder: str = "theta") -> float:
+    """Angle of a count of an encoder [rad]; 0 if there is none.
 
     every  parameters of the estimator
     """
-    counts = float(every["encoder.theta"])
+    counts = float(every[f"encoder.{encoder}"])
     return 2 * math.pi / counts if counts else 0.0
 
 

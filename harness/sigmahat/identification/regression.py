@@ -144,12 +144,12 @@ class Equations:
             self,
             ZX=np.array([self.ZX[each].sum(axis=0) for each in of_part]),
             Zy=np.array([self.Zy[each].sum(axis=0) for each in of_part]),
-            R=np.array([_factor(self.R[each].reshape(-1, columns)) for each in of_part]),
+            R=np.array([factor(self.R[each].reshape(-1, columns)) for each in of_part]),
             rows=np.array([self.rows[each].sum() for each in of_part]),
         )
 
 
-def _factor(X: Array) -> Array:
+def factor(X: Array) -> Array:
     """R of X = QR, or of a stack of such, with as many rows as columns."""
     missing = max(0, X.shape[-1] - X.shape[-2])
     if missing:
@@ -170,7 +170,7 @@ def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> 
             y, X, Z = (_in_blocks(x, each.place, T) for x in (each.y[..., None], each.X, each.Z))
             ZX, Zy = Z.swapaxes(1, 2) @ X, (Z.swapaxes(1, 2) @ y)[..., 0]
             of_block = np.bincount(each.place // _block(T) - each.place[0] // _block(T))
-            parts.append((ZX, Zy, _factor(np.concatenate([X, y], axis=2)), 2 * of_block))
+            parts.append((ZX, Zy, factor(np.concatenate([X, y], axis=2)), 2 * of_block))
     names = form.names(pieces[0].tau_e is not None)
     if pieces[0].extra is not None:
         names += [extra(i) for i in range(pieces[0].extra.shape[1])]

@@ -190,9 +190,27 @@ def checked_configuration(
                 f"{path}: [ports.{name}] {what}; name a column of the log, or set value "
                 "where the port does not change"
             )
+    _refuse_repeated(file, path)
     chosen = any(line.rstrip().endswith(CHOSEN) for line in tomlkit.dumps(own).splitlines())
     values = dict(toml_file.dotted(file.parameters))
     return Configuration(path, file.time, file.ports, values, chosen, joint)
+
+
+def _refuse_repeated(file: _File, path: Path) -> None:
+    """Raises LogError if a column feeds two ports, or is the time as well.
+
+    The torque of a sensor may also be the position of a motor: that of a test bench that gives way.
+    """
+    used = {file.time.column: "time"}
+    for name, port in file.ports.items():
+        if port.column in ("", FILL_IN) or name == "tau_e_sensor":
+            continue
+        if port.column in used:
+            raise LogError(
+                f"{path}: [{used[port.column]}] and [ports.{name}] both have the column "
+                f"{port.column!r}; name another column for one of them"
+            )
+        used[port.column] = f"ports.{name}"
 
 
 def joints_of(document: tomlkit.TOMLDocument, path: Path) -> list[str]:

@@ -24,12 +24,14 @@ OUTPUTS = (
 """Real outputs that are recorded."""
 FLAGS = ("confident", "valid")  # Boolean outputs that are recorded
 _LONGEST_GAP = 1_000_000  # most samples that `gap` takes out
+_RATES = ("regression.bandwidth", "residual.K_I")  # [1/s], below 2 / samplePeriod
 _REASON = "doubt"  # output that is an enumeration; the names of its items are recorded
 
 
 def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
-    """Start values of the FMU: those of the configuration, encoders of columns in counts, and the
-    gear ratio of theta as motor.gamma, if that is 0 or not given.
+    """Start values of the FMU: those of the configuration, encoders of columns in counts, the gear
+    ratio of theta as motor.gamma, if that is 0 or not given, and filters that are not faster than
+    the samples.
 
     encoder.theta_c is set as well, though it has no effect: the contract of the FMU names it.
 
@@ -51,7 +53,12 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
                 raise ValueError(f"parameters.{name}: expected a finite number, got {value}")
         if start.get("motor.gamma") == 0:
             raise ValueError("parameters.motor.gamma is 0; fill in the gear ratio of your joint")
-        return start
+        every = fmu.parameters(start)
+        T = float(every["samplePeriod"])
+        if T == 0:
+            raise ValueError("parameters.samplePeriod is 0; fill in the time between two rows [s]")
+        too_fast = {name: 1 / T for name in _RATES if float(every[name]) * T > 1}
+        return {**too_fast, **start}
     except (ValueError, TypeError) as error:
         raise LogError(f"{configuration.path}: {error}") from error
 

@@ -96,7 +96,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
         if port.time is not None:
             t = _times(log, configuration, port.time, T, notes)
             t -= start
-        column = _column(log, name, port, len(t), notes)
+        column = _column(log, name, port, t, notes)
         if port.delay:
             t = t - port.delay
             notes.append(f"{name}: moved back by {port.delay:g} s")
@@ -166,12 +166,12 @@ def _shown(times: Array, i: int) -> str:
     return f"{times[i] - times[0]:.9g} s from the first row"
 
 
-def _column(log: Log, name: str, port: Port, rows: int, notes: list[str]) -> Array:
-    """A column in the unit of its port."""
+def _column(log: Log, name: str, port: Port, t: Array, notes: list[str]) -> Array:
+    """A column in the unit of its port; t are the times of its samples [s]."""
     values = log.read(port.column)
-    if len(values) != rows:
+    if len(values) != len(t):
         raise LogError(
-            f"{log.path}: column {port.column!r} has {len(values)} samples, its time {rows}; "
+            f"{log.path}: column {port.column!r} has {len(values)} samples, its time {len(t)}; "
             f"name its own times in ports.{name}.time"
         )
     if port.wrap is not None:
@@ -179,7 +179,9 @@ def _column(log: Log, name: str, port: Port, rows: int, notes: list[str]) -> Arr
         notes.append(f"{name}: unwrapped {jumps} times at {port.wrap:g} {port.unit or ''}".rstrip())
     values = convert(name, port, values)
     if port.wrap is None and PORTS[name] == "rad":
-        steps = np.diff(values)
+        steps, intervals = np.diff(values), np.diff(t)
+        if len(steps):
+            steps[intervals > _USUAL_INTERVALS * np.nanmedian(intervals)] = 0.0  # gaps
         jump = float(np.nanmax(np.abs(steps, out=steps), initial=0.0))
         if jump > np.pi and port.unit is not None and name != "theta_c":
             notes.append(f"{name}: jumps by {jump:.3g} rad; if the encoder wraps, set wrap")
